@@ -1,0 +1,165 @@
+#include "traverse/track/profile.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::track {
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double fade_length = 20.0;  // m
+constexpr int waves_in_all = 240;     // 80 a decade
+
+/// Second derivatives of the natural cubic spline at its knots (Thomas algorithm).
+std::vector<double> natural_spline(const std::vector<double>& x, const std::vector<double>& h) {
+  const std::size_t n = x.size();
+  std::vector<double> second(n, 0.0), upper(n, 0.0);
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double a = x[i] - x[i - 1], b = x[i + 1] - x[i];
+    const double pivot = 2.0 * (a + b) - a * upper[i - 1];
+    upper[i] = b / pivot;
+    const double right = 6.0 * ((h[i + 1] - h[i]) / b - (h[i] - h[i - 1]) / a);
+    second[i] = (right - a * second[i - 1]) / pivot;
+  }
+  for (std::size_t i = n - 1; i-- > 1;) second[i] -= upper[i] * second[i + 1];
+  return second;
+}
+
+void check_table(const std::vector<double>& x, const std::vector<double>& h, const std::string& name) {
+  if (x.size() != h.size() || x.size() < 2) {
+    throw InputError(name + ": a profile needs two columns, x and height, and at least two lines");
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(h[i])) {
+      throw InputError(name + ": number " + std::to_string(i + 1) + " of the profile is not finite");
+    }
+    if (i > 0 && !(x[i] > x[i - 1])) {
+      throw InputError(name + ": x must increase from line to line; it does not at x = " + std::to_string(x[i]));
+    }
+  }
+}
+
+/// Displacement spectrum at n0 = 0.1 cycles/m, m3: the geometric mean of the class (ISO 8608, table C.1).
+double spectrum_at_n0(char grade) {
+  if (grade < 'A' || grade > 'E') throw InputError(std::string("ISO 8608 class '") + grade + "': allowed are A to E");
+  return 16e-6 * std::pow(4.0, grade - 'A');
+}
+
+/// From 0 to 1 over s in [0, 1], with slope and curvature 0 at both ends; derivatives by s.
+Height smooth_step(double s) {
+  return {s * s * s * (10.0 + s * (-15.0 + 6.0 * s)), 30.0 * s * s * (1.0 - s) * (1.0 - s),
+          60.0 * s * (1.0 - s) * (1.0 - 2.0 * s)};
+}
+
+}  // namespace
+
+Profile Profile::bump(double start, double length, double height) {
+  if (!(length > 0.0) || !std::isfinite(length)) throw InputError("a bump needs a length above 0");
+  if (!std::isfinite(start) || !std::isfinite(height)) throw InputError("a bump needs a finite start and height");
+  Profile p;
+  if (height == 0.0) return p;
+  p.kind_ = Kind::bump;
+  p.start_ = start;
+  p.length_ = length;
+  p.height_ = height;
+  p.kinks_ = {start, start + length};
+  p.greatest_curvature_ = 0.5 * std::abs(height) * (two_pi / length) * (two_pi / length);
+  return p;
+}
+
+Profile Profile::table(std::vector<double> x, std::vector<double> h, const std::string& name) {
+  check_table(x, h, name);
+  Profile p;
+  p.kind_ = Kind::table;
+  p.h2_ = natural_spline(x, h);
+  p.kinks_ = {x.front(), x.back()};
+  for (double c : p.h2_) p.greatest_curvature_ = std::max(p.greatest_curvature_, std::abs(c));
+  p.x_ = std::move(x);
+  p.h_ = std::move(h);
+  return p;
+}
+
+Profile Profile::iso8608(char grade, double start, std::uint64_t seed) {
+  constexpr double n0 = 0.1, lowest = 0.01, highest = 10.0;  // cycles/m
+  const double level = spectrum_at_n0(grade) * n0 * n0;
+  Profile p;
+  p.kind_ = Kind::waves;
+  p.start_ = start;
+  std::mt19937_64 random(seed);
+  double variance = 0.0;  // of the curvature
+  for (int i = 0; i < waves_in_all; ++i) {
+    const double a = lowest * std::pow(highest / lowest, double(i) / waves_in_all);
+    const double b = lowest * std::pow(highest / lowest, double(i + 1) / waves_in_all);
+    const double power = level * (1.0 / a - 1.0 / b);  // the spectrum's integral over this band
+    const double k = two_pi * std::sqrt(a * b);
+    p.amplitude_.push_back(std::sqrt(2.0 * power));
+    p.wavenumber_.push_back(k);
+    p.phase_.push_back(two_pi * static_cast<double>(random() >> 11) * 0x1.0p-53);
+    variance += power * k * k * k * k;
+  }
+  p.greatest_curvature_ = 6.0 * std::sqrt(variance);
+  return p;
+}
+
+namespace {
+
+Height bump_at(double s, double length, double height) {
+  if (s < 0.0 || s > length) return {};
+  const double k = two_pi / length;
+  const double c = std::cos(k * s), half = 0.5 * height;
+  return {half * (1.0 - c), half * k * std::sin(k * s), half * k * k * c};
+}
+
+Height spline_at(const std::vector<double>& x, const std::vector<double>& h, const std::vector<double>& h2, double at) {
+  if (at < x.front()) return {h.front(), 0.0, 0.0};
+  if (at > x.back()) return {h.back(), 0.0, 0.0};
+  const auto above = std::upper_bound(x.begin(), x.end(), at);
+  const std::size_t i = std::min<std::size_t>(above - x.begin(), x.size() - 1) - 1;
+  const double d = x[i + 1] - x[i];
+  const double b = (at - x[i]) / d, a = 1.0 - b;
+  Height r;
+  r.value = a * h[i] + b * h[i + 1] + ((a * a * a - a) * h2[i] + (b * b * b - b) * h2[i + 1]) * d * d / 6.0;
+  r.slope = (h[i + 1] - h[i]) / d + ((1.0 - 3.0 * a * a) * h2[i] + (3.0 * b * b - 1.0) * h2[i + 1]) * d / 6.0;
+  r.curvature = a * h2[i] + b * h2[i + 1];
+  return r;
+}
+
+Height waves_at(const std::vector<double>& amplitude, const std::vector<double>& wavenumber,
+                const std::vector<double>& phase, double s) {
+  Height w;
+  for (std::size_t i = 0; i < amplitude.size(); ++i) {
+    const double k = wavenumber[i], angle = k * s + phase[i];
+    const double c = amplitude[i] * std::cos(angle);
+    w.value += c;
+    w.slope -= k * amplitude[i] * std::sin(angle);
+    w.curvature -= k * k * c;
+  }
+  if (s >= fade_length) return w;
+  Height f = smooth_step(s / fade_length);
+  f.slope /= fade_length;
+  f.curvature /= fade_length * fade_length;
+  return {f.value * w.value, f.slope * w.value + f.value * w.slope,
+          f.curvature * w.value + 2.0 * f.slope * w.slope + f.value * w.curvature};
+}
+
+}  // namespace
+
+Height Profile::at(double x) const {
+  switch (kind_) {
+    case Kind::level:
+      return {};
+    case Kind::bump:
+      return bump_at(x - start_, length_, height_);
+    case Kind::table:
+      return spline_at(x_, h_, h2_, x);
+    case Kind::waves:
+      return x > start_ ? waves_at(amplitude_, wavenumber_, phase_, x - start_) : Height{};
+  }
+  return {};
+}
+
+}  // namespace traverse::track

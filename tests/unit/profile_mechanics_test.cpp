@@ -1,0 +1,142 @@
+// Track profiles: derivatives against differences, kinks, the ISO 8608 spectrum level.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "traverse/base/error.hpp"
+#include "traverse/track/profile.hpp"
+
+namespace traverse::track {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+void expect_derivatives(const Profile& p, const std::vector<double>& stations, double d = 1e-5) {
+  const double bound = p.greatest_curvature();
+  for (double x : stations) {
+    const Height h = p.at(x), right = p.at(x + d), left = p.at(x - d);
+    EXPECT_NEAR(h.slope, (right.value - left.value) / (2.0 * d), 1e-5 * bound * 1.0 + 1e-10) << "x = " << x;
+    EXPECT_NEAR(h.curvature, (right.slope - left.slope) / (2.0 * d), 1e-4 * bound + 1e-10) << "x = " << x;
+    EXPECT_LE(std::abs(h.curvature), bound * (1.0 + 1e-12));
+  }
+}
+
+TEST(Profile, LevelByDefault) {
+  const Profile p;
+  EXPECT_TRUE(p.level());
+  EXPECT_EQ(p.at(3.0).value, 0.0);
+  EXPECT_TRUE(p.kinks().empty());
+}
+
+TEST(Profile, Bump) {
+  const Profile p = Profile::bump(10.0, 1.0, 0.01);
+  EXPECT_FALSE(p.level());
+  EXPECT_DOUBLE_EQ(p.at(10.5).value, 0.01);
+  EXPECT_NEAR(p.at(10.25).value, 0.005, 1e-15);
+  EXPECT_EQ(p.at(9.999).value, 0.0);
+  EXPECT_EQ(p.at(11.001).value, 0.0);
+  EXPECT_EQ(p.kinks(), (std::vector<double>{10.0, 11.0}));
+  EXPECT_NEAR(p.greatest_curvature(), 0.005 * 4.0 * pi * pi, 1e-12);
+  expect_derivatives(p, {9.5, 10.1, 10.3, 10.5, 10.77, 12.0});
+  EXPECT_THROW(Profile::bump(0.0, 0.0, 0.01), InputError);
+  EXPECT_THROW(Profile::bump(0.0, 1.0, std::numeric_limits<double>::quiet_NaN()), InputError);
+}
+
+TEST(Profile, TableIsANaturalSpline) {
+  std::vector<double> x, h;
+  for (int i = 0; i <= 40; ++i) {
+    x.push_back(0.5 * i);
+    h.push_back(0.002 * std::sin(0.6 * x.back()));
+  }
+  const Profile p = Profile::table(x, h, "t.csv");
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(p.at(x[i]).value, h[i], 1e-16);
+  // away from the ends the spline's error is of order (0.6*0.5)^4/384
+  EXPECT_NEAR(p.at(9.7).value, 0.002 * std::sin(0.6 * 9.7), 0.002 * 3e-5);
+  expect_derivatives(p, {0.3, 1.2, 5.1, 10.4, 19.9});
+  EXPECT_EQ(p.at(-5.0).value, h.front());
+  EXPECT_EQ(p.at(50.0).value, h.back());
+  EXPECT_EQ(p.at(50.0).slope, 0.0);
+  EXPECT_EQ(p.kinks(), (std::vector<double>{0.0, 20.0}));
+  EXPECT_EQ(p.at(0.0).curvature, 0.0);
+}
+
+TEST(Profile, TwoPointsAreALine) {
+  const Profile p = Profile::table({0.0, 2.0}, {0.0, 0.1}, "t.csv");
+  EXPECT_DOUBLE_EQ(p.at(1.0).value, 0.05);
+  EXPECT_DOUBLE_EQ(p.at(1.0).slope, 0.05);
+}
+
+TEST(Profile, BadTablesAreRefusedByName) {
+  EXPECT_THROW(Profile::table({0.0}, {0.0}, "t.csv"), InputError);
+  EXPECT_THROW(Profile::table({0.0, 0.0}, {0.0, 1.0}, "t.csv"), InputError);
+  try {
+    Profile::table({0.0, 1.0, 0.5}, {0.0, 0.0, 0.0}, "level.csv");
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_NE(std::string(e.what()).find("level.csv"), std::string::npos);
+  }
+}
+
+TEST(Profile, IsoStartsLevelAndIsSmooth) {
+  const Profile p = Profile::iso8608('C', 5.0, 7);
+  EXPECT_EQ(p.at(5.0).value, 0.0);
+  EXPECT_EQ(p.at(-100.0).value, 0.0);
+  expect_derivatives(p, {5.3, 9.0, 18.2, 24.999, 25.0, 25.001, 60.0, 777.7});
+  EXPECT_NEAR(p.at(25.0 - 1e-12).curvature, p.at(25.0 + 1e-12).curvature, 1e-7);
+  EXPECT_NE(p.at(60.0).value, Profile::iso8608('C', 5.0, 8).at(60.0).value);
+  EXPECT_EQ(p.at(60.0).value, Profile::iso8608('C', 5.0, 7).at(60.0).value);
+  EXPECT_THROW(Profile::iso8608('F', 0.0, 1), InputError);
+}
+
+// The variance between 0.01 and 10 cycles/m is the integral of Gd(n0) (n0/n)^2: Gd(n0) 0.01 (100 - 0.1).
+TEST(Profile, IsoVarianceAndClasses) {
+  const double mean_square = 16e-6 * 0.01 * (100.0 - 0.1);
+  double sum = 0.0;
+  const int samples = 40000, seeds = 8;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const Profile p = Profile::iso8608('A', 0.0, seed);
+    for (int i = 0; i < samples / seeds; ++i) {
+      const double h = p.at(100.0 + 7.3 * i).value;
+      sum += h * h;
+    }
+  }
+  EXPECT_NEAR(sum / samples, mean_square, 0.05 * mean_square);
+  const double a = Profile::iso8608('A', 0.0, 3).at(333.0).value, e = Profile::iso8608('E', 0.0, 3).at(333.0).value;
+  EXPECT_NEAR(e / a, 16.0, 1e-9);
+}
+
+// Spectrum level by a finite Fourier sum over a band around n0 = 0.1 cycles/m, against Gd(n0) = 16e-6 m3 (class A).
+TEST(Profile, IsoSpectrumLevel) {
+  const double length = 4000.0, dx = 0.25;
+  const int n = static_cast<int>(length / dx);
+  double power = 0.0;
+  const double first = 0.09, last = 0.11;
+  const int seeds = 3;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const Profile p = Profile::iso8608('A', -50.0, 40 + seed);
+    std::vector<double> h(n);
+    for (int i = 0; i < n; ++i) h[i] = p.at(i * dx).value;
+    for (int k = static_cast<int>(first * length); k < static_cast<int>(last * length); ++k) {
+      double re = 0.0, im = 0.0;
+      const double c = std::cos(2.0 * pi * k / n), s = std::sin(2.0 * pi * k / n);
+      double wr = 1.0, wi = 0.0;
+      for (int i = 0; i < n; ++i) {
+        const double window = std::sin(pi * (i + 0.5) / n);  // sine window: mean square 1/2
+        re += h[i] * window * wr;
+        im += h[i] * window * wi;
+        const double r = wr * c - wi * s;
+        wi = wr * s + wi * c;
+        wr = r;
+      }
+      power += 2.0 * 2.0 * (re * re + im * im) / (double(n) * n);
+    }
+  }
+  // integral of 16e-6 (0.1/n)^2 over the band; the waves are 240 in three decades, 7 of them in this band
+  const double expected = 16e-6 * 0.01 * (1.0 / first - 1.0 / last);
+  EXPECT_NEAR(power / seeds, expected, 0.2 * expected);
+}
+
+}  // namespace
+}  // namespace traverse::track
