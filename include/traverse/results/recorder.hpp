@@ -1,0 +1,99 @@
+// The results file of a run: HDF5, written in blocks so that memory does not grow with time and what is written
+// stays readable when the run dies.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "traverse/beam/recovery.hpp"
+#include "traverse/modes/modes.hpp"
+
+namespace traverse::results {
+
+/// What the file will hold, fixed before the first sample.
+struct Layout {
+  struct VehicleNames {
+    std::vector<std::string> bodies, wheels, joints;
+  };
+  std::vector<double> probes;        // stations, m; empty without a beam
+  std::vector<double> supports;      // stations of the span ends, m
+  std::vector<double> nodes;         // x of every node, m: the bridge's shape is stored at the worst instants
+  std::vector<VehicleNames> vehicles;
+};
+
+/// One stored instant.
+struct Sample {
+  double time = 0.0;
+  std::vector<beam::Response> probes;
+  std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam
+  struct Body {
+    std::array<double, 3> position, velocity, acceleration;
+  };
+  struct Wheel {
+    double normal_force = 0.0, friction_force = 0.0, penetration = 0.0;
+  };
+  struct Vehicle {
+    std::vector<Body> bodies;
+    std::vector<Wheel> wheels;
+    std::vector<std::array<double, 3>> joints;  // reaction on the second body
+  };
+  std::vector<Vehicle> vehicles;
+  struct Energy {
+    double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0, residual = 0.0;
+  } energy;
+};
+
+/// The bridge's deflection at all nodes at one instant.
+struct Shape {
+  double time = 0.0;
+  std::vector<double> deflection;
+};
+
+/// Extremes over the run, for the terminal and as attributes of /summary.
+struct Extreme {
+  double value = 0.0;  // signed, of the largest magnitude
+  double time = 0.0;
+  double place = 0.0;  // station, m
+};
+struct Summary {
+  Extreme deflection, acceleration, moment;
+  double static_deflection = 0.0;        // largest |static deflection| at the same station with the same loads; 0: unknown
+  double amplification = 0.0;            // |deflection| over static; 0: unknown
+  double least_wheel_force = 0.0, greatest_wheel_force = 0.0;
+  double least_wheel_force_time = 0.0;
+  std::string least_wheel;               // e.g. "vehicle 3, rear_wheel"
+  int contact_losses = 0;
+  double longest_loss = 0.0;             // s
+  double energy_residual = 0.0;          // largest |residual|, J
+  double energy_scale = 0.0;             // largest term, J
+  long steps = 0;
+  long solves = 0;                       // beam solves
+  double wall_seconds = 0.0;             // of the time loop
+  std::string ended;                     // "reached its end", or why it stopped
+};
+
+/// The writer. Only rank 0 opens and writes the file; on the other ranks every call does nothing.
+class Recorder {
+ public:
+  /// Creates the file (and its folder): FileError when it cannot be. attributes: name, text.
+  Recorder(MPI_Comm comm, const std::string& file, const Layout& layout,
+           const std::vector<std::pair<std::string, std::string>>& attributes,
+           const std::vector<std::pair<std::string, std::string>>& options);
+  ~Recorder();  // flushes what is there; never throws
+
+  void add(const Sample& sample);
+  void modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2);
+  /// The shape at the instant of the largest deflection: /shape/x, /shape/deflection, attribute time.
+  void shape(const Shape& shape);
+  /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.
+  void finish(const Summary& summary);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace traverse::results

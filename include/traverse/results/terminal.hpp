@@ -1,0 +1,35 @@
+// What a user reads while a run goes on: what was modelled, progress, and the summary. Rank 0 prints.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "traverse/modes/modes.hpp"
+#include "traverse/results/recorder.hpp"
+
+namespace traverse::results {
+
+/// "modelled" lines: each one a thing and, after it, why or how it was chosen.
+void print_modelled(const std::vector<std::string>& lines);
+
+/// Progress with the time left: on a terminal one line rewritten, otherwise a line every tenth of the run at most
+/// and none for runs that end within two seconds. Costs nothing measurable when called every step.
+class Progress {
+ public:
+  Progress(double start, double end, bool quiet);
+  void update(double t, long steps);
+  void done();
+
+ private:
+  double start_, end_;
+  bool quiet_, terminal_;
+  int shown_ = -1;
+  std::chrono::steady_clock::time_point begin_, last_;
+  long calls_ = 0;
+};
+
+void print_summary(const Summary& summary, const std::string& file);
+void print_modes(const modes::Modes& modes, double omega1, double omega2, double rayleigh_a, double rayleigh_b);
+
+}  // namespace traverse::results

@@ -1,0 +1,214 @@
+#include "hdf5.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <numeric>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::results::hdf5 {
+
+namespace {
+
+constexpr hsize_t kChunkRows = 256;
+constexpr hsize_t kChunkBytes = 1 << 20;
+constexpr hsize_t kMetadataBlock = 1 << 16;
+
+[[noreturn]] void fail(const std::string& path, const std::string& reason) {
+  throw FileError("cannot write the results file " + path + ": " + reason);
+}
+
+/// The system's message out of an HDF5 one ("..., errno = 28, error message = 'No space left on device', ...").
+std::string system_message(const std::string& text) {
+  const std::string mark = "error message = '";
+  const auto begin = text.find(mark);
+  if (begin == std::string::npos) return {};
+  const auto from = begin + mark.size();
+  return text.substr(from, text.find('\'', from) - from);
+}
+
+/// Visits HDF5's error stack from the innermost entry; keeps the first system message, else the first text.
+herr_t visit(unsigned depth, const H5E_error2_t* entry, void* data) {
+  auto& reason = *static_cast<std::string*>(data);
+  const std::string text = entry->desc == nullptr ? "" : entry->desc;
+  if (depth == 0) reason = text;
+  if (const std::string message = system_message(text); !message.empty()) reason = message;
+  return 0;
+}
+
+/// HDF5 empties a file before it finds out that another program holds it: so ask first.
+void check_old_file(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) return;
+  if (!std::filesystem::is_regular_file(path, ignored)) fail(path, "it is there already and is no ordinary file");
+  const int descriptor = open(path.c_str(), O_RDWR | O_CLOEXEC);
+  if (descriptor < 0) return;  // HDF5 says why
+  const bool busy = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  ::close(descriptor);
+  if (busy) fail(path, "another program has it open; name another file with -output_file");
+}
+
+void make_folder(const std::string& path) {
+  const auto folder = std::filesystem::path(path).parent_path();
+  if (folder.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) fail(path, "its folder cannot be made: " + error.message());
+}
+
+}  // namespace
+
+File::File(std::string path) : path_(std::move(path)) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  make_folder(path_);
+  check_old_file(path_);
+
+  const Id access(check(H5Pcreate(H5P_FILE_ACCESS)));
+  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18));
+  check(H5Pset_file_locking(access.get(), true, true));  // where the file system has locks
+  check(H5Pset_meta_block_size(access.get(), kMetadataBlock));
+  check(H5Pset_sieve_buf_size(access.get(), 0));  // else a failed write shows only when a dataset is closed
+  file_ = Id(check(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())));
+
+  parents_ = Id(check(H5Pcreate(H5P_LINK_CREATE)));
+  check(H5Pset_create_intermediate_group(parents_.get(), 1));
+  text_ = Id(check(H5Tcopy(H5T_C_S1)));
+  check(H5Tset_size(text_.get(), H5T_VARIABLE));
+  check(H5Tset_cset(text_.get(), H5T_CSET_UTF8));
+}
+
+hid_t File::check(hid_t result) const {
+  if (result >= 0) return result;
+  std::string reason;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, visit, &reason);
+  fail(path_, reason.empty() ? "HDF5 gives no reason" : reason);
+}
+
+int File::descriptor() const {
+  void* handle = nullptr;
+  check(H5Fget_vfd_handle(file_.get(), H5P_DEFAULT, &handle));
+  return *static_cast<int*>(handle);
+}
+
+void File::flush() {
+  haddr_t end = 0;
+  check(H5Fget_eoa(file_.get(), &end));
+  if (const auto size = static_cast<off_t>(end); size > reserved_) {
+    const int error = posix_fallocate(descriptor(), reserved_, size - reserved_);
+    if (error != 0) fail(path_, std::strerror(error));
+    reserved_ = size;
+  }
+  check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL));
+}
+
+void File::close() {
+  flush();
+  check(H5Fclose(file_.get()));
+  file_.release();
+}
+
+void File::abandon() noexcept {
+  try {
+    const int nowhere = memfd_create("traverse", MFD_CLOEXEC);
+    if (nowhere < 0) return;
+    dup2(nowhere, descriptor());
+    ::close(nowhere);
+  } catch (const FileError&) {  // nothing was open
+  }
+}
+
+Id File::group(const std::string& name) {
+  return Id(check(H5Gcreate2(id(), name.c_str(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
+}
+
+void File::write_attribute(const std::string& object, const std::string& name, hid_t type, const void* value) {
+  if (check(H5Aexists_by_name(id(), object.c_str(), name.c_str(), H5P_DEFAULT)) > 0) {
+    check(H5Adelete_by_name(id(), object.c_str(), name.c_str(), H5P_DEFAULT));
+  }
+  const Id space(check(H5Screate(H5S_SCALAR)));
+  const Id attribute(check(
+      H5Acreate_by_name(id(), object.c_str(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)));
+  check(H5Awrite(attribute.get(), type, value));
+}
+
+void File::attribute(const std::string& object, const std::string& name, const std::string& text) {
+  const char* value = text.c_str();
+  write_attribute(object, name, text_.get(), &value);
+}
+
+void File::attribute(const std::string& object, const std::string& name, double value) {
+  write_attribute(object, name, H5T_NATIVE_DOUBLE, &value);
+}
+
+void File::attribute(const std::string& object, const std::string& name, long value) {
+  write_attribute(object, name, H5T_NATIVE_LONG, &value);
+}
+
+void File::dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
+                   const std::string& unit) {
+  const Id space(check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)));
+  const Id data(
+      check(H5Dcreate2(id(), name.c_str(), H5T_NATIVE_DOUBLE, space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
+  check(H5Dwrite(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+  attribute(name, "unit", unit);
+}
+
+void File::table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows) {
+  std::vector<const char*> cells;
+  for (const auto& [key, value] : rows) {
+    cells.push_back(key.c_str());
+    cells.push_back(value.c_str());
+  }
+  const hsize_t shape[] = {rows.size(), 2};
+  const Id space(check(H5Screate_simple(2, shape, nullptr)));
+  const Id data(check(H5Dcreate2(id(), name.c_str(), text_.get(), space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
+  if (!rows.empty()) check(H5Dwrite(data.get(), text_.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, cells.data()));
+  attribute(name, "unit", "text");
+}
+
+Series::Series(File& file, const std::string& name, const std::vector<hsize_t>& row, const std::string& unit, int rows)
+    : shape_{0}, width_(std::accumulate(row.begin(), row.end(), std::size_t{1}, [](std::size_t a, hsize_t b) {
+        return a * static_cast<std::size_t>(b);
+      })) {
+  shape_.insert(shape_.end(), row.begin(), row.end());
+  auto most = shape_;
+  most[0] = H5S_UNLIMITED;
+  auto chunk = shape_;
+  chunk[0] = std::clamp<hsize_t>(kChunkBytes / (sizeof(double) * width_), 1, kChunkRows);
+
+  const Id space(file.check(H5Screate_simple(static_cast<int>(shape_.size()), shape_.data(), most.data())));
+  const Id creation(file.check(H5Pcreate(H5P_DATASET_CREATE)));
+  file.check(H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
+  file.check(H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER));
+  // No chunk cache: rows go straight to their place, none is ever rewritten, and no memory waits.
+  const Id access(file.check(H5Pcreate(H5P_DATASET_ACCESS)));
+  file.check(H5Pset_chunk_cache(access.get(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT));
+  dataset_ = Id(file.check(H5Dcreate2(file.id(), name.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
+                                      creation.get(), access.get())));
+  file.attribute(name, "unit", unit);
+  buffer_.reserve(width_ * static_cast<std::size_t>(rows));
+}
+
+void Series::write(const File& file) {
+  const hsize_t rows = buffer_.size() / width_;
+  if (rows == 0) return;
+  std::vector<hsize_t> start(shape_.size(), 0), count = shape_;
+  start[0] = shape_[0];
+  count[0] = rows;
+  shape_[0] += rows;
+  file.check(H5Dset_extent(dataset_.get(), shape_.data()));
+  const Id there(file.check(H5Dget_space(dataset_.get())));
+  const Id here(file.check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
+  file.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+  file.check(H5Dwrite(dataset_.get(), H5T_NATIVE_DOUBLE, here.get(), there.get(), H5P_DEFAULT, buffer_.data()));
+  buffer_.clear();
+}
+
+}  // namespace traverse::results::hdf5

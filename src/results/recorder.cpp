@@ -1,0 +1,333 @@
+#include "traverse/results/recorder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include "hdf5.hpp"
+#include "traverse/base/error.hpp"
+
+namespace traverse::results {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+using hdf5::Series;
+
+constexpr std::size_t kBlockRows = 256;
+constexpr std::size_t kBlockBytes = std::size_t{64} << 20;
+// A slow run writes before its block is full, as long as writing takes less than a twentieth of the time.
+constexpr double kLongestWait = 5.0;  // s
+constexpr double kCostFactor = 20.0;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// A failure on rank 0 becomes the same FileError on every rank. Collective.
+void share_failure(MPI_Comm comm, std::string failure) {
+  int ranks = 1, rank = 0;
+  MPI_Comm_size(comm, &ranks);
+  MPI_Comm_rank(comm, &rank);
+  if (ranks > 1) {
+    int size = static_cast<int>(failure.size());
+    MPI_Bcast(&size, 1, MPI_INT, 0, comm);
+    failure.resize(static_cast<std::size_t>(size));
+    MPI_Bcast(failure.data(), size, MPI_CHAR, 0, comm);
+  }
+  if (!failure.empty()) throw FileError(failure);
+}
+
+/// Numbers in one sample.
+std::size_t sample_size(const Layout& layout) {
+  std::size_t size = 7 + 7 * layout.probes.size() + 3 * layout.supports.size();
+  for (const auto& vehicle : layout.vehicles) {
+    size += 9 * vehicle.bodies.size() + 3 * vehicle.wheels.size() + 3 * vehicle.joints.size();
+  }
+  return size;
+}
+
+bool fits(const Sample& sample, const Layout& layout) {
+  if (sample.probes.size() != layout.probes.size() || sample.supports.size() != layout.supports.size()) return false;
+  return std::equal(sample.vehicles.begin(), sample.vehicles.end(), layout.vehicles.begin(), layout.vehicles.end(),
+                    [](const Sample::Vehicle& values, const Layout::VehicleNames& names) {
+                      return values.bodies.size() == names.bodies.size() &&
+                             values.wheels.size() == names.wheels.size() && values.joints.size() == names.joints.size();
+                    });
+}
+
+struct ProbeQuantity {
+  const char* name;
+  const char* unit;
+  double beam::Response::*member;
+};
+constexpr ProbeQuantity kProbeQuantities[] = {
+    {"deflection", "m", &beam::Response::deflection},
+    {"velocity", "m/s", &beam::Response::velocity},
+    {"acceleration", "m/s2", &beam::Response::acceleration},
+    {"moment", "N m", &beam::Response::moment},
+    {"shear", "N", &beam::Response::shear},
+    {"axial_displacement", "m", &beam::Response::axial_displacement},
+    {"axial_force", "N", &beam::Response::axial_force},
+};
+
+struct EnergyTerm {
+  const char* name;
+  double Sample::Energy::*member;
+};
+constexpr EnergyTerm kEnergyTerms[] = {
+    {"kinetic", &Sample::Energy::kinetic},     {"strain", &Sample::Energy::strain},
+    {"potential", &Sample::Energy::potential}, {"dissipated", &Sample::Energy::dissipated},
+    {"work", &Sample::Energy::work},           {"residual", &Sample::Energy::residual},
+};
+
+// Three components in one dataset: its unit names each of them.
+constexpr const char* kReactionUnit = "N, N, N m";
+
+}  // namespace
+
+struct Recorder::Impl {
+  Impl(const std::string& path, const Layout& given, const Pairs& attributes, const Pairs& options, int ranks);
+  ~Impl();
+
+  void add(const Sample& sample);
+  void flush();
+  void summarise(const Summary& summary);
+  /// Runs `write`; a failure leaves in the file what was flushed before, and ends the writing.
+  template <class Write>
+  void attempt(Write&& write);
+
+  hdf5::File file;
+  Layout layout;
+  std::vector<Series> series;  // in the order of `create_series`, which `add` follows
+  std::size_t block_rows;
+  std::size_t waiting = 0;  // samples in memory
+  Clock::time_point last_flush = Clock::now();
+  double flush_cost = 0.0;  // s, of the last one
+  bool closed = false;
+
+ private:
+  void create_series();
+  Series& create(const std::string& name, const std::vector<hsize_t>& row, const std::string& unit);
+};
+
+Recorder::Impl::Impl(const std::string& path, const Layout& given, const Pairs& attributes, const Pairs& options,
+                     int ranks)
+    : file(path),
+      layout(given),
+      block_rows(std::clamp<std::size_t>(kBlockBytes / (sizeof(double) * sample_size(given)), 1, kBlockRows)) {
+  attempt([&] {
+    file.attribute("/", "program", "traverse");
+    file.attribute("/", "version", TRAVERSE_VERSION);
+    file.attribute("/", "petsc_version",
+                   std::to_string(PETSC_VERSION_MAJOR) + "." + std::to_string(PETSC_VERSION_MINOR) + "." +
+                       std::to_string(PETSC_VERSION_SUBMINOR));
+    file.attribute("/", "ranks", static_cast<long>(ranks));
+    for (const auto& [name, text] : attributes) {
+      if (name != "ranks") file.attribute("/", name, text);
+    }
+    file.table("/options", options);
+    if (!layout.probes.empty()) file.dataset("/probes/x", {layout.probes.size()}, layout.probes, "m");
+    if (!layout.supports.empty()) file.dataset("/supports/x", {layout.supports.size()}, layout.supports, "m");
+    file.flush();
+  });
+}
+
+Recorder::Impl::~Impl() {
+  if (closed) return;
+  try {
+    attempt([&] {
+      flush();
+      series.clear();
+      file.close();
+    });
+  } catch (...) {  // whoever ends a run this way has another error to report
+  }
+}
+
+template <class Write>
+void Recorder::Impl::attempt(Write&& write) {
+  if (closed) throw std::logic_error("the results file " + file.path() + " is closed");
+  try {
+    write();
+  } catch (...) {
+    closed = true;
+    file.abandon();
+    throw;
+  }
+}
+
+Series& Recorder::Impl::create(const std::string& name, const std::vector<hsize_t>& row, const std::string& unit) {
+  return series.emplace_back(file, name, row, unit, static_cast<int>(block_rows));
+}
+
+void Recorder::Impl::create_series() {
+  create("/time", {}, "s");
+  if (!layout.probes.empty()) {
+    for (const auto& quantity : kProbeQuantities) {
+      create(std::string("/probes/") + quantity.name, {layout.probes.size()}, quantity.unit);
+    }
+  }
+  if (!layout.supports.empty()) create("/supports/reaction", {layout.supports.size(), 3}, kReactionUnit);
+  for (const auto& term : kEnergyTerms) create(std::string("/energy/") + term.name, {}, "J");
+  for (std::size_t k = 0; k < layout.vehicles.size(); ++k) {
+    const std::string vehicle = "/vehicles/" + std::to_string(k) + "/";
+    for (const auto& body : layout.vehicles[k].bodies) {
+      create(vehicle + body + "/position", {3}, "m, m, rad");
+      create(vehicle + body + "/velocity", {3}, "m/s, m/s, rad/s");
+      create(vehicle + body + "/acceleration", {3}, "m/s2, m/s2, rad/s2");
+    }
+    for (const auto& wheel : layout.vehicles[k].wheels) {
+      create(vehicle + wheel + "/normal_force", {}, "N");
+      create(vehicle + wheel + "/friction_force", {}, "N");
+      create(vehicle + wheel + "/penetration", {}, "m");
+    }
+    for (const auto& joint : layout.vehicles[k].joints) create(vehicle + joint + "/reaction", {3}, kReactionUnit);
+  }
+}
+
+void Recorder::Impl::add(const Sample& sample) {
+  if (!fits(sample, layout)) throw std::logic_error("a sample does not fit the layout of the results file");
+  if (series.empty()) {
+    create_series();
+    file.flush();  // from here on the file's structure stays, only lengths grow
+  }
+  auto next = series.begin();
+  next++->add(sample.time);
+  if (!sample.probes.empty()) {
+    for (const auto& quantity : kProbeQuantities) {
+      for (const auto& response : sample.probes) next->add(response.*quantity.member);
+      ++next;
+    }
+  }
+  if (!sample.supports.empty()) {
+    for (const auto& reaction : sample.supports) next->add(reaction);
+    ++next;
+  }
+  for (const auto& term : kEnergyTerms) next++->add(sample.energy.*term.member);
+  for (const auto& vehicle : sample.vehicles) {
+    for (const auto& body : vehicle.bodies) {
+      next++->add(body.position);
+      next++->add(body.velocity);
+      next++->add(body.acceleration);
+    }
+    for (const auto& wheel : vehicle.wheels) {
+      next++->add(wheel.normal_force);
+      next++->add(wheel.friction_force);
+      next++->add(wheel.penetration);
+    }
+    for (const auto& reaction : vehicle.joints) next++->add(reaction);
+  }
+  ++waiting;
+  if (waiting >= block_rows || seconds_since(last_flush) > std::max(kLongestWait, kCostFactor * flush_cost)) flush();
+}
+
+void Recorder::Impl::flush() {
+  const auto start = Clock::now();
+  for (auto& one : series) one.write(file);
+  file.flush();
+  waiting = 0;
+  last_flush = Clock::now();
+  flush_cost = seconds_since(start);
+}
+
+void Recorder::Impl::summarise(const Summary& summary) {
+  file.attribute("/", "steps", summary.steps);
+  file.attribute("/", "wall_seconds", summary.wall_seconds);
+  const std::string group = "/summary";
+  file.group(group);
+  const auto extreme = [&](const std::string& name, const Extreme& value) {
+    file.attribute(group, name, value.value);
+    file.attribute(group, name + "_time", value.time);
+    file.attribute(group, name + "_place", value.place);
+  };
+  extreme("deflection", summary.deflection);
+  extreme("acceleration", summary.acceleration);
+  extreme("moment", summary.moment);
+  file.attribute(group, "static_deflection", summary.static_deflection);
+  file.attribute(group, "amplification", summary.amplification);
+  file.attribute(group, "least_wheel_force", summary.least_wheel_force);
+  file.attribute(group, "least_wheel_force_time", summary.least_wheel_force_time);
+  file.attribute(group, "least_wheel", summary.least_wheel);
+  file.attribute(group, "greatest_wheel_force", summary.greatest_wheel_force);
+  file.attribute(group, "contact_losses", static_cast<long>(summary.contact_losses));
+  file.attribute(group, "longest_loss", summary.longest_loss);
+  file.attribute(group, "energy_residual", summary.energy_residual);
+  file.attribute(group, "energy_scale", summary.energy_scale);
+  file.attribute(group, "steps", summary.steps);
+  file.attribute(group, "solves", summary.solves);
+  file.attribute(group, "wall_seconds", summary.wall_seconds);
+  file.attribute(group, "ended", summary.ended);
+}
+
+Recorder::Recorder(MPI_Comm comm, const std::string& file, const Layout& layout, const Pairs& attributes,
+                   const Pairs& options) {
+  int ranks = 1, rank = 0;
+  MPI_Comm_size(comm, &ranks);
+  MPI_Comm_rank(comm, &rank);
+  std::string failure;
+  if (rank == 0) {
+    try {
+      impl_ = std::make_unique<Impl>(file, layout, attributes, options, ranks);
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+  }
+  share_failure(comm, failure);
+}
+
+Recorder::~Recorder() = default;
+
+void Recorder::add(const Sample& sample) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] { impl_->add(sample); });
+}
+
+void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    std::vector<double> frequency;
+    for (const double omega : modes.omega) frequency.push_back(omega / (2.0 * std::numbers::pi));
+    file.dataset("/modes/frequency", {frequency.size()}, frequency, "Hz");
+    if (!modes.shape.empty()) {
+      const std::size_t nodes = modes.shape.front().size();
+      std::vector<double> shapes;
+      for (const auto& shape : modes.shape) shapes.insert(shapes.end(), shape.begin(), shape.end());
+      file.dataset("/modes/shape", {modes.shape.size(), nodes}, shapes, "1");
+      if (impl_->layout.nodes.size() == nodes) file.dataset("/modes/x", {nodes}, impl_->layout.nodes, "m");
+    }
+    file.attribute("/modes", "rayleigh_a", rayleigh_a);
+    file.attribute("/modes", "rayleigh_b", rayleigh_b);
+    file.attribute("/modes", "omega1", omega1);
+    file.attribute("/modes", "omega2", omega2);
+    file.flush();
+  });
+}
+
+void Recorder::shape(const Shape& shape) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    const auto& nodes = impl_->layout.nodes;
+    if (shape.deflection.size() != nodes.size()) throw std::logic_error("a shape with another number of nodes");
+    file.dataset("/shape/x", {nodes.size()}, nodes, "m");
+    file.dataset("/shape/deflection", {nodes.size()}, shape.deflection, "m");
+    file.attribute("/shape/deflection", "time", shape.time);
+    file.attribute("/shape", "time", shape.time);
+  });
+}
+
+void Recorder::finish(const Summary& summary) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    impl_->flush();
+    impl_->summarise(summary);
+    impl_->series.clear();
+    impl_->file.close();
+    impl_->closed = true;
+  });
+}
+
+}  // namespace traverse::results

@@ -1,0 +1,160 @@
+#include "traverse/results/terminal.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+
+namespace traverse::results {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kSilentStart = 2.0;  // s without progress lines
+constexpr double kRedrawEvery = 0.2;  // s, on a terminal
+constexpr int kLabelWidth = 22;
+
+bool is_first_rank() {
+  int initialized = 0, rank = 0;
+  MPI_Initialized(&initialized);
+  if (initialized != 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank == 0;
+}
+
+double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
+
+std::string duration_text(double s) {
+  if (s < 0.9995) return fmt::format("{:.3g} ms", 1e3 * s);
+  if (s < 59.5) return fmt::format("{:.3g} s", s);
+  const long whole = std::lround(s);
+  if (whole < 3600) return fmt::format("{} min {:02d} s", whole / 60, whole % 60);
+  return fmt::format("{} h {:02d} min", whole / 3600, whole % 3600 / 60);
+}
+
+void line(const std::string& label, const std::string& text) { fmt::print("  {:<{}}{}\n", label, kLabelWidth, text); }
+
+/// "-4.213 mm", with the place and time.
+std::string extreme_text(const Extreme& extreme, double scale, const char* unit) {
+  return fmt::format("{:<18}at x = {:.6g} m, t = {:.6g} s", fmt::format("{:.4g} {}", extreme.value * scale, unit),
+                     extreme.place, extreme.time);
+}
+
+void print_beam(const Summary& summary) {
+  const bool moved = summary.deflection.value != 0.0 || summary.acceleration.value != 0.0;
+  if (!moved && summary.moment.value == 0.0) return;
+  line("peak deflection", extreme_text(summary.deflection, 1e3, "mm"));
+  line("peak acceleration", extreme_text(summary.acceleration, 1.0, "m/s2"));
+  line("peak moment", extreme_text(summary.moment, 1e-3, "kN m"));
+  if (summary.static_deflection > 0.0) {
+    line("static deflection", fmt::format("{:.4g} mm", 1e3 * summary.static_deflection));
+  }
+  if (summary.amplification > 0.0) {
+    line("dynamic amplification", fmt::format("{:.4g}           over static", summary.amplification));
+  }
+}
+
+void print_wheels(const Summary& summary) {
+  if (summary.least_wheel.empty()) return;
+  line("least wheel force",
+       fmt::format("{:<18}{}, t = {:.6g} s", fmt::format("{:.4g} kN", 1e-3 * summary.least_wheel_force),
+                   summary.least_wheel, summary.least_wheel_force_time));
+  line("greatest wheel force", fmt::format("{:.4g} kN", 1e-3 * summary.greatest_wheel_force));
+  line("contact losses", summary.contact_losses == 0 ? "none"
+                                                     : fmt::format("{:<18}the longest {}", summary.contact_losses,
+                                                                   duration_text(summary.longest_loss)));
+}
+
+std::string energy_text(const Summary& summary) {
+  const std::string residual = fmt::format("{:.2e} J", summary.energy_residual);
+  if (summary.energy_scale <= 0.0) return residual;
+  return fmt::format("{:<18}{:.1e} of the largest term", residual, summary.energy_residual / summary.energy_scale);
+}
+
+std::string cost_text(const Summary& summary) {
+  std::string text = fmt::format("{:<18}", summary.steps);
+  if (summary.solves > 0) text += fmt::format("{} beam solves, ", summary.solves);
+  text += duration_text(summary.wall_seconds);
+  if (summary.steps > 0)
+    text += ", " + duration_text(summary.wall_seconds / static_cast<double>(summary.steps)) + " a step";
+  return text;
+}
+
+}  // namespace
+
+void print_modelled(const std::vector<std::string>& lines) {
+  if (!is_first_rank() || lines.empty()) return;
+  fmt::print("modelled\n");
+  for (const auto& text : lines) fmt::print("  {}\n", text);
+  std::fflush(stdout);
+}
+
+Progress::Progress(double start, double end, bool quiet)
+    : start_(start),
+      end_(end),
+      quiet_(quiet || !is_first_rank()),
+      terminal_(isatty(STDOUT_FILENO) == 1),
+      begin_(Clock::now()),
+      last_(begin_) {}
+
+void Progress::update(double t, long steps) {
+  if (quiet_ || !(end_ > start_) || !(t > start_)) return;
+  const double part = std::min((t - start_) / (end_ - start_), 1.0);
+  const int tenth = static_cast<int>(10.0 * part);
+  if (!terminal_ && tenth <= shown_) return;
+  const auto now = Clock::now();
+  const double elapsed = seconds(now - begin_);
+  if (elapsed < kSilentStart || (terminal_ && seconds(now - last_) < kRedrawEvery)) return;
+  const std::string text = fmt::format("{:3.0f} %   t = {:.4g} s   step {}   {} left", 100.0 * part, t, steps,
+                                       duration_text(elapsed * (1.0 - part) / part));
+  if (terminal_) {
+    fmt::print("\r{}\033[K", text);
+  } else {
+    fmt::print("{}\n", text);
+  }
+  std::fflush(stdout);
+  shown_ = tenth;
+  last_ = now;
+  ++calls_;
+}
+
+void Progress::done() {
+  if (terminal_ && calls_ > 0) {
+    fmt::print("\r\033[K");
+    std::fflush(stdout);
+  }
+  quiet_ = true;
+}
+
+void print_summary(const Summary& summary, const std::string& file) {
+  if (!is_first_rank()) return;
+  fmt::print("summary\n");
+  print_beam(summary);
+  print_wheels(summary);
+  if (summary.energy_residual != 0.0 || summary.energy_scale > 0.0) line("energy residual", energy_text(summary));
+  line("steps", cost_text(summary));
+  if (!summary.ended.empty()) line("the run", summary.ended);
+  fmt::print("results  {}\n", file.empty() ? "none" : file);
+  std::fflush(stdout);
+}
+
+void print_modes(const modes::Modes& modes, double omega1, double omega2, double rayleigh_a, double rayleigh_b) {
+  if (!is_first_rank()) return;
+  fmt::print("modes\n  {:>4}{:>18}{:>18}\n", "", "frequency (Hz)", "omega (rad/s)");
+  for (std::size_t i = 0; i < modes.omega.size(); ++i) {
+    const double omega = modes.omega[i];
+    fmt::print("  {:>4}{:>18.6g}{:>18.6g}{}\n", i + 1, omega / (2.0 * std::numbers::pi), omega,
+               omega == 0.0 ? "   rigid" : "");
+  }
+  if (rayleigh_a != 0.0 || rayleigh_b != 0.0) {
+    line("damping C = a M + b K", fmt::format("a = {:.6g} 1/s, b = {:.6g} s, from omega = {:.6g} and {:.6g} rad/s",
+                                              rayleigh_a, rayleigh_b, omega1, omega2));
+  }
+  std::fflush(stdout);
+}
+
+}  // namespace traverse::results
