@@ -1,0 +1,59 @@
+// Springs, dampers and torsion springs between two bodies, with their derivatives and energies.
+// Generalized forces are those of the paper's g in eq. 42, columns x1 y1 phi1 x2 y2 phi2.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "traverse/multibody/frame.hpp"
+#include "traverse/multibody/model.hpp"
+
+namespace traverse::multibody {
+
+using PairForce = Eigen::Matrix<double, 6, 1>;
+using PairMatrix = Eigen::Matrix<double, 6, 6>;
+
+/// A spring in body-fixed terms: tension = preload + stiffness*(length - reference_length) + damping*rate.
+struct SpringGeometry {
+  int first = ground;
+  int second = ground;
+  Eigen::Vector2d first_arm = Eigen::Vector2d::Zero();   // m, to `from`, in the first body
+  Eigen::Vector2d second_arm = Eigen::Vector2d::Zero();  // m, to `to`, in the second body
+  double stiffness = 0.0;                                // N/m
+  double damping = 0.0;                                  // N s/m
+  double reference_length = 0.0;                         // m
+  double preload = 0.0;                                  // N, at the reference length
+};
+
+struct TorsionGeometry {
+  int first = ground;
+  int second = ground;
+  double stiffness = 0.0;   // N m/rad
+  double damping = 0.0;     // N m s/rad
+  double free_angle = 0.0;  // rad
+};
+
+/// Adds the blocks of a pair of bodies to a matrix over all coordinates; the ground's are left out.
+void add_pair(int first, int second, const PairMatrix& pair, Eigen::MatrixXd& all);
+
+/// `first` and `second` are the bodies' frames at t = 0.
+SpringGeometry spring_geometry(const Spring& spring, const Frame& first, const Frame& second);
+TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first, const Frame& second);
+
+/// Generalized force on both bodies. A spring shrunk to a point has no direction: it then only pulls with
+/// stiffness times displacement when it is a zero-length spring, and not at all otherwise.
+PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second);
+/// Derivatives of spring_force with respect to the coordinates and to the velocities.
+void spring_derivatives(const SpringGeometry& spring, const Frame& first, const Frame& second, PairMatrix& g_q,
+                        PairMatrix& g_qd);
+/// Stored energy, J: its slope over length is the elastic tension. Zero where that tension is zero; with a
+/// preload and no stiffness zero at the reference length.
+double spring_strain_energy(const SpringGeometry& spring, const Frame& first, const Frame& second);
+/// Power lost in the damper, W, >= 0.
+double spring_dissipation(const SpringGeometry& spring, const Frame& first, const Frame& second);
+
+/// Moment on the second body; the opposite acts on the first.
+double torsion_moment(const TorsionGeometry& spring, const Frame& first, const Frame& second);
+double torsion_strain_energy(const TorsionGeometry& spring, const Frame& first, const Frame& second);
+double torsion_dissipation(const TorsionGeometry& spring, const Frame& first, const Frame& second);
+
+}  // namespace traverse::multibody

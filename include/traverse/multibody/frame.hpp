@@ -1,0 +1,34 @@
+// Where a body is and how it moves: all that a joint or a force element sees of it.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace traverse::multibody {
+
+/// A quarter turn counter-clockwise: the derivative of a turning arm with respect to its angle.
+inline Eigen::Vector2d quarter_turn(const Eigen::Vector2d& v) { return {-v.y(), v.x()}; }
+
+/// Position and velocity of a body; the default is the fixed ground.
+struct Frame {
+  Eigen::Vector2d origin = Eigen::Vector2d::Zero();    // m, centre of mass
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  // m/s
+  double angle = 0.0;                                  // rad
+  double cosine = 1.0;
+  double sine = 0.0;
+  double omega = 0.0;  // rad/s
+
+  /// A body-fixed vector in global components.
+  Eigen::Vector2d to_global(const Eigen::Vector2d& v) const {
+    return {cosine * v.x() - sine * v.y(), sine * v.x() + cosine * v.y()};
+  }
+  /// A global vector in body-fixed components.
+  Eigen::Vector2d to_body(const Eigen::Vector2d& v) const {
+    return {cosine * v.x() + sine * v.y(), -sine * v.x() + cosine * v.y()};
+  }
+  /// Velocity of the point at `arm` (global components, from the centre of mass).
+  Eigen::Vector2d velocity_at(const Eigen::Vector2d& arm) const { return velocity + omega * quarter_turn(arm); }
+
+  void set_angle(double value);
+};
+
+}  // namespace traverse::multibody

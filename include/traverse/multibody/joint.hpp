@@ -1,0 +1,57 @@
+// Constraint equations of the joints with their derivatives (the paper's eqs. 42-44), one joint at a time.
+//
+// Every joint is made of four kinds of equations between a first and a second body:
+//   point     P2 - P1 = 0                   2 equations, m
+//   normal    n . (P2 - r1) - offset = 0    1 equation, m; n is fixed in the first body, r1 its centre of mass
+//   distance  (d.d - L^2) / (2 L) = 0       1 equation, m; d = P2 - P1, so that lambda is a force
+//   angle     phi2 - phi1 - angle = 0       1 equation, rad; always a joint's last one
+// With N q'' + Phi_q^T lambda = g, the joint acts on the second body with -lambda.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "traverse/multibody/frame.hpp"
+#include "traverse/multibody/model.hpp"
+
+namespace traverse::multibody {
+
+/// A joint in body-fixed terms.
+struct JointGeometry {
+  JointType type = JointType::revolute;
+  int first = ground;
+  int second = ground;
+  int row = 0;                                           // of Phi
+  Eigen::Vector2d first_arm = Eigen::Vector2d::Zero();   // m, to the joint's point, in the first body
+  Eigen::Vector2d second_arm = Eigen::Vector2d::Zero();  // m, in the second body
+  Eigen::Vector2d normal = Eigen::Vector2d::UnitX();     // across the axis, in the first body
+  double offset = 0.0;                                   // m, normal . first_arm
+  double angle = 0.0;                                    // rad, phi2 - phi1 at t = 0
+  double length = 0.0;                                   // m, of a distance joint
+};
+
+/// Rows of Phi_q of one joint (the first joint_rows of them), columns x1 y1 phi1 x2 y2 phi2.
+using JointJacobian = Eigen::Matrix<double, 3, 6>;
+using JointCurvature = Eigen::Matrix<double, 6, 6>;
+
+/// The number of equations of a joint.
+int joint_rows(JointType type);
+/// Whether the last equation of the joint is about an angle (rad) instead of a length (m).
+bool has_angle_row(JointType type);
+
+/// `first` and `second` are the bodies' frames at t = 0.
+JointGeometry joint_geometry(const Joint& joint, const Frame& first, const Frame& second, int row);
+
+/// Phi of the joint, joint_rows values.
+void joint_residual(const JointGeometry& joint, const Frame& first, const Frame& second, double* Phi);
+/// Phi_q of the joint.
+void joint_jacobian(const JointGeometry& joint, const Frame& first, const Frame& second, JointJacobian& Phi_q);
+/// gamma = -(Phi_q q')_q q' of the joint (eq. 44 as mended; joints do not depend on time).
+void joint_gamma(const JointGeometry& joint, const Frame& first, const Frame& second, double* gamma);
+/// d(Phi_q^T lambda)/dq at fixed lambda (joint_rows values); symmetric.
+void joint_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, const double* lambda,
+                     JointCurvature& curvature);
+/// Force on the second body and moment on it about the joint's point there (for `distance`: about `to`).
+Eigen::Vector3d joint_reaction(const JointGeometry& joint, const Frame& first, const Frame& second,
+                               const double* lambda);
+
+}  // namespace traverse::multibody

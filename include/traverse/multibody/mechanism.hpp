@@ -1,0 +1,159 @@
+// The equations of motion of a constrained planar mechanism, reduced by generalized coordinate partitioning
+// (the paper's eqs. 42-44 and section 5; Wehage & Haug 1982).
+//
+//   Phi(q, t) = 0,   N q'' + Phi_q^T lambda = g + Q,   Phi_q q'' = gamma
+//
+// q holds x, y, phi of every body (n = 3 bodies). A partition splits q into f independent coordinates p and the
+// dependent ones. With them known, q = q(p, t), q' = B p' + b, q'' = B p'' + d, where B (n x f) has identity rows
+// for the independent coordinates. The projected equations of motion are B^T (N (B p'' + d) - g - Q) = 0.
+// Q are external generalized forces (wheels on the beam) supplied by the caller.
+#pragma once
+
+#include <Eigen/Dense>
+#include <string>
+#include <vector>
+
+#include "traverse/multibody/force_element.hpp"
+#include "traverse/multibody/frame.hpp"
+#include "traverse/multibody/joint.hpp"
+#include "traverse/multibody/model.hpp"
+#include "traverse/multibody/reduction.hpp"
+
+namespace traverse::multibody {
+
+/// Everything that changes with time for one mechanism; sized once by Mechanism::make_state.
+struct MechanismState {
+  double time = 0.0;
+  Eigen::VectorXd q, qd;              // n
+  Eigen::MatrixXd B;                  // n x f
+  Eigen::VectorXd b;                  // n: q' = B p' + b
+  Eigen::VectorXd d;                  // n: q'' = B p'' + d
+  Eigen::VectorXd g;                  // n: gravity, springs, actuators
+  Eigen::MatrixXd g_q;                // n x n: dg/dq
+  Eigen::MatrixXd g_qd;               // n x n: dg/dq'
+  Eigen::VectorXd qdd;                // n
+  Eigen::VectorXd lambda;             // one a row of Phi; 0 for dropped rows
+  Eigen::MatrixXd lambda_curvature;   // n x n: d(Phi_q^T lambda)/dq at fixed lambda
+  Eigen::MatrixXd Phi_q;              // rows of Phi x n, redundant rows included
+  Eigen::VectorXd Phi, gamma, Phi_t;  // one a row of Phi
+
+  // workspaces of the implementation
+  std::vector<Frame> frames;  // ground first, then the bodies: see Mechanism
+  DependentBlock dependent_block;
+  ReducedMass reduced_mass;
+  int partition_version = 0;   // which partition the workspaces belong to
+  bool factored = false;       // dependent_block holds a factorisation of Phi_q near the current q
+  bool mass_factored = false;  // reduced_mass belongs to B
+  Eigen::VectorXd work;        // n
+  Eigen::VectorXd reduced;     // f
+};
+
+/// Powers and stored energies of a mechanism in a state, J and W.
+struct MechanismEnergy {
+  double kinetic = 0.0;
+  double strain = 0.0;       // springs, torsion springs (linear elements: 1/2 k e^2)
+  double potential = 0.0;    // gravity
+  double dissipation = 0.0;  // power lost in dampers, >= 0
+  double work = 0.0;         // power of actuators and of rheonomic constraints (drivers)
+};
+
+class Mechanism {
+ public:
+  /// Checks the model (positive masses and inertias, finite numbers, known bodies): InputError otherwise.
+  explicit Mechanism(MechanismModel model);
+
+  const MechanismModel& model() const { return model_; }
+  int coordinates() const;  // n
+  int constraints() const;  // rows of Phi, redundant ones included
+  int freedom() const;      // f, after partition() was called
+  const Partition& partition() const { return partition_; }
+  const Eigen::VectorXd& mass_diagonal() const { return mass_; }  // n: N is diagonal
+
+  /// A state at t = 0 with the bodies where the model puts them. May be called before or after choose_partition.
+  MechanismState make_state() const;
+
+  /// Chooses the partition at s.q, t by full pivoting on Phi_q and makes s consistent: the dependent coordinates are
+  /// solved for, velocities that do not fit the constraints are projected in the metric of the masses. The caller reads
+  /// p and p' from s.q and s.qd. Rows of drivers are kept before rows of joints; redundant rows are dropped.
+  /// Throws InputError naming the joints and drivers when rows contradict each other (in position, speed or
+  /// acceleration), cannot be met, or depend on each other in this position only (a dead point); SolverError when the
+  /// freedom differs from that of an earlier choice. Returns the names of joints and drivers with dropped rows.
+  std::vector<std::string> choose_partition(MechanismState& s, double t);
+
+  /// A number in (0, 1]: 1 when no dependent coordinate moves more than an independent one that moves it, q for 1/q
+  /// times as much (angles at a typical arm); it tends to 0 where the dependent block becomes singular. With
+  /// velocities set. Worth a new choice below about 0.05 of what the last choice gave.
+  double partition_quality(const MechanismState& s) const;
+
+  /// Sets the independent coordinates to p and solves Phi = 0 for the others by Newton from the current s.q.
+  /// Returns false when it does not converge (s.q then holds the last iterate), or when a dropped row is not met.
+  bool set_positions(MechanismState& s, double t, const double* p) const;
+
+  /// With positions set: q' from p', and B, b, d.
+  void set_velocities(MechanismState& s, double t, const double* pd) const;
+
+  /// With positions and velocities set: g, and when asked g_q and g_qd.
+  void compute_forces(MechanismState& s, bool derivatives) const;
+
+  /// p'' from the projected equations with external forces Q (n); also q'' and lambda.
+  void accelerations(MechanismState& s, const Eigen::VectorXd& Q, double* pdd) const;
+
+  /// q'' from a given p'', and lambda from the dependent rows of the equations of motion.
+  void recover(MechanismState& s, const Eigen::VectorXd& Q, const double* pdd) const;
+
+  /// d(Phi_q^T lambda)/dq for the current q and lambda into s.lambda_curvature.
+  void compute_lambda_curvature(MechanismState& s) const;
+
+  /// Reaction of joint j on its second body: fx, fy, moment about the joint's point as it moves with that body (for
+  /// `distance`: about `to`). Rows dropped as redundant carry nothing.
+  Eigen::Vector3d joint_reaction(const MechanismState& s, int j) const;
+  /// Generalized force that driver k exerts on its coordinate.
+  double driver_force(const MechanismState& s, int k) const;
+
+  MechanismEnergy energy(const MechanismState& s) const;
+
+ private:
+  const Frame& frame(const MechanismState& s, int body) const { return s.frames[body + 1]; }
+  int driver_row(int k) const { return joint_row_count_ + k; }
+  const std::string& part_name(int row) const;  // of the joint or driver that a row of Phi belongs to
+  std::string row_name(int row) const;          // the same for a message: joint 'x'
+  const char* row_unit(int row) const;
+  void find_scaling();
+  void find_pattern();
+
+  void fit(MechanismState& s) const;
+  void place_frames(MechanismState& s) const;
+  void move_frames(MechanismState& s) const;
+  void compute_Phi(MechanismState& s) const;
+  void compute_Phi_q(MechanismState& s) const;
+  void compute_gamma(MechanismState& s) const;
+  void factor(MechanismState& s) const;
+  double kept_residual(const MechanismState& s) const;
+  bool correct_dependent(MechanismState& s) const;
+  bool solve_dependent(MechanismState& s, double t) const;
+  void compute_force_derivatives(MechanismState& s) const;
+
+  Partition pivot(const MechanismState& s) const;
+  void assemble(MechanismState& s, double t);
+  void check_dropped_positions(MechanismState& s) const;
+  void check_dropped_rates(MechanismState& s) const;
+  void check_dropped_accelerations(MechanismState& s) const;
+  void check_dead_point(MechanismState& s) const;
+  void fit_velocities(MechanismState& s) const;
+  std::vector<int> dropped_rows() const;
+  std::string conflict(MechanismState& s, int row, const std::string& verb) const;
+
+  MechanismModel model_;
+  Partition partition_;
+  int partition_version_ = 0;  // 0: none chosen
+  Eigen::VectorXd mass_;
+  std::vector<JointGeometry> joints_;
+  std::vector<SpringGeometry> springs_;
+  std::vector<TorsionGeometry> torsion_springs_;
+  int joint_row_count_ = 0;    // rows of Phi: first the joints', then one a driver
+  std::vector<char> pattern_;  // where Phi_q can be non-zero, by columns
+  Scaling scaling_;
+  double length_ = 1.0;  // m, the arm at which angles are compared with lengths
+};
+
+}  // namespace traverse::multibody

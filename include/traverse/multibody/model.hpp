@@ -1,0 +1,96 @@
+// A planar mechanism as a user describes it: bodies, joints, drivers, force elements (the paper's section 4).
+// Units SI; x along the track, y upward, angles counter-clockwise in rad. All points are given in the global
+// frame at t = 0, with every body at its `position`; `ground` is the fixed frame.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "traverse/base/time_function.hpp"
+
+namespace traverse::multibody {
+
+inline constexpr int ground = -1;  // a body index
+
+/// A rigid body; its three coordinates are those of its centre of mass.
+struct Body {
+  std::string name;
+  double mass = 0.0;                                    // kg, > 0
+  double inertia = 0.0;                                 // kg m2 about the centre of mass, > 0
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();   // x, y, phi at t = 0
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   // of x, y, phi at t = 0
+};
+
+enum class JointType {
+  revolute,   // both bodies share `point`: 2 equations
+  prismatic,  // only sliding along `axis` through `point` (fixed in the first body) is free: 2 equations
+  slot,       // sliding along `axis` and turning are free: 1 equation
+  weld,       // nothing is free: 3 equations
+  distance,   // the distance between `from` (first body) and `to` (second body) is kept: 1 equation
+};
+
+struct Joint {
+  std::string name;
+  JointType type = JointType::revolute;
+  std::array<int, 2> bodies = {ground, ground};  // the reaction is reported on the second
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();
+  Eigen::Vector2d axis = Eigen::Vector2d::UnitY();
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();
+  Eigen::Vector2d to = Eigen::Vector2d::Zero();
+};
+
+/// A rheonomic constraint: one coordinate of one body is a given function of time.
+struct Driver {
+  std::string name;
+  int body = 0;
+  int coordinate = 0;  // 0 x, 1 y, 2 phi
+  base::TimeFunction value;
+};
+
+/// Linear spring-damper between two points: force = preload + stiffness*(length - free_length) + damping*rate,
+/// positive in tension. Exactly one of free_length and preload may be given; with neither, the spring is
+/// without force at t = 0's geometry. With a preload, it is the force (tension positive) at t = 0's geometry.
+struct Spring {
+  std::string name;
+  std::array<int, 2> bodies = {ground, ground};
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();  // on the first body
+  Eigen::Vector2d to = Eigen::Vector2d::Zero();    // on the second body
+  double stiffness = 0.0;                          // N/m
+  double damping = 0.0;                            // N s/m
+  std::optional<double> free_length;               // m
+  std::optional<double> preload;                   // N
+};
+
+/// Moment on the second body = -stiffness*(phi_2 - phi_1 - free_angle) - damping*(rate), opposite on the first.
+struct TorsionSpring {
+  std::string name;
+  std::array<int, 2> bodies = {ground, ground};
+  double stiffness = 0.0;            // N m/rad
+  double damping = 0.0;              // N m s/rad
+  std::optional<double> free_angle;  // rad; left out: the angle at t = 0
+};
+
+/// A force at the centre of mass and a moment over time on `body`, the opposite on `reaction_body`
+/// (the moment only is opposite; the force acts at the reaction body's centre of mass).
+struct Actuator {
+  std::string name;
+  int body = 0;
+  int reaction_body = ground;
+  std::array<base::TimeFunction, 3> action;  // fx, fy (N), moment (N m)
+};
+
+struct MechanismModel {
+  std::string name;
+  std::vector<Body> bodies;
+  std::vector<Joint> joints;
+  std::vector<Driver> drivers;
+  std::vector<Spring> springs;
+  std::vector<TorsionSpring> torsion_springs;
+  std::vector<Actuator> actuators;
+  double gravity = 9.81;  // m/s2, downward
+};
+
+}  // namespace traverse::multibody

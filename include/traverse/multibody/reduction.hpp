@@ -1,0 +1,106 @@
+// The two small factorisations behind generalized coordinate partitioning, made for mechanisms whose equations touch
+// few coordinates each. The order of elimination and the places that can be non-zero are found once (`plan`), the
+// numbers are then computed without a search, without touching a zero and without allocating.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace traverse::multibody {
+
+/// Which coordinates are independent, and which rows of Phi are kept (redundant ones are dropped).
+struct Partition {
+  std::vector<int> independent;  // f indices into q, ascending
+  std::vector<int> dependent;    // as many as kept rows, ascending
+  std::vector<int> rows;         // kept rows of Phi, ascending
+};
+
+/// Weights that make the entries of Phi_q comparable: an angle counts as the way it makes at a typical arm.
+struct Scaling {
+  Eigen::VectorXd row;     // times a row of Phi: m
+  Eigen::VectorXd column;  // times q's unit: 1 for x and y, 1/length for an angle
+};
+
+/// Several lists of indices in one array; list i is [begin(i), end(i)).
+struct IndexLists {
+  std::vector<int> start = {0};
+  std::vector<int> index;
+  const int* begin(int i) const { return index.data() + start[i]; }
+  const int* end(int i) const { return index.data() + start[i + 1]; }
+  void clear() {
+    start.resize(1);
+    index.clear();
+  }
+  void close() { start.push_back(static_cast<int>(index.size())); }
+};
+
+/// LU of Phi_u, the kept rows and dependent columns of Phi_q, and the sensitivity -Phi_u^-1 Phi_p of the dependent
+/// to the independent coordinates. Vectors are given in the numbering of Phi's rows and of q.
+class DependentBlock {
+ public:
+  /// Chooses the order of elimination at the current numbers. `pattern` (rows x coordinates) is true where Phi_q can
+  /// ever be non-zero.
+  void plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>& pattern, const Partition& partition,
+            const Scaling& scaling);
+  /// Factors. False when a pivot has shrunk so much since the plan was made that a new one is due.
+  bool factor(const Eigen::MatrixXd& Phi_q);
+  /// Computes the sensitivity; after factor.
+  void compute_sensitivity();
+
+  /// x_u = Phi_u^-1 rhs; only the dependent places of x are written.
+  void solve(const Eigen::VectorXd& rhs, Eigen::VectorXd& x);
+  /// y = Phi_u^-T r_u; only the kept places of y are written.
+  void solve_transposed(const Eigen::VectorXd& r, Eigen::VectorXd& y);
+  /// x_p = p and x_u = x_u + sensitivity * p.
+  void expand(const double* p, Eigen::VectorXd& x) const;
+  /// The projection B^T r.
+  void project(const Eigen::VectorXd& r, Eigen::VectorXd& reduced) const;
+  /// Writes the sensitivity into the dependent rows of B (n x f); the rest of B is left alone.
+  void scatter(Eigen::MatrixXd& B) const;
+  /// The largest scaled sensitivity.
+  double largest_sensitivity(const Scaling& scaling) const;
+
+  int size() const { return static_cast<int>(row_of_.size()); }
+  int freedom() const { return static_cast<int>(independent_.size()); }
+  int coordinate(int pivot) const { return column_of_[pivot]; }
+  int independent(int k) const { return independent_[k]; }
+  /// The independent coordinates (0..f-1, ascending) that pivot's coordinate depends on, and how much on each of them.
+  const int* sensitivity_begin(int pivot) const { return sensitive_.begin(pivot); }
+  const int* sensitivity_end(int pivot) const { return sensitive_.end(pivot); }
+  double sensitivity(int pivot, int k) const { return sensitivity_[pivot * freedom() + k]; }
+
+ private:
+  struct Source {
+    int from;  // in Phi_q's storage
+    int to;    // in block_ or sensitivity_
+  };
+  void choose_order(const Eigen::MatrixXd& Phi_q, const Partition& partition, const Scaling& scaling);
+  void find_fill(const std::vector<char>& pattern, int rows);
+  void find_sensitive(const std::vector<char>& pattern, int rows);
+  double& block(int i, int j) { return block_[i * size() + j]; }
+
+  std::vector<int> row_of_, column_of_, independent_;  // of pivot k
+  IndexLists lower_, upper_, sensitive_;               // non-zero columns of every pivot's row
+  std::vector<Source> block_sources_, sensitivity_sources_;
+  std::vector<double> block_, sensitivity_;  // size x size, size x freedom, by rows
+  std::vector<double> inverse_pivot_, planned_pivot_, work_;
+  std::vector<char> filled_;  // scratch of plan
+  Eigen::MatrixXd active_;    // scratch of plan
+};
+
+/// L D L^T of the projected mass matrix B^T N B.
+class ReducedMass {
+ public:
+  void plan(const DependentBlock& block);
+  void factor(const DependentBlock& block, const Eigen::VectorXd& mass);
+  void solve(Eigen::VectorXd& x) const;  // in place
+
+ private:
+  int size_ = 0;
+  IndexLists below_;             // non-zero rows below the diagonal, by columns
+  std::vector<double> entries_;  // size x size, by columns
+  std::vector<double> inverse_;  // of D
+  std::vector<char> filled_;
+};
+
+}  // namespace traverse::multibody

@@ -1,0 +1,170 @@
+// Phi, Phi_q and gamma of a whole mechanism, and the Newton iteration for the dependent coordinates.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "traverse/multibody/mechanism.hpp"
+
+namespace traverse::multibody {
+
+namespace {
+
+constexpr int most_iterations = 40;
+constexpr double longest_turn = 0.5;        // rad in one Newton step
+constexpr double poor_contraction = 0.1;    // of the residual, with an old factorisation
+constexpr double dropped_tolerance = 1e-6;  // of the mechanism's size
+
+}  // namespace
+
+void Mechanism::place_frames(MechanismState& s) const {
+  for (std::size_t i = 1; i < s.frames.size(); ++i) {
+    Frame& frame = s.frames[i];
+    const double* q = s.q.data() + 3 * (i - 1);
+    frame.origin = {q[0], q[1]};
+    if (q[2] != frame.angle) frame.set_angle(q[2]);
+  }
+}
+
+void Mechanism::move_frames(MechanismState& s) const {
+  for (std::size_t i = 1; i < s.frames.size(); ++i) {
+    const double* qd = s.qd.data() + 3 * (i - 1);
+    s.frames[i].velocity = {qd[0], qd[1]};
+    s.frames[i].omega = qd[2];
+  }
+}
+
+void Mechanism::compute_Phi(MechanismState& s) const {
+  for (const JointGeometry& joint : joints_) {
+    joint_residual(joint, frame(s, joint.first), frame(s, joint.second), s.Phi.data() + joint.row);
+  }
+  for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
+    const Driver& driver = model_.drivers[k];
+    s.Phi[driver_row(static_cast<int>(k))] = s.q[3 * driver.body + driver.coordinate] - driver.value.value(s.time);
+  }
+}
+
+void Mechanism::compute_Phi_q(MechanismState& s) const {
+  JointJacobian rows;
+  for (const JointGeometry& joint : joints_) {
+    joint_jacobian(joint, frame(s, joint.first), frame(s, joint.second), rows);
+    const int count = joint_rows(joint.type);
+    for (int end = 0; end < 2; ++end) {
+      const int body = end == 0 ? joint.first : joint.second;
+      if (body == ground) continue;
+      for (int c = 0; c < 3; ++c)
+        for (int r = 0; r < count; ++r) s.Phi_q(joint.row + r, 3 * body + c) = rows(r, 3 * end + c);
+    }
+  }
+  for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
+    const Driver& driver = model_.drivers[k];
+    s.Phi_q(driver_row(static_cast<int>(k)), 3 * driver.body + driver.coordinate) = 1.0;
+  }
+}
+
+void Mechanism::compute_gamma(MechanismState& s) const {
+  for (const JointGeometry& joint : joints_) {
+    joint_gamma(joint, frame(s, joint.first), frame(s, joint.second), s.gamma.data() + joint.row);
+  }
+  for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
+    s.gamma[driver_row(static_cast<int>(k))] = model_.drivers[k].value.acceleration(s.time);
+  }
+}
+
+/// Gives the workspaces the sizes and the order of elimination of the mechanism's partition.
+void Mechanism::fit(MechanismState& s) const {
+  if (s.partition_version == partition_version_) return;
+  const int f = freedom();
+  s.B.setZero(coordinates(), f);
+  for (int k = 0; k < f; ++k) s.B(partition_.independent[k], k) = 1.0;
+  s.b.setZero();
+  s.d.setZero();
+  s.lambda.setZero();
+  s.reduced.setZero(f);
+  place_frames(s);
+  compute_Phi_q(s);
+  s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
+  s.reduced_mass.plan(s.dependent_block);
+  s.partition_version = partition_version_;
+  s.factored = false;
+  s.mass_factored = false;
+}
+
+/// Factors the dependent block at the current frames, in a new order when the old one has worn out.
+void Mechanism::factor(MechanismState& s) const {
+  compute_Phi_q(s);
+  if (!s.dependent_block.factor(s.Phi_q)) {
+    s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
+    s.reduced_mass.plan(s.dependent_block);
+    s.B.setZero();
+    for (int k = 0; k < freedom(); ++k) s.B(partition_.independent[k], k) = 1.0;
+  }
+  s.factored = true;
+}
+
+/// The largest kept equation's error, m.
+double Mechanism::kept_residual(const MechanismState& s) const {
+  double largest = 0.0;
+  for (const int row : partition_.rows) {
+    const double size = std::abs(s.Phi[row]) * scaling_.row[row];
+    if (!(size <= largest)) largest = size;  // also when it is not a number
+  }
+  return largest;
+}
+
+/// One Newton step on the dependent coordinates with the factorisation at hand. False when it is not finite.
+bool Mechanism::correct_dependent(MechanismState& s) const {
+  s.dependent_block.solve(s.Phi, s.work);
+  double turn = 0.0;
+  bool finite = true;
+  for (const int i : partition_.dependent) {
+    finite = finite && std::isfinite(s.work[i]);
+    if (i % 3 == 2) turn = std::max(turn, std::abs(s.work[i]));
+  }
+  if (!finite) return false;
+  const double part = turn > longest_turn ? longest_turn / turn : 1.0;
+  for (const int i : partition_.dependent) s.q[i] -= part * s.work[i];
+  return true;
+}
+
+/// Newton on the kept rows from s.q. The last factorisation serves as long as it contracts the error well.
+bool Mechanism::solve_dependent(MechanismState& s, double t) const {
+  s.time = t;
+  place_frames(s);
+  compute_Phi(s);
+  if (partition_.rows.empty()) return true;
+  const double far = s.q.cwiseAbs().maxCoeff();
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * (length_ + far);
+  double before = std::numeric_limits<double>::infinity();
+  bool fresh = false;
+  for (int i = 0; i < most_iterations; ++i) {
+    const double residual = kept_residual(s);
+    if (!std::isfinite(residual)) return false;
+    if (residual <= rounding) return true;
+    const bool poor = residual > poor_contraction * before;
+    if (poor && fresh && residual <= 100.0 * rounding) return true;  // as good as it gets
+    if (!s.factored || (poor && i > 0)) {
+      factor(s);
+      fresh = true;
+    } else {
+      fresh = false;
+    }
+    if (!correct_dependent(s)) return false;
+    before = residual;
+    place_frames(s);
+    compute_Phi(s);
+  }
+  return false;
+}
+
+bool Mechanism::set_positions(MechanismState& s, double t, const double* p) const {
+  fit(s);
+  for (int k = 0; k < freedom(); ++k) s.q[partition_.independent[k]] = p[k];
+  if (!solve_dependent(s, t)) return false;
+  if (static_cast<int>(partition_.rows.size()) == constraints()) return true;
+  for (int row = 0; row < constraints(); ++row) {
+    if (!(std::abs(s.Phi[row]) * scaling_.row[row] <= dropped_tolerance * length_)) return false;
+  }
+  return true;
+}
+
+}  // namespace traverse::multibody

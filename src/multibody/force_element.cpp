@@ -1,0 +1,129 @@
+#include "traverse/multibody/force_element.hpp"
+
+#include <cmath>
+
+namespace traverse::multibody {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+
+namespace {
+
+constexpr double shortest = 1e-12;  // m; below it a spring has no direction
+
+/// The line of a spring and its tension.
+struct Line {
+  Vector2d a1, a2;          // arms, global components
+  Vector2d d, rate;         // from the first to the second point, and its time derivative
+  double length;            // m
+  Vector2d u;               // unit vector along d, zero for a spring shrunk to a point
+  double elastic;           // N, without the damper
+  double force_per_length;  // N/m: tension / length, its limit for a zero-length spring
+  Line(const SpringGeometry& s, const Frame& first, const Frame& second)
+      : a1(first.to_global(s.first_arm)),
+        a2(second.to_global(s.second_arm)),
+        d((second.origin - first.origin) + (a2 - a1)),
+        rate(second.velocity_at(a2) - first.velocity_at(a1)),
+        length(d.norm()),
+        u(length > shortest ? Vector2d(d / length) : Vector2d::Zero()),
+        elastic(s.preload + s.stiffness * (length - s.reference_length)) {
+    const bool zero_length_spring = s.preload == 0.0 && s.reference_length <= shortest;
+    if (length > shortest) {
+      force_per_length = (elastic + s.damping * u.dot(rate)) / length;
+    } else {
+      force_per_length = zero_length_spring ? s.stiffness : 0.0;
+    }
+  }
+  Vector2d force() const { return force_per_length * d; }
+};
+
+}  // namespace
+
+void add_pair(int first, int second, const PairMatrix& pair, Eigen::MatrixXd& all) {
+  const int bodies[2] = {first, second};
+  for (int j = 0; j < 2; ++j) {
+    if (bodies[j] == ground) continue;
+    for (int i = 0; i < 2; ++i) {
+      if (bodies[i] != ground) all.block<3, 3>(3 * bodies[i], 3 * bodies[j]) += pair.block<3, 3>(3 * i, 3 * j);
+    }
+  }
+}
+
+SpringGeometry spring_geometry(const Spring& spring, const Frame& first, const Frame& second) {
+  SpringGeometry s;
+  s.first = spring.bodies[0];
+  s.second = spring.bodies[1];
+  s.first_arm = first.to_body(spring.from - first.origin);
+  s.second_arm = second.to_body(spring.to - second.origin);
+  s.stiffness = spring.stiffness;
+  s.damping = spring.damping;
+  s.reference_length = spring.free_length.value_or((spring.to - spring.from).norm());
+  s.preload = spring.preload.value_or(0.0);
+  return s;
+}
+
+TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first, const Frame& second) {
+  return {spring.bodies[0], spring.bodies[1], spring.stiffness, spring.damping,
+          spring.free_angle.value_or(second.angle - first.angle)};
+}
+
+PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second) {
+  const Line line(spring, first, second);
+  const Vector2d f = line.force();  // on the first body; the second is pulled the other way
+  PairForce g;
+  g << f, quarter_turn(line.a1).dot(f), -f, -quarter_turn(line.a2).dot(f);
+  return g;
+}
+
+void spring_derivatives(const SpringGeometry& spring, const Frame& first, const Frame& second, PairMatrix& g_q,
+                        PairMatrix& g_qd) {
+  const Line line(spring, first, second);
+  using PairRows = Eigen::Matrix<double, 2, 6>;
+  PairRows d_q;  // also d(rate)/dq'
+  d_q << -Matrix2d::Identity(), -quarter_turn(line.a1), Matrix2d::Identity(), quarter_turn(line.a2);
+  PairRows rate_q = PairRows::Zero();
+  rate_q.col(2) = first.omega * line.a1;
+  rate_q.col(5) = -second.omega * line.a2;
+
+  const Matrix2d along = line.u * line.u.transpose();
+  Matrix2d f_d = line.force_per_length * (Matrix2d::Identity() - along);
+  if (line.length > shortest) {
+    const Vector2d u_rate = (line.rate - line.u * line.u.dot(line.rate)) / line.length;
+    f_d += line.u * (spring.stiffness * line.u + spring.damping * u_rate).transpose();
+  }
+  const PairRows f_qd = spring.damping * along * d_q;
+  const PairRows f_q = f_d * d_q + spring.damping * along * rate_q;
+  g_q.noalias() = -d_q.transpose() * f_q;
+  g_qd.noalias() = -d_q.transpose() * f_qd;
+  const Vector2d f = line.force();
+  g_q(2, 2) -= f.dot(line.a1);
+  g_q(5, 5) += f.dot(line.a2);
+}
+
+double spring_strain_energy(const SpringGeometry& spring, const Frame& first, const Frame& second) {
+  const Line line(spring, first, second);
+  if (spring.stiffness == 0.0) return spring.preload * (line.length - spring.reference_length);
+  return 0.5 * line.elastic * line.elastic / spring.stiffness;
+}
+
+double spring_dissipation(const SpringGeometry& spring, const Frame& first, const Frame& second) {
+  const Line line(spring, first, second);
+  const double rate = line.u.dot(line.rate);
+  return spring.damping * rate * rate;
+}
+
+double torsion_moment(const TorsionGeometry& s, const Frame& first, const Frame& second) {
+  return -s.stiffness * (second.angle - first.angle - s.free_angle) - s.damping * (second.omega - first.omega);
+}
+
+double torsion_strain_energy(const TorsionGeometry& s, const Frame& first, const Frame& second) {
+  const double twist = second.angle - first.angle - s.free_angle;
+  return 0.5 * s.stiffness * twist * twist;
+}
+
+double torsion_dissipation(const TorsionGeometry& s, const Frame& first, const Frame& second) {
+  const double rate = second.omega - first.omega;
+  return s.damping * rate * rate;
+}
+
+}  // namespace traverse::multibody

@@ -1,0 +1,139 @@
+// A mechanism's fixed data, its states, and what is read from them.
+#include "traverse/multibody/mechanism.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "check_model.hpp"
+
+namespace traverse::multibody {
+
+namespace {
+
+Frame start_frame(const MechanismModel& model, int body) {
+  Frame frame;
+  if (body == ground) return frame;
+  const Body& b = model.bodies[body];
+  frame.origin = b.position.head<2>();
+  frame.set_angle(b.position.z());
+  frame.velocity = b.velocity.head<2>();
+  frame.omega = b.velocity.z();
+  return frame;
+}
+
+}  // namespace
+
+Mechanism::Mechanism(MechanismModel model) : model_(std::move(model)) {
+  check_model(model_);
+  mass_.resize(coordinates());
+  for (std::size_t i = 0; i < model_.bodies.size(); ++i) {
+    const Body& body = model_.bodies[i];
+    mass_.segment<3>(3 * static_cast<int>(i)) << body.mass, body.mass, body.inertia;
+  }
+  for (const Joint& joint : model_.joints) {
+    joints_.push_back(joint_geometry(joint, start_frame(model_, joint.bodies[0]), start_frame(model_, joint.bodies[1]),
+                                     joint_row_count_));
+    joint_row_count_ += joint_rows(joint.type);
+  }
+  for (const Spring& spring : model_.springs) {
+    springs_.push_back(
+        spring_geometry(spring, start_frame(model_, spring.bodies[0]), start_frame(model_, spring.bodies[1])));
+  }
+  for (const TorsionSpring& spring : model_.torsion_springs) {
+    torsion_springs_.push_back(
+        torsion_geometry(spring, start_frame(model_, spring.bodies[0]), start_frame(model_, spring.bodies[1])));
+  }
+  find_scaling();
+  find_pattern();
+  if (constraints() == 0) {  // nothing to choose
+    for (int i = 0; i < coordinates(); ++i) partition_.independent.push_back(i);
+    partition_version_ = 1;
+  }
+}
+
+int Mechanism::coordinates() const { return 3 * static_cast<int>(model_.bodies.size()); }
+int Mechanism::constraints() const { return joint_row_count_ + static_cast<int>(model_.drivers.size()); }
+int Mechanism::freedom() const { return static_cast<int>(partition_.independent.size()); }
+
+/// Angles count at twice the longest arm of a joint, so that pivoting prefers to keep angles independent: a crank's
+/// angle serves through its dead points, where the slider's position does not.
+void Mechanism::find_scaling() {
+  double arm = 0.0;
+  for (const JointGeometry& joint : joints_) {
+    if (joint.first != ground) arm = std::max(arm, joint.first_arm.norm());
+    if (joint.second != ground) arm = std::max(arm, joint.second_arm.norm());
+  }
+  if (arm == 0.0) {
+    for (const Body& body : model_.bodies) arm = std::max(arm, std::sqrt(body.inertia / body.mass));
+  }
+  length_ = 2.0 * arm;
+  scaling_.column = Eigen::VectorXd::Ones(coordinates());
+  for (int i = 2; i < coordinates(); i += 3) scaling_.column[i] = 1.0 / length_;
+  scaling_.row = Eigen::VectorXd::Ones(constraints());
+  for (const JointGeometry& joint : joints_) {
+    if (has_angle_row(joint.type)) scaling_.row[joint.row + joint_rows(joint.type) - 1] = length_;
+  }
+  for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
+    if (model_.drivers[k].coordinate == 2) scaling_.row[driver_row(static_cast<int>(k))] = length_;
+  }
+}
+
+/// Probes Phi_q with the bodies moved about: what is zero in such a position is zero in all.
+void Mechanism::find_pattern() {
+  pattern_.assign(static_cast<std::size_t>(constraints()) * coordinates(), 0);
+  MechanismState s = make_state();
+  for (int probe = 0; probe < 2; ++probe) {
+    for (int i = 0; i < s.q.size(); ++i) s.q[i] += length_ * scaling_.column[i] * std::sin(1.0 + 2.3 * i + probe);
+    place_frames(s);
+    compute_Phi_q(s);
+    for (std::size_t i = 0; i < pattern_.size(); ++i)
+      if (s.Phi_q.data()[i] != 0.0) pattern_[i] = 1;
+  }
+}
+
+MechanismState Mechanism::make_state() const {
+  const int n = coordinates();
+  const int m = constraints();
+  MechanismState s;
+  s.frames.resize(model_.bodies.size() + 1);
+  for (Eigen::VectorXd* v : {&s.q, &s.qd, &s.b, &s.d, &s.g, &s.qdd, &s.work}) v->setZero(n);
+  for (Eigen::VectorXd* v : {&s.Phi, &s.gamma, &s.Phi_t, &s.lambda}) v->setZero(m);
+  for (Eigen::MatrixXd* M : {&s.g_q, &s.g_qd, &s.lambda_curvature}) M->setZero(n, n);
+  s.Phi_q.setZero(m, n);
+  for (int i = 0; i < n / 3; ++i) {
+    s.q.segment<3>(3 * i) = model_.bodies[i].position;
+    s.qd.segment<3>(3 * i) = model_.bodies[i].velocity;
+    s.frames[i + 1] = start_frame(model_, i);
+  }
+  fit(s);
+  return s;
+}
+
+const std::string& Mechanism::part_name(int row) const {
+  for (std::size_t j = 0; j < joints_.size(); ++j) {
+    if (row < joints_[j].row + joint_rows(joints_[j].type)) return model_.joints[j].name;
+  }
+  return model_.drivers[row - joint_row_count_].name;
+}
+
+const char* Mechanism::row_unit(int row) const {
+  if (row >= joint_row_count_) return model_.drivers[row - joint_row_count_].coordinate == 2 ? "rad" : "m";
+  for (const JointGeometry& joint : joints_) {
+    if (has_angle_row(joint.type) && row == joint.row + joint_rows(joint.type) - 1) return "rad";
+  }
+  return "m";
+}
+
+std::string Mechanism::row_name(int row) const {
+  return (row < joint_row_count_ ? "joint '" : "driver '") + part_name(row) + "'";
+}
+
+Eigen::Vector3d Mechanism::joint_reaction(const MechanismState& s, int j) const {
+  const JointGeometry& joint = joints_[j];
+  return multibody::joint_reaction(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row);
+}
+
+double Mechanism::driver_force(const MechanismState& s, int k) const { return -s.lambda[driver_row(k)]; }
+
+}  // namespace traverse::multibody

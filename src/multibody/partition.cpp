@@ -1,0 +1,218 @@
+// The choice of independent coordinates by full pivoting, and the checks of what it leaves out.
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "traverse/base/error.hpp"
+#include "traverse/multibody/mechanism.hpp"
+
+namespace traverse::multibody {
+
+namespace {
+
+constexpr double rank_tolerance = 1e-8;      // scaled pivots below are rounding or sloppy geometry
+constexpr double tie = 1e-9;                 // pivots closer than this are equal, so that rounding decides nothing
+constexpr double position_tolerance = 1e-6;  // of the mechanism's size
+constexpr double rate_tolerance = 1e-6;      // of the terms that should cancel
+constexpr double moved_far = 1e-3;           // of the mechanism's size: then the choice is made again
+constexpr double probe = 1e-3;               // of the mechanism's size: the step that tells a dead point
+constexpr double probe_tolerance = 1e-9;     // of the mechanism's size
+
+/// Gaussian elimination with full pivoting on a scaled copy of Phi_q.
+class FullPivoting {
+ public:
+  explicit FullPivoting(Eigen::MatrixXd scaled)
+      : A_(std::move(scaled)), row_used_(A_.rows(), false), column_used_(A_.cols(), false) {}
+
+  /// Eliminates with the rows in [from, to) as long as there is a pivot.
+  void eliminate(int from, int to) {
+    int row, column;
+    while (find(from, to, row, column)) {
+      row_used_[row] = column_used_[column] = true;
+      for (int i = 0; i < A_.rows(); ++i) {
+        if (row_used_[i] || A_(i, column) == 0.0) continue;
+        A_.row(i) -= A_(i, column) / A_(row, column) * A_.row(row);
+      }
+    }
+  }
+
+  Partition partition() const {
+    Partition p;
+    for (int i = 0; i < A_.rows(); ++i)
+      if (row_used_[i]) p.rows.push_back(i);
+    for (int j = 0; j < A_.cols(); ++j) (column_used_[j] ? p.dependent : p.independent).push_back(j);
+    return p;
+  }
+
+ private:
+  /// Of equal pivots the first row and the last column: a body listed first keeps its coordinates independent.
+  bool find(int from, int to, int& row, int& column) const {
+    double best = 0.0;
+    for (int j = static_cast<int>(A_.cols()) - 1; j >= 0; --j) {
+      if (column_used_[j]) continue;
+      for (int i = from; i < to; ++i) {
+        if (row_used_[i] || !(std::abs(A_(i, j)) > best * (1.0 + tie))) continue;
+        best = std::abs(A_(i, j));
+        row = i;
+        column = j;
+      }
+    }
+    return best > rank_tolerance;
+  }
+
+  Eigen::MatrixXd A_;
+  std::vector<bool> row_used_, column_used_;
+};
+
+std::string number(double value) {
+  std::ostringstream out;
+  out.precision(4);
+  out << value;
+  return out.str();
+}
+
+}  // namespace
+
+Partition Mechanism::pivot(const MechanismState& s) const {
+  FullPivoting elimination(scaling_.row.asDiagonal() * s.Phi_q * scaling_.column.asDiagonal());
+  elimination.eliminate(joint_row_count_, constraints());  // drivers are kept before joints
+  elimination.eliminate(0, joint_row_count_);
+  return elimination.partition();
+}
+
+std::vector<std::string> Mechanism::choose_partition(MechanismState& s, double t) {
+  const int earlier_freedom = partition_version_ > 0 ? freedom() : -1;
+  assemble(s, t);
+  if (earlier_freedom >= 0 && freedom() != earlier_freedom) {
+    throw SolverError("vehicle '" + model_.name + "': the mechanism has " + std::to_string(freedom()) +
+                      " degrees of freedom at t = " + number(t) + " s, it had " + std::to_string(earlier_freedom) +
+                      " before: it passes through a dead point");
+  }
+  check_dropped_positions(s);
+  fit_velocities(s);
+  const std::vector<int> dropped = dropped_rows();
+  if (!dropped.empty()) {
+    check_dropped_rates(s);
+    check_dead_point(s);
+    check_dropped_accelerations(s);
+  }
+  std::vector<std::string> names;
+  for (const int row : dropped) {
+    const std::string& name = part_name(row);
+    if (names.empty() || names.back() != name) names.push_back(name);
+  }
+  return names;
+}
+
+/// Chooses the partition and solves the constraints; again when the bodies moved far in doing so.
+void Mechanism::assemble(MechanismState& s, double t) {
+  for (int pass = 0; pass < 4; ++pass) {
+    place_frames(s);
+    compute_Phi_q(s);
+    partition_ = pivot(s);
+    ++partition_version_;
+    fit(s);
+    s.factored = false;
+    const Eigen::VectorXd start = s.q;
+    if (!solve_dependent(s, t)) {
+      int worst = partition_.rows.front();
+      for (const int row : partition_.rows)
+        if (std::abs(s.Phi[row]) * scaling_.row[row] > std::abs(s.Phi[worst]) * scaling_.row[worst]) worst = row;
+      throw InputError("vehicle '" + model_.name + "' cannot be put together at t = " + number(t) +
+                       " s: " + row_name(worst) + " is off by " + number(s.Phi[worst]) + " " + row_unit(worst) +
+                       "; check positions and drivers");
+    }
+    const double moved = (s.q - start).cwiseQuotient(scaling_.column).cwiseAbs().maxCoeff();
+    if (moved <= moved_far * length_) return;
+  }
+}
+
+/// Velocities that satisfy the constraints: the given ones, or the nearest in the metric of the masses, as after an
+/// impact of the joints.
+void Mechanism::fit_velocities(MechanismState& s) const {
+  const Eigen::VectorXd wanted = s.qd;
+  Eigen::VectorXd pd(freedom());
+  for (int k = 0; k < freedom(); ++k) pd[k] = wanted[partition_.independent[k]];
+  set_velocities(s, s.time, pd.data());
+  const Eigen::VectorXd missed = wanted - s.qd;
+  if (missed.cwiseAbs().maxCoeff() <= 1e-9 * wanted.cwiseAbs().maxCoeff()) return;
+  s.reduced_mass.factor(s.dependent_block, mass_);
+  s.dependent_block.project(mass_.cwiseProduct(missed), s.reduced);
+  s.reduced_mass.solve(s.reduced);
+  pd += s.reduced;
+  set_velocities(s, s.time, pd.data());
+}
+
+std::vector<int> Mechanism::dropped_rows() const {
+  std::vector<int> dropped;
+  for (int row = 0; row < constraints(); ++row)
+    if (!std::binary_search(partition_.rows.begin(), partition_.rows.end(), row)) dropped.push_back(row);
+  return dropped;
+}
+
+/// "vehicle 'x': driver 'b' contradicts driver 'a'": a dropped row and the kept ones that it follows from.
+std::string Mechanism::conflict(MechanismState& s, int row, const std::string& verb) const {
+  factor(s);
+  Eigen::VectorXd share = Eigen::VectorXd::Zero(constraints());
+  s.dependent_block.solve_transposed(s.Phi_q.row(row).transpose(), share);
+  std::string text = "vehicle '" + model_.name + "': " + row_name(row) + " " + verb + " ";
+  std::string last;
+  for (const int kept : partition_.rows) {
+    if (std::abs(share[kept]) * scaling_.row[row] / scaling_.row[kept] < 1e-6 || row_name(kept) == last) continue;
+    text += (last.empty() ? "" : ", ") + row_name(kept);
+    last = row_name(kept);
+  }
+  return text;
+}
+
+void Mechanism::check_dropped_positions(MechanismState& s) const {
+  for (const int row : dropped_rows()) {
+    if (std::abs(s.Phi[row]) * scaling_.row[row] <= position_tolerance * length_) continue;
+    throw InputError(conflict(s, row, "contradicts") + ": with these met it is off by " + number(s.Phi[row]) + " " +
+                     row_unit(row) + " at t = " + number(s.time) + " s");
+  }
+}
+
+void Mechanism::check_dropped_rates(MechanismState& s) const {
+  for (const int row : dropped_rows()) {
+    const double missed = s.Phi_q.row(row).dot(s.b) + s.Phi_t[row];
+    const double terms = s.Phi_q.row(row).cwiseAbs().dot(s.b.cwiseAbs()) + std::abs(s.Phi_t[row]);
+    if (std::abs(missed) <= rate_tolerance * terms) continue;
+    throw InputError(conflict(s, row, "contradicts") + ": their speeds differ by " + number(missed) + " " +
+                     row_unit(row) + "/s at t = " + number(s.time) + " s");
+  }
+}
+
+void Mechanism::check_dropped_accelerations(MechanismState& s) const {
+  for (const int row : dropped_rows()) {
+    const double missed = s.Phi_q.row(row).dot(s.d) - s.gamma[row];
+    const double terms = s.Phi_q.row(row).cwiseAbs().dot(s.d.cwiseAbs()) + std::abs(s.gamma[row]);
+    if (std::abs(missed) <= rate_tolerance * terms) continue;
+    throw InputError(conflict(s, row, "contradicts") + ": their accelerations differ by " + number(missed) + " " +
+                     row_unit(row) + "/s2 at t = " + number(s.time) + " s");
+  }
+}
+
+/// Rows that depend on others at a dead point only do so no more a small step away.
+void Mechanism::check_dead_point(MechanismState& s) const {
+  const Eigen::VectorXd q = s.q;
+  const Eigen::VectorXd Phi = s.Phi;
+  Eigen::VectorXd pd(freedom());
+  for (int k = 0; k < freedom(); ++k) {
+    const int i = partition_.independent[k];
+    pd[k] = s.qd[i];
+    s.q[i] += probe * length_ * scaling_.column[i] * std::cos(1.0 + k);
+  }
+  const bool solved = solve_dependent(s, s.time);
+  const Eigen::VectorXd change = (s.Phi - Phi).cwiseProduct(scaling_.row).cwiseAbs();
+  s.q = q;
+  place_frames(s);
+  compute_Phi(s);
+  set_velocities(s, s.time, pd.data());
+  for (const int row : dropped_rows()) {
+    if (solved && change[row] <= probe_tolerance * length_) continue;
+    throw InputError(conflict(s, row, "at a dead point follows from") + ": start from another position");
+  }
+}
+
+}  // namespace traverse::multibody
