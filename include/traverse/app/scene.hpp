@@ -1,0 +1,66 @@
+// A scene as the user wrote it, checked and with every default filled in. Built by read_scene, the only reader of
+// options; the physics sees nothing but these structures.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "traverse/beam/model.hpp"
+#include "traverse/coupling/vehicle.hpp"
+#include "traverse/options/options.hpp"
+#include "traverse/track/profile.hpp"
+
+namespace traverse::app {
+
+enum class Analysis { transient, modes, static_response };
+enum class Start { equilibrium, given };
+
+using coupling::Drive;
+using coupling::MovingLoad;
+using coupling::Train;
+using coupling::Vehicle;
+using coupling::Wheel;
+
+struct Damping {
+  std::optional<std::pair<double, double>> rayleigh;     // a, b given
+  std::optional<std::pair<double, double>> ratios;       // zeta1, zeta2
+  std::optional<std::pair<double, double>> frequencies;  // Hz, the pair that the ratios belong to, when named
+};
+
+struct Output {
+  std::string file;                  // HDF5; empty: none
+  std::optional<double> interval;    // s; left out: chosen with the step
+  std::vector<double> probes;        // stations; default: the middle of every span (of the first 200)
+};
+
+struct Scene {
+  std::string name;                      // of the options file, for messages and default file names
+  std::optional<beam::BeamModel> beam;   // absent: a mechanism on its own, or on rigid ground
+  Damping damping;
+  bool self_weight = false;
+  std::vector<Vehicle> vehicles;         // types in use
+  Train train;
+  MovingLoad load;
+  track::Profile profile;
+  double gravity = 9.81;
+  Analysis analysis = Analysis::transient;
+  Start start = Start::equilibrium;
+  std::optional<double> tail;            // s after the last wheel has left
+  std::optional<double> end_time;        // -ts_max_time
+  std::optional<double> time_step;       // -ts_dt
+  int mode_count = 10;
+  double accuracy = 1e-3;
+  Output output;
+  bool quiet = false;                    // -output_quiet: no progress
+  std::vector<std::string> notes;        // what was chosen and why, one line each
+  std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
+};
+
+/// Reads and checks all options and the vehicle files they name. Throws InputError with one line.
+Scene read_scene(options::Options options);
+/// Of the options in force: those that put_into_petsc saw last.
+Scene read_scene();
+
+}  // namespace traverse::app

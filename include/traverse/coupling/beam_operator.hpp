@@ -1,0 +1,54 @@
+// The beam's matrices as they are used in time: products with nodal vectors, and solves with A = s^2 M + s C* + K*
+// whose factorisations are kept per shift s.
+#pragma once
+
+#include <list>
+#include <vector>
+
+#include "traverse/beam/beam.hpp"
+#include "traverse/solve/block_tridiagonal.hpp"
+
+namespace traverse::coupling {
+
+class BeamOperator {
+ public:
+  explicit BeamOperator(const beam::Beam& beam);
+
+  int unknowns() const { return mass_.nodes * mass_.block; }  // on this rank
+
+  /// Collective. r = sign*(M m + C* c + K* k); a null pointer leaves its term out. Arrays of this rank's unknowns.
+  void multiply(double sign, const double* m, const double* c, const double* k, double* r) const;
+
+  /// Collective. Forces the M-solve: x in: nodal forces, out: accelerations. Held unknowns must be zero.
+  void solve_mass(double* x) const;
+
+  /// Factorisation of s^2 M + s C* + K*; s = 0 is the static one. Kept for the last few shifts, which are compared
+  /// relatively (time integrators compute the same shift with rounding noise).
+  const solve::SubstructuredCholesky& factored(double shift);
+  /// Changes whenever `factored` hands out another factorisation.
+  long factor_stamp() const { return stamp_; }
+  bool damped() const { return damped_; }
+  long factorisations() const { return factorisations_; }
+  mutable long solves = 0;  // beam solves so far, for the summary
+
+ private:
+  struct Factor {
+    double shift;
+    long stamp;
+    solve::SubstructuredCholesky cholesky;
+  };
+  void product(const solve::BlockTridiagonal& A, double sign, const double* x, double* r) const;
+
+  MPI_Comm comm_;
+  int left_rank_, right_rank_;  // neighbours with nodes, or MPI_PROC_NULL
+  std::vector<char> fixed_;
+  solve::BlockTridiagonal mass_, damping_, stiffness_, work_;
+  bool damped_ = false;
+  mutable std::vector<double> halo_;  // left node's and right node's values of the neighbours
+  solve::SubstructuredCholesky mass_factor_;
+  std::list<Factor> factors_;  // most recent first
+  long stamp_ = 0;
+  long factorisations_ = 0;
+};
+
+}  // namespace traverse::coupling

@@ -1,0 +1,59 @@
+// Newton's method for one implicit stage of all vehicles and contacts, the beam condensed onto the elements under
+// the wheels. Unknowns: the independent coordinates p of every vehicle and the contact kinematics of every wheel
+// (penetration, its rate, sliding speed); the contact law enters as a function of these, which keeps the problem
+// convex in flight and under impact. A vehicle's Newton matrix is dense and small; wheels on the beam are coupled
+// by a dense system of their number.
+#pragma once
+
+#include <Eigen/Dense>
+#include <vector>
+
+#include "traverse/coupling/compliance.hpp"
+#include "traverse/coupling/fleet.hpp"
+
+namespace traverse::coupling {
+
+/// The stage's data: p' = shift*p + c, p'' = shift*p' + c', element unknowns v = v0 + (compliance) loads,
+/// their rates w = shift*v + c_v. A shift of 0 with zero c is the static problem.
+struct StageData {
+  double t = 0.0;
+  double shift = 0.0;
+  const double* c_p = nullptr;          // freedom values, then those of p'
+  const std::vector<double>* v0 = nullptr;   // free response at the elements in touch, 2*block each
+  const std::vector<double>* c_v = nullptr;
+  const Compliance* compliance = nullptr;    // null without a beam
+  int block = 2;
+};
+
+class ContactNewton {
+ public:
+  /// p (freedom values): in a guess, out the solution. False when it does not converge.
+  bool solve(Fleet& fleet, const StageData& stage, double* p);
+  /// Nodal loads on the elements in touch that belong to the solution, 2*block each.
+  const std::vector<double>& element_loads() const { return loads_; }
+  long iterations() const { return iterations_; }
+  /// Residual and change of force of the last iteration over the train's weight, for messages.
+  double last_change() const { return change_; }
+
+ private:
+  struct VehicleWork {
+    Eigen::MatrixXd J, G, D, Z, T, NB, gB;  // G: contact directions times B; D: tangent of the law
+    Eigen::VectorXd R, dp, f_hat, correction, r;
+    std::vector<int> wheel, component;  // of every row of G: which wheel, 0 normal or 1 tangential
+  };
+  bool evaluate(Fleet& fleet, const StageData& s, const double* p);
+  void beam_field(const StageData& s, const Fleet& fleet);
+  void vehicle_system(Fleet& fleet, int k, const StageData& s, bool curvature);
+  void couple_beam(const Fleet& fleet, const StageData& s);
+  double update(Fleet& fleet, const StageData& s, double* p);
+
+  std::vector<VehicleWork> work_;
+  std::vector<double> loads_, v_, w_, pd_, pdd_;
+  Eigen::MatrixXd W_, coupled_;
+  Eigen::VectorXd du_, rhs_;
+  std::vector<int> row_vehicle_, row_index_;  // of the coupled system: which vehicle, which row of its G
+  long iterations_ = 0;
+  double change_ = 0.0;
+};
+
+}  // namespace traverse::coupling

@@ -1,0 +1,97 @@
+// All vehicles of a train with their wheels, the same on every rank: where they are, which piece of running surface
+// each wheel is on, and the contact forces.
+#pragma once
+
+#include <Eigen/Dense>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "traverse/beam/mesh.hpp"
+#include "traverse/coupling/vehicle.hpp"
+#include "traverse/coupling/wheel_on_track.hpp"
+#include "traverse/multibody/mechanism.hpp"
+
+namespace traverse::coupling {
+
+/// One vehicle of the train.
+struct MovingVehicle {
+  MovingVehicle(multibody::MechanismModel model, std::vector<Wheel> its_wheels);
+  multibody::Mechanism mechanism;
+  multibody::MechanismState state;
+  std::vector<Wheel> wheels;
+  double weight = 0.0;  // N
+  double scale = 0.0;   // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
+  int offset = 0;       // of its independent coordinates in p
+  int first_wheel = 0;  // in the list of all wheels
+  Eigen::VectorXd Q;    // generalized forces of the wheels, n
+};
+
+/// A wheel's contact at the state last evaluated.
+struct WheelContact {
+  int vehicle = 0;
+  int wheel = 0;                        // of its vehicle
+  std::array<Patch, 2> patches;         // the surface under the wheel, and the neighbour across a near kink
+  std::array<int, 2> slots = {-1, -1};  // of the patches' elements in Fleet::elements(); -1: ground
+  int candidates = 1;
+  int active = 0;  // the patch with the deepest penetration
+  Touch touch;
+  contact::Kinematics kinematics;
+  contact::Force force;
+  double approach_speed = 0.0;  // of the impact now going on, m/s
+  int slot() const { return slots[active]; }
+};
+
+class Fleet {
+ public:
+  Fleet() = default;
+  /// frozen: every drive stands still at its place at t = 0, and a free train is held: for the static start.
+  Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
+        const track::Profile* profile);
+
+  std::vector<MovingVehicle> vehicles;
+  std::vector<WheelContact> wheels;
+
+  int freedom() const { return freedom_; }
+  double weight() const { return weight_; }
+  const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
+  int body(const WheelContact& c) const { return wheel(c).body; }
+  Eigen::Vector3d coordinates(const WheelContact& c) const;
+  Eigen::Vector3d velocities(const WheelContact& c) const;
+
+  /// Chooses every vehicle's independent coordinates at t and numbers them. Returns lines on redundant joints.
+  std::vector<std::string> partition(double t);
+
+  /// Positions, velocities and forces of all vehicles from p and p' (freedom values each). False where a mechanism
+  /// cannot be assembled.
+  bool set(double t, const double* p, const double* pd, bool derivatives);
+
+  /// Finds the patches under the wheels and the list of beam elements in touch.
+  void place_wheels();
+  bool wheels_in_place() const;
+  const std::vector<int>& elements() const { return elements_; }
+
+  /// Contact geometry from the elements' unknowns v and rates w (2*block an element of elements()).
+  bool touch(int block, const double* v, const double* w);
+  /// Forces from the kinematics held in `wheels`.
+  void contact_forces();
+  /// The vehicles' Q from the contact forces.
+  void wheel_loads();
+  /// Contact forces as nodal values of the elements in touch, 2*block each, on the beam.
+  void element_loads(int block, std::vector<double>& loads) const;
+  /// Power lost in contact damping and friction, W.
+  double contact_dissipation() const;
+  double contact_potential() const;
+
+ private:
+  void add_patch(WheelContact& c, int element, double low, double high);
+
+  const beam::Mesh* mesh_ = nullptr;
+  const track::Profile* profile_ = nullptr;
+  bool isolated_ = false;
+  int freedom_ = 0;
+  double weight_ = 0.0;
+  std::vector<int> elements_;
+};
+
+}  // namespace traverse::coupling

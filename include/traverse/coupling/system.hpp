@@ -1,0 +1,133 @@
+// The combined system of the paper's section 5 as an ordinary differential equation y' = G(t, y), the
+// GCP-projected right-hand side, with y = (v, w, p, p', D, W):
+//
+//   v' = w,  M w' = P + S f_n + T f_t - C* w - K* v       the beam, cut over ranks by nodes
+//   p'' from B^T (N (B p'' + d) - g - Q) = 0              the vehicles' independent coordinates, on rank 0
+//   D' = power lost in dampers and contacts, W' = power of loads, actuators and drivers
+//
+// Every rank holds all vehicles; a contact's beam values come from the rank that owns them by one reduction.
+//
+// Implicit time integrators ask for y with G(t, y) = s y + c. `solve_stage` eliminates the beam: one solve with
+// A = s^2 M + s C* + K* gives its free response, the columns of A^-1 at the elements under the wheels its
+// compliance, and Newton (ContactNewton) runs on the vehicles and the contact kinematics alone.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "traverse/beam/recovery.hpp"
+#include "traverse/coupling/beam_operator.hpp"
+#include "traverse/coupling/compliance.hpp"
+#include "traverse/coupling/contact_newton.hpp"
+#include "traverse/coupling/fleet.hpp"
+
+namespace traverse::coupling {
+
+/// What a scene puts together.
+struct SystemInput {
+  std::vector<Vehicle> types;  // Train::vehicles points into it
+  Train train;
+  MovingLoad load;
+  track::Profile profile;
+  double gravity = 9.81;
+  bool self_weight = false;  // gravity acts on the beam too
+};
+
+/// Which terms of G are meant: all; or, for implicit-explicit integrators, the beam with the moving forces
+/// (implicit), or vehicles and contacts (explicit).
+enum class Part { all, beam, contact };
+
+/// Stored energies and the integrals of the powers, J.
+struct Energy {
+  double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0;
+};
+
+/// An accepted instant; complete on every rank except the nodal slices.
+struct Observation {
+  std::vector<double> a;                 // nodal accelerations, this rank
+  std::vector<double> P;                 // nodal loads, on held unknowns too, this rank
+  std::vector<beam::ElementLoad> loads;  // concentrated loads on the beam
+  Energy energy;
+};
+
+class System {
+ public:
+  /// beam may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel that
+  /// would touch the profile at more than one point.
+  System(MPI_Comm comm, const beam::Beam* beam, SystemInput input);
+
+  MPI_Comm comm() const { return comm_; }
+  const beam::Beam* beam() const { return beam_; }
+  const Fleet& fleet() const { return fleet_; }
+  int local_size() const;                      // entries of y on this rank
+  int beam_unknowns() const { return n_; }     // on this rank: v at y, w at y + beam_unknowns()
+  int freedom() const { return fleet_.freedom(); }
+  double greatest_weight() const;              // of the train and the forces together, N
+
+  /// Writes the start: static equilibrium at t = 0 with the drives at rest (the beam deflected under the train),
+  /// then the train's speed; or positions and velocities as given, made consistent with the constraints.
+  /// SolverError when there is no equilibrium. Returns one line a joint with redundant equations.
+  std::vector<std::string> start(bool equilibrium, double* y);
+
+  /// Collective. ydot = G(t, y), or a part of it.
+  void rate(double t, const double* y, double* ydot, Part part);
+
+  /// Collective. y with G(t, y) = shift*y + c; y comes in as a guess. False where no solution is found.
+  bool solve_stage(double t, double shift, const double* c, double* y, Part part);
+
+  /// Collective. Fills `out` for a state with its rate, and the fleet with accelerations, reactions, wheel forces.
+  void observe(double t, const double* y, const double* ydot, Observation& out);
+
+  /// Collective. Chooses new independent coordinates where the old ones have become poor. True when y was rewritten.
+  bool repartition(double t, double* y);
+
+  /// Times in (0, end) at which a wheel or force passes a kink of the running surface; for a prescribed speed only.
+  std::vector<double> known_events(double end) const;
+  /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
+  double leaving_time() const;
+  /// Collective. Largest magnitude of the static deflection at a station while the train and the forces pass with
+  /// their weights at rest: the influence line of that station (0 when there is none).
+  double static_peak(double station);
+
+  long newton_iterations() const { return newton_.iterations(); }
+  long beam_solves() const { return operator_ ? operator_->solves : 0; }
+  long factorisations() const { return operator_ ? operator_->factorisations() : 0; }
+
+ private:
+  void find_equilibrium(double* v);
+  void note_weights();
+  std::vector<double> influence_line(double station);
+  void store_coordinates(double* y) const;
+  void share_coordinates(const double* y);
+  void gather(const double* first, const double* second);
+  bool stage_of_fleet(double t, double shift, const double* c_v);
+  void moving_loads(double t);
+  void external_load(double t, double* nodal);
+  void add_contact_load(double* nodal);
+  void add_point_load(const beam::ElementLoad& load, double* nodal) const;
+  void release_held(double* nodal) const;
+  void rate_of_fleet(double* ydot);
+  void powers(const double* w, Part part, double& dissipation, double& work);
+  Energy energy(const double* y);
+
+  MPI_Comm comm_;
+  int rank_ = 0;
+  const beam::Beam* beam_;
+  SystemInput input_;
+  std::optional<BeamOperator> operator_;
+  std::optional<Compliance> compliance_;
+  Fleet fleet_;
+  ContactNewton newton_;
+  int n_ = 0;  // beam unknowns on this rank
+
+  std::vector<double> dead_load_;          // of self-weight, this rank
+  std::vector<beam::ElementLoad> loads_;   // of the moving forces now on the beam
+  std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
+  std::vector<double> p_, c_p_, pdd_;      // p, p' and their c, p'', the same on all ranks
+  std::vector<double> v_, w_;              // of the elements in touch, 2*block each
+  std::vector<double> element_work_;
+  std::vector<double> nodal_, work_;       // this rank's unknowns
+};
+
+}  // namespace traverse::coupling

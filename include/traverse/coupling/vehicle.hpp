@@ -1,0 +1,44 @@
+// Vehicles, trains and moving forces as they meet the track.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traverse/contact/law.hpp"
+#include "traverse/multibody/model.hpp"
+
+namespace traverse::coupling {
+
+/// A circle around the centre of mass of a body, in contact with the running surface.
+struct Wheel {
+  std::string name;
+  int body = 0;
+  double radius = 0.0;  // m
+  contact::Law law;
+};
+
+/// One vehicle type; positions relative to the vehicle's origin.
+struct Vehicle {
+  std::string name;
+  multibody::MechanismModel mechanism;
+  std::vector<Wheel> wheels;
+};
+
+/// constant: x of each vehicle's first body is prescribed; free: only forces act.
+enum class Drive { constant, free };
+
+struct Train {
+  std::vector<int> vehicles;      // indices into a list of types, front one first
+  std::vector<double> positions;  // x of each origin at t = 0, m
+  double speed = 0.0;             // m/s
+  Drive drive = Drive::constant;
+};
+
+/// Moving constant forces.
+struct MovingLoad {
+  std::vector<double> forces;     // N, downward
+  std::vector<double> positions;  // x at t = 0, m
+  double speed = 0.0;             // m/s
+};
+
+}  // namespace traverse::coupling

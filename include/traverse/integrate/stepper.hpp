@@ -1,0 +1,85 @@
+// Time integration of the combined system by PETSc TS. Implicit types meet the stage problem through a SNESSHELL
+// that hands (t, shift, c) to System::solve_stage; explicit ones evaluate System::rate. Steps end exactly at stored
+// samples and where wheels pass kinks of the running surface, since unaligned kinks pull every method down to
+// order two.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "traverse/base/petsc.hpp"
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::integrate {
+
+struct Settings {
+  double end_time = 0.0;         // s
+  double time_step = 0.0;        // s, the longest
+  double interval = 0.0;         // s between samples
+  std::vector<double> events;    // ascending times at which a step has to end
+};
+
+/// An accepted instant: y and y' = G(t, y) of this rank.
+struct Instant {
+  double time;
+  const double* y;
+  const double* ydot;
+};
+
+class Stepper {
+ public:
+  /// Collective. Reads PETSc's own options (-ts_type, ...). InputError for a type that does not work here; the
+  /// start is written by System::start into state().
+  Stepper(coupling::System& system, Settings settings);
+
+  double* state();  // this rank's entries, before run()
+  void restore_state(double** array);
+
+  /// Collective. Runs to the end. `sample` is called at t = 0 and at every multiple of the interval (and at the
+  /// end), `step` after every step; when it returns false the run stops early. Throws SolverError with what to
+  /// change when a step cannot be taken. Returns the time reached.
+  double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
+
+  long steps() const { return steps_; }
+  std::string method() const;  // e.g. "ARKIMEX 4, implicit"
+
+ private:
+  struct Request {  // what TS asks of a stage
+    double t = 0.0;
+    double shift = 0.0;
+    bool recording = false;
+  };
+
+  void set_up_type();
+  void advance(double target);
+  void take_step(double longest);
+  void sample_now(const std::function<void(const Instant&)>& sample);
+  void rate(double t, Vec y, Vec ydot, coupling::Part part);
+  bool remembered(double t, const double* y) const;
+  void implicit_residual(double t, Vec y, Vec ydot, Vec residual);
+  void solve_stage(SNES snes, Vec x);
+
+  static PetscErrorCode ifunction(TS, PetscReal, Vec, Vec, Vec, void*);
+  static PetscErrorCode ijacobian(TS, PetscReal, Vec, Vec, PetscReal, Mat, Mat, void*);
+  static PetscErrorCode rhs_function(TS, PetscReal, Vec, Vec, void*);
+  static PetscErrorCode shell_solve(SNES, Vec);
+
+  coupling::System& system_;
+  Settings settings_;
+  base::Handle<TS> ts_;
+  base::Handle<Vec> y_, residual_, rate_;
+  base::Handle<Mat> jacobian_;
+  Request request_;
+  coupling::Part implicit_part_ = coupling::Part::all;
+  bool implicit_ = true, adaptive_ = false, multistep_ = false;
+  double next_step_ = 0.0;  // what the step control wants
+  double last_step_ = 0.0;
+  long steps_ = 0;
+  std::vector<double> stage_c_;               // Xdot, then c
+  std::vector<double> known_y_, known_rate_;  // the last solved stage and its rate
+  double known_t_ = 0.0;
+  bool known_ = false;
+};
+
+}  // namespace traverse::integrate

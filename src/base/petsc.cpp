@@ -1,0 +1,27 @@
+#include "traverse/base/petsc.hpp"
+
+#include <string>
+
+namespace traverse::base {
+namespace {
+std::exception_ptr kept;  // the exception on its way through PETSc's frames
+}
+
+PetscErrorCode keep_exception() noexcept {
+  if (!kept) kept = std::current_exception();
+  return PETSC_ERR_LIB;
+}
+
+void check(PetscErrorCode code) {
+  if (code == 0) return;
+  if (kept) std::rethrow_exception(std::exchange(kept, nullptr));
+  const char* text = nullptr;
+  char* specific = nullptr;
+  (void)PetscErrorMessage(code, &text, &specific);
+  std::string message = "PETSc error " + std::to_string(static_cast<int>(code));
+  if (text != nullptr) message += std::string(": ") + text;
+  if (specific != nullptr && *specific != '\0') message += std::string(": ") + specific;
+  throw SolverError(message);
+}
+
+}  // namespace traverse::base

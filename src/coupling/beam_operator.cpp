@@ -1,0 +1,136 @@
+#include "traverse/coupling/beam_operator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traverse::coupling {
+namespace {
+
+constexpr std::size_t kept_factors = 12;
+
+// r += sign*A x for the nodes of one rank; the neighbours' border nodes come in `left` and `right` (null: none).
+// B > 0 fixes the block size at compile time.
+template <int B>
+void block_product(const solve::BlockTridiagonal& A, double sign, const double* x, const double* left,
+                   const double* right, const double* left_upper, double* r) {
+  const int b = B > 0 ? B : A.block;
+  const int bb = b * b;
+  for (int i = 0; i < A.nodes; ++i) {
+    const double* D = A.diagonal.data() + static_cast<std::ptrdiff_t>(i) * bb;
+    const double* xi = x + static_cast<std::ptrdiff_t>(i) * b;
+    const double* U = A.upper.data() + static_cast<std::ptrdiff_t>(i) * bb;
+    const double* next = i + 1 < A.nodes ? xi + b : right;
+    const double* L = i > 0 ? U - bb : left_upper;
+    const double* previous = i > 0 ? xi - b : left;
+    double* ri = r + static_cast<std::ptrdiff_t>(i) * b;
+    for (int row = 0; row < b; ++row) {
+      double sum = 0.0;
+      for (int col = 0; col < b; ++col) sum += D[row + col * b] * xi[col];
+      if (next != nullptr)
+        for (int col = 0; col < b; ++col) sum += U[row + col * b] * next[col];
+      if (previous != nullptr && L != nullptr)
+        for (int col = 0; col < b; ++col) sum += L[col + row * b] * previous[col];
+      ri[row] += sign * sum;
+    }
+  }
+}
+
+}  // namespace
+
+BeamOperator::BeamOperator(const beam::Beam& beam)
+    : comm_(beam.comm()),
+      left_rank_(MPI_PROC_NULL),
+      right_rank_(MPI_PROC_NULL),
+      fixed_(beam.fixed()),
+      mass_(solve::BlockTridiagonal::from(beam.mass(), beam.block())),
+      damping_(solve::BlockTridiagonal::from(beam.damping(), beam.block())),
+      stiffness_(solve::BlockTridiagonal::from(beam.stiffness(), beam.block())),
+      work_(beam.block(), beam.local_nodes()),
+      halo_(4 * static_cast<std::size_t>(beam.block()) + static_cast<std::size_t>(beam.block()) * beam.block() * 3),
+      mass_factor_(beam.comm(), beam.block(), beam.local_nodes()) {
+  if (beam.local_nodes() > 0) {
+    if (beam.first_node() > 0) left_rank_ = beam.owner(beam.first_node() - 1);
+    if (beam.first_node() + beam.local_nodes() < beam.mesh().nodes())
+      right_rank_ = beam.owner(beam.first_node() + beam.local_nodes());
+  }
+  damped_ = std::any_of(damping_.diagonal.begin(), damping_.diagonal.end(), [](double d) { return d != 0.0; });
+  int damped = damped_ ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &damped, 1, MPI_INT, MPI_MAX, comm_);
+  damped_ = damped != 0;
+
+  // The coupling block to the left neighbour's last node is that rank's; fetch it once for M, C, K.
+  const int b = mass_.block;
+  const int bb = b * b;
+  std::vector<double> send(3 * static_cast<std::size_t>(bb), 0.0);
+  double* received = halo_.data() + 4 * b;
+  if (mass_.nodes > 0) {
+    const std::size_t last = static_cast<std::size_t>(mass_.nodes - 1) * bb;
+    std::copy_n(mass_.upper.data() + last, bb, send.data());
+    std::copy_n(damping_.upper.data() + last, bb, send.data() + bb);
+    std::copy_n(stiffness_.upper.data() + last, bb, send.data() + 2 * bb);
+  }
+  MPI_Sendrecv(send.data(), 3 * bb, MPI_DOUBLE, right_rank_, 0, received, 3 * bb, MPI_DOUBLE, left_rank_, 0, comm_,
+               MPI_STATUS_IGNORE);
+  mass_factor_.factor(mass_, fixed_);
+}
+
+void BeamOperator::product(const solve::BlockTridiagonal& A, double sign, const double* x, double* r) const {
+  const int b = A.block;
+  double* left = halo_.data();
+  double* right = halo_.data() + b;
+  if (left_rank_ != MPI_PROC_NULL || right_rank_ != MPI_PROC_NULL) {
+    const double* first = x;
+    const double* last = x + static_cast<std::ptrdiff_t>(A.nodes - 1) * b;
+    MPI_Sendrecv(first, b, MPI_DOUBLE, left_rank_, 1, right, b, MPI_DOUBLE, right_rank_, 1, comm_, MPI_STATUS_IGNORE);
+    MPI_Sendrecv(last, b, MPI_DOUBLE, right_rank_, 2, left, b, MPI_DOUBLE, left_rank_, 2, comm_, MPI_STATUS_IGNORE);
+  }
+  const int kind = &A == &mass_ ? 0 : &A == &damping_ ? 1 : 2;
+  const double* left_upper = halo_.data() + 4 * b + kind * b * b;
+  const double* l = left_rank_ != MPI_PROC_NULL ? left : nullptr;
+  const double* rt = right_rank_ != MPI_PROC_NULL ? right : nullptr;
+  if (b == 2)
+    block_product<2>(A, sign, x, l, rt, left_upper, r);
+  else if (b == 3)
+    block_product<3>(A, sign, x, l, rt, left_upper, r);
+  else
+    block_product<0>(A, sign, x, l, rt, left_upper, r);
+}
+
+void BeamOperator::multiply(double sign, const double* m, const double* c, const double* k, double* r) const {
+  std::fill_n(r, unknowns(), 0.0);
+  if (m != nullptr) product(mass_, sign, m, r);
+  if (c != nullptr && damped_) product(damping_, sign, c, r);
+  if (k != nullptr) product(stiffness_, sign, k, r);
+}
+
+void BeamOperator::solve_mass(double* x) const {
+  ++solves;
+  mass_factor_.solve(x);
+}
+
+const solve::SubstructuredCholesky& BeamOperator::factored(double shift) {
+  auto same = [shift](const Factor& f) { return std::abs(f.shift - shift) <= 1e-9 * std::abs(shift); };
+  auto found = std::find_if(factors_.begin(), factors_.end(), same);
+  if (found != factors_.end()) {
+    factors_.splice(factors_.begin(), factors_, found);
+  } else {
+    if (factors_.size() < kept_factors)
+      factors_.push_front({shift, 0, solve::SubstructuredCholesky(comm_, work_.block, work_.nodes)});
+    else
+      factors_.splice(factors_.begin(), factors_, std::prev(factors_.end()));
+    Factor& f = factors_.front();
+    f.shift = shift;
+    f.stamp = ++factorisations_;
+    work_.combine(shift * shift, mass_, shift, damping_, 1.0, stiffness_);
+    try {
+      f.cholesky.factor(work_, fixed_);
+    } catch (...) {
+      factors_.pop_front();
+      throw;
+    }
+  }
+  stamp_ = factors_.front().stamp;
+  return factors_.front().cholesky;
+}
+
+}  // namespace traverse::coupling

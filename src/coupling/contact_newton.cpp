@@ -1,0 +1,233 @@
+#include "traverse/coupling/contact_newton.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace traverse::coupling {
+namespace {
+
+constexpr int most_iterations = 40;
+constexpr double tolerance = 1e-9;  // of the weight; the step that reaches it is still applied
+
+// Tangent of the forces (normal, tangential) with respect to displacements along the contact's two directions,
+// when rates are shift times displacements.
+Eigen::Matrix2d tangent(const contact::Force& f, double shift) {
+  Eigen::Matrix2d D;
+  D << f.normal_by_penetration + shift * f.normal_by_rate, 0.0,
+      f.tangential_by_penetration + shift * f.tangential_by_rate, shift * f.tangential_by_sliding;
+  return D;
+}
+
+// What the linearised law gives at the geometry's kinematics, less the force at the kinematics held: per component.
+Eigen::Vector2d force_correction(const WheelContact& c) {
+  const double a = c.touch.kinematics.penetration - c.kinematics.penetration;
+  const double r = c.touch.kinematics.penetration_rate - c.kinematics.penetration_rate;
+  const double s = c.touch.kinematics.sliding_speed - c.kinematics.sliding_speed;
+  return {c.force.normal_by_penetration * a + c.force.normal_by_rate * r,
+          c.force.tangential_by_penetration * a + c.force.tangential_by_rate * r + c.force.tangential_by_sliding * s};
+}
+
+}  // namespace
+
+bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
+  work_.resize(fleet.vehicles.size());
+  pd_.resize(fleet.freedom());
+  pdd_.resize(fleet.freedom());
+  double greatest = 1.0;
+  for (int i = 0; i < fleet.freedom(); ++i) greatest = std::max(greatest, std::abs(p[i]));
+  // Rounding of shift^2*p, over g: forces cannot be met better than that.
+  const double floor = 50.0 * std::numeric_limits<double>::epsilon() * s.shift * s.shift * greatest / 9.81;
+  const double target = std::max(tolerance, floor);
+  for (int i = 0; i < most_iterations; ++i) {
+    ++iterations_;
+    if (!evaluate(fleet, s, p)) return false;
+    const bool curvature = s.shift == 0.0 || i > 2;
+    for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) vehicle_system(fleet, static_cast<int>(k), s, curvature);
+    couple_beam(fleet, s);
+    change_ = update(fleet, s, p);
+    if (!std::isfinite(change_)) return false;
+    if (change_ <= target && i > 0) {
+      // One last evaluation at the solution keeps vehicles, contact directions and loads consistent.
+      fleet.contact_forces();
+      fleet.element_loads(s.block, loads_);
+      return true;
+    }
+  }
+  return false;
+}
+
+// Vehicles at p, contacts from the kinematics held, the beam under these forces, the geometry at all of it.
+bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* p) {
+  for (int i = 0; i < fleet.freedom(); ++i) {
+    pd_[i] = s.shift * p[i] + s.c_p[i];
+    pdd_[i] = s.shift * pd_[i] + s.c_p[fleet.freedom() + i];
+  }
+  if (!fleet.set(s.t, p, pd_.data(), true)) return false;
+  fleet.contact_forces();
+  fleet.element_loads(s.block, loads_);
+  beam_field(s, fleet);
+  return fleet.touch(s.block, v_.data(), w_.data());
+}
+
+void ContactNewton::beam_field(const StageData& s, const Fleet& fleet) {
+  const int m = 2 * s.block;
+  const int count = static_cast<int>(fleet.elements().size());
+  v_.assign(static_cast<std::size_t>(std::max(1, count)) * m, 0.0);
+  w_.assign(v_.size(), 0.0);
+  for (int a = 0; a < count; ++a) {
+    double* v = &v_[static_cast<std::size_t>(a) * m];
+    std::copy_n(s.v0->data() + static_cast<std::ptrdiff_t>(a) * m, m, v);
+    for (int b = 0; b < count; ++b) {
+      const double* f = &loads_[static_cast<std::size_t>(b) * m];
+      const double* C = s.compliance->block(a, b);
+      for (int j = 0; j < m; ++j)
+        if (f[j] != 0.0)
+          for (int i = 0; i < m; ++i) v[i] += C[i + j * m] * f[j];
+    }
+    for (int i = 0; i < m; ++i) w_[static_cast<std::size_t>(a) * m + i] = s.shift * v[i] + (*s.c_v)[a * m + i];
+  }
+}
+
+// One vehicle with its contacts linearised and the surface held: J dp0 = -R, and what a displacement of the beam
+// along the contacts would do to dp (-Z) and to the forces (T).
+void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, bool curvature) {
+  MovingVehicle& vehicle = fleet.vehicles[k];
+  multibody::MechanismState& state = vehicle.state;
+  const multibody::Mechanism& mechanism = vehicle.mechanism;
+  VehicleWork& w = work_[k];
+  const int f = mechanism.freedom();
+  w.wheel.clear();
+  w.component.clear();
+  for (std::size_t i = 0; i < vehicle.wheels.size(); ++i)
+    for (int component = 0; component < (vehicle.wheels[i].law.friction > 0.0 ? 2 : 1); ++component) {
+      w.wheel.push_back(vehicle.first_wheel + static_cast<int>(i));
+      w.component.push_back(component);
+    }
+  const int rows = static_cast<int>(w.wheel.size());
+  w.G.resize(rows, f);
+  w.D.setZero(rows, rows);
+  w.correction.resize(rows);
+  vehicle.Q.setZero();
+  for (int i = 0; i < rows; ++i) {
+    const WheelContact& c = fleet.wheels[w.wheel[i]];
+    const int body = 3 * fleet.body(c);
+    const Eigen::Vector3d& direction = w.component[i] == 0 ? c.touch.normal_on_body : c.touch.tangent_on_body;
+    w.G.row(i).noalias() = direction.transpose() * state.B.middleRows<3>(body);
+    const Eigen::Matrix2d D = tangent(c.force, s.shift);
+    w.D(i, i) = D(w.component[i], w.component[i]);
+    if (w.component[i] == 1) w.D(i, i - 1) = D(1, 0);
+    w.correction[i] = force_correction(c)[w.component[i]];
+    const double force = (w.component[i] == 0 ? c.force.normal : c.force.tangential) + w.correction[i];
+    vehicle.Q.segment<3>(body) -= force * direction;
+  }
+
+  const Eigen::Map<const Eigen::VectorXd> pdd(pdd_.data() + vehicle.offset, f);
+  const Eigen::VectorXd& N = mechanism.mass_diagonal();
+  w.r.noalias() = state.B * pdd;
+  w.r = N.cwiseProduct(w.r + state.d) - state.g - vehicle.Q;
+  w.R.noalias() = state.B.transpose() * w.r;
+
+  w.gB = -state.g_q - s.shift * state.g_qd;
+  if (curvature && mechanism.constraints() > 0) {
+    mechanism.recover(state, vehicle.Q, pdd.data());
+    mechanism.compute_lambda_curvature(state);
+    w.gB += state.lambda_curvature;
+  }
+  w.gB.diagonal() += s.shift * s.shift * N;
+  w.NB.noalias() = w.gB * state.B;
+  w.J.noalias() = state.B.transpose() * w.NB;
+  w.Z.noalias() = w.D * w.G;  // D G, for now
+  w.J.noalias() += w.G.transpose() * w.Z;
+
+  // Right-hand sides: -R and G^T D, whose solution says how dp follows the beam.
+  w.NB.resize(f, rows + 1);
+  w.NB.col(0) = -w.R;
+  w.NB.rightCols(rows).noalias() = w.G.transpose() * w.D;
+  if (f > 0) {
+    if (s.shift == 0.0)
+      w.NB = w.J.completeOrthogonalDecomposition().solve(w.NB).eval();
+    else
+      w.NB = w.J.partialPivLu().solve(w.NB).eval();
+  }
+  w.dp = w.NB.col(0);
+  w.f_hat = w.correction + w.Z * w.dp;
+  w.T.noalias() = -w.Z * w.NB.rightCols(rows);
+  w.T += w.D;
+  w.Z = w.NB.rightCols(rows);
+}
+
+// The beam answers the change of force: (I + W T) du = -W f_hat along the directions of the wheels on the beam.
+void ContactNewton::couple_beam(const Fleet& fleet, const StageData& s) {
+  row_vehicle_.clear();
+  row_index_.clear();
+  for (std::size_t k = 0; k < work_.size(); ++k)
+    for (std::size_t i = 0; i < work_[k].wheel.size(); ++i)
+      if (fleet.wheels[work_[k].wheel[i]].slot() >= 0) {
+        row_vehicle_.push_back(static_cast<int>(k));
+        row_index_.push_back(static_cast<int>(i));
+      }
+  const int n = static_cast<int>(row_vehicle_.size());
+  du_.setZero(n);
+  if (n == 0) return;
+  const int m = 2 * s.block;
+  auto contact_of = [&](int row) -> const WheelContact& {
+    return fleet.wheels[work_[row_vehicle_[row]].wheel[row_index_[row]]];
+  };
+  auto direction_of = [&](int row) {
+    const WheelContact& c = contact_of(row);
+    return Eigen::Map<const Eigen::VectorXd>(
+        (work_[row_vehicle_[row]].component[row_index_[row]] == 0 ? c.touch.normal_on_beam : c.touch.tangent_on_beam)
+            .data(),
+        m);
+  };
+  W_.resize(n, n);
+  for (int a = 0; a < n; ++a)
+    for (int b = 0; b < n; ++b) {
+      const Eigen::Map<const Eigen::MatrixXd> C(s.compliance->block(contact_of(a).slot(), contact_of(b).slot()), m, m);
+      W_(a, b) = direction_of(a).dot(C.lazyProduct(direction_of(b)));
+    }
+  coupled_.setIdentity(n, n);
+  rhs_.setZero(n);
+  for (int b = 0; b < n; ++b) {
+    const VehicleWork& w = work_[row_vehicle_[b]];
+    rhs_ -= W_.col(b) * w.f_hat[row_index_[b]];
+    for (int c = 0; c < n; ++c)
+      if (row_vehicle_[c] == row_vehicle_[b]) coupled_.col(c) += W_.col(b) * w.T(row_index_[b], row_index_[c]);
+  }
+  du_ = coupled_.partialPivLu().solve(rhs_);
+}
+
+// Applies the step to p and to the contact kinematics. Returns the largest residual or change of force over the
+// train's weight.
+double ContactNewton::update(Fleet& fleet, const StageData& s, double* p) {
+  double change = 0.0;
+  int row = 0;
+  for (std::size_t k = 0; k < work_.size(); ++k) {
+    VehicleWork& w = work_[k];
+    const MovingVehicle& vehicle = fleet.vehicles[k];
+    const int rows = static_cast<int>(w.wheel.size());
+    if (w.R.size() > 0) change = std::max(change, w.R.lpNorm<Eigen::Infinity>() / vehicle.scale);
+    w.correction.setZero(rows);  // now: displacement of the beam along the rows
+    for (int i = 0; i < rows; ++i)
+      if (fleet.wheels[w.wheel[i]].slot() >= 0) w.correction[i] = du_[row++];
+    w.f_hat += w.T * w.correction;
+    w.dp -= w.Z * w.correction;
+    w.correction += w.G * w.dp;
+    for (int i = 0; i < rows; ++i) {
+      WheelContact& c = fleet.wheels[w.wheel[i]];
+      change = std::max(change, std::abs(w.f_hat[i]) / vehicle.scale);
+      if (w.component[i] == 0) {
+        c.kinematics.penetration = c.touch.kinematics.penetration + w.correction[i];
+        c.kinematics.penetration_rate = c.touch.kinematics.penetration_rate + s.shift * w.correction[i];
+        c.kinematics.sliding_speed = c.touch.kinematics.sliding_speed;
+      } else {
+        c.kinematics.sliding_speed = c.touch.kinematics.sliding_speed + s.shift * w.correction[i];
+      }
+    }
+    for (int i = 0; i < w.dp.size(); ++i) p[vehicle.offset + i] += w.dp[i];
+  }
+  return change;
+}
+
+}  // namespace traverse::coupling

@@ -1,0 +1,250 @@
+#include "traverse/coupling/fleet.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace traverse::coupling {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+// Within this part of its radius from a kink a wheel may touch on either side of it.
+constexpr double reach = 0.1;
+
+base::TimeFunction frozen_function(const base::TimeFunction& f) { return {f.value(0.0), 0.0}; }
+
+bool drives_x(const multibody::MechanismModel& model) {
+  return std::any_of(model.drivers.begin(), model.drivers.end(),
+                     [](const multibody::Driver& d) { return d.coordinate == 0; });
+}
+
+// The mechanism of one vehicle, its origin at x, moving with the train.
+multibody::MechanismModel placed(multibody::MechanismModel model, double x, double speed, double gravity) {
+  model.gravity = gravity;
+  for (multibody::Body& b : model.bodies) {
+    b.position.x() += x;
+    b.velocity.x() += speed;
+  }
+  for (multibody::Joint& j : model.joints) {
+    j.point.x() += x;
+    j.from.x() += x;
+    j.to.x() += x;
+  }
+  for (multibody::Spring& s : model.springs) {
+    s.from.x() += x;
+    s.to.x() += x;
+  }
+  for (multibody::Driver& d : model.drivers)
+    if (d.coordinate == 0) d.value.shift(x);
+  return model;
+}
+
+// The driving constraint of a train at prescribed speed: x of the vehicle's first body.
+void add_drive(multibody::MechanismModel& model, double speed) {
+  model.drivers.push_back({"drive", 0, 0, base::TimeFunction(model.bodies.front().position.x(), speed)});
+}
+
+}  // namespace
+
+MovingVehicle::MovingVehicle(multibody::MechanismModel model, std::vector<Wheel> its_wheels)
+    : mechanism(std::move(model)), state(mechanism.make_state()), wheels(std::move(its_wheels)) {
+  Q.setZero(mechanism.coordinates());
+  double mass = 0.0;
+  for (const multibody::Body& b : mechanism.model().bodies) mass += b.mass;
+  weight = mass * mechanism.model().gravity;
+  scale = mass * std::max(1.0, mechanism.model().gravity);
+}
+
+Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
+             const track::Profile* profile)
+    : mesh_(mesh), profile_(profile) {
+  if (mesh != nullptr && mesh->spans() > 1) isolated_ = mesh->nodes_at(1).first != mesh->nodes_at(1).second;
+  for (std::size_t k = 0; k < train.vehicles.size(); ++k) {
+    const Vehicle& type = types[train.vehicles[k]];
+    multibody::MechanismModel model = placed(type.mechanism, train.positions[k], train.speed, gravity);
+    const bool held = !type.wheels.empty() && !drives_x(model);
+    if (held && (frozen || train.drive == Drive::constant)) add_drive(model, train.speed);
+    if (frozen)
+      for (multibody::Driver& d : model.drivers) d.value = frozen_function(d.value);
+    vehicles.emplace_back(std::move(model), type.wheels);
+    MovingVehicle& vehicle = vehicles.back();
+    weight_ += vehicle.weight;
+    vehicle.first_wheel = static_cast<int>(wheels.size());
+    const double share = vehicle.wheels.empty() ? 0.0 : vehicle.weight / static_cast<double>(vehicle.wheels.size());
+    for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
+      WheelContact c;
+      c.vehicle = static_cast<int>(k);
+      c.wheel = static_cast<int>(i);
+      c.kinematics.penetration = contact::penetration_at_rest(vehicle.wheels[i].law, share);
+      wheels.push_back(c);
+    }
+  }
+}
+
+Eigen::Vector3d Fleet::coordinates(const WheelContact& c) const {
+  return vehicles[c.vehicle].state.q.segment<3>(3 * body(c));
+}
+
+Eigen::Vector3d Fleet::velocities(const WheelContact& c) const {
+  return vehicles[c.vehicle].state.qd.segment<3>(3 * body(c));
+}
+
+std::vector<std::string> Fleet::partition(double t) {
+  std::vector<std::string> notes;
+  freedom_ = 0;
+  for (MovingVehicle& vehicle : vehicles) {
+    for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
+      notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
+    vehicle.offset = freedom_;
+    freedom_ += vehicle.mechanism.freedom();
+  }
+  return notes;
+}
+
+bool Fleet::set(double t, const double* p, const double* pd, bool derivatives) {
+  for (MovingVehicle& vehicle : vehicles) {
+    if (!vehicle.mechanism.set_positions(vehicle.state, t, p + vehicle.offset)) return false;
+    vehicle.mechanism.set_velocities(vehicle.state, t, pd + vehicle.offset);
+    vehicle.mechanism.compute_forces(vehicle.state, derivatives);
+  }
+  return true;
+}
+
+void Fleet::add_patch(WheelContact& c, int element, double low, double high) {
+  Patch& patch = c.patches[c.candidates++];
+  patch.element = element;
+  patch.low = low;
+  patch.high = high;
+  if (element < 0) return;
+  patch.x = mesh_->element(element).x;
+  patch.length = mesh_->element(element).length;
+}
+
+void Fleet::place_wheels() {
+  elements_.clear();
+  for (WheelContact& c : wheels) {
+    c.candidates = 0;
+    const double x = coordinates(c).x();
+    const double near = reach * wheel(c).radius;
+    if (mesh_ == nullptr) {
+      add_patch(c, -1, -infinite, infinite);
+      continue;
+    }
+    const double length = mesh_->length();
+    auto span_of = [&](int element) {
+      const int span = mesh_->element(element).span;
+      return isolated_ ? std::pair(mesh_->span_ends()[span], mesh_->span_ends()[span + 1]) : std::pair(0.0, length);
+    };
+    auto add_beam = [&](double at, bool from_left) {
+      const int element = mesh_->locate(at, from_left).element;
+      const auto [low, high] = span_of(element);
+      add_patch(c, element, low, high);
+      return std::pair(low, high);
+    };
+    if (x < 0.0) {
+      add_patch(c, -1, -infinite, 0.0);
+      if (x > -near) add_beam(0.0, false);
+    } else if (x > length) {
+      add_patch(c, -1, length, infinite);
+      if (x < length + near) add_beam(length, true);
+    } else {
+      const auto [low, high] = add_beam(x, false);
+      if (x - low < near) {
+        if (low > 0.0)
+          add_beam(low, true);
+        else
+          add_patch(c, -1, -infinite, 0.0);
+      } else if (high - x < near) {
+        if (high < length)
+          add_beam(high, false);
+        else
+          add_patch(c, -1, length, infinite);
+      }
+    }
+    for (int i = 0; i < c.candidates; ++i)
+      if (c.patches[i].element >= 0) elements_.push_back(c.patches[i].element);
+  }
+  std::sort(elements_.begin(), elements_.end());
+  elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
+  for (WheelContact& c : wheels)
+    for (int i = 0; i < c.candidates; ++i)
+      c.slots[i] = c.patches[i].element < 0
+                       ? -1
+                       : static_cast<int>(std::lower_bound(elements_.begin(), elements_.end(), c.patches[i].element) -
+                                          elements_.begin());
+}
+
+bool Fleet::wheels_in_place() const {
+  if (mesh_ == nullptr) return true;
+  return std::all_of(wheels.begin(), wheels.end(), [&](const WheelContact& c) {
+    const double x = coordinates(c).x();
+    const Patch& p = c.patches[0];
+    const double slack = 1e-3 * (p.element < 0 ? wheel(c).radius : p.length);
+    const double low = p.element < 0 ? p.low : p.x;
+    const double high = p.element < 0 ? p.high : p.x + p.length;
+    return x >= low - slack && x <= high + slack;
+  });
+}
+
+bool Fleet::touch(int block, const double* v, const double* w) {
+  const std::ptrdiff_t m = 2 * static_cast<std::ptrdiff_t>(block);
+  for (WheelContact& c : wheels) {
+    const Eigen::Vector3d q = coordinates(c);
+    const Eigen::Vector3d qd = velocities(c);
+    Touch candidate;
+    double deepest = -infinite;
+    for (int i = 0; i < c.candidates; ++i) {
+      const std::ptrdiff_t at = c.slots[i] < 0 ? 0 : m * c.slots[i];
+      if (!coupling::touch(c.patches[i], *profile_, wheel(c).radius, q, qd, block, v + at, w + at, candidate))
+        return false;
+      if (candidate.kinematics.penetration <= deepest) continue;
+      deepest = candidate.kinematics.penetration;
+      c.active = i;
+      c.touch = candidate;
+    }
+  }
+  return true;
+}
+
+void Fleet::contact_forces() {
+  for (WheelContact& c : wheels) c.force = contact::force(wheel(c).law, c.kinematics, c.approach_speed);
+}
+
+void Fleet::wheel_loads() {
+  for (MovingVehicle& vehicle : vehicles) vehicle.Q.setZero();
+  for (const WheelContact& c : wheels)
+    vehicles[c.vehicle].Q.segment<3>(3 * body(c)) -=
+        c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
+}
+
+void Fleet::element_loads(int block, std::vector<double>& loads) const {
+  const int m = 2 * block;
+  loads.assign(elements_.size() * m, 0.0);
+  for (const WheelContact& c : wheels) {
+    if (c.slot() < 0) continue;
+    double* f = &loads[static_cast<std::size_t>(c.slot()) * m];
+    for (int i = 0; i < m; ++i)
+      f[i] -= c.force.normal * c.touch.normal_on_beam[i] + c.force.tangential * c.touch.tangent_on_beam[i];
+  }
+}
+
+double Fleet::contact_dissipation() const {
+  double power = 0.0;
+  for (const WheelContact& c : wheels) {
+    contact::Law elastic = wheel(c).law;
+    elastic.damping = 0.0;
+    elastic.restitution.reset();
+    elastic.friction = 0.0;
+    const double stored = contact::force(elastic, c.kinematics, 0.0).normal;
+    power += (c.force.normal - stored) * c.kinematics.penetration_rate + c.force.tangential * c.kinematics.sliding_speed;
+  }
+  return power;
+}
+
+double Fleet::contact_potential() const {
+  double sum = 0.0;
+  for (const WheelContact& c : wheels) sum += contact::potential(wheel(c).law, c.kinematics.penetration);
+  return sum;
+}
+
+}  // namespace traverse::coupling

@@ -1,0 +1,273 @@
+#include "traverse/coupling/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+constexpr int most_placements = 4;  // of the wheels on elements within one stage
+
+}  // namespace
+
+System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
+    : comm_(comm), beam_(beam), input_(std::move(input)) {
+  MPI_Comm_rank(comm, &rank_);
+  if (beam_ != nullptr) {
+    operator_.emplace(*beam_);
+    compliance_.emplace(*beam_, *operator_);
+    n_ = beam_->local_unknowns();
+    dead_load_.assign(n_, 0.0);
+    if (input_.self_weight) beam_->add_self_weight(input_.gravity, dead_load_.data());
+  }
+  nodal_.resize(n_);
+  work_.resize(n_);
+  for (const Vehicle& type : input_.types)
+    for (const Wheel& wheel : type.wheels)
+      if (wheel.radius * input_.profile.greatest_curvature() >= 1.0)
+        throw InputError("vehicle_" + type.name + "_" + wheel.name + "_radius " + std::to_string(wheel.radius) +
+                         ": the wheel would touch the track's profile at more than one point; the radius must stay "
+                         "below " + std::to_string(1.0 / input_.profile.greatest_curvature()) + " m");
+  fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, beam_ != nullptr ? &beam_->mesh() : nullptr,
+                 &input_.profile);
+  fleet_.partition(0.0);
+}
+
+int System::local_size() const { return 2 * n_ + (rank_ == 0 ? 2 * fleet_.freedom() + 2 : 0); }
+
+double System::greatest_weight() const {
+  double sum = fleet_.weight();
+  for (double f : input_.load.forces) sum += std::abs(f);
+  return sum;
+}
+
+// --- loads ---------------------------------------------------------------------------------------------------------
+
+void System::moving_loads(double t) {
+  loads_.clear();
+  if (beam_ == nullptr) return;
+  for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
+    const double x = input_.load.positions[i] + input_.load.speed * t;
+    if (x < 0.0 || x > beam_->mesh().length()) continue;
+    const beam::Station s = beam_->mesh().locate(x);
+    loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0});
+  }
+}
+
+void System::add_point_load(const beam::ElementLoad& load, double* nodal) const {
+  const beam::Element& e = beam_->mesh().element(load.element);
+  const beam::Hermite psi = beam::hermite(load.xi, e.length);
+  const int b = beam_->block();
+  for (int i = 0; i < 4; ++i) {
+    const int node = e.left + i / 2 - beam_->first_node();
+    if (node < 0 || node >= beam_->local_nodes()) continue;
+    nodal[node * b + (b - 2) + i % 2] += load.fy * psi.value[i];
+  }
+}
+
+// Everything but the contacts: self-weight and moving forces.
+void System::external_load(double t, double* nodal) {
+  std::copy(dead_load_.begin(), dead_load_.end(), nodal);
+  moving_loads(t);
+  for (const beam::ElementLoad& load : loads_) add_point_load(load, nodal);
+}
+
+void System::add_contact_load(double* nodal) {
+  if (beam_ == nullptr) return;
+  std::vector<double>& loads = element_work_;
+  fleet_.element_loads(beam_->block(), loads);
+  const int b = beam_->block();
+  for (std::size_t a = 0; a < fleet_.elements().size(); ++a) {
+    const int left = beam_->mesh().element(fleet_.elements()[a]).left;
+    for (int i = 0; i < 2 * b; ++i) {
+      const int node = left + i / b - beam_->first_node();
+      if (node >= 0 && node < beam_->local_nodes()) nodal[node * b + i % b] += loads[a * 2 * b + i];
+    }
+  }
+}
+
+// Loads on unknowns that a support holds go into the reactions, not into the equations of motion.
+void System::release_held(double* nodal) const {
+  if (beam_ == nullptr) return;
+  const std::vector<char>& fixed = beam_->fixed();
+  for (int i = 0; i < n_; ++i)
+    if (fixed[i] != 0) nodal[i] = 0.0;
+}
+
+// --- what all ranks share ------------------------------------------------------------------------------------------
+
+void System::share_coordinates(const double* y) {
+  const int f = fleet_.freedom();
+  p_.resize(2 * static_cast<std::size_t>(f));
+  if (rank_ == 0) std::copy_n(y + 2 * n_, 2 * f, p_.begin());
+  MPI_Bcast(p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
+}
+
+// Values of two nodal fields at the elements in touch, on all ranks.
+void System::gather(const double* first, const double* second) {
+  const int b = beam_ != nullptr ? beam_->block() : 2;
+  const std::size_t m = 2 * static_cast<std::size_t>(b);
+  const std::size_t count = fleet_.elements().size() * m;
+  std::vector<double>& both = element_work_;
+  both.assign(2 * std::max(count, m), 0.0);
+  for (std::size_t a = 0; a < fleet_.elements().size(); ++a) {
+    const int left = beam_->mesh().element(fleet_.elements()[a]).left - beam_->first_node();
+    for (int i = 0; i < 2; ++i) {
+      if (left + i < 0 || left + i >= beam_->local_nodes()) continue;
+      std::copy_n(first + (left + i) * b, b, &both[a * m + i * b]);
+      std::copy_n(second + (left + i) * b, b, &both[count + a * m + i * b]);
+    }
+  }
+  if (count > 0)
+    MPI_Allreduce(MPI_IN_PLACE, both.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, comm_);
+  v_.assign(both.begin(), both.begin() + static_cast<std::ptrdiff_t>(std::max(count, m)));
+  w_.assign(both.begin() + static_cast<std::ptrdiff_t>(count), both.end());
+}
+
+// --- the right-hand side -------------------------------------------------------------------------------------------
+
+void System::rate(double t, const double* y, double* ydot, Part part) {
+  const double* v = y;
+  const double* w = y + n_;
+  std::fill_n(ydot, local_size(), 0.0);
+  if (part != Part::beam) {
+    share_coordinates(y);
+    if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom(), false))
+      throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
+    fleet_.place_wheels();
+    gather(v, w);
+    if (!fleet_.touch(beam_ != nullptr ? beam_->block() : 2, v_.data(), w_.data()))
+      throw SolverError("a wheel has fallen below the running surface at t = " + std::to_string(t) + " s");
+    for (WheelContact& c : fleet_.wheels) c.kinematics = c.touch.kinematics;
+    fleet_.contact_forces();
+    fleet_.wheel_loads();
+    rate_of_fleet(ydot);
+  }
+  if (beam_ != nullptr) {
+    double* acceleration = ydot + n_;
+    if (part != Part::contact) {
+      std::copy_n(w, n_, ydot);
+      operator_->multiply(-1.0, nullptr, w, v, acceleration);
+      external_load(t, nodal_.data());
+      for (int i = 0; i < n_; ++i) acceleration[i] += nodal_[i];
+    }
+    if (part != Part::beam) add_contact_load(acceleration);
+    release_held(acceleration);
+    operator_->solve_mass(acceleration);
+  }
+  double dissipation = 0.0, work = 0.0;
+  powers(w, part, dissipation, work);
+  if (rank_ == 0) {
+    ydot[2 * (n_ + fleet_.freedom())] = dissipation;
+    ydot[2 * (n_ + fleet_.freedom()) + 1] = work;
+  }
+}
+
+void System::rate_of_fleet(double* ydot) {
+  const int f = fleet_.freedom();
+  pdd_.resize(f);
+  for (MovingVehicle& vehicle : fleet_.vehicles)
+    vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+  if (rank_ != 0) return;
+  std::copy_n(p_.data() + f, f, ydot + 2 * n_);
+  std::copy_n(pdd_.data(), f, ydot + 2 * n_ + f);
+}
+
+// Rates of D and W for the state that fleet and moving loads were last set to.
+void System::powers(const double* w, Part part, double& dissipation, double& work) {
+  dissipation = work = 0.0;
+  if (beam_ != nullptr && part != Part::contact) {
+    if (operator_->damped()) {
+      operator_->multiply(1.0, nullptr, w, nullptr, work_.data());
+      for (int i = 0; i < n_; ++i) dissipation += w[i] * work_[i];
+    }
+    std::fill(work_.begin(), work_.end(), 0.0);
+    for (const beam::ElementLoad& load : loads_) add_point_load(load, work_.data());
+    if (!loads_.empty())
+      for (int i = 0; i < n_; ++i) work += w[i] * work_[i];
+    double sums[2] = {dissipation, work};
+    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+    dissipation = sums[0];
+    work = sums[1];
+  }
+  if (part == Part::beam) return;
+  for (const MovingVehicle& vehicle : fleet_.vehicles) {
+    const multibody::MechanismEnergy e = vehicle.mechanism.energy(vehicle.state);
+    dissipation += e.dissipation;
+    work += e.work;
+  }
+  dissipation += fleet_.contact_dissipation();
+}
+
+// --- implicit stages -----------------------------------------------------------------------------------------------
+
+bool System::solve_stage(double t, double shift, const double* c, double* y, Part part) {
+  const double* c_v = c;
+  const double* c_w = c + n_;
+  if (beam_ != nullptr) {
+    for (int i = 0; i < n_; ++i) work_[i] = shift * c_v[i] + c_w[i];
+    operator_->multiply(-1.0, work_.data(), c_v, nullptr, nodal_.data());
+    external_load(t, work_.data());
+    for (int i = 0; i < n_; ++i) nodal_[i] += work_[i];
+    release_held(nodal_.data());
+    operator_->factored(shift).solve(nodal_.data());
+    ++operator_->solves;
+  }
+  const int f = fleet_.freedom();
+  if (part == Part::all) {
+    share_coordinates(y);
+    c_p_.resize(2 * static_cast<std::size_t>(f));
+    if (rank_ == 0) std::copy_n(c + 2 * n_, 2 * f, c_p_.begin());
+    MPI_Bcast(c_p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
+    // The guess moves on with its velocity, so that wheels are looked for where they will be.
+    if (shift > 0.0)
+      for (int i = 0; i < f; ++i) p_[i] = (p_[f + i] - c_p_[i]) / shift;
+    if (!stage_of_fleet(t, shift, c_v)) return false;
+    if (beam_ != nullptr && !fleet_.elements().empty())
+      compliance_->add_response(newton_.element_loads(), nodal_.data());
+  }
+  for (int i = 0; i < n_; ++i) {
+    y[i] = nodal_[i];
+    y[n_ + i] = shift * nodal_[i] + c_v[i];
+  }
+  if (shift == 0.0) {
+    if (rank_ == 0) std::copy_n(p_.data(), f, y + 2 * n_);
+    return true;
+  }
+  double dissipation = 0.0, work = 0.0;
+  powers(y + n_, part, dissipation, work);
+  if (rank_ != 0) return true;
+  double* p = y + 2 * n_;
+  for (int i = 0; i < f; ++i) {
+    p[i] = part == Part::all ? p_[i] : -c[2 * n_ + i] / shift;
+    p[f + i] = part == Part::all ? shift * p_[i] + c_p_[i] : -c[2 * n_ + f + i] / shift;
+  }
+  p[2 * f] = (dissipation - c[2 * (n_ + f)]) / shift;
+  p[2 * f + 1] = (work - c[2 * (n_ + f) + 1]) / shift;
+  return true;
+}
+
+bool System::stage_of_fleet(double t, double shift, const double* c_v) {
+  const int f = fleet_.freedom();
+  pdd_.resize(f);
+  for (int i = 0; i < f; ++i) pdd_[i] = shift * p_[i] + c_p_[i];
+  if (!fleet_.set(t, p_.data(), pdd_.data(), false)) return false;
+  for (int placement = 0; placement < most_placements; ++placement) {
+    fleet_.place_wheels();
+    gather(nodal_.data(), c_v);
+    if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, fleet_.elements());
+    StageData stage{t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr,
+                    beam_ != nullptr ? beam_->block() : 2};
+    if (!newton_.solve(fleet_, stage, p_.data())) return false;
+    if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
+  }
+  for (int i = 0; i < f; ++i) pdd_[i] = shift * (shift * p_[i] + c_p_[i]) + c_p_[f + i];
+  fleet_.wheel_loads();
+  for (MovingVehicle& vehicle : fleet_.vehicles)
+    vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+  return true;
+}
+
+}  // namespace traverse::coupling

@@ -1,0 +1,180 @@
+// The start of a run: static equilibrium or the given state, and what is known before the first step.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "traverse/beam/shape.hpp"
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::coupling {
+namespace {
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double poor_partition = 1e-3;
+constexpr int static_positions = 2000;  // of the train along its way, for the static peak
+}  // namespace
+
+std::vector<std::string> System::start(bool equilibrium, double* y) {
+  std::fill_n(y, local_size(), 0.0);
+  if (equilibrium) {
+    find_equilibrium(y);
+  } else if (input_.self_weight && beam_ != nullptr) {
+    std::copy(dead_load_.begin(), dead_load_.end(), y);
+    release_held(y);
+    operator_->factored(0.0).solve(y);
+  }
+  std::vector<std::string> notes = fleet_.partition(0.0);
+  for (MovingVehicle& vehicle : fleet_.vehicles)
+    for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
+      vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
+  store_coordinates(y);
+  note_weights();
+  return notes;
+}
+
+// p and p' of y from the vehicles' q and q'.
+void System::store_coordinates(double* y) const {
+  if (rank_ != 0) return;
+  double* p = y + 2 * n_;
+  for (const MovingVehicle& vehicle : fleet_.vehicles) {
+    const std::vector<int>& independent = vehicle.mechanism.partition().independent;
+    for (std::size_t i = 0; i < independent.size(); ++i) {
+      p[vehicle.offset + static_cast<int>(i)] = vehicle.state.q[independent[i]];
+      p[fleet_.freedom() + vehicle.offset + static_cast<int>(i)] = vehicle.state.qd[independent[i]];
+    }
+  }
+}
+
+// The stage problem at shift 0 with every drive standing still: K v = P + contacts, vehicles at rest.
+void System::find_equilibrium(double* v) {
+  Fleet moving = std::move(fleet_);
+  fleet_ = Fleet(input_.types, input_.train, input_.gravity, true, beam_ != nullptr ? &beam_->mesh() : nullptr,
+                 &input_.profile);
+  fleet_.partition(0.0);
+  const int f = fleet_.freedom();
+  p_.assign(2 * static_cast<std::size_t>(f), 0.0);
+  c_p_.assign(2 * static_cast<std::size_t>(f), 0.0);
+  for (const MovingVehicle& vehicle : fleet_.vehicles)
+    for (std::size_t i = 0; i < vehicle.mechanism.partition().independent.size(); ++i)
+      p_[vehicle.offset + static_cast<int>(i)] = vehicle.state.q[vehicle.mechanism.partition().independent[i]];
+
+  if (beam_ != nullptr) {
+    external_load(0.0, nodal_.data());
+    release_held(nodal_.data());
+    fleet_.place_wheels();
+    if (input_.self_weight || !loads_.empty()) operator_->factored(0.0).solve(nodal_.data());
+  }
+  const std::vector<double> at_rest(n_, 0.0);
+  if (!stage_of_fleet(0.0, 0.0, at_rest.data()))
+    throw SolverError("no static equilibrium found to start from (forces out of balance by " +
+                      std::to_string(newton_.last_change()) +
+                      " of a vehicle's weight): is every body held by joints, springs or wheels? scene_start: given "
+                      "starts from the positions as written");
+  if (beam_ != nullptr && !fleet_.elements().empty())
+    compliance_->add_response(newton_.element_loads(), nodal_.data());
+  std::copy(nodal_.begin(), nodal_.end(), v);
+  fleet_.set(0.0, p_.data(), c_p_.data(), false);
+  for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
+  for (std::size_t i = 0; i < moving.wheels.size(); ++i) moving.wheels[i].kinematics = fleet_.wheels[i].kinematics;
+  fleet_ = std::move(moving);
+}
+
+void System::note_weights() {
+  weights_.clear();
+  fleet_.contact_forces();
+  for (const WheelContact& c : fleet_.wheels) weights_.emplace_back(fleet_.coordinates(c).x(), c.force.normal);
+  for (std::size_t i = 0; i < input_.load.forces.size(); ++i)
+    weights_.emplace_back(input_.load.positions[i], input_.load.forces[i]);
+}
+
+bool System::repartition(double t, double* y) {
+  bool poor = false;
+  for (const MovingVehicle& vehicle : fleet_.vehicles)
+    poor = poor || vehicle.mechanism.partition_quality(vehicle.state) < poor_partition;
+  if (!poor) return false;
+  fleet_.partition(t);
+  store_coordinates(y);
+  return true;
+}
+
+std::vector<double> System::known_events(double end) const {
+  std::vector<double> kinks = input_.profile.kinks();
+  if (beam_ != nullptr) {
+    const beam::Mesh& mesh = beam_->mesh();
+    kinks.push_back(0.0);
+    kinks.push_back(mesh.length());
+    for (int i = 1; i < mesh.spans(); ++i)
+      if (mesh.nodes_at(i).first != mesh.nodes_at(i).second) kinks.push_back(mesh.span_ends()[i]);
+  }
+  std::vector<double> events;
+  auto add = [&](double x, double speed) {
+    if (speed <= 0.0) return;
+    for (double kink : kinks) {
+      const double t = (kink - x) / speed;
+      if (t > 0.0 && t < end) events.push_back(t);
+    }
+  };
+  if (input_.train.drive == Drive::constant)
+    for (const WheelContact& c : fleet_.wheels) add(fleet_.coordinates(c).x(), input_.train.speed);
+  for (double x : input_.load.positions) add(x, input_.load.speed);
+  std::sort(events.begin(), events.end());
+  return events;
+}
+
+double System::leaving_time() const {
+  if (beam_ == nullptr || (fleet_.wheels.empty() && input_.load.forces.empty())) return infinite;
+  const double length = beam_->mesh().length();
+  double last = 0.0;
+  auto leave = [&](double x, double speed) {
+    if (x < length) last = std::max(last, speed > 0.0 ? (length - x) / speed : infinite);
+  };
+  for (const WheelContact& c : fleet_.wheels) leave(fleet_.coordinates(c).x(), input_.train.speed);
+  for (double x : input_.load.positions) leave(x, input_.load.speed);
+  return last;
+}
+
+// Deflection and rotation at every node under a unit downward force at `station`, complete on every rank.
+std::vector<double> System::influence_line(double station) {
+  std::fill(nodal_.begin(), nodal_.end(), 0.0);
+  const beam::Station s = beam_->mesh().locate(station);
+  add_point_load({s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
+  release_held(nodal_.data());
+  operator_->factored(0.0).solve(nodal_.data());
+  std::vector<double> line(static_cast<std::size_t>(beam_->mesh().nodes()) * beam_->block(), 0.0);
+  std::copy(nodal_.begin(), nodal_.end(), line.begin() + static_cast<std::ptrdiff_t>(beam_->first_node()) * beam_->block());
+  MPI_Allreduce(MPI_IN_PLACE, line.data(), static_cast<int>(line.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  return line;
+}
+
+double System::static_peak(double station) {
+  if (beam_ == nullptr || weights_.empty()) return 0.0;
+  const std::vector<double> line = influence_line(station);
+  const beam::Mesh& mesh = beam_->mesh();
+  const int b = beam_->block();
+  auto ordinate = [&](double x) {
+    if (x < 0.0 || x > mesh.length()) return 0.0;
+    const beam::Station s = mesh.locate(x);
+    const beam::Element& e = mesh.element(s.element);
+    const beam::Hermite psi = beam::hermite(s.xi, e.length);
+    double sum = 0.0;
+    for (int i = 0; i < 4; ++i) sum += psi.value[i] * line[static_cast<std::size_t>(e.left + i / 2) * b + (b - 2) + i % 2];
+    return sum;
+  };
+  double front = -infinite, rear = infinite;
+  for (const auto& [x, force] : weights_) {
+    front = std::max(front, x);
+    rear = std::min(rear, x);
+  }
+  // Every weight over the station in turn (where the line peaks), and evenly along the whole way.
+  double peak = 0.0;
+  auto try_shift = [&](double shift) {
+    double sum = 0.0;
+    for (const auto& [x, force] : weights_) sum += force * ordinate(x + shift);
+    peak = std::max(peak, std::abs(sum));
+  };
+  for (const auto& [x, force] : weights_) try_shift(station - x);
+  for (int i = 0; i <= static_positions; ++i)
+    try_shift(-front + (mesh.length() + front - rear) * i / static_positions);
+  return peak;
+}
+
+}  // namespace traverse::coupling

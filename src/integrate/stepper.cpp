@@ -1,0 +1,309 @@
+#include "traverse/integrate/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+namespace traverse::integrate {
+namespace {
+
+using base::check;
+using base::guard;
+using coupling::Part;
+
+constexpr int most_rejections = 12;        // of one step, each a quarter as long
+constexpr double near_event = 1e-6;        // of a step: events closer than this share the end of a step
+constexpr double restart_growth = 2.0;     // steps of a multistep method may not grow faster
+
+bool is(TS ts, const char* type) {
+  PetscBool same = PETSC_FALSE;
+  check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<TS>(ts)), type, &same));
+  return same == PETSC_TRUE;
+}
+
+struct Array {  // writable entries of a Vec for one scope
+  explicit Array(Vec v) : vec(v) { check(VecGetArray(v, &data)); }
+  ~Array() { (void)VecRestoreArray(vec, &data); }
+  Array(const Array&) = delete;
+  Array& operator=(const Array&) = delete;
+  Vec vec;
+  double* data = nullptr;
+};
+
+struct ReadArray {
+  explicit ReadArray(Vec v) : vec(v) { check(VecGetArrayRead(v, &data)); }
+  ~ReadArray() { (void)VecRestoreArrayRead(vec, &data); }
+  ReadArray(const ReadArray&) = delete;
+  ReadArray& operator=(const ReadArray&) = delete;
+  Vec vec;
+  const double* data = nullptr;
+};
+
+}  // namespace
+
+Stepper::Stepper(coupling::System& system, Settings settings) : system_(system), settings_(std::move(settings)) {
+  const MPI_Comm comm = system.comm();
+  const int n = system.local_size();
+  check(VecCreateMPI(comm, n, PETSC_DETERMINE, y_.out()));
+  check(VecDuplicate(y_, residual_.out()));
+  check(VecDuplicate(y_, rate_.out()));
+  check(VecSet(residual_, 0.0));
+  stage_c_.resize(n);
+  known_y_.resize(n);
+  known_rate_.resize(n);
+
+  check(TSCreate(comm, ts_.out()));
+  check(TSSetProblemType(ts_, TS_NONLINEAR));
+  check(TSSetType(ts_, TSARKIMEX));
+  check(TSARKIMEXSetType(ts_, TSARKIMEX4));
+  check(TSARKIMEXSetFullyImplicit(ts_, PETSC_TRUE));
+  check(TSSetSolution(ts_, y_));
+  check(TSSetMaxSteps(ts_, std::numeric_limits<PetscInt>::max()));
+  check(TSSetMaxSNESFailures(ts_, -1));
+  check(TSSetMaxStepRejections(ts_, most_rejections));
+  check(TSSetErrorIfStepFails(ts_, PETSC_FALSE));
+  TSAdapt adapt = nullptr;
+  check(TSGetAdapt(ts_, &adapt));
+  check(TSAdaptSetType(adapt, TSADAPTNONE));
+  check(TSSetFromOptions(ts_));
+  // Time and step are the scene's; TS takes one step at a time and never looks ahead to an end.
+  check(TSSetTime(ts_, 0.0));
+  check(TSSetMaxTime(ts_, std::numeric_limits<double>::max()));
+  check(TSSetExactFinalTime(ts_, TS_EXACTFINALTIME_STEPOVER));
+  check(TSSetTimeStep(ts_, settings_.time_step));
+  TSAdaptType adapt_type = nullptr;
+  check(TSAdaptGetType(adapt, &adapt_type));
+  adaptive_ = std::string_view(adapt_type) != TSADAPTNONE;
+  next_step_ = settings_.time_step;
+  set_up_type();
+}
+
+void Stepper::set_up_type() {
+  TSType type = nullptr;
+  check(TSGetType(ts_, &type));
+  implicit_ = is(ts_, TSARKIMEX) || is(ts_, TSBDF) || is(ts_, TSCN) || is(ts_, TSTHETA) || is(ts_, TSBEULER);
+  multistep_ = is(ts_, TSBDF);
+  const bool explicit_type = is(ts_, TSRK) || is(ts_, TSSSP) || is(ts_, TSEULER);
+  if (!implicit_ && !explicit_type)
+    throw InputError(std::string("-ts_type ") + type +
+                     ": does not integrate this system rightly; allowed: arkimex, cn, bdf, theta, beuler (implicit), "
+                     "rk, ssp, euler (explicit, small scenes)");
+  if (multistep_) {
+    PetscInt order = 0;
+    check(TSBDFGetOrder(ts_, &order));
+    if (order > 2)
+      throw InputError("-ts_bdf_order " + std::to_string(order) +
+                       ": orders above 2 are unstable for lightly damped bridges; allowed: 1, 2");
+  }
+  bool imex = false;
+  if (is(ts_, TSARKIMEX)) {
+    PetscBool fully = PETSC_TRUE;
+    check(TSARKIMEXGetFullyImplicit(ts_, &fully));
+    imex = fully != PETSC_TRUE;
+  }
+  if (!implicit_ || imex) check(TSSetRHSFunction(ts_, nullptr, rhs_function, this));
+  if (!implicit_) return;
+  implicit_part_ = imex ? Part::beam : Part::all;
+  const PetscInt n = system_.local_size();
+  check(MatCreateShell(system_.comm(), n, n, PETSC_DETERMINE, PETSC_DETERMINE, this, jacobian_.out()));
+  check(TSSetIFunction(ts_, nullptr, ifunction, this));
+  check(TSSetIJacobian(ts_, jacobian_, jacobian_, ijacobian, this));
+  SNES snes = nullptr;
+  check(TSGetSNES(ts_, &snes));
+  check(SNESSetType(snes, SNESSHELL));
+  check(SNESShellSetContext(snes, this));
+  check(SNESShellSetSolve(snes, shell_solve));
+}
+
+std::string Stepper::method() const {
+  TSType type = nullptr;
+  check(TSGetType(ts_, &type));
+  std::string text = type;
+  if (is(ts_, TSARKIMEX)) {
+    TSARKIMEXType which = nullptr;
+    check(TSARKIMEXGetType(ts_, &which));
+    text = std::string("arkimex ") + which + (implicit_part_ == Part::all ? ", implicit" : ", beam implicit");
+  } else if (multistep_) {
+    PetscInt order = 0;
+    check(TSBDFGetOrder(ts_, &order));
+    text += " " + std::to_string(order);
+  }
+  return text;
+}
+
+double* Stepper::state() {
+  double* array = nullptr;
+  check(VecGetArray(y_, &array));
+  return array;
+}
+
+void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array)); }
+
+// --- the loop ------------------------------------------------------------------------------------------------------
+
+double Stepper::run(const std::function<void(const Instant&)>& sample,
+                    const std::function<bool(double, long)>& step) {
+  const double slack = near_event * settings_.time_step;
+  std::size_t event = 0;
+  long stored = 0;
+  double t = 0.0;
+  bool going = true;
+  sample_now(sample);
+  while (going && t < settings_.end_time - slack) {
+    double next_sample = static_cast<double>(stored + 1) * settings_.interval;
+    if (next_sample > settings_.end_time - slack) next_sample = settings_.end_time;
+    while (event < settings_.events.size() && settings_.events[event] <= t + slack) ++event;
+    double target = next_sample;
+    if (event < settings_.events.size() && settings_.events[event] < next_sample - slack)
+      target = settings_.events[event];
+    while (going && t < target) {
+      take_step(target - t);
+      PetscReal now = 0.0;
+      check(TSGetTime(ts_, &now));
+      t = now;
+      if (t > target - slack) {
+        t = target;
+        check(TSSetTime(ts_, t));
+      }
+      Array y(y_);
+      const bool rewritten = system_.repartition(t, y.data);
+      if (rewritten) check(TSRestartStep(ts_));
+      going = step(t, steps_);
+    }
+    if (t == next_sample) {
+      ++stored;
+      sample_now(sample);
+    }
+  }
+  return t;
+}
+
+// One step no longer than what is left to the next target, shared evenly among the steps that it takes.
+void Stepper::take_step(double left) {
+  const double wanted = adaptive_ ? next_step_ : settings_.time_step;
+  const double count = std::max(1.0, std::ceil(left / wanted * (1.0 - 1e-9)));
+  const double h = left / count;
+  if (multistep_ && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
+  check(TSSetTimeStep(ts_, h));
+  check(TSStep(ts_));
+  TSConvergedReason reason = TS_CONVERGED_ITERATING;
+  check(TSGetConvergedReason(ts_, &reason));
+  PetscReal t = 0.0;
+  check(TSGetTime(ts_, &t));
+  if (reason < 0)
+    throw SolverError("the step at t = " + std::to_string(t) + " s could not be taken, even at " +
+                      std::to_string(h * std::pow(0.25, most_rejections)) +
+                      " s (contact iteration does not converge): try a smaller -ts_dt, softer contacts, or look at "
+                      "the state just before");
+  PetscReal previous = 0.0, next = 0.0;
+  check(TSGetPrevTime(ts_, &previous));
+  check(TSGetTimeStep(ts_, &next));
+  last_step_ = t - previous;
+  if (adaptive_) next_step_ = count > 1.0 || next < next_step_ ? next : std::max(next_step_, next);
+  next_step_ = std::min(next_step_, settings_.time_step);
+  ++steps_;
+}
+
+void Stepper::sample_now(const std::function<void(const Instant&)>& sample) {
+  PetscReal t = 0.0;
+  check(TSGetTime(ts_, &t));
+  rate(t, y_, rate_, Part::all);
+  ReadArray y(y_);
+  ReadArray ydot(rate_);
+  const int n = system_.local_size();
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i) sum += std::abs(y.data[i]) + std::abs(ydot.data[i]);
+  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, system_.comm());
+  if (!std::isfinite(sum))
+    throw SolverError("the motion has grown beyond all bounds by t = " + std::to_string(t) +
+                      " s: the step is too long for this integrator; take a smaller -ts_dt or an implicit -ts_type");
+  sample({t, y.data, ydot.data});
+}
+
+// --- what TS calls -------------------------------------------------------------------------------------------------
+
+// Whether the last solved stage is the state asked for: its rate is known then.
+bool Stepper::remembered(double t, const double* y) const {
+  int same = known_ && std::abs(t - known_t_) <= 1e-13 * std::max(1.0, std::abs(t)) &&
+                     std::memcmp(y, known_y_.data(), known_y_.size() * sizeof(double)) == 0
+                 ? 1
+                 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, system_.comm());
+  return same != 0;
+}
+
+void Stepper::rate(double t, Vec y, Vec ydot, Part part) {
+  ReadArray in(y);
+  Array out(ydot);
+  if (part == implicit_part_ && remembered(t, in.data))
+    std::copy(known_rate_.begin(), known_rate_.end(), out.data);
+  else
+    system_.rate(t, in.data, out.data, part);
+}
+
+// F = y' - G, or, inside a stage solve, only a note of what is asked.
+void Stepper::implicit_residual(double t, Vec y, Vec ydot, Vec residual) {
+  if (request_.recording) {
+    request_.t = t;
+    ReadArray xdot(ydot);
+    std::copy_n(xdot.data, stage_c_.size(), stage_c_.begin());
+    return;
+  }
+  rate(t, y, residual, implicit_part_);
+  check(VecAYPX(residual, -1.0, ydot));
+}
+
+void Stepper::solve_stage(SNES snes, Vec x) {
+  request_.recording = true;
+  check(SNESComputeFunction(snes, x, residual_));
+  check(SNESComputeJacobian(snes, x, jacobian_, jacobian_));
+  request_.recording = false;
+  Vec right_side = nullptr;
+  check(SNESGetRhs(snes, &right_side));
+  Array y(x);
+  const std::size_t n = stage_c_.size();
+  for (std::size_t i = 0; i < n; ++i) stage_c_[i] -= request_.shift * y.data[i];
+  if (right_side != nullptr) {
+    ReadArray b(right_side);
+    for (std::size_t i = 0; i < n; ++i) stage_c_[i] -= b.data[i];
+  }
+  if (!system_.solve_stage(request_.t, request_.shift, stage_c_.data(), y.data, implicit_part_)) {
+    known_ = false;
+    check(SNESSetConvergedReason(snes, SNES_DIVERGED_MAX_IT));
+    return;
+  }
+  known_ = true;
+  known_t_ = request_.t;
+  for (std::size_t i = 0; i < n; ++i) {
+    known_y_[i] = y.data[i];
+    known_rate_[i] = request_.shift * y.data[i] + stage_c_[i];
+  }
+}
+
+PetscErrorCode Stepper::ifunction(TS, PetscReal t, Vec y, Vec ydot, Vec residual, void* context) {
+  return guard([&] { static_cast<Stepper*>(context)->implicit_residual(t, y, ydot, residual); });
+}
+
+PetscErrorCode Stepper::ijacobian(TS, PetscReal, Vec, Vec, PetscReal shift, Mat, Mat, void* context) {
+  static_cast<Stepper*>(context)->request_.shift = shift;
+  return 0;
+}
+
+PetscErrorCode Stepper::rhs_function(TS, PetscReal t, Vec y, Vec ydot, void* context) {
+  return guard([&] {
+    auto& self = *static_cast<Stepper*>(context);
+    self.rate(t, y, ydot, self.implicit_ ? Part::contact : Part::all);
+  });
+}
+
+PetscErrorCode Stepper::shell_solve(SNES snes, Vec x) {
+  return guard([&] {
+    void* context = nullptr;
+    check(SNESShellGetContext(snes, &context));
+    static_cast<Stepper*>(context)->solve_stage(snes, x);
+  });
+}
+
+}  // namespace traverse::integrate
