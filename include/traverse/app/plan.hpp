@@ -1,0 +1,23 @@
+// What a transient run does in time: how long, with which step, stored how often.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traverse/app/scene.hpp"
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::app {
+
+struct Plan {
+  double end_time = 0.0;   // s
+  double time_step = 0.0;  // s
+  double interval = 0.0;   // s between stored samples
+};
+
+/// Fills in what the user left open and says so in `notes`. first_period: of the beam (s), 0 where not known.
+/// InputError when the scene has no end.
+Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
+               std::vector<std::string>& notes);
+
+}  // namespace traverse::app

@@ -1,0 +1,48 @@
+// A transient run: time integration with everything that is recorded on the way.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traverse/app/plan.hpp"
+#include "traverse/app/scene.hpp"
+#include "traverse/beam/recovery.hpp"
+#include "traverse/coupling/system.hpp"
+#include "traverse/integrate/stepper.hpp"
+#include "traverse/results/recorder.hpp"
+#include "traverse/results/terminal.hpp"
+
+namespace traverse::app {
+
+/// Watches stored instants and steps: samples for the recorder, extremes for the summary.
+class Watch {
+ public:
+  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder);
+
+  void sample(const integrate::Instant& instant);
+  void step(double t);
+  /// Collective. The summary so far, and the shape at the worst instant into the recorder.
+  results::Summary finish();
+
+ private:
+  void fill_vehicles(results::Sample& sample) const;
+  void note_extremes(const results::Sample& sample, const double* v);
+
+  const Scene& scene_;
+  coupling::System& system_;
+  const beam::Beam* beam_;
+  results::Recorder& recorder_;
+  std::optional<beam::Recovery> recovery_;
+  coupling::Observation observation_;
+  results::Sample sample_;
+  results::Summary summary_;
+  std::vector<double> worst_shape_;  // nodal unknowns of this rank at the largest deflection
+  double energy_at_start_ = 0.0;
+  bool first_ = true;
+  std::vector<double> lost_since_;  // per wheel: since when it has been off the surface; negative: in contact
+};
+
+/// The recorder's layout for a scene.
+results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam);
+
+}  // namespace traverse::app

@@ -1,0 +1,68 @@
+// traverse: vehicles crossing flexible beams. See README.md.
+#include <fmt/format.h>
+#include <slepceps.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "traverse/app/run.hpp"
+#include "traverse/app/scene.hpp"
+#include "traverse/base/error.hpp"
+#include "traverse/options/input.hpp"
+#include "traverse/options/table.hpp"
+
+namespace {
+
+// Open MPI's start-up without mpirun takes 0.3 s unless told that one process is all there is.
+void start_lightly() {
+  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) return;
+  setenv("OMPI_MCA_pml", "ob1", 0);
+  setenv("OMPI_MCA_btl", "self,vader", 0);
+  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+}
+
+bool first_rank() {
+  int started = 0, rank = 0;
+  MPI_Initialized(&started);
+  if (started != 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank == 0;
+}
+
+int complain(const traverse::Error& error) {
+  if (first_rank()) fmt::print(stderr, "traverse: {}\n", error.what());
+  return error.status();
+}
+
+int run(traverse::options::Input& input) {
+  try {
+    traverse::options::put_into_petsc(input);
+    return traverse::app::run(PETSC_COMM_WORLD, traverse::app::read_scene());
+  } catch (const traverse::FileError& error) {  // known to the writing rank alone: the others are not to wait for it
+    fmt::print(stderr, "traverse: {}\n", error.what());
+    int ranks = 1;
+    MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
+    if (ranks > 1) MPI_Abort(PETSC_COMM_WORLD, error.status());
+    return error.status();
+  } catch (const traverse::Error& error) {
+    return complain(error);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  start_lightly();
+  try {
+    traverse::options::Input input = traverse::options::read_input(argc, argv);
+    if (input.help) return std::fputs(traverse::options::help_text().c_str(), stdout) < 0 ? EXIT_FAILURE : 0;
+    traverse::options::Arguments words(input.petsc_words);
+    if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
+    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    const int status = run(input);
+    SlepcFinalize();
+    return status;
+  } catch (const traverse::Error& error) {  // before MPI has started: every rank would say it
+    const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
+    return rank == nullptr || *rank == '0' ? complain(error) : error.status();
+  }
+}

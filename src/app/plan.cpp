@@ -1,0 +1,68 @@
+#include "traverse/app/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace traverse::app {
+namespace {
+
+constexpr double steps_a_period = 100.0;   // of the first period or a span's crossing, at an accuracy of 1e-3
+constexpr double mechanism_step = 1e-3;    // s, where there is no beam to judge by
+constexpr double stored_samples = 2000.0;  // at most, where the interval is left open
+
+// The largest of 1, 2, 5 times a power of ten that does not exceed x.
+double round_down(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  const double digits = x / power * (1.0 + 1e-12);
+  return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
+}
+
+double end_of(const Scene& scene, const coupling::System& system) {
+  if (scene.end_time) return *scene.end_time;
+  const double leaving = system.leaving_time();
+  if (!std::isfinite(leaving))
+    throw InputError("ts_max_time is missing: nothing leaves the beam in this scene, so it has no end of its own; "
+                     "allowed: a time in s above 0");
+  return leaving + scene.tail.value_or(0.0);
+}
+
+double chosen_step(const Scene& scene, double first_period, std::vector<std::string>& notes) {
+  if (!scene.beam) {
+    notes.push_back(fmt::format("time step {:g} s: no beam to judge by; -ts_dt changes it", mechanism_step));
+    return mechanism_step;
+  }
+  double scale = first_period > 0.0 ? first_period : 1.0;
+  const double speed = std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
+                                scene.load.forces.empty() ? 0.0 : scene.load.speed);
+  const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
+  if (speed > 0.0) scale = std::min(scale, span / speed);
+  const double step = round_down(scale / steps_a_period * std::pow(scene.accuracy / 1e-3, 0.25));
+  notes.push_back(fmt::format("time step {:g} s: from accuracy {:g}, the first period and the crossing of a span; -ts_dt changes it",
+                              step, scene.accuracy));
+  return step;
+}
+
+}  // namespace
+
+Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
+               std::vector<std::string>& notes) {
+  Plan plan;
+  plan.end_time = end_of(scene, system);
+  plan.time_step = scene.time_step ? *scene.time_step : chosen_step(scene, first_period, notes);
+  if (plan.end_time <= 0.0)
+    throw InputError("scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
+                     "or ts_max_time in s above 0");
+  if (scene.output.interval) {
+    plan.interval = *scene.output.interval;
+    if (plan.interval < plan.time_step)
+      notes.push_back(fmt::format("steps end at every stored sample: output_interval {:g} s limits the step",
+                                  plan.interval));
+  } else {
+    plan.interval = plan.time_step * std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples));
+  }
+  return plan;
+}
+
+}  // namespace traverse::app

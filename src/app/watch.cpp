@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "traverse/app/transient.hpp"
+
+namespace traverse::app {
+namespace {
+
+std::array<double, 3> triple(const Eigen::VectorXd& x, std::size_t body) {
+  const auto i = 3 * static_cast<Eigen::Index>(body);
+  return {x[i], x[i + 1], x[i + 2]};
+}
+
+void note(results::Extreme& extreme, double value, double time, double place) {
+  if (std::abs(value) > std::abs(extreme.value)) extreme = {value, time, place};
+}
+
+}  // namespace
+
+results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam) {
+  results::Layout layout;
+  if (beam != nullptr) {
+    layout.probes = scene.output.probes;
+    layout.supports = beam->mesh().span_ends();
+    for (int i = 0; i < beam->mesh().nodes(); ++i) layout.nodes.push_back(beam->mesh().x(i));
+  }
+  for (const coupling::MovingVehicle& vehicle : system.fleet().vehicles) {
+    results::Layout::VehicleNames names;
+    for (const multibody::Body& b : vehicle.mechanism.model().bodies) names.bodies.push_back(b.name);
+    for (const coupling::Wheel& w : vehicle.wheels) names.wheels.push_back(w.name);
+    for (const multibody::Joint& j : vehicle.mechanism.model().joints) names.joints.push_back(j.name);
+    layout.vehicles.push_back(std::move(names));
+  }
+  return layout;
+}
+
+Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
+    : scene_(scene), system_(system), beam_(beam), recorder_(recorder) {
+  if (beam != nullptr) recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
+  lost_since_.assign(system.fleet().wheels.size(), -1.0);
+  summary_.least_wheel_force = std::numeric_limits<double>::infinity();
+}
+
+void Watch::sample(const integrate::Instant& instant) {
+  system_.observe(instant.time, instant.y, instant.ydot, observation_);
+  const double* v = instant.y;
+  const double* w = instant.y + system_.beam_unknowns();
+  sample_.time = instant.time;
+  if (beam_ != nullptr) {
+    recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, sample_.probes);
+    beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
+  }
+  fill_vehicles(sample_);
+  const coupling::Energy& e = observation_.energy;
+  const double stored = e.kinetic + e.strain + e.potential;
+  if (first_) energy_at_start_ = stored;
+  sample_.energy = {e.kinetic, e.strain,     e.potential,
+                    e.dissipated, e.work, stored - energy_at_start_ + e.dissipated - e.work};
+  note_extremes(sample_, v);
+  first_ = false;
+  recorder_.add(sample_);
+}
+
+void Watch::fill_vehicles(results::Sample& sample) const {
+  const coupling::Fleet& fleet = system_.fleet();
+  sample.vehicles.resize(fleet.vehicles.size());
+  for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
+    const coupling::MovingVehicle& vehicle = fleet.vehicles[k];
+    const multibody::MechanismModel& model = vehicle.mechanism.model();
+    results::Sample::Vehicle& out = sample.vehicles[k];
+    out.bodies.resize(model.bodies.size());
+    for (std::size_t b = 0; b < model.bodies.size(); ++b)
+      out.bodies[b] = {triple(vehicle.state.q, b), triple(vehicle.state.qd, b), triple(vehicle.state.qdd, b)};
+    out.wheels.resize(vehicle.wheels.size());
+    for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
+      const coupling::WheelContact& c = fleet.wheels[vehicle.first_wheel + static_cast<int>(i)];
+      out.wheels[i] = {c.force.normal, c.force.tangential, c.kinematics.penetration};
+    }
+    out.joints.resize(model.joints.size());
+    for (std::size_t j = 0; j < model.joints.size(); ++j) {
+      const Eigen::Vector3d r = vehicle.mechanism.joint_reaction(vehicle.state, static_cast<int>(j));
+      out.joints[j] = {r.x(), r.y(), r.z()};
+    }
+  }
+}
+
+void Watch::note_extremes(const results::Sample& sample, const double* v) {
+  const double before = std::abs(summary_.deflection.value);
+  for (std::size_t i = 0; i < sample.probes.size(); ++i) {
+    const double x = scene_.output.probes[i];
+    note(summary_.deflection, sample.probes[i].deflection, sample.time, x);
+    note(summary_.acceleration, sample.probes[i].acceleration, sample.time, x);
+    note(summary_.moment, sample.probes[i].moment, sample.time, x);
+  }
+  if (std::abs(summary_.deflection.value) > before) worst_shape_.assign(v, v + system_.beam_unknowns());
+  const results::Sample::Energy& e = sample.energy;
+  summary_.energy_residual = std::max(summary_.energy_residual, std::abs(e.residual));
+  for (double term : {e.kinetic, e.strain, e.potential, e.dissipated, e.work})
+    summary_.energy_scale = std::max(summary_.energy_scale, std::abs(term));
+}
+
+void Watch::step(double t) {
+  const coupling::Fleet& fleet = system_.fleet();
+  for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
+    const coupling::WheelContact& c = fleet.wheels[i];
+    summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, c.force.normal);
+    if (c.force.normal < summary_.least_wheel_force) {
+      summary_.least_wheel_force = c.force.normal;
+      summary_.least_wheel_force_time = t;
+      summary_.least_wheel = "vehicle " + std::to_string(c.vehicle) + ", " + fleet.wheel(c).name;
+    }
+    if (c.force.normal > 0.0) {
+      if (lost_since_[i] >= 0.0) summary_.longest_loss = std::max(summary_.longest_loss, t - lost_since_[i]);
+      lost_since_[i] = -1.0;
+    } else if (lost_since_[i] < 0.0) {
+      lost_since_[i] = t;
+      ++summary_.contact_losses;
+    }
+  }
+}
+
+results::Summary Watch::finish() {
+  if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
+  if (beam_ == nullptr) return summary_;
+  int some = worst_shape_.empty() && system_.beam_unknowns() > 0 ? 0 : 1;
+  MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
+  if (some == 0) return summary_;
+  summary_.static_deflection = system_.static_peak(summary_.deflection.place);
+  if (summary_.static_deflection > 0.0)
+    summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
+  results::Shape shape{summary_.deflection.time, std::vector<double>(beam_->mesh().nodes(), 0.0)};
+  const int b = beam_->block();
+  for (int i = 0; i < beam_->local_nodes(); ++i)
+    shape.deflection[beam_->first_node() + i] = worst_shape_[static_cast<std::size_t>(i) * b + b - 2];
+  MPI_Allreduce(MPI_IN_PLACE, shape.deflection.data(), static_cast<int>(shape.deflection.size()), MPI_DOUBLE, MPI_SUM,
+                beam_->comm());
+  recorder_.shape(shape);
+  return summary_;
+}
+
+}  // namespace traverse::app
