@@ -1,0 +1,16 @@
+// Numbers in columns: text files with blanks, commas or semicolons between numbers and # before comments.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace traverse::options {
+
+/// The file by columns, each of the same length. Throws InputError naming file and line when a line does not hold
+/// as many numbers as the first one, fewer than `least` or more than `most`, or something that is no finite number.
+std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most);
+
+/// A finite number that fills the whole word; false otherwise.
+bool parse_number(const std::string& word, double& number);
+
+}  // namespace traverse::options

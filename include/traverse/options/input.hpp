@@ -1,0 +1,59 @@
+// From the command line to the options in force, and into PETSc's own table.
+//
+//   Input input = read_input(argc, argv);              // before PETSc starts; reads the options files
+//   if (input.help) ...                                // print help_text() and leave
+//   Arguments words(input.petsc_words);                // PETSc sees what it owns, also out of files
+//   SlepcInitialize(words.argc(), words.argv(), ...);
+//   put_into_petsc(input);                             // all the rest, so that -options_view shows it
+//   Scene scene = read_scene();
+//   ... TSSetFromOptions ...
+//   check_all_used(input.entries);                     // -ts_tpye is refused here
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "traverse/options/entry.hpp"
+
+namespace traverse::options {
+
+/// PETSc's table holds 512 options; a few places are left to PETSc itself.
+inline constexpr std::size_t most_options = 500;
+
+struct Input {
+  Entries entries;       // the last one of each name by position; scene_name always (default: the first file's)
+  bool help = false;     // -help, -h
+  bool version = false;  // -version
+  std::vector<std::string> petsc_words;  // the program's name, then the options that PETSc owns
+};
+
+/// Reads the command line and every file named by -options_file, at its position. Throws InputError.
+Input read_input(int argc, char** argv);
+
+/// The words as argc and argv, kept until the object goes.
+class Arguments {
+ public:
+  explicit Arguments(const std::vector<std::string>& words);
+  int* argc() { return &argc_; }
+  char*** argv() { return &argv_; }
+
+ private:
+  std::vector<std::string> words_;
+  std::vector<char*> pointers_;
+  int argc_ = 0;
+  char** argv_ = nullptr;
+};
+
+/// After PetscInitialize: adds options of ours that came by PETSC_OPTIONS or .petscrc to input.entries (weakest of
+/// all), then puts all entries into PETSc's table.
+void put_into_petsc(Input& input);
+
+/// The entries that put_into_petsc saw last.
+const Entries& in_force();
+
+/// After all XxxSetFromOptions: refuses options of PETSc's kind that nobody asked for and that are no common name
+/// (InputError with the nearest name). Returns notes on common ones without effect in this scene.
+std::vector<std::string> check_all_used(const Entries& entries);
+
+}  // namespace traverse::options

@@ -1,0 +1,28 @@
+// Options files: YAML (names ending in .yml or .yaml) flattened as PETSc does, or PETSc's classic text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traverse/options/entry.hpp"
+
+namespace traverse::options {
+
+/// The entries of a file in their order. Nested keys are joined by underscores, lists become comma lists.
+/// An option `options_file` inside a file is followed: its entries stand in its place; its path is tried relative to
+/// the working directory, then to the file that names it.
+/// Throws InputError naming file and line for a file that cannot be read or is not well formed.
+std::vector<Entry> read_options_file(const std::string& path);
+
+/// The same from text in memory; `name` stands for the file in messages.
+std::vector<Entry> parse_yaml(const std::string& text, const std::string& name);
+std::vector<Entry> parse_classic(const std::string& text, const std::string& name);
+
+/// Words as on a command line: `-name value` or `-name` alone; a word that starts with a dash and a letter is a name,
+/// `-5.0` is a value. Throws InputError for a value that belongs to no name.
+std::vector<Entry> parse_words(const std::vector<std::string>& words, const std::string& source, int line);
+
+/// `path` itself when it exists, otherwise beside `named_in` (a file; may be empty); empty when there is neither.
+std::string find_file(const std::string& path, const std::string& named_in);
+
+}  // namespace traverse::options

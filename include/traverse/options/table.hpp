@@ -1,0 +1,78 @@
+// Every option once: name, type, unit, default, range, choices and one line of text. The table drives the checks,
+// the list that -help prints and the proposals for misspelt names.
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace traverse::options {
+
+enum class Kind {
+  number,
+  integer,
+  flag,  // true or false; a name alone is true
+  text,
+  choice,   // one of Row::choices
+  file,     // the name of a file that exists
+  numbers,  // lists: comma lists whose entries may be value*count
+  integers,
+  texts,
+  choice_list,
+  number_or_file,  // a number, or a file with two columns
+};
+
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool above = false;  // low itself is not allowed
+};
+inline constexpr Range any = {};
+inline constexpr Range positive = {0.0, std::numeric_limits<double>::infinity(), true};
+inline constexpr Range not_negative = {0.0};
+
+struct Row {
+  std::string_view name;  // of a part's option: the last word only
+  Kind kind = Kind::number;
+  std::string_view unit;
+  std::string_view fallback;  // the default as a user would write it, or a remark in brackets; empty: none
+  Range range;
+  std::string_view choices;  // separated by blanks
+  int count = 0;             // entries that a list must have; 0: any number
+  std::string_view text;
+};
+
+/// The kinds of parts of a vehicle, in the order of `part_lists`.
+enum class Part { body, joint, spring, torsion_spring, wheel, actuator, driver, contact };
+inline constexpr int part_kinds = 8;
+/// The option that lists the parts of a kind: "bodies", ...
+std::string_view part_list(Part part);
+/// "body", "joint", ... for messages.
+std::string_view part_word(Part part);
+
+/// Options with a fixed name.
+std::span<const Row> fixed_rows();
+/// Options vehicle_<name>_<row>.
+std::span<const Row> vehicle_rows();
+/// Options vehicle_<name>_<part>_<row>.
+std::span<const Row> part_rows(Part part);
+
+const Row* find_row(std::span<const Row> rows, std::string_view name);
+
+/// Does PETSc or SLEPc own this name? Ours that PETSc shares (-ts_dt) are theirs, too.
+bool owned_by_petsc(std::string_view name);
+/// The PETSc and SLEPc options that a user is likely to mean.
+std::span<const std::string_view> common_petsc_names();
+
+/// What is allowed, in words: "above 0 (m)", "one of none, bump", "2 numbers".
+std::string allowed(const Row& row);
+
+/// The candidate with the fewest letters changed, added, left out or swapped; empty when none is near.
+std::string nearest(std::string_view name, const std::vector<std::string>& candidates);
+
+/// The text of -help.
+std::string help_text();
+
+}  // namespace traverse::options

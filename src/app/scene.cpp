@@ -1,0 +1,133 @@
+#include "traverse/app/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene_parts.hpp"
+#include "traverse/base/error.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+
+constexpr std::size_t most_default_probes = 200;
+
+void refuse_unfinished(const Options& o) {
+  if (const options::Entry* sweep = o.first_with_prefix("sweep_")) o.refuse(sweep->name, "sweeps are not there yet");
+  for (const char* name : {"model_modes", "model_window"}) {
+    const std::string value = o.text(name);
+    if (value != "auto" && value != "0") o.refuse(name, "not there yet; allowed: auto or 0");
+  }
+}
+
+void read_run(const Options& o, Scene& scene) {
+  scene.gravity = o.number("gravity");
+  scene.name = o.has("scene_name") ? o.text("scene_name") : "scene";
+  const std::string analysis = o.choice("scene_analysis");
+  scene.analysis = analysis == "modes"    ? Analysis::modes
+                   : analysis == "static" ? Analysis::static_response
+                                          : Analysis::transient;
+  scene.start = o.choice("scene_start") == "given" ? Start::given : Start::equilibrium;
+  scene.tail = o.optional_number("scene_tail");
+  scene.end_time = o.optional_number("ts_max_time");
+  scene.time_step = o.optional_number("ts_dt");
+  scene.mode_count = o.integer("modes_count");
+  scene.accuracy = o.number("accuracy");
+}
+
+void read_probes(const Options& o, Scene& scene) {
+  if (!scene.beam) {
+    if (o.has("output_probes")) o.refuse("output_probes", "there is no beam to probe (beam_spans)");
+    return;
+  }
+  const std::vector<double>& spans = scene.beam->spans;
+  double length = 0.0;
+  for (const double span : spans) {
+    if (!o.has("output_probes") && scene.output.probes.size() < most_default_probes) {
+      scene.output.probes.push_back(length + 0.5 * span);
+    }
+    length += span;
+  }
+  if (!o.has("output_probes")) {
+    if (spans.size() > most_default_probes) {
+      scene.notes.push_back(
+          fmt::format("probes: the middle of the first {} of {} spans", most_default_probes, spans.size()));
+    }
+    return;
+  }
+  scene.output.probes = o.numbers("output_probes");
+  for (double& x : scene.output.probes) {
+    if (x > length * (1.0 + 1e-12)) {
+      o.refuse("output_probes", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x, length));
+    }
+    x = std::min(x, length);
+  }
+}
+
+void read_output(const Options& o, Scene& scene) {
+  scene.output.file = o.has("output_file") ? o.text("output_file") : "results/" + scene.name + ".h5";
+  if (scene.output.file == "none") scene.output.file.clear();
+  scene.output.interval = o.optional_number("output_interval");
+  scene.quiet = o.flag("output_quiet");
+  read_probes(o, scene);
+}
+
+/// A run ends when the last wheel or force has left the beam, or when the user says.
+void check_end(const Options& o, const Scene& scene) {
+  if (scene.analysis != Analysis::transient || scene.end_time) return;
+  const auto rolls = [](const Vehicle& v) { return !v.wheels.empty(); };
+  const bool wheels = std::any_of(scene.vehicles.begin(), scene.vehicles.end(), rolls);
+  const bool forces = !scene.load.forces.empty();
+  const bool leaves =
+      scene.beam && (!wheels || scene.train.speed > 0.0) && (!forces || scene.load.speed > 0.0) && (wheels || forces);
+  if (leaves || (scene.beam && scene.tail)) return;
+  std::string why = "nothing leaves a bridge in this scene, so its end has to be given (s)";
+  if (wheels && scene.train.speed == 0.0) why = "train_speed is 0: the train never leaves; give the end of the run (s)";
+  if (forces && scene.load.speed == 0.0) why = "load_speed is 0: the forces never leave; give the end of the run (s)";
+  o.refuse("ts_max_time", why);
+}
+
+void check_scene(const Options& o, Scene& scene) {
+  if (!scene.beam && scene.vehicles.empty()) {
+    throw InputError("nothing to simulate: neither a beam (beam_spans) nor vehicles (train_vehicles) are given");
+  }
+  if (scene.analysis == Analysis::modes && !scene.beam) o.refuse("scene_analysis", "modes need a beam (beam_spans)");
+  if (scene.vehicles.empty()) {
+    for (const char* name : {"train_positions", "train_spacing", "train_drive"}) {
+      if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: there are no train_vehicles");
+    }
+  }
+  if (scene.load.forces.empty()) {
+    for (const char* name : {"load_positions", "load_speed"}) {
+      if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: there are no load_forces");
+    }
+  }
+  check_end(o, scene);
+}
+
+}  // namespace
+
+Scene read_scene(Options o) {
+  Scene scene;
+  const std::vector<std::string> train = declare_vehicles(o);
+  o.check_names();
+  o.check_values();
+  refuse_unfinished(o);
+  read_run(o, scene);
+  read_beam(o, scene);
+  read_train(o, train, scene);
+  read_load(o, scene);
+  read_track(o, scene);
+  decide_axial(o, scene);
+  read_output(o, scene);
+  check_scene(o, scene);
+  scene.options = o.all();
+  return scene;
+}
+
+Scene read_scene() { return read_scene(Options(options::in_force())); }
+
+}  // namespace traverse::app

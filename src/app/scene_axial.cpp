@@ -1,0 +1,60 @@
+// Whether the beam has axial unknowns: only where something in the scene acts along it.
+#include <fmt/format.h>
+
+#include "scene_parts.hpp"
+
+namespace traverse::app {
+namespace {
+
+bool acts_along_x(const options::Options& o, const std::string& actuator) {
+  return o.has(actuator + "_table") || o.numbers(actuator + "_force").front() != 0.0;
+}
+
+/// What acts along the beam, in words; empty when nothing does. Normal forces have a horizontal part where the
+/// surface is inclined; it is too small to count.
+std::string longitudinal_action(const options::Options& o, const Scene& scene) {
+  const beam::Foundation& foundation = scene.beam->foundation;
+  if (!foundation.longitudinal.empty() || foundation.longitudinal_bed) return "longitudinal foundations";
+  if (scene.analysis == Analysis::modes) return "modes are asked for";
+  for (const Vehicle& vehicle : scene.vehicles) {
+    const bool rolls = !vehicle.wheels.empty();
+    if (rolls && scene.train.drive == Drive::free) return "train_drive free";
+    for (const Wheel& wheel : vehicle.wheels) {
+      if (wheel.law.friction > 0.0) return "friction of wheels";
+    }
+    for (const multibody::Actuator& actuator : vehicle.mechanism.actuators) {
+      if (rolls && acts_along_x(o, "vehicle_" + vehicle.name + "_" + actuator.name)) return "actuators along x";
+    }
+  }
+  return "";
+}
+
+}  // namespace
+
+void decide_axial(const options::Options& o, Scene& scene) {
+  if (!scene.beam) return;
+  const std::string wanted = o.choice("model_axial");
+  const bool stiffness = o.has("beam_EA");
+  if (wanted == "true" && !stiffness) o.refuse("model_axial", "needs beam_EA");
+  if (wanted != "auto") {
+    scene.beam->axial = wanted == "true";
+    scene.notes.push_back(fmt::format("axial unknowns: {}, as asked", scene.beam->axial ? "modelled" : "none"));
+    return;
+  }
+  const beam::Foundation& foundation = scene.beam->foundation;
+  if (!stiffness && (!foundation.longitudinal.empty() || foundation.longitudinal_bed)) {
+    const options::Entry* entry = o.first_with_prefix("foundation_longitudinal");
+    o.refuse(entry->name, "longitudinal foundations need beam_EA");
+  }
+  const std::string action = longitudinal_action(o, scene);
+  scene.beam->axial = stiffness && !action.empty();
+  if (scene.beam->axial) {
+    scene.notes.push_back("axial unknowns: modelled, because of " + action);
+  } else if (action.empty()) {
+    scene.notes.emplace_back("axial unknowns: none, nothing acts along the beam");
+  } else {
+    scene.notes.push_back(fmt::format("axial unknowns: none, beam_EA is not given ({} would use them)", action));
+  }
+}
+
+}  // namespace traverse::app

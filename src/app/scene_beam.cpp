@@ -1,0 +1,150 @@
+// beam, support and foundation of a scene.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "scene_parts.hpp"
+#include "traverse/options/data_file.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+
+constexpr double most_elements = 1e8;
+
+/// Even, so that midspan is a node; the error of deflections falls with the fourth power of the element's length.
+int elements_from_accuracy(double accuracy) {
+  const double wanted = 10.0 * std::pow(1e-3 / accuracy, 0.25);
+  return std::max(4, 2 * static_cast<int>(std::lround(wanted / 2.0)));
+}
+
+void read_mesh(const Options& o, Scene& scene) {
+  beam::BeamModel& beam = *scene.beam;
+  beam.spans = o.numbers("beam_spans");
+  const std::size_t spans = beam.spans.size();
+  if (o.has("beam_elements_per_span")) {
+    beam.elements = o.integers("beam_elements_per_span", spans, "one per span");
+  } else {
+    const int chosen = elements_from_accuracy(scene.accuracy);
+    beam.elements.assign(spans, chosen);
+    scene.notes.push_back(fmt::format("{} elements a span, for an accuracy of {:g}", chosen, scene.accuracy));
+  }
+  if (std::accumulate(beam.elements.begin(), beam.elements.end(), 0.0) > most_elements) {
+    o.refuse(o.has("beam_elements_per_span") ? "beam_elements_per_span" : "beam_spans",
+             fmt::format("more than {:g} elements in all", most_elements));
+  }
+}
+
+beam::Support support_of(const std::string& word) {
+  if (word == "free") return beam::Support::free;
+  if (word == "pinned") return beam::Support::pinned;
+  if (word == "clamped") return beam::Support::clamped;
+  if (word == "guided") return beam::Support::guided;
+  return beam::Support::roller;
+}
+
+void read_supports(const Options& o, beam::BeamModel& beam) {
+  const std::size_t ends = beam.spans.size() + 1;
+  if (!o.has("support_types")) {
+    beam.supports.assign(ends, beam::Support::roller);
+    beam.supports.front() = beam::Support::pinned;
+    return;
+  }
+  for (const std::string& word : o.texts("support_types", ends, "one for every span end")) {
+    beam.supports.push_back(support_of(word));
+  }
+}
+
+std::pair<double, double> pair_of(const std::vector<double>& two) { return {two[0], two[1]}; }
+
+void read_damping(const Options& o, Damping& damping) {
+  if (o.has("beam_rayleigh")) damping.rayleigh = pair_of(o.numbers("beam_rayleigh"));
+  if (o.has("beam_damping_ratios")) {
+    if (damping.rayleigh) o.refuse("beam_damping_ratios", "give either damping ratios or beam_rayleigh");
+    damping.ratios = pair_of(o.numbers("beam_damping_ratios", 2, "zeta1 and zeta2"));
+  }
+  if (!o.has("beam_damping_frequencies")) return;
+  if (!damping.ratios) o.refuse("beam_damping_frequencies", "needs beam_damping_ratios, which belong to them");
+  damping.frequencies = pair_of(o.numbers("beam_damping_frequencies"));
+  if (damping.frequencies->first == damping.frequencies->second) {
+    o.refuse("beam_damping_frequencies", "allowed: two different frequencies");
+  }
+}
+
+std::vector<beam::PointFoundation> read_points(const Options& o, const std::string& kind, double length) {
+  const std::string name = "foundation_" + kind;
+  std::vector<beam::PointFoundation> points;
+  if (!o.has(name + "_x")) {
+    for (const char* what : {"_k", "_c"}) {
+      if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_x, the stations");
+    }
+    return points;
+  }
+  const std::vector<double> x = o.numbers(name + "_x");
+  const std::vector<double> k = o.numbers(name + "_k", x.size(), "as many as stations");
+  const std::vector<double> c = o.numbers(name + "_c", x.size(), "as many as stations");
+  if (!o.has(name + "_k") && !o.has(name + "_c")) o.refuse(name + "_x", "needs " + name + "_k or " + name + "_c");
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (x[i] > length * (1.0 + 1e-12)) {
+      o.refuse(name + "_x", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x[i], length));
+    }
+    points.push_back({std::min(x[i], length), k[i], c[i]});
+  }
+  return points;
+}
+
+std::optional<beam::Bed> read_bed(const Options& o, const std::string& kind) {
+  const std::string name = "foundation_" + kind + "_bed";
+  if (!o.has(name + "_k") && !o.has(name + "_c")) return std::nullopt;
+  return beam::Bed{read_distribution(o, name + "_k"), read_distribution(o, name + "_c")};
+}
+
+}  // namespace
+
+beam::Distribution read_distribution(const Options& o, const std::string& name) {
+  if (o.is_number(name)) return o.number(name);
+  const std::string path = o.path(name);
+  const auto columns = options::read_columns(path, 2, 2);
+  beam::Distribution table(columns[0], columns[1], name + " (" + path + ")");
+  const options::Row& row = *options::find_row(options::fixed_rows(), name);
+  const double least = table.minimum();
+  if (row.range.above ? !(least > row.range.low) : !(least >= row.range.low)) {
+    o.refuse(name, fmt::format("holds {:g}; allowed: {}", least, options::allowed(row)));
+  }
+  return table;
+}
+
+beam::Foundation read_foundation(const Options& o, double length) {
+  beam::Foundation f;
+  f.vertical = read_points(o, "vertical", length);
+  f.vertical_bed = read_bed(o, "vertical");
+  f.longitudinal = read_points(o, "longitudinal", length);
+  f.longitudinal_bed = read_bed(o, "longitudinal");
+  f.rotational = read_points(o, "rotational", length);
+  return f;
+}
+
+void read_beam(const Options& o, Scene& scene) {
+  if (!o.has("beam_spans")) {
+    for (const char* prefix : {"beam_E", "beam_mass", "beam_damping", "beam_rayleigh", "support_", "foundation_"}) {
+      const options::Entry* entry = o.first_with_prefix(prefix);
+      if (entry != nullptr) o.refuse(entry->name, "there is no beam without beam_spans");
+    }
+    return;
+  }
+  scene.beam.emplace();
+  beam::BeamModel& beam = *scene.beam;
+  read_mesh(o, scene);
+  beam.EI = read_distribution(o, "beam_EI");
+  if (o.has("beam_EA")) beam.EA = read_distribution(o, "beam_EA");
+  beam.mass = read_distribution(o, "beam_mass");
+  beam.isolated = o.choice("beam_continuity") == "simply_supported";
+  read_supports(o, beam);
+  beam.foundation = read_foundation(o, std::accumulate(beam.spans.begin(), beam.spans.end(), 0.0));
+  read_damping(o, scene.damping);
+  scene.self_weight = o.flag("beam_self_weight");
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,257 @@
+// One vehicle's parts out of the options: bodies, joints, springs, wheels, actuators, drivers.
+#include <fmt/format.h>
+
+#include "scene_parts.hpp"
+#include "traverse/options/data_file.hpp"
+
+namespace traverse::app {
+namespace {
+
+using Eigen::Vector2d;
+using options::Part;
+
+class VehicleReader {
+ public:
+  VehicleReader(const options::Options& options, const std::string& name)
+      : o_(options), prefix_("vehicle_" + name + "_") {
+    vehicle_.name = name;
+    vehicle_.mechanism.name = name;
+  }
+
+  Vehicle read() {
+    vehicle_.mechanism.gravity = o_.number("gravity");
+    if (!o_.has(prefix_ + "bodies")) o_.refuse(prefix_ + "bodies", "a vehicle needs at least one body");
+    bodies_ = o_.texts(prefix_ + "bodies");
+    for (const std::string& name : bodies_) body(name);
+    each(Part::joint, [this](const std::string& name) { joint(name); });
+    each(Part::spring, [this](const std::string& name) { spring(name); });
+    each(Part::torsion_spring, [this](const std::string& name) { torsion_spring(name); });
+    each(Part::wheel, [this](const std::string& name) { wheel(name); });
+    each(Part::actuator, [this](const std::string& name) { actuator(name); });
+    each(Part::driver, [this](const std::string& name) { driver(name); });
+    if (o_.has(prefix_ + "contacts")) o_.refuse(prefix_ + "contacts", "contacts between bodies are not modelled yet");
+    return std::move(vehicle_);
+  }
+
+ private:
+  template <class Read>
+  void each(Part part, Read&& read) {
+    const std::string list = prefix_ + std::string(options::part_list(part));
+    if (!o_.has(list)) return;
+    for (const std::string& name : o_.texts(list)) {
+      part_ = prefix_ + name + "_";
+      read(name);
+    }
+  }
+
+  std::string key(std::string_view field) const { return part_ + std::string(field); }
+  bool has(std::string_view field) const { return o_.has(key(field)); }
+  double number(std::string_view field) const { return o_.number(key(field)); }
+  Vector2d vector(std::string_view field) const {
+    const std::vector<double> v = o_.numbers(key(field));
+    return {v[0], v[1]};
+  }
+
+  int index_of(const std::string& option, const std::string& name) const {
+    if (name == "ground") return multibody::ground;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if (bodies_[i] == name) return static_cast<int>(i);
+    }
+    const std::string near = options::nearest(name, bodies_);
+    o_.refuse(option, fmt::format("there is no body '{}' in {}bodies{}", name, prefix_,
+                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+
+  int moving_body(const std::string& option, const std::string& name) const {
+    const int index = index_of(option, name);
+    if (index == multibody::ground) o_.refuse(option, "ground does not move; allowed: one of " + prefix_ + "bodies");
+    return index;
+  }
+
+  std::array<int, 2> two_bodies() const {
+    const std::vector<std::string> names = o_.texts(key("bodies"));
+    if (names[0] == names[1]) o_.refuse(key("bodies"), "allowed: two different bodies");
+    return {index_of(key("bodies"), names[0]), index_of(key("bodies"), names[1])};
+  }
+
+  void check_apart(const Vector2d& from, const Vector2d& to) const {
+    if ((to - from).norm() > 0.0) return;
+    o_.refuse(key("to"), "from and to are the same point: the direction between them is not defined");
+  }
+
+  void body(const std::string& name);
+  void joint(const std::string& name);
+  void spring(const std::string& name);
+  void torsion_spring(const std::string& name);
+  void wheel(const std::string& name);
+  contact::Law law(double radius) const;
+  double stiffness(contact::LawKind kind, double radius) const;
+  void actuator(const std::string& name);
+  void actuator_table(multibody::Actuator& a) const;
+  void driver(const std::string& name);
+
+  const options::Options& o_;
+  std::string prefix_;  // vehicle_NAME_
+  std::string part_;    // vehicle_NAME_PART_
+  std::vector<std::string> bodies_;
+  Vehicle vehicle_;
+};
+
+void VehicleReader::body(const std::string& name) {
+  part_ = prefix_ + name + "_";
+  multibody::Body b;
+  b.name = name;
+  b.mass = number("mass");
+  b.inertia = number("inertia");
+  const Vector2d position = vector("position");
+  b.position = {position.x(), position.y(), number("angle")};
+  const std::vector<double> velocity = o_.numbers(key("velocity"));
+  b.velocity = {velocity[0], velocity[1], velocity[2]};
+  vehicle_.mechanism.bodies.push_back(b);
+}
+
+void VehicleReader::joint(const std::string& name) {
+  multibody::Joint j;
+  j.name = name;
+  const std::string type = o_.choice(key("type"));
+  j.bodies = two_bodies();
+  if (type == "distance") {
+    j.type = multibody::JointType::distance;
+    j.from = vector("from");
+    j.to = vector("to");
+    check_apart(j.from, j.to);
+  } else {
+    j.type = type == "revolute"    ? multibody::JointType::revolute
+             : type == "prismatic" ? multibody::JointType::prismatic
+             : type == "slot"      ? multibody::JointType::slot
+                                   : multibody::JointType::weld;
+    j.point = vector("point");
+  }
+  if (type == "prismatic" || type == "slot") {
+    j.axis = vector("axis");
+    if (!(j.axis.norm() > 0.0)) o_.refuse(key("axis"), "allowed: a direction, not 0, 0");
+    j.axis.normalize();
+  }
+  vehicle_.mechanism.joints.push_back(j);
+}
+
+void VehicleReader::spring(const std::string& name) {
+  multibody::Spring s;
+  s.name = name;
+  s.bodies = two_bodies();
+  s.from = vector("from");
+  s.to = vector("to");
+  check_apart(s.from, s.to);
+  s.stiffness = number("stiffness");
+  s.damping = number("damping");
+  if (!has("stiffness") && !has("damping") && !has("preload")) {
+    o_.refuse(key("stiffness"), "missing: a spring needs a stiffness or a damping");
+  }
+  s.free_length = o_.optional_number(key("free_length"));
+  s.preload = o_.optional_number(key("preload"));
+  if (s.free_length && s.preload) o_.refuse(key("preload"), "give either free_length or preload");
+  vehicle_.mechanism.springs.push_back(s);
+}
+
+void VehicleReader::torsion_spring(const std::string& name) {
+  multibody::TorsionSpring s;
+  s.name = name;
+  s.bodies = two_bodies();
+  s.stiffness = number("stiffness");
+  s.damping = number("damping");
+  if (!has("stiffness") && !has("damping")) {
+    o_.refuse(key("stiffness"), "missing: a torsion spring needs a stiffness or a damping");
+  }
+  s.free_angle = o_.optional_number(key("free_angle"));
+  vehicle_.mechanism.torsion_springs.push_back(s);
+}
+
+double VehicleReader::stiffness(contact::LawKind kind, double radius) const {
+  if (has("stiffness")) {
+    for (const char* field : {"young", "poisson", "rail_young", "rail_poisson"}) {
+      if (has(field)) o_.refuse(key(field), "give either stiffness or young and poisson");
+    }
+    return number("stiffness");
+  }
+  if (!has("young")) o_.refuse(key("stiffness"), "missing: a wheel needs stiffness, or young and poisson (eq. 48)");
+  if (kind == contact::LawKind::linear) o_.refuse(key("young"), "belongs to law hertz; law linear needs stiffness");
+  const double young = number("young"), poisson = number("poisson");
+  return contact::hertz_stiffness(radius, young, poisson, has("rail_young") ? number("rail_young") : young,
+                                  has("rail_poisson") ? number("rail_poisson") : poisson);
+}
+
+contact::Law VehicleReader::law(double radius) const {
+  contact::Law law;
+  law.kind = o_.choice(key("law")) == "linear" ? contact::LawKind::linear : contact::LawKind::hertz;
+  law.stiffness = stiffness(law.kind, radius);
+  law.damping = number("damping");
+  law.restitution = o_.optional_number(key("restitution"));
+  if (law.restitution && has("damping")) o_.refuse(key("restitution"), "give either damping or restitution");
+  law.friction = number("friction");
+  law.transition_speed = number("transition_speed");
+  return law;
+}
+
+void VehicleReader::wheel(const std::string& name) {
+  Wheel w;
+  w.name = name;
+  w.body = moving_body(key("body"), o_.text(key("body")));
+  w.radius = number("radius");
+  w.law = law(w.radius);
+  vehicle_.wheels.push_back(w);
+}
+
+void VehicleReader::actuator_table(multibody::Actuator& a) const {
+  const auto columns = options::read_columns(o_.path(key("table")), 2, 4);
+  const std::size_t first = columns.size() == 2 ? 2 : 0;  // t,moment or t,fx,fy[,moment]
+  for (std::size_t i = 1; i < columns.size(); ++i) a.action[first + i - 1] = {columns[0], columns[i]};
+}
+
+void VehicleReader::actuator(const std::string& name) {
+  multibody::Actuator a;
+  a.name = name;
+  if (has("bodies")) {
+    if (has("body") || has("reaction_body")) o_.refuse(key("bodies"), "give either bodies or body and reaction_body");
+    a.body = moving_body(key("bodies"), o_.texts(key("bodies"))[0]);
+    a.reaction_body = two_bodies()[1];
+  } else {
+    a.body = moving_body(key("body"), o_.text(key("body")));
+    a.reaction_body = index_of(key("reaction_body"), o_.text(key("reaction_body")));
+    if (a.reaction_body == a.body) o_.refuse(key("reaction_body"), "allowed: another body");
+  }
+  if (has("table")) {
+    if (has("force") || has("moment")) o_.refuse(key("table"), "give either a table or force and moment");
+    actuator_table(a);
+  } else {
+    if (!has("force") && !has("moment")) o_.refuse(key("force"), "missing: an actuator needs force, moment or table");
+    const Vector2d force = vector("force");
+    a.action = {base::TimeFunction(force.x(), 0.0), base::TimeFunction(force.y(), 0.0),
+                base::TimeFunction(number("moment"), 0.0)};
+  }
+  vehicle_.mechanism.actuators.push_back(a);
+}
+
+void VehicleReader::driver(const std::string& name) {
+  multibody::Driver d;
+  d.name = name;
+  d.body = moving_body(key("body"), o_.text(key("body")));
+  const std::string coordinate = o_.choice(key("coordinate"));
+  d.coordinate = coordinate == "x" ? 0 : coordinate == "y" ? 1 : 2;
+  if (has("table")) {
+    if (has("value") || has("rate")) o_.refuse(key("table"), "give either a table or value and rate");
+    const auto columns = options::read_columns(o_.path(key("table")), 2, 2);
+    d.value = base::TimeFunction(columns[0], columns[1]);
+  } else {
+    const double now = vehicle_.mechanism.bodies[static_cast<std::size_t>(d.body)].position[d.coordinate];
+    d.value = base::TimeFunction(has("value") ? number("value") : now, number("rate"));
+  }
+  vehicle_.mechanism.drivers.push_back(d);
+}
+
+}  // namespace
+
+Vehicle read_vehicle(const options::Options& options, const std::string& name) {
+  return VehicleReader(options, name).read();
+}
+
+}  // namespace traverse::app

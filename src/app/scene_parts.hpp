@@ -1,0 +1,26 @@
+// The readers that read_scene is made of: each fills its part of the scene and checks it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traverse/app/scene.hpp"
+#include "traverse/options/options.hpp"
+
+namespace traverse::app {
+
+/// Finds the vehicles of a scene, reads their files and makes the options of their parts known. Returns the train's
+/// vehicle names, front one first.
+std::vector<std::string> declare_vehicles(options::Options& options);
+Vehicle read_vehicle(const options::Options& options, const std::string& name);
+
+void read_beam(const options::Options& options, Scene& scene);  // beam, supports, damping
+beam::Foundation read_foundation(const options::Options& options, double length);
+/// A number or a file of x,value, inside the range of its row.
+beam::Distribution read_distribution(const options::Options& options, const std::string& name);
+void read_train(const options::Options& options, const std::vector<std::string>& names, Scene& scene);
+void read_load(const options::Options& options, Scene& scene);
+void read_track(const options::Options& options, Scene& scene);    // after train: the roughness begins before it
+void decide_axial(const options::Options& options, Scene& scene);  // after beam and train
+
+}  // namespace traverse::app

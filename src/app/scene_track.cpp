@@ -1,0 +1,65 @@
+// track of a scene: the running surface's profile.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene_parts.hpp"
+#include "traverse/options/data_file.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+
+void refuse_layers(const Options& o) {
+  for (const char* prefix : {"track_rail", "track_spacing", "track_pad", "track_sleeper", "track_ballast",
+                             "track_subballast", "track_approach"}) {
+    if (const options::Entry* entry = o.first_with_prefix(prefix)) {
+      o.refuse(entry->name, "the layered track is not modelled yet");
+    }
+  }
+}
+
+/// x of the foremost wheel at t = 0: roughness begins there, so that the train starts on level track.
+double front_wheel(const Scene& scene) {
+  double front = 0.0;
+  bool first = true;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
+    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])];
+    for (const Wheel& wheel : vehicle.wheels) {
+      const auto& body = vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)];
+      const double x = scene.train.positions[i] + body.position.x();
+      front = first ? x : std::max(front, x);
+      first = false;
+    }
+  }
+  return front;
+}
+
+}  // namespace
+
+void read_track(const Options& o, Scene& scene) {
+  refuse_layers(o);
+  const std::string profile = o.text("track_profile");
+  const options::Entry* bump = o.first_with_prefix("track_bump");
+  if (profile == "bump") {
+    scene.profile = track::Profile::bump(o.number("track_bump_start"), o.number("track_bump_length"),
+                                         o.number("track_bump_height"));
+    return;
+  }
+  if (bump != nullptr) scene.notes.push_back(bump->name + " has no effect: track_profile is " + profile);
+  if (profile == "none") return;
+  if (profile.starts_with("iso8608_") && profile.size() == 9 && profile[8] >= 'A' && profile[8] <= 'E') {
+    scene.profile =
+        track::Profile::iso8608(profile[8], front_wheel(scene), static_cast<std::uint64_t>(o.integer("track_seed")));
+    return;
+  }
+  if (profile.find_first_of("./") == std::string::npos || profile.starts_with("iso8608_")) {
+    o.refuse("track_profile", "allowed: none, bump, iso8608_A to iso8608_E, or a file x,height");
+  }
+  const std::string path = o.path("track_profile");
+  auto columns = options::read_columns(path, 2, 2);
+  scene.profile = track::Profile::table(std::move(columns[0]), std::move(columns[1]), "track_profile (" + path + ")");
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,124 @@
+// Vehicles: which ones a scene has, their files, and the names of their parts.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <unordered_map>
+
+#include "scene_parts.hpp"
+#include "traverse/base/error.hpp"
+#include "traverse/options/read_file.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Entry;
+using options::Options;
+using options::Part;
+
+bool is_word(const std::string& name) {
+  return !name.empty() && std::all_of(name.begin(), name.end(),
+                                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+}
+
+/// Puts the options of a vehicle's file below those given already.
+void add_file(Options& o, const std::string& prefix) {
+  const std::string path = o.path(prefix + "file");
+  std::vector<Entry> entries = options::read_options_file(path);
+  for (Entry& entry : entries) {
+    if (entry.name.starts_with("vehicle_")) {
+      throw InputError(
+          fmt::format("{} ({}): a vehicle's own file has the keys of one vehicle, without vehicle: {{NAME: "
+                      "...}} around them",
+                      entry.name, entry.where()));
+    }
+    if (entry.name == "file") o.refuse(prefix + "file", "a vehicle's file cannot name another file");
+    entry.name = prefix + entry.name;
+  }
+  o.add_defaults(entries);
+}
+
+/// Makes the options of every listed part known; a part's name must be unique in its vehicle.
+void declare_parts(Options& o, const std::string& prefix) {
+  std::unordered_map<std::string, Part> seen;
+  for (int kind = 0; kind < options::part_kinds; ++kind) {
+    const Part part = static_cast<Part>(kind);
+    const std::string list = prefix + std::string(options::part_list(part));
+    if (!o.has(list)) continue;
+    for (const std::string& name : o.texts(list)) {
+      if (!is_word(name) || name == "ground" || options::find_row(options::vehicle_rows(), name) != nullptr) {
+        o.refuse(list, fmt::format("'{}' cannot be a part's name; allowed: a word of letters, digits and _", name));
+      }
+      const auto [other, is_new] = seen.try_emplace(name, part);
+      if (!is_new) {
+        o.refuse(list, fmt::format("'{}' is the name of a {} already; a name stands for one part", name,
+                                   options::part_word(other->second)));
+      }
+      for (const options::Row& row : options::part_rows(part)) {
+        const std::string full = fmt::format("{}{}_{}", prefix, name, row.name);
+        if (!o.declare(full, row)) o.refuse(list, fmt::format("two parts would have the option {}; rename one", full));
+      }
+    }
+  }
+}
+
+void declare_vehicle(Options& o, const std::string& name) {
+  const std::string prefix = "vehicle_" + name + "_";
+  for (const options::Row& row : options::vehicle_rows()) o.declare(prefix + std::string(row.name), row);
+  if (o.has(prefix + "file")) add_file(o, prefix);
+  declare_parts(o, prefix);
+}
+
+/// NAME of every vehicle_NAME_file and vehicle_NAME_bodies that is not yet known, shortest first.
+std::vector<std::string> vehicles_in(const Options& o) {
+  std::vector<std::string> names;
+  for (const Entry& entry : o.entries()) {
+    for (const char* ending : {"_file", "_bodies"}) {
+      if (!entry.name.starts_with("vehicle_") || !entry.name.ends_with(ending) || o.knows(entry.name)) continue;
+      const std::size_t length = entry.name.size() - std::string(ending).size();
+      if (length > 8) names.push_back(entry.name.substr(8, length - 8));
+    }
+  }
+  std::sort(names.begin(), names.end(), [](const std::string& a, const std::string& b) {
+    return a.size() != b.size() ? a.size() < b.size() : a < b;
+  });
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
+bool is_defined(const Options& o, const std::string& name) {
+  return o.entries().has("vehicle_" + name + "_file") || o.entries().has("vehicle_" + name + "_bodies");
+}
+
+void check_defined(const Options& o, const std::string& name) {
+  if (is_defined(o, name)) return;
+  std::vector<std::string> known = vehicles_in(o);
+  const std::string near = options::nearest(name, known);
+  o.refuse("train_vehicles",
+           fmt::format("vehicle '{}' is not defined: neither vehicle_{}_bodies nor vehicle_{}_file is given{}", name,
+                       name, name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+}
+
+}  // namespace
+
+std::vector<std::string> declare_vehicles(Options& o) {
+  std::vector<std::string> train;
+  if (o.has("train_vehicles")) train = o.texts("train_vehicles");
+  std::vector<std::string> types = train;
+  std::sort(types.begin(), types.end());
+  types.erase(std::unique(types.begin(), types.end()), types.end());
+  for (const std::string& name : types) check_defined(o, name);
+  for (const std::string& name : types) declare_vehicle(o, name);
+  std::vector<std::string> others;
+  for (const std::string& name : vehicles_in(o)) {
+    // a part's option of the vehicles found so far may end like a vehicle's
+    if (o.knows("vehicle_" + name + "_file") || (o.knows("vehicle_" + name + "_bodies"))) continue;
+    declare_vehicle(o, name);
+    others.push_back(name);
+  }
+  const bool loads = o.has("load_forces") || o.has("load_hslm_a");
+  if (train.empty() && !loads && others.size() == 1) train = others;
+  return train;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,62 @@
+#include "traverse/options/data_file.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::options {
+namespace {
+
+std::vector<double> numbers_of(std::string line, const std::string& where) {
+  line.resize(std::min(line.find('#'), line.size()));
+  for (char& c : line) {
+    if (c == ',' || c == ';') c = ' ';
+  }
+  std::vector<double> numbers;
+  std::istringstream words(line);
+  for (std::string word; words >> word;) {
+    double number = 0.0;
+    if (!parse_number(word, number)) throw InputError(where + "'" + word + "' is no finite number");
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
+}  // namespace
+
+bool parse_number(const std::string& word, double& number) {
+  const char* begin = word.data();
+  const char* end = begin + word.size();
+  if (begin != end && *begin == '+') ++begin;
+  const auto [stop, code] = std::from_chars(begin, end, number);
+  return code == std::errc() && stop == end && begin != end && std::isfinite(number);
+}
+
+std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most) {
+  std::ifstream file(path);
+  if (!file || std::filesystem::is_directory(path)) throw InputError(path + ": the file cannot be read");
+  std::vector<std::vector<double>> columns;
+  int number = 0;
+  for (std::string line; std::getline(file, line);) {
+    const std::string where = path + ":" + std::to_string(++number) + ": ";
+    const std::vector<double> row = numbers_of(line, where);
+    if (row.empty()) continue;
+    if (columns.empty()) columns.resize(row.size());
+    if (row.size() < least || row.size() > most || row.size() != columns.size()) {
+      const std::string wanted = least == most ? std::to_string(least)
+                                 : columns.size() >= least && columns.size() <= most
+                                     ? std::to_string(columns.size())
+                                     : std::to_string(least) + " to " + std::to_string(most);
+      throw InputError(where + "holds " + std::to_string(row.size()) + " numbers, expected " + wanted);
+    }
+    for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
+  }
+  if (columns.empty()) throw InputError(path + ": holds no numbers");
+  return columns;
+}
+
+}  // namespace traverse::options

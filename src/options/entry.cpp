@@ -1,0 +1,25 @@
+#include "traverse/options/entry.hpp"
+
+namespace traverse::options {
+
+std::string Entry::where() const { return line > 0 ? source + ":" + std::to_string(line) : source; }
+
+void Entries::set(Entry entry) {
+  const auto [place, is_new] = index_.try_emplace(entry.name, entries_.size());
+  if (is_new) {
+    entries_.push_back(std::move(entry));
+  } else {
+    entries_[place->second] = std::move(entry);
+  }
+}
+
+void Entries::set_default(Entry entry) {
+  if (!has(entry.name)) set(std::move(entry));
+}
+
+const Entry* Entries::find(std::string_view name) const {
+  const auto place = index_.find(std::string(name));
+  return place == index_.end() ? nullptr : &entries_[place->second];
+}
+
+}  // namespace traverse::options

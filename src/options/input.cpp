@@ -1,0 +1,140 @@
+#include "traverse/options/input.hpp"
+
+#include <fmt/format.h>
+#include <petscsys.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <sstream>
+
+#include "traverse/base/petsc.hpp"
+#include "traverse/options/read_file.hpp"
+#include "traverse/options/table.hpp"
+
+namespace traverse::options {
+namespace {
+
+Entries last_put;  // as PETSc's own table: one for the process
+
+/// A word that stands alone on the command line is most likely an options file without -options_file.
+std::vector<Entry> command_line(int argc, char** argv) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words.front().find_first_not_of('-') == 0) {
+    throw InputError(fmt::format("command line: '{}' belongs to no option; did you mean -options_file {}?",
+                                 words.front(), words.front()));
+  }
+  return parse_words(words, "command line", 0);
+}
+
+void add(Input& input, Entry entry) {
+  if (entry.name == "h" || entry.name == "help") {
+    input.help = true;
+    if (entry.value == "petsc") input.petsc_words.emplace_back("-help");
+  } else if (entry.name == "version" || entry.name == "v") {
+    input.version = true;
+  } else {
+    input.entries.set(std::move(entry));
+  }
+}
+
+void check_room(const Entries& entries) {
+  if (entries.size() <= most_options) return;
+  throw InputError(fmt::format(
+      "the options files and the command line hold {} options, PETSc's table at most {}: put each vehicle into a file "
+      "of its own and name it, vehicle: {{NAME: {{file: NAME.yml}}}} (the same keys without vehicle: {{NAME: ...}})",
+      entries.size(), most_options));
+}
+
+/// Options of ours that PETSc took from its environment variable or .petscrc.
+void add_from_petsc(Input& input) {
+  char* all = nullptr;
+  base::check(PetscOptionsGetAll(nullptr, &all));
+  std::istringstream text(all);
+  (void)PetscFree(all);
+  std::vector<std::string> words;
+  for (std::string word; text >> word;) words.push_back(word);
+  for (Entry& entry : parse_words(words, "PETSC_OPTIONS or .petscrc", 0)) {
+    if (!owned_by_petsc(entry.name)) input.entries.set_default(std::move(entry));
+  }
+}
+
+/// Kinds of options that a solver asks for, or nobody does.
+bool asked_by_solvers(const std::string& name) {
+  static constexpr std::array prefixes = {"ts_",  "snes_", "ksp_", "pc_", "mat_", "vec_", "eps_", "st_",
+                                          "svd_", "pep_",  "nep_", "bv_", "ds_",  "rg_",  "fn_",  "beam_"};
+  return std::any_of(prefixes.begin(), prefixes.end(), [&](const char* p) { return name.starts_with(p); });
+}
+
+}  // namespace
+
+Input read_input(int argc, char** argv) {
+  Input input;
+  std::string scene_name;
+  for (Entry& entry : command_line(argc, argv)) {
+    if (entry.name != "options_file") {
+      add(input, std::move(entry));
+      continue;
+    }
+    if (entry.value.empty()) throw InputError("options_file (command line): wanted: the name of a file");
+    if (scene_name.empty()) scene_name = std::filesystem::path(entry.value).stem().string();
+    for (Entry& inner : read_options_file(entry.value)) add(input, std::move(inner));
+  }
+  check_room(input.entries);
+  input.entries.set_default({"scene_name", scene_name.empty() ? "scene" : scene_name, "options_file", 0});
+  input.petsc_words.insert(input.petsc_words.begin(), argc > 0 ? argv[0] : "traverse");
+  for (const Entry& entry : input.entries) {
+    if (!owned_by_petsc(entry.name)) continue;
+    input.petsc_words.push_back("-" + entry.name);
+    if (!entry.value.empty()) input.petsc_words.push_back(entry.value);
+  }
+  return input;
+}
+
+Arguments::Arguments(const std::vector<std::string>& words) : words_(words) {
+  for (std::string& word : words_) pointers_.push_back(word.data());
+  argc_ = static_cast<int>(pointers_.size());
+  pointers_.push_back(nullptr);
+  argv_ = pointers_.data();
+}
+
+void put_into_petsc(Input& input) {
+  add_from_petsc(input);
+  check_room(input.entries);
+  for (const Entry& entry : input.entries) {
+    if (owned_by_petsc(entry.name)) continue;  // PETSc has them from its arguments
+    const std::string name = "-" + entry.name;
+    base::check(PetscOptionsSetValue(nullptr, name.c_str(), entry.value.c_str()));
+    PetscBool found = PETSC_FALSE;  // asking marks it as used, for -options_left
+    base::check(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &found));
+  }
+  last_put = input.entries;
+}
+
+const Entries& in_force() { return last_put; }
+
+std::vector<std::string> check_all_used(const Entries& entries) {
+  PetscInt count = 0;
+  char **names = nullptr, **values = nullptr;
+  base::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  std::vector<std::string> left(names, names + count);
+  base::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+  const auto common = common_petsc_names();
+  const std::vector<std::string> known(common.begin(), common.end());
+  std::vector<std::string> notes;
+  for (const std::string& name : left) {
+    if (!asked_by_solvers(name)) continue;
+    const Entry* entry = entries.find(name);
+    const std::string given = entry != nullptr ? fmt::format("{} = {} ({})", name, entry->value, entry->where()) : name;
+    if (std::find(known.begin(), known.end(), name) != known.end()) {
+      notes.push_back(given + " has no effect in this scene");
+      continue;
+    }
+    const std::string near = nearest(name, known);
+    throw InputError(fmt::format("option {}: no solver of this scene asks for it{}", given,
+                                 near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+  return notes;
+}
+
+}  // namespace traverse::options

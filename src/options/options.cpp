@@ -1,0 +1,340 @@
+#include "traverse/options/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "traverse/base/error.hpp"
+#include "traverse/options/data_file.hpp"
+#include "traverse/options/read_file.hpp"
+
+namespace traverse::options {
+namespace {
+
+constexpr std::size_t longest_list = 10'000'000;
+constexpr std::size_t longest_shown = 80;
+
+std::string trim(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return "";
+  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+}
+
+std::string shortened(const std::string& text) {
+  return text.size() <= longest_shown ? text : text.substr(0, longest_shown) + "...";
+}
+
+/// The words of a comma list, brackets around it taken off.
+std::vector<std::string> split(const std::string& value) {
+  std::string text = trim(value);
+  if (text.size() >= 2 && text.front() == '[' && text.back() == ']') text = trim(text.substr(1, text.size() - 2));
+  std::vector<std::string> words;
+  if (text.empty()) return words;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    words.push_back(trim(std::string_view(text).substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return words;
+}
+
+/// Entries whose value has no type of its own: text as it stands.
+bool is_remark(std::string_view fallback) { return fallback.empty() || fallback.front() == '('; }
+
+Entries entries_of(const std::vector<Entry>& list) {
+  Entries entries;
+  for (const Entry& entry : list) entries.set(entry);
+  return entries;
+}
+
+Entries entries_of(std::initializer_list<std::pair<std::string, std::string>> values) {
+  Entries entries;
+  for (const auto& [name, value] : values) entries.set({name, value, "command line", 0});
+  return entries;
+}
+
+bool inside(const Range& range, double value) {
+  return value <= range.high && (range.above ? value > range.low : value >= range.low);
+}
+
+}  // namespace
+
+Options::Options(Entries entries) : entries_(std::move(entries)) {}
+
+Options::Options(std::initializer_list<std::pair<std::string, std::string>> values) : Options(entries_of(values)) {}
+
+Options Options::from_yaml(const std::string& text, const std::string& name) {
+  return Options(entries_of(parse_yaml(text, name)));
+}
+
+bool Options::has(std::string_view name) const {
+  const Entry* entry = entries_.find(name);
+  if (entry == nullptr) return false;
+  const Row* known = find_known(name);
+  const bool list = known != nullptr && (known->kind == Kind::numbers || known->kind == Kind::integers ||
+                                         known->kind == Kind::texts || known->kind == Kind::choice_list);
+  return !list || !split(entry->value).empty();
+}
+
+const Entry* Options::first_with_prefix(std::string_view prefix) const {
+  for (const Entry& entry : entries_) {
+    if (entry.name.starts_with(prefix)) return &entry;
+  }
+  return nullptr;
+}
+
+void Options::add_defaults(const std::vector<Entry>& entries) {
+  for (const Entry& entry : entries_of(entries)) entries_.set_default(entry);
+}
+
+bool Options::declare(const std::string& name, const Row& row) {
+  return !knows(name) && declared_.try_emplace(name, &row).second;
+}
+
+const Row* Options::find_known(std::string_view name) const {
+  if (const Row* fixed = find_row(fixed_rows(), name)) return fixed;
+  const auto declared = declared_.find(std::string(name));
+  return declared == declared_.end() ? nullptr : declared->second;
+}
+
+const Row& Options::row(std::string_view name) const {
+  const Row* known = find_known(name);
+  if (known == nullptr) throw Error(fmt::format("option {} is read but stands in no table", name), 1);
+  return *known;
+}
+
+void Options::check_names() const {
+  for (const Entry& entry : entries_) {
+    if (knows(entry.name) || owned_by_petsc(entry.name)) continue;
+    std::vector<std::string> candidates;
+    for (const Row& fixed : fixed_rows()) candidates.emplace_back(fixed.name);
+    for (const auto& declared : declared_) candidates.push_back(declared.first);
+    for (const std::string_view name : common_petsc_names()) candidates.emplace_back(name);
+    std::sort(candidates.begin(), candidates.end());
+    const std::string near = nearest(entry.name, candidates);
+    throw InputError(fmt::format("unknown option {} = {} ({}){}; -help lists them all", entry.name,
+                                 shortened(entry.value), entry.where(),
+                                 near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  }
+}
+
+void Options::check_values() const {
+  for (const Entry& entry : entries_) {
+    if (const Row* known = find_known(entry.name)) check_value(entry, *known);
+  }
+}
+
+void Options::check_value(const Entry& entry, const Row& row) const {
+  const std::string_view name = entry.name;
+  switch (row.kind) {
+    case Kind::number:
+      (void)number(name);
+      break;
+    case Kind::integer:
+      (void)integer(name);
+      break;
+    case Kind::flag:
+      (void)flag(name);
+      break;
+    case Kind::text:
+    case Kind::choice:
+      (void)text(name);
+      break;
+    case Kind::numbers:
+      (void)numbers(name);
+      break;
+    case Kind::integers:
+      (void)integers(name);
+      break;
+    case Kind::texts:
+    case Kind::choice_list:
+      (void)texts(name);
+      break;
+    case Kind::file:
+      (void)path(name);
+      break;
+    case Kind::number_or_file:
+      if (!is_number(name)) (void)path(name);
+      break;
+  }
+}
+
+void Options::refuse(std::string_view name, const std::string& why) const {
+  const Entry* entry = entries_.find(name);
+  if (entry == nullptr) throw InputError(fmt::format("{}: {}", name, why));
+  throw InputError(fmt::format("{} = {} ({}): {}", name, shortened(entry->value), entry->where(), why));
+}
+
+std::string Options::value_or_default(std::string_view name) const {
+  const Row& known = row(name);
+  if (const Entry* entry = entries_.find(name)) {
+    std::string value = trim(entry->value);
+    if (value.empty() && known.kind != Kind::flag) refuse(name, "has no value; wanted: " + allowed(known));
+    return value;
+  }
+  if (is_remark(known.fallback)) {
+    throw InputError(fmt::format("{} is missing: {}; wanted: {}", name, known.text, allowed(known)));
+  }
+  return std::string(known.fallback);
+}
+
+std::vector<std::string> Options::list(std::string_view name) const {
+  const Row& known = row(name);
+  const Entry* entry = entries_.find(name);
+  std::vector<std::string> expanded;
+  for (const std::string& word : split(entry != nullptr ? entry->value : value_or_default(name))) {
+    const std::size_t star = word.rfind('*');
+    std::size_t count = 1;
+    if (star != std::string::npos) {
+      const std::string digits = trim(word.substr(star + 1));
+      const auto [stop, code] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
+      if (code != std::errc() || stop != digits.data() + digits.size() || count < 1 || digits.empty()) {
+        refuse(name, fmt::format("'{}': after * comes a whole number, how often the value is repeated", word));
+      }
+    }
+    const std::string value = trim(word.substr(0, star));
+    if (value.empty()) refuse(name, "has an empty entry; wanted: " + allowed(known));
+    if (count > longest_list || expanded.size() + count > longest_list) {
+      refuse(name, fmt::format("a list has at most {} entries", longest_list));
+    }
+    expanded.insert(expanded.end(), count, value);
+  }
+  return expanded;
+}
+
+double Options::to_number(std::string_view name, const std::string& word) const {
+  double value = 0.0;
+  const Row& known = row(name);
+  if (!parse_number(word, value)) {
+    refuse(name, fmt::format("'{}' is no finite number; allowed: {}", word, allowed(known)));
+  }
+  if (!inside(known.range, value)) refuse(name, "allowed: " + allowed(known));
+  return value;
+}
+
+int Options::to_integer(std::string_view name, const std::string& word) const {
+  const double value = to_number(name, word);
+  if (value != std::floor(value) || std::abs(value) > std::numeric_limits<int>::max()) {
+    refuse(name, "allowed: " + allowed(row(name)));
+  }
+  return static_cast<int>(value);
+}
+
+double Options::number(std::string_view name) const { return to_number(name, value_or_default(name)); }
+
+int Options::integer(std::string_view name) const { return to_integer(name, value_or_default(name)); }
+
+bool Options::flag(std::string_view name) const {
+  const std::string value = value_or_default(name);
+  for (const char* word : {"", "true", "True", "TRUE", "yes", "on", "1"}) {
+    if (value == word) return true;
+  }
+  for (const char* word : {"false", "False", "FALSE", "no", "off", "0"}) {
+    if (value == word) return false;
+  }
+  refuse(name, "allowed: true or false");
+}
+
+std::string Options::text(std::string_view name) const {
+  std::string value = value_or_default(name);
+  const Row& known = row(name);
+  if (known.kind == Kind::choice &&
+      (" " + std::string(known.choices) + " ").find(" " + value + " ") == std::string::npos) {
+    refuse(name, "allowed: " + allowed(known));
+  }
+  return value;
+}
+
+std::vector<double> Options::numbers(std::string_view name) const {
+  std::vector<double> values;
+  for (const std::string& word : list(name)) values.push_back(to_number(name, word));
+  const Row& known = row(name);
+  if (known.count > 0 && values.size() != static_cast<std::size_t>(known.count)) {
+    refuse(name, fmt::format("has {} entries; wanted: {}", values.size(), allowed(known)));
+  }
+  return values;
+}
+
+std::vector<int> Options::integers(std::string_view name) const {
+  std::vector<int> values;
+  for (const std::string& word : list(name)) values.push_back(to_integer(name, word));
+  return values;
+}
+
+std::vector<std::string> Options::texts(std::string_view name) const {
+  std::vector<std::string> words = list(name);
+  const Row& known = row(name);
+  if (known.kind == Kind::choice_list) {
+    for (const std::string& word : words) {
+      if ((" " + std::string(known.choices) + " ").find(" " + word + " ") == std::string::npos) {
+        refuse(name, fmt::format("'{}' is not allowed; allowed: {}", word, allowed(known)));
+      }
+    }
+  }
+  if (known.count > 0 && words.size() != static_cast<std::size_t>(known.count)) {
+    refuse(name, fmt::format("has {} entries; wanted: {}", words.size(), allowed(known)));
+  }
+  return words;
+}
+
+std::optional<double> Options::optional_number(std::string_view name) const {
+  if (!has(name)) return std::nullopt;
+  return number(name);
+}
+
+template <class T>
+std::vector<T> Options::spread(std::string_view name, std::vector<T> values, std::size_t count,
+                               std::string_view what) const {
+  if (values.size() == 1) values.resize(count, values.front());
+  if (values.size() != count) {
+    refuse(name, fmt::format("has {} entries; wanted: one, or {}, {}", values.size(), count, what));
+  }
+  return values;
+}
+
+std::vector<double> Options::numbers(std::string_view name, std::size_t count, std::string_view what) const {
+  return spread(name, numbers(name), count, what);
+}
+
+std::vector<int> Options::integers(std::string_view name, std::size_t count, std::string_view what) const {
+  return spread(name, integers(name), count, what);
+}
+
+std::vector<std::string> Options::texts(std::string_view name, std::size_t count, std::string_view what) const {
+  return spread(name, texts(name), count, what);
+}
+
+bool Options::is_number(std::string_view name) const {
+  const std::string value = value_or_default(name);
+  double parsed = 0.0;
+  const bool like_a_number = value.find_first_not_of("+-.0123456789eE") == std::string::npos ||
+                             value.ends_with("nan") || value.ends_with("inf");
+  if (!parse_number(value, parsed) && !like_a_number) return false;
+  (void)to_number(name, value);
+  return true;
+}
+
+std::string Options::path(std::string_view name) const {
+  const std::string value = value_or_default(name);
+  const Entry* entry = entries_.find(name);
+  const std::string found = find_file(value, entry != nullptr && entry->from_file() ? entry->source : "");
+  if (found.empty()) {
+    const bool number = row(name).kind == Kind::number_or_file;
+    refuse(name, number ? "neither a number nor a file that is there; allowed: " + allowed(row(name))
+                        : "there is no such file, neither here nor beside the file that names it");
+  }
+  if (std::filesystem::is_directory(found)) refuse(name, "is a folder, not a file");
+  return found;
+}
+
+std::vector<std::pair<std::string, std::string>> Options::all() const {
+  std::vector<std::pair<std::string, std::string>> list;
+  for (const Entry& entry : entries_) list.emplace_back(entry.name, entry.value);
+  return list;
+}
+
+}  // namespace traverse::options

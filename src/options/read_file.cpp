@@ -1,0 +1,209 @@
+#include "traverse/options/read_file.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::options {
+namespace {
+
+constexpr int deepest_include = 8;
+
+std::string at(const std::string& file, int line) { return file + ":" + std::to_string(line) + ": "; }
+
+/// Walks a YAML tree and notes every leaf as an entry.
+class Flattener {
+ public:
+  Flattener(const std::string& file, std::vector<Entry>& entries) : file_(file), entries_(entries) {}
+
+  void map(const YAML::Node& node, const std::string& prefix) {
+    std::unordered_map<std::string, int> lines;
+    for (const auto& item : node) {
+      const int line = line_of(item.first);
+      if (!item.first.IsScalar()) throw InputError(at(file_, line) + "a key has to be a word");
+      const std::string& key = item.first.Scalar();
+      if (key == "<<") {  // YAML's merge key; an anchor's block may be kept under a key that starts with $$
+        map(item.second, prefix);
+        continue;
+      }
+      if (key.starts_with("$$")) continue;
+      check_key(key, line);
+      const auto [first, is_new] = lines.try_emplace(key, line);
+      if (!is_new) {
+        throw InputError(at(file_, line) + prefix + key + " is given twice, first in line " +
+                         std::to_string(first->second));
+      }
+      value(item.second, prefix + key, line);
+    }
+  }
+
+ private:
+  static int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
+
+  void check_key(const std::string& key, int line) const {
+    for (const char c : key) {
+      if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '_' && c != '-') {
+        throw InputError(at(file_, line) + "'" + key + "' is no name of an option: letters, digits and _ only");
+      }
+    }
+    if (key.empty()) throw InputError(at(file_, line) + "an empty key");
+  }
+
+  void value(const YAML::Node& node, const std::string& name, int line) {
+    if (node.IsMap()) {
+      map(node, name + "_");
+    } else if (node.IsSequence()) {
+      entries_.push_back({name, list(node, name), file_, line});
+    } else {
+      entries_.push_back({name, node.IsNull() ? "" : node.Scalar(), file_, line});
+    }
+  }
+
+  std::string list(const YAML::Node& node, const std::string& name) const {
+    std::string joined;
+    for (const auto& item : node) {
+      if (!item.IsScalar()) {
+        throw InputError(at(file_, line_of(item)) + name + ": a list holds numbers or words, not lists or blocks");
+      }
+      if (!joined.empty()) joined += ',';
+      joined += item.Scalar();
+    }
+    return joined;
+  }
+
+  const std::string& file_;
+  std::vector<Entry>& entries_;
+};
+
+/// Splits a line into words; "..." and '...' hold blanks together, # starts a comment.
+std::vector<std::string> words_of(const std::string& line, const std::string& where) {
+  std::vector<std::string> words;
+  std::size_t i = 0;
+  while (i < line.size()) {
+    const char c = line[i];
+    if (std::isspace(static_cast<unsigned char>(c)) != 0) {
+      ++i;
+    } else if (c == '#') {
+      break;
+    } else if (c == '"' || c == '\'') {
+      const std::size_t end = line.find(c, i + 1);
+      if (end == std::string::npos) throw InputError(where + "a quotation mark is not closed");
+      words.push_back(line.substr(i + 1, end - i - 1));
+      i = end + 1;
+    } else {
+      std::size_t end = i;
+      while (end < line.size() && std::isspace(static_cast<unsigned char>(line[end])) == 0) ++end;
+      words.push_back(line.substr(i, end - i));
+      i = end;
+    }
+  }
+  return words;
+}
+
+bool is_name(const std::string& word) {
+  std::size_t dashes = 0;
+  while (dashes < word.size() && word[dashes] == '-') ++dashes;
+  return dashes >= 1 && dashes <= 2 && dashes < word.size() &&
+         (std::isalpha(static_cast<unsigned char>(word[dashes])) != 0 || word[dashes] == '_');
+}
+
+std::string text_of(const std::string& path) {
+  if (std::filesystem::is_directory(path)) throw InputError("options_file = " + path + ": is a folder, not a file");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw InputError("options_file = " + path + ": there is no such file, or it cannot be read");
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+bool is_yaml(const std::string& path) { return path.ends_with(".yml") || path.ends_with(".yaml"); }
+
+std::vector<Entry> read_nested(const std::string& path, int depth) {
+  const std::string text = text_of(path);
+  std::vector<Entry> all;
+  for (Entry& entry : is_yaml(path) ? parse_yaml(text, path) : parse_classic(text, path)) {
+    if (entry.name != "options_file") {
+      all.push_back(std::move(entry));
+      continue;
+    }
+    if (depth >= deepest_include) {
+      throw InputError("options_file = " + entry.value + " (" + entry.where() + "): files name each other in a circle");
+    }
+    std::istringstream names(entry.value);
+    for (std::string name; std::getline(names, name, ',');) {
+      const std::string found = find_file(name, path);
+      if (found.empty()) {
+        throw InputError("options_file = " + name + " (" + entry.where() + "): there is no such file");
+      }
+      for (Entry& inner : read_nested(found, depth + 1)) all.push_back(std::move(inner));
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+std::vector<Entry> parse_yaml(const std::string& text, const std::string& name) {
+  std::vector<Entry> entries;
+  try {
+    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
+    if (documents.empty() || documents.front().IsNull()) return entries;
+    if (documents.size() > 1) throw InputError(name + ": holds more than one YAML document (a line of ---)");
+    if (!documents.front().IsMap()) throw InputError(at(name, 1) + "expected `key: value`");
+    Flattener(name, entries).map(documents.front(), "");
+  } catch (const YAML::Exception& error) {
+    throw InputError(at(name, error.mark.line + 1) + "not well-formed YAML: " + error.msg);
+  }
+  return entries;
+}
+
+std::vector<Entry> parse_classic(const std::string& text, const std::string& name) {
+  std::vector<Entry> entries;
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    const std::vector<std::string> words = words_of(line, at(name, number));
+    if (words.empty() || words.front().starts_with("!") || words.front().starts_with("%")) continue;
+    if (!is_name(words.front())) {
+      throw InputError(at(name, number) + "expected `-name value`, found '" + words.front() + "'");
+    }
+    for (Entry& entry : parse_words(words, name, number)) entries.push_back(std::move(entry));
+  }
+  return entries;
+}
+
+std::vector<Entry> parse_words(const std::vector<std::string>& words, const std::string& source, int line) {
+  std::vector<Entry> entries;
+  bool has_value = true;  // of the last entry: a further word belongs to nothing
+  for (const std::string& word : words) {
+    if (is_name(word)) {
+      entries.push_back({word.substr(word.find_first_not_of('-')), "", source, line});
+      has_value = false;
+    } else if (!has_value) {
+      entries.back().value = word;
+      has_value = true;
+    } else {
+      throw InputError((line > 0 ? at(source, line) : source + ": ") + "'" + word +
+                       "' belongs to no option; a value follows its name (-name value), a list has no blanks");
+    }
+  }
+  return entries;
+}
+
+std::string find_file(const std::string& path, const std::string& named_in) {
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return path;
+  if (named_in.empty() || std::filesystem::path(path).is_absolute()) return "";
+  const std::filesystem::path beside = std::filesystem::path(named_in).parent_path() / path;
+  return std::filesystem::exists(beside, ignored) ? beside.lexically_normal().string() : "";
+}
+
+std::vector<Entry> read_options_file(const std::string& path) { return read_nested(path, 0); }
+
+}  // namespace traverse::options

@@ -1,0 +1,131 @@
+// Rows of the option table: options with a fixed name. See table.hpp for the columns.
+#include "traverse/options/table.hpp"
+
+namespace traverse::options {
+namespace {
+
+using enum Kind;
+constexpr Range tolerance = {1e-10, 0.1};
+
+// clang-format off
+constexpr Row rows[] = {
+  {"options_file", text, "", "", any, "", 0, "a YAML (.yml, .yaml) or classic options file; several add up, later ones win; may name further files"},
+
+  {"beam_spans", numbers, "m", "", positive, "", 0, "length of each span; left out: no bridge"},
+  {"beam_elements_per_span", integers, "", "(from accuracy)", {1, 100000}, "", 0, "elements a span, one number or one per span"},
+  {"beam_EI", number_or_file, "N m2", "", positive, "", 0, "bending stiffness, or a file x,value"},
+  {"beam_EA", number_or_file, "N", "", positive, "", 0, "axial stiffness, or a file x,value; needed for longitudinal action only"},
+  {"beam_mass", number_or_file, "kg/m", "", positive, "", 0, "mass per length, or a file x,value"},
+  {"beam_continuity", choice, "", "continuous", any, "continuous simply_supported", 0, "simply_supported: each span a beam of its own"},
+  {"beam_damping_ratios", numbers, "1", "", {0.0, 0.999}, "", 0, "damping ratios at the first two distinct frequencies (eq. 20)"},
+  {"beam_damping_frequencies", numbers, "Hz", "", positive, "", 2, "the frequencies that the damping ratios belong to"},
+  {"beam_rayleigh", numbers, "1/s, s", "", not_negative, "", 2, "a, b of C = a M + b K, instead of damping ratios"},
+  {"beam_self_weight", flag, "", "false", any, "", 0, "gravity acts on the beam too"},
+
+  {"support_types", choice_list, "", "(pinned, then rollers)", any, "free roller pinned clamped guided", 0, "support at every span end, one word serves all"},
+
+  {"foundation_vertical_x", numbers, "m", "", not_negative, "", 0, "stations of vertical springs and dampers"},
+  {"foundation_vertical_k", numbers, "N/m", "0", not_negative, "", 0, "their stiffness, one serves all"},
+  {"foundation_vertical_c", numbers, "Ns/m", "0", not_negative, "", 0, "their damping, one serves all"},
+  {"foundation_vertical_bed_k", number_or_file, "N/m2", "0", not_negative, "", 0, "vertical bed along the beam: stiffness, or a file x,value"},
+  {"foundation_vertical_bed_c", number_or_file, "Ns/m2", "0", not_negative, "", 0, "vertical bed: damping, or a file x,value"},
+  {"foundation_longitudinal_x", numbers, "m", "", not_negative, "", 0, "stations of longitudinal springs and dampers"},
+  {"foundation_longitudinal_k", numbers, "N/m", "0", not_negative, "", 0, "their stiffness, one serves all"},
+  {"foundation_longitudinal_c", numbers, "Ns/m", "0", not_negative, "", 0, "their damping, one serves all"},
+  {"foundation_longitudinal_bed_k", number_or_file, "N/m2", "0", not_negative, "", 0, "longitudinal bed: stiffness, or a file x,value"},
+  {"foundation_longitudinal_bed_c", number_or_file, "Ns/m2", "0", not_negative, "", 0, "longitudinal bed: damping, or a file x,value"},
+  {"foundation_rotational_x", numbers, "m", "", not_negative, "", 0, "stations of rotational springs and dampers"},
+  {"foundation_rotational_k", numbers, "Nm/rad", "0", not_negative, "", 0, "their stiffness, one serves all"},
+  {"foundation_rotational_c", numbers, "Nms/rad", "0", not_negative, "", 0, "their damping, one serves all"},
+
+  {"train_vehicles", texts, "", "(the vehicle, if one is defined)", any, "", 0, "vehicles by name, front one first; name*count repeats"},
+  {"train_positions", numbers, "m", "(front wheel at 0)", any, "", 0, "x of each vehicle's origin at t = 0, or of the first one"},
+  {"train_spacing", numbers, "m", "(from vehicle lengths)", positive, "", 0, "distance from origin to origin, one number or one per gap"},
+  {"train_speed", number, "m/s", "", not_negative, "", 0, "speed towards the right at t = 0"},
+  {"train_drive", choice, "", "(constant; free without wheels)", any, "constant free", 0, "constant: each vehicle's x is driven at the speed; free: only forces act"},
+
+  {"load_forces", numbers, "N", "", any, "", 0, "moving constant forces, downward"},
+  {"load_positions", numbers, "m", "(first at 0)", any, "", 0, "x of each force at t = 0; with hslm_a of the first axle"},
+  {"load_speed", number, "m/s", "(train_speed)", not_negative, "", 0, "speed of the forces"},
+  {"load_hslm_a", integer, "", "", {1, 10}, "", 0, "instead of forces: train A1 to A10 of EN 1991-2"},
+
+  {"track_profile", text, "", "none", any, "", 0, "none, bump, iso8608_A to iso8608_E, or a file x,height"},
+  {"track_bump_start", number, "m", "", any, "", 0, "where the bump begins"},
+  {"track_bump_length", number, "m", "", positive, "", 0, "its length"},
+  {"track_bump_height", number, "m", "", any, "", 0, "its height in the middle"},
+  {"track_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "of the random phases of iso8608"},
+  {"track_rail_EI", number, "N m2", "", positive, "", 0, "layered track: rail's bending stiffness (both rails)"},
+  {"track_rail_EA", number, "N", "", positive, "", 0, "layered track: rail's axial stiffness"},
+  {"track_rail_mass", number, "kg/m", "", positive, "", 0, "layered track: rail's mass per length"},
+  {"track_spacing", number, "m", "", positive, "", 0, "layered track: from sleeper to sleeper"},
+  {"track_pad_k", number, "N/m", "", not_negative, "", 0, "layered track: stiffness of a pad"},
+  {"track_pad_c", number, "Ns/m", "", not_negative, "", 0, "layered track: damping of a pad"},
+  {"track_sleeper_mass", number, "kg", "", not_negative, "", 0, "layered track: mass of a sleeper"},
+  {"track_ballast_mass", number, "kg", "", not_negative, "", 0, "layered track: ballast mass per sleeper"},
+  {"track_ballast_k", number, "N/m", "", not_negative, "", 0, "layered track: ballast stiffness per sleeper"},
+  {"track_ballast_c", number, "Ns/m", "", not_negative, "", 0, "layered track: ballast damping per sleeper"},
+  {"track_subballast_k", number, "N/m", "", not_negative, "", 0, "layered track: sub-ballast stiffness, on the ground only"},
+  {"track_subballast_c", number, "Ns/m", "", not_negative, "", 0, "layered track: sub-ballast damping, on the ground only"},
+  {"track_approach", number, "m", "", positive, "", 0, "layered track: length modelled on either side"},
+
+  {"gravity", number, "m/s2", "9.81", not_negative, "", 0, "downward"},
+  {"scene_name", text, "", "(the first options file)", any, "", 0, "names the scene in messages and the results file"},
+  {"scene_analysis", choice, "", "transient", any, "transient modes static", 0, "what is computed"},
+  {"scene_start", choice, "", "equilibrium", any, "equilibrium given", 0, "given: positions and velocities as written"},
+  {"scene_tail", number, "s", "", not_negative, "", 0, "free vibration after the last wheel has left"},
+  {"ts_max_time", number, "s", "(when the last wheel has left)", positive, "", 0, "the run's end"},
+  {"ts_dt", number, "s", "(from accuracy)", positive, "", 0, "the step, or the first one"},
+  {"modes_count", integer, "", "10", {1, 100000}, "", 0, "frequencies with scene_analysis modes"},
+  {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where left open"},
+
+  {"model_axial", choice, "", "auto", any, "auto true false", 0, "axial unknowns of the beam; auto: where there is longitudinal action"},
+  {"model_modes", text, "", "auto", any, "", 0, "modes instead of elements; auto or 0 only: not in this version"},
+  {"model_window", text, "", "auto", any, "", 0, "only the spans near the train; auto or 0 only: not in this version"},
+
+  {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},
+  {"output_interval", number, "s", "(from the step)", positive, "", 0, "between stored samples"},
+  {"output_probes", numbers, "m", "(middle of each span, of 200)", not_negative, "", 0, "stations on the beam where the response is stored"},
+  {"output_quiet", flag, "", "false", any, "", 0, "no progress on the terminal"},
+
+  {"sweep_speed", numbers, "m/s", "", positive, "", 3, "from, to, step: not in this version"},
+  {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "HSLM-A trains to run: not in this version"},
+
+  {"help", text, "", "", any, "", 0, "prints this list; -help petsc: PETSc's options too"},
+};
+
+constexpr std::string_view petsc_prefixes[] = {
+  "ts_", "snes_", "ksp_", "pc_", "mat_", "vec_", "eps_", "st_", "svd_", "pep_", "nep_", "bv_", "ds_", "rg_", "fn_",
+  "beam_ksp_", "beam_pc_", "beam_mat_", "beam_eps_", "beam_st_", "log_", "options_", "malloc", "info", "on_error_",
+  "fp_trap", "start_in_debugger", "stop_for_debugger", "debug", "petsc", "version", "viewer_", "view", "display",
+  "draw_", "x_", "memory_", "objects_dump", "citations", "python", "saws", "is_", "sf_", "dm_", "cuda_", "device",
+  "use_gpu_aware_mpi", "skip_petscrc", "no_signal_handler", "check_pointer_intensity", "error_output_", "mpi",
+  "shared_tmp", "not_shared_tmp", "tmp", "get_total_flops", "hdf5", "history", "nox", "prefix_p", "slepc",
+};
+
+constexpr std::string_view petsc_names[] = {
+  "ts_type", "ts_dt", "ts_max_time", "ts_max_steps", "ts_max_snes_failures", "ts_max_reject", "ts_monitor", "ts_view",
+  "ts_exact_final_time", "ts_rtol", "ts_atol", "ts_adapt_type", "ts_adapt_dt_max", "ts_adapt_dt_min",
+  "ts_adapt_clip", "ts_adapt_safety", "ts_adapt_monitor", "ts_arkimex_type", "ts_arkimex_fully_implicit",
+  "ts_bdf_order", "ts_rk_type", "ts_rosw_type", "ts_theta_theta", "ts_theta_endpoint", "ts_alpha_radius",
+  "snes_type", "snes_atol", "snes_rtol", "snes_stol", "snes_max_it", "snes_monitor", "snes_converged_reason",
+  "snes_view", "snes_lag_jacobian", "ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it", "ksp_monitor", "pc_type",
+  "pc_factor_mat_solver_type", "mat_type", "vec_type", "eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it",
+  "eps_target", "eps_monitor", "eps_view", "st_type", "st_shift", "log_view", "log_trace", "options_left",
+  "options_view", "malloc_debug", "info", "version",
+};
+// clang-format on
+
+}  // namespace
+
+std::span<const Row> fixed_rows() { return rows; }
+
+bool owned_by_petsc(std::string_view name) {
+  for (const std::string_view prefix : petsc_prefixes) {
+    if (name.starts_with(prefix)) return true;
+  }
+  return false;
+}
+
+std::span<const std::string_view> common_petsc_names() { return petsc_names; }
+
+}  // namespace traverse::options

@@ -1,0 +1,128 @@
+// Rows of the option table: a vehicle and its parts. See table.hpp for the columns.
+#include <array>
+
+#include "traverse/options/table.hpp"
+
+namespace traverse::options {
+namespace {
+
+using enum Kind;
+
+// clang-format off
+constexpr Row vehicle[] = {
+  {"file", file, "", "", any, "", 0, "a YAML file with this vehicle's options, without vehicle_<name>_ before them"},
+  {"length", number, "m", "", positive, "", 0, "over the couplings, origin in the middle: spaces a train without train_spacing"},
+  {"bodies", texts, "", "", any, "", 0, "names of the rigid bodies"},
+  {"joints", texts, "", "", any, "", 0, "names of the joints"},
+  {"springs", texts, "", "", any, "", 0, "names of the springs with dampers"},
+  {"torsion_springs", texts, "", "", any, "", 0, "names of the torsion springs with dampers"},
+  {"wheels", texts, "", "", any, "", 0, "names of the wheels"},
+  {"actuators", texts, "", "", any, "", 0, "names of the prescribed forces"},
+  {"drivers", texts, "", "", any, "", 0, "names of the prescribed motions"},
+  {"contacts", texts, "", "", any, "", 0, "names of contacts between bodies: not in this version"},
+};
+
+constexpr Row body[] = {
+  {"mass", number, "kg", "", positive, "", 0, "mass"},
+  {"inertia", number, "kg m2", "", positive, "", 0, "about the centre of mass"},
+  {"position", numbers, "m", "", any, "", 2, "x, y of the centre of mass at t = 0, relative to the vehicle's origin"},
+  {"angle", number, "rad", "0", any, "", 0, "at t = 0, counter-clockwise"},
+  {"velocity", numbers, "m/s, rad/s", "0, 0, 0", any, "", 3, "vx, vy, omega at t = 0, on top of the train's speed"},
+};
+
+constexpr Row joint[] = {
+  {"type", choice, "", "", any, "revolute prismatic slot weld distance", 0, "prismatic: slides along the axis; slot: slides and turns"},
+  {"bodies", texts, "", "", any, "", 2, "the two bodies; ground is the fixed frame"},
+  {"point", numbers, "m", "", any, "", 2, "revolute, prismatic, slot, weld: x, y at t = 0"},
+  {"axis", numbers, "1", "", any, "", 2, "prismatic, slot: direction, fixed in the first body"},
+  {"from", numbers, "m", "", any, "", 2, "distance: x, y on the first body at t = 0"},
+  {"to", numbers, "m", "", any, "", 2, "distance: x, y on the second body at t = 0"},
+};
+
+constexpr Row spring[] = {
+  {"bodies", texts, "", "", any, "", 2, "the two bodies; ground is the fixed frame"},
+  {"from", numbers, "m", "", any, "", 2, "x, y on the first body at t = 0"},
+  {"to", numbers, "m", "", any, "", 2, "x, y on the second body at t = 0"},
+  {"stiffness", number, "N/m", "0", not_negative, "", 0, "stiffness"},
+  {"damping", number, "Ns/m", "0", not_negative, "", 0, "damping"},
+  {"free_length", number, "m", "(the distance at t = 0)", not_negative, "", 0, "length without force"},
+  {"preload", number, "N", "0", any, "", 0, "force at t = 0, tension positive; instead of free_length"},
+};
+
+constexpr Row torsion_spring[] = {
+  {"bodies", texts, "", "", any, "", 2, "the two bodies; ground is the fixed frame"},
+  {"stiffness", number, "Nm/rad", "0", not_negative, "", 0, "stiffness"},
+  {"damping", number, "Nms/rad", "0", not_negative, "", 0, "damping"},
+  {"free_angle", number, "rad", "(the angle at t = 0)", any, "", 0, "angle of the second body against the first without moment"},
+};
+
+constexpr Row wheel[] = {
+  {"body", text, "", "", any, "", 0, "the body whose centre of mass is the wheel's centre"},
+  {"radius", number, "m", "", positive, "", 0, "radius"},
+  {"law", choice, "", "hertz", any, "hertz linear", 0, "force over penetration: k a^1.5 or k a"},
+  {"stiffness", number, "N/m^1.5 or N/m", "", positive, "", 0, "k of the law"},
+  {"damping", number, "Ns/m", "0", not_negative, "", 0, "of the contact"},
+  {"restitution", number, "1", "", {0.0, 1.0}, "", 0, "Lankarani and Nikravesh's damping, instead of damping"},
+  {"friction", number, "1", "0", not_negative, "", 0, "coefficient of friction"},
+  {"transition_speed", number, "m/s", "0.01", positive, "", 0, "sliding speed at which friction is nearly full (eq. 49)"},
+  {"young", number, "N/m2", "", positive, "", 0, "modulus of the wheel (eq. 48), instead of stiffness"},
+  {"poisson", number, "1", "0.3", {-0.99, 0.5}, "", 0, "Poisson's ratio of the wheel"},
+  {"rail_young", number, "N/m2", "(the wheel's)", positive, "", 0, "modulus of the rail"},
+  {"rail_poisson", number, "1", "(the wheel's)", {-0.99, 0.5}, "", 0, "Poisson's ratio of the rail"},
+};
+
+constexpr Row actuator[] = {
+  {"body", text, "", "", any, "", 0, "the body it acts on"},
+  {"reaction_body", text, "", "ground", any, "", 0, "the body that takes the reaction"},
+  {"bodies", texts, "", "", any, "", 2, "body and reaction body in one"},
+  {"force", numbers, "N", "0, 0", any, "", 2, "fx, fy at the centre of mass"},
+  {"moment", number, "Nm", "0", any, "", 0, "counter-clockwise"},
+  {"table", file, "", "", any, "", 0, "a file instead: t,moment or t,fx,fy or t,fx,fy,moment"},
+};
+
+constexpr Row driver[] = {
+  {"body", text, "", "", any, "", 0, "the body whose coordinate is prescribed"},
+  {"coordinate", choice, "", "", any, "x y phi", 0, "which one; x counts from the vehicle's origin"},
+  {"value", number, "m or rad", "(as at t = 0)", any, "", 0, "at t = 0"},
+  {"rate", number, "m/s or rad/s", "0", any, "", 0, "constant rate"},
+  {"table", file, "", "", any, "", 0, "a file t,value instead of value and rate"},
+};
+
+constexpr Row contact[] = {
+  {"type", choice, "", "", any, "arc_arc arc_line", 0, "not in this version"},
+  {"bodies", texts, "", "", any, "", 2, "not in this version"},
+  {"radii", numbers, "m", "", positive, "", 0, "not in this version"},
+  {"centres", numbers, "m", "", any, "", 0, "not in this version"},
+  {"line", numbers, "m", "", any, "", 4, "not in this version"},
+  {"law", choice, "", "hertz", any, "hertz linear", 0, "not in this version"},
+  {"stiffness", number, "", "", positive, "", 0, "not in this version"},
+  {"damping", number, "Ns/m", "0", not_negative, "", 0, "not in this version"},
+  {"restitution", number, "1", "", {0.0, 1.0}, "", 0, "not in this version"},
+  {"friction", number, "1", "0", not_negative, "", 0, "not in this version"},
+  {"transition_speed", number, "m/s", "0.01", positive, "", 0, "not in this version"},
+};
+// clang-format on
+
+struct PartTable {
+  std::string_view list, word;
+  std::span<const Row> rows;
+};
+constexpr std::array<PartTable, part_kinds> parts = {{{"bodies", "body", body},
+                                                      {"joints", "joint", joint},
+                                                      {"springs", "spring", spring},
+                                                      {"torsion_springs", "torsion spring", torsion_spring},
+                                                      {"wheels", "wheel", wheel},
+                                                      {"actuators", "actuator", actuator},
+                                                      {"drivers", "driver", driver},
+                                                      {"contacts", "contact", contact}}};
+
+const PartTable& table_of(Part part) { return parts[static_cast<std::size_t>(part)]; }
+
+}  // namespace
+
+std::span<const Row> vehicle_rows() { return vehicle; }
+std::span<const Row> part_rows(Part part) { return table_of(part).rows; }
+std::string_view part_list(Part part) { return table_of(part).list; }
+std::string_view part_word(Part part) { return table_of(part).word; }
+
+}  // namespace traverse::options
