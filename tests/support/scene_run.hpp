@@ -1,0 +1,45 @@
+// Runs a scene inside the test and reads its results file back.
+#pragma once
+
+#include <mpi.h>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace traverse::test {
+
+using Values = std::vector<std::pair<std::string, std::string>>;
+
+/// The datasets of a results file, read whole when asked for.
+class Results {
+ public:
+  explicit Results(std::string file) : file_(std::move(file)) {}
+  /// All values of a dataset in row-major order; a std::runtime_error when there is none.
+  const std::vector<double>& operator()(const std::string& name);
+  /// Column c of a dataset whose rows are the stored instants.
+  std::vector<double> column(const std::string& name, std::size_t c = 0);
+  std::vector<double> time() { return (*this)("/time"); }
+  double attribute(const std::string& object, const std::string& name) const;
+  const std::string& file() const { return file_; }
+
+ private:
+  std::string file_;
+  std::map<std::string, std::vector<double>> read_;
+};
+
+/// Collective over comm. Runs options/scenes/NAME.yml (or a path that ends in .yml) with options on top, given as
+/// names without dash and values. The results file is temporary. Exceptions of the program come through.
+Results run_scene(const std::string& name, const Values& options = {}, MPI_Comm comm = MPI_COMM_WORLD);
+/// The same for a scene given as YAML text.
+Results run_yaml(const std::string& text, const Values& options = {}, MPI_Comm comm = MPI_COMM_WORLD);
+
+/// The value of largest magnitude, and its index.
+std::pair<double, std::size_t> peak(const std::vector<double>& values);
+/// Largest |a - b| over largest |b|.
+double relative_difference(const std::vector<double>& a, const std::vector<double>& b);
+/// Two or more columns of numbers of a comma-separated file with # comments: rows.
+std::vector<std::vector<double>> read_table(const std::string& file);
+
+}  // namespace traverse::test
