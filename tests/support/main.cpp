@@ -10,11 +10,12 @@
 
 namespace {
 
-// Start-up takes 50 ms instead of 300 when Open MPI neither looks for networks nor starts a daemon.
+// Start-up takes 50 ms instead of 300 when Open MPI neither looks for networks and displays nor starts a daemon.
 void start_quickly() {
   setenv("OMPI_MCA_pml", "ob1", 0);
   setenv("OMPI_MCA_btl", "self,vader", 0);
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+  setenv("HWLOC_COMPONENTS", "-gl,-opencl", 0);
 }
 
 }  // namespace
