@@ -48,7 +48,7 @@ beam::Support support_of(const std::string& word) {
 void read_supports(const Options& o, beam::BeamModel& beam) {
   const std::size_t ends = beam.spans.size() + 1;
   if (!o.has("support_types")) {
-    beam.supports.assign(ends, beam::Support::roller);
+    beam.supports.assign(ends, beam.isolated ? beam::Support::pinned : beam::Support::roller);
     beam.supports.front() = beam::Support::pinned;
     return;
   }

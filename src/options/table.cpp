@@ -28,7 +28,7 @@ std::string kind_words(const Row& row) {
     case Kind::flag:
       return "true or false";
     case Kind::text:
-      return "a word";
+      return "text";
     case Kind::file:
       return "a file";
     case Kind::choice:

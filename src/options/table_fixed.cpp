@@ -9,7 +9,7 @@ constexpr Range tolerance = {1e-10, 0.1};
 
 // clang-format off
 constexpr Row rows[] = {
-  {"options_file", text, "", "", any, "", 0, "a YAML (.yml, .yaml) or classic options file; several add up, later ones win; may name further files"},
+  {"options_file", text, "", "", any, "", 0, "a YAML (.yml, .yaml) or classic options file, which may name further ones"},
 
   {"beam_spans", numbers, "m", "", positive, "", 0, "length of each span; left out: no bridge"},
   {"beam_elements_per_span", integers, "", "(from accuracy)", {1, 100000}, "", 0, "elements a span, one number or one per span"},
@@ -22,7 +22,7 @@ constexpr Row rows[] = {
   {"beam_rayleigh", numbers, "1/s, s", "", not_negative, "", 2, "a, b of C = a M + b K, instead of damping ratios"},
   {"beam_self_weight", flag, "", "false", any, "", 0, "gravity acts on the beam too"},
 
-  {"support_types", choice_list, "", "(pinned, then rollers)", any, "free roller pinned clamped guided", 0, "support at every span end, one word serves all"},
+  {"support_types", choice_list, "", "(pinned, then rollers; simply supported spans: all pinned)", any, "free roller pinned clamped guided", 0, "support at every span end, one word serves all"},
 
   {"foundation_vertical_x", numbers, "m", "", not_negative, "", 0, "stations of vertical springs and dampers"},
   {"foundation_vertical_k", numbers, "N/m", "0", not_negative, "", 0, "their stiffness, one serves all"},
