@@ -1,0 +1,103 @@
+// The assembled beam (the paper's section 2 with the foundation of section 3), cut over ranks by nodes.
+//
+//   M a + C* w + K* v = P        v, w, a: nodal displacements, velocities, accelerations
+//
+// Unknowns of a node: (v, theta), or (u, v, theta) where axial. Every node has all of them in the vectors; those
+// that a support holds stay zero: their rows and columns are empty in M, C and K ("aa" of eq. 17), and the rows
+// "c" of eq. 18 are kept apart for the reactions. All matrices are AIJ, assembled by each rank from its own nodes
+// without communication; M, K_aa, K* and C* have the same pattern of non-zeros.
+#pragma once
+
+#include <mpi.h>
+
+#include <array>
+#include <vector>
+
+#include "traverse/base/petsc.hpp"
+#include "traverse/beam/element.hpp"
+#include "traverse/beam/mesh.hpp"
+
+namespace traverse::beam {
+
+/// Rayleigh damping C = a M + b K of the beam itself, eq. 19.
+struct Rayleigh {
+  double a = 0.0;  // 1/s
+  double b = 0.0;  // s
+};
+
+class Rows;
+struct Slice;
+
+class Beam {
+ public:
+  /// Collective. Checks the model: InputError naming the option.
+  Beam(MPI_Comm comm, BeamModel model);
+
+  const BeamModel& model() const { return model_; }
+  const Mesh& mesh() const { return mesh_; }
+  MPI_Comm comm() const { return comm_; }
+  int block() const { return model_.axial ? 3 : 2; }
+  int first_node() const { return first_; }  // owned by this rank: [first_node, first_node + local_nodes)
+  int local_nodes() const { return local_; }
+  int local_unknowns() const { return local_ * block(); }
+  /// Which rank owns a node.
+  int owner(int node) const;
+  /// One entry a local unknown: non-zero where a support holds it.
+  const std::vector<char>& fixed() const { return fixed_; }
+
+  /// Collective; must be called once before damping() and reactions() are used.
+  void set_rayleigh(Rayleigh ab);
+  Rayleigh rayleigh() const { return rayleigh_; }
+
+  Mat mass() const { return mass_; }                      // M_aa
+  Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
+  Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
+  Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
+  /// The foundation's own matrices, stiffness and damping of each kind of section 3, for who wants to look.
+  /// (kept only where the kind is present; null otherwise)
+  struct FoundationMats {
+    base::Handle<Mat> vertical_discrete[2], vertical_continuous[2], longitudinal_discrete[2],
+        longitudinal_continuous[2], rotational_discrete[2];  // [0] stiffness, [1] damping
+  };
+  const FoundationMats& foundation() const { return foundation_; }
+
+  /// Nodal forces of the beam's own weight, this rank's unknowns (consistent with psi), g > 0 pulls down; added to P.
+  void add_self_weight(double gravity, double* P) const;
+
+  /// Collective. Forces and moment of the supports ON the beam at every span end, {fx, fy, moment} each, on all
+  /// ranks (eq. 18 as corrected: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal vectors.
+  /// P must hold the load on held unknowns too. At the inner ends of isolated spans both spans' parts are added.
+  void reactions(const double* v, const double* w, const double* a, const double* P,
+                 std::vector<std::array<double, 3>>& out) const;
+
+ private:
+  /// Coefficients of one free local unknown in the row of one held unknown, eq. 18.
+  struct ReactionTerm {
+    std::size_t slot;     // in the reactions, 3 a span end
+    std::size_t unknown;  // local
+    double mass, beam_stiffness, stiffness, foundation_damping, damping;
+  };
+  /// Where the load on a held unknown enters.
+  struct HeldLoad {
+    std::size_t slot, unknown;
+  };
+
+  void assemble(const Slice& slice);
+  void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping);
+  void note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_stiffness,
+                      const Rows& foundation_stiffness, const Rows& foundation_damping);
+
+  MPI_Comm comm_;
+  BeamModel model_;
+  Mesh mesh_;
+  int first_ = 0, local_ = 0;
+  std::vector<char> fixed_;
+  Rayleigh rayleigh_;
+  base::Handle<Mat> mass_, beam_stiffness_, stiffness_, damping_;
+  base::Handle<Mat> foundation_damping_;  // of all kinds together, with the pattern of the mass; null without any
+  FoundationMats foundation_;
+  std::vector<ReactionTerm> reaction_terms_;
+  std::vector<HeldLoad> held_loads_;
+};
+
+}  // namespace traverse::beam

@@ -1,0 +1,60 @@
+// Response at any station: deflection from the shape functions, moment and shear from the element's equilibrium.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "traverse/beam/beam.hpp"
+
+namespace traverse::beam {
+
+/// A concentrated load on an element, at xi: fx, fy in N (fy upward), moment in N m counter-clockwise.
+struct ElementLoad {
+  int element = 0;
+  double xi = 0.0;
+  double fx = 0.0, fy = 0.0, moment = 0.0;
+};
+
+/// Response at one station. Deflection positive upward, moment positive in sagging (EI v'' > 0),
+/// shear = d moment/dx.
+struct Response {
+  double deflection = 0.0, velocity = 0.0, acceleration = 0.0;
+  double moment = 0.0, shear = 0.0;
+  double axial_displacement = 0.0, axial_force = 0.0;
+};
+
+/// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.
+class Recovery {
+ public:
+  /// Stations in [0, length]: InputError otherwise. `self_weight`: gravity if it loads the beam, else 0.
+  /// At a node the response is that of the element to its right (at the end of the beam: to its left).
+  Recovery(const Beam& beam, std::vector<double> stations, double self_weight);
+  Recovery(Recovery&&) noexcept;
+  ~Recovery();
+
+  /// Collective. From this rank's slices of the nodal vectors and all concentrated loads (the same list on every
+  /// rank), the response at every station, complete on every rank.
+  /// Moment and shear follow from the element's end forces K_e v + C_e w + M_e a - P_e and the loads and inertia
+  /// inside the element, less the part b*K_e w that is damping, not bending. The deflection has the element's own
+  /// fixed-end deflection under the loads added, which the cubic shape functions leave out; velocity and
+  /// acceleration have not.
+  void evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
+                std::vector<Response>& out);
+
+  const std::vector<double>& stations() const { return stations_; }
+
+ private:
+  struct Section;  // what is known of a station beforehand
+  /// Nodal values of a station's element: u1, v1, theta1, u2, v2, theta2.
+  using Values = std::array<double, 6>;
+
+  void gather(const double* v, const double* w, const double* a);
+  Response respond(const Section& s, const Values& v, const Values& w, const Values& a) const;
+
+  const Beam& beam_;
+  std::vector<double> stations_;
+  std::vector<Section> sections_;
+  std::vector<Values> gathered_;  // of every station: v, w, a
+};
+
+}  // namespace traverse::beam

@@ -1,0 +1,58 @@
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "traverse/base/error.hpp"
+#include "traverse/beam/model.hpp"
+
+namespace traverse::beam {
+namespace {
+
+void check_table(const std::vector<double>& x, const std::vector<double>& values, const std::string& name) {
+  if (x.empty() || x.size() != values.size()) {
+    throw InputError(name + ": the table has " + std::to_string(x.size()) + " stations and " +
+                     std::to_string(values.size()) + " values; as many of both are needed, at least one");
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::string row = name + ": row " + std::to_string(i + 1) + " of the table ";
+    if (!std::isfinite(x[i]) || !std::isfinite(values[i])) throw InputError(row + "holds a number that is not finite");
+    if (i > 0 && x[i] < x[i - 1]) {
+      throw InputError(row + "has x = " + std::to_string(x[i]) + " after " + std::to_string(x[i - 1]) +
+                       "; x must not decrease");
+    }
+    if (i > 1 && x[i] == x[i - 2]) {
+      throw InputError(row + "has x = " + std::to_string(x[i]) + " for the third time; twice makes a step");
+    }
+  }
+}
+
+}  // namespace
+
+Distribution::Distribution(std::vector<double> x, std::vector<double> values, const std::string& name)
+    : x_(std::move(x)), values_(std::move(values)) {
+  check_table(x_, values_, name);
+}
+
+double Distribution::at(double x, double inside) const {
+  if (x_.empty()) return values_.front();
+  // The interval (right - 1, right) of the table that x lies in, seen from `inside`.
+  const auto it = inside < x ? std::lower_bound(x_.begin(), x_.end(), x) : std::upper_bound(x_.begin(), x_.end(), x);
+  if (it == x_.begin()) return values_.front();
+  if (it == x_.end()) return values_.back();
+  const auto right = static_cast<std::size_t>(it - x_.begin()), left = right - 1;
+  const double width = x_[right] - x_[left];
+  return values_[left] + (values_[right] - values_[left]) * ((x - x_[left]) / width);
+}
+
+double Distribution::minimum() const { return *std::min_element(values_.begin(), values_.end()); }
+double Distribution::maximum() const { return *std::max_element(values_.begin(), values_.end()); }
+
+std::vector<double> Distribution::breaks(double a, double b) const {
+  std::vector<double> inside;
+  for (auto it = std::upper_bound(x_.begin(), x_.end(), a); it != x_.end() && *it < b; ++it) {
+    if (inside.empty() || inside.back() != *it) inside.push_back(*it);
+  }
+  return inside;
+}
+
+}  // namespace traverse::beam

@@ -1,0 +1,93 @@
+#include "traverse/beam/element.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "gauss.hpp"
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::beam {
+namespace {
+
+template <std::size_t N>
+void add_outer(std::array<double, N * N>& matrix, double c, const std::array<double, N>& s) {
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) matrix[i * N + j] += c * s[i] * s[j];
+  }
+}
+
+/// Integral of density(x) s(x) s(x)^T.
+template <std::size_t N, class Shape>
+std::array<double, N * N> integral(const Distribution& density, const Element& e, Shape shape) {
+  std::array<double, N * N> matrix{};
+  integrate(density, e.x, e.x + e.length,
+            [&](double x, double weight) { add_outer<N>(matrix, weight, shape((x - e.x) / e.length)); });
+  return matrix;
+}
+
+Transverse bending(const Distribution& EI, const Element& e) {
+  const double h = e.length;
+  const auto constant = constant_value(EI, e.x, e.x + h);
+  if (!constant) return integral<4>(EI, e, [h](double xi) { return hermite(xi, h).curvature; });
+  const double c = *constant / (h * h * h);
+  const double a = 12 * c, b = 6 * h * c, d = 4 * h * h * c, f = 2 * h * h * c;
+  return {a, b, -a, b, b, d, -b, f, -a, -b, a, -b, b, f, -b, d};
+}
+
+Axial stretching(const Distribution& EA, const Element& e) {
+  const double h = e.length;
+  double mean = 0.0;
+  integrate(EA, e.x, e.x + h, [&](double, double weight) { mean += weight / h; });
+  if (const auto constant = constant_value(EA, e.x, e.x + h)) mean = *constant;
+  return {mean / h, -mean / h, -mean / h, mean / h};
+}
+
+}  // namespace
+
+Transverse transverse_bed(const Distribution& density, const Element& e) {
+  const double h = e.length;
+  const auto constant = constant_value(density, e.x, e.x + h);
+  if (!constant) return integral<4>(density, e, [h](double xi) { return hermite(xi, h).value; });
+  const double c = *constant * h / 420;
+  const double a = 156 * c, b = 22 * h * c, d = 54 * c, f = 13 * h * c, g = 4 * h * h * c, k = 3 * h * h * c;
+  return {a, b, d, -f, b, g, f, -k, d, f, a, -b, -f, -k, -b, g};
+}
+
+Axial axial_bed(const Distribution& density, const Element& e) {
+  const auto constant = constant_value(density, e.x, e.x + e.length);
+  if (!constant) return integral<2>(density, e, [](double xi) { return linear(xi); });
+  const double c = *constant * e.length / 6;
+  return {2 * c, c, c, 2 * c};
+}
+
+std::array<double, 4> transverse_load(const Distribution& density, const Element& e) {
+  std::array<double, 4> load{};
+  integrate(density, e.x, e.x + e.length, [&](double x, double weight) {
+    const auto psi = hermite((x - e.x) / e.length, e.length).value;
+    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * psi[i];
+  });
+  return load;
+}
+
+Transverse outer(double c, const std::array<double, 4>& s) {
+  Transverse matrix{};
+  add_outer<4>(matrix, c, s);
+  return matrix;
+}
+
+Axial outer(double c, const std::array<double, 2>& s) {
+  Axial matrix{};
+  add_outer<2>(matrix, c, s);
+  return matrix;
+}
+
+ElementMatrices element_matrices(const BeamModel& model, const Element& element) {
+  ElementMatrices m;
+  m.mass = transverse_bed(model.mass, element);
+  m.stiffness = bending(model.EI, element);
+  m.axial_mass = axial_bed(model.mass, element);
+  if (model.axial) m.axial_stiffness = stretching(model.EA, element);
+  return m;
+}
+
+}  // namespace traverse::beam

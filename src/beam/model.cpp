@@ -1,0 +1,91 @@
+#include "traverse/beam/model.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+#include <string>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::beam {
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.10g", value);
+  return text;
+}
+
+void require(bool holds, const std::string& option, const std::string& value, const std::string& allowed) {
+  if (!holds) throw InputError(option + " is " + value + "; " + allowed);
+}
+
+void require_positive(const Distribution& d, const std::string& option, const std::string& unit) {
+  for (double value : {d.minimum(), d.maximum()}) {
+    require(std::isfinite(value) && value > 0.0, option, number(value), "it must be positive (" + unit + ")");
+  }
+}
+
+void require_not_negative(double value, const std::string& option, const std::string& unit) {
+  require(std::isfinite(value) && value >= 0.0, option, number(value), "it must not be negative (" + unit + ")");
+}
+
+void check_spans(const BeamModel& model) {
+  require(!model.spans.empty(), "beam_spans", "empty", "at least one span is needed (m)");
+  for (double span : model.spans) {
+    require(std::isfinite(span) && span > 0.0, "beam_spans", number(span), "every span must be positive (m)");
+  }
+  require(model.elements.size() == model.spans.size(), "beam_elements_per_span",
+          std::to_string(model.elements.size()) + " numbers",
+          "one for each of the " + std::to_string(model.spans.size()) + " spans is needed");
+  for (int n : model.elements) {
+    require(n >= 1, "beam_elements_per_span", std::to_string(n), "every span needs at least 1 element");
+  }
+  // Unknowns are counted in 32 bits, here and in PETSc.
+  const long long unknowns = 3 * (std::accumulate(model.elements.begin(), model.elements.end(), 0LL) +
+                                  static_cast<long long>(model.spans.size()));
+  require(unknowns < (1LL << 31), "beam_elements_per_span", std::to_string(unknowns) + " unknowns in all",
+          "fewer than 2^31 are possible");
+  require(model.supports.size() == model.spans.size() + 1, "support_types",
+          std::to_string(model.supports.size()) + " supports",
+          "one at every span end is needed: " + std::to_string(model.spans.size() + 1));
+}
+
+void check_points(const std::vector<PointFoundation>& points, const std::string& option, double length,
+                  const std::string& unit) {
+  for (const PointFoundation& p : points) {
+    require(std::isfinite(p.x) && p.x >= 0.0 && p.x <= length, option + "_x", number(p.x),
+            "it must lie on the beam, from 0 to " + number(length) + " m");
+    require_not_negative(p.k, option + "_k", unit);
+    require_not_negative(p.c, option + "_c", unit + " s");
+  }
+}
+
+void check_bed(const std::optional<Bed>& bed, const std::string& option) {
+  if (!bed) return;
+  for (double value : {bed->k.minimum(), bed->k.maximum()}) require_not_negative(value, option + "_k", "N/m2");
+  for (double value : {bed->c.minimum(), bed->c.maximum()}) require_not_negative(value, option + "_c", "N s/m2");
+}
+
+}  // namespace
+
+bool fixes_axial(Support s) { return s == Support::pinned || s == Support::clamped || s == Support::guided; }
+bool fixes_vertical(Support s) { return s == Support::roller || s == Support::pinned || s == Support::clamped; }
+bool fixes_rotation(Support s) { return s == Support::clamped || s == Support::guided; }
+
+double BeamModel::length() const { return std::accumulate(spans.begin(), spans.end(), 0.0); }
+
+void check(const BeamModel& model) {
+  check_spans(model);
+  require_positive(model.EI, "beam_EI", "N m2");
+  if (model.axial) require_positive(model.EA, "beam_EA", "N");
+  require_positive(model.mass, "beam_mass", "kg/m");
+  const double length = model.length();
+  check_points(model.foundation.vertical, "foundation_vertical", length, "N/m");
+  check_points(model.foundation.longitudinal, "foundation_longitudinal", length, "N/m");
+  check_points(model.foundation.rotational, "foundation_rotational", length, "N m/rad");
+  check_bed(model.foundation.vertical_bed, "foundation_vertical_bed");
+  check_bed(model.foundation.longitudinal_bed, "foundation_longitudinal_bed");
+}
+
+}  // namespace traverse::beam

@@ -1,0 +1,74 @@
+#include "section.hpp"
+
+#include "gauss.hpp"
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::beam {
+
+void SectionForms::add_end_forces(const Transverse& matrix) {
+  const double x = xi_ * element_.length;
+  for (std::size_t j = 0; j < 4; ++j) {
+    shear_[j] += matrix[j];
+    moment_[j] += x * matrix[j] - matrix[4 + j];
+  }
+}
+
+void SectionForms::add_end_forces(const Axial& matrix) {
+  for (std::size_t j = 0; j < 2; ++j) axial_force_[j] -= matrix[j];
+}
+
+void SectionForms::add_transverse_density(const Distribution& density) {
+  const double h = element_.length, section = element_.x + xi_ * h;
+  integrate(density, element_.x, section, [&](double x, double weight) {
+    const auto psi = hermite((x - element_.x) / h, h).value;
+    for (std::size_t j = 0; j < 4; ++j) {
+      shear_[j] -= weight * psi[j];
+      moment_[j] -= weight * psi[j] * (section - x);
+    }
+  });
+}
+
+void SectionForms::add_axial_density(const Distribution& density) {
+  const double h = element_.length;
+  integrate(density, element_.x, element_.x + xi_ * h, [&](double x, double weight) {
+    const auto phi = linear((x - element_.x) / h);
+    for (std::size_t j = 0; j < 2; ++j) axial_force_[j] += weight * phi[j];
+  });
+}
+
+void SectionForms::add_vertical_spring(double c, double xi) {
+  const auto psi = hermite(xi, element_.length).value;
+  add_end_forces(outer(c, psi));
+  if (!is_left(xi, xi_)) return;
+  for (std::size_t j = 0; j < 4; ++j) {
+    shear_[j] -= c * psi[j];
+    moment_[j] -= c * psi[j] * (xi_ - xi) * element_.length;
+  }
+}
+
+void SectionForms::add_rotational_spring(double c, double xi) {
+  const auto slope = hermite(xi, element_.length).slope;
+  add_end_forces(outer(c, slope));
+  if (!is_left(xi, xi_)) return;
+  for (std::size_t j = 0; j < 4; ++j) moment_[j] += c * slope[j];
+}
+
+void SectionForms::add_longitudinal_spring(double c, double xi) {
+  const auto phi = linear(xi);
+  add_end_forces(outer(c, phi));
+  if (!is_left(xi, xi_)) return;
+  for (std::size_t j = 0; j < 2; ++j) axial_force_[j] += c * phi[j];
+}
+
+double fixed_end_by_force(double xi, double load, double h, double EI) {
+  if (xi > load) return fixed_end_by_force(1.0 - xi, 1.0 - load, h, EI);
+  const double b = 1.0 - load;
+  return h * h * h / (6.0 * EI) * b * b * xi * xi * (3.0 * load - (1.0 + 2.0 * load) * xi);
+}
+
+double fixed_end_by_moment(double xi, double load, double h, double EI) {
+  if (xi > load) return -fixed_end_by_moment(1.0 - xi, 1.0 - load, h, EI);
+  return h * h / (2.0 * EI) * xi * xi * (1.0 - load) * (1.0 - 3.0 * load + 2.0 * load * xi);
+}
+
+}  // namespace traverse::beam

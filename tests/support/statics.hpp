@@ -1,0 +1,72 @@
+// Static answers of a beam for tests, on any number of ranks: K* v = P with its loads.
+#pragma once
+
+#include <petscksp.h>
+
+#include <vector>
+
+#include "traverse/beam/beam.hpp"
+#include "traverse/beam/recovery.hpp"
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::test {
+
+/// Adds a concentrated load at x to this rank's nodal forces (eq. 13), and returns it as an element load.
+inline beam::ElementLoad add_load(const beam::Beam& b, double x, double fy, double moment, double fx, double* P) {
+  const beam::Station at = b.mesh().locate(x);
+  const beam::Element& e = b.mesh().element(at.element);
+  const auto s = beam::hermite(at.xi, e.length);
+  const auto phi = beam::linear(at.xi);
+  for (int end = 0; end < 2; ++end) {
+    const int node = e.left + end - b.first_node();
+    if (node < 0 || node >= b.local_nodes()) continue;
+    double* p = P + node * b.block();
+    if (b.block() == 3) *p++ += fx * phi[end];
+    for (int i = 2 * end; i < 2 * end + 2; ++i) *p++ += fy * s.value[i] + moment * s.slope[i];
+  }
+  return {at.element, at.xi, fx, fy, moment};
+}
+
+/// Solves A x = f for the unknowns that no support holds; the others are zero.
+inline std::vector<double> solve_free(const beam::Beam& b, Mat A, const std::vector<double>& f) {
+  using base::check;
+  PetscInt start = 0;
+  check(MatGetOwnershipRange(A, &start, nullptr));
+  std::vector<PetscInt> free;
+  std::vector<double> right;
+  for (int i = 0; i < b.local_unknowns(); ++i) {
+    if (b.fixed()[i]) continue;
+    free.push_back(start + i);
+    right.push_back(f[i]);
+  }
+  base::Handle<IS> rows;
+  base::Handle<Mat> K;
+  base::Handle<Vec> x, y;
+  base::Handle<KSP> ksp;
+  check(ISCreateGeneral(b.comm(), static_cast<PetscInt>(free.size()), free.data(), PETSC_COPY_VALUES, rows.out()));
+  check(MatCreateSubMatrix(A, rows, rows, MAT_INITIAL_MATRIX, K.out()));
+  check(MatCreateVecs(K, x.out(), y.out()));
+  PetscScalar* values = nullptr;
+  check(VecGetArray(y, &values));
+  std::copy(right.begin(), right.end(), values);
+  check(VecRestoreArray(y, &values));
+  PC pc = nullptr;
+  check(KSPCreate(b.comm(), ksp.out()));
+  check(KSPSetType(ksp, KSPPREONLY));
+  check(KSPSetOperators(ksp, K, K));
+  check(KSPGetPC(ksp, &pc));
+  check(PCSetType(pc, PCREDUNDANT));  // LU of the whole on every rank
+  check(KSPSolve(ksp, y, x));
+  std::vector<double> solution(f.size(), 0.0);
+  check(VecGetArray(x, &values));
+  for (std::size_t i = 0; i < free.size(); ++i) solution[free[i] - start] = values[i];
+  check(VecRestoreArray(x, &values));
+  return solution;
+}
+
+/// Displacements at rest under the nodal forces P.
+inline std::vector<double> static_solution(const beam::Beam& b, const std::vector<double>& P) {
+  return solve_free(b, b.stiffness(), P);
+}
+
+}  // namespace traverse::test
