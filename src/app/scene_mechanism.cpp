@@ -149,7 +149,7 @@ void VehicleReader::spring(const std::string& name) {
   }
   s.free_length = o_.optional_number(key("free_length"));
   s.preload = o_.optional_number(key("preload"));
-  if (s.free_length && s.preload) o_.refuse(key("preload"), "give either free_length or preload");
+  if (s.free_length && s.preload) o_.refuse(key("preload"), "give either a preload or " + key("free_length"));
   vehicle_.mechanism.springs.push_back(s);
 }
 

@@ -1,0 +1,267 @@
+// Options files, the command line, typed reading and its messages.
+#include "traverse/options/options.hpp"
+
+#include <gtest/gtest.h>
+#include <petscsys.h>
+
+#include "support/message.hpp"
+#include "support/temporary_folder.hpp"
+#include "traverse/options/data_file.hpp"
+#include "traverse/options/input.hpp"
+#include "traverse/options/read_file.hpp"
+
+namespace traverse::options {
+namespace {
+
+using test::any_contains;
+using test::contains;
+using test::message_of;
+
+Input input_of(std::vector<std::string> words) {
+  words.insert(words.begin(), "traverse");
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  return read_input(static_cast<int>(argv.size()), argv.data());
+}
+
+std::string value_of(const Entries& entries, const std::string& name) {
+  const Entry* entry = entries.find(name);
+  return entry == nullptr ? "(none)" : entry->value;
+}
+
+TEST(Yaml, FlattensAsPetscDoes) {
+  const auto entries = parse_yaml("beam:\n  spans: [25.0, 32.0*2]  # m\n  self_weight: true\ngravity: 9.81\n", "s.yml");
+  ASSERT_EQ(entries.size(), 3u);
+  EXPECT_EQ(entries[0].name, "beam_spans");
+  EXPECT_EQ(entries[0].value, "25.0,32.0*2");
+  EXPECT_EQ(entries[0].where(), "s.yml:2");
+  EXPECT_EQ(entries[1].name, "beam_self_weight");
+  EXPECT_EQ(entries[1].value, "true");
+  EXPECT_EQ(entries[2].where(), "s.yml:4");
+}
+
+TEST(Yaml, EmptyFilesAndMergeKeys) {
+  EXPECT_TRUE(parse_yaml("", "s.yml").empty());
+  EXPECT_TRUE(parse_yaml("# nothing\n", "s.yml").empty());
+  const auto entries = parse_yaml("$$wheel: &w {radius: 0.46}\na: {<<: *w, law: linear}\n", "s.yml");
+  ASSERT_EQ(entries.size(), 2u);
+  EXPECT_EQ(entries[0].name, "a_radius");
+}
+
+TEST(Yaml, ErrorsNameFileAndLine) {
+  const auto refused = [](const std::string& text) { return message_of([&] { parse_yaml(text, "s.yml"); }); };
+  EXPECT_PRED2(contains, refused("a: 1\nb: [1, 2\n"), "s.yml:3: ");
+  EXPECT_PRED2(contains, refused("a: 1\n\tb: 2\n"), "s.yml:2: ");
+  EXPECT_PRED2(contains, refused("just words\n"), "s.yml:1: ");
+  EXPECT_PRED2(contains, refused("a: 1\nb: 2\na: 3\n"), "s.yml:3: a is given twice, first in line 1");
+  EXPECT_PRED2(contains, refused("a: [[1, 2], [3]]\n"), "a list holds numbers or words");
+  EXPECT_PRED2(contains, refused("a b: 1\n"), "'a b' is no name");
+  EXPECT_PRED2(contains, refused("a: 1\n---\nb: 2\n"), "more than one YAML document");
+}
+
+TEST(Classic, NamesValuesAndComments) {
+  const auto entries = parse_classic(
+      "# a comment\n-train_speed 40 # m/s\n\n-beam_spans \"25, 30\"\n-log_view\n-gravity -5.0\n", "s.opt");
+  ASSERT_EQ(entries.size(), 4u);
+  EXPECT_EQ(entries[0].value, "40");
+  EXPECT_EQ(entries[0].where(), "s.opt:2");
+  EXPECT_EQ(entries[1].value, "25, 30");
+  EXPECT_EQ(entries[2].value, "");
+  EXPECT_EQ(entries[3].value, "-5.0");
+  EXPECT_PRED2(contains, message_of([] { parse_classic("-a 1\nb 2\n", "s.opt"); }), "s.opt:2: ");
+}
+
+TEST(CommandLine, ThePositionDecides) {
+  const test::TemporaryFolder folder;
+  const std::string a = folder.write("a.yml", "train: {speed: 10}\ngravity: 1\n");
+  const std::string b = folder.write("b.opt", "-train_speed 20\n");
+  EXPECT_EQ(value_of(input_of({"-options_file", a, "-options_file", b}).entries, "train_speed"), "20");
+  EXPECT_EQ(value_of(input_of({"-options_file", b, "-options_file", a}).entries, "train_speed"), "10");
+  EXPECT_EQ(value_of(input_of({"-train_speed", "30", "-options_file", a}).entries, "train_speed"), "10");
+  const Input last = input_of({"-options_file", a, "-train_speed", "30"});
+  EXPECT_EQ(value_of(last.entries, "train_speed"), "30");
+  EXPECT_EQ(last.entries.find("train_speed")->where(), "command line");
+  EXPECT_EQ(last.entries.find("gravity")->where(), a + ":2");
+  EXPECT_EQ(value_of(last.entries, "scene_name"), "a");
+}
+
+TEST(CommandLine, PetscSeesWhatItOwnsOutOfFilesToo) {
+  const test::TemporaryFolder folder;
+  const std::string a = folder.write("a.yml", "ts: {type: bdf, dt: 0.1}\nlog_view:\ngravity: 1\n");
+  const Input input = input_of({"-options_file", a, "-ts_dt", "0.2", "-help", "-malloc_debug"});
+  EXPECT_TRUE(input.help);
+  EXPECT_EQ(input.petsc_words,
+            (std::vector<std::string>{"traverse", "-ts_type", "bdf", "-ts_dt", "0.2", "-log_view", "-malloc_debug"}));
+  EXPECT_PRED2(any_contains, input_of({"-help", "petsc"}).petsc_words, "-help");
+}
+
+TEST(CommandLine, RefusesWhatBelongsToNothing) {
+  EXPECT_PRED2(contains, message_of([] { input_of({"scene.yml"}); }), "-options_file scene.yml");
+  EXPECT_PRED2(contains, message_of([] { input_of({"-beam_spans", "25,", "30"}); }), "'30' belongs to no option");
+  EXPECT_PRED2(contains, message_of([] { input_of({"-options_file", "no/such.yml"}); }), "no/such.yml");
+  EXPECT_PRED2(contains, message_of([] { input_of({"-options_file", "/"}); }), "folder");
+  EXPECT_PRED2(contains, message_of([] { input_of({"-options_file"}); }), "name of a file");
+}
+
+TEST(CommandLine, FilesNameFurtherFiles) {
+  const test::TemporaryFolder folder;
+  folder.write("bridges/b.yml", "gravity: 1\ntrain: {speed: 5}\n");
+  const std::string scene = folder.write("scenes/s.yml", "options_file: ../bridges/b.yml\ntrain: {speed: 6}\n");
+  const Input input = input_of({"-options_file", scene});
+  EXPECT_EQ(value_of(input.entries, "gravity"), "1");
+  EXPECT_EQ(value_of(input.entries, "train_speed"), "6");
+  const std::string loop = folder.write("loop.yml", "options_file: loop.yml\n");
+  EXPECT_PRED2(contains, message_of([&] { input_of({"-options_file", loop}); }), "circle");
+  const std::string lost = folder.write("lost.yml", "a: 1\noptions_file: nowhere.yml\n");
+  EXPECT_PRED2(contains, message_of([&] { input_of({"-options_file", lost}); }), "lost.yml:2");
+}
+
+TEST(CommandLine, TooManyOptionsForPetscsTable) {
+  std::string text = "vehicle:\n  v:\n";
+  for (int i = 0; i < 600; ++i) text += "    p" + std::to_string(i) + ": {mass: 1}\n";
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("big.yml", text);
+  const std::string message = message_of([&] { input_of({"-options_file", file}); });
+  EXPECT_PRED2(contains, message, "600");
+  EXPECT_PRED2(contains, message, "file of its own");
+}
+
+TEST(TypedReading, NumbersAndDefaults) {
+  const Options o{{"gravity", "1.5e1"}, {"beam_EI", "+2e9"}};
+  EXPECT_EQ(o.number("gravity"), 15.0);
+  EXPECT_EQ(o.number("accuracy"), 1e-3);
+  EXPECT_EQ(o.number("beam_EI"), 2e9);
+  EXPECT_FALSE(o.optional_number("ts_dt").has_value());
+  EXPECT_PRED2(contains, message_of([&] { o.number("beam_mass"); }), "beam_mass is missing");
+}
+
+TEST(TypedReading, ListsExpand) {
+  const Options o{{"beam_spans", "32.0*3, 25"},
+                  {"train_vehicles", "[loco, coach*15]"},
+                  {"beam_elements_per_span", "8"},
+                  {"support_types", "roller"}};
+  EXPECT_EQ(o.numbers("beam_spans"), (std::vector<double>{32.0, 32.0, 32.0, 25.0}));
+  EXPECT_EQ(o.texts("train_vehicles").size(), 16u);
+  EXPECT_EQ(o.texts("train_vehicles")[1], "coach");
+  EXPECT_EQ(o.integers("beam_elements_per_span", 4, "one per span"), (std::vector<int>(4, 8)));
+  EXPECT_EQ(o.texts("support_types", 5, "one per end").size(), 5u);
+  const Options many{{"beam_spans", "32.0*5150"}};
+  EXPECT_EQ(many.numbers("beam_spans").size(), 5150u);
+}
+
+TEST(TypedReading, FlagsAloneAreTrue) {
+  EXPECT_TRUE((Options{{"beam_self_weight", ""}}.flag("beam_self_weight")));
+  EXPECT_TRUE((Options{{"beam_self_weight", "yes"}}.flag("beam_self_weight")));
+  EXPECT_FALSE((Options{{"beam_self_weight", "false"}}.flag("beam_self_weight")));
+  EXPECT_THROW((Options{{"beam_self_weight", "maybe"}}.flag("beam_self_weight")), InputError);
+}
+
+struct Bad {
+  std::string name, value, expected;
+};
+class BadValue : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadValue, IsRefusedWithNameValueAndPlace) {
+  const Options o = Options::from_yaml("gravity: 9.81\n" + GetParam().name + ": \"" + GetParam().value + "\"\n");
+  const std::string message = message_of([&] { o.check_values(); });
+  EXPECT_PRED2(contains, message, GetParam().name + " = " + GetParam().value);
+  EXPECT_PRED2(contains, message, "scene.yml:2");
+  EXPECT_PRED2(contains, message, GetParam().expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Values, BadValue,
+    testing::Values(Bad{"train_speed", "fast", "'fast' is no finite number"},
+                    Bad{"train_speed", "nan", "no finite number"}, Bad{"train_speed", "1e999", "no finite number"},
+                    Bad{"train_speed", "3 m/s", "no finite number"}, Bad{"train_speed", "-1", "not below 0 (m/s)"},
+                    Bad{"beam_EI", "0", "above 0"}, Bad{"beam_EI", "inf", "no finite number"},
+                    Bad{"beam_EI", "nowhere.csv", "neither a number nor a file"},
+                    Bad{"beam_elements_per_span", "3.5", "whole numbers"}, Bad{"beam_elements_per_span", "0", "from 1"},
+                    Bad{"beam_spans", "25,,30", "empty entry"}, Bad{"beam_spans", "25*0", "whole number"},
+                    Bad{"beam_spans", "25*x", "whole number"}, Bad{"beam_spans", "25*99999999", "at most"},
+                    Bad{"support_types", "pinned,roler", "free, roller, pinned, clamped, guided"},
+                    Bad{"scene_analysis", "dynamic", "transient, modes, static"},
+                    Bad{"beam_rayleigh", "0.1", "2 numbers"}, Bad{"load_hslm_a", "11", "from 1 to 10"},
+                    Bad{"accuracy", "2", "from 1e-10 to 0.1"}));
+
+TEST(Names, MisspeltOnesGetAProposal) {
+  const auto refused = [](const std::string& name) {
+    return message_of([&] { Options({{name, "1"}}).check_names(); });
+  };
+  EXPECT_PRED2(contains, refused("train_sped"), "did you mean train_speed?");
+  EXPECT_PRED2(contains, refused("beam_span"), "did you mean beam_spans?");
+  EXPECT_PRED2(contains, refused("gravty"), "did you mean gravity?");
+  EXPECT_PRED2(contains, refused("accuarcy"), "did you mean accuracy?");
+  EXPECT_FALSE(contains(refused("zzzzzzzzzzzzzzz"), "did you mean"));
+  EXPECT_NO_THROW((Options{{"ts_type", "bdf"}, {"eps_tol", "1e-9"}, {"log_view", ""}}.check_names()));
+}
+
+TEST(Names, HelpHoldsEveryOption) {
+  const std::string help = help_text();
+  for (const Row& row : fixed_rows()) {
+    EXPECT_PRED2(contains, help, "-" + std::string(row.name));
+    EXPECT_FALSE(row.text.empty());
+  }
+  EXPECT_PRED2(contains, help, "-vehicle_NAME_PART_stiffness");
+}
+
+TEST(Names, EveryDefaultIsAllowed) {
+  for (const Row& row : fixed_rows()) {
+    if (row.fallback.empty() || row.fallback.front() == '(' || row.name == "output_file") continue;
+    const Options o{{std::string(row.name), std::string(row.fallback)}};
+    EXPECT_NO_THROW(o.check_values()) << row.name;
+  }
+}
+
+TEST(Table, OptionsOfSolversThatNobodyAskedFor) {
+  Entries entries;
+  entries.set({"ts_tpye", "bdf", "s.yml", 7});
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-ts_tpye", "bdf"), 0);
+  const std::string message = message_of([&] { check_all_used(entries); });
+  EXPECT_PRED2(contains, message, "ts_tpye = bdf (s.yml:7)");
+  EXPECT_PRED2(contains, message, "did you mean ts_type?");
+  ASSERT_EQ(PetscOptionsClearValue(nullptr, "-ts_tpye"), 0);
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-eps_tol", "1e-9"), 0);
+  EXPECT_PRED2(any_contains, check_all_used(entries), "eps_tol has no effect");
+  ASSERT_EQ(PetscOptionsClearValue(nullptr, "-eps_tol"), 0);
+}
+
+TEST(Table, OursStandInPetscsTableAndAreUsed) {
+  Input input = input_of({"-train_speed", "40"});
+  put_into_petsc(input);
+  PetscReal speed = 0.0;
+  PetscBool found = PETSC_FALSE;
+  ASSERT_EQ(PetscOptionsGetReal(nullptr, nullptr, "-train_speed", &speed, &found), 0);
+  EXPECT_EQ(speed, 40.0);
+  EXPECT_EQ(value_of(in_force(), "train_speed"), "40");
+  EXPECT_TRUE(check_all_used(input.entries).empty());
+  ASSERT_EQ(PetscOptionsClear(nullptr), 0);
+}
+
+TEST(DataFile, ColumnsAndComments) {
+  const test::TemporaryFolder folder;
+  const std::string good = folder.write("a.csv", "# x, value\n0, 1e9\n\n10;2e9 # step\n10 3e9\n");
+  const auto columns = read_columns(good, 2, 2);
+  EXPECT_EQ(columns[0], (std::vector<double>{0.0, 10.0, 10.0}));
+  EXPECT_EQ(columns[1], (std::vector<double>{1e9, 2e9, 3e9}));
+  const auto refused = [&](const std::string& text) {
+    const std::string file = folder.write("b.csv", text);
+    return message_of([&] { read_columns(file, 2, 2); });
+  };
+  EXPECT_PRED2(contains, refused("0 1\n1 2 3\n"), "b.csv:2: holds 3 numbers, expected 2");
+  EXPECT_PRED2(contains, refused("0 1\n1 x\n"), "b.csv:2: 'x'");
+  EXPECT_PRED2(contains, refused("0 nan\n"), "b.csv:1: 'nan'");
+  EXPECT_PRED2(contains, refused("# nothing\n"), "holds no numbers");
+}
+
+TEST(DataFile, FoundBesideTheFileThatNamesIt) {
+  const test::TemporaryFolder folder;
+  folder.write("data/ei.csv", "0 1\n1 2\n");
+  const std::string scene = folder.write("scene.yml", "beam: {EI: data/ei.csv}\n");
+  const Options o(input_of({"-options_file", scene}).entries);
+  EXPECT_EQ(o.path("beam_EI"), folder.path("data/ei.csv"));
+  EXPECT_FALSE(o.is_number("beam_EI"));
+}
+
+}  // namespace
+}  // namespace traverse::options

@@ -1,0 +1,378 @@
+// read_scene: what a scene's options become, and what is refused.
+#include "traverse/app/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "support/message.hpp"
+#include "support/temporary_folder.hpp"
+#include "traverse/options/read_file.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+using test::any_contains;
+using test::contains;
+using test::message_of;
+
+const std::string beam_yaml = "beam: {spans: [25.0, 30.0, 25.0], EI: 8.33e9, mass: 2303.0}\n";
+const std::string vehicle_yaml =
+    "vehicle:\n"
+    "  car:\n"
+    "    bodies: [body, axle]\n"
+    "    joints: [guide]\n"
+    "    springs: [spring]\n"
+    "    wheels: [wheel]\n"
+    "    body: {mass: 5750, inertia: 10, position: [0.5, 2.0], velocity: [0, 0.1, 0]}\n"
+    "    axle: {mass: 1000, inertia: 1, position: [0.5, 0.46], angle: 0.2}\n"
+    "    guide: {type: prismatic, bodies: [body, axle], point: [0.5, 0.46], axis: [0, 2]}\n"
+    "    spring: {bodies: [body, axle], from: [0.5, 2], to: [0.5, 0.46], stiffness: 1.6e6, damping: 100, preload: "
+    "-5e4}\n"
+    "    wheel: {body: axle, radius: 0.46, stiffness: 3.6e10}\n";
+const std::string train_yaml = "train: {vehicles: car, speed: 20}\n";
+
+Scene scene_of(const std::string& yaml) { return read_scene(Options::from_yaml(yaml)); }
+std::string refused(const std::string& yaml) {
+  return message_of([&] { scene_of(yaml); });
+}
+/// The example with further options given on the command line.
+Scene scene_with(std::initializer_list<std::pair<std::string, std::string>> values) {
+  options::Entries entries;
+  for (const auto& e : options::parse_yaml(beam_yaml + vehicle_yaml + train_yaml, "scene.yml")) entries.set(e);
+  for (const auto& [name, value] : values) entries.set({name, value, "command line", 0});
+  return read_scene(Options(entries));
+}
+std::string refused_with(const std::string& name, const std::string& value) {
+  const std::string message = message_of([&] { scene_with({{name, value}}); });
+  EXPECT_PRED2(contains, message, name);
+  return message;
+}
+
+TEST(SceneBeam, ReadsAndFillsIn) {
+  const Scene s = scene_of(beam_yaml + "load: {forces: 1e5, speed: 30}\n");
+  ASSERT_TRUE(s.beam);
+  EXPECT_EQ(s.beam->spans, (std::vector<double>{25.0, 30.0, 25.0}));
+  EXPECT_EQ(s.beam->elements, (std::vector<int>(3, 10)));
+  EXPECT_EQ(s.beam->supports.front(), beam::Support::pinned);
+  EXPECT_EQ(s.beam->supports.back(), beam::Support::roller);
+  EXPECT_FALSE(s.beam->axial);
+  EXPECT_EQ(s.output.probes, (std::vector<double>{12.5, 40.0, 67.5}));
+  EXPECT_EQ(s.output.file, "results/scene.h5");
+  EXPECT_PRED2(any_contains, s.notes, "10 elements a span");
+  EXPECT_EQ(s.gravity, 9.81);
+}
+
+TEST(SceneBeam, ElementsFollowFromTheAccuracy) {
+  const auto elements = [](const std::string& accuracy) {
+    return scene_with({{"accuracy", accuracy}}).beam->elements.front();
+  };
+  EXPECT_EQ(elements("1e-1"), 4);
+  EXPECT_EQ(elements("1e-3"), 10);
+  EXPECT_EQ(elements("1e-4"), 18);
+  EXPECT_EQ(elements("1e-7"), 100);
+  EXPECT_EQ(scene_with({{"beam_elements_per_span", "2,3,4"}}).beam->elements, (std::vector<int>{2, 3, 4}));
+}
+
+TEST(SceneBeam, TablesInFiles) {
+  const test::TemporaryFolder folder;
+  const std::string good = folder.write("ei.csv", "0, 8e9\n40, 9e9\n40, 10e9\n80, 10e9\n");
+  const Scene s = scene_with({{"beam_EI", good}});
+  EXPECT_DOUBLE_EQ(s.beam->EI.at(20.0, 10.0), 8.5e9);
+  EXPECT_DOUBLE_EQ(s.beam->EI.at(40.0, 50.0), 10e9);
+  EXPECT_PRED2(contains, refused_with("beam_EI", folder.write("bad.csv", "0 1\n80 -1\n")), "above 0");
+  EXPECT_PRED2(contains, refused_with("beam_EI", folder.write("down.csv", "0 1\n80 1\n40 1\n")), "down.csv");
+}
+
+TEST(SceneBeam, Foundation) {
+  const Scene s = scene_of(beam_yaml +
+                           "foundation:\n  vertical: {x: [5.0, 10.0], k: 1e7, c: [1e4, 2e4]}\n"
+                           "  vertical_bed: {k: 1e7}\n  rotational: {x: [0, 80], k: 1e9}\n"
+                           "load: {forces: 1e5, speed: 30}\n");
+  const beam::Foundation& f = s.beam->foundation;
+  ASSERT_EQ(f.vertical.size(), 2u);
+  EXPECT_EQ(f.vertical[1].k, 1e7);
+  EXPECT_EQ(f.vertical[1].c, 2e4);
+  ASSERT_TRUE(f.vertical_bed);
+  EXPECT_EQ(f.vertical_bed->c.maximum(), 0.0);
+  EXPECT_EQ(f.rotational.size(), 2u);
+  EXPECT_TRUE(f.longitudinal.empty());
+}
+
+TEST(SceneBeam, Refusals) {
+  EXPECT_PRED2(contains, refused_with("foundation_vertical_k", "1e7"), "foundation_vertical_x");
+  EXPECT_PRED2(contains, refused_with("foundation_vertical_x", "5"), "foundation_vertical_k");
+  EXPECT_PRED2(contains, refused_with("output_probes", "81"), "from 0 to 80 m");
+  EXPECT_PRED2(contains, refused_with("support_types", "pinned,roller"), "one, or 4");
+  EXPECT_PRED2(contains, refused_with("beam_elements_per_span", "1,2"), "one, or 3");
+  EXPECT_PRED2(contains, refused_with("beam_damping_frequencies", "1,2"), "beam_damping_ratios");
+  EXPECT_PRED2(contains, refused("beam: {spans: 25, EI: 1e9}\nload: {forces: 1, speed: 1}\n"), "beam_mass is missing");
+  EXPECT_PRED2(contains, refused("beam: {EI: 1e9}\n"), "beam_spans");
+  EXPECT_PRED2(contains, refused(beam_yaml + "beam_rayleigh: [0.1, 0]\nbeam_damping_ratios: 0.02\n"), "either");
+}
+
+TEST(SceneVehicle, Parts) {
+  const Scene s = scene_with({{"gravity", "1.6"}});
+  ASSERT_EQ(s.vehicles.size(), 1u);
+  const multibody::MechanismModel& m = s.vehicles[0].mechanism;
+  ASSERT_EQ(m.bodies.size(), 2u);
+  EXPECT_EQ(m.bodies[1].position, Eigen::Vector3d(0.5, 0.46, 0.2));
+  EXPECT_EQ(m.bodies[0].velocity.y(), 0.1);
+  EXPECT_EQ(m.gravity, 1.6);
+  EXPECT_EQ(m.joints[0].type, multibody::JointType::prismatic);
+  EXPECT_EQ(m.joints[0].axis, Eigen::Vector2d(0.0, 1.0));
+  EXPECT_EQ(m.springs[0].preload, -5e4);
+  EXPECT_FALSE(m.springs[0].free_length);
+  const Wheel& wheel = s.vehicles[0].wheels.at(0);
+  EXPECT_EQ(wheel.body, 1);
+  EXPECT_EQ(wheel.law.kind, contact::LawKind::hertz);
+  EXPECT_EQ(wheel.law.transition_speed, 0.01);
+  EXPECT_EQ(s.train.positions, (std::vector<double>{-0.5})) << "the front wheel stands at x = 0";
+}
+
+TEST(SceneVehicle, HertzStiffnessFromMaterials) {
+  const std::string yaml = "bodies: b\nwheels: w\nb: {mass: 1, inertia: 1, position: [0, 0.46]}\n";
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("v.yml", yaml + "w: {body: b, radius: 0.46, young: 2.1e11}\n");
+  const Scene s = scene_of(beam_yaml + "vehicle: {v: {file: " + file + "}}\ntrain: {speed: 1}\n");
+  EXPECT_NEAR(s.vehicles[0].wheels[0].law.stiffness, contact::hertz_stiffness(0.46, 2.1e11, 0.3, 2.1e11, 0.3), 1.0);
+}
+
+TEST(SceneVehicle, FilesLieBelowTheOptions) {
+  const test::TemporaryFolder folder;
+  folder.write("vehicles/v.yml",
+               "bodies: [b]\nwheels: [w]\n\nb: {mass: 100, inertia: 1, position: [0, 0.46]}\n"
+               "w: {body: b, radius: 0.46, stiffness: 1e9}\n");
+  const std::string scene = folder.write("scenes/s.yml", beam_yaml + "vehicle:\n  v: {file: ../vehicles/v.yml}\n" +
+                                                             "train: {vehicles: v*3, speed: 1, spacing: 10}\n");
+  options::Entries entries;
+  for (const auto& e : options::read_options_file(scene)) entries.set(e);
+  EXPECT_EQ(read_scene(Options(entries)).vehicles[0].mechanism.bodies[0].mass, 100.0);
+  entries.set({"vehicle_v_b_mass", "4e4", "command line", 0});
+  const Scene s = read_scene(Options(entries));
+  EXPECT_EQ(s.vehicles[0].mechanism.bodies[0].mass, 4e4);
+  EXPECT_EQ(s.train.positions, (std::vector<double>{0.0, -10.0, -20.0}));
+  EXPECT_TRUE(std::any_of(s.options.begin(), s.options.end(),
+                          [](const auto& o) { return o.first == "vehicle_v_w_radius" && o.second == "0.46"; }));
+  entries.set({"vehicle_v_b_inertia", "-1", "command line", 0});
+  EXPECT_THROW(read_scene(Options(entries)), InputError);
+}
+
+TEST(SceneVehicle, ErrorsInFilesNameTheirLine) {
+  const test::TemporaryFolder folder;
+  const auto refused_file = [&](const std::string& text) {
+    const std::string file = folder.write("v.yml", text);
+    return refused(beam_yaml + "vehicle: {v: {file: " + file + "}}\ntrain: {speed: 1}\n");
+  };
+  EXPECT_PRED2(contains, refused_file("bodies: [b]\nb: {mass: 0, inertia: 1, position: [0, 1]}\n"), "v.yml:2");
+  EXPECT_PRED2(contains, refused_file("bodies: [b]\nb: {mas: 1}\n"), "did you mean vehicle_v_b_mass?");
+  EXPECT_PRED2(contains, refused_file("vehicle: {v: {bodies: b}}\n"), "without vehicle:");
+  EXPECT_PRED2(contains, refused_file("file: w.yml\n"), "another file");
+  EXPECT_PRED2(contains, refused_file("length: 10\n"), "needs at least one body");
+}
+
+TEST(SceneVehicle, Refusals) {
+  EXPECT_PRED2(contains, refused_with("vehicle_car_guide_bodies", "body,axel"), "did you mean axle?");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_guide_bodies", "body,body"), "two different bodies");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_guide_axis", "0,0"), "a direction");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_body", "ground"), "ground does not move");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_stiffness", "0"), "above 0");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_spring_free_length", "1"), "give either a preload");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_spring_to", "0.5,2"), "the same point");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_springs", "spring,axle"), "'axle' is the name of a body already");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_bodies", "body,axle,ground"), "'ground' cannot be a part's name");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_contacts", "c"), "not modelled yet");
+  EXPECT_PRED2(contains, message_of([] {
+                 scene_with({{"vehicle_car_joints", "guide,second"}});
+               }),
+               "vehicle_car_second_type is missing");
+  EXPECT_PRED2(contains, message_of([] {
+                 scene_with({{"vehicle_car_wheels", "wheel,other"}});
+               }),
+               "vehicle_car_other_body is missing");
+}
+
+TEST(SceneVehicle, ActuatorsAndDrivers) {
+  const test::TemporaryFolder folder;
+  const Scene s = scene_with({{"vehicle_car_actuators", "push,turn"},
+                              {"vehicle_car_push_body", "body"},
+                              {"vehicle_car_push_force", "100,-5"},
+                              {"vehicle_car_turn_bodies", "body,axle"},
+                              {"vehicle_car_turn_table", folder.write("m.csv", "0 1\n1 3\n")},
+                              {"vehicle_car_drivers", "level"},
+                              {"vehicle_car_level_body", "axle"},
+                              {"vehicle_car_level_coordinate", "phi"}});
+  const multibody::MechanismModel& m = s.vehicles[0].mechanism;
+  EXPECT_EQ(m.actuators[0].action[0].value(3.0), 100.0);
+  EXPECT_EQ(m.actuators[0].reaction_body, multibody::ground);
+  EXPECT_EQ(m.actuators[1].reaction_body, 1);
+  EXPECT_DOUBLE_EQ(m.actuators[1].action[2].value(0.5), 2.0);
+  EXPECT_EQ(m.drivers[0].coordinate, 2);
+  EXPECT_EQ(m.drivers[0].value.value(7.0), 0.2) << "left out: as at t = 0";
+}
+
+TEST(SceneTrain, PositionsAndSpacing) {
+  EXPECT_EQ(
+      scene_with({{"train_vehicles", "car*3"}, {"train_positions", "-5"}, {"train_spacing", "10,20"}}).train.positions,
+      (std::vector<double>{-5.0, -15.0, -35.0}));
+  EXPECT_EQ(scene_with({{"train_vehicles", "car*3"}, {"vehicle_car_length", "12"}}).train.positions,
+            (std::vector<double>{-0.5, -12.5, -24.5}));
+  EXPECT_PRED2(contains, refused_with("train_positions", "1,2"), "one a vehicle");
+  EXPECT_PRED2(contains, message_of([] { scene_with({{"train_vehicles", "car*3"}}); }), "train_spacing: missing");
+  EXPECT_PRED2(contains, refused_with("train_vehicles", "cat"), "did you mean car?");
+  EXPECT_PRED2(contains, refused(beam_yaml + vehicle_yaml), "train_speed is missing");
+  EXPECT_EQ(scene_of(beam_yaml + vehicle_yaml + "train_speed: 3\n").train.vehicles.size(), 1u)
+      << "the one vehicle defined is the train";
+}
+
+TEST(SceneTrain, OneTypeForEqualVehicles) {
+  const Scene s = scene_with({{"train_vehicles", "car*8"}, {"train_spacing", "10"}});
+  EXPECT_EQ(s.vehicles.size(), 1u);
+  EXPECT_EQ(s.train.vehicles, (std::vector<int>(8, 0)));
+}
+
+// EN 1991-2, table 8.4: 2N + 14 axles, from the first to the last 375.5 to 398.5 m.
+TEST(SceneLoad, HslmTrains) {
+  const int coaches[] = {18, 17, 16, 15, 14, 13, 13, 12, 11, 11};
+  const double force[] = {170e3, 200e3, 180e3, 190e3, 170e3, 180e3, 190e3, 190e3, 210e3, 210e3};
+  for (int train = 1; train <= 10; ++train) {
+    const Scene s = scene_of(beam_yaml + "load: {speed: 30, hslm_a: " + std::to_string(train) + "}\n");
+    const std::vector<double>& x = s.load.positions;
+    const auto n = static_cast<std::size_t>(2 * coaches[train - 1] + 14);
+    ASSERT_EQ(x.size(), n);
+    EXPECT_EQ(s.load.forces, (std::vector<double>(n, force[train - 1])));
+    EXPECT_EQ(x.front(), 0.0);
+    EXPECT_GE(-x.back(), 375.5 - 0.05);
+    EXPECT_LE(-x.back(), 398.5 + 0.05);
+    for (std::size_t i = 0; i < n; ++i) {
+      EXPECT_NEAR(x[i] + x[n - 1 - i], x.back(), 1e-9) << "the train reads the same from behind";
+      EXPECT_TRUE(i == 0 || x[i] < x[i - 1]);
+    }
+  }
+  // A1 by hand: D = 18, d = 2; power car, end coach's bogie, the first bogie between coaches
+  const Scene a1 = scene_of(beam_yaml + "load: {speed: 30, hslm_a: 1, positions: -2}\n");
+  const double by_hand[] = {-2.0, -5.0, -16.0, -19.0, -22.525, -24.525, -37.7625, -39.7625, -55.7625};
+  for (int i = 0; i < 9; ++i) EXPECT_NEAR(a1.load.positions[static_cast<std::size_t>(i)], by_hand[i], 1e-9);
+  EXPECT_NEAR(a1.load.positions.back(), -2.0 - 397.525, 1e-9);
+}
+
+TEST(SceneLoad, ForcesAndRefusals) {
+  const Scene s = scene_of(beam_yaml + "load: {forces: 2e5, positions: [0, -3], speed: 30}\n");
+  EXPECT_EQ(s.load.forces, (std::vector<double>{2e5, 2e5}));
+  EXPECT_PRED2(contains, refused("load: {forces: 1, speed: 1}\n"), "beam_spans");
+  EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: [1, 2], speed: 1}\n"), "load_positions: missing");
+  EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: [1, 2], positions: [1, 2, 3], speed: 1}\n"), "2 forces");
+  EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: 1}\n"), "load_speed is missing");
+  EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: 1, hslm_a: 3, speed: 1}\n"), "either");
+  EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: 1, speed: 0}\n"), "load_speed is 0");
+}
+
+TEST(SceneTrack, Profiles) {
+  EXPECT_TRUE(scene_with({}).profile.level());
+  const Scene bump = scene_with({{"track_profile", "bump"},
+                                 {"track_bump_start", "10"},
+                                 {"track_bump_length", "1"},
+                                 {"track_bump_height", "0.01"}});
+  EXPECT_DOUBLE_EQ(bump.profile.at(10.5).value, 0.01);
+  const Scene rough = scene_with({{"track_profile", "iso8608_B"}, {"train_positions", "-20"}});
+  EXPECT_EQ(rough.profile.at(-19.5).value, 0.0);
+  EXPECT_NE(rough.profile.at(5.0).value, 0.0);
+  EXPECT_PRED2(any_contains, scene_with({{"track_bump_start", "10"}}).notes, "track_bump_start has no effect");
+  EXPECT_PRED2(contains, refused_with("track_profile", "iso8608_F"), "iso8608_A to iso8608_E");
+  EXPECT_PRED2(contains, refused_with("track_profile", "bumpy"), "allowed: none, bump");
+  EXPECT_PRED2(contains, refused_with("track_profile", "no.csv"), "no such file");
+  EXPECT_PRED2(contains, refused_with("track_pad_k", "1e7"), "not modelled yet");
+}
+
+TEST(SceneModel, AxialOnlyWhereItMatters) {
+  const auto axial = [](std::initializer_list<std::pair<std::string, std::string>> values) {
+    return scene_with(values).beam->axial;
+  };
+  EXPECT_FALSE(axial({}));
+  EXPECT_FALSE(axial({{"beam_EA", "1e10"}}));
+  EXPECT_FALSE(axial({{"vehicle_car_wheel_friction", "0.3"}})) << "no EA";
+  EXPECT_TRUE(axial({{"beam_EA", "1e10"}, {"vehicle_car_wheel_friction", "0.3"}}));
+  EXPECT_TRUE(axial({{"beam_EA", "1e10"}, {"train_drive", "free"}}));
+  EXPECT_TRUE(axial({{"beam_EA", "1e10"}, {"scene_analysis", "modes"}}));
+  EXPECT_TRUE(axial({{"beam_EA", "1e10"}, {"foundation_longitudinal_bed_k", "1e6"}}));
+  EXPECT_TRUE(axial({{"beam_EA", "1e10"}, {"model_axial", "true"}}));
+  EXPECT_FALSE(axial({{"beam_EA", "1e10"}, {"vehicle_car_wheel_friction", "0.3"}, {"model_axial", "false"}}));
+  EXPECT_PRED2(contains, refused_with("model_axial", "true"), "needs beam_EA");
+  EXPECT_PRED2(contains, refused_with("foundation_longitudinal_bed_k", "1"), "need beam_EA");
+  EXPECT_PRED2(any_contains, scene_with({}).notes, "axial unknowns: none");
+}
+
+TEST(SceneModel, WhatIsNotThereYetIsRefused) {
+  EXPECT_PRED2(contains, refused_with("sweep_speed", "10,20,5"), "not there yet");
+  EXPECT_PRED2(contains, refused_with("model_modes", "5"), "allowed: auto or 0");
+  EXPECT_PRED2(contains, refused_with("model_window", "2"), "allowed: auto or 0");
+  EXPECT_NO_THROW(scene_with({{"model_modes", "0"}, {"model_window", "auto"}}));
+}
+
+TEST(SceneWhole, SomethingHasToHappenAndToEnd) {
+  EXPECT_PRED2(contains, refused(""), "nothing to simulate");
+  EXPECT_PRED2(contains, refused("scene: {analysis: modes}\n"), "nothing to simulate");
+  EXPECT_PRED2(contains, refused(vehicle_yaml + train_yaml), "ts_max_time");
+  EXPECT_NO_THROW(scene_of(vehicle_yaml + train_yaml + "ts_max_time: 1\n"));
+  EXPECT_PRED2(contains, message_of([] { scene_with({{"train_speed", "0"}}); }), "train_speed is 0");
+  EXPECT_NO_THROW(scene_with({{"train_speed", "0"}, {"scene_tail", "1"}}));
+  EXPECT_NO_THROW(scene_of(beam_yaml + "scene: {analysis: modes}\n"));
+}
+
+TEST(SceneWhole, AMechanismOnItsOwnIsNotDriven) {
+  const Scene s = scene_of(
+      "vehicle: {pendulum: {bodies: bob, joints: pin, bob: {mass: 1, inertia: 1, position: [1, 0]}, "
+      "pin: {type: revolute, bodies: [ground, bob], point: [0, 0]}}}\nts_max_time: 1\nscene_start: given\n");
+  EXPECT_EQ(s.train.drive, Drive::free);
+  EXPECT_EQ(s.start, Start::given);
+  EXPECT_EQ(s.vehicles[0].mechanism.joints[0].bodies[0], multibody::ground);
+}
+
+class SceneFile : public testing::TestWithParam<std::string> {};
+
+TEST_P(SceneFile, IsReadAndOpensWithThreeLines) {
+  std::ifstream file(GetParam());
+  for (const char* opening : {"# What: ", "# Source: ", "# Expected: "}) {
+    std::string line;
+    std::getline(file, line);
+    EXPECT_TRUE(line.starts_with(opening)) << line;
+  }
+  options::Entries entries;
+  const std::vector<options::Entry> given = options::read_options_file(GetParam());
+  if (!contains(GetParam(), "/scenes/")) return;
+  for (const options::Entry& e : given) entries.set(e);
+  EXPECT_NO_THROW(read_scene(Options(entries)));
+}
+
+std::vector<std::string> files_in_options() {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(TRAVERSE_SOURCE_DIR "/options")) {
+    if (entry.path().extension() == ".yml") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+INSTANTIATE_TEST_SUITE_P(Options, SceneFile, testing::ValuesIn(files_in_options()),
+                         [](const auto& name) { return std::filesystem::path(name.param).stem().string(); });
+
+// A coach as its source describes it: ten degrees of freedom besides x, and the axle loads of its masses.
+TEST(Coach, VelaroMasses) {
+  options::Entries entries;
+  for (const auto& e : options::read_options_file(TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml")) {
+    entries.set(e);
+  }
+  const Scene s = read_scene(Options(entries));
+  double mass = 0.0;
+  for (const multibody::Body& body : s.vehicles.at(0).mechanism.bodies) mass += body.mass;
+  EXPECT_EQ(mass, 47800.0 + 2 * 3500.0 + 4 * 1800.0);
+  EXPECT_EQ(s.vehicles[0].wheels.size(), 4u);
+  EXPECT_EQ(s.train.vehicles.size(), 8u);
+  EXPECT_NEAR(s.vehicles[0].wheels[0].law.stiffness, 2.0 * std::pow(4.57e-8 * std::pow(0.46, -0.149), -1.5), 1e8);
+}
+
+}  // namespace
+}  // namespace traverse::app
