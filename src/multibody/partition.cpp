@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "traverse/base/error.hpp"
 #include "traverse/multibody/mechanism.hpp"
@@ -98,7 +99,7 @@ std::vector<std::string> Mechanism::choose_partition(MechanismState& s, double t
   }
   std::vector<std::string> names;
   for (const int row : dropped) {
-    const std::string& name = part_name(row);
+    const std::string& name = part_name(row);  // a part's rows stand together
     if (names.empty() || names.back() != name) names.push_back(name);
   }
   return names;
@@ -155,13 +156,16 @@ std::string Mechanism::conflict(MechanismState& s, int row, const std::string& v
   factor(s);
   Eigen::VectorXd share = Eigen::VectorXd::Zero(constraints());
   s.dependent_block.solve_transposed(s.Phi_q.row(row).transpose(), share);
-  std::string text = "vehicle '" + model_.name + "': " + row_name(row) + " " + verb + " ";
-  std::string last;
+  std::string others;
+  std::string last = row_name(row);  // a part's rows stand together
   for (const int kept : partition_.rows) {
-    if (std::abs(share[kept]) * scaling_.row[row] / scaling_.row[kept] < 1e-6 || row_name(kept) == last) continue;
-    text += (last.empty() ? "" : ", ") + row_name(kept);
+    const bool shares = std::abs(share[kept]) * scaling_.row[row] / scaling_.row[kept] > 1e-6;
+    if (!shares || row_name(kept) == last || row_name(kept) == row_name(row)) continue;
     last = row_name(kept);
+    others += (others.empty() ? "" : ", ") + last;
   }
+  const std::string text =
+      "vehicle '" + model_.name + "': " + row_name(row) + " " + verb + " " + (others.empty() ? "itself" : others);
   return text;
 }
 

@@ -243,37 +243,64 @@ double DependentBlock::largest_sensitivity(const Scaling& scaling) const {
 }
 
 void ReducedMass::plan(const DependentBlock& block) {
-  const int f = size_ = block.freedom();
-  entries_.assign(static_cast<std::size_t>(f) * f, 0.0);
-  inverse_.assign(f, 0.0);
+  const int f = block.freedom();
   filled_.assign(static_cast<std::size_t>(f) * f, 0);
-  below_.clear();
   for (int i = 0; i < block.size(); ++i)
     for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a)
-      for (const int* b = a; b != block.sensitivity_end(i); ++b) filled_[*a * f + *b] = 1;
+      for (const int* b = block.sensitivity_begin(i); b != block.sensitivity_end(i); ++b) filled_[*a * f + *b] = 1;
+  entries_.assign(static_cast<std::size_t>(f) * f, 0.0);
+  inverse_.assign(f, 0.0);
+  work_.assign(f, 0.0);
+  place_.assign(f, -1);
+  order_.clear();
+  below_.clear();
   for (int k = 0; k < f; ++k) {
-    for (int i = k + 1; i < f; ++i) {
-      if (!filled_[k * f + i]) continue;
-      below_.index.push_back(i);
-      for (int j = k + 1; j < i; ++j)
-        if (filled_[k * f + j]) filled_[j * f + i] = 1;
+    const int next = least_coupled();
+    place_[next] = k;
+    order_.push_back(next);
+    for (int i = 0; i < f; ++i) {
+      if (place_[i] >= 0 || !filled_[next * f + i]) continue;
+      below_.index.push_back(i);  // renumbered when all places are known
+      for (int j = 0; j < f; ++j)
+        if (filled_[next * f + j]) filled_[i * f + j] = 1;
     }
     below_.close();
   }
+  for (int& i : below_.index) i = place_[i];
+  for (int k = 0; k < f; ++k)
+    std::sort(below_.index.data() + below_.start[k], below_.index.data() + below_.start[k + 1]);
+}
+
+/// The coordinate not yet placed that is coupled with the fewest others that are not.
+int ReducedMass::least_coupled() const {
+  const int f = static_cast<int>(place_.size());
+  int best = -1;
+  int fewest = f + 1;
+  for (int i = 0; i < f; ++i) {
+    if (place_[i] >= 0) continue;
+    int count = 0;
+    for (int j = 0; j < f; ++j)
+      if (place_[j] < 0 && filled_[i * f + j]) ++count;
+    if (count >= fewest) continue;
+    fewest = count;
+    best = i;
+  }
+  return best;
 }
 
 void ReducedMass::factor(const DependentBlock& block, const Eigen::VectorXd& mass) {
-  const int f = size_;
+  const int f = static_cast<int>(order_.size());
   for (int k = 0; k < f; ++k) {
     for (const int* i = below_.begin(k); i != below_.end(k); ++i) entries_[k * f + *i] = 0.0;
-    entries_[k * f + k] = mass[block.independent(k)];
+    entries_[k * f + k] = mass[block.independent(order_[k])];
   }
   for (int i = 0; i < block.size(); ++i) {
     const double inertia = mass[block.coordinate(i)];
     for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a) {
       const double weighted = inertia * block.sensitivity(i, *a);
-      for (const int* b = a; b != block.sensitivity_end(i); ++b)
-        entries_[*a * f + *b] += weighted * block.sensitivity(i, *b);
+      const int column = place_[*a];
+      for (const int* b = block.sensitivity_begin(i); b != block.sensitivity_end(i); ++b)
+        if (place_[*b] >= column) entries_[column * f + place_[*b]] += weighted * block.sensitivity(i, *b);
     }
   }
   for (int k = 0; k < f; ++k) {
@@ -287,14 +314,16 @@ void ReducedMass::factor(const DependentBlock& block, const Eigen::VectorXd& mas
   }
 }
 
-void ReducedMass::solve(Eigen::VectorXd& x) const {
-  const int f = size_;
+void ReducedMass::solve(Eigen::VectorXd& x) {
+  const int f = static_cast<int>(order_.size());
+  for (int k = 0; k < f; ++k) work_[k] = x[order_[k]];
   for (int k = 0; k < f; ++k)
-    for (const int* i = below_.begin(k); i != below_.end(k); ++i) x[*i] -= entries_[k * f + *i] * x[k];
+    for (const int* i = below_.begin(k); i != below_.end(k); ++i) work_[*i] -= entries_[k * f + *i] * work_[k];
   for (int k = f - 1; k >= 0; --k) {
-    double sum = x[k] * inverse_[k];
-    for (const int* i = below_.begin(k); i != below_.end(k); ++i) sum -= entries_[k * f + *i] * x[*i];
-    x[k] = sum;
+    double sum = work_[k] * inverse_[k];
+    for (const int* i = below_.begin(k); i != below_.end(k); ++i) sum -= entries_[k * f + *i] * work_[*i];
+    work_[k] = sum;
+    x[order_[k]] = sum;
   }
 }
 

@@ -1,7 +1,7 @@
 // What the tests of multibody share: small mechanisms and a Runge-Kutta integrator of p and p'.
 #pragma once
 
-#include <functional>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -55,6 +55,41 @@ inline Spring make_spring(const std::string& name, int first, int second, Eigen:
   return spring;
 }
 
+constexpr double crank_length = 1.0, rod_length = 3.0;
+
+/// Crank about the origin, rod, slider on the x axis; crank at angle theta.
+inline MechanismModel slider_crank(double theta, bool with_distance_rod = false) {
+  const Eigen::Vector2d pin(crank_length * std::cos(theta), crank_length * std::sin(theta));
+  const double x = pin.x() + std::sqrt(rod_length * rod_length - pin.y() * pin.y());
+  MechanismModel model;
+  model.name = "slider_crank";
+  model.bodies = {make_body("crank", 2.0, 0.4, 0.5 * pin.x(), 0.5 * pin.y(), theta),
+                  make_body("slider", 3.0, 0.3, x, 0.0)};
+  model.joints = {make_joint("bearing", JointType::revolute, ground, 0, 0.0, 0.0),
+                  make_joint("guide", JointType::prismatic, ground, 1, 0.0, 0.0, 1.0, 0.0)};
+  if (with_distance_rod) {
+    model.joints.push_back(make_distance("rod", 0, 1, pin, {x, 0.0}));
+    return model;
+  }
+  model.bodies.push_back(
+      make_body("rod", 1.0, 0.9, 0.5 * (pin.x() + x), 0.5 * pin.y(), std::asin(-pin.y() / rod_length)));
+  model.joints.push_back(make_joint("crank_pin", JointType::revolute, 0, 2, pin.x(), pin.y()));
+  model.joints.push_back(make_joint("slider_pin", JointType::revolute, 2, 1, x, 0.0));
+  return model;
+}
+
+/// Crank, coupler and rocker between pins at (0, 0) and (4, 0).
+inline MechanismModel four_bar() {
+  MechanismModel model;
+  model.name = "four_bar";
+  model.bodies = {make_body("crank", 1.0, 0.1, 0.0, 0.5), make_body("coupler", 2.0, 1.5, 2.5, 2.0),
+                  make_body("rocker", 1.5, 0.7, 4.5, 1.5)};
+  model.joints = {
+      make_joint("a", JointType::revolute, ground, 0, 0.0, 0.0), make_joint("b", JointType::revolute, 0, 1, 0.0, 1.0),
+      make_joint("c", JointType::revolute, 1, 2, 5.0, 3.0), make_joint("d", JointType::revolute, 2, ground, 4.0, 0.0)};
+  return model;
+}
+
 /// A mechanism with a state, ready to move; p and p' are what a time integrator would hold.
 class Motion {
  public:
@@ -106,6 +141,9 @@ class Motion {
     mechanism.choose_partition(state, time);
     read();
   }
+
+  /// The largest error of any constraint.
+  double drift() const { return state.Phi.size() == 0 ? 0.0 : state.Phi.cwiseAbs().maxCoeff(); }
 
   double total_energy() const {
     const MechanismEnergy e = mechanism.energy(state);

@@ -18,10 +18,10 @@ inline constexpr int ground = -1;  // a body index
 /// A rigid body; its three coordinates are those of its centre of mass.
 struct Body {
   std::string name;
-  double mass = 0.0;                                    // kg, > 0
-  double inertia = 0.0;                                 // kg m2 about the centre of mass, > 0
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();   // x, y, phi at t = 0
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   // of x, y, phi at t = 0
+  double mass = 0.0;                                   // kg, > 0
+  double inertia = 0.0;                                // kg m2 about the centre of mass, > 0
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  // x, y, phi at t = 0
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // of x, y, phi at t = 0
 };
 
 enum class JointType {

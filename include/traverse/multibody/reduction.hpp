@@ -88,19 +88,23 @@ class DependentBlock {
   Eigen::MatrixXd active_;    // scratch of plan
 };
 
-/// L D L^T of the projected mass matrix B^T N B.
+/// L D L^T of the projected mass matrix B^T N B, eliminated in the order of least fill.
 class ReducedMass {
  public:
   void plan(const DependentBlock& block);
+  /// After compute_sensitivity.
   void factor(const DependentBlock& block, const Eigen::VectorXd& mass);
-  void solve(Eigen::VectorXd& x) const;  // in place
+  void solve(Eigen::VectorXd& x);  // in place
 
  private:
-  int size_ = 0;
-  IndexLists below_;             // non-zero rows below the diagonal, by columns
-  std::vector<double> entries_;  // size x size, by columns
-  std::vector<double> inverse_;  // of D
-  std::vector<char> filled_;
+  int least_coupled() const;
+
+  std::vector<int> order_, place_;  // the coordinate eliminated k-th, and the other way round
+  IndexLists below_;                // non-zero rows below the diagonal, by columns
+  std::vector<double> entries_;     // by columns
+  std::vector<double> inverse_;     // of D
+  std::vector<double> work_;
+  std::vector<char> filled_;  // scratch of plan
 };
 
 }  // namespace traverse::multibody

@@ -1,0 +1,134 @@
+// Cost of one evaluation of the equations of motion (positions, velocities, forces, accelerations) of typical vehicles.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "traverse/multibody/mechanism.hpp"
+
+namespace {
+
+using namespace traverse::multibody;
+
+Body body(const std::string& name, double mass, double inertia, double x, double y) {
+  Body b;
+  b.name = name;
+  b.mass = mass;
+  b.inertia = inertia;
+  b.position = {x, y, 0.0};
+  b.velocity = {80.0, 0.0, 0.0};
+  return b;
+}
+
+Joint guide(JointType type, int first, int second, double x, double y) {
+  Joint j;
+  j.name = "guide_" + std::to_string(first) + "_" + std::to_string(second);
+  j.type = type;
+  j.bodies = {first, second};
+  j.point = {x, y};
+  return j;
+}
+
+Spring suspension(int first, int second, double x, double from, double to, double stiffness, double damping) {
+  Spring s;
+  s.name = "suspension_" + std::to_string(second);
+  s.bodies = {first, second};
+  s.from = {x, from};
+  s.to = {x, to};
+  s.stiffness = stiffness;
+  s.damping = damping;
+  return s;
+}
+
+/// A coach of 10 degrees of freedom: heave and pitch of the car and of two bogies, heave of four axles.
+MechanismModel coach() {
+  MechanismModel model;
+  model.name = "coach";
+  model.bodies = {body("car", 4.0e4, 2.0e6, 0.0, 1.8)};
+  for (const double x : {9.5, -9.5}) model.bodies.push_back(body("bogie", 3000.0, 4000.0, x, 0.6));
+  for (const double x : {10.75, 8.25, -8.25, -10.75}) model.bodies.push_back(body("axle", 1800.0, 100.0, x, 0.46));
+  for (int bogie = 1; bogie <= 2; ++bogie) {
+    const double x = model.bodies[bogie].position.x();
+    model.joints.push_back(guide(JointType::slot, 0, bogie, x, 0.9));
+    for (const double side : {-0.5, 0.5}) {
+      model.springs.push_back(suspension(0, bogie, x + side, 1.2, 0.7, 2.5e5, 3.0e4));
+    }
+  }
+  for (int axle = 3; axle <= 6; ++axle) {
+    const int bogie = axle <= 4 ? 1 : 2;
+    const double x = model.bodies[axle].position.x();
+    model.joints.push_back(guide(JointType::prismatic, bogie, axle, x, 0.46));
+    model.springs.push_back(suspension(bogie, axle, x, 0.8, 0.46, 1.2e6, 1.0e4));
+  }
+  Driver driver;
+  driver.name = "speed";
+  driver.value = traverse::base::TimeFunction(0.0, 80.0);
+  model.drivers = {driver};
+  return model;
+}
+
+/// A four-bar linkage: little sparsity, all positions nonlinear.
+MechanismModel four_bar() {
+  MechanismModel model;
+  model.name = "four_bar";
+  model.bodies = {body("crank", 1.0, 0.1, 0.0, 0.5), body("coupler", 2.0, 0.5, 1.0, 1.25),
+                  body("rocker", 1.5, 0.3, 2.0, 0.75)};
+  model.joints = {guide(JointType::revolute, ground, 0, 0.0, 0.0), guide(JointType::revolute, 0, 1, 0.0, 1.0),
+                  guide(JointType::revolute, 1, 2, 2.0, 1.5), guide(JointType::revolute, ground, 2, 2.0, 0.0)};
+  for (Body& b : model.bodies) b.velocity.setZero();
+  return model;
+}
+
+/// Evaluates along a prescribed small motion so that every call has new positions.
+void evaluate(benchmark::State& bench, const MechanismModel& model, bool derivatives) {
+  Mechanism mechanism(model);
+  MechanismState s = mechanism.make_state();
+  mechanism.choose_partition(s, 0.0);
+  const int f = mechanism.freedom();
+  const std::vector<int>& independent = mechanism.partition().independent;
+  Eigen::VectorXd p0(f), p(f), pd(f), pdd(f);
+  for (int k = 0; k < f; ++k) {
+    p0[k] = s.q[independent[k]];
+    pd[k] = s.qd[independent[k]];
+  }
+  const Eigen::VectorXd Q = Eigen::VectorXd::Zero(mechanism.coordinates());
+  const double dt = 1e-3;
+  double t = 0.0;
+  double sway = 0.0;
+  for (auto _ : bench) {
+    t += dt;
+    sway = sway > 1e-3 ? -1e-3 : sway + 3e-6;
+    for (int k = 0; k < f; ++k) p[k] = p0[k] + (k % 2 == 0 ? sway : -sway);
+    if (!mechanism.set_positions(s, t, p.data())) bench.SkipWithError("positions did not converge");
+    mechanism.set_velocities(s, t, pd.data());
+    mechanism.compute_forces(s, derivatives);
+    mechanism.accelerations(s, Q, pdd.data());
+    benchmark::DoNotOptimize(pdd.data());
+  }
+  bench.counters["freedom"] = f;
+}
+
+void coach_evaluation(benchmark::State& bench) { evaluate(bench, coach(), false); }
+void coach_with_derivatives(benchmark::State& bench) { evaluate(bench, coach(), true); }
+void four_bar_evaluation(benchmark::State& bench) { evaluate(bench, four_bar(), false); }
+
+void free_coach_evaluation(benchmark::State& bench) {
+  MechanismModel model = coach();
+  model.joints.clear();
+  model.drivers.clear();
+  evaluate(bench, model, false);
+}
+
+void coach_partition(benchmark::State& bench) {
+  Mechanism mechanism(coach());
+  MechanismState s = mechanism.make_state();
+  for (auto _ : bench) mechanism.choose_partition(s, 0.0);
+}
+
+BENCHMARK(coach_evaluation);
+BENCHMARK(coach_with_derivatives);
+BENCHMARK(free_coach_evaluation);
+BENCHMARK(four_bar_evaluation);
+BENCHMARK(coach_partition);
+
+}  // namespace

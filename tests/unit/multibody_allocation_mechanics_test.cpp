@@ -1,0 +1,49 @@
+// Once a state is made and its partition chosen, an evaluation takes no memory from the heap.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "unit/mechanism_helpers.hpp"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+namespace {
+std::atomic<long> allocations = 0;
+}
+
+extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's own name
+extern "C" void* malloc(std::size_t size) {        // NOLINT: counts for this test program
+  ++allocations;
+  return __libc_malloc(size);
+}
+
+namespace traverse::multibody::testing {
+namespace {
+
+TEST(Evaluation, TakesNoMemory) {
+  MechanismModel model = slider_crank(0.7);
+  model.bodies[0].velocity.z() = 3.0;
+  model.springs = {make_spring("s", ground, 1, {6.0, 0.0}, model.bodies[1].position.head<2>(), 300.0, 3.0)};
+  Motion motion(model);
+  double pdd = 0.0;
+  const long before = allocations;
+  std::vector<double> counted(10);
+  ASSERT_GT(allocations, before);  // the counting works
+  const long start = allocations;
+  for (int i = 0; i < 100; ++i) {
+    motion.p[0] += 0.01;
+    const bool converged = motion.evaluate(0.01 * i, &pdd);
+    motion.mechanism.compute_forces(motion.state, true);
+    motion.mechanism.recover(motion.state, motion.Q, &pdd);
+    motion.mechanism.compute_lambda_curvature(motion.state);
+    motion.converged = motion.converged && converged;
+  }
+  EXPECT_EQ(allocations, start);
+  EXPECT_TRUE(motion.converged);
+}
+
+}  // namespace
+}  // namespace traverse::multibody::testing
+
+#endif

@@ -1,0 +1,94 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "traverse/base/error.hpp"
+#include "traverse/base/time_function.hpp"
+
+namespace traverse::base {
+namespace {
+
+TEST(TimeFunction, StraightLine) {
+  TimeFunction f(2.0, 3.0);
+  EXPECT_EQ(f.value(1.5), 6.5);
+  EXPECT_EQ(f.rate(1.5), 3.0);
+  EXPECT_EQ(f.acceleration(1.5), 0.0);
+  f.shift(1.0);
+  EXPECT_EQ(f.value(0.0), 3.0);
+  EXPECT_EQ(TimeFunction().value(7.0), 0.0);
+}
+
+TEST(TimeFunction, SplinePassesThroughItsTableAndIsTwiceSmooth) {
+  const std::vector<double> t = {0.0, 0.7, 1.0, 2.5, 3.0}, y = {1.0, -1.0, 0.5, 2.0, 0.0};
+  const TimeFunction f(t, y);
+  for (std::size_t i = 0; i < t.size(); ++i) EXPECT_NEAR(f.value(t[i]), y[i], 1e-15);
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double h = 1e-9;
+    EXPECT_NEAR(f.value(t[i] - h), f.value(t[i] + h), 1e-7);
+    EXPECT_NEAR(f.rate(t[i] - h), f.rate(t[i] + h), 1e-6);
+    EXPECT_NEAR(f.acceleration(t[i] - h), f.acceleration(t[i] + h), 1e-5);
+  }
+  EXPECT_EQ(f.acceleration(0.0), 0.0);  // natural ends
+  EXPECT_EQ(f.acceleration(3.0), 0.0);
+  for (const double at : {-0.5, 0.1, 0.9, 2.0, 2.9, 4.0}) {
+    const double h = 1e-4;
+    EXPECT_NEAR(f.rate(at), (f.value(at + h) - f.value(at - h)) / (2.0 * h), 1e-6);
+    EXPECT_NEAR(f.acceleration(at), (f.rate(at + h) - f.rate(at - h)) / (2.0 * h), 1e-6);
+  }
+}
+
+TEST(TimeFunction, SplineOfAStraightLineIsTheLineEverywhere) {
+  const TimeFunction f({0.0, 1.0, 4.0}, {2.0, 5.0, 14.0});
+  for (const double t : {-3.0, 0.0, 0.3, 2.0, 4.0, 9.0}) {
+    EXPECT_NEAR(f.value(t), 2.0 + 3.0 * t, 1e-13);
+    EXPECT_NEAR(f.rate(t), 3.0, 1e-14);
+    EXPECT_NEAR(f.acceleration(t), 0.0, 1e-14);
+  }
+}
+
+TEST(TimeFunction, TwoRowsAreALine) {
+  const TimeFunction f({1.0, 3.0}, {0.0, 4.0});
+  EXPECT_DOUBLE_EQ(f.value(2.0), 2.0);
+  EXPECT_DOUBLE_EQ(f.rate(5.0), 2.0);
+}
+
+TEST(TimeFunction, GoesOnStraightOutsideTheTable) {
+  TimeFunction f({0.0, 1.0, 2.0}, {0.0, 1.0, 0.0});
+  EXPECT_NEAR(f.value(4.0), 2.0 * f.rate(2.0), 1e-14);
+  EXPECT_EQ(f.rate(4.0), f.rate(2.0));
+  EXPECT_NEAR(f.value(-1.0), -f.rate(0.0), 1e-14);
+  f.shift(5.0);
+  EXPECT_NEAR(f.value(1.0), 6.0, 1e-15);
+  EXPECT_NEAR(f.value(4.0), 5.0 + 2.0 * f.rate(2.0), 1e-14);
+}
+
+TEST(TimeFunction, SplineConvergesToASineAtFourthOrder) {
+  // over a full half wave the natural end conditions are exact
+  const auto error = [](int n) {
+    std::vector<double> t, y;
+    for (int i = 0; i <= n; ++i) {
+      t.push_back(std::numbers::pi * i / n);
+      y.push_back(std::sin(t.back()));
+    }
+    const TimeFunction f(t, y);
+    double largest = 0.0;
+    for (int i = 0; i < 1000; ++i) largest = std::max(largest, std::abs(f.value(i * 3e-3) - std::sin(i * 3e-3)));
+    return largest;
+  };
+  EXPECT_GT(std::log2(error(8) / error(16)), 3.9);
+}
+
+TEST(TimeFunction, RefusesBadTables) {
+  const std::vector<double> one = {1.0};
+  EXPECT_THROW(TimeFunction(one, one), InputError);
+  EXPECT_THROW(TimeFunction({0.0, 1.0}, one), InputError);
+  EXPECT_THROW(TimeFunction({0.0, 0.0}, {1.0, 2.0}), InputError);
+  EXPECT_THROW(TimeFunction({0.0, 1.0, 0.5}, {1.0, 2.0, 3.0}), InputError);
+  EXPECT_THROW(TimeFunction({0.0, 1.0}, {1.0, std::numeric_limits<double>::infinity()}), InputError);
+}
+
+}  // namespace
+}  // namespace traverse::base
