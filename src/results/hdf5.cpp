@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -19,7 +20,8 @@ namespace {
 
 constexpr hsize_t kChunkRows = 256;
 constexpr hsize_t kChunkBytes = 1 << 20;
-constexpr hsize_t kMetadataBlock = 1 << 16;
+constexpr off_t kEndOffset = 40;  // where superblock version 0 keeps the file's end, 8 bytes, little-endian
+constexpr hsize_t kGrowthStep = 1 << 18;
 
 [[noreturn]] void fail(const std::string& path, const std::string& reason) {
   throw FileError("cannot write the results file " + path + ": " + reason);
@@ -71,12 +73,17 @@ File::File(std::string path) : path_(std::move(path)) {
   check_old_file(path_);
 
   const Id access(check(H5Pcreate(H5P_FILE_ACCESS)));
-  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V18, H5F_LIBVER_V18));
-  check(H5Pset_file_locking(access.get(), true, true));  // where the file system has locks
-  check(H5Pset_meta_block_size(access.get(), kMetadataBlock));
+  check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));  // the oldest superblock
+  check(H5Pset_file_locking(access.get(), true, true));                            // where the file system has locks
+  check(H5Pset_meta_block_size(access.get(), kGrowthStep));
+  check(H5Pset_small_data_block_size(access.get(), kGrowthStep));
   check(H5Pset_sieve_buf_size(access.get(), 0));  // else a failed write shows only when a dataset is closed
   file_ = Id(check(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())));
+  check(H5Fset_libver_bounds(file_.get(), H5F_LIBVER_V18, H5F_LIBVER_V18));  // but fast groups and datasets
 
+  // No chunk cache: rows go straight to their place, none is ever rewritten, and no memory waits.
+  rows_access_ = Id(check(H5Pcreate(H5P_DATASET_ACCESS)));
+  check(H5Pset_chunk_cache(rows_access_.get(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT));
   parents_ = Id(check(H5Pcreate(H5P_LINK_CREATE)));
   check(H5Pset_create_intermediate_group(parents_.get(), 1));
   text_ = Id(check(H5Tcopy(H5T_C_S1)));
@@ -97,14 +104,20 @@ int File::descriptor() const {
   return *static_cast<int*>(handle);
 }
 
-void File::flush() {
+void File::secure_space() {
   haddr_t end = 0;
   check(H5Fget_eoa(file_.get(), &end));
-  if (const auto size = static_cast<off_t>(end); size > reserved_) {
-    const int error = posix_fallocate(descriptor(), reserved_, size - reserved_);
-    if (error != 0) fail(path_, std::strerror(error));
-    reserved_ = size;
-  }
+  const auto size = static_cast<off_t>(end);
+  if (size <= reserved_) return;
+  const int error = posix_fallocate(descriptor(), reserved_, size - reserved_);
+  if (error != 0) fail(path_, std::strerror(error));
+  static_assert(std::endian::native == std::endian::little);
+  if (pwrite(descriptor(), &end, sizeof(end), kEndOffset) != sizeof(end)) fail(path_, std::strerror(errno));
+  reserved_ = size;
+}
+
+void File::flush() {
+  secure_space();
   check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL));
 }
 
@@ -173,10 +186,11 @@ void File::table(const std::string& name, const std::vector<std::pair<std::strin
   attribute(name, "unit", "text");
 }
 
-Series::Series(File& file, const std::string& name, const std::vector<hsize_t>& row, const std::string& unit, int rows)
-    : shape_{0}, width_(std::accumulate(row.begin(), row.end(), std::size_t{1}, [](std::size_t a, hsize_t b) {
-        return a * static_cast<std::size_t>(b);
-      })) {
+Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows)
+    : name_(std::move(name)),
+      shape_{0},
+      width_(std::accumulate(row.begin(), row.end(), std::size_t{1},
+                             [](std::size_t a, hsize_t b) { return a * static_cast<std::size_t>(b); })) {
   shape_.insert(shape_.end(), row.begin(), row.end());
   auto most = shape_;
   most[0] = H5S_UNLIMITED;
@@ -187,27 +201,26 @@ Series::Series(File& file, const std::string& name, const std::vector<hsize_t>& 
   const Id creation(file.check(H5Pcreate(H5P_DATASET_CREATE)));
   file.check(H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
   file.check(H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER));
-  // No chunk cache: rows go straight to their place, none is ever rewritten, and no memory waits.
-  const Id access(file.check(H5Pcreate(H5P_DATASET_ACCESS)));
-  file.check(H5Pset_chunk_cache(access.get(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT));
-  dataset_ = Id(file.check(H5Dcreate2(file.id(), name.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
-                                      creation.get(), access.get())));
-  file.attribute(name, "unit", unit);
+  const Id dataset(file.check(H5Dcreate2(file.id(), name_.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
+                                         creation.get(), file.rows_access())));
+  file.attribute(name_, "unit", unit);
   buffer_.reserve(width_ * static_cast<std::size_t>(rows));
 }
 
-void Series::write(const File& file) {
+void Series::write(File& file) {
   const hsize_t rows = buffer_.size() / width_;
   if (rows == 0) return;
   std::vector<hsize_t> start(shape_.size(), 0), count = shape_;
   start[0] = shape_[0];
   count[0] = rows;
   shape_[0] += rows;
-  file.check(H5Dset_extent(dataset_.get(), shape_.data()));
-  const Id there(file.check(H5Dget_space(dataset_.get())));
+  const Id dataset(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access())));
+  file.check(H5Dset_extent(dataset.get(), shape_.data()));
+  const Id there(file.check(H5Dget_space(dataset.get())));
   const Id here(file.check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
   file.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
-  file.check(H5Dwrite(dataset_.get(), H5T_NATIVE_DOUBLE, here.get(), there.get(), H5P_DEFAULT, buffer_.data()));
+  file.check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, here.get(), there.get(), H5P_DEFAULT, buffer_.data()));
+  file.secure_space();  // HDF5 may write structure when its cache is full
   buffer_.clear();
 }
 

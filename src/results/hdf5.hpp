@@ -31,8 +31,9 @@ class Id {
   hid_t id_ = H5I_INVALID_HID;
 };
 
-/// A file being written, by one process. A run that is killed leaves the state of the last flush(): superblock
-/// version 2 has no mark of an unfinished writer, and whoever appends to a Series flushes at once.
+/// A file being written, by one process, such that a kill at any time leaves the state of the last flush() readable:
+/// the oldest superblock has no mark of an unfinished writer, whoever appends to a Series flushes at once, and the
+/// file's new end is on disk before anything refers to what lies there (HDF5 itself writes it last).
 class File {
  public:
   /// Creates the file and its folder, replacing an older file unless another program has it open.
@@ -41,8 +42,10 @@ class File {
   const std::string& path() const { return path_; }
   /// The identifier or status as it was; FileError with HDF5's innermost reason when it is negative.
   hid_t check(hid_t result) const;
-  /// Takes the space on disk first, so that a full disk shows before anything of the file's structure is touched:
-  /// HDF5 1.10 cannot close a file, nor end the program, after a flush of its own has failed.
+  /// Takes the space on disk that the next flush needs, so that a full disk shows before anything of the file's
+  /// structure is touched: HDF5 1.10 cannot close a file, nor end the program, after a flush of its own has failed.
+  void secure_space();
+  /// FileError when the disk is full.
   void flush();
   void close();
   /// After a failure: leaves on disk what is there. What HDF5 still wants to write while it closes goes into memory
@@ -62,21 +65,23 @@ class File {
 
   hid_t id() const { return file_.get(); }
   hid_t parents() const { return parents_.get(); }  // link creation: makes the groups on the way
+  hid_t rows_access() const { return rows_access_.get(); }
 
  private:
   int descriptor() const;
   void write_attribute(const std::string& object, const std::string& name, hid_t type, const void* value);
 
   std::string path_;
-  Id file_, parents_, text_;
+  Id file_, parents_, rows_access_, text_;
   off_t reserved_ = 0;  // bytes of the file that have their place on the disk
 };
 
-/// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory.
+/// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. It is open only while it is written: an open
+/// one costs 20 kB, and a long train has fifty thousand.
 class Series {
  public:
   /// `row`: the shape of one sample, empty for a number. `rows`: how many the buffer holds between two writes.
-  Series(File& file, const std::string& name, const std::vector<hsize_t>& row, const std::string& unit, int rows);
+  Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows);
 
   void add(double value) { buffer_.push_back(value); }
   template <class Values>
@@ -84,10 +89,10 @@ class Series {
     buffer_.insert(buffer_.end(), values.begin(), values.end());
   }
   /// Appends the buffer to the dataset and empties it. On disk only after File::flush().
-  void write(const File& file);
+  void write(File& file);
 
  private:
-  Id dataset_;
+  std::string name_;
   std::vector<hsize_t> shape_;  // of what is written so far
   std::size_t width_ = 1;       // numbers a row
   std::vector<double> buffer_;
