@@ -60,7 +60,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   check(TSARKIMEXSetType(ts_, TSARKIMEX4));
   check(TSARKIMEXSetFullyImplicit(ts_, PETSC_TRUE));
   check(TSSetSolution(ts_, y_));
-  check(TSSetMaxSteps(ts_, std::numeric_limits<PetscInt>::max()));
+  check(TSSetMaxSteps(ts_, std::numeric_limits<PetscInt>::max() - 1));
   check(TSSetMaxSNESFailures(ts_, -1));
   check(TSSetMaxStepRejections(ts_, most_rejections));
   check(TSSetErrorIfStepFails(ts_, PETSC_FALSE));
