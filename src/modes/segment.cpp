@@ -1,0 +1,160 @@
+#include "segment.hpp"
+
+#include <cmath>
+
+namespace traverse::modes {
+namespace {
+
+using base::check;
+
+/// The rows of the axial unknowns (one a node) or of the transverse ones (two a node), of all ranks, on every rank.
+/// Held unknowns have zero rows.
+Band gathered(const beam::Beam& beam, Mat matrix, bool axial) {
+  std::vector<PetscInt> wanted;
+  const int block = beam.block();
+  for (int node = 0; node < beam.mesh().nodes(); ++node) {
+    for (int i = axial ? 0 : block - 2; i < (axial ? 1 : block); ++i) wanted.push_back(node * block + i);
+  }
+  base::Handle<IS> set;
+  check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES,
+                        set.out()));
+  Mat* copies = nullptr;
+  const IS raw = set;
+  check(MatCreateSubMatrices(matrix, 1, &raw, &raw, MAT_INITIAL_MATRIX, &copies));
+  Band band(static_cast<int>(wanted.size()));
+  for (PetscInt i = 0; i < band.size(); ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(copies[0], i, &count, &columns, &values));
+    for (PetscInt j = 0; j < count; ++j) {
+      if (columns[j] <= i) band.at(i, columns[j]) = values[j];
+    }
+    check(MatRestoreRow(copies[0], i, &count, &columns, &values));
+  }
+  check(MatDestroySubMatrices(1, &copies));
+  return band;
+}
+
+/// The unknowns `rows` of a matrix; those in between are held and have no entries.
+Band part_of(const Band& whole, const std::vector<int>& rows) {
+  Band part(static_cast<int>(rows.size()));
+  for (int i = 0; i < part.size(); ++i) {
+    for (int j = std::max(0, i - Band::width); j <= i; ++j) {
+      const int row = rows[static_cast<std::size_t>(i)], column = rows[static_cast<std::size_t>(j)];
+      if (row - column <= Band::width) part.at(i, j) = whole.at(row, column);
+    }
+  }
+  return part;
+}
+
+bool equal(const Band& a, const Band& b) {
+  if (a.size() != b.size()) return false;
+  for (int i = 0; i < a.size(); ++i) {
+    for (int j = std::max(0, i - Band::width); j <= i; ++j) {
+      const double scale = std::sqrt(a.at(i, i)) * std::sqrt(a.at(j, j));
+      if (!(std::abs(a.at(i, j) - b.at(i, j)) <= 1e-9 * scale)) return false;
+    }
+  }
+  return true;
+}
+
+bool equal(const Segment& a, const Segment& b) {
+  if (a.size() != b.size() || a.slope != b.slope || a.rigid.size() != b.rigid.size()) return false;
+  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
+    if (a.nodes[i] - a.nodes[0] != b.nodes[i] - b.nodes[0]) return false;
+  }
+  return equal(a.M, b.M) && equal(a.K, b.K);
+}
+
+/// The rigid motions of the part of the beam that the segment is. (A segment that is only a piece of its part ends
+/// at a node that is held altogether, and its part has none.)
+void add_rigid_motions(const beam::Beam& beam, const beam::RigidMotion& motion, Segment& s) {
+  const auto add = [&](auto value) {
+    s.rigid.emplace_back();
+    for (std::size_t i = 0; i < s.nodes.size(); ++i) {
+      s.rigid.back().push_back(value(beam.mesh().x(s.nodes[i]), s.slope[i] != 0));
+    }
+  };
+  if (s.axial && motion.axial) add([](double, bool) { return 1.0; });
+  if (s.axial) return;
+  if (motion.vertical) add([](double, bool slope) { return slope ? 0.0 : 1.0; });
+  if (motion.rotation) add([&](double x, bool slope) { return slope ? 1.0 : x - motion.pivot; });
+}
+
+class Splitter {
+ public:
+  Splitter(const beam::Beam& beam, bool axial)
+      : beam_(beam),
+        axial_(axial),
+        K_(gathered(beam, beam.stiffness(), axial)),
+        M_(gathered(beam, beam.mass(), axial)),
+        motions_(beam::rigid_motions(beam.model())) {}
+
+  std::vector<Segment> split() {
+    const int per_node = axial_ ? 1 : 2;
+    std::vector<int> rows;
+    for (int i = 0; i < M_.size(); ++i) {
+      const int node = i / per_node;
+      if (i % per_node == 0 && !joins_left(node, per_node)) finish(rows, per_node);
+      if (M_.at(i, i) != 0.0) rows.push_back(i);
+    }
+    finish(rows, per_node);
+    return std::move(segments_);
+  }
+
+ private:
+  /// Whether an unknown of the node couples to one of the node before.
+  bool joins_left(int node, int per_node) const {
+    for (int i = node * per_node; i < (node + 1) * per_node; ++i) {
+      for (int j = std::max(0, i - Band::width); j < node * per_node; ++j) {
+        if (M_.at(i, j) != 0.0) return true;
+      }
+    }
+    return false;
+  }
+
+  void finish(std::vector<int>& rows, int per_node) {
+    if (rows.empty()) return;
+    Segment s;
+    s.axial = axial_;
+    for (int row : rows) {
+      s.nodes.push_back(row / per_node);
+      s.slope.push_back(!axial_ && row % 2 == 1 ? 1 : 0);
+    }
+    s.K = part_of(K_, rows);
+    s.M = part_of(M_, rows);
+    s.offsets = {0};
+    rows.clear();
+    add_rigid_motions(beam_, motion_at(s.nodes[0]), s);
+    for (Segment& known : segments_) {
+      if (!equal(known, s)) continue;
+      known.offsets.push_back(s.nodes[0] - known.nodes[0]);
+      return;
+    }
+    segments_.push_back(std::move(s));
+  }
+
+  const beam::RigidMotion& motion_at(int node) {
+    while (part_ + 1 < motions_.size() && node >= beam_.mesh().nodes_at(motions_[part_ + 1].first_span).second) ++part_;
+    return motions_[part_];
+  }
+
+  const beam::Beam& beam_;
+  bool axial_;
+  Band K_, M_;
+  std::vector<beam::RigidMotion> motions_;
+  std::size_t part_ = 0;  // of the beam, that the segment in hand belongs to
+  std::vector<Segment> segments_;
+};
+
+}  // namespace
+
+std::vector<Segment> transverse_segments(const beam::Beam& beam) { return Splitter(beam, false).split(); }
+
+std::vector<Segment> axial_segments(const beam::Beam& beam) {
+  if (!beam.model().axial) return {};
+  return Splitter(beam, true).split();
+}
+
+}  // namespace traverse::modes

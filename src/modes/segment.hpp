@@ -1,0 +1,28 @@
+// A beam taken apart for its modes: what does not couple is solved by itself, and what is equal only once.
+#pragma once
+
+#include <vector>
+
+#include "band.hpp"
+#include "traverse/beam/beam.hpp"
+
+namespace traverse::modes {
+
+/// Free unknowns of neighbouring nodes that couple, all axial or all transverse: a span of its own, or what lies
+/// between two nodes that supports hold altogether.
+struct Segment {
+  bool axial = false;
+  std::vector<int> nodes;   // of each unknown
+  std::vector<char> slope;  // of each unknown: non-zero for theta
+  Band K, M;
+  std::vector<std::vector<double>> rigid;  // its rigid motions, one vector each
+  std::vector<int> offsets;                // of the nodes, one for each equal segment; the first is 0
+
+  int size() const { return K.size(); }
+};
+
+/// Collective; the same on every rank. From left to right; equal ones (entries to 1e-9) as one with several offsets.
+std::vector<Segment> transverse_segments(const beam::Beam& beam);
+std::vector<Segment> axial_segments(const beam::Beam& beam);
+
+}  // namespace traverse::modes

@@ -1,0 +1,167 @@
+#include "traverse/modes/modes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace traverse {
+namespace {
+
+using beam::Beam;
+using beam::BeamModel;
+using beam::Support;
+using std::numbers::pi;
+
+BeamModel model_of(std::vector<double> spans, int elements, bool isolated, bool axial = false) {
+  BeamModel m;
+  m.elements.assign(spans.size(), elements);
+  m.supports.assign(spans.size() + 1, isolated ? Support::pinned : Support::roller);
+  m.supports[0] = Support::pinned;
+  m.spans = std::move(spans);
+  m.EI = 2e9;
+  m.EA = 1e10;
+  m.mass = 2000.0;
+  m.isolated = isolated;
+  m.axial = axial;
+  return m;
+}
+
+double simple_span(double L, int n = 1) { return std::pow(n * pi / L, 2) * std::sqrt(2e9 / 2000.0); }
+
+TEST(Modes, EqualIsolatedSpansRepeatEveryFrequency) {
+  const Beam b(PETSC_COMM_WORLD, model_of({20, 20, 20}, 8, true));
+  const auto found = modes::natural_modes(b, 7, true);
+  ASSERT_EQ(found.omega.size(), 7u);
+  for (int i = 0; i < 7; ++i) EXPECT_NEAR(found.omega[i] / simple_span(20, 1 + i / 3), 1.0, 2e-3);
+  EXPECT_EQ(found.omega[0], found.omega[2]);
+  for (int copy = 0; copy < 3; ++copy) {  // one span moves, the others rest
+    for (int node = 0; node < 27; ++node) {
+      const double x = node % 9 / 8.0;
+      const double v = node / 9 == copy ? std::sin(pi * x) : 0.0;
+      EXPECT_NEAR(std::abs(found.shape[copy][node]), v, 1e-4);
+    }
+  }
+}
+
+TEST(Modes, DistinctPairOfManyEqualSpans) {
+  const Beam b(PETSC_COMM_WORLD, model_of(std::vector<double>(1000, 32.0), 6, true, true));
+  const auto [first, second] = modes::distinct_pair(b);
+  EXPECT_NEAR(first / simple_span(32), 1.0, 1e-4);
+  EXPECT_NEAR(second / simple_span(32, 2), 1.0, 1e-3);
+}
+
+TEST(Modes, DistinctPairSkipsRigidModesAndCopies) {
+  auto free = model_of({20.0}, 12, false);
+  free.supports = {Support::free, Support::free};
+  const auto [first, second] = modes::distinct_pair(Beam(PETSC_COMM_WORLD, free));
+  EXPECT_NEAR(first / simple_span(20) / std::pow(4.730040744862704 / pi, 2), 1.0, 1e-4);
+  EXPECT_NEAR(second / simple_span(20) / std::pow(7.853204624095838 / pi, 2), 1.0, 1e-3);
+
+  // Two kinds of span, two of each.
+  const auto pair = modes::distinct_pair(Beam(PETSC_COMM_WORLD, model_of({20, 25, 20, 25}, 8, true)));
+  EXPECT_NEAR(pair.first / simple_span(25), 1.0, 1e-3);
+  EXPECT_NEAR(pair.second / simple_span(20), 1.0, 1e-3);
+}
+
+TEST(Modes, DistinctPairDoesNotDependOnAxialUnknowns) {
+  const auto with = modes::distinct_pair(Beam(PETSC_COMM_WORLD, model_of({200, 200, 200}, 10, false, true)));
+  const auto without = modes::distinct_pair(Beam(PETSC_COMM_WORLD, model_of({200, 200, 200}, 10, false, false)));
+  EXPECT_NEAR(with.first / without.first, 1.0, 1e-12);
+  EXPECT_NEAR(with.second / without.second, 1.0, 1e-12);
+}
+
+TEST(Modes, DistinctPairNeedsTwoFrequencies) {
+  auto m = model_of({20.0}, 1, false);
+  m.supports = {Support::clamped, Support::roller};  // one free unknown
+  EXPECT_THROW(modes::distinct_pair(Beam(PETSC_COMM_WORLD, m)), InputError);
+  m.supports = {Support::clamped, Support::clamped};
+  EXPECT_THROW(modes::distinct_pair(Beam(PETSC_COMM_WORLD, m)), InputError);
+  EXPECT_TRUE(modes::natural_modes(Beam(PETSC_COMM_WORLD, m), 3, true).omega.empty());
+}
+
+TEST(Modes, LongContinuousBridge) {
+  // Frequencies of N equal continuous spans crowd above the simple span's, 3e-6 apart for 1,000 spans.
+  const Beam b(PETSC_COMM_WORLD, model_of(std::vector<double>(1000, 32.0), 6, false));
+  const auto found = modes::natural_modes(b, 4, false);
+  EXPECT_NEAR(found.omega[0] / simple_span(32), 1.0, 1e-4);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_GT(found.omega[i + 1], found.omega[i]);
+    EXPECT_NEAR(found.omega[i + 1] / found.omega[i], 1.0, 5e-5);
+  }
+}
+
+TEST(Modes, ClampedInnerSupportSeparatesEqualSpans) {
+  auto m = model_of({20, 20, 20}, 8, false);
+  m.supports = {Support::clamped, Support::clamped, Support::clamped, Support::clamped};
+  const auto found = modes::natural_modes(Beam(PETSC_COMM_WORLD, m), 6, false);
+  EXPECT_EQ(found.omega[0], found.omega[2]);
+  EXPECT_EQ(found.omega[3], found.omega[5]);
+  EXPECT_NEAR(found.omega[0] / simple_span(20) / std::pow(4.730040744862704 / pi, 2), 1.0, 1e-3);
+}
+
+TEST(Modes, AllModesOfASmallAndOfALargerMesh) {
+  for (int elements : {1, 2, 5, 40}) {
+    const Beam b(PETSC_COMM_WORLD, model_of({20.0, 25.0}, elements, false, true));
+    const auto found = modes::natural_modes(b, 1000, true);
+    EXPECT_EQ(found.omega.size(), static_cast<std::size_t>(3 * (2 * elements + 1) - 4));
+    EXPECT_TRUE(std::is_sorted(found.omega.begin(), found.omega.end()));
+    EXPECT_GT(found.omega[0], 0.0);
+    // The few lowest alone are the same.
+    const auto few = modes::natural_modes(b, 3, false);
+    for (std::size_t i = 0; i < few.omega.size(); ++i) EXPECT_NEAR(few.omega[i] / found.omega[i], 1.0, 1e-8);
+  }
+}
+
+TEST(Modes, FreeBeamOfManyElementsAllModes) {
+  auto m = model_of({20.0}, 30, false);
+  m.supports = {Support::free, Support::free};
+  const auto found = modes::natural_modes(Beam(PETSC_COMM_WORLD, m), 62, true);
+  ASSERT_EQ(found.omega.size(), 62u);
+  EXPECT_EQ(found.omega[1], 0.0);
+  EXPECT_NEAR(found.omega[2] / simple_span(20) / std::pow(4.730040744862704 / pi, 2), 1.0, 1e-5);
+  EXPECT_EQ(found.shape[0].front(), 1.0);
+  EXPECT_NEAR(std::abs(found.shape[1].front()), 1.0, 1e-12);
+  EXPECT_NEAR(found.shape[1].front() + found.shape[1].back(), 0.0, 1e-12);
+}
+
+TEST(Modes, FreeRailOnABed) {
+  // The lowest frequencies lie within 1e-9 of each other, the pair has to be distinct.
+  auto m = model_of({300.0}, 1000, false);
+  m.supports = {Support::free, Support::free};
+  m.EI = 1.32476e7;
+  m.mass = 121.28;
+  m.foundation.vertical_bed = beam::Bed{6.5e7 / 0.6, 0.0};
+  const auto [first, second] = modes::distinct_pair(Beam(PETSC_COMM_WORLD, m));
+  EXPECT_NEAR(first / std::sqrt(6.5e7 / 0.6 / 121.28), 1.0, 1e-8);
+  EXPECT_GT(second, first * (1 + 1e-6));
+  EXPECT_LT(second, first * (1 + 2e-5));
+}
+
+TEST(Modes, SameBitsEveryTime) {
+  const Beam b(PETSC_COMM_WORLD, model_of({20, 25, 30}, 20, false, true));
+  const auto one = modes::natural_modes(b, 10, true), two = modes::natural_modes(b, 10, true);
+  EXPECT_EQ(one.omega, two.omega);
+  EXPECT_EQ(one.shape, two.shape);
+}
+
+TEST(Rayleigh, GivesTheRatiosBack) {
+  const double w1 = 20.0, w2 = 71.0;
+  const auto [a, b] = modes::rayleigh(w1, w2, 0.02, 0.05);
+  EXPECT_NEAR(a / (2 * w1) + b * w1 / 2, 0.02, 1e-15);
+  EXPECT_NEAR(a / (2 * w2) + b * w2 / 2, 0.05, 1e-15);
+  // As the paper prints it.
+  EXPECT_NEAR(a, 2 * w1 * w2 * (0.02 * w2 - 0.05 * w1) / (w2 * w2 - w1 * w1), 1e-14);
+  EXPECT_NEAR(b, 2 * (0.05 * w2 - 0.02 * w1) / (w2 * w2 - w1 * w1), 1e-16);
+}
+
+TEST(Rayleigh, EqualRatiosAtNeighbouringFrequencies) {
+  const double w1 = 20.0, w2 = 20.0 * (1 + 2e-6);
+  const auto [a, b] = modes::rayleigh(w1, w2, 0.02, 0.02);
+  EXPECT_DOUBLE_EQ(a, 2 * 0.02 * w1 * w2 / (w1 + w2));
+  EXPECT_DOUBLE_EQ(b, 2 * 0.02 / (w1 + w2));
+}
+
+}  // namespace
+}  // namespace traverse
