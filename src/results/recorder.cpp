@@ -293,6 +293,9 @@ void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double raylei
     std::vector<double> frequency;
     for (const double omega : modes.omega) frequency.push_back(omega / (2.0 * std::numbers::pi));
     file.dataset("/modes/frequency", {frequency.size()}, frequency, "Hz");
+    if (!modes.axial.empty()) {
+      file.dataset("/modes/axial", {modes.axial.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
+    }
     if (!modes.shape.empty()) {
       const std::size_t nodes = modes.shape.front().size();
       std::vector<double> shapes;

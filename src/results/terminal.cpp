@@ -84,6 +84,11 @@ std::string cost_text(const Summary& summary) {
   return text;
 }
 
+const char* mode_kind(const modes::Modes& modes, std::size_t i) {
+  if (modes.omega[i] == 0.0) return "   rigid";
+  return i < modes.axial.size() && modes.axial[i] != 0 ? "   along x" : "";
+}
+
 }  // namespace
 
 void print_modelled(const std::vector<std::string>& lines) {
@@ -147,8 +152,7 @@ void print_modes(const modes::Modes& modes, double omega1, double omega2, double
   fmt::print("modes\n  {:>4}{:>18}{:>18}\n", "", "frequency (Hz)", "omega (rad/s)");
   for (std::size_t i = 0; i < modes.omega.size(); ++i) {
     const double omega = modes.omega[i];
-    fmt::print("  {:>4}{:>18.6g}{:>18.6g}{}\n", i + 1, omega / (2.0 * std::numbers::pi), omega,
-               omega == 0.0 ? "   rigid" : "");
+    fmt::print("  {:>4}{:>18.6g}{:>18.6g}{}\n", i + 1, omega / (2.0 * std::numbers::pi), omega, mode_kind(modes, i));
   }
   if (rayleigh_a != 0.0 || rayleigh_b != 0.0) {
     line("damping C = a M + b K", fmt::format("a = {:.6g} 1/s, b = {:.6g} s, from omega = {:.6g} and {:.6g} rad/s",

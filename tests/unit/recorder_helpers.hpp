@@ -1,0 +1,165 @@
+// What the tests of the results file share: a sample whose numbers are known, a reader, and disasters.
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "traverse/results/recorder.hpp"
+
+namespace traverse::results::testing {
+
+inline Layout small_layout() {
+  Layout layout;
+  layout.probes = {2.5, 5.0};
+  layout.supports = {0.0, 5.0, 10.0};
+  layout.nodes = {0.0, 5.0, 10.0};
+  layout.vehicles = {{{"car"}, {"front_wheel", "rear_wheel"}, {"guide"}}, {{"car", "bogie"}, {}, {}}};
+  return layout;
+}
+
+/// Every number of a sample is different, and known from its index.
+inline Sample sample_at(long i) {
+  const double t = static_cast<double>(i);
+  Sample sample;
+  sample.time = t;
+  sample.probes = {{t + 0.01, t + 0.02, t + 0.03, t + 0.04, t + 0.05, t + 0.06, t + 0.07},
+                   {t + 0.11, t + 0.12, t + 0.13, t + 0.14, t + 0.15, t + 0.16, t + 0.17}};
+  sample.supports = {{t + 0.2, t + 0.21, t + 0.22}, {t + 0.23, t + 0.24, t + 0.25}, {t + 0.26, t + 0.27, t + 0.28}};
+  sample.vehicles.resize(2);
+  sample.vehicles[0].bodies = {{{t + 0.3, t + 0.31, t + 0.32}, {t + 0.33, t + 0.34, t + 0.35}, {t + 0.36, t, t}}};
+  sample.vehicles[0].wheels = {{t + 0.4, t + 0.41, t + 0.42}, {t + 0.43, t + 0.44, t + 0.45}};
+  sample.vehicles[0].joints = {{t + 0.5, t + 0.51, t + 0.52}};
+  sample.vehicles[1].bodies = {{{t + 0.6, t, t}, {t, t, t}, {t, t, t}}, {{t + 0.7, t, t}, {t, t, t}, {t, t, t}}};
+  sample.energy = {t + 0.8, t + 0.81, t + 0.82, t + 0.83, t + 0.84, t + 0.85};
+  return sample;
+}
+
+/// A results file open for reading, as any other program sees it.
+class Reader {
+ public:
+  explicit Reader(const std::string& path) : file_(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)) {}
+  ~Reader() {
+    if (file_ >= 0) H5Fclose(file_);
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+
+  bool opened() const { return file_ >= 0; }
+  bool has(const std::string& name) const { return H5Lexists(file_, name.c_str(), H5P_DEFAULT) > 0; }
+
+  std::vector<hsize_t> shape(const std::string& name) const {
+    const hid_t data = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);
+    if (data < 0) return {};
+    const hid_t space = H5Dget_space(data);
+    std::vector<hsize_t> result(static_cast<std::size_t>(H5Sget_simple_extent_ndims(space)));
+    H5Sget_simple_extent_dims(space, result.data(), nullptr);
+    H5Sclose(space);
+    H5Dclose(data);
+    return result;
+  }
+
+  /// All numbers of a dataset, or those of its first rows.
+  std::vector<double> values(const std::string& name, std::optional<hsize_t> rows = {}) const {
+    auto extent = shape(name);
+    if (rows && !extent.empty()) extent[0] = std::min(extent[0], *rows);
+    std::size_t size = 1;
+    for (const auto one : extent) size *= one;
+    std::vector<double> result(size);
+    const hid_t data = H5Dopen2(file_, name.c_str(), H5P_DEFAULT);
+    const hid_t there = H5Dget_space(data);
+    const hid_t here = H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr);
+    const std::vector<hsize_t> start(extent.size(), 0);
+    H5Sselect_hyperslab(there, H5S_SELECT_SET, start.data(), nullptr, extent.data(), nullptr);
+    EXPECT_GE(H5Dread(data, H5T_NATIVE_DOUBLE, here, there, H5P_DEFAULT, result.data()), 0) << name;
+    H5Sclose(here);
+    H5Sclose(there);
+    H5Dclose(data);
+    return result;
+  }
+
+  double number(const std::string& object, const std::string& name) const {
+    double value = -1.0;
+    const hid_t attribute = open_attribute(object, name);
+    EXPECT_GE(H5Aread(attribute, H5T_NATIVE_DOUBLE, &value), 0) << object << " " << name;
+    H5Aclose(attribute);
+    return value;
+  }
+
+  std::string text(const std::string& object, const std::string& name) const {
+    const hid_t attribute = open_attribute(object, name);
+    if (attribute < 0) return "(no attribute)";
+    const hid_t type = H5Aget_type(attribute);
+    char* value = nullptr;
+    EXPECT_GE(H5Aread(attribute, type, &value), 0) << object << " " << name;
+    std::string result = value == nullptr ? "" : value;
+    H5free_memory(value);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    return result;
+  }
+
+  std::vector<std::string> options() const {
+    const hid_t data = H5Dopen2(file_, "/options", H5P_DEFAULT);
+    const hid_t type = H5Dget_type(data);
+    std::vector<char*> cells(shape("/options")[0] * 2, nullptr);
+    EXPECT_GE(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, cells.data()), 0);
+    std::vector<std::string> result;
+    for (char* cell : cells) {
+      result.emplace_back(cell);
+      H5free_memory(cell);
+    }
+    H5Tclose(type);
+    H5Dclose(data);
+    return result;
+  }
+
+ private:
+  hid_t open_attribute(const std::string& object, const std::string& name) const {
+    return H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+  }
+
+  hid_t file_;
+};
+
+/// Runs `write` in a process of its own, kills it `delay` after its word that it may be killed.
+template <class Write>
+void run_and_kill(Write&& write, useconds_t delay) {
+  int ready[2] = {-1, -1};
+  ASSERT_EQ(pipe(ready), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    write([&] { std::ignore = ::write(ready[1], "x", 1); });
+    for (;;) pause();
+  }
+  ::close(ready[1]);
+  char word = 0;
+  EXPECT_EQ(read(ready[0], &word, 1), 1);
+  usleep(delay);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  ::close(ready[0]);
+}
+
+/// Puts /dev/full in the place of this process's open file.
+inline void fill_disk_of(const std::filesystem::path& file) {
+  const int full = ::open("/dev/full", O_RDWR);
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code ignored;
+    if (std::filesystem::read_symlink(entry, ignored) == file) dup2(full, std::stoi(entry.path().filename()));
+  }
+  ::close(full);
+}
+
+}  // namespace traverse::results::testing

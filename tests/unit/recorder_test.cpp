@@ -1,0 +1,300 @@
+// The results file: what is written comes back, whatever happens to the run that wrote it.
+#include "traverse/results/recorder.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/file.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "recorder_helpers.hpp"
+#include "support/temporary_folder.hpp"
+#include "traverse/base/error.hpp"
+
+namespace traverse::results {
+namespace {
+
+using namespace traverse::results::testing;  // NOLINT: the helpers of this file
+
+namespace fs = std::filesystem;
+
+constexpr long kBlock = 256;  // samples that the recorder writes at a time
+
+class RecorderTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<Recorder> open(const Layout& layout) const { return open(layout, file_); }
+  static std::unique_ptr<Recorder> open(const Layout& layout, const std::string& file) {
+    return std::make_unique<Recorder>(MPI_COMM_SELF, file, layout,
+                                      std::vector<std::pair<std::string, std::string>>{{"scene", "three_span"}},
+                                      std::vector<std::pair<std::string, std::string>>{{"-train_speed", "40"}});
+  }
+
+  /// The message of the FileError, which must name the file.
+  static std::string refusal(const std::string& file) {
+    try {
+      open(small_layout(), file);
+    } catch (const FileError& error) {
+      EXPECT_NE(std::string(error.what()).find(file), std::string::npos) << error.what();
+      return error.what();
+    }
+    return "(accepted)";
+  }
+
+  /// The first rows of a dataset of numbers are i + offset.
+  static void expect_ramp(const Reader& reader, const std::string& name, hsize_t rows, double offset) {
+    const auto values = reader.values(name, rows);
+    ASSERT_GE(values.size(), rows) << name;
+    for (hsize_t i = 0; i < rows; ++i) ASSERT_EQ(values[i], static_cast<double>(i) + offset) << name << " " << i;
+  }
+
+  test::TemporaryFolder folder_;
+  const std::string file_ = folder_.path("run.h5");
+};
+
+using Shape1 = std::vector<hsize_t>;
+
+TEST_F(RecorderTest, WritesEveryDatasetOfTheTable) {
+  const long n = 2 * kBlock + 88;
+  auto recorder = open(small_layout());
+  for (long i = 0; i < n; ++i) recorder->add(sample_at(i));
+  recorder->finish({});
+
+  const Reader reader(file_);
+  ASSERT_TRUE(reader.opened());
+  const hsize_t rows = n;
+  expect_ramp(reader, "/time", rows, 0.0);
+  EXPECT_EQ(reader.text("/time", "unit"), "s");
+  EXPECT_EQ(reader.values("/probes/x"), (std::vector{2.5, 5.0}));
+  EXPECT_EQ(reader.values("/supports/x"), (std::vector{0.0, 5.0, 10.0}));
+
+  const std::vector<std::pair<std::string, std::string>> quantities = {
+      {"deflection", "m"}, {"velocity", "m/s"},         {"acceleration", "m/s2"}, {"moment", "N m"},
+      {"shear", "N"},      {"axial_displacement", "m"}, {"axial_force", "N"}};
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    const std::string name = "/probes/" + quantities[q].first;
+    EXPECT_EQ(reader.shape(name), (Shape1{rows, 2}));
+    EXPECT_EQ(reader.text(name, "unit"), quantities[q].second);
+    const auto values = reader.values(name);
+    EXPECT_DOUBLE_EQ(values[2 * 300], 300.01 + 0.01 * static_cast<double>(q));
+    EXPECT_DOUBLE_EQ(values[2 * 300 + 1], 300.11 + 0.01 * static_cast<double>(q));
+  }
+  EXPECT_EQ(reader.shape("/supports/reaction"), (Shape1{rows, 3, 3}));
+  EXPECT_DOUBLE_EQ(reader.values("/supports/reaction")[9 * 599 + 5], 599.25);
+
+  EXPECT_EQ(reader.shape("/vehicles/0/car/position"), (Shape1{rows, 3}));
+  EXPECT_DOUBLE_EQ(reader.values("/vehicles/0/car/position")[3 * 255 + 2], 255.32);
+  EXPECT_DOUBLE_EQ(reader.values("/vehicles/0/car/velocity")[3 * 256 + 1], 256.34);
+  EXPECT_DOUBLE_EQ(reader.values("/vehicles/0/car/acceleration")[3 * 257], 257.36);
+  EXPECT_DOUBLE_EQ(reader.values("/vehicles/1/bogie/position")[0], 0.7);
+  EXPECT_EQ(reader.shape("/vehicles/0/guide/reaction"), (Shape1{rows, 3}));
+  expect_ramp(reader, "/vehicles/0/front_wheel/normal_force", rows, 0.4);
+  expect_ramp(reader, "/vehicles/0/front_wheel/friction_force", rows, 0.41);
+  expect_ramp(reader, "/vehicles/0/rear_wheel/penetration", rows, 0.45);
+  EXPECT_EQ(reader.text("/vehicles/0/rear_wheel/normal_force", "unit"), "N");
+
+  const std::vector<std::pair<std::string, double>> energies = {{"kinetic", 0.8},    {"strain", 0.81},
+                                                                {"potential", 0.82}, {"dissipated", 0.83},
+                                                                {"work", 0.84},      {"residual", 0.85}};
+  for (const auto& [name, offset] : energies) expect_ramp(reader, "/energy/" + name, rows, offset);
+}
+
+TEST_F(RecorderTest, WritesAttributesOptionsAndSummary) {
+  auto recorder = open(small_layout());
+  recorder->add(sample_at(0));
+  recorder->shape({1.5, {0.0, -0.002, 0.0}});
+  Summary summary;
+  summary.deflection = {-0.002, 1.5, 5.0};
+  summary.least_wheel = "vehicle 0, rear_wheel";
+  summary.contact_losses = 3;
+  summary.steps = 1234;
+  summary.wall_seconds = 0.75;
+  summary.ended = "reached its end";
+  recorder->finish(summary);
+
+  const Reader reader(file_);
+  EXPECT_EQ(reader.text("/", "program"), "traverse");
+  EXPECT_EQ(reader.text("/", "version"), TRAVERSE_VERSION);
+  EXPECT_NE(reader.text("/", "petsc_version"), "(no attribute)");
+  EXPECT_EQ(reader.text("/", "scene"), "three_span");
+  EXPECT_EQ(reader.number("/", "ranks"), 1);
+  EXPECT_EQ(reader.number("/", "steps"), 1234);
+  EXPECT_EQ(reader.number("/", "wall_seconds"), 0.75);
+  EXPECT_EQ(reader.options(), (std::vector<std::string>{"-train_speed", "40"}));
+  EXPECT_EQ(reader.number("/summary", "deflection"), -0.002);
+  EXPECT_EQ(reader.number("/summary", "deflection_time"), 1.5);
+  EXPECT_EQ(reader.number("/summary", "deflection_place"), 5.0);
+  EXPECT_EQ(reader.number("/summary", "contact_losses"), 3);
+  EXPECT_EQ(reader.text("/summary", "least_wheel"), "vehicle 0, rear_wheel");
+  EXPECT_EQ(reader.text("/summary", "ended"), "reached its end");
+  EXPECT_EQ(reader.values("/shape/x"), (std::vector{0.0, 5.0, 10.0}));
+  EXPECT_EQ(reader.values("/shape/deflection"), (std::vector{0.0, -0.002, 0.0}));
+  EXPECT_EQ(reader.number("/shape/deflection", "time"), 1.5);
+}
+
+TEST_F(RecorderTest, WritesModes) {
+  auto recorder = open(small_layout());
+  const modes::Modes modes = {
+      .omega = {2.0 * std::numbers::pi, 30.0}, .axial = {0, 1}, .shape = {{0.0, 1.0, 0.0}, {0.5, 0.0, -1.0}}};
+  recorder->modes(modes, 0.1, 0.002, 6.3, 30.0);
+  recorder->finish({});
+  const Reader reader(file_);
+  EXPECT_DOUBLE_EQ(reader.values("/modes/frequency")[0], 1.0);
+  EXPECT_EQ(reader.shape("/modes/shape"), (Shape1{2, 3}));
+  EXPECT_EQ(reader.values("/modes/shape")[5], -1.0);
+  EXPECT_EQ(reader.values("/modes/axial"), (std::vector{0.0, 1.0}));
+  EXPECT_EQ(reader.values("/modes/x"), (std::vector{0.0, 5.0, 10.0}));
+  EXPECT_EQ(reader.number("/modes", "rayleigh_b"), 0.002);
+  EXPECT_EQ(reader.number("/modes", "omega2"), 30.0);
+  EXPECT_FALSE(reader.has("/time"));
+}
+
+TEST_F(RecorderTest, KeepsEveryRowAtBlockBoundaries) {
+  for (const long n : {1L, kBlock - 1, kBlock, kBlock + 1, 2 * kBlock}) {
+    auto recorder = open(small_layout());
+    for (long i = 0; i < n; ++i) recorder->add(sample_at(i));
+    recorder->finish({});
+    const Reader reader(file_);
+    EXPECT_EQ(reader.shape("/time"), (Shape1{static_cast<hsize_t>(n)}));
+    expect_ramp(reader, "/energy/residual", static_cast<hsize_t>(n), 0.85);
+  }
+}
+
+TEST_F(RecorderTest, WritesSceneWithoutBeamOrVehicles) {
+  auto recorder = open({});
+  Sample sample;
+  recorder->add(sample);
+  recorder->finish({});
+  const Reader reader(file_);
+  EXPECT_EQ(reader.shape("/time"), (Shape1{1}));
+  EXPECT_FALSE(reader.has("/probes"));
+  EXPECT_FALSE(reader.has("/supports"));
+  EXPECT_FALSE(reader.has("/vehicles"));
+}
+
+TEST_F(RecorderTest, DestructorWritesWhatIsThere) {
+  auto recorder = open(small_layout());
+  for (long i = 0; i < 10; ++i) recorder->add(sample_at(i));
+  recorder.reset();
+  const Reader reader(file_);
+  expect_ramp(reader, "/time", 10, 0.0);
+  EXPECT_FALSE(reader.has("/summary"));
+}
+
+TEST_F(RecorderTest, KilledRunLeavesItsFullBlocks) {
+  run_and_kill(
+      [&](auto ready) {
+        const auto recorder = open(small_layout());
+        for (long i = 0; i < 2 * kBlock + 10; ++i) recorder->add(sample_at(i));
+        ready();
+        for (;;) pause();
+      },
+      0);
+  const Reader reader(file_);
+  ASSERT_TRUE(reader.opened());
+  EXPECT_EQ(reader.shape("/time"), (Shape1{2 * kBlock}));
+  expect_ramp(reader, "/time", 2 * kBlock, 0.0);
+  expect_ramp(reader, "/vehicles/0/rear_wheel/penetration", 2 * kBlock, 0.45);
+  EXPECT_EQ(reader.options().size(), 2U);
+}
+
+// Killed while it does nothing but write, which a real run hardly ever does.
+TEST_F(RecorderTest, RunKilledAtAnyTimeLeavesTheRowsOfTime) {
+  for (useconds_t delay = 0; delay < 20000; delay += 997) {
+    run_and_kill(
+        [&](auto ready) {
+          const auto recorder = open(small_layout());
+          for (long i = 0; i < 60 * kBlock; ++i) {
+            recorder->add(sample_at(i));
+            if (i == 2 * kBlock) ready();
+          }
+        },
+        delay);
+    const Reader reader(file_);
+    ASSERT_TRUE(reader.opened());
+    const hsize_t rows = reader.shape("/time")[0];
+    EXPECT_GE(rows, 2 * kBlock);
+    // The very last block of /time itself may be caught between its length and its rows.
+    const hsize_t sure = rows - kBlock;
+    expect_ramp(reader, "/time", sure, 0.0);
+    expect_ramp(reader, "/energy/residual", sure, 0.85);
+    expect_ramp(reader, "/vehicles/0/rear_wheel/penetration", sure, 0.45);
+  }
+}
+
+TEST_F(RecorderTest, ReplacesOlderFileAndMakesFolders) {
+  const std::string deep = folder_.path("a/b/run.h5");
+  for (int n : {5, 3}) {
+    auto recorder = open(small_layout(), deep);
+    for (int i = 0; i < n; ++i) recorder->add(sample_at(i));
+    recorder->finish({});
+  }
+  EXPECT_EQ(Reader(deep).shape("/time"), (Shape1{3}));
+}
+
+TEST_F(RecorderTest, RefusesPlacesThatCannotHoldTheFile) {
+  const std::string plain = folder_.write("plain", "text");
+  EXPECT_NE(refusal(plain + "/run.h5").find("Not a directory"), std::string::npos);
+  EXPECT_NE(refusal(folder_.path(".")).find("no ordinary file"), std::string::npos);
+  EXPECT_NE(refusal("/dev/full").find("no ordinary file"), std::string::npos);
+  EXPECT_NE(refusal("/proc/traverse/run.h5"), "(accepted)");
+  EXPECT_NE(refusal("/proc/run.h5"), "(accepted)");
+  if (geteuid() != 0) {  // root may write anywhere
+    fs::permissions(folder_.path("."), fs::perms::owner_read | fs::perms::owner_exec);
+    EXPECT_NE(refusal(file_).find("Permission denied"), std::string::npos);
+    fs::permissions(folder_.path("."), fs::perms::owner_all);
+  }
+}
+
+TEST_F(RecorderTest, LeavesFileThatAnotherRunIsWriting) {
+  open(small_layout())->finish({});
+  const int other = ::open(file_.c_str(), O_RDWR);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  EXPECT_NE(refusal(file_).find("-output_file"), std::string::npos);
+  ::close(other);
+  EXPECT_TRUE(Reader(file_).has("/summary"));
+}
+
+TEST_F(RecorderTest, FullDiskIsAnErrorAndKeepsWhatWasWritten) {
+  auto recorder = open(small_layout());
+  for (long i = 0; i < kBlock; ++i) recorder->add(sample_at(i));
+  fill_disk_of(fs::canonical(file_));
+  std::string message;
+  try {
+    for (long i = 0; i < kBlock; ++i) recorder->add(sample_at(i));
+  } catch (const FileError& error) {
+    message = error.what();
+  }
+  EXPECT_NE(message.find(file_), std::string::npos) << message;
+  EXPECT_NE(message.find("No space left on device"), std::string::npos) << message;
+  EXPECT_THROW(recorder->finish({}), std::logic_error);
+  recorder.reset();
+  const Reader reader(file_);
+  ASSERT_TRUE(reader.opened());
+  expect_ramp(reader, "/time", kBlock, 0.0);
+  expect_ramp(reader, "/energy/residual", kBlock, 0.85);
+}
+
+TEST_F(RecorderTest, FullDiskAtTheEndIsAnError) {
+  for (const bool finish : {true, false}) {
+    auto recorder = open(small_layout());
+    for (long i = 0; i < 10; ++i) recorder->add(sample_at(i));
+    fill_disk_of(fs::canonical(file_));
+    if (finish) {
+      EXPECT_THROW(recorder->finish({}), FileError);
+    }
+    recorder.reset();  // never throws
+  }
+}
+
+TEST_F(RecorderTest, SampleMustFitTheLayout) {
+  auto recorder = open(small_layout());
+  Sample sample = sample_at(0);
+  sample.vehicles[0].wheels.pop_back();
+  EXPECT_THROW(recorder->add(sample), std::logic_error);
+}
+
+}  // namespace
+}  // namespace traverse::results
