@@ -8,7 +8,7 @@ namespace traverse::coupling {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr double tolerance = 1e-9;  // of the weight; the step that reaches it is still applied
+constexpr double tolerance = 1e-13;  // of the weight: what is left in forces after the last step
 
 // Tangent of the forces (normal, tangential) with respect to displacements along the contact's two directions,
 // when rates are shift times displacements.
@@ -34,21 +34,21 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
   work_.resize(fleet.vehicles.size());
   pd_.resize(fleet.freedom());
   pdd_.resize(fleet.freedom());
-  double greatest = 1.0;
+  double greatest = 0.0;
   for (int i = 0; i < fleet.freedom(); ++i) greatest = std::max(greatest, std::abs(p[i]));
   // Rounding of shift^2*p, over g: forces cannot be met better than that.
-  const double floor = 50.0 * std::numeric_limits<double>::epsilon() * s.shift * s.shift * greatest / 9.81;
-  const double target = std::max(tolerance, floor);
+  const double floor = 4.0 * std::numeric_limits<double>::epsilon() * s.shift * s.shift * greatest / 9.81;
   for (int i = 0; i < most_iterations; ++i) {
     ++iterations_;
     if (!evaluate(fleet, s, p)) return false;
     const bool curvature = s.shift == 0.0 || i > 2;
     for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) vehicle_system(fleet, static_cast<int>(k), s, curvature);
     couple_beam(fleet, s);
+    const double before = change_;
     change_ = update(fleet, s, p);
     if (!std::isfinite(change_)) return false;
-    if (change_ <= target && i > 0) {
-      // One last evaluation at the solution keeps vehicles, contact directions and loads consistent.
+    // The next change would be smaller by at least the ratio of the last two.
+    if (i > 0 && (change_ <= floor || change_ * std::min(1.0, change_ / before) <= tolerance)) {
       fleet.contact_forces();
       fleet.element_loads(s.block, loads_);
       return true;

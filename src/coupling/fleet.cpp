@@ -57,7 +57,7 @@ MovingVehicle::MovingVehicle(multibody::MechanismModel model, std::vector<Wheel>
 
 Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
              const track::Profile* profile)
-    : mesh_(mesh), profile_(profile) {
+    : mesh_(mesh), profile_(profile), speed_(frozen ? 0.0 : train.speed) {
   if (mesh != nullptr && mesh->spans() > 1) isolated_ = mesh->nodes_at(1).first != mesh->nodes_at(1).second;
   for (std::size_t k = 0; k < train.vehicles.size(); ++k) {
     const Vehicle& type = types[train.vehicles[k]];
@@ -91,23 +91,46 @@ Eigen::Vector3d Fleet::velocities(const WheelContact& c) const {
 
 std::vector<std::string> Fleet::partition(double t) {
   std::vector<std::string> notes;
+  home_.clear();
+  cruise_.clear();
   freedom_ = 0;
   for (MovingVehicle& vehicle : vehicles) {
     for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
       notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
     vehicle.offset = freedom_;
     freedom_ += vehicle.mechanism.freedom();
+    for (int i : vehicle.mechanism.partition().independent) {
+      cruise_.push_back(i % 3 == 0 && !vehicle.wheels.empty() ? speed_ : 0.0);
+      home_.push_back(vehicle.state.q[i] - cruise_.back() * t);
+    }
   }
+  position_.resize(home_.size());
+  velocity_.resize(home_.size());
   return notes;
 }
 
 bool Fleet::set(double t, const double* p, const double* pd, bool derivatives) {
+  for (int i = 0; i < freedom_; ++i) {
+    position_[i] = home_[i] + cruise_[i] * t + p[i];
+    velocity_[i] = cruise_[i] + pd[i];
+  }
   for (MovingVehicle& vehicle : vehicles) {
-    if (!vehicle.mechanism.set_positions(vehicle.state, t, p + vehicle.offset)) return false;
-    vehicle.mechanism.set_velocities(vehicle.state, t, pd + vehicle.offset);
+    if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) return false;
+    vehicle.mechanism.set_velocities(vehicle.state, t, velocity_.data() + vehicle.offset);
     vehicle.mechanism.compute_forces(vehicle.state, derivatives);
   }
   return true;
+}
+
+void Fleet::coordinates_of_state(double t, double* p, double* pd) const {
+  for (const MovingVehicle& vehicle : vehicles) {
+    int at = vehicle.offset;
+    for (int i : vehicle.mechanism.partition().independent) {
+      p[at] = vehicle.state.q[i] - home_[at] - cruise_[at] * t;
+      pd[at] = vehicle.state.qd[i] - cruise_[at];
+      ++at;
+    }
+  }
 }
 
 void Fleet::add_patch(WheelContact& c, int element, double low, double high) {

@@ -26,22 +26,9 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
   for (MovingVehicle& vehicle : fleet_.vehicles)
     for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
       vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
-  store_coordinates(y);
+  if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   note_weights();
   return notes;
-}
-
-// p and p' of y from the vehicles' q and q'.
-void System::store_coordinates(double* y) const {
-  if (rank_ != 0) return;
-  double* p = y + 2 * n_;
-  for (const MovingVehicle& vehicle : fleet_.vehicles) {
-    const std::vector<int>& independent = vehicle.mechanism.partition().independent;
-    for (std::size_t i = 0; i < independent.size(); ++i) {
-      p[vehicle.offset + static_cast<int>(i)] = vehicle.state.q[independent[i]];
-      p[fleet_.freedom() + vehicle.offset + static_cast<int>(i)] = vehicle.state.qd[independent[i]];
-    }
-  }
 }
 
 // The stage problem at shift 0 with every drive standing still: K v = P + contacts, vehicles at rest.
@@ -53,9 +40,6 @@ void System::find_equilibrium(double* v) {
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
   c_p_.assign(2 * static_cast<std::size_t>(f), 0.0);
-  for (const MovingVehicle& vehicle : fleet_.vehicles)
-    for (std::size_t i = 0; i < vehicle.mechanism.partition().independent.size(); ++i)
-      p_[vehicle.offset + static_cast<int>(i)] = vehicle.state.q[vehicle.mechanism.partition().independent[i]];
 
   if (beam_ != nullptr) {
     external_load(0.0, nodal_.data());
@@ -92,7 +76,7 @@ bool System::repartition(double t, double* y) {
     poor = poor || vehicle.mechanism.partition_quality(vehicle.state) < poor_partition;
   if (!poor) return false;
   fleet_.partition(t);
-  store_coordinates(y);
+  if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   return true;
 }
 

@@ -59,12 +59,16 @@ class Fleet {
   Eigen::Vector3d coordinates(const WheelContact& c) const;
   Eigen::Vector3d velocities(const WheelContact& c) const;
 
-  /// Chooses every vehicle's independent coordinates at t and numbers them. Returns lines on redundant joints.
+  /// Chooses every vehicle's independent coordinates at t and numbers them. From then on p counts from where the
+  /// vehicles are now, moving on with the train: small numbers, so that velocities found as shift times p keep
+  /// their digits. Returns lines on redundant joints.
   std::vector<std::string> partition(double t);
 
   /// Positions, velocities and forces of all vehicles from p and p' (freedom values each). False where a mechanism
   /// cannot be assembled.
   bool set(double t, const double* p, const double* pd, bool derivatives);
+  /// p and p' (freedom values each) of the vehicles' q and q' at t.
+  void coordinates_of_state(double t, double* p, double* pd) const;
 
   /// Finds the patches under the wheels and the list of beam elements in touch.
   void place_wheels();
@@ -91,7 +95,10 @@ class Fleet {
   bool isolated_ = false;
   int freedom_ = 0;
   double weight_ = 0.0;
+  double speed_ = 0.0;
   std::vector<int> elements_;
+  std::vector<double> home_, cruise_;         // coordinates = home + cruise*t + p
+  std::vector<double> position_, velocity_;  // of one vehicle
 };
 
 }  // namespace traverse::coupling

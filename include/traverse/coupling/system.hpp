@@ -98,7 +98,6 @@ class System {
   void find_equilibrium(double* v);
   void note_weights();
   std::vector<double> influence_line(double station);
-  void store_coordinates(double* y) const;
   void share_coordinates(const double* y);
   void gather(const double* first, const double* second);
   bool stage_of_fleet(double t, double shift, const double* c_v);
