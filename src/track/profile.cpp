@@ -1,6 +1,8 @@
 #include "traverse/track/profile.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -97,8 +99,8 @@ Profile Profile::iso8608(char grade, double start, std::uint64_t seed) {
     const double power = level * (1.0 / a - 1.0 / b);  // the spectrum's integral over this band
     const double k = two_pi * std::sqrt(a * b);
     p.amplitude_.push_back(std::sqrt(2.0 * power));
-    p.wavenumber_.push_back(k);
-    p.phase_.push_back(two_pi * static_cast<double>(random() >> 11) * 0x1.0p-53);
+    p.frequency_.push_back(k / two_pi);
+    p.phase_.push_back(static_cast<double>(random() >> 11) * 0x1.0p-53);
     variance += power * k * k * k * k;
   }
   p.greatest_curvature_ = 6.0 * std::sqrt(variance);
@@ -128,16 +130,49 @@ Height spline_at(const std::vector<double>& x, const std::vector<double>& h, con
   return r;
 }
 
-Height waves_at(const std::vector<double>& amplitude, const std::vector<double>& wavenumber,
-                const std::vector<double>& phase, double s) {
-  Height w;
-  for (std::size_t i = 0; i < amplitude.size(); ++i) {
-    const double k = wavenumber[i], angle = k * s + phase[i];
-    const double c = amplitude[i] * std::cos(angle);
-    w.value += c;
-    w.slope -= k * amplitude[i] * std::sin(angle);
-    w.curvature -= k * k * c;
+constexpr int lanes = 4;  // waves computed at once; waves_in_all is a multiple
+using Lanes = Eigen::Array<double, lanes, 1>;
+
+/// Coefficients of sin(pi u)/u and cos(pi u) in powers of u^2.
+template <int terms>
+constexpr std::array<double, terms> series(double first, int odd) {
+  std::array<double, terms> c{first};
+  for (int n = 1; n < terms; ++n) {
+    c[static_cast<std::size_t>(n)] = -c[static_cast<std::size_t>(n) - 1] * std::numbers::pi * std::numbers::pi /
+                                     ((2.0 * n - 1.0 + odd) * (2.0 * n + odd));
   }
+  return c;
+}
+constexpr auto sine_series = series<11>(std::numbers::pi, 1);
+constexpr auto cosine_series = series<11>(1.0, 0);
+
+/// sin and cos of 2 pi u for |u| <= 1/2, by their series at half the angle: good to 1e-15 and without branches.
+void sine_cosine(const Lanes& u, Lanes& sine, Lanes& cosine) {
+  const Lanes y = u * u;
+  Lanes s = Lanes::Constant(sine_series.back()), c = Lanes::Constant(cosine_series.back());
+  for (std::size_t n = sine_series.size() - 1; n-- > 0;) {
+    s = s * y + sine_series[n];
+    c = c * y + cosine_series[n];
+  }
+  s *= u;
+  sine = 2.0 * s * c;
+  cosine = 1.0 - 2.0 * s * s;
+}
+
+/// The sum of all waves at s, which is counted in m from the start; frequency in cycles/m, phase in cycles.
+Height waves_at(const std::vector<double>& amplitude, const std::vector<double>& frequency,
+                const std::vector<double>& phase, double s) {
+  Lanes value = Lanes::Zero(), slope = Lanes::Zero(), curvature = Lanes::Zero(), sine, cosine;
+  for (std::size_t i = 0; i < amplitude.size(); i += lanes) {
+    const Eigen::Map<const Lanes> a(&amplitude[i]), f(&frequency[i]), p(&phase[i]);
+    const Lanes cycles = f * s + p;
+    sine_cosine(cycles - cycles.rint(), sine, cosine);
+    const Lanes k = two_pi * f;
+    value += a * cosine;
+    slope -= k * a * sine;
+    curvature -= k * k * a * cosine;
+  }
+  const Height w{value.sum(), slope.sum(), curvature.sum()};
   if (s >= fade_length) return w;
   Height f = smooth_step(s / fade_length);
   f.slope /= fade_length;
@@ -157,7 +192,7 @@ Height Profile::at(double x) const {
     case Kind::table:
       return spline_at(x_, h_, h2_, x);
     case Kind::waves:
-      return x > start_ ? waves_at(amplitude_, wavenumber_, phase_, x - start_) : Height{};
+      return x > start_ ? waves_at(amplitude_, frequency_, phase_, x - start_) : Height{};
   }
   return {};
 }

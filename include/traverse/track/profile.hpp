@@ -38,8 +38,8 @@ class Profile {
   enum class Kind { level, bump, table, waves };
   Kind kind_ = Kind::level;
   double start_ = 0.0, length_ = 0.0, height_ = 0.0;
-  std::vector<double> x_, h_, h2_;                      // table
-  std::vector<double> amplitude_, wavenumber_, phase_;  // waves
+  std::vector<double> x_, h_, h2_;                     // table
+  std::vector<double> amplitude_, frequency_, phase_;  // waves: m, cycles/m, cycles
   std::vector<double> kinks_;
   double greatest_curvature_ = 0.0;
 };
