@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <sstream>
 
@@ -46,24 +47,40 @@ void check_room(const Entries& entries) {
       entries.size(), most_options));
 }
 
-/// Options of ours that PETSc took from its environment variable or .petscrc.
+/// Options that PETSc took from its environment variable or .petscrc and that we read, too.
 void add_from_petsc(Input& input) {
   char* all = nullptr;
   base::check(PetscOptionsGetAll(nullptr, &all));
   std::istringstream text(all);
   (void)PetscFree(all);
-  std::vector<std::string> words;
-  for (std::string word; text >> word;) words.push_back(word);
-  for (Entry& entry : parse_words(words, "PETSC_OPTIONS or .petscrc", 0)) {
-    if (!owned_by_petsc(entry.name)) input.entries.set_default(std::move(entry));
+  std::vector<Entry> entries;
+  for (std::string word; text >> word;) {
+    if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0) {
+      entries.push_back({word.substr(1), "", "PETSC_OPTIONS or .petscrc", 0});
+    } else if (!entries.empty()) {
+      entries.back().value += (entries.back().value.empty() ? "" : " ") + word;
+    }
   }
+  for (Entry& entry : entries) {
+    const bool ours = find_row(fixed_rows(), entry.name) != nullptr;
+    if (ours || !owned_by_petsc(entry.name)) input.entries.set_default(std::move(entry));
+  }
+}
+
+template <std::size_t count>
+bool starts_with_one_of(const std::string& name, const std::array<const char*, count>& prefixes) {
+  return std::any_of(prefixes.begin(), prefixes.end(), [&](const char* p) { return name.starts_with(p); });
 }
 
 /// Kinds of options that a solver asks for, or nobody does.
 bool asked_by_solvers(const std::string& name) {
-  static constexpr std::array prefixes = {"ts_",  "snes_", "ksp_", "pc_", "mat_", "vec_", "eps_", "st_",
-                                          "svd_", "pep_",  "nep_", "bv_", "ds_",  "rg_",  "fn_",  "beam_"};
-  return std::any_of(prefixes.begin(), prefixes.end(), [&](const char* p) { return name.starts_with(p); });
+  return starts_with_one_of(name, std::array{"ts_", "snes_", "ksp_", "pc_", "mat_", "vec_", "eps_", "st_", "svd_",
+                                             "pep_", "nep_", "bv_", "ds_", "rg_", "fn_", "beam_"});
+}
+
+/// Kinds of options that PETSc itself asks for when it starts; a few only when it ends.
+bool asked_by_petsc(const std::string& name) {
+  return starts_with_one_of(name, std::array{"log_", "options_", "malloc", "info", "memory_", "objects_"});
 }
 
 }  // namespace
@@ -123,15 +140,16 @@ std::vector<std::string> check_all_used(const Entries& entries) {
   const std::vector<std::string> known(common.begin(), common.end());
   std::vector<std::string> notes;
   for (const std::string& name : left) {
-    if (!asked_by_solvers(name)) continue;
+    const bool solver = asked_by_solvers(name);
+    if (!solver && !asked_by_petsc(name)) continue;
     const Entry* entry = entries.find(name);
     const std::string given = entry != nullptr ? fmt::format("{} = {} ({})", name, entry->value, entry->where()) : name;
     if (std::find(known.begin(), known.end(), name) != known.end()) {
-      notes.push_back(given + " has no effect in this scene");
+      if (solver) notes.push_back(given + " has no effect in this scene");
       continue;
     }
     const std::string near = nearest(name, known);
-    throw InputError(fmt::format("option {}: no solver of this scene asks for it{}", given,
+    throw InputError(fmt::format("option {}: {} asks for it{}", given, solver ? "no solver of this scene" : "nothing",
                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
   }
   return notes;

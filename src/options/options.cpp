@@ -130,6 +130,10 @@ void Options::check_values() const {
 
 void Options::check_value(const Entry& entry, const Row& row) const {
   const std::string_view name = entry.name;
+  // an empty list of parts or vehicles is one, other lists without an entry are forgotten values
+  if (row.kind != Kind::flag && row.kind != Kind::texts && split(entry.value).empty()) {
+    refuse(name, "has no value; wanted: " + allowed(row));
+  }
   switch (row.kind) {
     case Kind::number:
       (void)number(name);

@@ -13,6 +13,7 @@ bool is_list(Kind kind) {
 
 std::string range_words(const Range& range) {
   const bool low = range.low > any.low, high = range.high < any.high;
+  if (low && high && range.above) return fmt::format("above {:g}, at most {:g}", range.low, range.high);
   if (low && high) return fmt::format("from {:g} to {:g}", range.low, range.high);
   if (low) return fmt::format("{} {:g}", range.above ? "above" : "not below", range.low);
   if (high) return fmt::format("not above {:g}", range.high);

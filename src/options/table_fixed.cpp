@@ -11,7 +11,7 @@ constexpr Range tolerance = {1e-10, 0.1};
 constexpr Row rows[] = {
   {"options_file", text, "", "", any, "", 0, "a YAML (.yml, .yaml) or classic options file, which may name further ones"},
 
-  {"beam_spans", numbers, "m", "", positive, "", 0, "length of each span; left out: no bridge"},
+  {"beam_spans", numbers, "m", "", {0.0, 1e6, true}, "", 0, "length of each span; left out: no bridge"},
   {"beam_elements_per_span", integers, "", "(from accuracy)", {1, 100000}, "", 0, "elements a span, one number or one per span"},
   {"beam_EI", number_or_file, "N m2", "", positive, "", 0, "bending stiffness, or a file x,value"},
   {"beam_EA", number_or_file, "N", "", positive, "", 0, "axial stiffness, or a file x,value; needed for longitudinal action only"},
@@ -41,12 +41,12 @@ constexpr Row rows[] = {
   {"train_vehicles", texts, "", "(the vehicle, if one is defined)", any, "", 0, "vehicles by name, front one first; name*count repeats"},
   {"train_positions", numbers, "m", "(front wheel at 0)", any, "", 0, "x of each vehicle's origin at t = 0, or of the first one"},
   {"train_spacing", numbers, "m", "(from vehicle lengths)", positive, "", 0, "distance from origin to origin, one number or one per gap"},
-  {"train_speed", number, "m/s", "", not_negative, "", 0, "speed towards the right at t = 0"},
+  {"train_speed", number, "m/s", "", {0.0, 1e4}, "", 0, "speed towards the right at t = 0"},
   {"train_drive", choice, "", "(constant; free without wheels)", any, "constant free", 0, "constant: each vehicle's x is driven at the speed; free: only forces act"},
 
   {"load_forces", numbers, "N", "", any, "", 0, "moving constant forces, downward"},
   {"load_positions", numbers, "m", "(first at 0)", any, "", 0, "x of each force at t = 0; with hslm_a of the first axle"},
-  {"load_speed", number, "m/s", "(train_speed)", not_negative, "", 0, "speed of the forces"},
+  {"load_speed", number, "m/s", "(train_speed)", {0.0, 1e4}, "", 0, "speed of the forces"},
   {"load_hslm_a", integer, "", "", {1, 10}, "", 0, "instead of forces: train A1 to A10 of EN 1991-2"},
 
   {"track_profile", text, "", "none", any, "", 0, "none, bump, iso8608_A to iso8608_E, or a file x,height"},
@@ -110,8 +110,9 @@ constexpr std::string_view petsc_names[] = {
   "snes_type", "snes_atol", "snes_rtol", "snes_stol", "snes_max_it", "snes_monitor", "snes_converged_reason",
   "snes_view", "snes_lag_jacobian", "ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it", "ksp_monitor", "pc_type",
   "pc_factor_mat_solver_type", "mat_type", "vec_type", "eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it",
-  "eps_target", "eps_monitor", "eps_view", "st_type", "st_shift", "log_view", "log_trace", "options_left",
-  "options_view", "malloc_debug", "info", "version",
+  "eps_target", "eps_monitor", "eps_view", "st_type", "st_shift", "log_view", "log_view_memory", "log_trace",
+  "options_left", "options_view", "options_monitor", "malloc_debug", "malloc_dump", "malloc_view", "memory_view",
+  "objects_dump", "info", "version",
 };
 // clang-format on
 

@@ -173,11 +173,13 @@ INSTANTIATE_TEST_SUITE_P(
     Values, BadValue,
     testing::Values(Bad{"train_speed", "fast", "'fast' is no finite number"},
                     Bad{"train_speed", "nan", "no finite number"}, Bad{"train_speed", "1e999", "no finite number"},
-                    Bad{"train_speed", "3 m/s", "no finite number"}, Bad{"train_speed", "-1", "not below 0 (m/s)"},
-                    Bad{"beam_EI", "0", "above 0"}, Bad{"beam_EI", "inf", "no finite number"},
+                    Bad{"train_speed", "3 m/s", "no finite number"}, Bad{"train_speed", "-1", "from 0 to 10000 (m/s)"},
+                    Bad{"scene_tail", "-1", "not below 0 (s)"}, Bad{"beam_EI", "0", "above 0"},
+                    Bad{"beam_EI", "inf", "no finite number"},
                     Bad{"beam_EI", "nowhere.csv", "neither a number nor a file"},
                     Bad{"beam_elements_per_span", "3.5", "whole numbers"}, Bad{"beam_elements_per_span", "0", "from 1"},
-                    Bad{"beam_spans", "25,,30", "empty entry"}, Bad{"beam_spans", "25*0", "whole number"},
+                    Bad{"beam_spans", "25,,30", "empty entry"}, Bad{"beam_spans", "", "has no value"},
+                    Bad{"train_speed", "", "has no value"}, Bad{"beam_spans", "25*0", "whole number"},
                     Bad{"beam_spans", "25*x", "whole number"}, Bad{"beam_spans", "25*99999999", "at most"},
                     Bad{"support_types", "pinned,roler", "free, roller, pinned, clamped, guided"},
                     Bad{"scene_analysis", "dynamic", "transient, modes, static"},
@@ -224,6 +226,9 @@ TEST(Table, OptionsOfSolversThatNobodyAskedFor) {
   ASSERT_EQ(PetscOptionsSetValue(nullptr, "-eps_tol", "1e-9"), 0);
   EXPECT_PRED2(any_contains, check_all_used(entries), "eps_tol has no effect");
   ASSERT_EQ(PetscOptionsClearValue(nullptr, "-eps_tol"), 0);
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-log_veiw", ""), 0);
+  EXPECT_PRED2(contains, message_of([&] { check_all_used(entries); }), "did you mean log_view?");
+  ASSERT_EQ(PetscOptionsClearValue(nullptr, "-log_veiw"), 0);
 }
 
 TEST(Table, OursStandInPetscsTableAndAreUsed) {
@@ -235,6 +240,19 @@ TEST(Table, OursStandInPetscsTableAndAreUsed) {
   EXPECT_EQ(speed, 40.0);
   EXPECT_EQ(value_of(in_force(), "train_speed"), "40");
   EXPECT_TRUE(check_all_used(input.entries).empty());
+  ASSERT_EQ(PetscOptionsClear(nullptr), 0);
+}
+
+TEST(Table, OptionsByTheEnvironmentAreTheWeakest) {
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-gravity", "1.6"), 0);  // as PetscInitialize does with PETSC_OPTIONS
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-train_speed", "10"), 0);
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-ts_dt", "0.1"), 0);
+  Input input = input_of({"-train_speed", "40"});
+  put_into_petsc(input);
+  EXPECT_EQ(value_of(in_force(), "gravity"), "1.6");
+  EXPECT_EQ(value_of(in_force(), "train_speed"), "40");
+  EXPECT_EQ(value_of(in_force(), "ts_dt"), "0.1");
+  EXPECT_PRED2(contains, in_force().find("gravity")->where(), "PETSC_OPTIONS");
   ASSERT_EQ(PetscOptionsClear(nullptr), 0);
 }
 
