@@ -61,9 +61,14 @@ Axial axial_bed(const Distribution& density, const Element& e) {
 }
 
 std::array<double, 4> transverse_load(const Distribution& density, const Element& e) {
+  const double h = e.length;
+  if (const auto constant = constant_value(density, e.x, e.x + h)) {
+    const double force = *constant * h / 2, moment = *constant * h * h / 12;
+    return {force, moment, force, -moment};
+  }
   std::array<double, 4> load{};
   integrate(density, e.x, e.x + e.length, [&](double x, double weight) {
-    const auto psi = hermite((x - e.x) / e.length, e.length).value;
+    const auto psi = hermite((x - e.x) / h, h).value;
     for (std::size_t i = 0; i < 4; ++i) load[i] += weight * psi[i];
   });
   return load;
