@@ -164,9 +164,7 @@ std::string Mechanism::conflict(MechanismState& s, int row, const std::string& v
     last = row_name(kept);
     others += (others.empty() ? "" : ", ") + last;
   }
-  const std::string text =
-      "vehicle '" + model_.name + "': " + row_name(row) + " " + verb + " " + (others.empty() ? "itself" : others);
-  return text;
+  return "vehicle '" + model_.name + "': " + row_name(row) + " " + verb + " " + (others.empty() ? "itself" : others);
 }
 
 void Mechanism::check_dropped_positions(MechanismState& s) const {

@@ -15,24 +15,24 @@ constexpr double worn_pivot = 0.1;        // of what it was when the order was c
 /// The best pivot of the active matrix from (k, k) on: the one that fills least (Markowitz) among those large enough;
 /// the larger one of two that fill alike.
 void find_pivot(const Eigen::MatrixXd& A, int k, int& row, int& column) {
-  const int m = static_cast<int>(A.rows());
-  const double tiny = std::numeric_limits<double>::min();
-  long best_fill = std::numeric_limits<long>::max();
-  double best_size = -1.0;
+  const int left = static_cast<int>(A.rows()) - k;
+  const auto active = A.bottomRightCorner(left, left).array();
+  const Eigen::Array<Eigen::Index, 1, Eigen::Dynamic> in_column = (active != 0.0).colwise().count();
+  Eigen::Index best_fill = std::numeric_limits<Eigen::Index>::max();
+  double best_size = 0.0;
   row = column = k;
-  for (int i = k; i < m; ++i) {
-    const double largest = A.row(i).tail(m - k).cwiseAbs().maxCoeff();
-    const long in_row = (A.row(i).tail(m - k).array() != 0.0).count();
-    for (int j = k; j < m; ++j) {
-      const double size = std::abs(A(i, j));
-      if (!(size > tiny) || size < acceptable_pivot * largest) continue;
-      const long in_column = (A.col(j).tail(m - k).array() != 0.0).count();
-      const long fill = (in_row - 1) * (in_column - 1);
+  for (int i = 0; i < left; ++i) {
+    const double acceptable = acceptable_pivot * active.row(i).abs().maxCoeff();
+    const Eigen::Index in_row = (active.row(i) != 0.0).count();
+    for (int j = 0; j < left; ++j) {
+      const double size = std::abs(active(i, j));
+      if (!(size > 0.0) || size < acceptable) continue;
+      const Eigen::Index fill = (in_row - 1) * (in_column[j] - 1);
       if (fill > best_fill || (fill == best_fill && size <= best_size)) continue;
       best_fill = fill;
       best_size = size;
-      row = i;
-      column = j;
+      row = k + i;
+      column = k + j;
     }
   }
 }

@@ -1,6 +1,8 @@
 // The two small factorisations behind generalized coordinate partitioning, made for mechanisms whose equations touch
 // few coordinates each. The order of elimination and the places that can be non-zero are found once (`plan`), the
-// numbers are then computed without a search, without touching a zero and without allocating.
+// numbers are then computed without a search, without touching a zero and without allocating. Measured on a coach
+// (21 coordinates, 11 constraints): a whole evaluation takes 1.4 us, dense factorisations and B^T N B alone 2.4 us
+// (benchmarks/multibody_benchmark.cpp).
 #pragma once
 
 #include <Eigen/Core>
