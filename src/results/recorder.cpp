@@ -269,7 +269,7 @@ Recorder::Recorder(MPI_Comm comm, const std::string& file, const Layout& layout,
   MPI_Comm_size(comm, &ranks);
   MPI_Comm_rank(comm, &rank);
   std::string failure;
-  if (rank == 0) {
+  if (rank == 0 && !file.empty()) {  // no name: no file
     try {
       impl_ = std::make_unique<Impl>(file, layout, attributes, options, ranks);
     } catch (const std::exception& error) {

@@ -30,7 +30,8 @@ double seconds(Clock::duration duration) { return std::chrono::duration<double>(
 
 std::string duration_text(double s) {
   if (s < 0.9995) return fmt::format("{:.3g} ms", 1e3 * s);
-  if (s < 59.5) return fmt::format("{:.3g} s", s);
+  if (s < 9.995) return fmt::format("{:.3g} s", s);
+  if (s < 59.5) return fmt::format("{:.0f} s", s);
   const long whole = std::lround(s);
   if (whole < 3600) return fmt::format("{} min {:02d} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02d} min", whole / 3600, whole % 3600 / 60);
@@ -109,6 +110,7 @@ Progress::Progress(double start, double end, bool quiet)
 void Progress::update(double t, long steps) {
   if (quiet_ || !(end_ > start_) || !(t > start_)) return;
   const double part = std::min((t - start_) / (end_ - start_), 1.0);
+  if (part >= 1.0) return;
   const int tenth = static_cast<int>(10.0 * part);
   if (!terminal_ && tenth <= shown_) return;
   const auto now = Clock::now();

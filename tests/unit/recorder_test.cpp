@@ -174,6 +174,12 @@ TEST_F(RecorderTest, WritesSceneWithoutBeamOrVehicles) {
   EXPECT_FALSE(reader.has("/vehicles"));
 }
 
+TEST_F(RecorderTest, NoNameMeansNoFile) {
+  auto recorder = open(small_layout(), "");
+  recorder->add(sample_at(0));
+  recorder->finish({});
+}
+
 TEST_F(RecorderTest, DestructorWritesWhatIsThere) {
   auto recorder = open(small_layout());
   for (long i = 0; i < 10; ++i) recorder->add(sample_at(i));

@@ -1,0 +1,324 @@
+#!/usr/bin/python3
+"""One page that shows a run: picture.py RESULTS.h5 OUT.png
+
+Draws what the file holds and leaves out the rest: the bridge's shape at its worst instant, deflections, wheel forces
+and accelerations over time; or natural shapes; or the peaks of a sweep over the speed. Curves carry their names.
+"""
+
+import argparse
+import sys
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
+from matplotlib.transforms import ScaledTranslation, blended_transform_factory  # noqa: E402
+from picture_data import (  # noqa: E402
+    MOST_CURVES, MOST_WHEELS, Results, car_body, choose, choose_probes, envelope, natural, ordinal, place_in_words,
+    spread, thin)
+
+# Okabe and Ito's colours, told apart by colour-blind readers; the darker ones first, they carry text.
+COLOURS = ["#0072B2", "#D55E00", "#007A59", "#A8578A", "#8A6A00", "#3A3A3A"]
+GREY, PALE = "#666666", "#B8B8B8"
+LABEL_SIZE = 10
+
+plt.rcParams.update({
+    "font.family": "DejaVu Sans", "font.size": 11, "axes.titlesize": 13, "axes.titleweight": "bold",
+    "axes.titlelocation": "left", "axes.titlepad": 8, "axes.grid": True, "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6, "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#888888",
+    "axes.axisbelow": True, "lines.linewidth": 1.5, "lines.solid_joinstyle": "round", "axes.xmargin": 0.0,
+})
+
+
+def label_at_ends(ax, curves):
+    """Names right of the axes, each joined to the end of its curve. curves: (last value, name, colour)."""
+    low, high = ax.get_ylim()
+    height = ax.get_position().height * ax.figure.get_figheight() * 72  # points
+    gap = 1.5 * LABEL_SIZE / height
+    places = spread([(value - low) / (high - low) for value, _, _ in curves], gap, 0.03, 0.97)
+    for (value, name, colour), place in zip(curves, places):
+        ax.annotate(name, xy=(1.0, (value - low) / (high - low)), xytext=(1.035, place), xycoords="axes fraction",
+                    textcoords="axes fraction", va="center", color=colour, fontsize=LABEL_SIZE, annotation_clip=False,
+                    arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.9, "shrinkA": 1, "shrinkB": 0,
+                                "relpos": (0.0, 0.5)})
+
+
+def time_panel(ax, results, title, unit, curves, band=None, worst=None):
+    """curves: (name, values); band: (name, least, greatest)."""
+    ax.set_title(title)
+    ax.set_ylabel(unit)
+    time, ends = results.time, []
+    if band is not None:
+        name, least, greatest = band
+        t, lower = thin(time, least)
+        u, upper = thin(time, greatest)
+        grid = np.union1d(t, u)
+        ax.fill_between(grid, np.interp(grid, t, lower), np.interp(grid, u, upper), color=PALE, alpha=0.55, lw=0)
+        ends.append((0.5 * (least[-1] + greatest[-1]), name, GREY))
+    for (name, values), colour in zip(curves, COLOURS):
+        ax.plot(*thin(time, values), color=colour)
+        ends.append((values[-1], name, colour))
+    if worst is not None and time[0] <= worst <= time[-1]:
+        ax.axvline(worst, color=GREY, lw=0.9, ls=(0, (4, 3)))
+        ax.text(1.0, 1.03, "dashed: worst instant", transform=ax.transAxes, ha="right", va="bottom", fontsize=9,
+                color=GREY)
+    if len(time) > 1:
+        ax.set_xlim(time[0], time[-1])
+    low, high = ax.get_ylim()
+    if low > 0.0 and low < 0.6 * high:
+        ax.set_ylim(0.0, high)
+    label_at_ends(ax, ends)
+
+
+def draw_deflection(ax, results, worst):
+    values = 1e3 * results.over_time(results.file["probes/deflection"])
+    chosen = choose_probes(results, np.abs(values).max(axis=0))
+    note = "" if len(chosen) == values.shape[1] else f" ({len(chosen)} of {values.shape[1]} places)"
+    curves = [(place_in_words(results.probes[i], results.supports), values[:, i]) for i in chosen]
+    time_panel(ax, results, f"Deflection of the bridge, upward positive{note}", "mm", curves, worst=worst)
+
+
+def draw_wheels(ax, results, wheels):
+    count = len(results.vehicles)
+    title = "Wheel forces on the track" if results.supports is not None else "Wheel forces"
+    if len(wheels) <= MOST_WHEELS:
+        curves = [(f"{ordinal(k, count, 'vehicle')}, {name.replace('_', ' ')}", 1e-3 * results.over_time(data))
+                  for k, name, data in wheels]
+        time_panel(ax, results, title, "kN", curves)
+        return
+    least, greatest = envelope(results, (1e-3 * results.over_time(data) for _, _, data in wheels))
+    curves = [(f"{end} wheel of the train", 1e-3 * results.over_time(wheels[i][2]))
+              for i, end in ((0, "first"), (-1, "last"))]
+    time_panel(ax, results, title, "kN", curves, (f"all {len(wheels)} wheels, least to greatest", least, greatest))
+
+
+def draw_static_wheels(ax, results, wheels):
+    """One instant only: a bar a wheel, from the front of the train."""
+    forces = [1e-3 * data[0] for _, _, data in wheels]
+    ax.set_title("Wheel forces, from the front of the train")
+    ax.set_ylabel("kN")
+    ax.bar(np.arange(len(forces)), forces, width=0.6, color=COLOURS[0])
+    ax.set_xmargin(0.03)
+    ax.grid(False, axis="x")
+    if len(forces) <= MOST_CURVES:
+        names = [f"{ordinal(k, len(results.vehicles), 'vehicle')},\n{name.replace('_', ' ')}" for k, name, _ in wheels]
+        ax.set_xticks(np.arange(len(forces)), names, fontsize=9)
+    else:
+        ax.set_xticks([])
+
+
+def draw_accelerations(ax, results, cars):
+    count = len(cars)
+    series = [results.over_time(car["acceleration"])[:, 1] for car in cars]
+    title = "Vertical acceleration of the car " + ("body" if count == 1 else "bodies")
+    if count <= MOST_WHEELS:
+        time_panel(ax, results, title, "m/s²", [(ordinal(k, count, "car"), a) for k, a in enumerate(series)])
+        return
+    band = (f"all {count} cars, least to greatest", *envelope(results, series))
+    time_panel(ax, results, title, "m/s²", [("first car", series[0]), ("last car", series[-1])], band)
+
+
+def draw_supports(ax, results, low, high):
+    """Under the undeflected line, in the shapes that engineers draw."""
+    if results.supports is None:
+        return
+    markers = {"pinned": "^", "roller": "o", "clamped": "s", "guided": "D"}
+    points = blended_transform_factory(ax.transData, ax.transData) + ScaledTranslation(
+        0, -6.5 / 72, ax.figure.dpi_scale_trans)
+    for x, kind in zip(results.supports, results.support_types()):
+        if low <= x <= high and kind != "free":
+            ax.plot([x], [0.0], markers.get(kind, "^"), ms=11, color="white", mec="#333333", mew=1.4, transform=points,
+                    clip_on=False, zorder=5)
+
+
+def draw_train(ax, results, time):
+    """Where the vehicles stand at that time, as boxes above the bridge."""
+    if results.rows == 0 or not results.vehicles:
+        return
+    row = int(np.argmin(np.abs(results.time - time)))
+    above = blended_transform_factory(ax.transData, ax.transAxes)
+    low, high = ax.get_xlim()
+    middle = []
+    for vehicle in results.vehicles:
+        xs = [vehicle[name]["position"][row, 0] for name in vehicle if "position" in vehicle[name]]
+        if not xs or max(xs) < low or min(xs) > high:
+            continue
+        left, width = max(min(xs), low), max(min(max(xs), high) - max(min(xs), low), 0.004 * (high - low))
+        ax.add_patch(plt.Rectangle((left, 0.80), width, 0.07, transform=above, color="#9DB7C9", lw=0))
+        middle.append(left + width / 2)
+    if middle:
+        ax.text(np.clip(np.mean(middle), low, high), 0.885, "the train", transform=above, ha="center", va="bottom",
+                fontsize=9, color=GREY)
+
+
+def draw_shape(ax, results):
+    x, shape = results.values("shape/x"), 1e3 * results.values("shape/deflection")
+    time = float(results.file["shape/deflection"].attrs["time"])
+    low, high = x[0], x[-1]
+    moved = x[np.abs(shape) > 0.03 * np.abs(shape).max()] if np.any(shape) else x
+    note = ""
+    if results.supports is not None and moved[-1] - moved[0] < 0.25 * (high - low):
+        margin = 0.3 * (moved[-1] - moved[0]) + 2.0 * np.diff(results.supports).max()
+        low, high = max(low, moved[0] - margin), min(high, moved[-1] + margin)
+        note = f"\nThe bridge is {x[-1] - x[0]:,.0f} m long,\nshown is where it bends."
+    inside = (x >= low) & (x <= high)
+    ax.axhline(0.0, color=PALE, lw=1.0)
+    ax.plot(x[inside], shape[inside], color=COLOURS[0], lw=3.2, solid_capstyle="round")
+    deepest, highest = min(shape.min(), 0.0), max(shape.max(), 0.0)
+    height = max(deepest * -1.0, highest, 1e-9)
+    ax.set_ylim(deepest - 0.35 * height, highest + (0.75 if results.vehicles else 0.3) * height)
+    ax.set_xlim(low - 0.02 * (high - low), high + 0.02 * (high - low))
+    draw_supports(ax, results, low, high)
+    draw_train(ax, results, time)
+    worst = int(np.argmax(np.abs(shape)))
+    if np.any(shape):
+        down = shape[worst] < 0.0
+        ax.annotate(f"{abs(shape[worst]):.3g} mm {'down' if down else 'up'}", xy=(x[worst], shape[worst]),
+                    xytext=(0, -6 if down else 6), textcoords="offset points", ha="center",
+                    va="top" if down else "bottom", color=COLOURS[0], fontsize=LABEL_SIZE)
+    box = ax.get_position()
+    width = box.width * ax.figure.get_figwidth()
+    scale = (np.ptp(ax.get_xlim()) / width) / (1e-3 * np.ptp(ax.get_ylim()) / (box.height * ax.figure.get_figheight()))
+    ax.set_title(f"The bridge at its worst instant, {time:.4g} s" if results.rows > 1 else "The bridge under its load")
+    times = f"{float(f'{scale:.2g}'):,.0f}"
+    said = f"Deflection is drawn\n{times} times too large.\nTriangles, circles and\nsquares are supports.{note}"
+    ax.text(1.035, 0.5, said, transform=ax.transAxes, va="center", fontsize=LABEL_SIZE, color=GREY, linespacing=1.4)
+    ax.set_ylabel("mm")
+    ax.set_xlabel("place along the track (m)")
+    return time
+
+
+def draw_sweep(ax, results):
+    speed = 3.6 * results.values("sweep/speed")
+    peaks = 1e3 * np.abs(results.values("sweep/peak_deflection"))
+    peaks = peaks.reshape(-1, len(speed), peaks.shape[-1]).max(axis=-1)
+    ax.set_title("Greatest deflection of the bridge over the train's speed")
+    ax.set_ylabel("mm")
+    ax.set_xlabel("speed (km/h)")
+    trains = results.options.get("sweep_hslm_a", "").replace(" ", "").split(",")
+    ends = []
+    for i, colour in zip(choose(len(peaks), MOST_CURVES, peaks.max(axis=1)), COLOURS):
+        ax.plot(speed, peaks[i], color=colour)
+        name = f"train A{trains[i]}" if len(trains) == len(peaks) and trains[i] else ordinal(i, len(peaks), "train")
+        ends.append((peaks[i][-1], name, colour))
+    ax.set_ylim(0.0, None)
+    label_at_ends(ax, ends)
+
+
+def draw_modes(figure, results):
+    """The first shapes, two a row; or the frequencies alone."""
+    frequency, shapes = results.values("modes/frequency"), results.values("modes/shape")
+    if shapes is None:
+        ax = figure.add_axes([0.1, 0.12, 0.85, 0.7])
+        ax.plot(np.arange(1, len(frequency) + 1), frequency, "o", color=COLOURS[0])
+        ax.set(title="Natural frequencies", ylabel="Hz", xlabel="in ascending order")
+        return
+    axial = results.values("modes/axial")
+    x = results.values("modes/x")
+    x = np.arange(shapes.shape[1], dtype=float) if x is None else x
+    count = min(len(shapes), 6)
+    rows = (count + 1) // 2
+    for i in range(count):
+        ax = figure.add_axes([0.06 + 0.485 * (i % 2), 0.1 + 0.76 * (rows - 1 - i // 2) / rows, 0.43, 0.76 / rows - 0.1])
+        ax.axhline(0.0, color=PALE, lw=1.0)
+        ax.plot(x, shapes[i], color=COLOURS[0], lw=2.6)
+        ax.set_ylim(-1.25, 1.25)
+        ax.set_yticks([])
+        ax.set_xlim(x[0] - 0.02 * np.ptp(x), x[-1] + 0.02 * np.ptp(x))
+        draw_supports(ax, results, x[0], x[-1])
+        along = ", along the track" if axial is not None and axial[i] else ""
+        ax.set_title(f"{frequency[i]:.4g} Hz{along}" if frequency[i] > 0.0 else f"free motion{along}")
+        if i >= count - 2:
+            ax.set_xlabel("place along the track (m)" if "modes/x" in results.file else "node")
+
+
+def heading(figure, results, modes_only):
+    speed, summary = results.speed(), results.summary
+    title = results.scene()
+    if modes_only:
+        title += ": natural shapes of the bridge"
+    elif results.options.get("scene_analysis") == "static":
+        title += ", at rest"
+    elif speed:
+        title += f", {3.6 * speed:.4g} km/h"
+    figure.text(0.06, 1.0 - 0.30 / figure.get_figheight(), title, fontsize=18, weight="bold", va="top")
+    said = []
+    if summary.get("deflection"):
+        said.append(f"greatest deflection {1e3 * abs(summary['deflection']):.3g} mm, "
+                    f"{place_in_words(summary['deflection_place'], results.supports)}")
+    if summary.get("amplification"):
+        said.append(f"{summary['amplification']:.3g} times the static one")
+    if summary.get("least_wheel"):
+        said.append(f"least wheel force {1e-3 * summary['least_wheel_force']:.3g} kN")
+    if not summary and results.rows:
+        said.append(f"the run did not reach its end; drawn as far as {results.time[-1]:.4g} s")
+    if modes_only and "modes/shape" in results.file:
+        said = ["each drawn to the same greatest height; circles, triangles and squares are supports"]
+    figure.text(0.06, 1.0 - 0.68 / figure.get_figheight(), "; ".join(said), fontsize=11.5, color=GREY, va="top")
+    attrs = results.file.attrs
+    foot = f"{attrs.get('program', 'traverse')} {attrs.get('version', '')}"
+    if "steps" in attrs and attrs["steps"]:
+        foot += f", {attrs['steps']} steps in {attrs['wall_seconds']:.3g} s"
+    figure.text(0.94, 0.16 / figure.get_figheight(), foot, fontsize=8.5, color=GREY, ha="right")
+
+
+def panels(results):
+    """What the file offers, top to bottom, as functions of the axes and the worst instant."""
+    file, found = results.file, []
+    if "shape/deflection" in file and len(file["shape/x"]) > 1:
+        found.append(lambda ax, worst: draw_shape(ax, results))
+    wheels = [(k, name, vehicle[name]["normal_force"]) for k, vehicle in enumerate(results.vehicles)
+              for name in sorted(vehicle, key=natural) if "normal_force" in vehicle[name]]
+    cars = [vehicle[name] for vehicle in results.vehicles if (name := car_body(vehicle)) is not None]
+    if results.rows > 1 and "probes/deflection" in file and len(results.probes):
+        found.append(lambda ax, worst: draw_deflection(ax, results, worst))
+    if results.rows > 0 and wheels:
+        drawing = draw_wheels if results.rows > 1 else draw_static_wheels
+        found.append(lambda ax, worst: drawing(ax, results, wheels))
+    if results.rows > 1 and cars:
+        found.append(lambda ax, worst: draw_accelerations(ax, results, cars))
+    if "sweep/peak_deflection" in file:
+        found.append(lambda ax, worst: draw_sweep(ax, results))
+    return found
+
+
+def draw(results, out):
+    found = panels(results)
+    modes_only = not found and "modes/frequency" in results.file
+    if not found and not modes_only:
+        raise ValueError("holds nothing that could be drawn")
+    height = 7.5 if modes_only else 1.45 + 2.75 * len(found)
+    figure = plt.figure(figsize=(11.5, height))
+    heading(figure, results, modes_only)
+    if modes_only:
+        draw_modes(figure, results)
+    worst = None
+    for i, panel in enumerate(found):
+        bottom = height - 1.2 - 2.75 * (i + 1) + 0.75
+        shape_on_top = i == 0 and "shape/deflection" in results.file
+        ax = figure.add_axes([0.075, bottom / height, 0.635, 1.75 / height])
+        worst = panel(ax, worst) if shape_on_top else (panel(ax, worst), worst)[1]
+        if results.rows > 1 and panel is found[-1] and not ax.get_xlabel():
+            ax.set_xlabel("time (s)")
+    figure.savefig(out, dpi=130)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", help="a results file (HDF5)")
+    parser.add_argument("out", help="the picture: .png, .pdf or .svg")
+    arguments = parser.parse_args()
+    try:
+        with h5py.File(arguments.results, "r", locking=False) as file:
+            draw(Results(file), arguments.out)
+    except (OSError, ValueError) as error:
+        print(f"picture.py: {arguments.results}: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

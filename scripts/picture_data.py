@@ -1,0 +1,140 @@
+"""What picture.py draws: a results file read, places and vehicles in words, and which curves to show."""
+
+import re
+
+import numpy as np
+
+MOST_CURVES = 6
+MOST_WHEELS = 4
+MOST_POINTS = 4000
+
+
+class Results:
+    """What the picture needs from a results file; a part that is missing is None or empty."""
+
+    def __init__(self, file):
+        self.file = file
+        self.time = self.values("time")
+        # A killed run may hold a few rows more elsewhere: /time counts.
+        self.rows = 0 if self.time is None else len(self.time)
+        self.options = {}
+        if "options" in file and file["options"].ndim == 2:
+            self.options = {key.lstrip("-"): value for key, value in file["options"].asstr()[:]}
+        self.summary = dict(file["summary"].attrs) if "summary" in file else {}
+        self.supports = self.values("supports/x")
+        self.probes = self.values("probes/x")
+        vehicles = file["vehicles"] if "vehicles" in file else {}
+        self.vehicles = [vehicles[k] for k in sorted(vehicles, key=int)]
+
+    def values(self, name):
+        return self.file[name][()] if name in self.file else None
+
+    def over_time(self, dataset):
+        return dataset[: self.rows]
+
+    def scene(self):
+        name = self.file.attrs.get("scene", "") or "Run"
+        return re.sub(r"\.ya?ml$", "", str(name).split("/")[-1]).replace("_", " ")
+
+    def speed(self):
+        for key in ("train_speed", "load_speed"):
+            try:
+                return float(self.options[key])
+            except (KeyError, ValueError):
+                continue
+        return None
+
+    def support_types(self):
+        types = self.options.get("support_types", "").replace(" ", "").split(",")
+        count = 0 if self.supports is None else len(self.supports)
+        return types if len(types) == count else types[:1] * count
+
+
+def natural(name):
+    """Sorts wheel_2 before wheel_10, and front before rear."""
+    front = 0 if "front" in name else 2 if "rear" in name else 1
+    return [front] + [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", name)]
+
+
+def ordinal(k, count, noun):
+    if count == 1:
+        return f"the {noun}"
+    return f"first {noun}" if k == 0 else f"last {noun}" if k == count - 1 else f"{noun} {k + 1} of {count}"
+
+
+def place_in_words(x, supports):
+    """'middle of span 1 (12.5 m)'"""
+    at = f"{x:.6g} m"
+    if supports is None or len(supports) < 2 or not supports[0] <= x <= supports[-1]:
+        return f"at {at}"
+    single = len(supports) == 2
+    span = min(int(np.searchsorted(supports, x, side="right")) - 1, len(supports) - 2)
+    left, right = supports[span], supports[span + 1]
+    part = (x - left) / (right - left)
+    name = "the span" if single else f"span {span + 1}"
+    words = {0.0: "left end", 0.25: "quarter", 0.5: "middle", 0.75: "three quarters", 1.0: "right end"}
+    for value, word in words.items():
+        if abs(part - value) < 0.005:
+            return f"{word} of {name} ({at})"
+    return f"at {at}" if single else f"{name}, at {at}"
+
+
+def thin(time, values):
+    """At most MOST_POINTS points that keep every peak: least and greatest of each stretch."""
+    if len(time) <= 2 * MOST_POINTS:
+        return time, values
+    size = -(-len(time) // (MOST_POINTS // 2))
+    starts = range(0, len(time), size)
+    keep = sorted({s + int(f(values[s:s + size])) for s in starts for f in (np.nanargmin, np.nanargmax)})
+    return time[keep], values[keep]
+
+
+def spread(wanted, gap, low, high):
+    """Places near the wanted ones, at least `gap` apart, within [low, high]."""
+    order = np.lexsort((-np.arange(len(wanted)), np.round(wanted, 1)))  # of those that meet, the first on top
+    placed = np.array(wanted, dtype=float)[order]
+    for _ in range(200):
+        placed = np.clip(placed, low, high)
+        for i in range(len(placed) - 1):
+            lack = gap - (placed[i + 1] - placed[i])
+            if lack > 1e-9:
+                placed[i] -= lack / 2
+                placed[i + 1] += lack / 2
+    result = np.empty_like(placed)
+    result[order] = placed
+    return result
+
+
+def choose(count, most, weights):
+    """Indices of at most `most` curves: the greatest, and an even choice of the rest."""
+    if count <= most:
+        return list(range(count))
+    chosen = {int(np.argmax(weights))}
+    for i in np.linspace(0, count - 1, most).round().astype(int):
+        if len(chosen) < most:
+            chosen.add(int(i))
+    return sorted(chosen)
+
+
+def choose_probes(results, peaks):
+    """Middles of spans rather than other places, when there are too many."""
+    everywhere = np.arange(len(peaks))
+    words = [place_in_words(x, results.supports) for x in results.probes] if len(peaks) > MOST_CURVES else []
+    middles = np.array([i for i, word in enumerate(words) if word.startswith("middle")], dtype=int)
+    candidates = middles if len(middles) > 1 else everywhere
+    return [int(candidates[i]) for i in choose(len(candidates), MOST_CURVES, peaks[candidates])]
+
+
+def envelope(results, series):
+    least, greatest = np.full(results.rows, np.inf), np.full(results.rows, -np.inf)
+    for values in series:
+        np.minimum(least, values, out=least)
+        np.maximum(greatest, values, out=greatest)
+    return least, greatest
+
+
+def car_body(vehicle):
+    """The body named so, else the highest one; None in a vehicle without bodies."""
+    bodies = [name for name in vehicle if "acceleration" in vehicle[name] and len(vehicle[name]["position"])]
+    named = [name for name in bodies if re.search("car|body|coach|box", name)]
+    return max(named or bodies, key=lambda name: vehicle[name]["position"][0, 1], default=None)

@@ -1,0 +1,163 @@
+"""scripts/picture.py on small results files: whatever a file holds is drawn, whatever it lacks is left out."""
+
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
+SCRIPTS = SOURCE / "scripts"
+sys.path.insert(0, str(SCRIPTS))
+import picture_data  # noqa: E402
+
+
+def write_run(path, *, beam=True, vehicles=2, wheels=("front_wheel", "rear_wheel"), rows=400, finished=True, extra=0):
+    """A results file as the program writes it; `extra`: rows beyond /time, as a killed run may leave."""
+    n = rows + extra
+    t = np.linspace(0.0, 4.0, n)
+    with h5py.File(path, "w") as file:
+        file.attrs["scene"] = "small_scene"
+        file["time"] = t[:rows]
+        options = np.array([["-train_speed", "50"], ["-support_types", "pinned,roller,roller"]], dtype=object)
+        file.create_dataset("options", data=options, dtype=h5py.string_dtype())
+        if beam:
+            file["supports/x"] = [0.0, 20.0, 40.0]
+            file["probes/x"] = [10.0, 30.0]
+            file["probes/deflection"] = -1e-3 * np.stack([np.sin(t), np.cos(t)], axis=1)
+            file["shape/x"] = np.linspace(0.0, 40.0, 21)
+            file["shape/deflection"] = -1e-3 * np.sin(np.linspace(0.0, 2 * np.pi, 21))
+            file["shape/deflection"].attrs["time"] = 1.5
+        for k in range(vehicles):
+            for body, height in (("car", 1.5), ("axle", 0.5)):
+                file[f"vehicles/{k}/{body}/position"] = np.stack([50 * t - 10 * k, height + 0 * t, 0 * t], axis=1)
+                file[f"vehicles/{k}/{body}/acceleration"] = np.stack([0 * t, np.sin(5 * t + k), 0 * t], axis=1)
+            for wheel in wheels:
+                file[f"vehicles/{k}/{wheel}/normal_force"] = 1e5 + 1e3 * np.sin(7 * t + k)
+        if finished:
+            file.create_group("summary").attrs["deflection"] = -1e-3
+            file["summary"].attrs["deflection_place"] = 10.0
+
+
+class PictureTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.file = self.folder / "run.h5"
+
+    def run_script(self):
+        out = self.folder / "run.png"
+        command = [sys.executable, "-B", str(SCRIPTS / "picture.py"), str(self.file), str(out)]
+        return subprocess.run(command, capture_output=True, text=True, timeout=120), out
+
+    def assert_drawn(self):
+        """The picture is there and not blank; its height in pixels."""
+        done, out = self.run_script()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr, "")
+        data = out.read_bytes()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertGreater(len(data), 20000)
+        width, height = struct.unpack(">II", data[16:24])
+        self.assertGreater(width, 1000)
+        return height
+
+    def test_whole_run(self):
+        write_run(self.file)
+        whole = self.assert_drawn()
+        write_run(self.file, vehicles=0)
+        self.assertLess(self.assert_drawn(), whole)
+
+    def test_long_train(self):
+        write_run(self.file, vehicles=12, wheels=[f"wheel_{i}" for i in range(1, 5)])
+        self.assert_drawn()
+
+    def test_no_beam(self):
+        write_run(self.file, beam=False)
+        self.assert_drawn()
+
+    def test_no_wheels(self):
+        write_run(self.file, wheels=())
+        self.assert_drawn()
+
+    def test_no_options_nor_shape(self):
+        write_run(self.file)
+        with h5py.File(self.file, "a") as file:
+            del file["options"], file["shape"], file["supports"]
+        self.assert_drawn()
+
+    def test_static_response(self):
+        write_run(self.file, rows=1)
+        self.assert_drawn()
+
+    def test_killed_run_with_ragged_end(self):
+        write_run(self.file, finished=False, extra=30)
+        self.assert_drawn()
+
+    def test_modes(self):
+        x = np.linspace(0.0, 40.0, 21)
+        with h5py.File(self.file, "w") as file:
+            file["modes/frequency"] = [2.0, 5.0, 9.0]
+            file["modes/shape"] = [np.sin(np.pi * (k + 1) * x / 40) for k in range(3)]
+        self.assert_drawn()
+        with h5py.File(self.file, "a") as file:
+            file["modes/x"] = x
+            file["supports/x"] = [0.0, 40.0]
+        self.assert_drawn()
+        with h5py.File(self.file, "a") as file:
+            del file["modes/shape"]
+        self.assert_drawn()
+
+    def test_sweep(self):
+        with h5py.File(self.file, "w") as file:
+            file["sweep/speed"] = np.linspace(30.0, 90.0, 13)
+            file["sweep/peak_deflection"] = 1e-3 * np.ones((3, 13, 2))
+        self.assert_drawn()
+
+    def test_file_with_nothing_to_draw(self):
+        h5py.File(self.file, "w").close()
+        done, _ = self.run_script()
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("nothing", done.stderr)
+        self.assertIn(str(self.file), done.stderr)
+
+    def test_missing_file(self):
+        done, _ = self.run_script()
+        self.assertEqual(done.returncode, 1)
+        self.assertNotIn("Traceback", done.stderr)
+
+
+class WordsTest(unittest.TestCase):
+    def test_places(self):
+        supports = np.array([0.0, 25.0, 55.0])
+        self.assertEqual(picture_data.place_in_words(12.5, supports), "middle of span 1 (12.5 m)")
+        self.assertEqual(picture_data.place_in_words(47.5, supports), "three quarters of span 2 (47.5 m)")
+        self.assertEqual(picture_data.place_in_words(55.0, supports), "right end of span 2 (55 m)")
+        self.assertEqual(picture_data.place_in_words(30.0, supports), "span 2, at 30 m")
+        self.assertEqual(picture_data.place_in_words(10.0, np.array([0.0, 20.0])), "middle of the span (10 m)")
+        self.assertEqual(picture_data.place_in_words(3.0, None), "at 3 m")
+
+    def test_labels_do_not_overlap(self):
+        for wanted in ([0.5] * 6, [0.99, 0.98, 0.02], [0.1, 0.9]):
+            placed = np.sort(picture_data.spread(wanted, 0.1, 0.03, 0.97))
+            self.assertTrue(np.all(np.diff(placed) > 0.099), placed)
+            self.assertTrue(placed[0] >= 0.03 - 1e-3 and placed[-1] <= 0.97 + 1e-3, placed)
+
+    def test_thinning_keeps_peaks(self):
+        time = np.linspace(0.0, 1.0, 100001)
+        values = np.sin(40 * time)
+        values[77777] = 9.0
+        t, v = picture_data.thin(time, values)
+        self.assertLess(len(t), 10000)
+        self.assertEqual(v.max(), 9.0)
+        self.assertTrue(np.all(np.diff(t) > 0))
+
+
+if __name__ == "__main__":
+    unittest.main()
