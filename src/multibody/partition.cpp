@@ -15,6 +15,7 @@ constexpr double rank_tolerance = 1e-8;      // scaled pivots below are rounding
 constexpr double tie = 1e-9;                 // pivots closer than this are equal, so that rounding decides nothing
 constexpr double position_tolerance = 1e-6;  // of the mechanism's size
 constexpr double rate_tolerance = 1e-6;      // of the terms that should cancel
+constexpr double rate_floor = 1e-9;          // of the mechanism's size, per s or s2: less is rest
 constexpr double moved_far = 1e-3;           // of the mechanism's size: then the choice is made again
 constexpr double probe = 1e-3;               // of the mechanism's size: the step that tells a dead point
 constexpr double probe_tolerance = 1e-9;     // of the mechanism's size
@@ -179,7 +180,7 @@ void Mechanism::check_dropped_rates(MechanismState& s) const {
   for (const int row : dropped_rows()) {
     const double missed = s.Phi_q.row(row).dot(s.b) + s.Phi_t[row];
     const double terms = s.Phi_q.row(row).cwiseAbs().dot(s.b.cwiseAbs()) + std::abs(s.Phi_t[row]);
-    if (std::abs(missed) <= rate_tolerance * terms) continue;
+    if (std::abs(missed) <= rate_tolerance * terms + rate_floor * length_ / scaling_.row[row]) continue;
     throw InputError(conflict(s, row, "contradicts") + ": their speeds differ by " + number(missed) + " " +
                      row_unit(row) + "/s at t = " + number(s.time) + " s");
   }
@@ -189,7 +190,7 @@ void Mechanism::check_dropped_accelerations(MechanismState& s) const {
   for (const int row : dropped_rows()) {
     const double missed = s.Phi_q.row(row).dot(s.d) - s.gamma[row];
     const double terms = s.Phi_q.row(row).cwiseAbs().dot(s.d.cwiseAbs()) + std::abs(s.gamma[row]);
-    if (std::abs(missed) <= rate_tolerance * terms) continue;
+    if (std::abs(missed) <= rate_tolerance * terms + rate_floor * length_ / scaling_.row[row]) continue;
     throw InputError(conflict(s, row, "contradicts") + ": their accelerations differ by " + number(missed) + " " +
                      row_unit(row) + "/s2 at t = " + number(s.time) + " s");
   }

@@ -65,7 +65,7 @@ class Mechanism {
   const MechanismModel& model() const { return model_; }
   int coordinates() const;  // n
   int constraints() const;  // rows of Phi, redundant ones included
-  int freedom() const;      // f, after partition() was called
+  int freedom() const;      // f, after choose_partition
   const Partition& partition() const { return partition_; }
   const Eigen::VectorXd& mass_diagonal() const { return mass_; }  // n: N is diagonal
 
