@@ -4,6 +4,13 @@ namespace traverse::options {
 
 std::string Entry::where() const { return line > 0 ? source + ":" + std::to_string(line) : source; }
 
+std::string Entry::given() const {
+  constexpr std::size_t longest = 80;
+  std::string text = name;
+  if (!value.empty()) text += " = " + value.substr(0, longest) + (value.size() > longest ? "..." : "");
+  return text + " (" + where() + ")";
+}
+
 void Entries::set(Entry entry) {
   const auto [place, is_new] = index_.try_emplace(entry.name, entries_.size());
   if (is_new) {

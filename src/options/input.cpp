@@ -143,7 +143,7 @@ std::vector<std::string> check_all_used(const Entries& entries) {
     const bool solver = asked_by_solvers(name);
     if (!solver && !asked_by_petsc(name)) continue;
     const Entry* entry = entries.find(name);
-    const std::string given = entry != nullptr ? fmt::format("{} = {} ({})", name, entry->value, entry->where()) : name;
+    const std::string given = entry != nullptr ? entry->given() : name;
     if (std::find(known.begin(), known.end(), name) != known.end()) {
       if (solver) notes.push_back(given + " has no effect in this scene");
       continue;

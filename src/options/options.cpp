@@ -16,16 +16,11 @@ namespace traverse::options {
 namespace {
 
 constexpr std::size_t longest_list = 10'000'000;
-constexpr std::size_t longest_shown = 80;
 
 std::string trim(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return "";
   return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
-std::string shortened(const std::string& text) {
-  return text.size() <= longest_shown ? text : text.substr(0, longest_shown) + "...";
 }
 
 /// The words of a comma list, brackets around it taken off.
@@ -116,8 +111,7 @@ void Options::check_names() const {
     for (const std::string_view name : common_petsc_names()) candidates.emplace_back(name);
     std::sort(candidates.begin(), candidates.end());
     const std::string near = nearest(entry.name, candidates);
-    throw InputError(fmt::format("unknown option {} = {} ({}){}; -help lists them all", entry.name,
-                                 shortened(entry.value), entry.where(),
+    throw InputError(fmt::format("unknown option {}{}; -help lists them all", entry.given(),
                                  near.empty() ? "" : fmt::format("; did you mean {}?", near)));
   }
 }
@@ -170,7 +164,7 @@ void Options::check_value(const Entry& entry, const Row& row) const {
 void Options::refuse(std::string_view name, const std::string& why) const {
   const Entry* entry = entries_.find(name);
   if (entry == nullptr) throw InputError(fmt::format("{}: {}", name, why));
-  throw InputError(fmt::format("{} = {} ({}): {}", name, shortened(entry->value), entry->where(), why));
+  throw InputError(entry->given() + ": " + why);
 }
 
 std::string Options::value_or_default(std::string_view name) const {

@@ -18,6 +18,8 @@ struct Entry {
   bool from_file() const { return line > 0; }
   /// "scene.yml:12" or "command line".
   std::string where() const;
+  /// For messages: "name = value (where)", long values cut.
+  std::string given() const;
 };
 
 /// All options in force: one entry a name, in the order in which the names came up.
