@@ -4,6 +4,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <string>
 
 #include "traverse/app/run.hpp"
 #include "traverse/app/scene.hpp"
@@ -37,14 +38,10 @@ int run(traverse::options::Input& input) {
   try {
     traverse::options::put_into_petsc(input);
     return traverse::app::run(PETSC_COMM_WORLD, traverse::app::read_scene());
-  } catch (const traverse::FileError& error) {  // known to the writing rank alone: the others are not to wait for it
-    fmt::print(stderr, "traverse: {}\n", error.what());
-    int ranks = 1;
-    MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
-    if (ranks > 1) MPI_Abort(PETSC_COMM_WORLD, error.status());
-    return error.status();
   } catch (const traverse::Error& error) {
     return complain(error);
+  } catch (const std::exception& error) {
+    return complain(traverse::Error(std::string("internal error, please report it: ") + error.what(), 70));
   }
 }
 

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <numbers>
 #include <optional>
 
@@ -72,12 +73,23 @@ void print_notes(MPI_Comm comm, std::vector<std::string> notes) {
   if (rank == 0) results::print_modelled(notes);
 }
 
+// A failure that only the writing rank knows of: the others are not to wait for it.
+[[noreturn]] void leave_together(MPI_Comm comm, const FileError& error) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  if (ranks == 1) throw error;
+  fmt::print(stderr, "traverse: {}\n", error.what());
+  MPI_Abort(comm, error.status());
+  std::abort();
+}
+
 int run_modes(MPI_Comm comm, const Scene& scene, beam::Beam& beam, std::vector<std::string> notes) {
   const Dynamics d = damp(beam, scene, true, notes);
   options::check_all_used(options::in_force());
   print_notes(comm, notes);
   const modes::Modes found = modes::natural_modes(beam, scene.mode_count, true);
   results::Layout layout;
+  layout.supports = beam.mesh().span_ends();
   for (int i = 0; i < beam.mesh().nodes(); ++i) layout.nodes.push_back(beam.mesh().x(i));
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
@@ -149,11 +161,17 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
                   stopped = signal;
                   return signal == 0;
                 });
+  } catch (const FileError& error) {
+    leave_together(comm, error);
   } catch (const Error& error) {
     summarise(error.what());
     throw;
   }
-  summarise(stopped == 0 ? "reached its end" : fmt::format("ended by signal {}", stopped));
+  try {
+    summarise(stopped == 0 ? "reached its end" : fmt::format("ended by signal {}", stopped));
+  } catch (const FileError& error) {
+    leave_together(comm, error);
+  }
   return stopped == 0 ? 0 : 128 + stopped;
 }
 
@@ -165,6 +183,10 @@ int run(MPI_Comm comm, const Scene& scene) {
   std::vector<std::string> notes;
   std::optional<beam::Beam> beam;
   if (scene.beam) {
+    const std::string floating = scene.analysis == Analysis::modes ? "" : beam::floating_motion(*scene.beam);
+    if (!floating.empty())
+      throw InputError("support_types: the beam can float away (" + floating +
+                       "); hold it with supports or a foundation");
     beam.emplace(comm, *scene.beam);
     notes.push_back(what_beam(*beam));
   }
