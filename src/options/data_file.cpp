@@ -1,5 +1,7 @@
 #include "traverse/options/data_file.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <filesystem>
@@ -20,7 +22,7 @@ std::vector<double> numbers_of(std::string line, const std::string& where) {
   std::istringstream words(line);
   for (std::string word; words >> word;) {
     double number = 0.0;
-    if (!parse_number(word, number)) throw InputError(where + "'" + word + "' is no finite number");
+    if (!parse_number(word, number)) throw InputError(fmt::format("{}'{}' is no finite number", where, word));
     numbers.push_back(number);
   }
   return numbers;
@@ -42,7 +44,7 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
   std::vector<std::vector<double>> columns;
   int number = 0;
   for (std::string line; std::getline(file, line);) {
-    const std::string where = path + ":" + std::to_string(++number) + ": ";
+    const std::string where = fmt::format("{}:{}: ", path, ++number);
     const std::vector<double> row = numbers_of(line, where);
     if (row.empty()) continue;
     if (columns.empty()) columns.resize(row.size());

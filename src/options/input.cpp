@@ -108,7 +108,7 @@ Input read_input(int argc, char** argv) {
   return input;
 }
 
-Arguments::Arguments(const std::vector<std::string>& words) : words_(words) {
+Arguments::Arguments(std::vector<std::string> words) : words_(std::move(words)) {
   for (std::string& word : words_) pointers_.push_back(word.data());
   argc_ = static_cast<int>(pointers_.size());
   pointers_.push_back(nullptr);

@@ -319,7 +319,7 @@ bool Options::is_number(std::string_view name) const {
 std::string Options::path(std::string_view name) const {
   const std::string value = value_or_default(name);
   const Entry* entry = entries_.find(name);
-  const std::string found = find_file(value, entry != nullptr && entry->from_file() ? entry->source : "");
+  std::string found = find_file(value, entry != nullptr && entry->from_file() ? entry->source : "");
   if (found.empty()) {
     const bool number = row(name).kind == Kind::number_or_file;
     refuse(name, number ? "neither a number nor a file that is there; allowed: " + allowed(row(name))

@@ -1,5 +1,6 @@
 #include "traverse/options/read_file.hpp"
 
+#include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
 #include <cctype>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr int deepest_include = 8;
 
-std::string at(const std::string& file, int line) { return file + ":" + std::to_string(line) + ": "; }
+std::string at(const std::string& file, int line) { return fmt::format("{}:{}: ", file, line); }
 
 /// Walks a YAML tree and notes every leaf as an entry.
 class Flattener {
@@ -35,8 +36,8 @@ class Flattener {
       check_key(key, line);
       const auto [first, is_new] = lines.try_emplace(key, line);
       if (!is_new) {
-        throw InputError(at(file_, line) + prefix + key + " is given twice, first in line " +
-                         std::to_string(first->second));
+        throw InputError(
+            fmt::format("{}{}{} is given twice, first in line {}", at(file_, line), prefix, key, first->second));
       }
       value(item.second, prefix + key, line);
     }

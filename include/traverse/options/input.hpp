@@ -34,7 +34,7 @@ Input read_input(int argc, char** argv);
 /// The words as argc and argv, kept until the object goes.
 class Arguments {
  public:
-  explicit Arguments(const std::vector<std::string>& words);
+  explicit Arguments(std::vector<std::string> words);
   int* argc() { return &argc_; }
   char*** argv() { return &argv_; }
 
