@@ -52,9 +52,8 @@ struct Setup {
 int all_unknowns(const Setup& s) { return s.beam->mesh().nodes() * s.beam->block(); }
 
 void per_unknown(benchmark::State& state, const Setup& s) {
-  state.counters["ns_per_unknown"] =
-      benchmark::Counter(all_unknowns(s) * 1e-9, benchmark::Counter::kIsIterationInvariantRate |
-                                                     benchmark::Counter::kInvert);
+  state.counters["ns_per_unknown"] = benchmark::Counter(
+      all_unknowns(s) * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["unknowns"] = all_unknowns(s);
 }
 
@@ -100,8 +99,8 @@ void whole_step(benchmark::State& state) {
     state.ResumeTiming();
     stepper.run([](const integrate::Instant&) {}, [](double, long) { return true; });
   }
-  state.counters["us_per_step"] = benchmark::Counter(
-      steps * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["us_per_step"] =
+      benchmark::Counter(steps * 1e-6, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   per_unknown(state, s);
   state.counters["ns_per_unknown"] = benchmark::Counter(
       all_unknowns(s) * steps * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);

@@ -23,8 +23,9 @@ double end_of(const Scene& scene, const coupling::System& system) {
   if (scene.end_time) return *scene.end_time;
   const double leaving = system.leaving_time();
   if (!std::isfinite(leaving))
-    throw InputError("ts_max_time is missing: nothing leaves the beam in this scene, so it has no end of its own; "
-                     "allowed: a time in s above 0");
+    throw InputError(
+        "ts_max_time is missing: nothing leaves the beam in this scene, so it has no end of its own; "
+        "allowed: a time in s above 0");
   return leaving + scene.tail.value_or(0.0);
 }
 
@@ -39,8 +40,9 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
   const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
   if (speed > 0.0) scale = std::min(scale, span / speed);
   const double step = round_down(scale / steps_a_period * std::pow(scene.accuracy / 1e-3, 0.25));
-  notes.push_back(fmt::format("time step {:g} s: from accuracy {:g}, the first period and the crossing of a span; -ts_dt changes it",
-                              step, scene.accuracy));
+  notes.push_back(fmt::format(
+      "time step {:g} s: from accuracy {:g}, the first period and the crossing of a span; -ts_dt changes it", step,
+      scene.accuracy));
   return step;
 }
 
@@ -52,13 +54,14 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   plan.end_time = end_of(scene, system);
   plan.time_step = scene.time_step ? *scene.time_step : chosen_step(scene, first_period, notes);
   if (plan.end_time <= 0.0)
-    throw InputError("scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
-                     "or ts_max_time in s above 0");
+    throw InputError(
+        "scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
+        "or ts_max_time in s above 0");
   if (scene.output.interval) {
     plan.interval = *scene.output.interval;
     if (plan.interval < plan.time_step)
-      notes.push_back(fmt::format("steps end at every stored sample: output_interval {:g} s limits the step",
-                                  plan.interval));
+      notes.push_back(
+          fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
     plan.interval = plan.time_step * std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples));
   }

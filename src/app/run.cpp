@@ -42,7 +42,8 @@ Dynamics damp(beam::Beam& beam, const Scene& scene, bool frequencies_wanted, std
   Dynamics d;
   const Damping& damping = scene.damping;
   if (damping.frequencies)
-    d.omega = {2.0 * std::numbers::pi * damping.frequencies->first, 2.0 * std::numbers::pi * damping.frequencies->second};
+    d.omega = {2.0 * std::numbers::pi * damping.frequencies->first,
+               2.0 * std::numbers::pi * damping.frequencies->second};
   else if (damping.ratios || frequencies_wanted)
     d.omega = modes::distinct_pair(beam);
   if (damping.rayleigh) d.rayleigh = {damping.rayleigh->first, damping.rayleigh->second};
@@ -50,9 +51,10 @@ Dynamics damp(beam::Beam& beam, const Scene& scene, bool frequencies_wanted, std
     d.rayleigh = modes::rayleigh(d.omega->first, d.omega->second, damping.ratios->first, damping.ratios->second);
   beam.set_rayleigh(d.rayleigh);
   if (d.omega)
-    notes.push_back(fmt::format("first distinct frequencies {:.6g} and {:.6g} Hz; Rayleigh a = {:.6g} 1/s, b = {:.6g} s",
-                                d.omega->first / (2.0 * std::numbers::pi), d.omega->second / (2.0 * std::numbers::pi),
-                                d.rayleigh.a, d.rayleigh.b));
+    notes.push_back(
+        fmt::format("first distinct frequencies {:.6g} and {:.6g} Hz; Rayleigh a = {:.6g} 1/s, b = {:.6g} s",
+                    d.omega->first / (2.0 * std::numbers::pi), d.omega->second / (2.0 * std::numbers::pi), d.rayleigh.a,
+                    d.rayleigh.b));
   return d;
 }
 
@@ -118,7 +120,8 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
   const double period = dynamics.omega ? 2.0 * std::numbers::pi / dynamics.omega->first : 0.0;
   Plan plan{0.0, 1.0, 1.0};
   if (!still) plan = make_plan(scene, system, period, notes);
-  integrate::Stepper stepper(system, {plan.end_time, plan.time_step, plan.interval, system.known_events(plan.end_time)});
+  integrate::Stepper stepper(system,
+                             {plan.end_time, plan.time_step, plan.interval, system.known_events(plan.end_time)});
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
   notes.push_back(fmt::format("{} vehicles, {} degrees of freedom; {} moving forces", system.fleet().vehicles.size(),
                               system.freedom(), scene.load.forces.size()));

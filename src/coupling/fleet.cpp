@@ -10,6 +10,8 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 // Within this part of its radius from a kink a wheel may touch on either side of it.
 constexpr double reach = 0.1;
+// Of a partition's quality when it was chosen.
+constexpr double poor_partition = 0.05;
 
 base::TimeFunction frozen_function(const base::TimeFunction& f) { return {f.value(0.0), 0.0}; }
 
@@ -97,6 +99,7 @@ std::vector<std::string> Fleet::partition(double t) {
   for (MovingVehicle& vehicle : vehicles) {
     for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
       notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
+    vehicle.quality = 0.0;
     vehicle.offset = freedom_;
     freedom_ += vehicle.mechanism.freedom();
     for (int i : vehicle.mechanism.partition().independent) {
@@ -107,6 +110,16 @@ std::vector<std::string> Fleet::partition(double t) {
   position_.resize(home_.size());
   velocity_.resize(home_.size());
   return notes;
+}
+
+bool Fleet::poorly_partitioned() {
+  bool poor = false;
+  for (MovingVehicle& vehicle : vehicles) {
+    const double quality = vehicle.mechanism.partition_quality(vehicle.state);
+    if (vehicle.quality == 0.0) vehicle.quality = quality;
+    poor = poor || quality < poor_partition * vehicle.quality;
+  }
+  return poor;
 }
 
 bool Fleet::set(double t, const double* p, const double* pd, bool derivatives) {
@@ -259,7 +272,8 @@ double Fleet::contact_dissipation() const {
     elastic.restitution.reset();
     elastic.friction = 0.0;
     const double stored = contact::force(elastic, c.kinematics, 0.0).normal;
-    power += (c.force.normal - stored) * c.kinematics.penetration_rate + c.force.tangential * c.kinematics.sliding_speed;
+    power +=
+        (c.force.normal - stored) * c.kinematics.penetration_rate + c.force.tangential * c.kinematics.sliding_speed;
   }
   return power;
 }

@@ -29,7 +29,8 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
       if (wheel.radius * input_.profile.greatest_curvature() >= 1.0)
         throw InputError("vehicle_" + type.name + "_" + wheel.name + "_radius " + std::to_string(wheel.radius) +
                          ": the wheel would touch the track's profile at more than one point; the radius must stay "
-                         "below " + std::to_string(1.0 / input_.profile.greatest_curvature()) + " m");
+                         "below " +
+                         std::to_string(1.0 / input_.profile.greatest_curvature()) + " m");
   fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, beam_ != nullptr ? &beam_->mesh() : nullptr,
                  &input_.profile);
   fleet_.partition(0.0);
@@ -120,8 +121,7 @@ void System::gather(const double* first, const double* second) {
       std::copy_n(second + (left + i) * b, b, &both[count + a * m + i * b]);
     }
   }
-  if (count > 0)
-    MPI_Allreduce(MPI_IN_PLACE, both.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, comm_);
+  if (count > 0) MPI_Allreduce(MPI_IN_PLACE, both.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, comm_);
   v_.assign(both.begin(), both.begin() + static_cast<std::ptrdiff_t>(std::max(count, m)));
   w_.assign(both.begin() + static_cast<std::ptrdiff_t>(count), both.end());
 }
@@ -258,8 +258,8 @@ bool System::stage_of_fleet(double t, double shift, const double* c_v) {
     fleet_.place_wheels();
     gather(nodal_.data(), c_v);
     if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, fleet_.elements());
-    StageData stage{t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr,
-                    beam_ != nullptr ? beam_->block() : 2};
+    StageData stage{
+        t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, beam_ != nullptr ? beam_->block() : 2};
     if (!newton_.solve(fleet_, stage, p_.data())) return false;
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
   }

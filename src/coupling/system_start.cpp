@@ -9,7 +9,6 @@
 namespace traverse::coupling {
 namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double poor_partition = 1e-3;
 constexpr int static_positions = 2000;  // of the train along its way, for the static peak
 }  // namespace
 
@@ -22,10 +21,10 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
     release_held(y);
     operator_->factored(0.0).solve(y);
   }
-  std::vector<std::string> notes = fleet_.partition(0.0);
   for (MovingVehicle& vehicle : fleet_.vehicles)
     for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
       vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
+  std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   note_weights();
   return notes;
@@ -53,8 +52,7 @@ void System::find_equilibrium(double* v) {
                       std::to_string(newton_.last_change()) +
                       " of a vehicle's weight): is every body held by joints, springs or wheels? scene_start: given "
                       "starts from the positions as written");
-  if (beam_ != nullptr && !fleet_.elements().empty())
-    compliance_->add_response(newton_.element_loads(), nodal_.data());
+  if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->add_response(newton_.element_loads(), nodal_.data());
   std::copy(nodal_.begin(), nodal_.end(), v);
   fleet_.set(0.0, p_.data(), c_p_.data(), false);
   for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
@@ -71,10 +69,7 @@ void System::note_weights() {
 }
 
 bool System::repartition(double t, double* y) {
-  bool poor = false;
-  for (const MovingVehicle& vehicle : fleet_.vehicles)
-    poor = poor || vehicle.mechanism.partition_quality(vehicle.state) < poor_partition;
-  if (!poor) return false;
+  if (!fleet_.poorly_partitioned()) return false;
   fleet_.partition(t);
   if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   return true;
@@ -124,7 +119,8 @@ std::vector<double> System::influence_line(double station) {
   release_held(nodal_.data());
   operator_->factored(0.0).solve(nodal_.data());
   std::vector<double> line(static_cast<std::size_t>(beam_->mesh().nodes()) * beam_->block(), 0.0);
-  std::copy(nodal_.begin(), nodal_.end(), line.begin() + static_cast<std::ptrdiff_t>(beam_->first_node()) * beam_->block());
+  std::copy(nodal_.begin(), nodal_.end(),
+            line.begin() + static_cast<std::ptrdiff_t>(beam_->first_node()) * beam_->block());
   MPI_Allreduce(MPI_IN_PLACE, line.data(), static_cast<int>(line.size()), MPI_DOUBLE, MPI_SUM, comm_);
   return line;
 }
@@ -140,7 +136,8 @@ double System::static_peak(double station) {
     const beam::Element& e = mesh.element(s.element);
     const beam::Hermite psi = beam::hermite(s.xi, e.length);
     double sum = 0.0;
-    for (int i = 0; i < 4; ++i) sum += psi.value[i] * line[static_cast<std::size_t>(e.left + i / 2) * b + (b - 2) + i % 2];
+    for (int i = 0; i < 4; ++i)
+      sum += psi.value[i] * line[static_cast<std::size_t>(e.left + i / 2) * b + (b - 2) + i % 2];
     return sum;
   };
   double front = -infinite, rear = infinite;
@@ -156,8 +153,7 @@ double System::static_peak(double station) {
     peak = std::max(peak, std::abs(sum));
   };
   for (const auto& [x, force] : weights_) try_shift(station - x);
-  for (int i = 0; i <= static_positions; ++i)
-    try_shift(-front + (mesh.length() + front - rear) * i / static_positions);
+  for (int i = 0; i <= static_positions; ++i) try_shift(-front + (mesh.length() + front - rear) * i / static_positions);
   return peak;
 }
 

@@ -13,9 +13,9 @@ using base::check;
 using base::guard;
 using coupling::Part;
 
-constexpr int most_rejections = 12;        // of one step, each a quarter as long
-constexpr double near_event = 1e-6;        // of a step: events closer than this share the end of a step
-constexpr double restart_growth = 2.0;     // steps of a multistep method may not grow faster
+constexpr int most_rejections = 12;     // of one step, each a quarter as long
+constexpr double near_event = 1e-6;     // of a step: events closer than this share the end of a step
+constexpr double restart_growth = 2.0;  // steps of a multistep method may not grow faster
 
 bool is(TS ts, const char* type) {
   PetscBool same = PETSC_FALSE;
@@ -143,8 +143,7 @@ void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array));
 
 // --- the loop ------------------------------------------------------------------------------------------------------
 
-double Stepper::run(const std::function<void(const Instant&)>& sample,
-                    const std::function<bool(double, long)>& step) {
+double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step) {
   const double slack = near_event * settings_.time_step;
   std::size_t event = 0;
   long stored = 0;

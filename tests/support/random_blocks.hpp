@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-
 #include <random>
 #include <vector>
 
@@ -17,7 +16,8 @@ inline Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, un
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return number(generator); });
 }
 
-/// G G^T + shift*I with G a random lower block bidiagonal matrix: the larger the shift, the faster the inverse dies out.
+/// G G^T + shift*I with G a random lower block bidiagonal matrix: the larger the shift, the faster the inverse dies
+/// out.
 inline Eigen::MatrixXd random_spd(int block, int nodes, double shift, unsigned seed) {
   Eigen::MatrixXd G = random_matrix(block * nodes, block * nodes, seed);
   for (int row = 0; row < nodes; ++row) {

@@ -115,8 +115,8 @@ double Results::attribute(const std::string& object, const std::string& name) co
 }
 
 std::pair<double, std::size_t> peak(const std::vector<double>& values) {
-  const auto at = std::max_element(values.begin(), values.end(),
-                                   [](double a, double b) { return std::abs(a) < std::abs(b); });
+  const auto at =
+      std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
   return {*at, static_cast<std::size_t>(at - values.begin())};
 }
 

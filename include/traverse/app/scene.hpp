@@ -30,31 +30,31 @@ struct Damping {
 };
 
 struct Output {
-  std::string file;                  // HDF5; empty: none
-  std::optional<double> interval;    // s; left out: chosen with the step
-  std::vector<double> probes;        // stations; default: the middle of every span (of the first 200)
+  std::string file;                // HDF5; empty: none
+  std::optional<double> interval;  // s; left out: chosen with the step
+  std::vector<double> probes;      // stations; default: the middle of every span (of the first 200)
 };
 
 struct Scene {
-  std::string name;                      // of the options file, for messages and default file names
-  std::optional<beam::BeamModel> beam;   // absent: a mechanism on its own, or on rigid ground
+  std::string name;                     // of the options file, for messages and default file names
+  std::optional<beam::BeamModel> beam;  // absent: a mechanism on its own, or on rigid ground
   Damping damping;
   bool self_weight = false;
-  std::vector<Vehicle> vehicles;         // types in use
+  std::vector<Vehicle> vehicles;  // types in use
   Train train;
   MovingLoad load;
   track::Profile profile;
   double gravity = 9.81;
   Analysis analysis = Analysis::transient;
   Start start = Start::equilibrium;
-  std::optional<double> tail;            // s after the last wheel has left
-  std::optional<double> end_time;        // -ts_max_time
-  std::optional<double> time_step;       // -ts_dt
+  std::optional<double> tail;       // s after the last wheel has left
+  std::optional<double> end_time;   // -ts_max_time
+  std::optional<double> time_step;  // -ts_dt
   int mode_count = 10;
   double accuracy = 1e-3;
   Output output;
-  bool quiet = false;                    // -output_quiet: no progress
-  std::vector<std::string> notes;        // what was chosen and why, one line each
+  bool quiet = false;                                        // -output_quiet: no progress
+  std::vector<std::string> notes;                            // what was chosen and why, one line each
   std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
 };
 

@@ -34,7 +34,7 @@ class Compliance {
 
   const beam::Beam& beam_;
   BeamOperator& operator_;
-  int m_;  // 2*block
+  int m_;                              // 2*block
   std::list<Column> columns_;          // most recent first
   std::vector<const Column*> active_;  // of the elements of the last prepare
   std::vector<int> elements_;

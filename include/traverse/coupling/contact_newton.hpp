@@ -18,10 +18,10 @@ namespace traverse::coupling {
 struct StageData {
   double t = 0.0;
   double shift = 0.0;
-  const double* c_p = nullptr;          // freedom values, then those of p'
-  const std::vector<double>* v0 = nullptr;   // free response at the elements in touch, 2*block each
+  const double* c_p = nullptr;              // freedom values, then those of p'
+  const std::vector<double>* v0 = nullptr;  // free response at the elements in touch, 2*block each
   const std::vector<double>* c_v = nullptr;
-  const Compliance* compliance = nullptr;    // null without a beam
+  const Compliance* compliance = nullptr;  // null without a beam
   int block = 2;
 };
 

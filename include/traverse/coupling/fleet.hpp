@@ -20,11 +20,12 @@ struct MovingVehicle {
   multibody::Mechanism mechanism;
   multibody::MechanismState state;
   std::vector<Wheel> wheels;
-  double weight = 0.0;  // N
-  double scale = 0.0;   // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
-  int offset = 0;       // of its independent coordinates in p
-  int first_wheel = 0;  // in the list of all wheels
-  Eigen::VectorXd Q;    // generalized forces of the wheels, n
+  double weight = 0.0;   // N
+  double scale = 0.0;    // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
+  double quality = 0.0;  // of its partition when it was chosen; 0: not yet looked at
+  int offset = 0;        // of its independent coordinates in p
+  int first_wheel = 0;   // in the list of all wheels
+  Eigen::VectorXd Q;     // generalized forces of the wheels, n
 };
 
 /// A wheel's contact at the state last evaluated.
@@ -64,6 +65,9 @@ class Fleet {
   /// their digits. Returns lines on redundant joints.
   std::vector<std::string> partition(double t);
 
+  /// Have some vehicle's independent coordinates become much worse than when they were chosen?
+  bool poorly_partitioned();
+
   /// Positions, velocities and forces of all vehicles from p and p' (freedom values each). False where a mechanism
   /// cannot be assembled.
   bool set(double t, const double* p, const double* pd, bool derivatives);
@@ -97,7 +101,7 @@ class Fleet {
   double weight_ = 0.0;
   double speed_ = 0.0;
   std::vector<int> elements_;
-  std::vector<double> home_, cruise_;         // coordinates = home + cruise*t + p
+  std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p
   std::vector<double> position_, velocity_;  // of one vehicle
 };
 

@@ -60,10 +60,10 @@ class System {
   MPI_Comm comm() const { return comm_; }
   const beam::Beam* beam() const { return beam_; }
   const Fleet& fleet() const { return fleet_; }
-  int local_size() const;                      // entries of y on this rank
-  int beam_unknowns() const { return n_; }     // on this rank: v at y, w at y + beam_unknowns()
+  int local_size() const;                   // entries of y on this rank
+  int beam_unknowns() const { return n_; }  // on this rank: v at y, w at y + beam_unknowns()
   int freedom() const { return fleet_.freedom(); }
-  double greatest_weight() const;              // of the train and the forces together, N
+  double greatest_weight() const;  // of the train and the forces together, N
 
   /// Writes the start: static equilibrium at t = 0 with the drives at rest (the beam deflected under the train),
   /// then the train's speed; or positions and velocities as given, made consistent with the constraints.
@@ -120,13 +120,13 @@ class System {
   ContactNewton newton_;
   int n_ = 0;  // beam unknowns on this rank
 
-  std::vector<double> dead_load_;          // of self-weight, this rank
-  std::vector<beam::ElementLoad> loads_;   // of the moving forces now on the beam
+  std::vector<double> dead_load_;                   // of self-weight, this rank
+  std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
-  std::vector<double> p_, c_p_, pdd_;      // p, p' and their c, p'', the same on all ranks
-  std::vector<double> v_, w_;              // of the elements in touch, 2*block each
+  std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
+  std::vector<double> v_, w_;                       // of the elements in touch, 2*block each
   std::vector<double> element_work_;
-  std::vector<double> nodal_, work_;       // this rank's unknowns
+  std::vector<double> nodal_, work_;  // this rank's unknowns
 };
 
 }  // namespace traverse::coupling

@@ -14,7 +14,7 @@ namespace traverse::coupling {
 
 /// A piece of running surface without a kink inside: rigid ground, or one element of the beam.
 struct Patch {
-  int element = -1;            // -1: rigid ground
+  int element = -1;              // -1: rigid ground
   double x = 0.0, length = 0.0;  // of the element, m
   double low = 0.0, high = 0.0;  // stations between which the piece reaches; a wheel beyond touches its corner
 };
@@ -25,11 +25,11 @@ inline constexpr int most_element_unknowns = 6;
 /// (v, theta) or (u, v, theta) of the left node, then of the right one.
 struct Touch {
   contact::Kinematics kinematics;
-  Eigen::Vector3d normal_on_body = Eigen::Vector3d::Zero();   // d alpha / d(x, y, phi)
-  Eigen::Vector3d tangent_on_body = Eigen::Vector3d::Zero();  // d beta' / d(x', y', phi')
+  Eigen::Vector3d normal_on_body = Eigen::Vector3d::Zero();     // d alpha / d(x, y, phi)
+  Eigen::Vector3d tangent_on_body = Eigen::Vector3d::Zero();    // d beta' / d(x', y', phi')
   std::array<double, most_element_unknowns> normal_on_beam{};   // d alpha / d(element unknowns)
   std::array<double, most_element_unknowns> tangent_on_beam{};  // d beta' / d(their rates)
-  double xi = 0.0;  // of the contact point in the element
+  double xi = 0.0;                                              // of the contact point in the element
 };
 
 /// q, qd: x, y, phi of the wheel's body and their rates. v, w: the element's unknowns and their rates (2*block

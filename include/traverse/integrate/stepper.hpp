@@ -14,10 +14,10 @@
 namespace traverse::integrate {
 
 struct Settings {
-  double end_time = 0.0;         // s
-  double time_step = 0.0;        // s, the longest
-  double interval = 0.0;         // s between samples
-  std::vector<double> events;    // ascending times at which a step has to end
+  double end_time = 0.0;       // s
+  double time_step = 0.0;      // s, the longest
+  double interval = 0.0;       // s between samples
+  std::vector<double> events;  // ascending times at which a step has to end
 };
 
 /// An accepted instant: y and y' = G(t, y) of this rank.
