@@ -1,0 +1,66 @@
+// The beam's matrices as block tridiagonal slices, one block a node, and their exact factorisation over ranks.
+#pragma once
+
+#include <mpi.h>
+#include <petscmat.h>
+
+#include <memory>
+#include <vector>
+
+namespace traverse::solve {
+
+/// One rank's slice of a symmetric block tridiagonal matrix: contiguous nodes, `block` unknowns each.
+/// diagonal: nodes blocks of block x block, column-major. upper: as many; block i couples node i (rows) to
+/// node i + 1 (columns); the last one couples to the next rank's first node (zero at the right end).
+struct BlockTridiagonal {
+  int block = 0;
+  int nodes = 0;
+  std::vector<double> diagonal;
+  std::vector<double> upper;
+
+  BlockTridiagonal() = default;
+  BlockTridiagonal(int block_size, int local_nodes);
+
+  /// Reads this rank's rows of a PETSc matrix (AIJ) whose rows are node-wise blocks. Entries outside the block
+  /// tridiagonal, other than zeros, are an error (std::logic_error). Rows without a diagonal entry are kept as zero.
+  /// Blocks below the diagonal are not read: the matrix is taken to be symmetric.
+  static BlockTridiagonal from(Mat matrix, int block_size);
+
+  /// this = a*A + b*B + c*C, all four of one shape (else std::logic_error); no allocation. They may be the same.
+  void combine(double a, const BlockTridiagonal& A, double b, const BlockTridiagonal& B, double c,
+               const BlockTridiagonal& C);
+};
+
+/// Exact factorisation A = block Cholesky (LDL^T) of a symmetric positive definite block tridiagonal matrix
+/// cut over the ranks of `comm` by nodes: each rank eliminates its inner nodes, a small block tridiagonal
+/// system couples the cuts, solved redundantly on every rank. No iteration, no tolerance.
+class SubstructuredCholesky {
+ public:
+  /// Collective. local_nodes may be 0 on some ranks. Block sizes 1 to 6 are compiled for their size; others, up to 16,
+  /// run a general path that takes about five times as long per entry.
+  SubstructuredCholesky(MPI_Comm comm, int block_size, int local_nodes);
+  ~SubstructuredCholesky();
+  SubstructuredCholesky(SubstructuredCholesky&&) noexcept;
+  SubstructuredCholesky& operator=(SubstructuredCholesky&&) noexcept;
+
+  /// Collective. `fixed[i]` non-zero (one entry a local unknown; empty: none): row and column i are taken as the
+  /// identity, so that solve returns the right-hand side there. Throws traverse::SolverError on every rank, naming the
+  /// global unknown, when A is not positive definite.
+  void factor(const BlockTridiagonal& A, const std::vector<char>& fixed);
+
+  /// Collective. x: this rank's nodes*block entries of each column, column after column, in: right-hand sides,
+  /// out: solutions. No allocation when columns <= the largest number used before.
+  /// Uses buffers of this object: one solve at a time. Subnormal numbers (below 2.2e-308) count as zero meanwhile.
+  void solve(double* x, int columns = 1) const;
+
+  /// The smallest ratio, over all unknowns of all ranks, of a pivot to the diagonal entry it came from, of the last
+  /// factor. A ratio r says that about log10(1/r) digits of the stiffness cancelled; near the rounding unit (1e-16)
+  /// the solutions mean nothing. One for a diagonal matrix. The same on every rank.
+  double pivot_ratio() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace traverse::solve

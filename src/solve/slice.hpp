@@ -1,0 +1,107 @@
+// A rank's rows of the matrix as the elimination sees them, and what its pivots tell.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "small_block.hpp"
+#include "traverse/solve/block_tridiagonal.hpp"
+
+namespace traverse::solve {
+
+struct PivotRecord {
+  double smallest_ratio = 1.0;      // of a pivot to its diagonal entry in the matrix
+  std::ptrdiff_t bad_unknown = -1;  // the local unknown whose pivot is not positive; -1: none
+  double bad_pivot = 0.0;
+  double bad_diagonal = 0.0;
+  bool failed() const { return bad_unknown >= 0; }
+};
+
+/// A rank's slice with the fixed unknowns as identity rows and columns. Bit c of `next_fixed`: unknown c of the next
+/// rank's first node is fixed. `original`, where given, replaces the diagonal entries in the pivot ratio.
+template <int B>
+struct Slice {
+  const BlockTridiagonal& matrix;
+  const char* fixed;  // null: none
+  std::uint64_t next_fixed;
+  const double* original;  // null: the matrix's own
+
+  Extent<B> block() const { return {matrix.block}; }
+
+  Block<B> diagonal(std::ptrdiff_t node) const {
+    Block<B> result(block(), matrix.diagonal.data() + node * block().area());
+    if (fixed == nullptr) return result;
+    for (int i = 0; i < block().size(); ++i) {
+      if (!is_fixed(node, i)) continue;
+      for (int j = 0; j < block().size(); ++j) result(i, j) = result(j, i) = 0.0;
+      result(i, i) = 1.0;
+    }
+    return result;
+  }
+
+  /// Couples `node` (rows) to the node behind it (columns).
+  Block<B> upper(std::ptrdiff_t node) const {
+    Block<B> result(block(), matrix.upper.data() + node * block().area());
+    if (fixed == nullptr && next_fixed == 0) return result;
+    for (int i = 0; i < block().size(); ++i) {
+      for (int j = 0; j < block().size(); ++j) {
+        if (is_fixed(node, i) || is_fixed(node + 1, j)) result(i, j) = 0.0;
+      }
+    }
+    return result;
+  }
+
+  /// The entry that the pivot of this unknown is compared with.
+  double reference(std::ptrdiff_t node, int i) const {
+    if (original != nullptr) return original[node * block().size() + i];
+    if (is_fixed(node, i)) return 1.0;
+    return matrix.diagonal[static_cast<std::size_t>(node * block().area() + i * (block().size() + 1))];
+  }
+
+ private:
+  bool is_fixed(std::ptrdiff_t node, int i) const {
+    if (node == matrix.nodes) return ((next_fixed >> i) & 1U) != 0;
+    return fixed != nullptr && fixed[node * block().size() + i] != 0;
+  }
+};
+
+/// Replaces a node's pivot block (symmetric: its lower triangle is read) by its inverse, through LDL^T, so that rows of
+/// different units do no harm. False, and noted in the record, when a pivot is not positive.
+template <int B>
+bool invert(Block<B>& block, const Slice<B>& slice, std::ptrdiff_t node, PivotRecord& record) {
+  const int n = block.size();
+  Block<B> triangle(slice.block());  // W, the inverse of the unit lower triangle: W A W^T = pivots
+  Block<B> scaled(slice.block());    // its rows divided by the pivots
+  for (int i = 0; i < n; ++i) {
+    triangle(i, i) = 1.0;
+    for (int j = 0; j < i; ++j) {
+      double entry = 0.0;
+      for (int k = 0; k <= j; ++k) entry += scaled(j, k) * block(i, k);
+      for (int k = 0; k <= j; ++k) triangle(i, k) -= entry * triangle(j, k);
+    }
+    double pivot = 0.0;
+    for (int k = 0; k <= i; ++k) pivot += triangle(i, k) * block(i, k);
+    const double reference = slice.reference(node, i);
+    if (!(pivot > 0.0) || !std::isfinite(pivot)) {
+      record.bad_unknown = node * n + i;
+      record.bad_pivot = pivot;
+      record.bad_diagonal = reference;
+      return false;
+    }
+    record.smallest_ratio = std::min(record.smallest_ratio, pivot / reference);
+    for (int k = 0; k <= i; ++k) scaled(i, k) = triangle(i, k) / pivot;
+  }
+  for (int c = 0; c < n; ++c) {
+    for (int r = c; r < n; ++r) {
+      double sum = 0.0;
+      for (int k = r; k < n; ++k) sum += triangle(k, r) * scaled(k, c);
+      block(r, c) = block(c, r) = sum;
+    }
+  }
+  return true;
+}
+
+}  // namespace traverse::solve

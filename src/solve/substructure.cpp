@@ -1,0 +1,260 @@
+#include "substructure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "flush_denormals.hpp"
+#include "traverse/base/error.hpp"
+
+namespace traverse::solve {
+namespace {
+
+// What a rank tells the others after factoring: four numbers on its pivots, its separator's diagonal entries in the
+// matrix given, and the three blocks of SchurPart.
+enum HeaderEntry { bad_unknown, bad_pivot, bad_diagonal, smallest_ratio, header_size };
+
+std::ptrdiff_t factor_message_size(int block) { return header_size + block + std::ptrdiff_t{3} * block * block; }
+
+/// body(number of columns as a constant, first column), for batches of 4, 2 and 1.
+template <class Body>
+void in_batches(int columns, Body&& body) {
+  int column = 0;
+  for (; column + 4 <= columns; column += 4) body(std::integral_constant<int, 4>{}, column);
+  if (column + 2 <= columns) {
+    body(std::integral_constant<int, 2>{}, column);
+    column += 2;
+  }
+  if (column < columns) body(std::integral_constant<int, 1>{}, column);
+}
+
+void grow(std::vector<double>& buffer, std::ptrdiff_t size) {
+  if (static_cast<std::ptrdiff_t>(buffer.size()) < size) buffer.resize(static_cast<std::size_t>(size));
+}
+
+}  // namespace
+
+Partition::Partition(MPI_Comm communicator, int local_nodes) : comm(communicator), nodes(local_nodes) {
+  int size = 1;
+  MPI_Comm_size(comm, &size);
+  MPI_Comm_rank(comm, &rank);
+  std::vector<int> counts(static_cast<std::size_t>(size), local_nodes);
+  if (size > 1) MPI_Allgather(&local_nodes, 1, MPI_INT, counts.data(), 1, MPI_INT, comm);
+  std::ptrdiff_t begin = 0;
+  for (int r = 0; r < size; ++r) {
+    const int count = counts[static_cast<std::size_t>(r)];
+    if (count > 0) {
+      if (r == rank) mine = static_cast<int>(active.size());
+      active.push_back(r);
+    }
+    begins.push_back(begin);
+    begin += count;
+  }
+}
+
+template <int B>
+Substructure<B>::Substructure(MPI_Comm comm, int block_size, int local_nodes)
+    : block_{block_size}, partition_(comm, local_nodes), reduced_matrix_(block_size, partition_.separators()) {
+  if (partition_.mine >= 0) local_.emplace(block_, local_nodes, partition_.follows(), partition_.followed());
+  if (partition_.separators() > 0) separators_.emplace(block_, partition_.separators(), false, false);
+  reduced_diagonal_.resize(static_cast<std::size_t>(partition_.separators()) * static_cast<std::size_t>(block_size));
+}
+
+template <int B>
+void Substructure<B>::factor(const BlockTridiagonal& A, const std::vector<char>& fixed) {
+  const std::size_t unknowns = static_cast<std::size_t>(partition_.nodes) * static_cast<std::size_t>(block_.size());
+  if (A.block != block_.size() || A.nodes != partition_.nodes || (!fixed.empty() && fixed.size() != unknowns)) {
+    throw std::logic_error("the matrix does not have the shape that the factorisation was made for");
+  }
+  factored_ = false;
+  record_ = PivotRecord{};
+  const Slice<B> slice{A, fixed.empty() ? nullptr : fixed.data(), next_fixed(fixed), nullptr};
+  if (local_) local_->factor(slice, record_);
+  if (partition_.ranks() > 1) {
+    pack_factor(slice);
+    gather_factors();
+    factor_separators();
+  } else if (record_.failed()) {
+    fail(record_.bad_unknown, record_.bad_pivot, record_.bad_diagonal);
+  }
+  factored_ = true;
+}
+
+/// The next rank's first node's fixed unknowns, a bit each.
+template <int B>
+std::uint64_t Substructure<B>::next_fixed(const std::vector<char>& fixed) const {
+  if (partition_.separators() == 0) return 0;
+  std::uint64_t own = 0;
+  if (!fixed.empty()) {
+    for (int i = 0; i < block_.size(); ++i) own |= std::uint64_t{fixed[static_cast<std::size_t>(i)] != 0} << i;
+  }
+  std::vector<std::uint64_t> all(static_cast<std::size_t>(partition_.ranks()));
+  MPI_Allgather(&own, 1, MPI_UINT64_T, all.data(), 1, MPI_UINT64_T, partition_.comm);
+  if (!partition_.followed()) return 0;
+  return all[static_cast<std::size_t>(partition_.active[static_cast<std::size_t>(partition_.mine) + 1])];
+}
+
+template <int B>
+void Substructure<B>::pack_factor(const Slice<B>& slice) {
+  outgoing_.assign(static_cast<std::size_t>(factor_message_size(block_.size())), 0.0);
+  const std::ptrdiff_t begin = partition_.begins[static_cast<std::size_t>(partition_.rank)] * block_.size();
+  outgoing_[bad_unknown] = record_.failed() ? static_cast<double>(begin + record_.bad_unknown) : -1.0;
+  outgoing_[bad_pivot] = record_.bad_pivot;
+  outgoing_[bad_diagonal] = record_.bad_diagonal;
+  outgoing_[smallest_ratio] = record_.smallest_ratio;
+  if (!local_ || record_.failed()) return;
+  double* to = outgoing_.data() + header_size;
+  for (int i = 0; i < block_.size(); ++i) *to++ = slice.reference(0, i);
+  const SchurPart<B>& schur = local_->schur();
+  for (const Block<B>* part : {&schur.own, &schur.coupling, &schur.next}) {
+    to = std::copy(part->data(), part->data() + block_.area(), to);
+  }
+}
+
+template <int B>
+void Substructure<B>::gather_factors() {
+  const std::ptrdiff_t size = factor_message_size(block_.size());
+  grow(incoming_, size * partition_.ranks());
+  MPI_Allgather(outgoing_.data(), static_cast<int>(size), MPI_DOUBLE, incoming_.data(), static_cast<int>(size),
+                MPI_DOUBLE, partition_.comm);
+  agree_on_failure();
+  for (int rank : partition_.active) {
+    record_.smallest_ratio = std::min(record_.smallest_ratio, incoming_[rank * size + smallest_ratio]);
+  }
+}
+
+template <int B>
+void Substructure<B>::agree_on_failure() const {
+  const std::ptrdiff_t size = factor_message_size(block_.size());
+  const double* first = nullptr;
+  for (int rank : partition_.active) {
+    const double* message = incoming_.data() + rank * size;
+    if (message[bad_unknown] < 0.0) continue;
+    if (first == nullptr || message[bad_unknown] < first[bad_unknown]) first = message;
+  }
+  if (first != nullptr) fail(static_cast<std::ptrdiff_t>(first[bad_unknown]), first[bad_pivot], first[bad_diagonal]);
+}
+
+template <int B>
+void Substructure<B>::fail(std::ptrdiff_t unknown, double pivot, double diagonal) const {
+  throw SolverError(fmt::format(
+      "the matrix is not positive definite at unknown {} (node {}, component {}): pivot {:.3g}, diagonal entry {:.3g}; "
+      "is a support missing?",
+      unknown, unknown / block_.size(), unknown % block_.size(), pivot, diagonal));
+}
+
+/// The blocks of the rank at `place` among the ranks with nodes.
+template <int B>
+const double* Substructure<B>::factor_message(int place) const {
+  const int rank = partition_.active[static_cast<std::size_t>(place)];
+  return incoming_.data() + rank * factor_message_size(block_.size()) + header_size;
+}
+
+template <int B>
+void Substructure<B>::factor_separators() {
+  if (!separators_) return;
+  const std::ptrdiff_t n = block_.size();
+  const std::ptrdiff_t area = block_.area();
+  for (int i = 0; i < partition_.separators(); ++i) {
+    const double* before = factor_message(i) + n;
+    const double* message = factor_message(i + 1);
+    std::copy_n(message, n, reduced_diagonal_.data() + i * n);
+    const double* own = message + n;
+    for (std::ptrdiff_t e = 0; e < area; ++e) {
+      reduced_matrix_.diagonal[static_cast<std::size_t>(i * area + e)] = own[e] + before[2 * area + e];
+      reduced_matrix_.upper[static_cast<std::size_t>(i * area + e)] = own[area + e];
+    }
+  }
+  const Slice<B> slice{reduced_matrix_, nullptr, 0, reduced_diagonal_.data()};
+  PivotRecord record;
+  if (!separators_->factor(slice, record)) {
+    const int rank = partition_.active[static_cast<std::size_t>(record.bad_unknown / n + 1)];
+    fail(partition_.begins[static_cast<std::size_t>(rank)] * n + record.bad_unknown % n, record.bad_pivot,
+         record.bad_diagonal);
+  }
+  record_.smallest_ratio = std::min(record_.smallest_ratio, record.smallest_ratio);
+}
+
+template <int B>
+void Substructure<B>::solve(double* x, int columns) {
+  if (!factored_) throw std::logic_error("solve before a successful factor");
+  const FlushDenormals flush;
+  if (!separators_) {
+    if (local_) in_batches(columns, [&](auto C, int column) { solve_alone<C>(x, column); });
+    return;
+  }
+  grow(outgoing_, std::ptrdiff_t{2} * block_.size() * columns);
+  if (local_) in_batches(columns, [&](auto C, int column) { reduce<C>(x, column); });
+  solve_separators(columns);
+  if (local_) in_batches(columns, [&](auto C, int column) { expand<C>(x, column); });
+}
+
+template <int B>
+template <int C>
+void Substructure<B>::solve_alone(double* x, int column) const {
+  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(partition_.nodes) * block_.size();
+  SeparatorPanels<B, C> none = {};
+  local_->eliminate(x + column * stride, stride, none);
+  local_->substitute(x + column * stride, stride, none);
+}
+
+/// Eliminates the inner nodes and writes this rank's message: for each column its separator's reduced right-hand side
+/// and what it adds to the next one's.
+template <int B>
+template <int C>
+void Substructure<B>::reduce(double* x, int column) {
+  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(partition_.nodes) * block_.size();
+  const std::ptrdiff_t length = std::ptrdiff_t{2} * block_.size();
+  SeparatorPanels<B, C> separators;
+  local_->eliminate(x + column * stride, stride, separators);
+  separators.own.store(block_, outgoing_.data() + column * length, length);
+  separators.next.store(block_, outgoing_.data() + column * length + block_.size(), length);
+}
+
+template <int B>
+void Substructure<B>::solve_separators(int columns) {
+  const std::ptrdiff_t n = block_.size();
+  const std::ptrdiff_t size = 2 * n * columns;
+  const std::ptrdiff_t stride = n * partition_.separators();
+  grow(incoming_, size * partition_.ranks());
+  grow(reduced_, stride * columns);
+  MPI_Allgather(outgoing_.data(), static_cast<int>(size), MPI_DOUBLE, incoming_.data(), static_cast<int>(size),
+                MPI_DOUBLE, partition_.comm);
+  if (!local_) return;
+  for (int i = 0; i < partition_.separators(); ++i) {
+    const double* before = incoming_.data() + partition_.active[static_cast<std::size_t>(i)] * size + n;
+    const double* own = incoming_.data() + partition_.active[static_cast<std::size_t>(i) + 1] * size;
+    for (int column = 0; column < columns; ++column) {
+      double* to = reduced_.data() + column * stride + i * n;
+      for (std::ptrdiff_t e = 0; e < n; ++e) to[e] = own[column * 2 * n + e] + before[column * 2 * n + e];
+    }
+  }
+  in_batches(columns, [&](auto C, int column) {
+    SeparatorPanels<B, C> none = {};
+    separators_->eliminate(reduced_.data() + column * stride, stride, none);
+    separators_->substitute(reduced_.data() + column * stride, stride, none);
+  });
+}
+
+template <int B>
+template <int C>
+void Substructure<B>::expand(double* x, int column) const {
+  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(partition_.nodes) * block_.size();
+  const std::ptrdiff_t reduced_stride = std::ptrdiff_t{block_.size()} * partition_.separators();
+  const double* own = reduced_.data() + column * reduced_stride + (partition_.mine - 1) * block_.size();
+  SeparatorPanels<B, C> separators = {};
+  if (partition_.follows()) separators.own.load(block_, own, reduced_stride);
+  if (partition_.followed()) separators.next.load(block_, own + block_.size(), reduced_stride);
+  local_->substitute(x + column * stride, stride, separators);
+}
+
+template class Substructure<1>;
+template class Substructure<2>;
+template class Substructure<3>;
+template class Substructure<4>;
+template class Substructure<5>;
+template class Substructure<6>;
+template class Substructure<any_block>;
+
+}  // namespace traverse::solve

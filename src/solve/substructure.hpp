@@ -1,0 +1,81 @@
+// The exact solution over ranks: every rank's LocalFactor, and the small system of the separators between them.
+#pragma once
+
+#include <mpi.h>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "local_factor.hpp"
+#include "traverse/solve/block_tridiagonal.hpp"
+
+namespace traverse::solve {
+
+/// The cut of the nodes over the ranks. Ranks without nodes take part in the messages only.
+struct Partition {
+  Partition(MPI_Comm communicator, int local_nodes);
+
+  /// A separator for each rank with nodes but the first.
+  int separators() const { return std::max(0, static_cast<int>(active.size()) - 1); }
+  bool follows() const { return mine > 0; }
+  bool followed() const { return mine >= 0 && mine + 1 < static_cast<int>(active.size()); }
+  int ranks() const { return static_cast<int>(begins.size()); }
+
+  MPI_Comm comm;
+  int rank = 0;
+  int nodes = 0;
+  std::vector<std::ptrdiff_t> begins;  // each rank's first global node
+  std::vector<int> active;             // the ranks with nodes
+  int mine = -1;                       // this rank's place among them; -1: no nodes
+};
+
+/// SubstructuredCholesky for one block size.
+class AnySubstructure {
+ public:
+  virtual ~AnySubstructure() = default;
+  virtual void factor(const BlockTridiagonal& A, const std::vector<char>& fixed) = 0;
+  virtual void solve(double* x, int columns) = 0;
+  virtual double pivot_ratio() const = 0;
+};
+
+template <int B>
+class Substructure final : public AnySubstructure {
+ public:
+  Substructure(MPI_Comm comm, int block_size, int local_nodes);
+  void factor(const BlockTridiagonal& A, const std::vector<char>& fixed) override;
+  void solve(double* x, int columns) override;
+  double pivot_ratio() const override { return record_.smallest_ratio; }
+
+ private:
+  std::uint64_t next_fixed(const std::vector<char>& fixed) const;
+  void pack_factor(const Slice<B>& slice);
+  void gather_factors();
+  const double* factor_message(int place) const;
+  void factor_separators();
+  void agree_on_failure() const;
+  [[noreturn]] void fail(std::ptrdiff_t unknown, double pivot, double diagonal) const;
+
+  void solve_separators(int columns);
+  template <int C>
+  void reduce(double* x, int column);
+  template <int C>
+  void expand(double* x, int column) const;
+  template <int C>
+  void solve_alone(double* x, int column) const;
+
+  Extent<B> block_;
+  Partition partition_;
+  std::optional<LocalFactor<B>> local_;
+  std::optional<LocalFactor<B>> separators_;
+  PivotRecord record_;
+  bool factored_ = false;
+
+  BlockTridiagonal reduced_matrix_;       // of the separators, in the order of the ranks
+  std::vector<double> reduced_diagonal_;  // their diagonal entries in the matrix given
+  std::vector<double> outgoing_;          // messages: this rank's and all ranks'
+  std::vector<double> incoming_;
+  std::vector<double> reduced_;  // the separators' unknowns, column after column
+};
+
+}  // namespace traverse::solve

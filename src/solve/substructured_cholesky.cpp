@@ -1,0 +1,53 @@
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "substructure.hpp"
+#include "traverse/solve/block_tridiagonal.hpp"
+
+namespace traverse::solve {
+namespace {
+
+std::unique_ptr<AnySubstructure> make_substructure(MPI_Comm comm, int block_size, int local_nodes) {
+  if (block_size < 1 || block_size > largest_block || local_nodes < 0) {
+    throw std::logic_error("blocks have 1 to " + std::to_string(largest_block) + " unknowns");
+  }
+  switch (block_size) {
+    case 1:
+      return std::make_unique<Substructure<1>>(comm, block_size, local_nodes);
+    case 2:
+      return std::make_unique<Substructure<2>>(comm, block_size, local_nodes);
+    case 3:
+      return std::make_unique<Substructure<3>>(comm, block_size, local_nodes);
+    case 4:
+      return std::make_unique<Substructure<4>>(comm, block_size, local_nodes);
+    case 5:
+      return std::make_unique<Substructure<5>>(comm, block_size, local_nodes);
+    case 6:
+      return std::make_unique<Substructure<6>>(comm, block_size, local_nodes);
+    default:
+      return std::make_unique<Substructure<any_block>>(comm, block_size, local_nodes);
+  }
+}
+
+}  // namespace
+
+struct SubstructuredCholesky::Impl {
+  std::unique_ptr<AnySubstructure> substructure;
+};
+
+SubstructuredCholesky::SubstructuredCholesky(MPI_Comm comm, int block_size, int local_nodes)
+    : impl_(std::make_unique<Impl>(Impl{make_substructure(comm, block_size, local_nodes)})) {}
+SubstructuredCholesky::~SubstructuredCholesky() = default;
+SubstructuredCholesky::SubstructuredCholesky(SubstructuredCholesky&&) noexcept = default;
+SubstructuredCholesky& SubstructuredCholesky::operator=(SubstructuredCholesky&&) noexcept = default;
+
+void SubstructuredCholesky::factor(const BlockTridiagonal& A, const std::vector<char>& fixed) {
+  impl_->substructure->factor(A, fixed);
+}
+
+void SubstructuredCholesky::solve(double* x, int columns) const { impl_->substructure->solve(x, columns); }
+
+double SubstructuredCholesky::pivot_ratio() const { return impl_->substructure->pivot_ratio(); }
+
+}  // namespace traverse::solve
