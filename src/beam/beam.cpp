@@ -129,8 +129,8 @@ void Beam::add_self_weight(double gravity, double* P) const {
       const int node = element.left + end;
       if (!slice.owns(node)) continue;
       double* p = P + static_cast<std::ptrdiff_t>(node - first_) * block() + from;
-      p[0] -= gravity * load[static_cast<std::size_t>(2 * end)];
-      p[1] -= gravity * load[static_cast<std::size_t>(2 * end + 1)];
+      p[0] -= gravity * load[index(2 * end)];
+      p[1] -= gravity * load[index(2 * end + 1)];
     }
   }
 }

@@ -10,10 +10,7 @@ namespace traverse::beam {
 void Beam::note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_stiffness,
                           const Rows& foundation_stiffness, const Rows& foundation_damping) {
   const int from = slice.kinds_from();
-  const auto unknown = [&](int node, int kind) {
-    return static_cast<std::size_t>(node - first_) * static_cast<std::size_t>(block()) +
-           static_cast<std::size_t>(kind - from);
-  };
+  const auto unknown = [&](int node, int kind) { return index(node - first_) * index(block()) + index(kind - from); };
   // By symmetry the entry of the held row in a free column is that of the free row in the held column.
   const auto note_column = [&](std::size_t slot, int node, int kind, int offset, int held_kind) {
     if (slice.held(node, kind)) return;
@@ -36,7 +33,7 @@ void Beam::note_reactions(const Slice& slice, const Rows& mass, const Rows& beam
     for (int node = left; node <= right; ++node) {
       if (node < first_ - 1 || node > first_ + local_) continue;
       for (int kind = from; kind < 3; ++kind) {
-        if (slice.held(node, kind)) note_row(static_cast<std::size_t>(3 * end + kind), node, kind);
+        if (slice.held(node, kind)) note_row(index(3 * end + kind), node, kind);
       }
     }
   }

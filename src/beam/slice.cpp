@@ -7,8 +7,8 @@ namespace traverse::beam {
 Slice::Slice(const BeamModel& model, const Mesh& mesh, int first_node, int local_nodes)
     : block(model.axial ? 3 : 2), first(first_node), local(local_nodes) {
   if (local == 0) return;
-  held_.assign(3 * static_cast<std::size_t>(local + 2), 0);
-  linked_.assign(static_cast<std::size_t>(local + 1), 0);
+  held_.assign(3 * index(local + 2), 0);
+  linked_.assign(index(local + 1), 0);
 
   const auto bearings = axial_bearings(model);
   for (int end = 0; end <= mesh.spans(); ++end) {
@@ -38,12 +38,12 @@ Slice::Slice(const BeamModel& model, const Mesh& mesh, int first_node, int local
   first_element = first_from(first - 1);
   past_element = first_from(first + local);
   for (int e = first_element; e < past_element; ++e) {
-    linked_[static_cast<std::size_t>(mesh.element(e).left - first + 1)] = 1;
+    linked_[index(mesh.element(e).left - first + 1)] = 1;
   }
 }
 
 void Slice::hold(int node, int kind) {
-  if (node >= first - 1 && node <= first + local) held_[static_cast<std::size_t>(3 * (node - first + 1) + kind)] = 1;
+  if (node >= first - 1 && node <= first + local) held_[index(3 * (node - first + 1) + kind)] = 1;
 }
 
 void Rows::add(int left, const Transverse& matrix) {
@@ -78,17 +78,17 @@ void Rows::add(const Rows& other) {
 }
 
 double Rows::at(int node, int kind, int offset, int other_kind) const {
-  const Node& n = rows_[static_cast<std::size_t>(node - first_)];
+  const Node& n = rows_[index(node - first_)];
   if (!coupled(kind, other_kind)) return 0.0;
-  if (kind == 0) return n.axial[static_cast<std::size_t>(offset + 1)];
-  return n.transverse[static_cast<std::size_t>(6 * (kind - 1) + 2 * (offset + 1) + other_kind - 1)];
+  if (kind == 0) return n.axial[index(offset + 1)];
+  return n.transverse[index(6 * (kind - 1) + 2 * (offset + 1) + other_kind - 1)];
 }
 
 base::Handle<Mat> Rows::matrix(MPI_Comm comm, const Slice& slice, bool sparse) const {
   std::vector<PetscInt> starts{0}, columns;
   std::vector<double> values;
-  const std::size_t size = static_cast<std::size_t>(slice.local) * (slice.block == 3 ? 15 : 12);
-  starts.reserve(static_cast<std::size_t>(slice.local * slice.block + 1));
+  const std::size_t size = index(slice.local) * (slice.block == 3 ? 15 : 12);
+  starts.reserve(index(slice.local * slice.block + 1));
   columns.reserve(sparse ? 1 : size + 1);  // at least one: PETSc takes no null pointer
   values.reserve(sparse ? 1 : size + 1);
   for (int node = slice.first; node < slice.first + slice.local; ++node) {

@@ -2,12 +2,16 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "traverse/base/petsc.hpp"
 #include "traverse/beam/element.hpp"
 
 namespace traverse::beam {
+
+/// Indices of the standard library are unsigned.
+constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 /// Which nodes a rank owns, which elements touch them, and what the supports hold there and one node beyond.
 struct Slice {
@@ -17,9 +21,9 @@ struct Slice {
   int kinds_from() const { return 3 - block; }
   bool owns(int node) const { return node >= first && node < first + local; }
   /// For first - 1 <= node <= first + local.
-  bool held(int node, int kind) const { return held_[static_cast<std::size_t>(3 * (node - first + 1) + kind)] != 0; }
+  bool held(int node, int kind) const { return held_[index(3 * (node - first + 1) + kind)] != 0; }
   /// Whether an element joins node and node + 1, for first - 1 <= node < first + local.
-  bool linked(int node) const { return linked_[static_cast<std::size_t>(node - first + 1)] != 0; }
+  bool linked(int node) const { return linked_[index(node - first + 1)] != 0; }
 
   int block = 0, first = 0, local = 0;
   int first_element = 0, past_element = 0;  // the elements with a node in the slice
@@ -33,7 +37,7 @@ struct Slice {
 /// couple, and a node couples to its neighbours only.
 class Rows {
  public:
-  explicit Rows(const Slice& slice) : first_(slice.first), rows_(static_cast<std::size_t>(slice.local)) {}
+  explicit Rows(const Slice& slice) : first_(slice.first), rows_(index(slice.local)) {}
 
   /// The part of an element's matrix that belongs to this slice; `left` is the element's left node.
   void add(int left, const Transverse& matrix);
@@ -54,7 +58,7 @@ class Rows {
   };
   Node* find(int node) {
     const int i = node - first_;
-    return i >= 0 && i < static_cast<int>(rows_.size()) ? &rows_[static_cast<std::size_t>(i)] : nullptr;
+    return i >= 0 && i < static_cast<int>(rows_.size()) ? &rows_[index(i)] : nullptr;
   }
 
   int first_ = 0;

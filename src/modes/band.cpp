@@ -35,30 +35,45 @@ int count_below(const Band& K, const Band& M, double sigma) {
   return negative;
 }
 
-Bracket bracket_lowest(const Band& K, const Band& M, int most) {
+double highest_quotient(const Band& K, const Band& M) {
+  double highest = 0.0;
+  for (int i = 0; i < K.size(); ++i) highest = std::max(highest, K.at(i, i) / M.at(i, i));
+  return highest;
+}
+
+Bracket bracket_lowest(const Band& K, const Band& M) {
   // The lowest eigenvalue is at most Rayleigh's quotient of a unit vector.
   double high = std::numeric_limits<double>::max();
   for (int i = 0; i < K.size(); ++i) high = std::min(high, K.at(i, i) / M.at(i, i));
   high *= 1.0 + 1e-6;
-  double low = high;
   const double least = high * 1e-20;
-  do {
+  while (high > least) {
+    const double low = 0.25 * high;
+    if (count_below(K, M, low) == 0) return {low, high};
     high = low;
-    low = 0.25 * high;
-    if (low < least) return {};
-  } while (count_below(K, M, low) > 0);
-  int inside = count_below(K, M, high);
-  while (high > low * (1.0 + 1e-9) && (high > 1.05 * low || inside > most)) {
-    const double middle = std::sqrt(low * high);
-    const int below = count_below(K, M, middle);
-    if (below == 0) {
-      low = middle;
+  }
+  return {};
+}
+
+Bracket narrow(Bracket b, int most, double narrowest, const std::function<int(double)>& below) {
+  int inside = below(b.high);
+  while (b.high > b.low * (1.0 + narrowest) && (b.high > 1.05 * b.low || inside > most)) {
+    const double middle = std::sqrt(b.low) * std::sqrt(b.high);
+    const int there = below(middle);
+    if (there <= 0) {
+      b.low = middle;
     } else {
-      high = middle;
-      inside = below;
+      b.high = middle;
+      inside = there;
     }
   }
-  return {low, high};
+  // Low close to the lowest one, as seen from the others in the bracket.
+  double lowest = b.high;
+  while (inside > 1 && lowest - b.low > std::max(0.1 * (b.high - b.low), narrowest * b.low)) {
+    const double middle = 0.5 * (b.low + lowest);
+    (below(middle) <= 0 ? b.low : lowest) = middle;
+  }
+  return b;
 }
 
 }  // namespace traverse::modes

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace traverse::modes {
@@ -26,12 +27,19 @@ class Band {
 /// (Sylvester's law of inertia).
 int count_below(const Band& K, const Band& M, double sigma);
 
-/// An interval (low, high] that holds the lowest eigenvalue of a positive definite K, and few others: at most `most`
-/// of them, if that can be had without going below a relative width of 1e-9. {0, 0} when K is too close to
-/// singular to say.
+/// The largest K_ii/M_ii: the size of the highest eigenvalues, and times the machine's epsilon that of rounding.
+double highest_quotient(const Band& K, const Band& M);
+
+/// An interval (low, high] that holds the lowest of the eigenvalues that are looked for.
 struct Bracket {
   double low = 0.0, high = 0.0;
 };
-Bracket bracket_lowest(const Band& K, const Band& M, int most);
+/// Narrows a bracket with 0 < low: until it is 5 % wide and holds no more than `most` of them, or it is as narrow as
+/// `narrowest`, relatively; then low moves up to the lowest one. below(sigma) says how many of those looked for lie
+/// below sigma: none below low.
+Bracket narrow(Bracket bracket, int most, double narrowest, const std::function<int(double)>& below);
+
+/// A bracket of the lowest eigenvalue, within a factor of 4; {0, 0} when K is too close to singular to say.
+Bracket bracket_lowest(const Band& K, const Band& M);
 
 }  // namespace traverse::modes

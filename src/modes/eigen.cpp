@@ -13,7 +13,7 @@ namespace {
 using base::check;
 
 constexpr double tolerance = 1e-12;  // of SLEPc, relative to the inverted eigenvalue
-constexpr double resolution = 1e-9;  // eigenvalues closer than this, relatively, count as one when copies are counted
+constexpr double resolution = 1e-9;  // brackets of eigenvalues are not made narrower, relatively
 
 base::Handle<Mat> matrix(const Band& band) {
   const PetscInt n = band.size();
@@ -56,20 +56,15 @@ std::vector<double> start_vector(int size, unsigned seed) {
   return values;
 }
 
-/// Where to look from: below all elastic frequencies, and close to the lowest where that is what tells neighbours
-/// apart (a long continuous bridge has hundreds of frequencies within a per cent).
-double shift_below(const Segment& s, int count) {
-  if (s.rigid.empty()) {
-    const Bracket lowest = bracket_lowest(s.K, s.M, std::max(count, 2));
-    if (lowest.low > 0.0) return lowest.low - (lowest.high - lowest.low);
-  }
-  // Rigid motions, or nearly so: from below zero. A beam's eigenvalues spread with the fourth power of the number of
-  // its elements, a bar's with the second.
-  double most = 0.0;
-  for (int i = 0; i < s.size(); ++i) most = std::max(most, s.K.at(i, i) / s.M.at(i, i));
+/// From where to look when there are rigid motions, or nearly so: from below zero. The eigenvalues of a beam spread
+/// with the fourth power of the number of its elements, those of a bar with the second.
+double shift_below_zero(const Segment& s) {
   const double elements = std::max(1.0, static_cast<double>(s.nodes.back() - s.nodes.front()));
-  return -most / std::pow(elements, s.axial ? 2.0 : 4.0);
+  return -highest_quotient(s.K, s.M) / std::pow(elements, s.axial ? 2.0 : 4.0);
 }
+
+/// Next to the lowest eigenvalue of a bracket, from below, at a distance like that of the others in it.
+double shift_below(const Bracket& b) { return b.low - 0.2 * (b.high - b.low); }
 
 Eigenpair pair_of(EPS eps, Mat K, PetscInt i, double (*eigenvalue)(double, double), double shift) {
   base::Handle<Vec> x;
@@ -98,7 +93,7 @@ std::vector<Eigenpair> all_elastic(const Segment& s, double shift) {
   check(EPSSetWhichEigenpairs(eps, EPS_LARGEST_REAL));
   check(EPSSolve(eps));
   std::vector<Eigenpair> modes;
-  for (PetscInt i = static_cast<PetscInt>(s.rigid.size()); i < s.size(); ++i) {  // the rigid ones come first
+  for (auto i = static_cast<PetscInt>(s.rigid.size()); i < s.size(); ++i) {  // the rigid ones come first
     modes.push_back(pair_of(
         eps, M, i, [](double mu, double below) { return below + 1.0 / mu; }, shift));
   }
@@ -106,21 +101,20 @@ std::vector<Eigenpair> all_elastic(const Segment& s, double shift) {
   return modes;
 }
 
-/// Krylov-Schur, for the lowest few of many.
+/// Krylov-Schur, for a few of many.
 class Solver {
  public:
-  Solver(const Segment& segment, double shift)
-      : segment_(segment), shift_(shift), K_(matrix(segment.K)), M_(matrix(segment.M)) {
+  explicit Solver(const Segment& segment) : segment_(segment), K_(matrix(segment.K)), M_(matrix(segment.M)) {
     for (const auto& motion : segment_.rigid) known_.push_back(vector(motion));
   }
 
-  /// `count` more modes, other than the rigid ones and those found before.
-  void find(int count) {
+  /// The `count` modes nearest to the shift, or a few more, other than the rigid ones and those found before.
+  void find(double shift, int count) {
     const int left = segment_.size() - static_cast<int>(known_.size());
-    count = std::min(count, left);
+    count = std::min(count, left - 1);
     if (count <= 0) return;
     base::Handle<EPS> eps;
-    set_up(eps, count, std::min(left, std::max(2 * count, count + 15)));
+    set_up(eps, shift, count, std::min(left, std::max(2 * count, count + 15)));
     check(EPSSolve(eps));
     PetscInt converged = 0;
     check(EPSGetConverged(eps, &converged));
@@ -144,13 +138,13 @@ class Solver {
   }
 
  private:
-  void set_up(base::Handle<EPS>& eps, int count, int subspace) {
+  void set_up(base::Handle<EPS>& eps, double shift, int count, int subspace) {
     check(EPSCreate(PETSC_COMM_SELF, eps.out()));
     check(EPSSetOperators(eps, K_, M_));
     check(EPSSetProblemType(eps, EPS_GHEP));
     check(EPSSetType(eps, EPSKRYLOVSCHUR));
     check(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
-    check(EPSSetTarget(eps, shift_));
+    check(EPSSetTarget(eps, shift));
     check(EPSSetTolerances(eps, tolerance, 1000));
     check(EPSSetDimensions(eps, count, subspace, PETSC_DEFAULT));
     ST st = nullptr;
@@ -174,29 +168,88 @@ class Solver {
   }
 
   const Segment& segment_;
-  double shift_ = 0.0;
   base::Handle<Mat> K_, M_;
   std::vector<base::Handle<Vec>> known_;
   std::vector<Eigenpair> found_;
 };
 
-/// At least `count` elastic modes. An iteration that starts from one vector may not see the copies of a repeated
-/// frequency: as long as there are more eigenvalues clearly below the last one wanted than were found there, it is
-/// started again. The count itself may be off by rounding, so that nothing new there also ends the search.
-std::vector<Eigenpair> some_elastic(const Segment& s, int count, double shift) {
-  Solver solver(s, shift);
-  solver.find(count);
-  for (;;) {
-    const double last = solver.found()[static_cast<std::size_t>(count - 1)].omega;
-    const double limit = last * last * (1.0 - resolution);
-    if (limit <= 0.0) break;
-    const int missing = count_below(s.K, s.M, limit) - static_cast<int>(s.rigid.size()) - solver.found_below(limit);
-    if (missing <= 0) break;
-    const int before = solver.found_below(limit);
-    solver.find(missing);
-    if (solver.found_below(limit) == before) break;
+/// The lowest modes of a long chain: a few at a time, each time with the shift next to the lowest one that is still
+/// unknown. Counting tells where that is. So frequencies that crowd cost little, and copies of a repeated one, which
+/// an iteration that starts from one vector may not see, are not missed.
+class Hunt {
+ public:
+  explicit Hunt(const Segment& s) : s_(s), solver_(s), highest_(highest_quotient(s.K, s.M)) {}
+
+  /// At least `count` elastic modes.
+  std::vector<Eigenpair> lowest(int count) {
+    start(count);
+    while (const double high = unknown_below(count)) {
+      const Bracket b = narrow({floor_, high}, at_once, resolution, [this](double sigma) { return unknown(sigma); });
+      const double edge = b.high * (1.0 + tolerance_at(b.high));
+      const int before = solver_.found_below(edge);
+      solver_.find(shift_below(b), std::clamp(unknown(b.high), 1, 4 * at_once));
+      // Nothing there after all: the count was off by rounding.
+      if (solver_.found_below(edge) == before) floor_ = edge;
+    }
+    if (static_cast<int>(solver_.found().size()) < count) {
+      throw SolverError(
+          "modes: the natural frequencies cannot be told apart; use fewer elements or ask for fewer modes");
+    }
+    return solver_.found();
   }
-  return solver.found();
+
+ private:
+  static constexpr int at_once = 16;
+
+  void start(int count) {
+    Bracket b;
+    if (s_.rigid.empty()) b = bracket_lowest(s_.K, s_.M);
+    if (b.low > 0.0) {
+      b = narrow(b, std::min(count, at_once), resolution, [this](double sigma) { return unknown(sigma); });
+      floor_ = b.low;
+      solver_.find(shift_below(b), std::clamp(unknown(b.high), 1, at_once));
+    } else {
+      const double shift = shift_below_zero(s_);
+      floor_ = -shift * 1e-10;
+      solver_.find(shift, std::min(count, at_once));
+    }
+  }
+
+  /// Relative width within which a count and a computed eigenvalue may disagree by rounding.
+  double tolerance_at(double sigma) const { return std::clamp(1e-14 * highest_ / sigma, resolution, 1e-4); }
+
+  /// How many eigenvalues below sigma have not been found.
+  int unknown(double sigma) const {
+    return count_below(s_.K, s_.M, sigma) - static_cast<int>(s_.rigid.size()) -
+           solver_.found_below(sigma * (1.0 + tolerance_at(sigma)));
+  }
+
+  /// Zero when the `count` lowest are known, else a bound with something unknown below it and above the floor.
+  double unknown_below(int count) const {
+    const auto& found = solver_.found();
+    if (static_cast<int>(found.size()) >= count) {
+      const double last = std::pow(found[static_cast<std::size_t>(count - 1)].omega, 2);
+      const double limit = last * (1.0 - 2.0 * tolerance_at(last));
+      return limit > floor_ && unknown(limit) > 0 ? limit : 0.0;
+    }
+    double high = std::max(2.0 * floor_, found.empty() ? 0.0 : std::pow(found.back().omega, 2));
+    while (unknown(high) <= 0) {
+      high *= 1.1;
+      if (high > 10.0 * highest_) return 0.0;
+    }
+    return high;
+  }
+
+  const Segment& s_;
+  Solver solver_;
+  double highest_ = 0.0;
+  double floor_ = 0.0;  // nothing unknown lies below
+};
+
+std::vector<Eigenpair> all(const Segment& s) {
+  Bracket b;
+  if (s.rigid.empty()) b = bracket_lowest(s.K, s.M);
+  return all_elastic(s, b.low > 0.0 ? b.low : shift_below_zero(s));
 }
 
 }  // namespace
@@ -207,9 +260,8 @@ std::vector<Eigenpair> lowest_modes(const Segment& segment, int count) {
   for (const auto& motion : segment.rigid) modes.push_back({0.0, motion});
   const int elastic = count - static_cast<int>(modes.size());
   if (elastic > 0) {
-    const double shift = shift_below(segment, elastic);
     const bool few = segment.size() <= 32 || count > segment.size() / 2;
-    const auto found = few ? all_elastic(segment, shift) : some_elastic(segment, elastic, shift);
+    const auto found = few ? all(segment) : Hunt(segment).lowest(elastic);
     modes.insert(modes.end(), found.begin(), found.end());
   }
   modes.resize(std::min(modes.size(), static_cast<std::size_t>(count)));

@@ -45,7 +45,8 @@ std::vector<double> nodal_shape(const Mode& mode, int nodes) {
       slope = std::max(slope, std::abs(mode.shape[i]));
       continue;
     }
-    shape[static_cast<std::size_t>(s.nodes[i] + mode.offset)] = mode.shape[i];
+    const int node = s.nodes[i] + mode.offset;
+    shape[static_cast<std::size_t>(node)] = mode.shape[i];
     if (std::abs(mode.shape[i]) > (1.0 + 1e-9) * std::abs(largest)) largest = mode.shape[i];
   }
   for (double& v : shape) v = std::abs(largest) > 1e-9 * slope ? v / largest : 0.0;

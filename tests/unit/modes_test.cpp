@@ -92,6 +92,17 @@ TEST(Modes, LongContinuousBridge) {
   }
 }
 
+TEST(Modes, CrowdedFrequenciesAreAllFound) {
+  // 30 equal spans and an overhang: one lonely frequency, then 30 within a few per cent, and so on. All of them at once
+  // (dense) against the first 75 (hunted a few at a time).
+  auto m = model_of(std::vector<double>(31, 32.0), 4, false);
+  m.supports.back() = Support::free;
+  const Beam b(PETSC_COMM_WORLD, m);
+  const auto all = modes::natural_modes(b, 1000, false), some = modes::natural_modes(b, 75, false);
+  ASSERT_EQ(some.omega.size(), 75u);
+  for (std::size_t i = 0; i < 75; ++i) EXPECT_NEAR(some.omega[i] / all.omega[i], 1.0, 1e-9) << i;
+}
+
 TEST(Modes, ClampedInnerSupportSeparatesEqualSpans) {
   auto m = model_of({20, 20, 20}, 8, false);
   m.supports = {Support::clamped, Support::clamped, Support::clamped, Support::clamped};

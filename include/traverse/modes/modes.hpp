@@ -21,7 +21,8 @@ struct Modes {
 /// What does not couple (isolated spans, pieces between clamped nodes, axial motion and bending) is solved one by
 /// one, equal pieces once; copies of a repeated frequency are counted by inertia and none is missed. Rigid modes
 /// come out as exactly 0. count may exceed the number of unknowns: then all of them. Throws SolverError when SLEPc
-/// fails. The relative error by rounding is about 0.1 eps n^4 for the lowest mode of n elements between supports.
+/// fails. The relative error, by rounding, of the lowest frequency is about 0.02 eps n^4 for n elements between
+/// supports: 3e-6 for 1,000, 2 % for 10,000.
 Modes natural_modes(const beam::Beam& beam, int count, bool shapes);
 
 /// The first two distinct non-zero natural frequencies of bending (rad/s), however often each one occurs; distinct:
