@@ -24,6 +24,7 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
   }
   nodal_.resize(n_);
   work_.resize(n_);
+  v_still_.resize(n_);
   for (const Vehicle& type : input_.types)
     for (const Wheel& wheel : type.wheels)
       if (wheel.radius * input_.profile.greatest_curvature() >= 1.0)
@@ -203,12 +204,17 @@ void System::powers(const double* w, Part part, double& dissipation, double& wor
 
 // --- implicit stages -----------------------------------------------------------------------------------------------
 
+// The beam's unknown is the change z of v against v~ = v at zero acceleration: v = v~ + z, w = w~ + s z, w' = s^2 z.
+// Being small it keeps the digits that a solve for v itself would lose in w and w'.
 bool System::solve_stage(double t, double shift, const double* c, double* y, Part part) {
   const double* c_v = c;
   const double* c_w = c + n_;
   if (beam_ != nullptr) {
-    for (int i = 0; i < n_; ++i) work_[i] = shift * c_v[i] + c_w[i];
-    operator_->multiply(-1.0, work_.data(), c_v, nullptr, nodal_.data());
+    for (int i = 0; i < n_; ++i) {
+      work_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
+      v_still_[i] = shift > 0.0 ? (work_[i] - c_v[i]) / shift : 0.0;
+    }
+    operator_->multiply(-1.0, nullptr, work_.data(), v_still_.data(), nodal_.data());
     external_load(t, work_.data());
     for (int i = 0; i < n_; ++i) nodal_[i] += work_[i];
     release_held(nodal_.data());
@@ -224,13 +230,14 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
     // The guess moves on with its velocity, so that wheels are looked for where they will be.
     if (shift > 0.0)
       for (int i = 0; i < f; ++i) p_[i] = (p_[f + i] - c_p_[i]) / shift;
-    if (!stage_of_fleet(t, shift, c_v)) return false;
+    for (int i = 0; i < n_; ++i) work_[i] = v_still_[i] + nodal_[i];
+    if (!stage_of_fleet(t, shift, work_.data(), c_v)) return false;
     if (beam_ != nullptr && !fleet_.elements().empty())
       compliance_->add_response(newton_.element_loads(), nodal_.data());
   }
   for (int i = 0; i < n_; ++i) {
-    y[i] = nodal_[i];
-    y[n_ + i] = shift * nodal_[i] + c_v[i];
+    y[i] = v_still_[i] + nodal_[i];
+    y[n_ + i] = shift > 0.0 ? shift * nodal_[i] - c_w[i] / shift : 0.0;
   }
   if (shift == 0.0) {
     if (rank_ == 0) std::copy_n(p_.data(), f, y + 2 * n_);
@@ -249,14 +256,14 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
   return true;
 }
 
-bool System::stage_of_fleet(double t, double shift, const double* c_v) {
+bool System::stage_of_fleet(double t, double shift, const double* v0, const double* c_v) {
   const int f = fleet_.freedom();
   pdd_.resize(f);
   for (int i = 0; i < f; ++i) pdd_[i] = shift * p_[i] + c_p_[i];
   if (!fleet_.set(t, p_.data(), pdd_.data(), false)) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
-    gather(nodal_.data(), c_v);
+    gather(v0, c_v);
     if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, fleet_.elements());
     StageData stage{
         t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, beam_ != nullptr ? beam_->block() : 2};

@@ -47,7 +47,7 @@ void System::find_equilibrium(double* v) {
     if (input_.self_weight || !loads_.empty()) operator_->factored(0.0).solve(nodal_.data());
   }
   const std::vector<double> at_rest(n_, 0.0);
-  if (!stage_of_fleet(0.0, 0.0, at_rest.data()))
+  if (!stage_of_fleet(0.0, 0.0, nodal_.data(), at_rest.data()))
     throw SolverError("no static equilibrium found to start from (forces out of balance by " +
                       std::to_string(newton_.last_change()) +
                       " of a vehicle's weight): is every body held by joints, springs or wheels? scene_start: given "

@@ -100,7 +100,7 @@ class System {
   std::vector<double> influence_line(double station);
   void share_coordinates(const double* y);
   void gather(const double* first, const double* second);
-  bool stage_of_fleet(double t, double shift, const double* c_v);
+  bool stage_of_fleet(double t, double shift, const double* v0, const double* c_v);
   void moving_loads(double t);
   void external_load(double t, double* nodal);
   void add_contact_load(double* nodal);
@@ -126,7 +126,7 @@ class System {
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
   std::vector<double> v_, w_;                       // of the elements in touch, 2*block each
   std::vector<double> element_work_;
-  std::vector<double> nodal_, work_;  // this rank's unknowns
+  std::vector<double> nodal_, work_, v_still_;  // this rank's unknowns
 };
 
 }  // namespace traverse::coupling
