@@ -52,6 +52,7 @@ int main(int argc, char** argv) {
   try {
     traverse::options::Input input = traverse::options::read_input(argc, argv);
     if (input.help) return std::fputs(traverse::options::help_text().c_str(), stdout) < 0 ? EXIT_FAILURE : 0;
+    if (input.version) return std::puts("traverse " TRAVERSE_VERSION) < 0 ? EXIT_FAILURE : 0;
     traverse::options::Arguments words(input.petsc_words);
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
