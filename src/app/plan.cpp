@@ -8,8 +8,10 @@
 namespace traverse::app {
 namespace {
 
-constexpr double steps_a_period = 100.0;   // of the first period or a span's crossing, at an accuracy of 1e-3
-constexpr double mechanism_step = 1e-3;    // s, where there is no beam to judge by
+constexpr double steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
+constexpr double mechanism_step = 1e-3;   // s, where there is no beam to judge by
+constexpr double least_steps_a_span = 10.0;
+constexpr double most_steps = 1e10;
 constexpr double stored_samples = 2000.0;  // at most, where the interval is left open
 
 // The largest of 1, 2, 5 times a power of ten that does not exceed x.
@@ -29,14 +31,31 @@ double end_of(const Scene& scene, const coupling::System& system) {
   return leaving + scene.tail.value_or(0.0);
 }
 
+double greatest_speed(const Scene& scene) {
+  return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
+                  scene.load.forces.empty() ? 0.0 : scene.load.speed);
+}
+
+// A step that the scene cannot be resolved with gives a wrong answer without any other sign.
+void check_step(const Scene& scene, const Plan& plan) {
+  if (!(plan.end_time / plan.time_step < most_steps))
+    throw InputError(fmt::format("ts_dt = {:g}: too many steps to the end at {:g} s; allowed: above {:g} s",
+                                 plan.time_step, plan.end_time, plan.end_time / most_steps));
+  const double speed = greatest_speed(scene);
+  if (!scene.beam || speed <= 0.0) return;
+  const double crossing = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end()) / speed;
+  if (plan.time_step > crossing / least_steps_a_span)
+    throw InputError(fmt::format("ts_dt = {:g}: the longest span is crossed in {:g} s; allowed: at most {:g} s",
+                                 plan.time_step, crossing, crossing / least_steps_a_span));
+}
+
 double chosen_step(const Scene& scene, double first_period, std::vector<std::string>& notes) {
   if (!scene.beam) {
     notes.push_back(fmt::format("time step {:g} s: no beam to judge by; -ts_dt changes it", mechanism_step));
     return mechanism_step;
   }
   double scale = first_period > 0.0 ? first_period : 1.0;
-  const double speed = std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
-                                scene.load.forces.empty() ? 0.0 : scene.load.speed);
+  const double speed = greatest_speed(scene);
   const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
   if (speed > 0.0) scale = std::min(scale, span / speed);
   const double step = round_down(scale / steps_a_period * std::pow(scene.accuracy / 1e-3, 0.25));
@@ -57,6 +76,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
     throw InputError(
         "scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
         "or ts_max_time in s above 0");
+  check_step(scene, plan);
   if (scene.output.interval) {
     plan.interval = *scene.output.interval;
     if (plan.interval < plan.time_step)

@@ -171,7 +171,9 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
     throw;
   }
   try {
-    summarise(stopped == 0 ? "reached its end" : fmt::format("ended by signal {}", stopped));
+    summarise(stopped != 0                 ? fmt::format("ended by signal {}", stopped)
+              : stepper.stopped_at_limit() ? "ended at the limit of -ts_max_steps"
+                                           : "reached its end");
   } catch (const FileError& error) {
     leave_together(comm, error);
   }

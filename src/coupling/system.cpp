@@ -140,7 +140,9 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
     fleet_.place_wheels();
     gather(v, w);
     if (!fleet_.touch(beam_ != nullptr ? beam_->block() : 2, v_.data(), w_.data()))
-      throw SolverError("a wheel has fallen below the running surface at t = " + std::to_string(t) + " s");
+      throw SolverError(
+          "a wheel has fallen below the running surface at t = " + std::to_string(t) +
+          " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too soft");
     for (WheelContact& c : fleet_.wheels) c.kinematics = c.touch.kinematics;
     fleet_.contact_forces();
     fleet_.wheel_loads();

@@ -1,6 +1,7 @@
 #include "traverse/integrate/stepper.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -13,7 +14,8 @@ using base::check;
 using base::guard;
 using coupling::Part;
 
-constexpr int most_rejections = 12;     // of one step, each a quarter as long
+constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS wants some bound
+constexpr int most_rejections = 12;                                      // of one step, each a quarter as long
 constexpr double near_event = 1e-6;     // of a step: events closer than this share the end of a step
 constexpr double restart_growth = 2.0;  // steps of a multistep method may not grow faster
 
@@ -21,6 +23,23 @@ bool is(TS ts, const char* type) {
   PetscBool same = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<TS>(ts)), type, &same));
   return same == PETSC_TRUE;
+}
+
+// The types that integrate this system rightly; the others fail, some of them without a word.
+void check_type() {
+  constexpr std::array allowed = {TSARKIMEX, TSCN, TSBDF, TSTHETA, TSBEULER, TSRK, TSSSP, TSEULER};
+  std::array<char, 128> type{};
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsGetString(nullptr, nullptr, "-ts_type", type.data(), type.size(), &given));
+  if (given == PETSC_TRUE && std::find(allowed.begin(), allowed.end(), std::string_view(type.data())) == allowed.end())
+    throw InputError(std::string("ts_type = ") + type.data() +
+                     ": does not integrate this system rightly; allowed: arkimex, cn, bdf, theta, beuler (implicit), "
+                     "rk, ssp, euler (explicit, small scenes)");
+  PetscInt order = 2;
+  check(PetscOptionsGetInt(nullptr, nullptr, "-ts_bdf_order", &order, nullptr));
+  if (order < 1 || order > 2)
+    throw InputError("ts_bdf_order = " + std::to_string(order) +
+                     ": orders above 2 are unstable for lightly damped bridges; allowed: 1, 2");
 }
 
 struct Array {  // writable entries of a Vec for one scope
@@ -60,14 +79,21 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   check(TSARKIMEXSetType(ts_, TSARKIMEX4));
   check(TSARKIMEXSetFullyImplicit(ts_, PETSC_TRUE));
   check(TSSetSolution(ts_, y_));
-  check(TSSetMaxSteps(ts_, std::numeric_limits<PetscInt>::max() - 1));
+  check(TSSetMaxSteps(ts_, no_limit));
   check(TSSetMaxSNESFailures(ts_, -1));
   check(TSSetMaxStepRejections(ts_, most_rejections));
   check(TSSetErrorIfStepFails(ts_, PETSC_FALSE));
   TSAdapt adapt = nullptr;
   check(TSGetAdapt(ts_, &adapt));
   check(TSAdaptSetType(adapt, TSADAPTNONE));
-  check(TSSetFromOptions(ts_));
+  check_type();
+  try {
+    check(TSSetFromOptions(ts_));
+  } catch (const SolverError& error) {
+    throw InputError(std::string("an option that starts with -ts_ is not one that PETSc allows: ") + error.what());
+  }
+  check(TSGetMaxSteps(ts_, &most_steps_));
+  check(TSSetMaxSteps(ts_, no_limit));
   // Time and step are the scene's; TS takes one step at a time and never looks ahead to an end.
   check(TSSetTime(ts_, 0.0));
   check(TSSetMaxTime(ts_, std::numeric_limits<double>::max()));
@@ -81,22 +107,8 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
 }
 
 void Stepper::set_up_type() {
-  TSType type = nullptr;
-  check(TSGetType(ts_, &type));
-  implicit_ = is(ts_, TSARKIMEX) || is(ts_, TSBDF) || is(ts_, TSCN) || is(ts_, TSTHETA) || is(ts_, TSBEULER);
+  implicit_ = !(is(ts_, TSRK) || is(ts_, TSSSP) || is(ts_, TSEULER));
   multistep_ = is(ts_, TSBDF);
-  const bool explicit_type = is(ts_, TSRK) || is(ts_, TSSSP) || is(ts_, TSEULER);
-  if (!implicit_ && !explicit_type)
-    throw InputError(std::string("-ts_type ") + type +
-                     ": does not integrate this system rightly; allowed: arkimex, cn, bdf, theta, beuler (implicit), "
-                     "rk, ssp, euler (explicit, small scenes)");
-  if (multistep_) {
-    PetscInt order = 0;
-    check(TSBDFGetOrder(ts_, &order));
-    if (order > 2)
-      throw InputError("-ts_bdf_order " + std::to_string(order) +
-                       ": orders above 2 are unstable for lightly damped bridges; allowed: 1, 2");
-  }
   bool imex = false;
   if (is(ts_, TSARKIMEX)) {
     PetscBool fully = PETSC_TRUE;
@@ -169,7 +181,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       Array y(y_);
       const bool rewritten = system_.repartition(t, y.data);
       if (rewritten) check(TSRestartStep(ts_));
-      going = step(t, steps_);
+      going = step(t, steps_) && !stopped_at_limit();
     }
     if (t == next_sample) {
       ++stored;

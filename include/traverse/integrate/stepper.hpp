@@ -42,7 +42,8 @@ class Stepper {
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
 
   long steps() const { return steps_; }
-  std::string method() const;  // e.g. "ARKIMEX 4, implicit"
+  bool stopped_at_limit() const { return steps_ >= most_steps_; }  // of -ts_max_steps
+  std::string method() const;                                      // e.g. "ARKIMEX 4, implicit"
 
  private:
   struct Request {  // what TS asks of a stage
@@ -76,6 +77,7 @@ class Stepper {
   double next_step_ = 0.0;  // what the step control wants
   double last_step_ = 0.0;
   long steps_ = 0;
+  PetscInt most_steps_ = 0;
   std::vector<double> stage_c_;               // Xdot, then c
   std::vector<double> known_y_, known_rate_;  // the last solved stage and its rate
   double known_t_ = 0.0;
