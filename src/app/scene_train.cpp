@@ -45,7 +45,9 @@ std::vector<double> read_positions(const Options& o, const Scene& scene) {
     if (o.has("train_spacing")) o.refuse("train_spacing", "all positions are given: leave the spacing out");
     if (x.size() != order.size()) {
       o.refuse("train_positions",
-               fmt::format("has {} entries; wanted: one, or {}, one a vehicle", x.size(), order.size()));
+               order.size() == 1
+                   ? fmt::format("has {} entries, the train has one vehicle; wanted: one number", x.size())
+                   : fmt::format("has {} entries; wanted: one, or {}, one a vehicle", x.size(), order.size()));
     }
     return x;
   }

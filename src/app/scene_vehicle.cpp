@@ -86,6 +86,20 @@ std::vector<std::string> vehicles_in(const Options& o) {
   return names;
 }
 
+/// Options of a part that stands in no list of its vehicle look like those of a further vehicle, VEHICLE_PART.
+void check_no_forgotten_part(const Options& o, const std::string& name, const std::vector<std::string>& vehicles) {
+  const std::string prefix = "vehicle_" + name + "_";
+  if (o.entries().has(prefix + "file")) return;
+  for (const std::string& body : o.texts(prefix + "bodies")) {
+    if (o.entries().has(prefix + body + "_mass")) return;
+  }
+  for (const std::string& vehicle : vehicles) {
+    if (!name.starts_with(vehicle + "_")) continue;
+    o.refuse(prefix + "bodies", fmt::format("'{}' stands in no list of vehicle {} (joints, springs, ...): add it there",
+                                            name.substr(vehicle.size() + 1), vehicle));
+  }
+}
+
 bool is_defined(const Options& o, const std::string& name) {
   return o.entries().has("vehicle_" + name + "_file") || o.entries().has("vehicle_" + name + "_bodies");
 }
@@ -115,9 +129,10 @@ std::vector<std::string> declare_vehicles(Options& o) {
     if (o.knows("vehicle_" + name + "_file") || (o.knows("vehicle_" + name + "_bodies"))) continue;
     declare_vehicle(o, name);
     others.push_back(name);
+    check_no_forgotten_part(o, name, train);
   }
   const bool loads = o.has("load_forces") || o.has("load_hslm_a");
-  if (train.empty() && !loads && others.size() == 1) train = others;
+  if (!o.entries().has("train_vehicles") && !loads && others.size() == 1) train = others;
   return train;
 }
 

@@ -27,14 +27,14 @@ bool is(TS ts, const char* type) {
 
 // The types that integrate this system rightly; the others fail, some of them without a word.
 void check_type() {
-  constexpr std::array allowed = {TSARKIMEX, TSCN, TSBDF, TSTHETA, TSBEULER, TSRK, TSSSP, TSEULER};
+  constexpr std::array allowed = {TSARKIMEX, TSCN, TSBDF, TSTHETA, TSBEULER, TSRK};
   std::array<char, 128> type{};
   PetscBool given = PETSC_FALSE;
   check(PetscOptionsGetString(nullptr, nullptr, "-ts_type", type.data(), type.size(), &given));
   if (given == PETSC_TRUE && std::find(allowed.begin(), allowed.end(), std::string_view(type.data())) == allowed.end())
     throw InputError(std::string("ts_type = ") + type.data() +
                      ": does not integrate this system rightly; allowed: arkimex, cn, bdf, theta, beuler (implicit), "
-                     "rk, ssp, euler (explicit, small scenes)");
+                     "rk (explicit, small scenes)");
   PetscInt order = 2;
   check(PetscOptionsGetInt(nullptr, nullptr, "-ts_bdf_order", &order, nullptr));
   if (order < 1 || order > 2)
@@ -107,7 +107,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
 }
 
 void Stepper::set_up_type() {
-  implicit_ = !(is(ts_, TSRK) || is(ts_, TSSSP) || is(ts_, TSEULER));
+  implicit_ = !is(ts_, TSRK);
   multistep_ = is(ts_, TSBDF);
   bool imex = false;
   if (is(ts_, TSARKIMEX)) {

@@ -1,4 +1,5 @@
-// A response that dies out along the bridge ends in subnormal numbers, which never reach zero and are slow.
+// A response that dies out along the bridge ends in subnormal numbers, which round to themselves instead of going on
+// to zero, over the whole rest of the bridge, and which many processors compute slowly.
 #pragma once
 
 #if defined(__SSE2__)

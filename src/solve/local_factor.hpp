@@ -73,8 +73,8 @@ class LocalFactor {
   ChainView view(const Chain<B>& chain, double* x) const;
 
   Extent<B> block_;
-  std::ptrdiff_t inner_;   // first inner node
-  std::ptrdiff_t middle_;  // -1: no inner nodes
+  std::ptrdiff_t inner_;        // first inner node
+  std::ptrdiff_t middle_ = -1;  // -1: no inner nodes
   bool follows_;
   bool followed_;
   std::array<Chain<B>, 2> chains_;  // the first is longer by one node or none

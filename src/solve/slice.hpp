@@ -92,7 +92,8 @@ bool invert(Block<B>& block, const Slice<B>& slice, std::ptrdiff_t node, PivotRe
       return false;
     }
     record.smallest_ratio = std::min(record.smallest_ratio, pivot / reference);
-    for (int k = 0; k <= i; ++k) scaled(i, k) = triangle(i, k) / pivot;
+    const double inverse = 1.0 / pivot;
+    for (int k = 0; k <= i; ++k) scaled(i, k) = triangle(i, k) * inverse;
   }
   for (int c = 0; c < n; ++c) {
     for (int r = c; r < n; ++r) {

@@ -39,9 +39,10 @@ class Block {
 
   friend Block operator*(const Block& left, const Block& right) {
     Block result(left.extent_);
-    for (int c = 0; c < result.size(); ++c) {
-      for (int k = 0; k < result.size(); ++k) {
-        for (int r = 0; r < result.size(); ++r) result(r, c) += left(r, k) * right(k, c);
+    const int n = left.size();
+    for (int c = 0; c < n; ++c) {
+      for (int k = 0; k < n; ++k) {
+        for (int r = 0; r < n; ++r) result(r, c) += left(r, k) * right(k, c);
       }
     }
     return result;
@@ -56,7 +57,9 @@ class Block {
   }
 
  private:
-  std::size_t index(int row, int column) const { return static_cast<std::size_t>(column * size() + row); }
+  std::size_t index(int row, int column) const {
+    return static_cast<std::size_t>(column) * static_cast<std::size_t>(size()) + static_cast<std::size_t>(row);
+  }
 
   Extent<B> extent_;
   std::array<double, static_cast<std::size_t>(storage_block<B>) * storage_block<B>> entries_ = {};

@@ -249,11 +249,9 @@ void Substructure<B>::expand(double* x, int column) const {
   local_->substitute(x + column * stride, stride, separators);
 }
 
-template class Substructure<1>;
 template class Substructure<2>;
 template class Substructure<3>;
 template class Substructure<4>;
-template class Substructure<5>;
 template class Substructure<6>;
 template class Substructure<any_block>;
 

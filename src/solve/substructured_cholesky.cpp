@@ -13,16 +13,12 @@ std::unique_ptr<AnySubstructure> make_substructure(MPI_Comm comm, int block_size
     throw std::logic_error("blocks have 1 to " + std::to_string(largest_block) + " unknowns");
   }
   switch (block_size) {
-    case 1:
-      return std::make_unique<Substructure<1>>(comm, block_size, local_nodes);
     case 2:
       return std::make_unique<Substructure<2>>(comm, block_size, local_nodes);
     case 3:
       return std::make_unique<Substructure<3>>(comm, block_size, local_nodes);
     case 4:
       return std::make_unique<Substructure<4>>(comm, block_size, local_nodes);
-    case 5:
-      return std::make_unique<Substructure<5>>(comm, block_size, local_nodes);
     case 6:
       return std::make_unique<Substructure<6>>(comm, block_size, local_nodes);
     default:

@@ -171,6 +171,17 @@ TEST(SolveOverRanks, EveryRankHearsOfABadPivot) {
   }
 }
 
+// Not a number in the coupling across a cut, which only the separators see.
+TEST(SolveOverRanks, EveryRankHearsOfANumberThatIsNone) {
+  const Cut cut({3, 4});
+  if (world_size() == 1) GTEST_SKIP() << "one rank has no cut";
+  BlockTridiagonal A =
+      test::slice(Eigen::MatrixXd::Identity(2 * cut.whole(), 2 * cut.whole()), 2, cut.begin(), cut.nodes());
+  if (world_rank() == 0) A.upper.back() = std::nan("");
+  SubstructuredCholesky cholesky(MPI_COMM_WORLD, 2, cut.nodes());
+  EXPECT_THROW(cholesky.factor(A, {}), SolverError);
+}
+
 TEST(SolveOverRanks, ReadsADistributedMatrix) {
   for (int block : {1, 2, 3}) {
     const Cut cut({4, 0, 3, 1});
