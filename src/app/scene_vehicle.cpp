@@ -128,8 +128,9 @@ std::vector<std::string> declare_vehicles(Options& o) {
     // a part's option of the vehicles found so far may end like a vehicle's
     if (o.knows("vehicle_" + name + "_file") || (o.knows("vehicle_" + name + "_bodies"))) continue;
     declare_vehicle(o, name);
+    check_no_forgotten_part(o, name, types);
     others.push_back(name);
-    check_no_forgotten_part(o, name, train);
+    types.push_back(name);
   }
   const bool loads = o.has("load_forces") || o.has("load_hslm_a");
   if (!o.entries().has("train_vehicles") && !loads && others.size() == 1) train = others;

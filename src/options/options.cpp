@@ -111,8 +111,10 @@ void Options::check_names() const {
     for (const std::string_view name : common_petsc_names()) candidates.emplace_back(name);
     std::sort(candidates.begin(), candidates.end());
     const std::string near = nearest(entry.name, candidates);
-    throw InputError(fmt::format("unknown option {}{}; -help lists them all", entry.given(),
-                                 near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+    const bool part = entry.name.starts_with("vehicle_");
+    throw InputError(fmt::format("unknown option {}{}{}; -help lists them all", entry.given(),
+                                 near.empty() ? "" : fmt::format("; did you mean {}?", near),
+                                 part ? " (a part has to stand in a list of its vehicle: bodies, springs, ...)" : ""));
   }
 }
 

@@ -147,6 +147,17 @@ std::vector<Entry> read_nested(const std::string& path, int depth) {
   return all;
 }
 
+/// Whether a tab stands before the first word of a line, counted from 0, or of the one before it.
+bool indented_by_tab(const std::string& text, int line) {
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string words; std::getline(lines, words); ++number) {
+    const std::string blanks = words.substr(0, words.find_first_not_of(" \t"));
+    if ((number == line || number == line - 1) && blanks.find('\t') != std::string::npos) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Entry> parse_yaml(const std::string& text, const std::string& name) {
@@ -158,7 +169,8 @@ std::vector<Entry> parse_yaml(const std::string& text, const std::string& name) 
     if (!documents.front().IsMap()) throw InputError(at(name, 1) + "expected `key: value`");
     Flattener(name, entries).map(documents.front(), "");
   } catch (const YAML::Exception& error) {
-    throw InputError(at(name, error.mark.line + 1) + "not well-formed YAML: " + error.msg);
+    throw InputError(at(name, error.mark.line + 1) + "not well-formed YAML: " + error.msg +
+                     (indented_by_tab(text, error.mark.line) ? " (a tab; YAML wants blanks)" : ""));
   }
   return entries;
 }

@@ -1,0 +1,72 @@
+// Every file in options/: it loads, scenes run to their end, and each opens with what, source and expected figure.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "support/program.hpp"
+#include "support/scene_run.hpp"
+
+namespace traverse::test {
+namespace {
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(TRAVERSE_SOURCE_DIR "/options/" + folder)) {
+    if (entry.path().extension() == ".yml") files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::string stem(const testing::TestParamInfo<std::string>& info) {
+  return std::filesystem::path(info.param).stem().string();
+}
+
+void expect_three_lines(const std::string& file) {
+  std::ifstream in(file);
+  for (const std::string first : {"# What: ", "# Source: ", "# Expected: "}) {
+    std::string line;
+    std::getline(in, line);
+    EXPECT_TRUE(line.starts_with(first)) << line;
+    EXPECT_GT(line.size(), first.size() + 10) << line;
+  }
+}
+
+/// Long scenes are cut short.
+class SceneFile : public testing::TestWithParam<std::string> {};
+TEST_P(SceneFile, RunsToItsEnd) {
+  expect_three_lines(GetParam());
+  const Workplace workplace("");
+  const Outcome outcome = workplace.run({"-options_file", GetParam(), "-ts_max_time", "0.2", "-output_file", "r.h5"});
+  expect_success(outcome);
+  EXPECT_NE(outcome.out.find("reached its end"), std::string::npos) << outcome.out;
+  EXPECT_NEAR(Results(workplace.path("r.h5")).time().back(), 0.2, 1e-12);
+}
+INSTANTIATE_TEST_SUITE_P(Options, SceneFile, testing::ValuesIn(files_in("scenes")), stem);
+
+class BridgeFile : public testing::TestWithParam<std::string> {};
+TEST_P(BridgeFile, CarriesAForce) {
+  expect_three_lines(GetParam());
+  const Workplace workplace("load: {forces: 1.0e5, speed: 50.0}\n");
+  const Outcome outcome = workplace.run({"-options_file", GetParam(), "-ts_max_time", "0.02", "-ts_dt", "0.01",
+                                         "-beam_elements_per_span", "2", "-output_file", "r.h5"});
+  expect_success(outcome);
+}
+INSTANTIATE_TEST_SUITE_P(Options, BridgeFile, testing::ValuesIn(files_in("bridges")), stem);
+
+/// On rigid ground, where its wheels carry its weight at rest.
+class VehicleFile : public testing::TestWithParam<std::string> {};
+TEST_P(VehicleFile, StandsAndRolls) {
+  expect_three_lines(GetParam());
+  const Workplace workplace("train: {vehicles: it, speed: 50.0}\n");
+  const Outcome outcome =
+      workplace.run({"-vehicle_it_file", GetParam(), "-ts_max_time", "0.02", "-ts_dt", "0.01", "-output_file", "r.h5"});
+  expect_success(outcome);
+  EXPECT_NE(outcome.out.find("contact losses        none"), std::string::npos) << outcome.out;
+}
+INSTANTIATE_TEST_SUITE_P(Options, VehicleFile, testing::ValuesIn(files_in("vehicles")), stem);
+
+}  // namespace
+}  // namespace traverse::test

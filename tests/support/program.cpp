@@ -1,0 +1,197 @@
+#include "support/program.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+namespace traverse::test {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Our variables but those by which Open MPI tells a process that it is part of a run.
+std::vector<std::string> clean_environment() {
+  std::vector<std::string> variables;
+  for (char** v = environ; *v != nullptr; ++v) {
+    const std::string variable = *v;
+    const auto starts = [&](const char* prefix) { return variable.rfind(prefix, 0) == 0; };
+    if (!starts("OMPI_") && !starts("PMIX_") && !starts("ORTE_") && !starts("PETSC_OPTIONS"))
+      variables.push_back(variable);
+  }
+  variables.insert(variables.end(), {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_pml=ob1",
+                                     "OMPI_MCA_btl=self,vader", "HWLOC_COMPONENTS=-gl,-opencl"});
+  return variables;
+}
+
+std::vector<char*> pointers_to(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+std::string text_of(const std::string& file) {
+  std::ostringstream text;
+  text << std::ifstream(file).rdbuf();
+  return text.str();
+}
+
+void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
+
+double since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+}  // namespace
+
+Child::Child(std::vector<std::string> command, const std::string& folder) {
+  const std::string words = "cd \"$0\" && exec \"$@\"";
+  command.insert(command.begin(), {"/bin/sh", "-c", words, folder});
+  std::vector<std::string> environment = clean_environment();
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0);
+  const std::string out = streams_.path("out"), err = streams_.path("err");
+  posix_spawn_file_actions_addopen(&files, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_addopen(&files, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  const int status =
+      posix_spawn(&pid_, "/bin/sh", &files, &attributes, pointers_to(command).data(), pointers_to(environment).data());
+  posix_spawn_file_actions_destroy(&files);
+  posix_spawnattr_destroy(&attributes);
+  if (status != 0) throw std::runtime_error("cannot start the program");
+}
+
+Child::~Child() {
+  if (ended()) return;
+  ::kill(-pid_, SIGKILL);
+  waitpid(pid_, &state_, 0);
+}
+
+void Child::kill(int signal) const { ::kill(pid_, signal); }
+
+bool Child::ended() {
+  if (!ended_) ended_ = waitpid(pid_, &state_, WNOHANG) == pid_;
+  return ended_;
+}
+
+std::string Child::written(const std::string& ending) const { return text_of(streams_.path(ending)); }
+
+bool Child::wait_for(const std::string& text, double seconds) {
+  for (const auto start = Clock::now(); since(start) < seconds; pause()) {
+    if (written("out").find(text) != std::string::npos) return true;
+    if (ended()) return false;
+  }
+  return false;
+}
+
+Outcome Child::wait(double seconds) {
+  Outcome outcome;
+  const auto start = Clock::now();
+  while (!ended() && since(start) < seconds) pause();
+  if (!ended()) {
+    outcome.timed_out = true;
+    ::kill(-pid_, SIGKILL);
+    waitpid(pid_, &state_, 0);
+    ended_ = true;
+  }
+  if (WIFEXITED(state_)) outcome.status = WEXITSTATUS(state_);
+  if (WIFSIGNALED(state_)) outcome.signal = WTERMSIG(state_);
+  outcome.out = written("out");
+  outcome.err = written("err");
+  return outcome;
+}
+
+std::vector<std::string> Workplace::command(const std::vector<std::string>& words, int ranks) const {
+  std::vector<std::string> command;
+  if (ranks > 1) command = {"mpirun", "--oversubscribe", "-n", std::to_string(ranks)};
+  command.insert(command.end(), {TRAVERSE_BINARY, "-options_file", "scene.yml"});
+  command.insert(command.end(), words.begin(), words.end());
+  return command;
+}
+
+Outcome Workplace::run(const std::vector<std::string>& words, int ranks, double seconds) const {
+  return Child(command(words, ranks), folder()).wait(seconds);
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> complaints(const Outcome& outcome) {
+  std::vector<std::string> lines = lines_of(outcome.err);
+  const auto rule =
+      std::find_if(lines.begin(), lines.end(), [](const std::string& l) { return l.starts_with("----"); });
+  const bool mpirun_speaks = outcome.err.find("mpirun") != std::string::npos;
+  if (!mpirun_speaks) return lines;
+  std::vector<std::string> ours(lines.begin(), rule);  // then mpirun's frames; ours may stand behind them, too
+  for (auto line = rule; line != lines.end(); ++line) {
+    if (line->starts_with("traverse: ")) ours.push_back(*line);
+  }
+  return ours;
+}
+
+void expect_success(const Outcome& outcome) {
+  EXPECT_FALSE(outcome.timed_out) << "it did not end\n" << outcome.out;
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+}
+
+void expect_refusal(const Workplace& workplace, const Outcome& outcome, const std::vector<std::string>& parts) {
+  ASSERT_FALSE(outcome.timed_out) << "it did not end\n" << outcome.out;
+  EXPECT_EQ(outcome.signal, 0);
+  EXPECT_NE(outcome.status, 0) << outcome.out;
+  const std::vector<std::string> lines = complaints(outcome);
+  ASSERT_EQ(lines.size(), 1U) << outcome.err;
+  EXPECT_TRUE(lines.front().starts_with("traverse: ")) << lines.front();
+  for (const std::string& part : parts) {
+    EXPECT_NE(lines.front().find(part), std::string::npos) << "no '" << part << "' in: " << lines.front();
+  }
+  EXPECT_EQ(outcome.out.find("summary"), std::string::npos) << outcome.out;
+  EXPECT_FALSE(workplace.has("results")) << "a results folder was made";
+}
+
+const char* const two_spans = R"(beam:
+  spans: [20.0, 20.0]
+  elements_per_span: 4
+  EI: 1.0e10
+  EA: 1.0e10
+  mass: 2000.0
+support:
+  types: [pinned, roller, roller]
+)";
+
+const char* const quarter_car = R"(vehicle:
+  car:
+    bodies:  [body, axle]
+    joints:  [guide]
+    springs: [suspension]
+    wheels:  [wheel]
+    drivers: [level]
+    body:    {mass: 5000.0, inertia: 100.0, position: [0.0, 2.0]}
+    axle:    {mass: 1000.0, inertia: 10.0, position: [0.0, 0.5]}
+    guide:   {type: prismatic, bodies: [body, axle], point: [0.0, 0.5], axis: [0.0, 1.0]}
+    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.5], stiffness: 1.6e6, damping: 1.0e4}
+    wheel:   {body: axle, radius: 0.5, law: hertz, stiffness: 1.0e10}
+    level:   {body: body, coordinate: phi}
+train:
+  vehicles: car
+  speed: 40.0
+)";
+
+std::string small_scene() { return std::string(two_spans) + quarter_car + "ts_dt: 0.01\n"; }
+
+}  // namespace traverse::test
