@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/curve.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace traverse::test {
 namespace {
@@ -100,13 +101,16 @@ TEST(Energy, RollingTrainLeftToItself) {
 }
 
 TEST(Energy, BrakedTrain) {
-  const Values brake = {{"train_drive", "free"},
-                        {"vehicle_car_actuators", "brake,engine"},
-                        {"vehicle_car_brake_bodies", "front_axle,body"},
-                        {"vehicle_car_brake_moment", "8e3"},
-                        {"vehicle_car_engine_body", "rear_axle"},
-                        {"vehicle_car_engine_force", "3e3,0"}};
-  Results run = run_yaml(rolling, brake);
+  const TemporaryFolder folder;  // both begin at 0, for a wheel that can turn has no equilibrium under a moment
+  const std::string brake = folder.write("brake.csv", "0, 0\n0.5, 8e3\n1.0, 8e3\n10.0, 2e3\n");
+  const std::string wind = folder.write("wind.csv", "0, 0, 0\n0.5, -3e3, 1e3\n10.0, -3e3, -2e3\n");
+  const Values actuators = {{"train_drive", "free"},
+                            {"vehicle_car_actuators", "brake,wind"},
+                            {"vehicle_car_brake_bodies", "front_axle,body"},
+                            {"vehicle_car_brake_table", brake},
+                            {"vehicle_car_wind_body", "body"},
+                            {"vehicle_car_wind_table", wind}};
+  Results run = run_yaml(rolling, actuators);
   EXPECT_LT(run("/energy/work").back(), -1e3);
   expect_balance(run);
 }
