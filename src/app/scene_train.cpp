@@ -46,7 +46,7 @@ std::vector<double> read_positions(const Options& o, const Scene& scene) {
     if (x.size() != order.size()) {
       o.refuse("train_positions",
                order.size() == 1
-                   ? fmt::format("has {} entries, the train has one vehicle; wanted: one number", x.size())
+                   ? fmt::format("has {} entries; wanted: 1, one a vehicle", x.size())
                    : fmt::format("has {} entries; wanted: one, or {}, one a vehicle", x.size(), order.size()));
     }
     return x;

@@ -133,11 +133,11 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 std::vector<std::string> complaints(const Outcome& outcome) {
   std::vector<std::string> lines = lines_of(outcome.err);
+  std::erase_if(lines, [](const std::string& l) { return l.find("ORTE_ERROR_LOG") != std::string::npos; });
   const auto rule =
       std::find_if(lines.begin(), lines.end(), [](const std::string& l) { return l.starts_with("----"); });
-  const bool mpirun_speaks = outcome.err.find("mpirun") != std::string::npos;
-  if (!mpirun_speaks) return lines;
-  std::vector<std::string> ours(lines.begin(), rule);  // then mpirun's frames; ours may stand behind them, too
+  std::vector<std::string> ours(lines.begin(),
+                                rule);  // then mpirun speaks, between rules; ours may stand behind them, too
   for (auto line = rule; line != lines.end(); ++line) {
     if (line->starts_with("traverse: ")) ours.push_back(*line);
   }
