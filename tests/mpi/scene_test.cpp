@@ -1,0 +1,169 @@
+// A scene gives the same results on one rank and on all: each rank also runs it on its own and compares with the
+// file of the common run.
+#include <gtest/gtest.h>
+#include <hdf5.h>
+#include <petscsys.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/curve.hpp"
+
+namespace traverse::test {
+namespace {
+
+// Names of all datasets of numbers.
+std::vector<std::string> datasets(const std::string& path) {
+  std::vector<std::string> names;
+  const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  auto visit = [](hid_t root, const char* name, const H5O_info_t* info, void* into) -> herr_t {
+    if (info->type != H5O_TYPE_DATASET) return 0;
+    const hid_t set = H5Dopen2(root, name, H5P_DEFAULT);
+    const hid_t type = H5Dget_type(set);
+    if (H5Tget_class(type) == H5T_FLOAT)
+      static_cast<std::vector<std::string>*>(into)->push_back(std::string("/") + name);
+    H5Tclose(type);
+    H5Dclose(set);
+    return 0;
+  };
+  H5Ovisit1(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit, &names);
+  H5Fclose(file);
+  return names;
+}
+
+// A mode's sign is free: the largest ordinate counts as positive.
+std::vector<double> with_sign(std::vector<double> shapes, std::size_t modes) {
+  const std::size_t nodes = shapes.size() / modes;
+  for (std::size_t m = 0; m < modes; ++m) {
+    const auto begin = shapes.begin() + static_cast<std::ptrdiff_t>(m * nodes);
+    const auto end = begin + static_cast<std::ptrdiff_t>(nodes);
+    double first = 0.0, largest = 0.0;
+    for (auto it = begin; it != end; ++it) largest = std::max(largest, std::abs(*it));
+    for (auto it = begin; it != end && first == 0.0; ++it) {
+      if (std::abs(*it) > 0.1 * largest) first = *it;
+    }
+    if (first < 0.0) std::transform(begin, end, begin, [](double x) { return -x; });
+  }
+  return shapes;
+}
+
+// To 1e-9 of each dataset's peak; what is left of the energy balance is rounding.
+// Accelerations below `at_rest` (m/s2) are rounding too.
+void expect_same(Results& one, Results& all, std::size_t least, double at_rest = 0.0) {
+  const std::vector<std::string> names = datasets(one.file());
+  EXPECT_EQ(names, datasets(all.file()));
+  EXPECT_GE(names.size(), least);
+  for (const std::string& name : names) {
+    if (name == "/energy/residual") continue;
+    const std::size_t modes = name == "/modes/shape" ? one("/modes/frequency").size() : 0;
+    const std::vector<double> a = modes > 0 ? with_sign(all(name), modes) : all(name);
+    const std::vector<double> b = modes > 0 ? with_sign(one(name), modes) : one(name);
+    ASSERT_EQ(a.size(), b.size()) << name;
+    if (name.ends_with("acceleration") && at_rest > 0.0) {
+      EXPECT_LT(std::max(std::abs(peak(a).first), std::abs(peak(b).first)), at_rest) << name;
+      continue;
+    }
+    EXPECT_LT(relative_difference(a, b), 1e-9) << name;
+  }
+}
+
+void expect_same_on_all_ranks(const std::string& scene, const Values& options, std::size_t least) {
+  Results all = run_scene(scene, options, PETSC_COMM_WORLD);
+  Results one = run_scene(scene, options, PETSC_COMM_SELF);
+  expect_same(one, all, least);
+}
+
+TEST(Ranks, HalfCarWithFrictionOnThreeSpans) {
+  expect_same_on_all_ranks("three_span_half_car",
+                           {{"train_vehicles", "half_car"},
+                            {"train_positions", "-5"},
+                            {"ts_dt", "2e-3"},
+                            {"output_interval", "0.02"},
+                            {"scene_tail", "0.2"},
+                            {"vehicle_half_car_rear_wheel_friction", "0.2"},
+                            {"vehicle_half_car_front_wheel_damping", "1e4"}},
+                           35);
+}
+
+TEST(Ranks, FreeTrainOnABridgeWithFoundationAndBump) {
+  expect_same_on_all_ranks("three_span_half_car",
+                           {{"train_vehicles", "half_car"},
+                            {"train_positions", "5"},
+                            {"train_drive", "free"},
+                            {"ts_dt", "2e-3"},
+                            {"ts_max_time", "1.0"},
+                            {"output_interval", "0.02"},
+                            {"beam_self_weight", "true"},
+                            {"foundation_vertical_x", "12.3,55"},
+                            {"foundation_vertical_k", "1e7"},
+                            {"foundation_vertical_c", "1e4"},
+                            {"foundation_longitudinal_bed_k", "1e5"},
+                            {"track_profile", "bump"},
+                            {"track_bump_start", "20"},
+                            {"track_bump_length", "3"},
+                            {"track_bump_height", "0.003"}},
+                           35);
+}
+
+// Two coaches over spans of their own.
+TEST(Ranks, TrainOverIsolatedSpans) {
+  expect_same_on_all_ranks("three_span_train",
+                           {{"train_vehicles", "coach*2"},
+                            {"beam_continuity", "simply_supported"},
+                            {"beam_elements_per_span", "6"},
+                            {"ts_dt", "4e-3"},
+                            {"output_interval", "0.04"}},
+                           40);
+}
+
+TEST(Ranks, MovingForces) {
+  expect_same_on_all_ranks("r6_three_spans",
+                           {{"load_forces", "1e4,2e4,-5e3"},
+                            {"load_positions", "0,-7.3,-21"},
+                            {"beam_elements_per_span", "7,3,11"},
+                            {"beam_damping_ratios", "0.01,0.02"},
+                            {"ts_dt", "2e-3"},
+                            {"scene_tail", "0.3"},
+                            {"output_interval", "0.02"}},
+                           12);
+}
+
+TEST(Ranks, ExplicitContact) {
+  expect_same_on_all_ranks("r4_hertz_wheel",
+                           {{"beam_elements_per_span", "5"},
+                            {"ts_arkimex_fully_implicit", "false"},
+                            {"ts_dt", "1e-3"},
+                            {"output_interval", "0.02"}},
+                           20);
+}
+
+// At rest accelerations are rounding: they are zero on any number of ranks.
+TEST(Ranks, StaticResponse) {
+  const Values options = {{"scene_analysis", "static"}, {"train_positions", "33,12"}};
+  Results all = run_scene("three_span_half_car", options, PETSC_COMM_WORLD);
+  Results one = run_scene("three_span_half_car", options, PETSC_COMM_SELF);
+  expect_same(one, all, 35, 1e-6);
+}
+
+TEST(Ranks, Modes) {
+  expect_same_on_all_ranks("r6_three_spans",
+                           {{"scene_analysis", "modes"},
+                            {"modes_count", "8"},
+                            {"beam_spans", "20,23,17"},
+                            {"beam_damping_ratios", "0.01,0.02"},
+                            {"beam_elements_per_span", "8"}},
+                           3);
+}
+
+// One element: fewer nodes than ranks.
+TEST(Ranks, MoreRanksThanNodes) {
+  expect_same_on_all_ranks("r2_sprung_mass",
+                           {{"beam_elements_per_span", "1"},
+                            {"ts_dt", "2e-3"},
+                            {"output_interval", "0.02"},
+                            {"support_types", "clamped,roller"}},
+                           18);
+}
+
+}  // namespace
+}  // namespace traverse::test
