@@ -9,6 +9,7 @@ namespace {
 
 constexpr int most_iterations = 40;
 constexpr double tolerance = 1e-13;  // of the weight: what is left in forces after the last step
+constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
 
 // Tangent of the forces (normal, tangential) with respect to displacements along the contact's two directions,
 // when rates are shift times displacements.
@@ -28,27 +29,33 @@ Eigen::Vector2d force_correction(const WheelContact& c) {
           c.force.tangential_by_penetration * a + c.force.tangential_by_rate * r + c.force.tangential_by_sliding * s};
 }
 
+template <class Right>
+void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Right& x) {
+  x = lu.permutationP() * x;
+  lu.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(x);
+  lu.matrixLU().triangularView<Eigen::Upper>().solveInPlace(x);
+}
+
 }  // namespace
 
 bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
   work_.resize(fleet.vehicles.size());
   pd_.resize(fleet.freedom());
   pdd_.resize(fleet.freedom());
-  double greatest = 0.0;
-  for (int i = 0; i < fleet.freedom(); ++i) greatest = std::max(greatest, std::abs(p[i]));
-  // Rounding of shift^2*p, over g: forces cannot be met better than that.
-  const double floor = 4.0 * std::numeric_limits<double>::epsilon() * s.shift * s.shift * greatest / 9.81;
   for (int i = 0; i < most_iterations; ++i) {
     ++iterations_;
-    if (!evaluate(fleet, s, p)) return false;
-    const bool curvature = s.shift == 0.0 || i > 2;
-    for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) vehicle_system(fleet, static_cast<int>(k), s, curvature);
-    couple_beam(fleet, s);
+    // The vehicles' own part of the Newton matrix hardly changes within a stage: kept after the first iteration,
+    // and taken in full, constraint curvature included, where that turns out not to be enough.
+    const Tangent own = s.shift == 0.0 || i > 2 ? Tangent::full : i == 0 ? Tangent::fresh : Tangent::kept;
+    if (!evaluate(fleet, s, p, own != Tangent::kept)) return false;
+    for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) vehicle_system(fleet, static_cast<int>(k), s, own);
+    couple_beam(fleet, s, own);
     const double before = change_;
     change_ = update(fleet, s, p);
     if (!std::isfinite(change_)) return false;
-    // The next change would be smaller by at least the ratio of the last two.
-    if (i > 0 && (change_ <= floor || change_ * std::min(1.0, change_ / before) <= tolerance)) {
+    // The next change would be smaller by at least the ratio of the last two; where rounding rules it no longer falls.
+    const double ratio = i > 0 ? std::min(1.0, change_ / before) : 1.0;
+    if (i > 0 && (change_ * ratio <= tolerance || (change_ <= rounding && ratio > 0.1))) {
       fleet.contact_forces();
       fleet.element_loads(s.block, loads_);
       return true;
@@ -58,12 +65,12 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
 }
 
 // Vehicles at p, contacts from the kinematics held, the beam under these forces, the geometry at all of it.
-bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* p) {
+bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* p, bool derivatives) {
   for (int i = 0; i < fleet.freedom(); ++i) {
     pd_[i] = s.shift * p[i] + s.c_p[i];
     pdd_[i] = s.shift * pd_[i] + s.c_p[fleet.freedom() + i];
   }
-  if (!fleet.set(s.t, p, pd_.data(), true)) return false;
+  if (!fleet.set(s.t, p, pd_.data(), derivatives)) return false;
   fleet.contact_forces();
   fleet.element_loads(s.block, loads_);
   beam_field(s, fleet);
@@ -91,7 +98,7 @@ void ContactNewton::beam_field(const StageData& s, const Fleet& fleet) {
 
 // One vehicle with its contacts linearised and the surface held: J dp0 = -R, and what a displacement of the beam
 // along the contacts would do to dp (-Z) and to the forces (T).
-void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, bool curvature) {
+void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own) {
   MovingVehicle& vehicle = fleet.vehicles[k];
   multibody::MechanismState& state = vehicle.state;
   const multibody::Mechanism& mechanism = vehicle.mechanism;
@@ -128,15 +135,18 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, bool
   w.r = N.cwiseProduct(w.r + state.d) - state.g - vehicle.Q;
   w.R.noalias() = state.B.transpose() * w.r;
 
-  w.gB = -state.g_q - s.shift * state.g_qd;
-  if (curvature && mechanism.constraints() > 0) {
-    mechanism.recover(state, vehicle.Q, pdd.data());
-    mechanism.compute_lambda_curvature(state);
-    w.gB += state.lambda_curvature;
+  if (own != Tangent::kept) {
+    w.gB = -state.g_q - s.shift * state.g_qd;
+    if (own == Tangent::full && mechanism.constraints() > 0) {
+      mechanism.recover(state, vehicle.Q, pdd.data());
+      mechanism.compute_lambda_curvature(state);
+      w.gB += state.lambda_curvature;
+    }
+    w.gB.diagonal() += s.shift * s.shift * N;
+    w.NB.noalias() = w.gB * state.B;
+    w.own.noalias() = state.B.transpose() * w.NB;
   }
-  w.gB.diagonal() += s.shift * s.shift * N;
-  w.NB.noalias() = w.gB * state.B;
-  w.J.noalias() = state.B.transpose() * w.NB;
+  w.J = w.own;
   w.Z.noalias() = w.D * w.G;  // D G, for now
   w.J.noalias() += w.G.transpose() * w.Z;
 
@@ -145,10 +155,12 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, bool
   w.NB.col(0) = -w.R;
   w.NB.rightCols(rows).noalias() = w.G.transpose() * w.D;
   if (f > 0) {
-    if (s.shift == 0.0)
+    if (s.shift == 0.0) {  // statics may have neutral coordinates
       w.NB = w.J.completeOrthogonalDecomposition().solve(w.NB).eval();
-    else
-      w.NB = w.J.partialPivLu().solve(w.NB).eval();
+    } else {
+      w.lu.compute(w.J);
+      solve_in_place(w.lu, w.NB);
+    }
   }
   w.dp = w.NB.col(0);
   w.f_hat = w.correction + w.Z * w.dp;
@@ -157,45 +169,57 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, bool
   w.Z = w.NB.rightCols(rows);
 }
 
-// The beam answers the change of force: (I + W T) du = -W f_hat along the directions of the wheels on the beam.
-void ContactNewton::couple_beam(const Fleet& fleet, const StageData& s) {
-  row_vehicle_.clear();
-  row_index_.clear();
+// Rows of the coupled system: contact components of the wheels on the beam. Their mutual compliance W is a Newton
+// matrix's, and kept as the vehicles' own parts are, unless a wheel has gone over to another element.
+bool ContactNewton::list_rows(const Fleet& fleet) {
+  previous_rows_.swap(rows_);
+  rows_.clear();
   for (std::size_t k = 0; k < work_.size(); ++k)
-    for (std::size_t i = 0; i < work_[k].wheel.size(); ++i)
-      if (fleet.wheels[work_[k].wheel[i]].slot() >= 0) {
-        row_vehicle_.push_back(static_cast<int>(k));
-        row_index_.push_back(static_cast<int>(i));
-      }
-  const int n = static_cast<int>(row_vehicle_.size());
-  du_.setZero(n);
-  if (n == 0) return;
+    for (std::size_t i = 0; i < work_[k].wheel.size(); ++i) {
+      const WheelContact& c = fleet.wheels[work_[k].wheel[i]];
+      if (c.slot() >= 0) rows_.push_back({static_cast<int>(k), static_cast<int>(i), c.slot()});
+    }
+  return rows_ != previous_rows_;
+}
+
+void ContactNewton::mutual_compliance(const Fleet& fleet, const StageData& s) {
+  const int n = static_cast<int>(rows_.size());
   const int m = 2 * s.block;
-  auto contact_of = [&](int row) -> const WheelContact& {
-    return fleet.wheels[work_[row_vehicle_[row]].wheel[row_index_[row]]];
-  };
-  auto direction_of = [&](int row) {
-    const WheelContact& c = contact_of(row);
-    return Eigen::Map<const Eigen::VectorXd>(
-        (work_[row_vehicle_[row]].component[row_index_[row]] == 0 ? c.touch.normal_on_beam : c.touch.tangent_on_beam)
-            .data(),
-        m);
+  auto direction_of = [&](const Row& row) {
+    const Touch& touch = fleet.wheels[work_[row.vehicle].wheel[row.index]].touch;
+    return (work_[row.vehicle].component[row.index] == 0 ? touch.normal_on_beam : touch.tangent_on_beam).data();
   };
   W_.resize(n, n);
-  for (int a = 0; a < n; ++a)
-    for (int b = 0; b < n; ++b) {
-      const Eigen::Map<const Eigen::MatrixXd> C(s.compliance->block(contact_of(a).slot(), contact_of(b).slot()), m, m);
-      W_(a, b) = direction_of(a).dot(C.lazyProduct(direction_of(b)));
-    }
-  coupled_.setIdentity(n, n);
-  rhs_.setZero(n);
   for (int b = 0; b < n; ++b) {
-    const VehicleWork& w = work_[row_vehicle_[b]];
-    rhs_ -= W_.col(b) * w.f_hat[row_index_[b]];
-    for (int c = 0; c < n; ++c)
-      if (row_vehicle_[c] == row_vehicle_[b]) coupled_.col(c) += W_.col(b) * w.T(row_index_[b], row_index_[c]);
+    const double* from = direction_of(rows_[b]);
+    for (int a = 0; a < n; ++a) {
+      const double* to = direction_of(rows_[a]);
+      const double* C = s.compliance->block(rows_[a].slot, rows_[b].slot);
+      double sum = 0.0;
+      for (int j = 0; j < m; ++j)
+        for (int i = 0; i < m; ++i) sum += to[i] * C[i + j * m] * from[j];
+      W_(a, b) = sum;
+    }
   }
-  du_ = coupled_.partialPivLu().solve(rhs_);
+}
+
+// The beam answers the change of force: (I + W T) du = -W f_hat along the directions of the wheels on the beam.
+void ContactNewton::couple_beam(const Fleet& fleet, const StageData& s, Tangent own) {
+  const bool moved = list_rows(fleet);
+  const int n = static_cast<int>(rows_.size());
+  du_.setZero(n);
+  if (n == 0) return;
+  if (moved || own != Tangent::kept) mutual_compliance(fleet, s);
+  coupled_.setIdentity(n, n);
+  du_.setZero(n);
+  for (int b = 0; b < n; ++b) {
+    const VehicleWork& w = work_[rows_[b].vehicle];
+    du_ -= W_.col(b) * w.f_hat[rows_[b].index];
+    for (int c = 0; c < n; ++c)
+      if (rows_[c].vehicle == rows_[b].vehicle) coupled_.col(c) += W_.col(b) * w.T(rows_[b].index, rows_[c].index);
+  }
+  lu_.compute(coupled_);
+  solve_in_place(lu_, du_);
 }
 
 // Applies the step to p and to the contact kinematics. Returns the largest residual or change of force over the

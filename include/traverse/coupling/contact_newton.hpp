@@ -37,21 +37,31 @@ class ContactNewton {
 
  private:
   struct VehicleWork {
-    Eigen::MatrixXd J, G, D, Z, T, NB, gB;  // G: contact directions times B; D: tangent of the law
+    Eigen::MatrixXd J, own, G, D, Z, T, NB,
+        gB;  // own: J without contacts; G: contact directions times B; D: law's tangent
     Eigen::VectorXd R, dp, f_hat, correction, r;
+    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
     std::vector<int> wheel, component;  // of every row of G: which wheel, 0 normal or 1 tangential
   };
-  bool evaluate(Fleet& fleet, const StageData& s, const double* p);
+  struct Row {  // of the coupled system: a row of a vehicle's G, and the element that carries it
+    int vehicle, index, slot;
+    bool operator==(const Row&) const = default;
+  };
+  enum class Tangent { kept, fresh, full };
+  bool evaluate(Fleet& fleet, const StageData& s, const double* p, bool derivatives);
   void beam_field(const StageData& s, const Fleet& fleet);
-  void vehicle_system(Fleet& fleet, int k, const StageData& s, bool curvature);
-  void couple_beam(const Fleet& fleet, const StageData& s);
+  void vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own);
+  bool list_rows(const Fleet& fleet);
+  void mutual_compliance(const Fleet& fleet, const StageData& s);
+  void couple_beam(const Fleet& fleet, const StageData& s, Tangent own);
   double update(Fleet& fleet, const StageData& s, double* p);
 
   std::vector<VehicleWork> work_;
   std::vector<double> loads_, v_, w_, pd_, pdd_;
   Eigen::MatrixXd W_, coupled_;
-  Eigen::VectorXd du_, rhs_;
-  std::vector<int> row_vehicle_, row_index_;  // of the coupled system: which vehicle, which row of its G
+  Eigen::VectorXd du_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  std::vector<Row> rows_, previous_rows_;
   long iterations_ = 0;
   double change_ = 0.0;
 };
