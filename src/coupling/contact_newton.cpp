@@ -9,7 +9,8 @@ namespace {
 
 constexpr int most_iterations = 40;
 constexpr double tolerance = 1e-13;  // of the weight: what is left in forces after the last step
-constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
+constexpr double best_ratio = 1e-3;
+constexpr double rounding = 1e-9;  // of the weight: below this a change that stays is taken as rounding
 
 // Tangent of the forces (normal, tangential) with respect to displacements along the contact's two directions,
 // when rates are shift times displacements.
@@ -53,9 +54,11 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
     const double before = change_;
     change_ = update(fleet, s, p);
     if (!std::isfinite(change_)) return false;
-    // The next change would be smaller by at least the ratio of the last two; where rounding rules it no longer falls.
-    const double ratio = i > 0 ? std::min(1.0, change_ / before) : 1.0;
-    if (i > 0 && (change_ * ratio <= tolerance || (change_ <= rounding && ratio > 0.1))) {
+    // The next change would be smaller by about the ratio of the last two, which is not trusted beyond best_ratio
+    // (at the start of a run not at all); where rounding rules it no longer falls.
+    const double ratio = std::clamp(change_ / before, s.shift > 0.0 ? best_ratio : 1.0, 1.0);
+    if (i > 0 &&
+        (change_ <= tolerance || change_ * ratio <= tolerance || (change_ <= rounding && change_ > 0.1 * before))) {
       fleet.contact_forces();
       fleet.element_loads(s.block, loads_);
       return true;

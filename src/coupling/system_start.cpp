@@ -50,7 +50,8 @@ void System::find_equilibrium(double* v) {
   if (!stage_of_fleet(0.0, 0.0, nodal_.data(), at_rest.data()))
     throw SolverError("no static equilibrium found to start from (forces out of balance by " +
                       std::to_string(newton_.last_change()) +
-                      " of a vehicle's weight): is every body held by joints, springs or wheels? scene_start: given "
+                      " of a vehicle's weight): is every body held by joints, springs or wheels, also against "
+                      "actuators? scene_start: given "
                       "starts from the positions as written");
   if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->add_response(newton_.element_loads(), nodal_.data());
   std::copy(nodal_.begin(), nodal_.end(), v);
