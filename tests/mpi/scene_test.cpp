@@ -79,7 +79,7 @@ TEST(Ranks, HalfCarWithFrictionOnThreeSpans) {
                             {"train_positions", "-5"},
                             {"ts_dt", "2e-3"},
                             {"output_interval", "0.02"},
-                            {"scene_tail", "0.2"},
+                            {"ts_max_time", "1.6"},
                             {"vehicle_half_car_rear_wheel_friction", "0.2"},
                             {"vehicle_half_car_front_wheel_damping", "1e4"}},
                            35);
@@ -112,6 +112,7 @@ TEST(Ranks, TrainOverIsolatedSpans) {
                             {"beam_continuity", "simply_supported"},
                             {"beam_elements_per_span", "6"},
                             {"ts_dt", "4e-3"},
+                            {"ts_max_time", "1.2"},
                             {"output_interval", "0.04"}},
                            40);
 }
