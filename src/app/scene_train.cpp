@@ -42,12 +42,12 @@ std::vector<double> read_positions(const Options& o, const Scene& scene) {
   std::vector<double> x;
   if (o.has("train_positions")) x = o.numbers("train_positions");
   if (x.size() > 1 || (order.size() == 1 && !x.empty())) {
-    if (x.size() > 1 && o.has("train_spacing")) o.refuse("train_spacing", "all positions are given: leave the spacing out");
+    if (x.size() > 1 && o.has("train_spacing"))
+      o.refuse("train_spacing", "all positions are given: leave the spacing out");
     if (x.size() != order.size()) {
-      o.refuse("train_positions",
-               order.size() == 1
-                   ? fmt::format("has {} entries; wanted: 1, one a vehicle", x.size())
-                   : fmt::format("has {} entries; wanted: one, or {}, one a vehicle", x.size(), order.size()));
+      o.refuse("train_positions", order.size() == 1 ? fmt::format("has {} entries; wanted: 1, one a vehicle", x.size())
+                                                    : fmt::format("has {} entries; wanted: one, or {}, one a vehicle",
+                                                                  x.size(), order.size()));
     }
     return x;
   }

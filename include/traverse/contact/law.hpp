@@ -13,18 +13,18 @@ enum class LawKind { hertz, linear };
 /// Friction: mu0*tanh(sliding/transition_speed)*normal, against the sliding.
 struct Law {
   LawKind kind = LawKind::hertz;
-  double stiffness = 0.0;           // N/m^1.5 or N/m
-  double damping = 0.0;             // N s/m
+  double stiffness = 0.0;             // N/m^1.5 or N/m
+  double damping = 0.0;               // N s/m
   std::optional<double> restitution;  // 0..1
-  double friction = 0.0;            // mu0
-  double transition_speed = 0.01;   // m/s
+  double friction = 0.0;              // mu0
+  double transition_speed = 0.01;     // m/s
 };
 
 /// Contact kinematics: penetration (positive when touching), its rate, and the sliding speed.
 struct Kinematics {
-  double penetration = 0.0;     // alpha, m
+  double penetration = 0.0;       // alpha, m
   double penetration_rate = 0.0;  // m/s
-  double sliding_speed = 0.0;   // beta', m/s
+  double sliding_speed = 0.0;     // beta', m/s
 };
 
 /// Forces and their derivatives with respect to the kinematics.

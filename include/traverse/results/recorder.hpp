@@ -18,9 +18,9 @@ struct Layout {
   struct VehicleNames {
     std::vector<std::string> bodies, wheels, joints;
   };
-  std::vector<double> probes;        // stations, m; empty without a beam
-  std::vector<double> supports;      // stations of the span ends, m
-  std::vector<double> nodes;         // x of every node, m: the bridge's shape is stored at the worst instants
+  std::vector<double> probes;    // stations, m; empty without a beam
+  std::vector<double> supports;  // stations of the span ends, m
+  std::vector<double> nodes;     // x of every node, m: the bridge's shape is stored at the worst instants
   std::vector<VehicleNames> vehicles;
 };
 
@@ -60,19 +60,19 @@ struct Extreme {
 };
 struct Summary {
   Extreme deflection, acceleration, moment;
-  double static_deflection = 0.0;        // largest |static deflection| at the same station with the same loads; 0: unknown
-  double amplification = 0.0;            // |deflection| over static; 0: unknown
+  double static_deflection = 0.0;  // largest |static deflection| at the same station with the same loads; 0: unknown
+  double amplification = 0.0;      // |deflection| over static; 0: unknown
   double least_wheel_force = 0.0, greatest_wheel_force = 0.0;
   double least_wheel_force_time = 0.0;
-  std::string least_wheel;               // e.g. "vehicle 3, rear_wheel"
+  std::string least_wheel;  // e.g. "vehicle 3, rear_wheel"
   int contact_losses = 0;
-  double longest_loss = 0.0;             // s
-  double energy_residual = 0.0;          // largest |residual|, J
-  double energy_scale = 0.0;             // largest term, J
+  double longest_loss = 0.0;     // s
+  double energy_residual = 0.0;  // largest |residual|, J
+  double energy_scale = 0.0;     // largest term, J
   long steps = 0;
-  long solves = 0;                       // beam solves
-  double wall_seconds = 0.0;             // of the time loop
-  std::string ended;                     // "reached its end", or why it stopped
+  long solves = 0;            // beam solves
+  double wall_seconds = 0.0;  // of the time loop
+  std::string ended;          // "reached its end", or why it stopped
 };
 
 /// The writer. Only rank 0 opens and writes the file; on the other ranks every call does nothing.
