@@ -7,7 +7,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/scripts/setup.sh"
 status=0
 ctest --test-dir build -j "$(nproc)" --output-on-failure --no-tests=error "$@" | tee build/test.log || status=$?
 awk '/tests passed, / { failed = $4; total = $NF }
-     /\((Skipped)\)$/ { skipped++ }
+     /\(Skipped\)$/ { skipped++ }
      END { if (skipped) print skipped " skipped"
            printf "%d passed, %d failed\n", total - failed - skipped, failed }' build/test.log
 exit "$status"
