@@ -14,9 +14,14 @@
 
 namespace {
 
-// Open MPI's start-up without mpirun takes 0.3 s unless told that one process is all there is.
+constexpr const char* no_session_folder = "OMPI_MCA_orte_create_session_dirs";
+
+// Open MPI's start-up without mpirun takes 0.3 s unless told that one process is all there is; programs that start
+// side by side would compete for its session folder. No search for displays as accelerators either.
 void start_lightly() {
+  setenv("HWLOC_COMPONENTS", "-gl,-opencl", 0);
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) return;
+  setenv(no_session_folder, "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);
   setenv("OMPI_MCA_btl", "self,vader", 0);
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
@@ -55,6 +60,7 @@ int main(int argc, char** argv) {
     if (input.version) return std::puts("traverse " TRAVERSE_VERSION) < 0 ? EXIT_FAILURE : 0;
     traverse::options::Arguments words(input.petsc_words);
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
+    unsetenv(no_session_folder);  // mpirun started from here would fail with it
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
     const int status = run(input);
     SlepcFinalize();

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <numbers>
 #include <optional>
@@ -16,6 +17,8 @@
 
 namespace traverse::app {
 namespace {
+
+constexpr double unbalanced = 0.1;  // of the largest energy: no answer then, whatever it looks like
 
 std::atomic<int> caught{0};  // the signal that asks the run to end
 void catch_signal(int signal) { caught = signal; }
@@ -75,14 +78,14 @@ void print_notes(MPI_Comm comm, std::vector<std::string> notes) {
   if (rank == 0) results::print_modelled(notes);
 }
 
-// A failure that only the writing rank knows of: the others are not to wait for it.
+// A file that cannot grow, which the writing rank alone knows: the others are not to wait for it.
 [[noreturn]] void leave_together(MPI_Comm comm, const FileError& error) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
-  if (ranks == 1) throw error;
   fmt::print(stderr, "traverse: {}\n", error.what());
-  MPI_Abort(comm, error.status());
-  std::abort();
+  if (ranks > 1) MPI_Abort(comm, error.status());
+  std::fflush(nullptr);
+  std::_Exit(error.status());  // HDF5 may not survive closing what it could not write
 }
 
 int run_modes(MPI_Comm comm, const Scene& scene, beam::Beam& beam, std::vector<std::string> notes) {
@@ -152,6 +155,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
     recorder.finish(summary);
     progress.done();
     if (rank == 0) results::print_summary(summary, scene.output.file);
+    return summary;
   };
   int stopped = 0;
   try {
@@ -170,13 +174,19 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
     summarise(error.what());
     throw;
   }
+  results::Summary summary;
   try {
-    summarise(stopped != 0                 ? fmt::format("ended by signal {}", stopped)
-              : stepper.stopped_at_limit() ? "ended at the limit of -ts_max_steps"
-                                           : "reached its end");
+    summary = summarise(stopped != 0                 ? fmt::format("ended by signal {}", stopped)
+                        : stepper.stopped_at_limit() ? "ended at the limit of -ts_max_steps"
+                                                     : "reached its end");
   } catch (const FileError& error) {
     leave_together(comm, error);
   }
+  if (summary.energy_residual > unbalanced * summary.energy_scale)
+    throw SolverError(
+        fmt::format("the energy does not balance: {:g} J of {:g} J are missing; the step is too long for "
+                    "this integrator, take a smaller -ts_dt or an implicit -ts_type",
+                    summary.energy_residual, summary.energy_scale));
   return stopped == 0 ? 0 : 128 + stopped;
 }
 

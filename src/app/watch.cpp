@@ -121,6 +121,8 @@ void Watch::step(double t) {
 }
 
 results::Summary Watch::finish() {
+  for (double since : lost_since_)
+    if (since >= 0.0) summary_.longest_loss = std::max(summary_.longest_loss, sample_.time - since);
   if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
   if (beam_ == nullptr) return summary_;
   int some = worst_shape_.empty() && system_.beam_unknowns() > 0 ? 0 : 1;

@@ -30,6 +30,13 @@ Eigen::Vector2d force_correction(const WheelContact& c) {
           c.force.tangential_by_penetration * a + c.force.tangential_by_rate * r + c.force.tangential_by_sliding * s};
 }
 
+// What rounding of p does to the forces of inertia, shift*(shift*p + c) + c', over a weight: much, at very short steps.
+double rounding_of_inertia(const StageData& s, int freedom, const double* p) {
+  double greatest = 0.0;
+  for (int i = 0; i < freedom; ++i) greatest = std::max(greatest, s.shift * std::abs(p[i]) + std::abs(s.c_p[i]));
+  return 8.0 * std::numeric_limits<double>::epsilon() * s.shift * greatest / 9.81;
+}
+
 template <class Right>
 void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Right& x) {
   x = lu.permutationP() * x;
@@ -58,7 +65,7 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
     // (at the start of a run not at all); where rounding rules it no longer falls.
     const double ratio = std::clamp(change_ / before, s.shift > 0.0 ? best_ratio : 1.0, 1.0);
     if (i > 0 &&
-        (change_ <= tolerance || change_ * ratio <= tolerance || (change_ <= rounding && change_ > 0.1 * before))) {
+        (change_ <= tolerance || change_ * ratio <= tolerance || (change_ <= floor && change_ > 0.1 * before))) {
       fleet.contact_forces();
       fleet.element_loads(s.block, loads_);
       return true;

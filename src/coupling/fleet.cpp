@@ -59,7 +59,7 @@ MovingVehicle::MovingVehicle(multibody::MechanismModel model, std::vector<Wheel>
 
 Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
              const track::Profile* profile)
-    : mesh_(mesh), profile_(profile), speed_(frozen ? 0.0 : train.speed) {
+    : mesh_(mesh), profile_(profile), speed_(frozen ? 0.0 : train.speed), frozen_(frozen) {
   if (mesh != nullptr && mesh->spans() > 1) isolated_ = mesh->nodes_at(1).first != mesh->nodes_at(1).second;
   for (std::size_t k = 0; k < train.vehicles.size(); ++k) {
     const Vehicle& type = types[train.vehicles[k]];
@@ -103,7 +103,8 @@ std::vector<std::string> Fleet::partition(double t) {
     vehicle.offset = freedom_;
     freedom_ += vehicle.mechanism.freedom();
     for (int i : vehicle.mechanism.partition().independent) {
-      cruise_.push_back(i % 3 == 0 && !vehicle.wheels.empty() ? speed_ : 0.0);
+      const bool rolls = i % 3 == 2 && !frozen_;
+      cruise_.push_back(vehicle.wheels.empty() ? 0.0 : i % 3 == 0 ? speed_ : rolls ? vehicle.state.qd[i] : 0.0);
       home_.push_back(vehicle.state.q[i] - cruise_.back() * t);
     }
   }

@@ -51,7 +51,7 @@ void System::find_equilibrium(double* v) {
     throw SolverError("no static equilibrium found to start from (forces out of balance by " +
                       std::to_string(newton_.last_change()) +
                       " of a vehicle's weight): is every body held by joints, springs or wheels, also against "
-                      "actuators? scene_start: given "
+                      "actuators, and every wheel stiff enough to carry its load within its radius? scene_start: given "
                       "starts from the positions as written");
   if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->add_response(newton_.element_loads(), nodal_.data());
   std::copy(nodal_.begin(), nodal_.end(), v);

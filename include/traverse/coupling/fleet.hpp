@@ -61,8 +61,8 @@ class Fleet {
   Eigen::Vector3d velocities(const WheelContact& c) const;
 
   /// Chooses every vehicle's independent coordinates at t and numbers them. From then on p counts from where the
-  /// vehicles are now, moving on with the train: small numbers, so that velocities found as shift times p keep
-  /// their digits. Returns lines on redundant joints.
+  /// vehicles are now, moving on with the train and rolling on: small numbers, so that velocities found as shift times
+  /// p keep their digits. Returns lines on redundant joints.
   std::vector<std::string> partition(double t);
 
   /// Have some vehicle's independent coordinates become much worse than when they were chosen?
@@ -100,6 +100,7 @@ class Fleet {
   int freedom_ = 0;
   double weight_ = 0.0;
   double speed_ = 0.0;
+  bool frozen_ = false;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p
   std::vector<double> position_, velocity_;  // of one vehicle
