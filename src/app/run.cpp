@@ -140,7 +140,8 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
   results::Recorder recorder(comm, scene.output.file, layout_of(scene, system, beam), attributes(comm, scene),
                              scene.options);
   if (dynamics.omega) {
-    const modes::Modes pair{{dynamics.omega->first, dynamics.omega->second}, {}};
+    modes::Modes pair;
+    pair.omega = {dynamics.omega->first, dynamics.omega->second};
     recorder.modes(pair, dynamics.rayleigh.a, dynamics.rayleigh.b, dynamics.omega->first, dynamics.omega->second);
   }
   Watch watch(scene, system, beam, recorder);

@@ -64,6 +64,7 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
     // The next change would be smaller by about the ratio of the last two, which is not trusted beyond best_ratio
     // (at the start of a run not at all); where rounding rules it no longer falls.
     const double ratio = std::clamp(change_ / before, s.shift > 0.0 ? best_ratio : 1.0, 1.0);
+    const double floor = std::max(rounding, rounding_of_inertia(s, fleet.freedom(), p));
     if (i > 0 &&
         (change_ <= tolerance || change_ * ratio <= tolerance || (change_ <= floor && change_ > 0.1 * before))) {
       fleet.contact_forces();
