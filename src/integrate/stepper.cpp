@@ -156,7 +156,7 @@ void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array));
 // --- the loop ------------------------------------------------------------------------------------------------------
 
 double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step) {
-  const double slack = near_event * settings_.time_step;
+  const double slack = near_event * std::min(settings_.time_step, settings_.end_time);
   std::size_t event = 0;
   long stored = 0;
   double t = 0.0;
