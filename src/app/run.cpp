@@ -126,8 +126,8 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
   integrate::Stepper stepper(system,
                              {plan.end_time, plan.time_step, plan.interval, system.known_events(plan.end_time)});
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
-  notes.push_back(fmt::format("{} vehicles, {} degrees of freedom; {} moving forces", system.fleet().vehicles.size(),
-                              system.freedom(), scene.load.forces.size()));
+  notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
+                              system.fleet().vehicles.size(), system.freedom(), scene.load.forces.size()));
   if (!still)
     notes.push_back(fmt::format("integrator {}, steps of at most {:g} s to {:g} s, samples every {:g} s",
                                 stepper.method(), plan.time_step, plan.end_time, plan.interval));

@@ -128,7 +128,8 @@ results::Summary Watch::finish() {
   int some = worst_shape_.empty() && system_.beam_unknowns() > 0 ? 0 : 1;
   MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
   if (some == 0) return summary_;
-  summary_.static_deflection = system_.static_peak(summary_.deflection.place);
+  if (scene_.analysis == Analysis::transient)
+    summary_.static_deflection = system_.static_peak(summary_.deflection.place);
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
   results::Shape shape{summary_.deflection.time, std::vector<double>(beam_->mesh().nodes(), 0.0)};

@@ -128,6 +128,8 @@ std::vector<double> System::influence_line(double station) {
 
 double System::static_peak(double station) {
   if (beam_ == nullptr || weights_.empty()) return 0.0;
+  const bool apart = input_.train.speed != input_.load.speed;  // train and forces pass each other
+  if (apart && !fleet_.wheels.empty() && !input_.load.forces.empty()) return 0.0;
   const std::vector<double> line = influence_line(station);
   const beam::Mesh& mesh = beam_->mesh();
   const int b = beam_->block();
