@@ -42,7 +42,7 @@ TEST(ResultsFile, CannotBeMade) {
   std::filesystem::create_directory(workplace.path("folder"));
   for (const int ranks : {1, 2}) {
     SCOPED_TRACE(ranks);
-    for (const std::string file : {"folder", "scene.yml/r.h5", "/proc/none/r.h5", "/dev/full"}) {
+    for (const std::string file : {"folder", "scene.yml/r.h5", "/dev/null/r.h5", "/dev/full"}) {
       SCOPED_TRACE(file);
       if (ranks == 2 && file != "folder") continue;
       expect_refusal(workplace, workplace.run({"-output_file", file}, ranks), {"results file", file});

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -155,9 +156,12 @@ void run_and_kill(Write&& write, useconds_t delay) {
 /// Puts /dev/full in the place of this process's open file.
 inline void fill_disk_of(const std::filesystem::path& file) {
   const int full = ::open("/dev/full", O_RDWR);
-  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
-    std::error_code ignored;
-    if (std::filesystem::read_symlink(entry, ignored) == file) dup2(full, std::stoi(entry.path().filename()));
+  struct stat wanted {};
+  ASSERT_EQ(::stat(file.c_str(), &wanted), 0);
+  for (int descriptor = 3; descriptor < 256; ++descriptor) {
+    struct stat open {};
+    if (::fstat(descriptor, &open) == 0 && open.st_dev == wanted.st_dev && open.st_ino == wanted.st_ino)
+      dup2(full, descriptor);
   }
   ::close(full);
 }

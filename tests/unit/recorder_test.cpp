@@ -245,8 +245,7 @@ TEST_F(RecorderTest, RefusesPlacesThatCannotHoldTheFile) {
   EXPECT_NE(refusal(plain + "/run.h5").find("Not a directory"), std::string::npos);
   EXPECT_NE(refusal(folder_.path(".")).find("no ordinary file"), std::string::npos);
   EXPECT_NE(refusal("/dev/full").find("no ordinary file"), std::string::npos);
-  EXPECT_NE(refusal("/proc/traverse/run.h5"), "(accepted)");
-  EXPECT_NE(refusal("/proc/run.h5"), "(accepted)");
+  EXPECT_NE(refusal("/dev/null/run.h5"), "(accepted)");
   if (geteuid() != 0) {  // root may write anywhere
     fs::permissions(folder_.path("."), fs::perms::owner_read | fs::perms::owner_exec);
     EXPECT_NE(refusal(file_).find("Permission denied"), std::string::npos);
