@@ -134,19 +134,12 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
   const double* w = y + n_;
   std::fill_n(ydot, local_size(), 0.0);
   if (part != Part::beam) {
-    share_coordinates(y);
-    if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom(), false))
-      throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
-    fleet_.place_wheels();
-    gather(v, w);
-    if (!fleet_.touch(beam_ != nullptr ? beam_->block() : 2, v_.data(), w_.data()))
-      throw SolverError(
-          "a wheel has fallen below the running surface at t = " + std::to_string(t) +
-          " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too soft");
-    for (WheelContact& c : fleet_.wheels) c.kinematics = c.touch.kinematics;
-    fleet_.contact_forces();
-    fleet_.wheel_loads();
-    rate_of_fleet(ydot);
+    evaluate_fleet(t, y);
+    const int f = fleet_.freedom();
+    if (rank_ == 0) {
+      std::copy_n(p_.data() + f, f, ydot + 2 * n_);
+      std::copy_n(pdd_.data(), f, ydot + 2 * n_ + f);
+    }
   }
   if (beam_ != nullptr) {
     double* acceleration = ydot + n_;
@@ -168,14 +161,23 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
   }
 }
 
-void System::rate_of_fleet(double* ydot) {
-  const int f = fleet_.freedom();
-  pdd_.resize(f);
+// Vehicles and contacts at a state: positions, forces, accelerations, all from the kinematics as they are.
+void System::evaluate_fleet(double t, const double* y) {
+  share_coordinates(y);
+  if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom(), false))
+    throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
+  fleet_.place_wheels();
+  gather(y, y + n_);
+  if (!fleet_.touch(beam_ != nullptr ? beam_->block() : 2, v_.data(), w_.data()))
+    throw SolverError("a wheel has fallen below the running surface at t = " + std::to_string(t) +
+                      " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too "
+                      "soft");
+  for (WheelContact& c : fleet_.wheels) c.kinematics = c.touch.kinematics;
+  fleet_.contact_forces();
+  fleet_.wheel_loads();
+  pdd_.resize(fleet_.freedom());
   for (MovingVehicle& vehicle : fleet_.vehicles)
     vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
-  if (rank_ != 0) return;
-  std::copy_n(p_.data() + f, f, ydot + 2 * n_);
-  std::copy_n(pdd_.data(), f, ydot + 2 * n_ + f);
 }
 
 // Rates of D and W for the state that fleet and moving loads were last set to.

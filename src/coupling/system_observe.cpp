@@ -6,24 +6,7 @@
 namespace traverse::coupling {
 
 void System::observe(double t, const double* y, const double* ydot, Observation& out) {
-  const double* v = y;
-  const double* w = y + n_;
-  share_coordinates(y);
-  if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom(), false))
-    throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
-  fleet_.place_wheels();
-  gather(v, w);
-  if (!fleet_.touch(beam_ != nullptr ? beam_->block() : 2, v_.data(), w_.data()))
-    throw SolverError(
-        "a wheel has fallen below the running surface at t = " + std::to_string(t) +
-        " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too soft");
-  for (WheelContact& c : fleet_.wheels) c.kinematics = c.touch.kinematics;
-  fleet_.contact_forces();
-  fleet_.wheel_loads();
-  pdd_.resize(fleet_.freedom());
-  for (MovingVehicle& vehicle : fleet_.vehicles)
-    vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
-
+  evaluate_fleet(t, y);
   out.a.assign(ydot + n_, ydot + 2 * n_);
   out.P.resize(n_);
   out.loads.clear();

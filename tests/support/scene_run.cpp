@@ -18,13 +18,25 @@
 namespace traverse::test {
 namespace {
 
+// Takes the temporary files away when the tests are done.
+struct Cleaner {
+  ~Cleaner() {
+    std::error_code ignored;
+    for (const std::string& file : files) std::filesystem::remove(file, ignored);
+  }
+  std::vector<std::string> files;
+};
+
 std::string temporary(const std::string& ending) {
+  static Cleaner cleaner;
   static int count = 0;
   int rank = 0;
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return (std::filesystem::temp_directory_path() / ("traverse_test_" + std::to_string(getpid()) + "_" +
-                                                    std::to_string(rank) + "_" + std::to_string(++count) + ending))
-      .string();
+  cleaner.files.push_back(
+      (std::filesystem::temp_directory_path() / ("traverse_test_" + std::to_string(getpid()) + "_" +
+                                                 std::to_string(rank) + "_" + std::to_string(++count) + ending))
+          .string());
+  return cleaner.files.back();
 }
 
 Results run_words(std::vector<std::string> words, MPI_Comm comm) {

@@ -106,7 +106,7 @@ class System {
   void add_contact_load(double* nodal);
   void add_point_load(const beam::ElementLoad& load, double* nodal) const;
   void release_held(double* nodal) const;
-  void rate_of_fleet(double* ydot);
+  void evaluate_fleet(double t, const double* y);
   void powers(const double* w, Part part, double& dissipation, double& work);
   Energy energy(const double* y);
 
