@@ -186,7 +186,9 @@ contact::Law VehicleReader::law(double radius) const {
   law.stiffness = stiffness(law.kind, radius);
   law.damping = number("damping");
   law.restitution = o_.optional_number(key("restitution"));
-  if (law.restitution && has("damping")) o_.refuse(key("restitution"), "give either damping or restitution");
+  // The law needs the approach speed of each impact, which nothing records yet: without it there would be no loss at
+  // all.
+  if (law.restitution) o_.refuse(key("restitution"), "impacts with a restitution are not modelled yet; give damping");
   law.friction = number("friction");
   law.transition_speed = number("transition_speed");
   return law;

@@ -62,7 +62,7 @@ constexpr Row wheel[] = {
   {"law", choice, "", "hertz", any, "hertz linear", 0, "force over penetration: k a^1.5 or k a"},
   {"stiffness", number, "N/m^1.5 or N/m", "", positive, "", 0, "k of the law"},
   {"damping", number, "Ns/m", "0", not_negative, "", 0, "of the contact"},
-  {"restitution", number, "1", "", {0.0, 1.0}, "", 0, "Lankarani and Nikravesh's damping, instead of damping"},
+  {"restitution", number, "1", "", {0.0, 1.0}, "", 0, "not in this version"},
   {"friction", number, "1", "0", not_negative, "", 0, "coefficient of friction"},
   {"transition_speed", number, "m/s", "0.01", positive, "", 0, "sliding speed at which friction is nearly full (eq. 49)"},
   {"young", number, "N/m2", "", positive, "", 0, "modulus of the wheel (eq. 48), instead of stiffness"},
