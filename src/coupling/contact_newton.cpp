@@ -51,7 +51,6 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
   pd_.resize(fleet.freedom());
   pdd_.resize(fleet.freedom());
   for (int i = 0; i < most_iterations; ++i) {
-    ++iterations_;
     // The vehicles' own part of the Newton matrix hardly changes within a stage: kept after the first iteration,
     // and taken in full, constraint curvature included, where that turns out not to be enough.
     const Tangent own = s.shift == 0.0 || i > 2 ? Tangent::full : i == 0 ? Tangent::fresh : Tangent::kept;

@@ -70,7 +70,6 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       for (multibody::Driver& d : model.drivers) d.value = frozen_function(d.value);
     vehicles.emplace_back(std::move(model), type.wheels);
     MovingVehicle& vehicle = vehicles.back();
-    weight_ += vehicle.weight;
     vehicle.first_wheel = static_cast<int>(wheels.size());
     const double share = vehicle.wheels.empty() ? 0.0 : vehicle.weight / static_cast<double>(vehicle.wheels.size());
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {

@@ -39,12 +39,6 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
 
 int System::local_size() const { return 2 * n_ + (rank_ == 0 ? 2 * fleet_.freedom() + 2 : 0); }
 
-double System::greatest_weight() const {
-  double sum = fleet_.weight();
-  for (double f : input_.load.forces) sum += std::abs(f);
-  return sum;
-}
-
 // --- loads ---------------------------------------------------------------------------------------------------------
 
 void System::moving_loads(double t) {

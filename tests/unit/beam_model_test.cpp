@@ -1,3 +1,5 @@
+#include "support/beam_model.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,19 +15,7 @@ using beam::Beam;
 using beam::BeamModel;
 using beam::Distribution;
 using beam::Support;
-
-BeamModel model_of(std::vector<double> spans, int elements, bool axial = true) {
-  BeamModel m;
-  m.elements.assign(spans.size(), elements);
-  m.supports.assign(spans.size() + 1, Support::roller);
-  m.supports[0] = Support::pinned;
-  m.spans = std::move(spans);
-  m.EI = 2e9;
-  m.EA = 1e10;
-  m.mass = 2000.0;
-  m.axial = axial;
-  return m;
-}
+using test::model_of;
 
 // ---------------------------------------------------------------------------------------------- shape functions
 

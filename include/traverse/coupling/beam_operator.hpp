@@ -28,7 +28,6 @@ class BeamOperator {
   /// Changes whenever `factored` hands out another factorisation.
   long factor_stamp() const { return stamp_; }
   bool damped() const { return damped_; }
-  long factorisations() const { return factorisations_; }
   mutable long solves = 0;  // beam solves so far, for the summary
 
  private:

@@ -31,7 +31,6 @@ class ContactNewton {
   bool solve(Fleet& fleet, const StageData& stage, double* p);
   /// Nodal loads on the elements in touch that belong to the solution, 2*block each.
   const std::vector<double>& element_loads() const { return loads_; }
-  long iterations() const { return iterations_; }
   /// Residual and change of force of the last iteration over the train's weight, for messages.
   double last_change() const { return change_; }
 
@@ -62,7 +61,6 @@ class ContactNewton {
   Eigen::VectorXd du_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   std::vector<Row> rows_, previous_rows_;
-  long iterations_ = 0;
   double change_ = 0.0;
 };
 

@@ -54,7 +54,6 @@ class Fleet {
   std::vector<WheelContact> wheels;
 
   int freedom() const { return freedom_; }
-  double weight() const { return weight_; }
   const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
   int body(const WheelContact& c) const { return wheel(c).body; }
   Eigen::Vector3d coordinates(const WheelContact& c) const;
@@ -98,7 +97,6 @@ class Fleet {
   const track::Profile* profile_ = nullptr;
   bool isolated_ = false;
   int freedom_ = 0;
-  double weight_ = 0.0;
   double speed_ = 0.0;
   bool frozen_ = false;
   std::vector<int> elements_;

@@ -63,7 +63,6 @@ class System {
   int local_size() const;                   // entries of y on this rank
   int beam_unknowns() const { return n_; }  // on this rank: v at y, w at y + beam_unknowns()
   int freedom() const { return fleet_.freedom(); }
-  double greatest_weight() const;  // of the train and the forces together, N
 
   /// Writes the start: static equilibrium at t = 0 with the drives at rest (the beam deflected under the train),
   /// then the train's speed; or positions and velocities as given, made consistent with the constraints.
@@ -90,9 +89,7 @@ class System {
   /// their weights at rest: the influence line of that station (0 when there is none).
   double static_peak(double station);
 
-  long newton_iterations() const { return newton_.iterations(); }
   long beam_solves() const { return operator_ ? operator_->solves : 0; }
-  long factorisations() const { return operator_ ? operator_->factorisations() : 0; }
 
  private:
   void find_equilibrium(double* v);
