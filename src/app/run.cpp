@@ -68,7 +68,7 @@ coupling::SystemInput system_input(const Scene& scene) {
 std::string what_beam(const beam::Beam& beam) {
   const beam::BeamModel& m = beam.model();
   return fmt::format("beam of {:g} m, {} span{}{}, {} elements, {} unknowns a node ({})", m.length(), m.spans.size(),
-                     m.spans.size() == 1 ? "" : "s", m.isolated ? " (each of its own)" : "", beam.mesh().elements(),
+                     m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "", beam.mesh().elements(),
                      beam.block(), m.axial ? "axial, deflection, rotation" : "deflection, rotation");
 }
 

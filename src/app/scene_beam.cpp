@@ -1,6 +1,7 @@
 // beam, support and foundation of a scene.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -45,10 +46,24 @@ beam::Support support_of(const std::string& word) {
   return beam::Support::roller;
 }
 
+beam::Joint joint_of(const std::string& word) {
+  if (word == "continuous") return beam::Joint::continuous;
+  return word == "hinge" ? beam::Joint::hinge : beam::Joint::separate;
+}
+
+void read_joints(const Options& o, beam::BeamModel& beam) {
+  const std::size_t inner = beam.spans.size() - 1;
+  const auto words = o.texts("beam_continuity", std::max<std::size_t>(inner, 1), "one for every inner span end");
+  for (const std::string& word : words) beam.joints.push_back(joint_of(word));
+  if (!o.has("beam_hinges")) return;
+  beam.hinges = o.numbers("beam_hinges");
+  std::sort(beam.hinges.begin(), beam.hinges.end());
+}
+
 void read_supports(const Options& o, beam::BeamModel& beam) {
   const std::size_t ends = beam.spans.size() + 1;
   if (!o.has("support_types")) {
-    beam.supports.assign(ends, beam.isolated ? beam::Support::pinned : beam::Support::roller);
+    beam.supports.assign(ends, beam.all_separate() ? beam::Support::pinned : beam::Support::roller);
     beam.supports.front() = beam::Support::pinned;
     return;
   }
@@ -140,7 +155,7 @@ void read_beam(const Options& o, Scene& scene) {
   beam.EI = read_distribution(o, "beam_EI");
   if (o.has("beam_EA")) beam.EA = read_distribution(o, "beam_EA");
   beam.mass = read_distribution(o, "beam_mass");
-  beam.isolated = o.choice("beam_continuity") == "simply_supported";
+  read_joints(o, beam);
   read_supports(o, beam);
   beam.foundation = read_foundation(o, std::accumulate(beam.spans.begin(), beam.spans.end(), 0.0));
   read_damping(o, scene.damping);

@@ -133,9 +133,10 @@ results::Summary Watch::finish() {
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
   results::Shape shape{summary_.deflection.time, std::vector<double>(beam_->mesh().nodes(), 0.0)};
-  const int b = beam_->block();
-  for (int i = 0; i < beam_->local_nodes(); ++i)
-    shape.deflection[beam_->first_node() + i] = worst_shape_[static_cast<std::size_t>(i) * b + b - 2];
+  for (int node = 0; node < beam_->mesh().nodes(); ++node) {
+    const int local = beam_->local(beam_->bridge().unknown(node, 1));
+    if (local >= 0) shape.deflection[node] = worst_shape_[local];
+  }
   MPI_Allreduce(MPI_IN_PLACE, shape.deflection.data(), static_cast<int>(shape.deflection.size()), MPI_DOUBLE, MPI_SUM,
                 beam_->comm());
   recorder_.shape(shape);

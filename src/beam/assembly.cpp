@@ -5,79 +5,114 @@
 namespace traverse::beam {
 namespace {
 
-/// Calls add(element, matrices) for the elements of the slice; `compute` runs once for equal neighbours of a beam
-/// whose data do not change along x.
+/// Calls add(e, matrices) for the elements of the slice; `compute` runs once for equal neighbours of a beam whose
+/// data do not change along x.
 template <class Compute, class Add>
-void for_elements(const Mesh& mesh, const Slice& slice, bool uniform, Compute compute, Add add) {
+void for_elements(const Line& line, const Slice& slice, bool uniform, Compute compute, Add add) {
   double length = 0.0;
-  decltype(compute(mesh.element(0))) matrices{};
-  for (int e = slice.first_element; e < slice.past_element; ++e) {
-    const Element& element = mesh.element(e);
+  decltype(compute(line.mesh.element(0))) matrices{};
+  const auto [first, past] = elements_of(line, slice);
+  for (int e = first; e < past; ++e) {
+    const Element& element = line.mesh.element(e);
     if (!uniform || element.length != length) matrices = compute(element);
     length = element.length;
-    add(element, matrices);
+    add(e, matrices);
   }
 }
 
 /// Sum over the points of value * s s^T; shape(xi, h) gives s.
-template <class Shape>
-Rows points(const std::vector<PointFoundation>& all, const Mesh& mesh, const Slice& slice, Term term, Shape shape) {
+template <class Shape, class Unknowns>
+Rows points(const std::vector<PointFoundation>& all, const Line& line, const Slice& slice, Term term, Shape shape,
+            Unknowns unknowns) {
   Rows rows(slice);
+  const auto [first, past] = elements_of(line, slice);
   for (const PointFoundation& p : all) {
-    const Station at = mesh.locate(p.x);
-    if (at.element < slice.first_element || at.element >= slice.past_element) continue;
-    const Element& e = mesh.element(at.element);
-    rows.add(e.left, outer(term == Term::stiffness ? p.k : p.c, shape(at.xi, e.length)));
+    const Station at = station_of(line.mesh, p);
+    if (at.element < first || at.element >= past) continue;
+    rows.add(unknowns(at.element),
+             outer(term == Term::stiffness ? p.k : p.c, shape(at.xi, line.mesh.element(at.element).length)));
   }
   return rows;
 }
 
-template <class Matrix>
-Rows bed(const Bed& bed, const Mesh& mesh, const Slice& slice, Term term, Matrix matrix) {
+template <class Matrix, class Unknowns>
+Rows bed(const Bed& bed, const Line& line, const Slice& slice, Term term, Matrix matrix, Unknowns unknowns) {
   Rows rows(slice);
   const Distribution& density = term == Term::stiffness ? bed.k : bed.c;
   for_elements(
-      mesh, slice, density.uniform(), [&](const Element& e) { return matrix(density, e); },
-      [&](const Element& e, const auto& m) { rows.add(e.left, m); });
+      line, slice, density.uniform(), [&](const Element& e) { return matrix(density, e); },
+      [&](int e, const auto& m) { rows.add(unknowns(e), m); });
   return rows;
+}
+
+auto transverse_of(const Line& line) {
+  return [&line](int e) { return line.transverse(e); };
+}
+auto axial_of(const Line& line) {
+  return [&line](int e) { return line.axial(e); };
 }
 
 }  // namespace
 
-BeamRows beam_rows(const BeamModel& model, const Mesh& mesh, const Slice& slice) {
-  BeamRows rows{Rows(slice), Rows(slice)};
+ElementRange elements_of(const Line& line, const Slice& slice) {
+  // Elements are sorted by their left node.
+  const auto first_from = [&](int node) {
+    int low = 0, high = line.mesh.elements();
+    while (low < high) {
+      const int middle = low + (high - low) / 2;
+      if (line.mesh.element(middle).left < node) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return low;
+  };
+  if (slice.local == 0) return {};
+  const int node = slice.first - line.first_column;
+  return {first_from(node - 1), first_from(node + slice.local)};
+}
+
+Station station_of(const Mesh& mesh, const PointFoundation& point) { return mesh.locate(point.x, point.from_left); }
+
+void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness) {
+  const BeamModel& model = line.model;
   const bool uniform = model.EI.uniform() && model.EA.uniform() && model.mass.uniform();
   for_elements(
-      mesh, slice, uniform, [&](const Element& e) { return element_matrices(model, e); },
-      [&](const Element& e, const ElementMatrices& m) {
-        rows.mass.add(e.left, m.mass);
-        rows.stiffness.add(e.left, m.stiffness);
+      line, slice, uniform, [&](const Element& e) { return element_matrices(model, e); },
+      [&](int e, const ElementMatrices& m) {
+        mass.add(line.transverse(e), m.mass);
+        stiffness.add(line.transverse(e), m.stiffness);
         if (!model.axial) return;
-        rows.mass.add(e.left, m.axial_mass);
-        rows.stiffness.add(e.left, m.axial_stiffness);
+        mass.add(line.axial(e), m.axial_mass);
+        stiffness.add(line.axial(e), m.axial_stiffness);
       });
-  return rows;
 }
 
-Rows vertical_points(const BeamModel& model, const Mesh& mesh, const Slice& slice, Term term) {
-  return points(model.foundation.vertical, mesh, slice, term, [](double xi, double h) { return hermite(xi, h).value; });
+Rows vertical_points(const Line& line, const Slice& slice, Term term) {
+  return points(
+      line.model.foundation.vertical, line, slice, term, [](double xi, double h) { return hermite(xi, h).value; },
+      transverse_of(line));
 }
 
-Rows longitudinal_points(const BeamModel& model, const Mesh& mesh, const Slice& slice, Term term) {
-  return points(model.foundation.longitudinal, mesh, slice, term, [](double xi, double) { return linear(xi); });
+Rows longitudinal_points(const Line& line, const Slice& slice, Term term) {
+  return points(
+      line.model.foundation.longitudinal, line, slice, term, [](double xi, double) { return linear(xi); },
+      axial_of(line));
 }
 
-Rows rotational_points(const BeamModel& model, const Mesh& mesh, const Slice& slice, Term term) {
-  return points(model.foundation.rotational, mesh, slice, term,
-                [](double xi, double h) { return hermite(xi, h).slope; });
+Rows rotational_points(const Line& line, const Slice& slice, Term term) {
+  return points(
+      line.model.foundation.rotational, line, slice, term, [](double xi, double h) { return hermite(xi, h).slope; },
+      transverse_of(line));
 }
 
-Rows vertical_bed(const BeamModel& model, const Mesh& mesh, const Slice& slice, Term term) {
-  return bed(*model.foundation.vertical_bed, mesh, slice, term, transverse_bed);
+Rows vertical_bed(const Line& line, const Slice& slice, Term term) {
+  return bed(*line.model.foundation.vertical_bed, line, slice, term, transverse_bed, transverse_of(line));
 }
 
-Rows longitudinal_bed(const BeamModel& model, const Mesh& mesh, const Slice& slice, Term term) {
-  return bed(*model.foundation.longitudinal_bed, mesh, slice, term, axial_bed);
+Rows longitudinal_bed(const Line& line, const Slice& slice, Term term) {
+  return bed(*line.model.foundation.longitudinal_bed, line, slice, term, axial_bed, axial_of(line));
 }
 
 }  // namespace traverse::beam

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "assembly.hpp"
-#include "slice.hpp"
+#include "layered_track.hpp"
 
 namespace traverse::beam {
 namespace {
@@ -13,9 +13,9 @@ struct Range {
   int first = 0, count = 0;
 };
 
-/// Nodes of one rank: contiguous, as even as possible.
-Range nodes_of(int rank, int ranks, int nodes) {
-  const int each = nodes / ranks, more = nodes % ranks;
+/// Columns of one rank: contiguous, as even as possible.
+Range columns_of(int rank, int ranks, int columns) {
+  const int each = columns / ranks, more = columns % ranks;
   return {rank * each + std::min(rank, more), each + (rank < more ? 1 : 0)};
 }
 
@@ -33,72 +33,128 @@ bool any(const std::optional<Bed>& bed, Term term) {
   return bed && (term == Term::stiffness ? bed->k : bed->c).maximum() > 0.0;
 }
 
-bool any_damping(const BeamModel& model) {
-  const Foundation& f = model.foundation;
-  return any(f.vertical, Term::damping) || any(f.vertical_bed, Term::damping) || any(f.rotational, Term::damping) ||
-         (model.axial && (any(f.longitudinal, Term::damping) || any(f.longitudinal_bed, Term::damping)));
-}
-
 /// A second owner of the same object.
 base::Handle<Mat> shared(Mat matrix) {
   base::check(PetscObjectReference(reinterpret_cast<PetscObject>(matrix)));
   return base::Handle<Mat>(matrix);
 }
 
+/// The bridge's first node among the columns.
+int first_column_of(const BeamModel& model) { return model.track ? rail_mesh(model).first_from(model.start) : 0; }
+
+/// The unknowns that a line's nodes have.
+void release_nodes(const Line& line, Slice& slice) {
+  const int from = std::max(0, slice.first - 1 - line.first_column);
+  const int past = std::min(line.mesh.nodes(), slice.first + slice.local + 1 - line.first_column);
+  for (int node = from; node < past; ++node) {
+    for (int which = 0; which < (line.mesh.hinged(node) ? 4 : 3); ++which) slice.release(line.unknown(node, which));
+  }
+}
+
+void hold_supports(const Line& bridge, Slice& slice) {
+  const auto bearings = axial_bearings(bridge.model);
+  for (int end = 0; end <= bridge.mesh.spans(); ++end) {
+    const auto [left, right] = bridge.mesh.nodes_at(end);
+    const Support s = bridge.model.supports[end];
+    for (int node : {left, right}) {
+      if (fixes_axial(s)) slice.hold(bridge.unknown(node, 0));
+      if (fixes_vertical(s)) slice.hold(bridge.unknown(node, 1));
+      if (fixes_rotation(s)) slice.hold(bridge.unknown(node, 2));
+      if (fixes_rotation(s)) slice.hold(bridge.unknown(node, 3));
+    }
+    if (end < bridge.mesh.spans() && bearings[end] != 0) slice.hold(bridge.unknown(right, 0));
+  }
+}
+
 }  // namespace
 
-Beam::Beam(MPI_Comm comm, BeamModel model) : comm_(comm), model_(checked(std::move(model))), mesh_(model_) {
+Beam::Beam(MPI_Comm comm, BeamModel model)
+    : comm_(comm),
+      layout_(checked(model)),
+      bridge_(std::move(model), layout_, false, first_column_of(model)) {
+  if (bridge_.model.track) rail_.emplace(rail_model(bridge_.model), layout_, true, 0);
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm_, &rank);
   MPI_Comm_size(comm_, &ranks);
-  const Range mine = nodes_of(rank, ranks, mesh_.nodes());
+  const Range mine = columns_of(rank, ranks, columns());
   first_ = mine.first;
   local_ = mine.count;
-  assemble(Slice(model_, mesh_, first_, local_));
+  assemble(slice());
 }
 
-int Beam::owner(int node) const {
+int Beam::owner(int column) const {
   int ranks = 1;
   MPI_Comm_size(comm_, &ranks);
-  const int each = mesh_.nodes() / ranks, more = mesh_.nodes() % ranks, bigger = more * (each + 1);
-  return node < bigger ? node / (each + 1) : more + (node - bigger) / each;
+  const int each = columns() / ranks, more = columns() % ranks, bigger = more * (each + 1);
+  return column < bigger ? column / (each + 1) : more + (column - bigger) / each;
+}
+
+Slice Beam::slice() const {
+  Slice slice(block(), first_, local_);
+  release_nodes(bridge_, slice);
+  if (rail_) {
+    release_nodes(*rail_, slice);
+    for (const Sleeper& s : sleepers_of(bridge_, first_ - 1, first_ + local_ + 1))
+      release_sleeper(s, *model().track, layout_, slice);
+  }
+  hold_supports(bridge_, slice);
+  return slice;
 }
 
 void Beam::assemble(const Slice& slice) {
-  for (int node = first_; node < first_ + local_; ++node) {
-    for (int kind = slice.kinds_from(); kind < 3; ++kind) fixed_.push_back(slice.held(node, kind) ? 1 : 0);
+  const int begin = first_ * block(), end = begin + local_unknowns();
+  for (int i = begin; i < end; ++i) fixed_.push_back(slice.held(i) ? 1 : 0);
+
+  Rows beam_mass(slice), beam_stiffness(slice), stiffness(slice), damping(slice);
+  add_beam(bridge_, slice, beam_mass, beam_stiffness);
+  std::vector<std::pair<base::Handle<Mat>*, Rows>> own;  // matrices of the foundation's kinds
+  add_foundation(slice, stiffness, damping, own);
+  Rows mass = beam_mass;
+  if (rail_) {
+    Rows track_stiffness(slice), track_damping(slice);
+    add_track(bridge_, *rail_, layout_, slice, mass, track_stiffness, track_damping);
+    own.emplace_back(&foundation_.layered_track[0], track_stiffness);
+    own.emplace_back(&foundation_.layered_track[1], track_damping);
+    stiffness.add(1.0, track_stiffness);
+    damping.add(1.0, track_damping);
   }
-  const BeamRows rows = beam_rows(model_, mesh_, slice);
-  mass_ = rows.mass.matrix(comm_, slice, false);
-  beam_stiffness_ = rows.stiffness.matrix(comm_, slice, false);
+  for (auto& [handle, rows] : own) *handle = rows.matrix(comm_, rows);
+  stiffness.add(1.0, beam_stiffness);
+  note_reactions(slice, mass, beam_mass, beam_stiffness, stiffness, damping);
+  for (int i = begin; i < end; ++i) {
+    const Kind kind = layout_.kind[index(i % block())];
+    const bool falls = kind == rail_v || kind == sleeper || kind == v;
+    weight_.push_back(mass.times(i, [&](int j) {
+      const Kind k = layout_.kind[index(j % block())];
+      return k == rail_v || k == sleeper || k == v ? -1.0 : 0.0;
+    }));
+    if (!falls && Layout::axial(kind)) weight_.back() = 0.0;
+  }
 
-  Rows foundation_stiffness(slice), foundation_damping(slice);
-  add_foundation(slice, foundation_stiffness, foundation_damping);
-  note_reactions(slice, rows.mass, rows.stiffness, foundation_stiffness, foundation_damping);
-
-  foundation_stiffness.add(rows.stiffness);
-  const FoundationMats& f = foundation_;
-  const bool stiff = f.vertical_discrete[0] || f.vertical_continuous[0] || f.longitudinal_discrete[0] ||
-                     f.longitudinal_continuous[0] || f.rotational_discrete[0];
-  stiffness_ = stiff ? foundation_stiffness.matrix(comm_, slice, false) : shared(beam_stiffness_);
-  if (any_damping(model_)) foundation_damping_ = foundation_damping.matrix(comm_, slice, false);
+  Rows pattern(slice);
+  for (const Rows* rows : {&mass, &beam_stiffness, &stiffness, &damping}) pattern.add_pattern(*rows);
+  mass_ = mass.matrix(comm_, pattern);
+  beam_mass_ = rail_ ? beam_mass.matrix(comm_, pattern) : shared(mass_);
+  beam_stiffness_ = beam_stiffness.matrix(comm_, pattern);
+  stiffness_ = own.empty() ? shared(beam_stiffness_) : stiffness.matrix(comm_, pattern);
+  if (!own.empty()) foundation_damping_ = damping.matrix(comm_, pattern);
 }
 
-void Beam::add_foundation(const Slice& slice, Rows& stiffness, Rows& damping) {
-  const Foundation& f = model_.foundation;
-  // One kind of section 3: into a matrix of its own, and into the sum.
+void Beam::add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
+                          std::vector<std::pair<base::Handle<Mat>*, Rows>>& own) {
+  const Foundation& f = model().foundation;
+  // One kind of section 3: a matrix of its own, and its part of the sum.
   const auto add = [&](const auto& description, auto rows_of, base::Handle<Mat>(&matrices)[2]) {
     for (Term term : {Term::stiffness, Term::damping}) {
       if (!any(description, term)) continue;
-      const Rows rows = rows_of(model_, mesh_, slice, term);
-      matrices[term == Term::stiffness ? 0 : 1] = rows.matrix(comm_, slice, true);
-      (term == Term::stiffness ? stiffness : damping).add(rows);
+      own.emplace_back(&matrices[term == Term::stiffness ? 0 : 1], rows_of(bridge_, slice, term));
+      (term == Term::stiffness ? stiffness : damping).add(1.0, own.back().second);
     }
   };
   add(f.vertical, vertical_points, foundation_.vertical_discrete);
   add(f.vertical_bed, vertical_bed, foundation_.vertical_continuous);
   add(f.rotational, rotational_points, foundation_.rotational_discrete);
-  if (!model_.axial) return;
+  if (!model().axial) return;
   add(f.longitudinal, longitudinal_points, foundation_.longitudinal_discrete);
   add(f.longitudinal_bed, longitudinal_bed, foundation_.longitudinal_continuous);
 }
@@ -106,33 +162,18 @@ void Beam::add_foundation(const Slice& slice, Rows& stiffness, Rows& damping) {
 void Beam::set_rayleigh(Rayleigh ab) {
   rayleigh_ = ab;
   Mat damping = nullptr;
-  base::check(MatDuplicate(mass_, MAT_COPY_VALUES, &damping));
+  base::check(MatDuplicate(beam_mass_, MAT_COPY_VALUES, &damping));
   damping_ = base::Handle<Mat>(damping);
   base::check(MatScale(damping, ab.a));
   base::check(MatAXPY(damping, ab.b, beam_stiffness_, SAME_NONZERO_PATTERN));
   if (foundation_damping_) base::check(MatAXPY(damping, 1.0, foundation_damping_, SAME_NONZERO_PATTERN));
   for (ReactionTerm& t : reaction_terms_) {
-    t.damping = ab.a * t.mass + ab.b * t.beam_stiffness + t.foundation_damping;
+    t.damping = ab.a * t.beam_mass + ab.b * t.beam_stiffness + t.foundation_damping;
   }
 }
 
 void Beam::add_self_weight(double gravity, double* P) const {
-  const int from = block() - 2;  // of v within a node
-  double length = 0.0;
-  std::array<double, 4> load{};
-  const Slice slice(model_, mesh_, first_, local_);
-  for (int e = slice.first_element; e < slice.past_element; ++e) {
-    const Element& element = mesh_.element(e);
-    if (!model_.mass.uniform() || element.length != length) load = transverse_load(model_.mass, element);
-    length = element.length;
-    for (int end = 0; end < 2; ++end) {
-      const int node = element.left + end;
-      if (!slice.owns(node)) continue;
-      double* p = P + static_cast<std::ptrdiff_t>(node - first_) * block() + from;
-      p[0] -= gravity * load[index(2 * end)];
-      p[1] -= gravity * load[index(2 * end + 1)];
-    }
-  }
+  for (int i = 0; i < local_unknowns(); ++i) P[i] += gravity * weight_[i];
 }
 
 }  // namespace traverse::beam

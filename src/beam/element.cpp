@@ -74,18 +74,6 @@ std::array<double, 4> transverse_load(const Distribution& density, const Element
   return load;
 }
 
-Transverse outer(double c, const std::array<double, 4>& s) {
-  Transverse matrix{};
-  add_outer<4>(matrix, c, s);
-  return matrix;
-}
-
-Axial outer(double c, const std::array<double, 2>& s) {
-  Axial matrix{};
-  add_outer<2>(matrix, c, s);
-  return matrix;
-}
-
 ElementMatrices element_matrices(const BeamModel& model, const Element& element) {
   ElementMatrices m;
   m.mass = transverse_bed(model.mass, element);

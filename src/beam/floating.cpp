@@ -1,6 +1,8 @@
-// Which parts of a beam nothing holds: by counting, not by the rank of a matrix, so that the answer does not depend
-// on rounding.
+// Which motions of a beam nothing resists, found from what holds it. A part between its ends and separate joints is a
+// chain of rigid pieces between hinges; its motion is given by the deflections of the pieces' ends.
+#include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <string>
 
@@ -9,114 +11,210 @@
 namespace traverse::beam {
 namespace {
 
-/// A run of spans that is one body: [first, last], from x = left to x = right.
+constexpr double singular = 1e-10;  // of the largest pivot: conditions that do not differ
+
+/// A run of pieces that is one body or chain of bodies.
 struct Part {
-  int first = 0, last = 0;
-  double left = 0.0, right = 0.0;
-  bool at_end = false;  // its right end is the beam's
+  int first_end = 0, last_end = 0;  // span ends
+  std::vector<double> x;            // stations of its ends and hinges
+  double left() const { return x.front(); }
+  double right() const { return x.back(); }
 };
 
 std::vector<Part> parts_of(const BeamModel& model) {
-  const int spans = static_cast<int>(model.spans.size());
-  if (!model.isolated) return {{0, spans - 1, 0.0, model.length(), true}};
   std::vector<Part> parts;
-  double x = 0.0;
-  for (int span = 0; span < spans; ++span) {
-    parts.push_back({span, span, x, x + model.spans[span], span + 1 == spans});
-    x += model.spans[span];
+  bool open = false;
+  for (const Piece& piece : pieces_of(model)) {
+    if (!open) parts.push_back({piece.span, piece.span, {piece.left}});
+    Part& part = parts.back();
+    part.last_end = piece.span + 1;
+    open = piece.next != Joint::separate;
+    if (piece.next != Joint::continuous) part.x.push_back(piece.right);
   }
   return parts;
 }
 
-/// Stations of the springs among `points`, sorted.
-std::vector<double> springs(const std::vector<PointFoundation>& points) {
-  std::vector<double> stations;
-  for (const PointFoundation& p : points) {
-    if (p.k > 0.0) stations.push_back(p.x);
+/// Whether a point of the foundation is a spring of this part.
+bool holds(const PointFoundation& p, const Part& part, const BeamModel& model) {
+  const bool after_left = p.x > part.left() || (p.x == part.left() && (!p.from_left || p.x == model.start));
+  const bool before_right = p.x < part.right() || (p.x == part.right() && (p.from_left || p.x == model.end()));
+  return p.k > 0.0 && after_left && before_right;
+}
+
+/// The stretches of the part, between its hinges and the bed's own breaks, along which the bed has stiffness.
+std::vector<std::pair<double, double>> bedded(const std::optional<Bed>& bed, const Part& part) {
+  std::vector<std::pair<double, double>> stretches;
+  if (!bed) return stretches;
+  for (std::size_t i = 1; i < part.x.size(); ++i) {
+    auto ends = bed->k.breaks(part.x[i - 1], part.x[i]);
+    ends.push_back(part.x[i]);
+    double left = part.x[i - 1];
+    for (double right : ends) {  // linear in between
+      if (bed->k.at(left, right) > 0.0 || bed->k.at(right, left) > 0.0) stretches.emplace_back(left, right);
+      left = right;
+    }
   }
-  std::sort(stations.begin(), stations.end());
-  return stations;
+  return stretches;
 }
 
-/// Those of the part: a station on an inner span end of isolated spans belongs to the right one.
-std::vector<double> within(const std::vector<double>& stations, const Part& part) {
-  const auto first = std::lower_bound(stations.begin(), stations.end(), part.left);
-  const auto last = part.at_end ? stations.end() : std::lower_bound(first, stations.end(), part.right);
-  return {first, last};
-}
+/// Conditions that are to vanish, as rows over the deflections at the part's stations x.
+class Conditions {
+ public:
+  explicit Conditions(const Part& part) : part_(part), unknowns_(static_cast<Eigen::Index>(part.x.size())) {}
 
-/// Whether the bed has stiffness somewhere between the ends of the part.
-bool bed_in(const std::optional<Bed>& bed, const Part& part) {
-  if (!bed) return false;
-  const Distribution& k = bed->k;
-  auto ends = k.breaks(part.left, part.right);
-  ends.push_back(part.right);
-  double left = part.left;
-  for (double right : ends) {  // linear in between
-    if (k.at(left, right) > 0.0 || k.at(right, left) > 0.0) return true;
-    left = right;
+  void no_deflection(double x) {
+    const Eigen::Index i = piece_of(x, false);
+    const double xi = (x - part_.x[i]) / (part_.x[i + 1] - part_.x[i]);
+    add(i, 1.0 - xi, xi);
   }
-  return false;
+  void no_slope(double x, bool from_left) { add(piece_of(x, from_left), -1.0, 1.0); }
+
+  /// The motions that satisfy all of them, one a column. Of a free body: vertical and about its middle.
+  Eigen::MatrixXd motions() const {
+    if (rows_.empty() && unknowns_ == 2) return Eigen::Matrix2d{{1.0, -1.0}, {1.0, 1.0}};
+    if (rows_.empty()) return Eigen::MatrixXd::Identity(unknowns_, unknowns_);
+    Eigen::MatrixXd A(static_cast<Eigen::Index>(rows_.size()), unknowns_);
+    for (std::size_t i = 0; i < rows_.size(); ++i) A.row(static_cast<Eigen::Index>(i)) = rows_[i];
+    Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
+    lu.setThreshold(singular);
+    return lu.rank() == unknowns_ ? Eigen::MatrixXd(unknowns_, 0) : Eigen::MatrixXd(lu.kernel());
+  }
+
+ private:
+  Eigen::Index piece_of(double x, bool from_left) const {
+    const auto& s = part_.x;
+    const auto after = from_left ? std::lower_bound(s.begin(), s.end(), x) : std::upper_bound(s.begin(), s.end(), x);
+    return std::clamp<Eigen::Index>(after - s.begin() - 1, 0, unknowns_ - 2);
+  }
+  void add(Eigen::Index i, double left, double right) {
+    rows_.emplace_back(Eigen::RowVectorXd::Zero(unknowns_));
+    rows_.back()[i] = left;
+    rows_.back()[i + 1] = right;
+  }
+
+  const Part& part_;
+  Eigen::Index unknowns_;
+  std::vector<Eigen::RowVectorXd> rows_;
+};
+
+Conditions bending_conditions(const BeamModel& model, const Part& part, const std::vector<double>& span_ends) {
+  Conditions conditions(part);
+  for (int end = part.first_end; end <= part.last_end; ++end) {
+    const double x = span_ends[static_cast<std::size_t>(end)];
+    if (fixes_vertical(model.supports[end])) conditions.no_deflection(x);
+    if (!fixes_rotation(model.supports[end])) continue;
+    conditions.no_slope(x, false);
+    conditions.no_slope(x, true);
+  }
+  for (const PointFoundation& p : model.foundation.vertical) {
+    if (holds(p, part, model)) conditions.no_deflection(p.x);
+  }
+  for (const PointFoundation& p : model.foundation.rotational) {
+    if (holds(p, part, model)) conditions.no_slope(p.x, p.from_left);
+  }
+  for (const auto& [left, right] : bedded(model.foundation.vertical_bed, part)) {
+    conditions.no_deflection(0.5 * (left + right));
+    conditions.no_slope(0.5 * (left + right), false);
+  }
+  return conditions;
 }
 
-bool supported_axially(const BeamModel& model, const std::vector<double>& longitudinal, const Part& part) {
-  bool held = !within(longitudinal, part).empty() || bed_in(model.foundation.longitudinal_bed, part);
-  for (int end = part.first; end <= part.last + 1; ++end) held = held || fixes_axial(model.supports[end]);
+bool supported_axially(const BeamModel& model, const Part& part) {
+  const auto& points = model.foundation.longitudinal;
+  bool held = !bedded(model.foundation.longitudinal_bed, part).empty() ||
+              std::any_of(points.begin(), points.end(), [&](const auto& p) { return holds(p, part, model); });
+  for (int end = part.first_end; end <= part.last_end; ++end) held = held || fixes_axial(model.supports[end]);
   return held;
 }
 
-/// Vertical and rotation of one part, from what holds it.
-RigidMotion motion_of(const BeamModel& model, const Part& part, std::vector<double> vertical, bool rotation_held) {
-  double x = part.left;
-  for (int end = part.first; end <= part.last + 1; ++end) {
-    if (fixes_vertical(model.supports[end])) vertical.push_back(x);
-    rotation_held = rotation_held || fixes_rotation(model.supports[end]);
-    if (end <= part.last) x += model.spans[end];
+std::vector<RigidMotion> bending_motions(const Part& part, const Conditions& conditions) {
+  std::vector<RigidMotion> motions;
+  const Eigen::MatrixXd basis = conditions.motions();
+  for (Eigen::Index i = 0; i < basis.cols(); ++i) {
+    const Eigen::VectorXd deflection = basis.col(i) / basis.col(i).lpNorm<Eigen::Infinity>();
+    motions.push_back({part.left(), part.right(), false, part.x, {deflection.begin(), deflection.end()}});
   }
-  const bool bed = bed_in(model.foundation.vertical_bed, part);
-  const auto [low, high] = std::minmax_element(vertical.begin(), vertical.end());
-  RigidMotion motion{part.first, part.last};
-  motion.vertical = vertical.empty() && !bed;
-  motion.rotation = !rotation_held && !bed && (vertical.empty() || *low == *high);
-  motion.pivot = vertical.empty() ? 0.5 * (part.left + part.right) : *low;
-  return motion;
+  return motions;
+}
+
+std::vector<double> ends_of(const BeamModel& model) {
+  std::vector<double> ends{model.start};
+  for (double span : model.spans) ends.push_back(ends.back() + span);
+  return ends;
+}
+
+/// The motions of one part, which are not none.
+std::string in_words(const std::vector<RigidMotion>& of_part) {
+  const RigidMotion& m = of_part.front();
+  if (m.axial) return "can move along x";
+  if (m.x.size() > 2) return "can move with its hinges as a mechanism";
+  if (of_part.size() > 1 && !of_part[1].axial) return "can move vertically and rotate";
+  const double a = m.deflection[0], b = m.deflection[1];
+  if (std::abs(a - b) <= singular) return "can move vertically";
+  char text[64];
+  std::snprintf(text, sizeof text, "can rotate about x = %.6g m", m.x[0] + (m.x[1] - m.x[0]) * a / (a - b));
+  return text;
+}
+
+std::size_t segment_of(const RigidMotion& m, double station, bool from_left) {
+  const auto after = from_left ? std::lower_bound(m.x.begin(), m.x.end(), station)
+                               : std::upper_bound(m.x.begin(), m.x.end(), station);
+  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - m.x.begin() - 1, 0, std::ssize(m.x) - 2));
 }
 
 }  // namespace
 
+double RigidMotion::slope(double station, bool from_left) const {
+  const std::size_t i = segment_of(*this, station, from_left);
+  return (deflection[i + 1] - deflection[i]) / (x[i + 1] - x[i]);
+}
+
+double RigidMotion::value(double station) const {
+  const std::size_t i = segment_of(*this, station, false);
+  return deflection[i] + (station - x[i]) * slope(station, false);
+}
+
 std::vector<char> axial_bearings(const BeamModel& model) {
   std::vector<char> needed(model.spans.size(), 0);
-  if (!model.axial || !model.isolated) return needed;
-  const auto longitudinal = springs(model.foundation.longitudinal);
-  for (const Part& part : parts_of(model)) needed[part.first] = !supported_axially(model, longitudinal, part);
+  if (!model.axial || model.track) return needed;
+  const auto parts = parts_of(model);
+  for (const Part& part : parts) {
+    if (parts.size() > 1) needed[part.first_end] = supported_axially(model, part) ? 0 : 1;
+  }
   return needed;
 }
 
 std::vector<RigidMotion> rigid_motions(const BeamModel& model) {
-  const auto vertical = springs(model.foundation.vertical);
-  const auto longitudinal = springs(model.foundation.longitudinal);
-  const auto rotational = springs(model.foundation.rotational);
   std::vector<RigidMotion> motions;
-  for (const Part& part : parts_of(model)) {
-    motions.push_back(motion_of(model, part, within(vertical, part), !within(rotational, part).empty()));
-    motions.back().axial = model.axial && !model.isolated && !supported_axially(model, longitudinal, part);
+  if (model.track) return motions;
+  const auto span_ends = ends_of(model);
+  const auto parts = parts_of(model);
+  for (const Part& part : parts) {
+    for (RigidMotion& m : bending_motions(part, bending_conditions(model, part, span_ends)))
+      motions.push_back(std::move(m));
+    if (model.axial && parts.size() == 1 && !supported_axially(model, part))
+      motions.push_back({part.left(), part.right(), true, {part.left(), part.right()}, {1.0, 1.0}});
   }
   return motions;
 }
 
 std::string floating_motion(const BeamModel& model) {
-  for (const RigidMotion& m : rigid_motions(model)) {
-    const std::string part = model.isolated ? "span " + std::to_string(m.first_span + 1) : "the beam";
-    if (m.vertical && m.rotation) return part + " can move vertically and rotate";
-    if (m.vertical) return part + " can move vertically";
-    if (m.rotation) {
-      char text[64];
-      std::snprintf(text, sizeof text, " can rotate about x = %.6g m", m.pivot);
-      return part + text;
-    }
-    if (m.axial) return part + " can move along x";
+  const auto motions = rigid_motions(model);
+  if (motions.empty()) return {};
+  const double left = motions.front().left;
+  std::vector<RigidMotion> of_part;
+  for (const RigidMotion& m : motions) {
+    if (m.left == left) of_part.push_back(m);
   }
-  return {};
+  const auto parts = parts_of(model);
+  const Part& part = *std::find_if(parts.begin(), parts.end(), [&](const Part& p) { return p.left() == left; });
+  std::string name = "the beam ";
+  if (parts.size() > 1) {
+    name = "span " + std::to_string(part.first_end + 1) + " ";
+    if (part.last_end > part.first_end + 1)
+      name = "spans " + std::to_string(part.first_end + 1) + " to " + std::to_string(part.last_end) + " ";
+  }
+  return name + in_words(of_part);
 }
 
 }  // namespace traverse::beam

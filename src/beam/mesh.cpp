@@ -6,35 +6,42 @@
 
 namespace traverse::beam {
 
-Mesh::Mesh(const BeamModel& model) : isolated_(model.isolated) {
-  span_ends_.push_back(0.0);
-  for (double span : model.spans) span_ends_.push_back(span_ends_.back() + span);
-  for (int span = 0; span < spans(); ++span) {
-    const double start = span_ends_[span], length = model.spans[span];
-    const int n = model.elements[span];
+Mesh::Mesh(const BeamModel& model) {
+  const std::vector<Piece> pieces = pieces_of(model);
+  kinks_.push_back(model.start);
+  span_ends_.push_back(model.start);
+  nodes_at_.emplace_back(0, 0);
+  x_.push_back(model.start);
+  for (const Piece& piece : pieces) {
+    const double length = piece.right - piece.left;
+    piece_ends_.push_back(piece.left);
     first_element_.push_back(elements());
-    if (span == 0 || isolated_) x_.push_back(start);
-    for (int i = 0; i < n; ++i) {
-      elements_.push_back({nodes() - 1, span, x_.back(), length / n});
-      x_.push_back(i + 1 < n ? start + length * (i + 1) / n : span_ends_[span + 1]);
+    for (int i = 0; i < piece.elements; ++i) {
+      elements_.push_back({nodes() - 1, piece.span, x_.back(), length / piece.elements});
+      x_.push_back(i + 1 < piece.elements ? piece.left + length * (i + 1) / piece.elements : piece.right);
     }
+    hinged_.resize(x_.size(), 0);
+    const int left = nodes() - 1;
+    if (piece.next == Joint::hinge) hinged_.back() = 1;
+    if (piece.next != Joint::continuous) kinks_.push_back(piece.right);
+    if (piece.next == Joint::separate && &piece != &pieces.back()) x_.push_back(piece.right);
+    hinged_.resize(x_.size(), 0);
+    if (!piece.ends_span) continue;
+    span_ends_.push_back(piece.right);
+    nodes_at_.emplace_back(left, nodes() - 1);
   }
+  piece_ends_.push_back(x_.back());
   first_element_.push_back(elements());
-}
-
-std::pair<int, int> Mesh::nodes_at(int span_end) const {
-  if (span_end == 0) return {0, 0};
-  const int left = elements_[first_element_[span_end] - 1].left + 1;
-  return {left, isolated_ && span_end < spans() ? left + 1 : left};
+  any_hinge_ = std::find(hinged_.begin(), hinged_.end(), 1) != hinged_.end();
 }
 
 Station Mesh::locate(double x, bool from_left) const {
-  x = std::clamp(x, 0.0, length());
-  const auto end = std::upper_bound(span_ends_.begin(), span_ends_.end(), x);
-  const int span = std::min(static_cast<int>(end - span_ends_.begin()) - 1, spans() - 1);
-  const int first = first_element_[span], last = first_element_[span + 1] - 1;
+  x = std::clamp(x, start(), end());
+  const auto after = std::upper_bound(piece_ends_.begin(), piece_ends_.end(), x);
+  const auto piece = std::min<std::size_t>(after - piece_ends_.begin() - 1, piece_ends_.size() - 2);
+  const int first = first_element_[piece], last = first_element_[piece + 1] - 1;
   const double h = elements_[first].length;
-  int e = std::clamp(first + static_cast<int>((x - span_ends_[span]) / h), first, last);
+  int e = std::clamp(first + static_cast<int>((x - piece_ends_[piece]) / h), first, last);
   // The division may have rounded across a node.
   if (e < last && x >= elements_[e + 1].x) ++e;
   if (e > first && x < elements_[e].x) --e;
@@ -42,8 +49,14 @@ Station Mesh::locate(double x, bool from_left) const {
     --e;
     return {e, 1.0};
   }
-  if (x == length()) return {e, 1.0};  // whatever the rounding of the last element's length
+  if (x == end()) return {e, 1.0};  // whatever the rounding of the last element's length
   return {e, std::clamp((x - elements_[e].x) / elements_[e].length, 0.0, 1.0)};
+}
+
+std::pair<double, double> Mesh::smooth_reach(int element) const {
+  const double middle = elements_[element].x + 0.5 * elements_[element].length;
+  const auto after = std::upper_bound(kinks_.begin(), kinks_.end(), middle);
+  return {*std::prev(after), *after};
 }
 
 }  // namespace traverse::beam

@@ -1,5 +1,6 @@
 #include "traverse/beam/model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -67,6 +68,53 @@ void check_bed(const std::optional<Bed>& bed, const std::string& option) {
   for (double value : {bed->c.minimum(), bed->c.maximum()}) require_not_negative(value, option + "_c", "N s/m2");
 }
 
+void check_joints(const BeamModel& model) {
+  const std::size_t inner = model.spans.size() - 1;
+  require(model.joints.size() <= 1 || model.joints.size() == inner, "beam_continuity",
+          std::to_string(model.joints.size()) + " joints",
+          "one for all or one at every inner span end is needed: " + std::to_string(inner));
+  double before = model.start;
+  for (double x : model.hinges) {
+    require(std::isfinite(x) && x > before && x < model.end(), "beam_hinges", number(x),
+            "hinges lie within the beam, from left to right");
+    before = x;
+  }
+}
+
+void check_layer(const Layer& layer, const std::string& option, bool needed) {
+  require_not_negative(layer.k, option + "_k", "N/m");
+  require_not_negative(layer.c, option + "_c", "N s/m");
+  require(!needed || layer.k > 0.0, option + "_k", number(layer.k), "it must be positive (N/m)");
+}
+
+void check_track(const BeamModel& model) {
+  const LayeredTrack& t = *model.track;
+  const auto positive = [](double value, const char* option, const char* unit) {
+    require(std::isfinite(value) && value > 0.0, option, number(value),
+            "it must be positive (" + std::string(unit) + ")");
+  };
+  positive(t.rail_EI, "track_rail_EI", "N m2");
+  if (model.axial) positive(t.rail_EA, "track_rail_EA", "N");
+  positive(t.rail_mass, "track_rail_mass", "kg/m");
+  positive(t.spacing, "track_spacing", "m");
+  require(t.elements_per_bay >= 1, "track_elements_per_bay", std::to_string(t.elements_per_bay), "at least 1");
+  require_not_negative(t.approach, "track_approach", "m");
+  check_layer(t.pad, "track_pad", true);
+  check_layer(t.longitudinal, "track_longitudinal", model.axial);
+  if (t.ballast || t.subballast) positive(t.sleeper_mass, "track_sleeper_mass", "kg");
+  if (t.ballast) {
+    check_layer(*t.ballast, "track_ballast", true);
+    if (t.subballast) positive(t.ballast_mass, "track_ballast_mass", "kg");
+  }
+  if (t.subballast) check_layer(*t.subballast, "track_subballast", true);
+  require((model.length() + 2.0 * t.approach) / t.spacing * t.elements_per_bay < 1e8, "track_spacing",
+          number(t.spacing), "fewer than 1e8 rail elements are possible");
+  for (const Piece& piece : pieces_of(model)) {
+    require(piece.elements >= 1, "track_spacing", number(t.spacing),
+            "every span, and what hinges leave of it, needs two rail elements or more (track_elements_per_bay)");
+  }
+}
+
 }  // namespace
 
 bool fixes_axial(Support s) { return s == Support::pinned || s == Support::clamped || s == Support::guided; }
@@ -75,11 +123,22 @@ bool fixes_rotation(Support s) { return s == Support::clamped || s == Support::g
 
 double BeamModel::length() const { return std::accumulate(spans.begin(), spans.end(), 0.0); }
 
+Joint BeamModel::joint(int span_end) const {
+  if (joints.empty()) return Joint::continuous;
+  return joints.size() == 1 ? joints.front() : joints[static_cast<std::size_t>(span_end) - 1];
+}
+
+bool BeamModel::all_separate() const {
+  return !joints.empty() && std::all_of(joints.begin(), joints.end(), [](Joint j) { return j == Joint::separate; });
+}
+
 void check(const BeamModel& model) {
   check_spans(model);
   require_positive(model.EI, "beam_EI", "N m2");
   if (model.axial) require_positive(model.EA, "beam_EA", "N");
   require_positive(model.mass, "beam_mass", "kg/m");
+  check_joints(model);
+  if (model.track) check_track(model);
   const double length = model.length();
   check_points(model.foundation.vertical, "foundation_vertical", length, "N/m");
   check_points(model.foundation.longitudinal, "foundation_longitudinal", length, "N/m");

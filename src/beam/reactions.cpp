@@ -7,33 +7,31 @@
 
 namespace traverse::beam {
 
-void Beam::note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_stiffness,
-                          const Rows& foundation_stiffness, const Rows& foundation_damping) {
-  const int from = slice.kinds_from();
-  const auto unknown = [&](int node, int kind) { return index(node - first_) * index(block()) + index(kind - from); };
+void Beam::note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_mass, const Rows& beam_stiffness,
+                          const Rows& stiffness, const Rows& foundation_damping) {
   // By symmetry the entry of the held row in a free column is that of the free row in the held column.
-  const auto note_column = [&](std::size_t slot, int node, int kind, int offset, int held_kind) {
-    if (slice.held(node, kind)) return;
-    const double k = beam_stiffness.at(node, kind, offset, held_kind);
-    reaction_terms_.push_back({slot, unknown(node, kind), mass.at(node, kind, offset, held_kind), k,
-                               k + foundation_stiffness.at(node, kind, offset, held_kind),
-                               foundation_damping.at(node, kind, offset, held_kind), 0.0});
+  const auto note_column = [&](std::size_t slot, int unknown, int held) {
+    if (!slice.owns(unknown) || slice.held(unknown)) return;
+    const ReactionTerm term{slot,
+                            index(local(unknown)),
+                            mass.at(unknown, held),
+                            beam_mass.at(unknown, held),
+                            beam_stiffness.at(unknown, held),
+                            stiffness.at(unknown, held),
+                            foundation_damping.at(unknown, held),
+                            0.0};
+    if (term.mass != 0.0 || term.stiffness != 0.0 || term.foundation_damping != 0.0) reaction_terms_.push_back(term);
   };
-  const auto note_row = [&](std::size_t slot, int node, int kind) {
-    if (slice.owns(node)) held_loads_.push_back({slot, unknown(node, kind)});
-    for (int other = node - 1; other <= node + 1; ++other) {
-      if (!slice.owns(other) || (other != node && !slice.linked(std::min(node, other)))) continue;
-      for (int k = from; k < 3; ++k) {
-        if (coupled(kind, k)) note_column(slot, other, k, node - other, kind);
-      }
-    }
-  };
-  for (int end = 0; end <= mesh_.spans() && local_ > 0; ++end) {
-    const auto [left, right] = mesh_.nodes_at(end);
+  const int b = block();
+  for (int end = 0; end <= mesh().spans(); ++end) {
+    const auto [left, right] = mesh().nodes_at(end);
     for (int node = left; node <= right; ++node) {
-      if (node < first_ - 1 || node > first_ + local_) continue;
-      for (int kind = from; kind < 3; ++kind) {
-        if (slice.held(node, kind)) note_row(index(3 * end + kind), node, kind);
+      for (int which = 0; which < (mesh().hinged(node) ? 4 : 3); ++which) {
+        const int held = bridge_.unknown(node, which);
+        if (held < 0 || !slice.reaches(held) || !slice.held(held)) continue;
+        const std::size_t slot = index(3 * end + std::min(which, 2));
+        if (slice.owns(held)) held_loads_.push_back({slot, index(local(held))});
+        for (int i = (held / b - 1) * b; i < (held / b + 2) * b; ++i) note_column(slot, i, held);
       }
     }
   }
@@ -41,7 +39,7 @@ void Beam::note_reactions(const Slice& slice, const Rows& mass, const Rows& beam
 
 void Beam::reactions(const double* v, const double* w, const double* a, const double* P,
                      std::vector<std::array<double, 3>>& out) const {
-  out.resize(mesh_.span_ends().size());
+  out.resize(mesh().span_ends().size());
   double* sums = out.front().data();
   const std::size_t count = 3 * out.size();
   std::fill(sums, sums + count, 0.0);

@@ -4,37 +4,51 @@
 #include <cmath>
 #include <cstdio>
 
+#include "assembly.hpp"
 #include "gauss.hpp"
+#include "layered_track.hpp"
 #include "section.hpp"
 #include "traverse/beam/shape.hpp"
 
 namespace traverse::beam {
 
 struct Recovery::Section {
-  Section(const Beam& beam, double x);
+  Section(const Line& line, double x);
 
-  void add_foundation(const Beam& beam);
+  void add_foundation(const Line& line);
+  void note_riders(const Beam& beam);
   void add_weight(const BeamModel& model, double gravity);
   void add_load(const ElementLoad& load, Response& r) const;
 
+  /// A sleeper of a layered track on this element.
+  struct Rider {
+    Ride ride;
+    double xi = 0.0;
+  };
+
   Station at;
   Element element;
+  std::array<int, 6> unknowns;  // global: u1, v1, theta1, u2, v2, theta2; -1: not there
   double EI = 0.0, EA = 0.0;  // in the element's middle, for the fixed-end deflections
   Hermite psi;
   std::array<double, 2> phi;
   SectionForms stiffness, damping, mass;  // K_e with the foundation, the foundation's C_e, M_e
   Response weight;                        // of the beam's own weight: deflection, moment and shear
+  std::vector<Rider> riders;
 };
 
-Recovery::Section::Section(const Beam& beam, double x)
-    : at(beam.mesh().locate(x)),
-      element(beam.mesh().element(at.element)),
+Recovery::Section::Section(const Line& line, double x)
+    : at(line.mesh.locate(x)),
+      element(line.mesh.element(at.element)),
       psi(hermite(at.xi, element.length)),
       phi(linear(at.xi)),
       stiffness(element, at.xi),
       damping(element, at.xi),
       mass(element, at.xi) {
-  const BeamModel& model = beam.model();
+  const BeamModel& model = line.model;
+  const auto [v1, theta1, v2, theta2] = line.transverse(at.element);
+  const auto [u1, u2] = line.axial(at.element);
+  unknowns = {u1, v1, theta1, u2, v2, theta2};
   const double middle = element.x + 0.5 * element.length;
   EI = model.EI.at(middle, element.x);
   const ElementMatrices matrices = element_matrices(model, element);
@@ -47,17 +61,26 @@ Recovery::Section::Section(const Beam& beam, double x)
     mass.add_end_forces(matrices.axial_mass);
     mass.add_axial_density(model.mass);
   }
-  add_foundation(beam);
+  add_foundation(line);
 }
 
-void Recovery::Section::add_foundation(const Beam& beam) {
-  const BeamModel& model = beam.model();
+void Recovery::Section::note_riders(const Beam& beam) {
+  if (beam.rail() == nullptr) return;
+  const int column = beam.bridge().first_column + element.left;
+  for (const Sleeper& s : sleepers_of(beam.bridge(), column - 1, column + 3)) {
+    if (s.on_bridge && s.at.element == at.element)
+      riders.push_back({ride_of(s, *beam.model().track, beam.layout()), s.at.xi});
+  }
+}
+
+void Recovery::Section::add_foundation(const Line& line) {
+  const BeamModel& model = line.model;
   const Foundation& f = model.foundation;
   const auto add_points = [&](const std::vector<PointFoundation>& points, auto add) {
     for (const PointFoundation& p : points) {
       // locate() is the judge, as in the assembly; a glance at x spares most of the calls.
       if (p.x < element.x - element.length || p.x > element.x + 2.0 * element.length) continue;
-      const Station s = beam.mesh().locate(p.x);
+      const Station s = station_of(line.mesh, p);
       if (s.element != at.element) continue;
       (stiffness.*add)(p.k, s.xi);
       (damping.*add)(p.c, s.xi);
@@ -109,41 +132,47 @@ void Recovery::Section::add_load(const ElementLoad& load, Response& r) const {
   r.axial_displacement += load.fx * h / EA * (left ? load.xi * (1.0 - at.xi) : at.xi * (1.0 - load.xi));
 }
 
-Recovery::Recovery(const Beam& beam, std::vector<double> stations, double self_weight)
-    : beam_(beam), stations_(std::move(stations)), gathered_(3 * stations_.size()) {
+Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stations, double self_weight)
+    : beam_(beam), line_(line), stations_(std::move(stations)), gravity_(self_weight) {
+  std::size_t size = 0;
   for (double x : stations_) {
-    if (!std::isfinite(x) || x < 0.0 || x > beam.mesh().length()) {
+    if (!std::isfinite(x) || x < line.mesh.start() || x > line.mesh.end()) {
       char text[160];
       std::snprintf(text, sizeof text,
-                    "output_probes has a station at x = %.10g; it must lie on the beam, from 0 to %.10g m", x,
-                    beam.mesh().length());
+                    "output_probes has a station at x = %.10g; it must lie on the beam, from %.10g to %.10g m", x,
+                    line.mesh.start(), line.mesh.end());
       throw InputError(text);
     }
-    sections_.emplace_back(beam, x);
-    sections_.back().add_weight(beam.model(), self_weight);
+    sections_.emplace_back(line, x);
+    sections_.back().add_weight(line.model, self_weight);
+    if (&line == &beam.bridge()) sections_.back().note_riders(beam);
+    size += 18 + 4 * sections_.back().riders.size();
   }
+  gathered_.resize(size);
 }
 
 Recovery::Recovery(Recovery&&) noexcept = default;
 Recovery::~Recovery() = default;
 
 void Recovery::gather(const double* v, const double* w, const double* a) {
-  std::fill(gathered_.begin(), gathered_.end(), Values{});
-  const int block = beam_.block(), from = 3 - block;
-  const std::array<const double*, 3> vectors{v, w, a};
-  for (std::size_t i = 0; i < sections_.size(); ++i) {
-    for (int end = 0; end < 2; ++end) {
-      const int node = sections_[i].element.left + end - beam_.first_node();
-      if (node < 0 || node >= beam_.local_nodes()) continue;
-      for (std::size_t k = 0; k < 3; ++k) {
-        std::copy_n(vectors[k] + static_cast<std::ptrdiff_t>(node) * block, block,
-                    gathered_[3 * i + k].begin() + 3 * end + from);
+  std::size_t at = 0;
+  const auto take = [&](const double* vector, int unknown) {
+    const int local = unknown < 0 ? -1 : beam_.local(unknown);
+    gathered_[at++] = local < 0 ? 0.0 : vector[local];
+  };
+  for (const Section& s : sections_) {
+    for (const double* vector : {v, w, a}) {
+      for (int unknown : s.unknowns) take(vector, unknown);
+    }
+    for (const Section::Rider& rider : s.riders) {
+      for (int unknown : {rider.ride.unknown, rider.ride.along}) {
+        take(v, unknown);
+        take(w, unknown);
       }
     }
   }
   if (gathered_.empty()) return;
-  MPI_Allreduce(MPI_IN_PLACE, gathered_.front().data(), static_cast<int>(6 * gathered_.size()), MPI_DOUBLE, MPI_SUM,
-                beam_.comm());
+  MPI_Allreduce(MPI_IN_PLACE, gathered_.data(), static_cast<int>(gathered_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
 }
 
 Response Recovery::respond(const Section& s, const Values& v, const Values& w, const Values& a) const {
@@ -152,7 +181,8 @@ Response Recovery::respond(const Section& s, const Values& v, const Values& w, c
   };
   const auto axial = [](const std::array<double, 2>& form, const Values& y) { return form[0] * y[0] + form[1] * y[3]; };
   Values inertial = a;  // mass-proportional damping acts like inertia
-  for (std::size_t i = 0; i < 6; ++i) inertial[i] += beam_.rayleigh().a * w[i];
+  const double drag = &line_ == &beam_.bridge() ? beam_.rayleigh().a : 0.0;
+  for (std::size_t i = 0; i < 6; ++i) inertial[i] += drag * w[i];
 
   Response r = s.weight;
   r.deflection += transverse(s.psi.value, v);
@@ -168,13 +198,46 @@ Response Recovery::respond(const Section& s, const Values& v, const Values& w, c
   return r;
 }
 
+// What the sleepers on the element do to it: the spring below each, the mass that rides, the spring along x.
+void Recovery::add_riders(const Section& s, const Values* values, const double* riders, Response& r) const {
+  for (const Section::Rider& rider : s.riders) {
+    const auto psi = hermite(rider.xi, s.element.length).value;
+    const auto beam = [&](const Values& y) { return psi[0] * y[1] + psi[1] * y[2] + psi[2] * y[4] + psi[3] * y[5]; };
+    const double force = rider.ride.spring.k * (riders[0] - beam(values[0])) +
+                         rider.ride.spring.c * (riders[1] - beam(values[1])) -
+                         rider.ride.mass * (beam(values[2]) + gravity_);
+    double along = 0.0;
+    if (rider.ride.along >= 0) {
+      const auto phi = linear(rider.xi);
+      const auto slope = hermite(rider.xi, s.element.length).slope;
+      const double e = line_.model.surface_height;
+      const auto surface = [&](const Values& y) {
+        const double turn = slope[0] * y[1] + slope[1] * y[2] + slope[2] * y[4] + slope[3] * y[5];
+        return phi[0] * y[0] + phi[1] * y[3] - e * turn;
+      };
+      const Layer& layer = line_.model.track->longitudinal;
+      along = layer.k * (riders[2] - surface(values[0])) + layer.c * (riders[3] - surface(values[1]));
+    }
+    s.add_load({s.at.element, rider.xi, along, force, -line_.model.surface_height * along}, r);
+    riders += 4;
+  }
+}
+
 void Recovery::evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
                         std::vector<Response>& out) {
   gather(v, w, a);
   out.resize(sections_.size());
+  const double* at = gathered_.data();
   for (std::size_t i = 0; i < sections_.size(); ++i) {
     const Section& s = sections_[i];
-    out[i] = respond(s, gathered_[3 * i], gathered_[3 * i + 1], gathered_[3 * i + 2]);
+    std::array<Values, 3> values;
+    for (Values& y : values) {
+      std::copy_n(at, 6, y.begin());
+      at += 6;
+    }
+    out[i] = respond(s, values[0], values[1], values[2]);
+    add_riders(s, values.data(), at, out[i]);
+    at += 4 * s.riders.size();
     for (const ElementLoad& load : loads) {
       if (load.element == s.at.element) s.add_load(load, out[i]);
     }

@@ -1,4 +1,4 @@
-// One rank's nodes of a beam, its rows of the beam's matrices, and how they become PETSc matrices.
+// One rank's columns of a structure, its rows of the matrices, and how they become PETSc matrices.
 #pragma once
 
 #include <array>
@@ -7,65 +7,81 @@
 
 #include "traverse/base/petsc.hpp"
 #include "traverse/beam/element.hpp"
+#include "traverse/beam/line.hpp"
 
 namespace traverse::beam {
 
 /// Indices of the standard library are unsigned.
 constexpr std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-/// Which nodes a rank owns, which elements touch them, and what the supports hold there and one node beyond.
+/// Which columns a rank owns, and which unknowns stay zero there and one column beyond: those that a support holds,
+/// and those that nothing in a column belongs to (no sleeper there, no bridge, no hinge).
 struct Slice {
-  Slice(const BeamModel& model, const Mesh& mesh, int first_node, int local_nodes);
+  Slice(int block_size, int first_column, int local_columns);
 
-  /// Unknowns of a node: [u,] v, theta; `kind` 0 u, 1 v, 2 theta whatever the block size.
-  int kinds_from() const { return 3 - block; }
-  bool owns(int node) const { return node >= first && node < first + local; }
-  /// For first - 1 <= node <= first + local.
-  bool held(int node, int kind) const { return held_[index(3 * (node - first + 1) + kind)] != 0; }
-  /// Whether an element joins node and node + 1, for first - 1 <= node < first + local.
-  bool linked(int node) const { return linked_[index(node - first + 1)] != 0; }
+  bool owns(int unknown) const { return unknown >= first * block && unknown < (first + local) * block; }
+  bool reaches(int unknown) const { return unknown >= (first - 1) * block && unknown < (first + local + 1) * block; }
+  /// Of an unknown that the slice reaches.
+  bool held(int unknown) const { return held_[index(unknown - (first - 1) * block)] != 0; }
+  void hold(int unknown) { set(unknown, 1); }
+  void release(int unknown) { set(unknown, 0); }
 
   int block = 0, first = 0, local = 0;
-  int first_element = 0, past_element = 0;  // the elements with a node in the slice
 
  private:
-  void hold(int node, int kind);
-  std::vector<char> held_, linked_;
+  void set(int unknown, char held) {
+    if (unknown >= 0 && reaches(unknown)) held_[index(unknown - (first - 1) * block)] = held;
+  }
+  std::vector<char> held_;  // at first: all
 };
 
-/// Rows of a symmetric matrix for the nodes of a slice, held unknowns included. Axial and transverse unknowns do not
-/// couple, and a node couples to its neighbours only.
+/// Rows of a symmetric block tridiagonal matrix for the columns of a slice, held unknowns included.
 class Rows {
  public:
-  explicit Rows(const Slice& slice) : first_(slice.first), rows_(index(slice.local)) {}
+  explicit Rows(const Slice& slice)
+      : slice_(&slice), values_(3 * index(slice.local) * index(slice.block) * index(slice.block)) {}
 
-  /// The part of an element's matrix that belongs to this slice; `left` is the element's left node.
-  void add(int left, const Transverse& matrix);
-  void add(int left, const Axial& matrix);
-  void add(const Rows& other);
-
-  /// Entry between an owned node and its neighbour node + offset, -1 <= offset <= 1. Zero between u and the others.
-  double at(int node, int kind, int offset, int other_kind) const;
-
-  /// Collective: without the rows and columns that supports hold. All rows have the same pattern, also where a value
-  /// is zero, unless `sparse`: then only what is not zero.
-  base::Handle<Mat> matrix(MPI_Comm comm, const Slice& slice, bool sparse) const;
-
- private:
-  struct Node {
-    std::array<double, 12> transverse{};  // two rows: v, theta of the left, this and the right node
-    std::array<double, 3> axial{};
-  };
-  Node* find(int node) {
-    const int i = node - first_;
-    return i >= 0 && i < static_cast<int>(rows_.size()) ? &rows_[index(i)] : nullptr;
+  /// The part of an N x N matrix on the given global unknowns (-1: left out) that belongs to this slice. Entries
+  /// between columns that are not neighbours must be zero.
+  template <std::size_t N>
+  void add(const std::array<int, N>& unknowns, const std::array<double, N * N>& matrix) {
+    for (std::size_t i = 0; i < N; ++i) {
+      if (unknowns[i] < 0 || !slice_->owns(unknowns[i])) continue;
+      for (std::size_t j = 0; j < N; ++j) {
+        if (unknowns[j] >= 0 && matrix[i * N + j] != 0.0) add(unknowns[i], unknowns[j], matrix[i * N + j]);
+      }
+    }
+  }
+  void add(double factor, const Rows& other);
+  /// Entry of an owned row; column: of the same or a neighbouring column.
+  double at(int row, int column) const { return values_[place(row, column)]; }
+  /// The product of an owned row with a vector given by value(unknown), held unknowns included.
+  template <class Value>
+  double times(int row, Value value) const {
+    double sum = 0.0;
+    const int from = (row / slice_->block - 1) * slice_->block;
+    for (int j = 0; j < 3 * slice_->block; ++j) {
+      const double entry = values_[place(row, from + j)];
+      if (entry != 0.0) sum += entry * value(from + j);
+    }
+    return sum;
   }
 
-  int first_ = 0;
-  std::vector<Node> rows_;
-};
+  /// Collective: without the rows and columns that are held. Non-zeros where `pattern` has some.
+  base::Handle<Mat> matrix(MPI_Comm comm, const Rows& pattern) const;
+  /// Adds the sizes of another's entries: a pattern for several.
+  void add_pattern(const Rows& other);
 
-/// True when two unknowns of neighbouring nodes can couple: both axial or both transverse.
-inline bool coupled(int kind, int other_kind) { return (kind == 0) == (other_kind == 0); }
+ private:
+  std::size_t place(int row, int column) const {
+    const int b = slice_->block;
+    const int offset = column / b - row / b + 1;
+    return (index(row - slice_->first * b) * 3 + index(offset)) * index(b) + index(column % b);
+  }
+  void add(int row, int column, double value);
+
+  const Slice* slice_;
+  std::vector<double> values_;
+};
 
 }  // namespace traverse::beam

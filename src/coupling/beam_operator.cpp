@@ -45,13 +45,13 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
       mass_(solve::BlockTridiagonal::from(beam.mass(), beam.block())),
       damping_(solve::BlockTridiagonal::from(beam.damping(), beam.block())),
       stiffness_(solve::BlockTridiagonal::from(beam.stiffness(), beam.block())),
-      work_(beam.block(), beam.local_nodes()),
+      work_(beam.block(), beam.local_columns()),
       halo_(4 * static_cast<std::size_t>(beam.block()) + static_cast<std::size_t>(beam.block()) * beam.block() * 3),
-      mass_factor_(beam.comm(), beam.block(), beam.local_nodes()) {
-  if (beam.local_nodes() > 0) {
-    if (beam.first_node() > 0) left_rank_ = beam.owner(beam.first_node() - 1);
-    if (beam.first_node() + beam.local_nodes() < beam.mesh().nodes())
-      right_rank_ = beam.owner(beam.first_node() + beam.local_nodes());
+      mass_factor_(beam.comm(), beam.block(), beam.local_columns()) {
+  if (beam.local_columns() > 0) {
+    if (beam.first_column() > 0) left_rank_ = beam.owner(beam.first_column() - 1);
+    if (beam.first_column() + beam.local_columns() < beam.columns())
+      right_rank_ = beam.owner(beam.first_column() + beam.local_columns());
   }
   damped_ = std::any_of(damping_.diagonal.begin(), damping_.diagonal.end(), [](double d) { return d != 0.0; });
   int damped = damped_ ? 1 : 0;
@@ -92,6 +92,10 @@ void BeamOperator::product(const solve::BlockTridiagonal& A, double sign, const 
     block_product<2>(A, sign, x, l, rt, left_upper, r);
   else if (b == 3)
     block_product<3>(A, sign, x, l, rt, left_upper, r);
+  else if (b == 5)
+    block_product<5>(A, sign, x, l, rt, left_upper, r);
+  else if (b == 7)
+    block_product<7>(A, sign, x, l, rt, left_upper, r);
   else
     block_product<0>(A, sign, x, l, rt, left_upper, r);
 }

@@ -11,7 +11,11 @@ constexpr double negligible = 1e-18;                       // of a column's peak
 }  // namespace
 
 Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
-    : beam_(beam), operator_(op), m_(2 * beam.block()), work_(static_cast<std::size_t>(op.unknowns()) * m_) {}
+    : beam_(beam),
+      operator_(op),
+      line_(beam.running()),
+      m_(2 * line_.per_node),
+      work_(static_cast<std::size_t>(op.unknowns()) * m_) {}
 
 void Compliance::prepare(double shift, const std::vector<int>& elements) {
   const solve::SubstructuredCholesky& factor = operator_.factored(shift);
@@ -44,14 +48,11 @@ Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& facto
     return columns_.front();
   }
   const int n = operator_.unknowns();
-  const int b = beam_.block();
   std::fill(work_.begin(), work_.end(), 0.0);
-  const int left = beam_.mesh().element(element).left;
+  const auto unknowns = line_.unknowns(element);
   for (int j = 0; j < m_; ++j) {
-    const int node = left + j / b - beam_.first_node();
-    const int unknown = node * b + j % b;
-    if (node >= 0 && node < beam_.local_nodes() && beam_.fixed()[unknown] == 0)
-      work_[static_cast<std::size_t>(j) * n + unknown] = 1.0;
+    const int unknown = beam_.local(unknowns[j]);
+    if (unknown >= 0 && beam_.fixed()[unknown] == 0) work_[static_cast<std::size_t>(j) * n + unknown] = 1.0;
   }
   factor.solve(work_.data(), m_);
   operator_.solves += m_;
@@ -85,16 +86,14 @@ Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& facto
 
 void Compliance::fill_matrix() {
   matrix_.assign(count_ * count_ * m_ * m_, 0.0);
-  const int b = beam_.block();
   for (std::size_t a = 0; a < count_; ++a) {
-    const int left = beam_.mesh().element(elements_[a]).left;
+    const auto unknowns = line_.unknowns(elements_[a]);
     for (std::size_t e = 0; e < count_; ++e) {
       const Column& c = *active_[e];
       double* to = &matrix_[(a * count_ + e) * m_ * m_];
       for (int i = 0; i < m_; ++i) {
-        const int node = left + i / b - beam_.first_node();
-        const int unknown = node * b + i % b;
-        if (node < 0 || node >= beam_.local_nodes() || unknown < c.low || unknown >= c.high) continue;
+        const int unknown = beam_.local(unknowns[i]);
+        if (unknown < c.low || unknown >= c.high) continue;
         for (int j = 0; j < m_; ++j)
           to[i + j * m_] = c.values[static_cast<std::size_t>(j) * (c.high - c.low) + (unknown - c.low)];
       }

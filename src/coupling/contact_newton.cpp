@@ -67,7 +67,7 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
     if (i > 0 &&
         (change_ <= tolerance || change_ * ratio <= tolerance || (change_ <= floor && change_ > 0.1 * before))) {
       fleet.contact_forces();
-      fleet.element_loads(s.block, loads_);
+      fleet.element_loads(s.per_node, loads_);
       return true;
     }
   }
@@ -82,13 +82,13 @@ bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* p, 
   }
   if (!fleet.set(s.t, p, pd_.data(), derivatives)) return false;
   fleet.contact_forces();
-  fleet.element_loads(s.block, loads_);
+  fleet.element_loads(s.per_node, loads_);
   beam_field(s, fleet);
-  return fleet.touch(s.block, v_.data(), w_.data());
+  return fleet.touch(s.per_node, v_.data(), w_.data());
 }
 
 void ContactNewton::beam_field(const StageData& s, const Fleet& fleet) {
-  const int m = 2 * s.block;
+  const int m = 2 * s.per_node;
   const int count = static_cast<int>(fleet.elements().size());
   v_.assign(static_cast<std::size_t>(std::max(1, count)) * m, 0.0);
   w_.assign(v_.size(), 0.0);
@@ -194,7 +194,7 @@ bool ContactNewton::list_rows(const Fleet& fleet) {
 
 void ContactNewton::mutual_compliance(const Fleet& fleet, const StageData& s) {
   const int n = static_cast<int>(rows_.size());
-  const int m = 2 * s.block;
+  const int m = 2 * s.per_node;
   auto direction_of = [&](const Row& row) {
     const Touch& touch = fleet.wheels[work_[row.vehicle].wheel[row.index]].touch;
     return (work_[row.vehicle].component[row.index] == 0 ? touch.normal_on_beam : touch.tangent_on_beam).data();

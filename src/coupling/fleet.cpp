@@ -58,9 +58,8 @@ MovingVehicle::MovingVehicle(multibody::MechanismModel model, std::vector<Wheel>
 }
 
 Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
-             const track::Profile* profile)
-    : mesh_(mesh), profile_(profile), speed_(frozen ? 0.0 : train.speed), frozen_(frozen) {
-  if (mesh != nullptr && mesh->spans() > 1) isolated_ = mesh->nodes_at(1).first != mesh->nodes_at(1).second;
+             const track::Profile* profile, double surface_height)
+    : mesh_(mesh), profile_(profile), speed_(frozen ? 0.0 : train.speed), frozen_(frozen), surface_height_(surface_height) {
   for (std::size_t k = 0; k < train.vehicles.size(); ++k) {
     const Vehicle& type = types[train.vehicles[k]];
     multibody::MechanismModel model = placed(type.mechanism, train.positions[k], train.speed, gravity);
@@ -152,6 +151,7 @@ void Fleet::add_patch(WheelContact& c, int element, double low, double high) {
   patch.low = low;
   patch.high = high;
   if (element < 0) return;
+  patch.height = surface_height_;
   patch.x = mesh_->element(element).x;
   patch.length = mesh_->element(element).length;
 }
@@ -166,35 +166,31 @@ void Fleet::place_wheels() {
       add_patch(c, -1, -infinite, infinite);
       continue;
     }
-    const double length = mesh_->length();
-    auto span_of = [&](int element) {
-      const int span = mesh_->element(element).span;
-      return isolated_ ? std::pair(mesh_->span_ends()[span], mesh_->span_ends()[span + 1]) : std::pair(0.0, length);
-    };
+    const double start = mesh_->start(), end = mesh_->end();
     auto add_beam = [&](double at, bool from_left) {
       const int element = mesh_->locate(at, from_left).element;
-      const auto [low, high] = span_of(element);
+      const auto [low, high] = mesh_->smooth_reach(element);
       add_patch(c, element, low, high);
       return std::pair(low, high);
     };
-    if (x < 0.0) {
-      add_patch(c, -1, -infinite, 0.0);
-      if (x > -near) add_beam(0.0, false);
-    } else if (x > length) {
-      add_patch(c, -1, length, infinite);
-      if (x < length + near) add_beam(length, true);
+    if (x < start) {
+      add_patch(c, -1, -infinite, start);
+      if (x > start - near) add_beam(start, false);
+    } else if (x > end) {
+      add_patch(c, -1, end, infinite);
+      if (x < end + near) add_beam(end, true);
     } else {
       const auto [low, high] = add_beam(x, false);
       if (x - low < near) {
-        if (low > 0.0)
+        if (low > start)
           add_beam(low, true);
         else
-          add_patch(c, -1, -infinite, 0.0);
+          add_patch(c, -1, -infinite, start);
       } else if (high - x < near) {
-        if (high < length)
+        if (high < end)
           add_beam(high, false);
         else
-          add_patch(c, -1, length, infinite);
+          add_patch(c, -1, end, infinite);
       }
     }
     for (int i = 0; i < c.candidates; ++i)
@@ -222,8 +218,8 @@ bool Fleet::wheels_in_place() const {
   });
 }
 
-bool Fleet::touch(int block, const double* v, const double* w) {
-  const std::ptrdiff_t m = 2 * static_cast<std::ptrdiff_t>(block);
+bool Fleet::touch(int per_node, const double* v, const double* w) {
+  const std::ptrdiff_t m = 2 * static_cast<std::ptrdiff_t>(per_node);
   for (WheelContact& c : wheels) {
     const Eigen::Vector3d q = coordinates(c);
     const Eigen::Vector3d qd = velocities(c);
@@ -231,7 +227,7 @@ bool Fleet::touch(int block, const double* v, const double* w) {
     double deepest = -infinite;
     for (int i = 0; i < c.candidates; ++i) {
       const std::ptrdiff_t at = c.slots[i] < 0 ? 0 : m * c.slots[i];
-      if (!coupling::touch(c.patches[i], *profile_, wheel(c).radius, q, qd, block, v + at, w + at, candidate))
+      if (!coupling::touch(c.patches[i], *profile_, wheel(c).radius, q, qd, per_node, v + at, w + at, candidate))
         return false;
       if (candidate.kinematics.penetration <= deepest) continue;
       deepest = candidate.kinematics.penetration;
@@ -253,8 +249,8 @@ void Fleet::wheel_loads() {
         c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
 }
 
-void Fleet::element_loads(int block, std::vector<double>& loads) const {
-  const int m = 2 * block;
+void Fleet::element_loads(int per_node, std::vector<double>& loads) const {
+  const int m = 2 * per_node;
   loads.assign(elements_.size() * m, 0.0);
   for (const WheelContact& c : wheels) {
     if (c.slot() < 0) continue;

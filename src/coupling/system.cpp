@@ -18,6 +18,8 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
   if (beam_ != nullptr) {
     operator_.emplace(*beam_);
     compliance_.emplace(*beam_, *operator_);
+    line_ = &beam_->running();
+    per_node_ = line_->per_node;
     n_ = beam_->local_unknowns();
     dead_load_.assign(n_, 0.0);
     if (input_.self_weight) beam_->add_self_weight(input_.gravity, dead_load_.data());
@@ -32,9 +34,14 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
                          ": the wheel would touch the track's profile at more than one point; the radius must stay "
                          "below " +
                          std::to_string(1.0 / input_.profile.greatest_curvature()) + " m");
-  fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, beam_ != nullptr ? &beam_->mesh() : nullptr,
-                 &input_.profile);
+  fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
+                 &input_.profile, surface_height());
   fleet_.partition(0.0);
+}
+
+// Of the beam's surface above its axis; a rail's is its axis.
+double System::surface_height() const {
+  return beam_ != nullptr && beam_->rail() == nullptr ? beam_->model().surface_height : 0.0;
 }
 
 int System::local_size() const { return 2 * n_ + (rank_ == 0 ? 2 * fleet_.freedom() + 2 : 0); }
@@ -46,20 +53,18 @@ void System::moving_loads(double t) {
   if (beam_ == nullptr) return;
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
     const double x = input_.load.positions[i] + input_.load.speed * t;
-    if (x < 0.0 || x > beam_->mesh().length()) continue;
-    const beam::Station s = beam_->mesh().locate(x);
+    if (x < line_->mesh.start() || x > line_->mesh.end()) continue;
+    const beam::Station s = line_->mesh.locate(x);
     loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0});
   }
 }
 
-void System::add_point_load(const beam::ElementLoad& load, double* nodal) const {
-  const beam::Element& e = beam_->mesh().element(load.element);
-  const beam::Hermite psi = beam::hermite(load.xi, e.length);
-  const int b = beam_->block();
+void System::add_point_load(const beam::Line& line, const beam::ElementLoad& load, double* nodal) const {
+  const beam::Hermite psi = beam::hermite(load.xi, line.mesh.element(load.element).length);
+  const auto unknowns = line.transverse(load.element);
   for (int i = 0; i < 4; ++i) {
-    const int node = e.left + i / 2 - beam_->first_node();
-    if (node < 0 || node >= beam_->local_nodes()) continue;
-    nodal[node * b + (b - 2) + i % 2] += load.fy * psi.value[i];
+    const int local = beam_->local(unknowns[i]);
+    if (local >= 0) nodal[local] += load.fy * psi.value[i];
   }
 }
 
@@ -67,19 +72,19 @@ void System::add_point_load(const beam::ElementLoad& load, double* nodal) const 
 void System::external_load(double t, double* nodal) {
   std::copy(dead_load_.begin(), dead_load_.end(), nodal);
   moving_loads(t);
-  for (const beam::ElementLoad& load : loads_) add_point_load(load, nodal);
+  for (const beam::ElementLoad& load : loads_) add_point_load(*line_, load, nodal);
 }
 
 void System::add_contact_load(double* nodal) {
   if (beam_ == nullptr) return;
   std::vector<double>& loads = element_work_;
-  fleet_.element_loads(beam_->block(), loads);
-  const int b = beam_->block();
+  fleet_.element_loads(per_node_, loads);
+  const int m = 2 * per_node_;
   for (std::size_t a = 0; a < fleet_.elements().size(); ++a) {
-    const int left = beam_->mesh().element(fleet_.elements()[a]).left;
-    for (int i = 0; i < 2 * b; ++i) {
-      const int node = left + i / b - beam_->first_node();
-      if (node >= 0 && node < beam_->local_nodes()) nodal[node * b + i % b] += loads[a * 2 * b + i];
+    const auto unknowns = line_->unknowns(fleet_.elements()[a]);
+    for (int i = 0; i < m; ++i) {
+      const int local = beam_->local(unknowns[i]);
+      if (local >= 0) nodal[local] += loads[a * m + i];
     }
   }
 }
@@ -103,17 +108,17 @@ void System::share_coordinates(const double* y) {
 
 // Values of two nodal fields at the elements in touch, on all ranks.
 void System::gather(const double* first, const double* second) {
-  const int b = beam_ != nullptr ? beam_->block() : 2;
-  const std::size_t m = 2 * static_cast<std::size_t>(b);
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node_);
   const std::size_t count = fleet_.elements().size() * m;
   std::vector<double>& both = element_work_;
   both.assign(2 * std::max(count, m), 0.0);
   for (std::size_t a = 0; a < fleet_.elements().size(); ++a) {
-    const int left = beam_->mesh().element(fleet_.elements()[a]).left - beam_->first_node();
-    for (int i = 0; i < 2; ++i) {
-      if (left + i < 0 || left + i >= beam_->local_nodes()) continue;
-      std::copy_n(first + (left + i) * b, b, &both[a * m + i * b]);
-      std::copy_n(second + (left + i) * b, b, &both[count + a * m + i * b]);
+    const auto unknowns = line_->unknowns(fleet_.elements()[a]);
+    for (std::size_t i = 0; i < m; ++i) {
+      const int local = beam_->local(unknowns[i]);
+      if (local < 0) continue;
+      both[a * m + i] = first[local];
+      both[count + a * m + i] = second[local];
     }
   }
   if (count > 0) MPI_Allreduce(MPI_IN_PLACE, both.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, comm_);
@@ -162,7 +167,7 @@ void System::evaluate_fleet(double t, const double* y) {
     throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
   fleet_.place_wheels();
   gather(y, y + n_);
-  if (!fleet_.touch(beam_ != nullptr ? beam_->block() : 2, v_.data(), w_.data()))
+  if (!fleet_.touch(per_node_, v_.data(), w_.data()))
     throw SolverError("a wheel has fallen below the running surface at t = " + std::to_string(t) +
                       " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too "
                       "soft");
@@ -183,7 +188,7 @@ void System::powers(const double* w, Part part, double& dissipation, double& wor
       for (int i = 0; i < n_; ++i) dissipation += w[i] * work_[i];
     }
     std::fill(work_.begin(), work_.end(), 0.0);
-    for (const beam::ElementLoad& load : loads_) add_point_load(load, work_.data());
+    for (const beam::ElementLoad& load : loads_) add_point_load(*line_, load, work_.data());
     if (!loads_.empty())
       for (int i = 0; i < n_; ++i) work += w[i] * work_[i];
     double sums[2] = {dissipation, work};
@@ -264,7 +269,7 @@ bool System::stage_of_fleet(double t, double shift, const double* v0, const doub
     gather(v0, c_v);
     if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, fleet_.elements());
     StageData stage{
-        t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, beam_ != nullptr ? beam_->block() : 2};
+        t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, per_node_};
     if (!newton_.solve(fleet_, stage, p_.data())) return false;
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
   }

@@ -33,8 +33,8 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
 // The stage problem at shift 0 with every drive standing still: K v = P + contacts, vehicles at rest.
 void System::find_equilibrium(double* v) {
   Fleet moving = std::move(fleet_);
-  fleet_ = Fleet(input_.types, input_.train, input_.gravity, true, beam_ != nullptr ? &beam_->mesh() : nullptr,
-                 &input_.profile);
+  fleet_ = Fleet(input_.types, input_.train, input_.gravity, true, line_ != nullptr ? &line_->mesh : nullptr,
+                 &input_.profile, surface_height());
   fleet_.partition(0.0);
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
@@ -79,11 +79,8 @@ bool System::repartition(double t, double* y) {
 std::vector<double> System::known_events(double end) const {
   std::vector<double> kinks = input_.profile.kinks();
   if (beam_ != nullptr) {
-    const beam::Mesh& mesh = beam_->mesh();
-    kinks.push_back(0.0);
-    kinks.push_back(mesh.length());
-    for (int i = 1; i < mesh.spans(); ++i)
-      if (mesh.nodes_at(i).first != mesh.nodes_at(i).second) kinks.push_back(mesh.span_ends()[i]);
+    const std::vector<double>& ends = line_->mesh.kinks();
+    kinks.insert(kinks.end(), ends.begin(), ends.end());
   }
   std::vector<double> events;
   auto add = [&](double x, double speed) {
@@ -102,7 +99,7 @@ std::vector<double> System::known_events(double end) const {
 
 double System::leaving_time() const {
   if (beam_ == nullptr || (fleet_.wheels.empty() && input_.load.forces.empty())) return infinite;
-  const double length = beam_->mesh().length();
+  const double length = beam_->mesh().end();
   double last = 0.0;
   auto leave = [&](double x, double speed) {
     if (x < length) last = std::max(last, speed > 0.0 ? (length - x) / speed : infinite);
@@ -112,16 +109,22 @@ double System::leaving_time() const {
   return last;
 }
 
-// Deflection and rotation at every node under a unit downward force at `station`, complete on every rank.
+// Deflection and rotation at every node of the line that wheels run on under a unit downward force on the bridge at
+// `station`, complete on every rank: what that force's place deflects by when the unit force travels.
 std::vector<double> System::influence_line(double station) {
   std::fill(nodal_.begin(), nodal_.end(), 0.0);
   const beam::Station s = beam_->mesh().locate(station);
-  add_point_load({s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
+  add_point_load(beam_->bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
   release_held(nodal_.data());
   operator_->factored(0.0).solve(nodal_.data());
-  std::vector<double> line(static_cast<std::size_t>(beam_->mesh().nodes()) * beam_->block(), 0.0);
-  std::copy(nodal_.begin(), nodal_.end(),
-            line.begin() + static_cast<std::ptrdiff_t>(beam_->first_node()) * beam_->block());
+  std::vector<double> line(4 * static_cast<std::size_t>(line_->mesh.elements()), 0.0);
+  for (int e = 0; e < line_->mesh.elements(); ++e) {
+    const auto unknowns = line_->transverse(e);
+    for (int i = 0; i < 4; ++i) {
+      const int local = beam_->local(unknowns[i]);
+      if (local >= 0) line[4 * static_cast<std::size_t>(e) + i] = nodal_[local];
+    }
+  }
   MPI_Allreduce(MPI_IN_PLACE, line.data(), static_cast<int>(line.size()), MPI_DOUBLE, MPI_SUM, comm_);
   return line;
 }
@@ -131,16 +134,13 @@ double System::static_peak(double station) {
   const bool apart = input_.train.speed != input_.load.speed;  // train and forces pass each other
   if (apart && !fleet_.wheels.empty() && !input_.load.forces.empty()) return 0.0;
   const std::vector<double> line = influence_line(station);
-  const beam::Mesh& mesh = beam_->mesh();
-  const int b = beam_->block();
+  const beam::Mesh& mesh = line_->mesh;
   auto ordinate = [&](double x) {
-    if (x < 0.0 || x > mesh.length()) return 0.0;
+    if (x < mesh.start() || x > mesh.end()) return 0.0;
     const beam::Station s = mesh.locate(x);
-    const beam::Element& e = mesh.element(s.element);
-    const beam::Hermite psi = beam::hermite(s.xi, e.length);
+    const beam::Hermite psi = beam::hermite(s.xi, mesh.element(s.element).length);
     double sum = 0.0;
-    for (int i = 0; i < 4; ++i)
-      sum += psi.value[i] * line[static_cast<std::size_t>(e.left + i / 2) * b + (b - 2) + i % 2];
+    for (int i = 0; i < 4; ++i) sum += psi.value[i] * line[4 * static_cast<std::size_t>(s.element) + i];
     return sum;
   };
   double front = -infinite, rear = infinite;
@@ -156,7 +156,7 @@ double System::static_peak(double station) {
     peak = std::max(peak, std::abs(sum));
   };
   for (const auto& [x, force] : weights_) try_shift(station - x);
-  for (int i = 0; i <= static_positions; ++i) try_shift(-front + (mesh.length() + front - rear) * i / static_positions);
+  for (int i = 0; i <= static_positions; ++i) try_shift(-front + (mesh.end() + front - rear) * i / static_positions);
   return peak;
 }
 

@@ -8,7 +8,8 @@
 namespace traverse::coupling {
 namespace {
 
-// The surface point that belongs to the material station x, and how it changes along x.
+// The surface point that belongs to the material station x, and how it changes along x. At a height e above the
+// neutral axis it moves by -e v' along x, as the plane sections turn.
 struct SurfacePoint {
   Eigen::Vector2d P, P_x, P_xx;
 };
@@ -31,6 +32,9 @@ struct Surface {
       s.P.y() += psi.value[i] * n[i];
       s.P_x.y() += psi.slope[i] * n[i];
       s.P_xx.y() += psi.curvature[i] * n[i];
+      s.P.x() -= patch.height * psi.slope[i] * n[i];
+      s.P_x.x() -= patch.height * psi.curvature[i] * n[i];
+      s.P_xx.x() -= patch.height * psi.third[i] * n[i];
     }
     if (block == 3) {
       s.P.x() += (1.0 - xi) * v[0] + xi * v[3];
@@ -77,9 +81,11 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
     const int o = block - 2;
     const std::array<int, 4> place = {o, o + 1, block + o, block + o + 1};
     for (int i = 0; i < 4; ++i) {
-      out.normal_on_beam[place[i]] = n.y() * psi.value[i];
-      out.tangent_on_beam[place[i]] = -tau.y() * psi.value[i];
+      const double along = -patch.height * psi.slope[i];
+      out.normal_on_beam[place[i]] = n.y() * psi.value[i] + n.x() * along;
+      out.tangent_on_beam[place[i]] = -tau.y() * psi.value[i] - tau.x() * along;
       relative.y() -= psi.value[i] * w[place[i]];
+      relative.x() -= along * w[place[i]];
     }
     if (block == 3) {
       const std::array<double, 2> phi = beam::linear(out.xi);

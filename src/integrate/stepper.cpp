@@ -228,7 +228,7 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample) {
   for (int i = 0; i < n; ++i) bounds[0] += std::abs(y.data[i]) + std::abs(ydot.data[i]);
   for (int i = 0; i < system_.beam_unknowns(); ++i) bounds[1] = std::max(bounds[1], std::abs(y.data[i]));
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, system_.comm());
-  const bool off = system_.beam() != nullptr && bounds[1] > system_.beam()->mesh().length();
+  const bool off = system_.beam() != nullptr && bounds[1] > system_.beam()->model().length();
   if (!std::isfinite(bounds[0]) || off)
     throw SolverError("the motion has grown beyond all bounds by t = " + std::to_string(t) +
                       " s: the step is too long for this integrator; take a smaller -ts_dt or an implicit -ts_type");

@@ -12,8 +12,10 @@ using base::check;
 Band gathered(const beam::Beam& beam, Mat matrix, bool axial) {
   std::vector<PetscInt> wanted;
   const int block = beam.block();
-  for (int node = 0; node < beam.mesh().nodes(); ++node) {
-    for (int i = axial ? 0 : block - 2; i < (axial ? 1 : block); ++i) wanted.push_back(node * block + i);
+  for (int column = 0; column < beam.columns(); ++column) {
+    for (int i = 0; i < block; ++i) {
+      if (beam::Layout::axial(beam.layout().kind[i]) == axial) wanted.push_back(column * block + i);
+    }
   }
   base::Handle<IS> set;
   check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES,
@@ -69,17 +71,16 @@ bool equal(const Segment& a, const Segment& b) {
 
 /// The rigid motions of the part of the beam that the segment is. (A segment that is only a piece of its part ends
 /// at a node that is held altogether, and its part has none.)
-void add_rigid_motions(const beam::Beam& beam, const beam::RigidMotion& motion, Segment& s) {
-  const auto add = [&](auto value) {
+void add_rigid_motions(const beam::Beam& beam, const std::vector<beam::RigidMotion>& motions, Segment& s) {
+  const double left = beam.mesh().x(s.nodes.front()), right = beam.mesh().x(s.nodes.back());
+  for (const beam::RigidMotion& motion : motions) {
+    if (motion.axial != s.axial || left < motion.left || right > motion.right) continue;
     s.rigid.emplace_back();
     for (std::size_t i = 0; i < s.nodes.size(); ++i) {
-      s.rigid.back().push_back(value(beam.mesh().x(s.nodes[i]), s.slope[i] != 0));
+      const double x = beam.mesh().x(s.nodes[i]);
+      s.rigid.back().push_back(s.slope[i] != 0 ? motion.slope(x, true) : motion.value(x));
     }
-  };
-  if (s.axial && motion.axial) add([](double, bool) { return 1.0; });
-  if (s.axial) return;
-  if (motion.vertical) add([](double, bool slope) { return slope ? 0.0 : 1.0; });
-  if (motion.rotation) add([&](double x, bool slope) { return slope ? 1.0 : x - motion.pivot; });
+  }
 }
 
 class Splitter {
@@ -126,7 +127,7 @@ class Splitter {
     s.M = part_of(M_, rows);
     s.offsets = {0};
     rows.clear();
-    add_rigid_motions(beam_, motion_at(s.nodes[0]), s);
+    add_rigid_motions(beam_, motions_, s);
     for (Segment& known : segments_) {
       if (!equal(known, s)) continue;
       known.offsets.push_back(s.nodes[0] - known.nodes[0]);
@@ -135,16 +136,10 @@ class Splitter {
     segments_.push_back(std::move(s));
   }
 
-  const beam::RigidMotion& motion_at(int node) {
-    while (part_ + 1 < motions_.size() && node >= beam_.mesh().nodes_at(motions_[part_ + 1].first_span).second) ++part_;
-    return motions_[part_];
-  }
-
   const beam::Beam& beam_;
   bool axial_;
   Band K_, M_;
   std::vector<beam::RigidMotion> motions_;
-  std::size_t part_ = 0;  // of the beam, that the segment in hand belongs to
   std::vector<Segment> segments_;
 };
 

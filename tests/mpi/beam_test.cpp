@@ -25,7 +25,7 @@ BeamModel model_of(std::vector<double> spans, int elements, bool isolated, bool 
   m.EI = beam::Distribution({0, 11, 11, 40}, {2e9, 3e9, 1e9, 2e9}, "EI");
   m.EA = 1e10;
   m.mass = 2000.0;
-  m.isolated = isolated;
+  if (isolated) m.joints = {beam::Joint::separate};
   m.axial = axial;
   auto& f = m.foundation;
   f.vertical = {{3.3, 1e8, 1e5}, {10.0, 1e8, 1e5}, {m.length(), 2e8, 0.0}};
@@ -44,7 +44,7 @@ class CutBeam : public testing::TestWithParam<Shape> {
       : model_(std::apply(model_of, GetParam())),
         cut_(PETSC_COMM_WORLD, model_),
         whole_(PETSC_COMM_SELF, model_),
-        first_(cut_.first_node() * cut_.block()) {
+        first_(cut_.first_column() * cut_.block()) {
     cut_.set_rayleigh({0.3, 0.02});
     whole_.set_rayleigh({0.3, 0.02});
   }
@@ -72,11 +72,11 @@ TEST_P(CutBeam, OwnsEveryNodeOnce) {
   int ranks = 0, rank = 0, sum = 0;
   MPI_Comm_size(PETSC_COMM_WORLD, &ranks);
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
-  const int mine = cut_.local_nodes();
+  const int mine = cut_.local_columns();
   MPI_Allreduce(&mine, &sum, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
   EXPECT_EQ(sum, whole_.mesh().nodes());
   for (int node = 0; node < sum; ++node) {
-    const bool here = node >= cut_.first_node() && node < cut_.first_node() + mine;
+    const bool here = node >= cut_.first_column() && node < cut_.first_column() + mine;
     EXPECT_EQ(cut_.owner(node) == rank, here);
   }
 }

@@ -17,13 +17,12 @@ inline beam::ElementLoad add_load(const beam::Beam& b, double x, double fy, doub
   const beam::Element& e = b.mesh().element(at.element);
   const auto s = beam::hermite(at.xi, e.length);
   const auto phi = beam::linear(at.xi);
-  for (int end = 0; end < 2; ++end) {
-    const int node = e.left + end - b.first_node();
-    if (node < 0 || node >= b.local_nodes()) continue;
-    double* p = P + node * b.block();
-    if (b.block() == 3) *p++ += fx * phi[end];
-    for (int i = 2 * end; i < 2 * end + 2; ++i) *p++ += fy * s.value[i] + moment * s.slope[i];
-  }
+  const auto add = [&](int unknown, double value) {
+    const int local = unknown < 0 ? -1 : b.local(unknown);
+    if (local >= 0) P[local] += value;
+  };
+  for (int i = 0; i < 2; ++i) add(b.bridge().axial(at.element)[i], fx * phi[i]);
+  for (int i = 0; i < 4; ++i) add(b.bridge().transverse(at.element)[i], fy * s.value[i] + moment * s.slope[i]);
   return {at.element, at.xi, fx, fy, moment};
 }
 

@@ -140,8 +140,8 @@ TEST(Mesh, LocateAtNodes) {
       EXPECT_EQ(left.xi, 1.0);
     }
   }
-  EXPECT_EQ(mesh.locate(mesh.length()).element, 20);
-  EXPECT_EQ(mesh.locate(mesh.length()).xi, 1.0);
+  EXPECT_EQ(mesh.locate(mesh.end()).element, 20);
+  EXPECT_EQ(mesh.locate(mesh.end()).xi, 1.0);
   EXPECT_EQ(mesh.locate(99.0).xi, 1.0);
   EXPECT_EQ(mesh.locate(-99.0).element, 0);
   EXPECT_NEAR(mesh.locate(0.45).xi, 0.5, 1e-12);
@@ -149,7 +149,7 @@ TEST(Mesh, LocateAtNodes) {
 
 TEST(Mesh, IsolatedSpansHaveTwoNodesAtInnerEnds) {
   auto m = model_of({10, 20}, 4);
-  m.isolated = true;
+  m.joints = {beam::Joint::separate};
   const beam::Mesh mesh(m);
   EXPECT_EQ(mesh.nodes(), 10);
   EXPECT_EQ(mesh.nodes_at(0), (std::pair{0, 0}));
@@ -227,7 +227,7 @@ TEST(Checks, FloatingMotions) {
   bed.longitudinal_bed = beam::Bed{Distribution({0, 25, 25, 30}, {0, 0, 1, 1}, "k"), 0.0};
   EXPECT_EQ(motion({free, free, free}, bed), "");
 
-  m.isolated = true;
+  m.joints = {beam::Joint::separate};
   EXPECT_EQ(motion({pinned, roller, roller}), "");
   EXPECT_EQ(motion({roller, roller, free}), "span 2 can rotate about x = 10 m");
   EXPECT_EQ(motion({free, free, guided}), "span 1 can move vertically and rotate");

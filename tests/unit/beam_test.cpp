@@ -150,7 +150,7 @@ TEST(Assembly, BedsAreMassMatrices) {
 
 TEST(Assembly, IsolatedSpansDoNotCouple) {
   auto m = model_of({10, 20, 10}, 2);
-  m.isolated = true;
+  m.joints = {beam::Joint::separate};
   m.foundation.vertical = {{10.0, 1e6, 0.0}, {40.0, 2e6, 0.0}};
   m.supports.assign(4, Support::free);
   const Beam b(PETSC_COMM_SELF, m);

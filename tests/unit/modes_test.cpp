@@ -23,7 +23,7 @@ BeamModel model_of(std::vector<double> spans, int elements, bool isolated, bool 
   m.EI = 2e9;
   m.EA = 1e10;
   m.mass = 2000.0;
-  m.isolated = isolated;
+  if (isolated) m.joints = {beam::Joint::separate};
   m.axial = axial;
   return m;
 }

@@ -1,21 +1,22 @@
-// The assembled beam (the paper's section 2 with the foundation of section 3), cut over ranks by nodes.
+// The assembled structure (the paper's section 2 with the foundation of section 3), cut over ranks by columns.
 //
 //   M a + C* w + K* v = P        v, w, a: nodal displacements, velocities, accelerations
 //
-// Unknowns of a node: (v, theta), or (u, v, theta) where axial. Every node has all of them in the vectors; those
-// that a support holds stay zero: their rows and columns are empty in M, C and K ("aa" of eq. 17), and the rows
-// "c" of eq. 18 are kept apart for the reactions. All matrices are AIJ, assembled by each rank from its own nodes
+// A column holds the unknowns of one node (line.hpp). The vectors have all of them; those that a support holds, or
+// that nothing belongs to, stay zero: their rows and columns are empty in M, C and K ("aa" of eq. 17), and the rows
+// "c" of eq. 18 are kept apart for the reactions. All matrices are AIJ, assembled by each rank from its own columns
 // without communication; M, K_aa, K* and C* have the same pattern of non-zeros.
 #pragma once
 
 #include <mpi.h>
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "traverse/base/petsc.hpp"
 #include "traverse/beam/element.hpp"
-#include "traverse/beam/mesh.hpp"
+#include "traverse/beam/line.hpp"
 
 namespace traverse::beam {
 
@@ -33,23 +34,36 @@ class Beam {
   /// Collective. Checks the model: InputError naming the option.
   Beam(MPI_Comm comm, BeamModel model);
 
-  const BeamModel& model() const { return model_; }
-  const Mesh& mesh() const { return mesh_; }
+  const BeamModel& model() const { return bridge_.model; }
+  /// The bridge: the beam of the model.
+  const Line& bridge() const { return bridge_; }
+  const Mesh& mesh() const { return bridge_.mesh; }
+  /// The rail of a layered track, or null.
+  const Line* rail() const { return rail_ ? &*rail_ : nullptr; }
+  /// Where wheels run: on the rail, or on the bridge.
+  const Line& running() const { return rail_ ? *rail_ : bridge_; }
+  const Layout& layout() const { return layout_; }
   MPI_Comm comm() const { return comm_; }
-  int block() const { return model_.axial ? 3 : 2; }
-  int first_node() const { return first_; }  // owned by this rank: [first_node, first_node + local_nodes)
-  int local_nodes() const { return local_; }
+  int block() const { return layout_.block; }  // unknowns a column
+  int columns() const { return rail_ ? rail_->mesh.nodes() : bridge_.mesh.nodes(); }
+  int first_column() const { return first_; }  // owned by this rank: [first_column, first_column + local_columns)
+  int local_columns() const { return local_; }
   int local_unknowns() const { return local_ * block(); }
-  /// Which rank owns a node.
-  int owner(int node) const;
-  /// One entry a local unknown: non-zero where a support holds it.
+  /// Which rank owns a column.
+  int owner(int column) const;
+  /// The place of a global unknown among this rank's, or -1.
+  int local(int unknown) const {
+    const int i = unknown - first_ * block();
+    return i >= 0 && i < local_unknowns() ? i : -1;
+  }
+  /// One entry a local unknown: non-zero where it stays zero.
   const std::vector<char>& fixed() const { return fixed_; }
 
   /// Collective; must be called once before damping() and reactions() are used.
   void set_rayleigh(Rayleigh ab);
   Rayleigh rayleigh() const { return rayleigh_; }
 
-  Mat mass() const { return mass_; }                      // M_aa
+  Mat mass() const { return mass_; }                      // M_aa, with that of a layered track
   Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
   Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
   Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
@@ -58,15 +72,17 @@ class Beam {
   struct FoundationMats {
     base::Handle<Mat> vertical_discrete[2], vertical_continuous[2], longitudinal_discrete[2],
         longitudinal_continuous[2], rotational_discrete[2];  // [0] stiffness, [1] damping
+    base::Handle<Mat> layered_track[2];  // rail, pads, ballast, sub-ballast
   };
   const FoundationMats& foundation() const { return foundation_; }
 
-  /// Nodal forces of the beam's own weight, this rank's unknowns (consistent with psi), g > 0 pulls down; added to P.
+  /// Nodal forces of the structure's own weight, this rank's unknowns (consistent with psi: the mass matrix times a
+  /// fall of all that has mass), g > 0 pulls down; added to P.
   void add_self_weight(double gravity, double* P) const;
 
   /// Collective. Forces and moment of the supports ON the beam at every span end, {fx, fy, moment} each, on all
   /// ranks (eq. 18 as corrected: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal vectors.
-  /// P must hold the load on held unknowns too. At the inner ends of isolated spans both spans' parts are added.
+  /// P must hold the load on held unknowns too. Where spans are separate both spans' parts are added.
   void reactions(const double* v, const double* w, const double* a, const double* P,
                  std::vector<std::array<double, 3>>& out) const;
 
@@ -75,26 +91,30 @@ class Beam {
   struct ReactionTerm {
     std::size_t slot;     // in the reactions, 3 a span end
     std::size_t unknown;  // local
-    double mass, beam_stiffness, stiffness, foundation_damping, damping;
+    double mass, beam_mass, beam_stiffness, stiffness, foundation_damping, damping;
   };
   /// Where the load on a held unknown enters.
   struct HeldLoad {
     std::size_t slot, unknown;
   };
 
+  Slice slice() const;
   void assemble(const Slice& slice);
-  void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping);
-  void note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_stiffness,
-                      const Rows& foundation_stiffness, const Rows& foundation_damping);
+  void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
+                      std::vector<std::pair<base::Handle<Mat>*, Rows>>& own);
+  void note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_mass, const Rows& beam_stiffness,
+                      const Rows& stiffness, const Rows& foundation_damping);
 
   MPI_Comm comm_;
-  BeamModel model_;
-  Mesh mesh_;
-  int first_ = 0, local_ = 0;
+  Layout layout_;
+  Line bridge_;
+  std::optional<Line> rail_;
+  int first_ = 0, local_ = 0;  // columns
   std::vector<char> fixed_;
   Rayleigh rayleigh_;
-  base::Handle<Mat> mass_, beam_stiffness_, stiffness_, damping_;
+  base::Handle<Mat> mass_, beam_mass_, beam_stiffness_, stiffness_, damping_;
   base::Handle<Mat> foundation_damping_;  // of all kinds together, with the pattern of the mass; null without any
+  std::vector<double> weight_;            // of one m/s2 downward, this rank
   FoundationMats foundation_;
   std::vector<ReactionTerm> reaction_terms_;
   std::vector<HeldLoad> held_loads_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "traverse/beam/mesh.hpp"
 #include "traverse/beam/model.hpp"
@@ -29,7 +30,13 @@ Axial axial_bed(const Distribution& density, const Element& element);
 std::array<double, 4> transverse_load(const Distribution& density, const Element& element);
 
 /// c s s^T, the matrix of a spring or damper c at one station with the shape vector s.
-Transverse outer(double c, const std::array<double, 4>& s);
-Axial outer(double c, const std::array<double, 2>& s);
+template <std::size_t N>
+std::array<double, N * N> outer(double c, const std::array<double, N>& s) {
+  std::array<double, N * N> matrix{};
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) matrix[i * N + j] = c * s[i] * s[j];
+  }
+  return matrix;
+}
 
 }  // namespace traverse::beam

@@ -1,4 +1,4 @@
-// Nodes and elements along x. Isolated spans have two nodes at each inner span end.
+// Nodes and elements along x. Where two spans are separate there is a node for each of them.
 #pragma once
 
 #include <vector>
@@ -28,23 +28,35 @@ class Mesh {
   int elements() const { return static_cast<int>(elements_.size()); }
   double x(int node) const { return x_[node]; }
   const Element& element(int e) const { return elements_[e]; }
-  double length() const { return x_.back(); }
+  double start() const { return x_.front(); }
+  double end() const { return x_.back(); }
   int spans() const { return static_cast<int>(span_ends_.size()) - 1; }
-  /// Span ends x_0 = 0, ..., x_spans = length.
+  /// Span ends x_0, ..., x_spans.
   const std::vector<double>& span_ends() const { return span_ends_; }
-  /// Nodes at span end i: {left span's, right span's}; equal on a continuous beam and at the outer ends.
-  std::pair<int, int> nodes_at(int span_end) const;
+  /// Nodes at span end i: {left span's, right span's}; equal but where two spans are separate.
+  std::pair<int, int> nodes_at(int span_end) const { return nodes_at_[span_end]; }
+  /// Whether the slope may jump at a node: it has a rotation for either side.
+  bool hinged(int node) const { return hinged_[node] != 0; }
+  bool any_hinge() const { return any_hinge_; }
 
-  /// The element that holds x (clamped into [0, length]); at a node shared by two elements the right one,
+  /// The element that holds x (clamped into [start, end]); at a node shared by two elements the right one,
   /// except at the end of the beam. `from_left`: the left one. Costs O(log spans).
   Station locate(double x, bool from_left = false) const;
 
+  /// Stations where the beam's slope or deflection may jump: its ends, separate joints, hinges; ascending.
+  const std::vector<double>& kinks() const { return kinks_; }
+  /// The kinks on either side of an element: the reach of the smooth surface that it belongs to.
+  std::pair<double, double> smooth_reach(int element) const;
+
  private:
   std::vector<double> x_;
+  std::vector<char> hinged_;
   std::vector<Element> elements_;
-  std::vector<double> span_ends_;
-  std::vector<int> first_element_;  // of each span, and one past the last
-  bool isolated_ = false;
+  std::vector<double> span_ends_, kinks_;
+  std::vector<std::pair<int, int>> nodes_at_;
+  std::vector<double> piece_ends_;  // left end of each run of equal elements, and the beam's end
+  std::vector<int> first_element_;  // of each of them, and one past the last
+  bool any_hinge_ = false;
 };
 
 }  // namespace traverse::beam

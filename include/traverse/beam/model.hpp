@@ -41,11 +41,19 @@ bool fixes_axial(Support s);
 bool fixes_vertical(Support s);
 bool fixes_rotation(Support s);
 
+/// What joins the beam to its continuation at an inner span end.
+enum class Joint {
+  continuous,  // it goes through
+  hinge,       // it goes through, but its slope may jump: no moment there
+  separate,    // two beams that end there, side by side on one support
+};
+
 /// A spring and a damper at one station (vertical or longitudinal: N/m, N s/m; rotational: N m/rad, N m s/rad).
 struct PointFoundation {
   double x = 0.0;
   double k = 0.0;
   double c = 0.0;
+  bool from_left = false;  // on the end of two separate spans, or beside a hinge: it holds the left one
 };
 
 /// A bed along the whole beam: N/m2 and N s/m2, neither negative.
@@ -55,7 +63,7 @@ struct Bed {
 };
 
 /// The paper's section 3: all of it linear, each kind assembled into a matrix of its own. It pushes back: the force
-/// on the beam is -k v - c dv/dt. A station on an inner span end of isolated spans belongs to the right span.
+/// on the beam is -k v - c dv/dt.
 /// The longitudinal kinds have no effect on a beam without axial unknowns.
 struct Foundation {
   std::vector<PointFoundation> vertical;      // 3.2
@@ -65,38 +73,100 @@ struct Foundation {
   std::vector<PointFoundation> rotational;    // 3.6
 };
 
+/// A spring and a damper of a layer of track: N/m and N s/m for each sleeper.
+struct Layer {
+  double k = 0.0;
+  double c = 0.0;
+};
+
+/// Rail, pads, sleepers, ballast and sub-ballast, all for both rails together. On the ground a sleeper stands on its
+/// ballast spring, the ballast's mass, the sub-ballast's spring; on the bridge the ballast's spring stands on the beam
+/// and its mass rides there. A layer that is left out is rigid: the sleeper stands on the next one.
+struct LayeredTrack {
+  double rail_EI = 0.0, rail_EA = 0.0, rail_mass = 0.0;  // N m2, N, kg/m
+  double spacing = 0.6;                                  // from sleeper to sleeper, m
+  double offset = 0.0;                                   // station of one of them, m
+  int elements_per_bay = 2;                              // of the rail
+  Layer pad;
+  double sleeper_mass = 0.0;  // kg
+  std::optional<Layer> ballast;
+  double ballast_mass = 0.0;  // kg a sleeper
+  std::optional<Layer> subballast;
+  Layer longitudinal;     // between rail and bridge, or rail and ground, along x
+  double approach = 0.0;  // of track on either side of the bridge, m; made whole bays
+};
+
 struct BeamModel {
   std::vector<double> spans;      // m, each > 0
-  std::vector<int> elements;      // one number a span, each >= 1
+  std::vector<int> elements;      // one number a span, each >= 1; with a layered track its rail's mesh decides instead
   Distribution EI;                // N m2, > 0
   Distribution EA;                // N, > 0 where axial
   Distribution mass;              // kg/m, > 0
-  bool isolated = false;          // true: each span a beam of its own (simply supported spans)
-  std::vector<Support> supports;  // one at every span end: spans + 1; isolated: an inner one serves both spans
+  std::vector<Joint> joints;      // at the inner span ends, one for all or one each; empty: continuous
+  std::vector<double> hinges;     // further hinges within spans, m, ascending
+  std::vector<Support> supports;  // one at every span end: spans + 1; where spans are separate it serves both
   Foundation foundation;
-  bool axial = true;  // false: no axial unknowns
+  std::optional<LayeredTrack> track;
+  bool axial = true;   // false: no axial unknowns
+  double start = 0.0;  // x of the left end, m: 0, but for a rail that begins before the bridge
+  double surface_height = 0.0;  // of the running surface above the neutral axis, m: forces along x act up there
+
   double length() const;
+  double end() const { return start + length(); }
+  /// At an inner span end, 1 <= span_end < spans.
+  Joint joint(int span_end) const;
+  /// Whether all its spans are beams of their own.
+  bool all_separate() const;
 };
+
+/// A run of elements of one length: a span, or what hinges leave of it.
+struct Piece {
+  int span = 0;
+  double left = 0.0, right = 0.0;  // m
+  int elements = 0;
+  Joint next = Joint::continuous;  // what joins it to the next piece; of the last one: separate
+  bool ends_span = true;
+};
+std::vector<Piece> pieces_of(const BeamModel& model);
+
+/// The sleepers and the rail's nodes of a model with a layered track: node i stands at rail_start + i*rail_element,
+/// a sleeper at every elements_per_bay-th of them.
+struct RailMesh {
+  double start = 0.0, element = 0.0;  // m
+  int elements = 0;
+  double x(int node) const { return start + node * element; }
+  /// The first node at or after x, within rounding.
+  int first_from(double x) const;
+};
+RailMesh rail_mesh(const BeamModel& model);
+
+/// The rail as a beam, eqs. 1-12: free at both ends, without foundation; its layers join it to the sleepers.
+BeamModel rail_model(const BeamModel& model);
 
 /// Throws InputError when the model cannot be assembled: the message names the option (beam_EI, support_types,
 /// foundation_vertical_x, ...), its value and what is allowed. A beam that floats is no error here.
 void check(const BeamModel& model);
 
-/// One entry a span, non-zero for an isolated span that neither its supports nor a longitudinal spring or bed hold
-/// along x: it is given a fixed bearing, its left end is held axially. Only where there are axial unknowns.
+/// One entry a span, non-zero for one of several separate beams that neither supports nor a longitudinal spring or bed
+/// hold along x: its left end is given a fixed bearing. Only where there are axial unknowns.
 std::vector<char> axial_bearings(const BeamModel& model);
 
-/// How a part of the beam (each isolated span, or the whole beam) can move without strain and without a spring's
-/// force, found by counting what holds it. `rotation` alone: about the one station `pivot` that is held.
+/// A motion without strain and without a spring's force of one part of the beam (what lies between its ends and
+/// separate joints): along x, or a chain of straight pieces between hinges.
 struct RigidMotion {
-  int first_span = 0, last_span = 0;
-  bool vertical = false, rotation = false, axial = false;
-  double pivot = 0.0;  // m
-};
-std::vector<RigidMotion> rigid_motions(const BeamModel& model);  // one a part, from left to right
+  double left = 0.0, right = 0.0;  // of the part, m
+  bool axial = false;
+  std::vector<double> x;           // stations of the part's ends and hinges
+  std::vector<double> deflection;  // there; of an axial motion the displacement along x
 
-/// The first of these motions in words ("span 3 can move vertically"; spans count from 1), or empty: statics has
-/// a unique answer.
+  /// Deflection and slope at a station of the part; at a hinge the slope to its right, or to its left.
+  double value(double station) const;
+  double slope(double station, bool from_left) const;
+};
+/// All of them, found from what holds each part, from left to right. A model with a layered track has none.
+std::vector<RigidMotion> rigid_motions(const BeamModel& model);
+
+/// The first of these motions in words, or empty: statics has a unique answer.
 std::string floating_motion(const BeamModel& model);
 
 }  // namespace traverse::beam

@@ -26,14 +26,17 @@ struct Response {
 /// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.
 class Recovery {
  public:
-  /// Stations in [0, length]: InputError otherwise. `self_weight`: gravity if it loads the beam, else 0.
-  /// At a node the response is that of the element to its right (at the end of the beam: to its left).
-  Recovery(const Beam& beam, std::vector<double> stations, double self_weight);
+  /// Of the bridge or of the rail; stations on it: InputError otherwise. `self_weight`: gravity if it loads the beam,
+  /// else 0. At a node the response is that of the element to its right (at the end of the beam: to its left).
+  Recovery(const Beam& beam, const Line& line, std::vector<double> stations, double self_weight);
+  /// Of the bridge.
+  Recovery(const Beam& beam, std::vector<double> stations, double self_weight)
+      : Recovery(beam, beam.bridge(), std::move(stations), self_weight) {}
   Recovery(Recovery&&) noexcept;
   ~Recovery();
 
-  /// Collective. From this rank's slices of the nodal vectors and all concentrated loads (the same list on every
-  /// rank), the response at every station, complete on every rank.
+  /// Collective. From this rank's slices of the nodal vectors and all concentrated loads on this line (the same list
+  /// on every rank), the response at every station, complete on every rank.
   /// Moment and shear follow from the element's end forces K_e v + C_e w + M_e a - P_e and the loads and inertia
   /// inside the element, less the part b*K_e w that is damping, not bending. The deflection has the element's own
   /// fixed-end deflection under the loads added, which the cubic shape functions leave out; velocity and
@@ -50,11 +53,14 @@ class Recovery {
 
   void gather(const double* v, const double* w, const double* a);
   Response respond(const Section& s, const Values& v, const Values& w, const Values& a) const;
+  void add_riders(const Section& s, const Values* values, const double* riders, Response& r) const;
 
   const Beam& beam_;
+  const Line& line_;
   std::vector<double> stations_;
   std::vector<Section> sections_;
-  std::vector<Values> gathered_;  // of every station: v, w, a
+  double gravity_;
+  std::vector<double> gathered_;  // of every station: v, w, a, and v, w of what stands above each riding sleeper
 };
 
 }  // namespace traverse::beam

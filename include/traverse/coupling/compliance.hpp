@@ -16,10 +16,11 @@ class Compliance {
   /// Collective. Prepares the compliance between `elements` for the factorisation of `shift`.
   void prepare(double shift, const std::vector<int>& elements);
 
-  /// Displacement of unknown i of elements[a] from a unit load on unknown j of elements[b]; i, j < 2*block.
+  /// Displacement of unknown i of elements[a] from a unit load on unknown j of elements[b]; i, j < 2*per_node of the
+  /// line that wheels run on.
   const double* block(int a, int b) const { return &matrix_[(static_cast<std::size_t>(a) * count_ + b) * m_ * m_]; }
 
-  /// v += A^-1 loads, where loads holds 2*block nodal values an element of the last prepare. This rank's slice.
+  /// v += A^-1 loads, where loads holds 2*per_node nodal values an element of the last prepare. This rank's slice.
   void add_response(const std::vector<double>& loads, double* v) const;
 
  private:
@@ -27,14 +28,15 @@ class Compliance {
     int element = 0;
     long stamp = 0;
     int low = 0, high = 0;       // local unknowns that respond above rounding
-    std::vector<double> values;  // (high - low) x 2*block, column by column
+    std::vector<double> values;  // (high - low) x 2*per_node, column by column
   };
   Column& column(const solve::SubstructuredCholesky& factor, long stamp, int element);
   void fill_matrix();
 
   const beam::Beam& beam_;
   BeamOperator& operator_;
-  int m_;                              // 2*block
+  const beam::Line& line_;
+  int m_;                              // 2*per_node
   std::list<Column> columns_;          // most recent first
   std::vector<const Column*> active_;  // of the elements of the last prepare
   std::vector<int> elements_;

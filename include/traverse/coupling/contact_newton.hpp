@@ -19,17 +19,17 @@ struct StageData {
   double t = 0.0;
   double shift = 0.0;
   const double* c_p = nullptr;              // freedom values, then those of p'
-  const std::vector<double>* v0 = nullptr;  // free response at the elements in touch, 2*block each
+  const std::vector<double>* v0 = nullptr;  // free response at the elements in touch, 2*per_node each
   const std::vector<double>* c_v = nullptr;
   const Compliance* compliance = nullptr;  // null without a beam
-  int block = 2;
+  int per_node = 2;
 };
 
 class ContactNewton {
  public:
   /// p (freedom values): in a guess, out the solution. False when it does not converge.
   bool solve(Fleet& fleet, const StageData& stage, double* p);
-  /// Nodal loads on the elements in touch that belong to the solution, 2*block each.
+  /// Nodal loads on the elements in touch that belong to the solution, 2*per_node each.
   const std::vector<double>& element_loads() const { return loads_; }
   /// Residual and change of force of the last iteration over the train's weight, for messages.
   double last_change() const { return change_; }

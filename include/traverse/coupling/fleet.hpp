@@ -46,9 +46,10 @@ struct WheelContact {
 class Fleet {
  public:
   Fleet() = default;
+  /// mesh: of the beam that wheels run on, null for rigid ground alone, its surface at a height above its axis.
   /// frozen: every drive stands still at its place at t = 0, and a free train is held: for the static start.
   Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
-        const track::Profile* profile);
+        const track::Profile* profile, double surface_height);
 
   std::vector<MovingVehicle> vehicles;
   std::vector<WheelContact> wheels;
@@ -78,14 +79,14 @@ class Fleet {
   bool wheels_in_place() const;
   const std::vector<int>& elements() const { return elements_; }
 
-  /// Contact geometry from the elements' unknowns v and rates w (2*block an element of elements()).
-  bool touch(int block, const double* v, const double* w);
+  /// Contact geometry from the elements' unknowns v and rates w (2*per_node an element of elements()).
+  bool touch(int per_node, const double* v, const double* w);
   /// Forces from the kinematics held in `wheels`.
   void contact_forces();
   /// The vehicles' Q from the contact forces.
   void wheel_loads();
-  /// Contact forces as nodal values of the elements in touch, 2*block each, on the beam.
-  void element_loads(int block, std::vector<double>& loads) const;
+  /// Contact forces as nodal values of the elements in touch, 2*per_node each, on the beam.
+  void element_loads(int per_node, std::vector<double>& loads) const;
   /// Power lost in contact damping and friction, W.
   double contact_dissipation() const;
   double contact_potential() const;
@@ -95,10 +96,10 @@ class Fleet {
 
   const beam::Mesh* mesh_ = nullptr;
   const track::Profile* profile_ = nullptr;
-  bool isolated_ = false;
   int freedom_ = 0;
   double speed_ = 0.0;
   bool frozen_ = false;
+  double surface_height_ = 0.0;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p
   std::vector<double> position_, velocity_;  // of one vehicle

@@ -47,7 +47,7 @@ struct Energy {
 struct Observation {
   std::vector<double> a;                 // nodal accelerations, this rank
   std::vector<double> P;                 // nodal loads, on held unknowns too, this rank
-  std::vector<beam::ElementLoad> loads;  // concentrated loads on the beam
+  std::vector<beam::ElementLoad> loads;  // concentrated loads on the beam that wheels run on
   Energy energy;
 };
 
@@ -93,6 +93,7 @@ class System {
 
  private:
   void find_equilibrium(double* v);
+  double surface_height() const;
   void note_weights();
   std::vector<double> influence_line(double station);
   void share_coordinates(const double* y);
@@ -101,7 +102,7 @@ class System {
   void moving_loads(double t);
   void external_load(double t, double* nodal);
   void add_contact_load(double* nodal);
-  void add_point_load(const beam::ElementLoad& load, double* nodal) const;
+  void add_point_load(const beam::Line& line, const beam::ElementLoad& load, double* nodal) const;
   void release_held(double* nodal) const;
   void evaluate_fleet(double t, const double* y);
   void powers(const double* w, Part part, double& dissipation, double& work);
@@ -110,6 +111,8 @@ class System {
   MPI_Comm comm_;
   int rank_ = 0;
   const beam::Beam* beam_;
+  const beam::Line* line_ = nullptr;  // that wheels and forces run on; null without a beam
+  int per_node_ = 2;                  // its unknowns a node
   SystemInput input_;
   std::optional<BeamOperator> operator_;
   std::optional<Compliance> compliance_;
@@ -121,7 +124,7 @@ class System {
   std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
-  std::vector<double> v_, w_;                       // of the elements in touch, 2*block each
+  std::vector<double> v_, w_;                       // of the elements in touch, 2*per_node each
   std::vector<double> element_work_;
   std::vector<double> nodal_, work_, v_still_;  // this rank's unknowns
 };

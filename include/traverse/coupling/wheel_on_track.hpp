@@ -16,6 +16,7 @@ namespace traverse::coupling {
 struct Patch {
   int element = -1;              // -1: rigid ground
   double x = 0.0, length = 0.0;  // of the element, m
+  double height = 0.0;           // of the surface above the beam's neutral axis, m
   double low = 0.0, high = 0.0;  // stations between which the piece reaches; a wheel beyond touches its corner
 };
 
@@ -33,7 +34,7 @@ struct Touch {
 };
 
 /// q, qd: x, y, phi of the wheel's body and their rates. v, w: the element's unknowns and their rates (2*block
-/// values; not read on rigid ground). Returns false where no contact point exists (the centre lies below the surface).
+/// values, where block is the number of unknowns of a node; not read on rigid ground). Returns false where no contact point exists (the centre lies below the surface).
 bool touch(const Patch& patch, const track::Profile& profile, double radius, const Eigen::Vector3d& q,
            const Eigen::Vector3d& qd, int block, const double* v, const double* w, Touch& out);
 

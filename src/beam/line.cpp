@@ -1,0 +1,59 @@
+#include "traverse/beam/line.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace traverse::beam {
+
+Layout::Layout(const BeamModel& model) {
+  place.fill(-1);
+  const auto pieces = pieces_of(model);
+  const bool hinges = std::any_of(pieces.begin(), pieces.end(), [](const Piece& p) { return p.next == Joint::hinge; });
+  const auto add = [&](Kind k) {
+    kind[block] = k;
+    place[k] = block++;
+  };
+  if (model.track) {
+    if (model.axial) add(rail_u);
+    add(rail_v);
+    add(rail_theta);
+    add(sleeper);
+  }
+  if (model.axial) add(Kind::u);
+  add(Kind::v);
+  add(Kind::theta);
+  if (hinges) add(Kind::theta_right);
+}
+
+Line::Line(BeamModel its_model, const Layout& layout, bool rail, int its_first_column)
+    : model(std::move(its_model)),
+      mesh(model),
+      first_column(its_first_column),
+      block(layout.block),
+      per_node(model.axial ? 3 : 2) {
+  const auto& at = layout.place;
+  if (rail) {
+    place = {at[rail_u], at[rail_v], at[rail_theta], -1};
+  } else {
+    place = {at[Kind::u], at[Kind::v], at[Kind::theta], at[Kind::theta_right]};
+  }
+}
+
+std::array<int, 4> Line::transverse(int element) const {
+  const int left = mesh.element(element).left;
+  return {unknown(left, 1), unknown(left, mesh.hinged(left) ? 3 : 2), unknown(left + 1, 1), unknown(left + 1, 2)};
+}
+
+std::array<int, 2> Line::axial(int element) const {
+  const int left = mesh.element(element).left;
+  return {unknown(left, 0), unknown(left + 1, 0)};
+}
+
+std::array<int, 6> Line::unknowns(int element) const {
+  const auto [v1, theta1, v2, theta2] = transverse(element);
+  if (per_node == 2) return {v1, theta1, v2, theta2, -1, -1};
+  const auto [u1, u2] = axial(element);
+  return {u1, v1, theta1, u2, v2, theta2};
+}
+
+}  // namespace traverse::beam

@@ -1,0 +1,88 @@
+// How a beam is divided: between span ends and hinges, and under a layered track.
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/beam/model.hpp"
+
+namespace traverse::beam {
+namespace {
+
+constexpr double rounding = 1e-9;  // of an element's length: closer stations are one
+
+/// The pieces without their numbers of elements.
+std::vector<Piece> divided(const BeamModel& model) {
+  std::vector<Piece> pieces;
+  auto hinge = model.hinges.begin();
+  double left = model.start, end = model.start;
+  const int spans = static_cast<int>(model.spans.size());
+  for (int span = 0; span < spans; ++span) {
+    end += model.spans[span];
+    for (; hinge != model.hinges.end() && *hinge < end; ++hinge) {
+      pieces.push_back({span, left, *hinge, 0, Joint::hinge, false});
+      left = *hinge;
+    }
+    Joint next = span + 1 < spans ? model.joint(span + 1) : Joint::separate;
+    if (hinge != model.hinges.end() && *hinge == end) {
+      ++hinge;
+      if (next == Joint::continuous) next = Joint::hinge;
+    }
+    pieces.push_back({span, left, end, 0, next, true});
+    left = end;
+  }
+  return pieces;
+}
+
+/// The bridge under a layered track has one node for each of the rail's, so that both are numbered together: as many
+/// elements as there are rail nodes from the piece's left end on, less one where no node is shared with the next piece.
+/// Every sleeper then stands on an element beside its own rail node.
+void follow_rail(const RailMesh& rail, std::vector<Piece>& pieces) {
+  for (Piece& piece : pieces) {
+    const int nodes = rail.first_from(piece.right) - rail.first_from(piece.left);
+    piece.elements = nodes - (piece.next == Joint::separate ? 1 : 0);
+  }
+}
+
+}  // namespace
+
+int RailMesh::first_from(double station) const {
+  return static_cast<int>(std::ceil((station - start) / element - rounding));
+}
+
+RailMesh rail_mesh(const BeamModel& model) {
+  const LayeredTrack& track = *model.track;
+  const auto bays = [&](double x) { return (x - track.offset) / track.spacing; };
+  const double first = std::floor(bays(model.start - track.approach) + rounding);
+  const double last = std::ceil(bays(model.end() + track.approach) - rounding);
+  return {track.offset + first * track.spacing, track.spacing / track.elements_per_bay,
+          static_cast<int>(last - first) * track.elements_per_bay};
+}
+
+BeamModel rail_model(const BeamModel& model) {
+  const RailMesh mesh = rail_mesh(model);
+  BeamModel rail;
+  rail.spans = {mesh.elements * mesh.element};
+  rail.elements = {mesh.elements};
+  rail.EI = model.track->rail_EI;
+  rail.EA = model.track->rail_EA;
+  rail.mass = model.track->rail_mass;
+  rail.supports = {Support::free, Support::free};
+  rail.axial = model.axial;
+  rail.start = mesh.start;
+  return rail;
+}
+
+std::vector<Piece> pieces_of(const BeamModel& model) {
+  std::vector<Piece> pieces = divided(model);
+  if (model.track) {
+    follow_rail(rail_mesh(model), pieces);
+    return pieces;
+  }
+  // A span's elements are shared among its pieces by length, at least one each.
+  for (Piece& piece : pieces) {
+    const double share = (piece.right - piece.left) / model.spans[piece.span];
+    piece.elements = std::max(1, static_cast<int>(std::lround(model.elements[piece.span] * share)));
+  }
+  return pieces;
+}
+
+}  // namespace traverse::beam
