@@ -48,7 +48,8 @@ Dynamics damp(beam::Beam& beam, const Scene& scene, bool frequencies_wanted, std
     d.omega = {2.0 * std::numbers::pi * damping.frequencies->first,
                2.0 * std::numbers::pi * damping.frequencies->second};
   else if (damping.ratios || frequencies_wanted)
-    d.omega = modes::distinct_pair(beam);
+    d.omega = beam.rail() == nullptr ? modes::distinct_pair(beam)
+                                     : modes::distinct_pair(beam::Beam(beam.comm(), bridge_alone(beam.model())));
   if (damping.rayleigh) d.rayleigh = {damping.rayleigh->first, damping.rayleigh->second};
   if (damping.ratios)
     d.rayleigh = modes::rayleigh(d.omega->first, d.omega->second, damping.ratios->first, damping.ratios->second);
@@ -65,11 +66,18 @@ coupling::SystemInput system_input(const Scene& scene) {
   return {scene.vehicles, scene.train, scene.load, scene.profile, scene.gravity, scene.self_weight};
 }
 
+std::string what_track(const beam::Beam& beam) {
+  const beam::LayeredTrack& t = *beam.model().track;
+  return fmt::format("layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}, {} unknowns a column",
+                     beam.rail()->mesh.start(), beam.rail()->mesh.end(), beam.rail()->mesh.elements(), t.spacing,
+                     t.ballast ? ", ballast" : "", t.subballast ? ", sub-ballast on the ground" : "", beam.block());
+}
+
 std::string what_beam(const beam::Beam& beam) {
   const beam::BeamModel& m = beam.model();
   return fmt::format("beam of {:g} m, {} span{}{}, {} elements, {} unknowns a node ({})", m.length(), m.spans.size(),
                      m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "", beam.mesh().elements(),
-                     beam.block(), m.axial ? "axial, deflection, rotation" : "deflection, rotation");
+                     m.axial ? 3 : 2, m.axial ? "axial, deflection, rotation" : "deflection, rotation");
 }
 
 void print_notes(MPI_Comm comm, std::vector<std::string> notes) {
@@ -205,6 +213,7 @@ int run(MPI_Comm comm, const Scene& scene) {
                        "); hold it with supports or a foundation");
     beam.emplace(comm, *scene.beam);
     notes.push_back(what_beam(*beam));
+    if (beam->rail() != nullptr) notes.push_back(what_track(*beam));
   }
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   if (scene.analysis == Analysis::modes) return run_modes(comm, scene, *beam, std::move(notes));

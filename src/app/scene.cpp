@@ -121,6 +121,7 @@ Scene read_scene(Options o) {
   read_train(o, train, scene);
   read_load(o, scene);
   read_track(o, scene);
+  read_layers(o, scene);
   decide_axial(o, scene);
   read_output(o, scene);
   check_scene(o, scene);

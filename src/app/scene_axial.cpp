@@ -34,8 +34,13 @@ std::string longitudinal_action(const options::Options& o, const Scene& scene) {
 void decide_axial(const options::Options& o, Scene& scene) {
   if (!scene.beam) return;
   const std::string wanted = o.choice("model_axial");
-  const bool stiffness = o.has("beam_EA");
-  if (wanted == "true" && !stiffness) o.refuse("model_axial", "needs beam_EA");
+  std::string missing;
+  if (!o.has("beam_EA")) missing = "beam_EA";
+  for (const char* name : {"track_rail_EA", "track_longitudinal_k"}) {
+    if (scene.beam->track && !o.has(name)) missing += (missing.empty() ? "" : ", ") + std::string(name);
+  }
+  const bool stiffness = missing.empty();
+  if (wanted == "true" && !stiffness) o.refuse("model_axial", "needs " + missing);
   if (wanted != "auto") {
     scene.beam->axial = wanted == "true";
     scene.notes.push_back(fmt::format("axial unknowns: {}, as asked", scene.beam->axial ? "modelled" : "none"));
@@ -44,7 +49,7 @@ void decide_axial(const options::Options& o, Scene& scene) {
   const beam::Foundation& foundation = scene.beam->foundation;
   if (!stiffness && (!foundation.longitudinal.empty() || foundation.longitudinal_bed)) {
     const options::Entry* entry = o.first_with_prefix("foundation_longitudinal");
-    o.refuse(entry->name, "longitudinal foundations need beam_EA");
+    o.refuse(entry->name, "longitudinal foundations need " + missing);
   }
   const std::string action = longitudinal_action(o, scene);
   scene.beam->axial = stiffness && !action.empty();
@@ -53,7 +58,7 @@ void decide_axial(const options::Options& o, Scene& scene) {
   } else if (action.empty()) {
     scene.notes.emplace_back("axial unknowns: none, nothing acts along the beam");
   } else {
-    scene.notes.push_back(fmt::format("axial unknowns: none, beam_EA is not given ({} would use them)", action));
+    scene.notes.push_back(fmt::format("axial unknowns: none, {} not given ({} would use them)", missing, action));
   }
 }
 

@@ -160,6 +160,7 @@ void read_beam(const Options& o, Scene& scene) {
   beam.foundation = read_foundation(o, std::accumulate(beam.spans.begin(), beam.spans.end(), 0.0));
   read_damping(o, scene.damping);
   scene.self_weight = o.flag("beam_self_weight");
+  beam.surface_height = o.number("beam_surface_height");
 }
 
 }  // namespace traverse::app

@@ -21,6 +21,7 @@ beam::Distribution read_distribution(const options::Options& options, const std:
 void read_train(const options::Options& options, const std::vector<std::string>& names, Scene& scene);
 void read_load(const options::Options& options, Scene& scene);
 void read_track(const options::Options& options, Scene& scene);    // after train: the roughness begins before it
+void read_layers(const options::Options& options, Scene& scene);   // after train and load: the track is as long
 void decide_axial(const options::Options& options, Scene& scene);  // after beam and train
 
 }  // namespace traverse::app

@@ -11,15 +11,6 @@ namespace {
 
 using options::Options;
 
-void refuse_layers(const Options& o) {
-  for (const char* prefix : {"track_rail", "track_spacing", "track_pad", "track_sleeper", "track_ballast",
-                             "track_subballast", "track_approach"}) {
-    if (const options::Entry* entry = o.first_with_prefix(prefix)) {
-      o.refuse(entry->name, "the layered track is not modelled yet");
-    }
-  }
-}
-
 /// x of the foremost wheel at t = 0: roughness begins there, so that the train starts on level track.
 double front_wheel(const Scene& scene) {
   double front = 0.0;
@@ -39,7 +30,6 @@ double front_wheel(const Scene& scene) {
 }  // namespace
 
 void read_track(const Options& o, Scene& scene) {
-  refuse_layers(o);
   const std::string profile = o.text("track_profile");
   const options::Entry* bump = o.first_with_prefix("track_bump");
   if (profile == "bump") {

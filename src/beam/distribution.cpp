@@ -47,6 +47,12 @@ double Distribution::at(double x, double inside) const {
 double Distribution::minimum() const { return *std::min_element(values_.begin(), values_.end()); }
 double Distribution::maximum() const { return *std::max_element(values_.begin(), values_.end()); }
 
+Distribution Distribution::plus(double value) const {
+  Distribution sum = *this;
+  for (double& v : sum.values_) v += value;
+  return sum;
+}
+
 std::vector<double> Distribution::breaks(double a, double b) const {
   std::vector<double> inside;
   for (auto it = std::upper_bound(x_.begin(), x_.end(), a); it != x_.end() && *it < b; ++it) {

@@ -57,6 +57,15 @@ RailMesh rail_mesh(const BeamModel& model) {
           static_cast<int>(last - first) * track.elements_per_bay};
 }
 
+BeamModel bridge_alone(const BeamModel& model) {
+  BeamModel bridge = model;
+  if (!model.track) return bridge;
+  const LayeredTrack& track = *model.track;
+  bridge.mass = model.mass.plus((track.ballast ? track.ballast_mass : track.sleeper_mass) / track.spacing);
+  bridge.track.reset();
+  return bridge;
+}
+
 BeamModel rail_model(const BeamModel& model) {
   const RailMesh mesh = rail_mesh(model);
   BeamModel rail;

@@ -189,7 +189,9 @@ void LocalFactor<B>::substitute(double* x, std::ptrdiff_t stride, const Separato
 TRAVERSE_INSTANTIATE(2)
 TRAVERSE_INSTANTIATE(3)
 TRAVERSE_INSTANTIATE(4)
+TRAVERSE_INSTANTIATE(5)
 TRAVERSE_INSTANTIATE(6)
+TRAVERSE_INSTANTIATE(7)
 TRAVERSE_INSTANTIATE(any_block)
 
 }  // namespace traverse::solve

@@ -17,7 +17,7 @@
 
 namespace traverse::solve {
 
-/// Sizes 2, 3, 4 and 6 are compiled for their size, all others up to the largest run through `any_block`.
+/// Sizes 2 to 7 are compiled for their size, all others up to the largest run through `any_block`.
 inline constexpr int largest_block = 16;
 inline constexpr int any_block = -1;
 

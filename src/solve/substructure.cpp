@@ -252,7 +252,9 @@ void Substructure<B>::expand(double* x, int column) const {
 template class Substructure<2>;
 template class Substructure<3>;
 template class Substructure<4>;
+template class Substructure<5>;
 template class Substructure<6>;
+template class Substructure<7>;
 template class Substructure<any_block>;
 
 }  // namespace traverse::solve

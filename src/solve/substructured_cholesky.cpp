@@ -19,8 +19,12 @@ std::unique_ptr<AnySubstructure> make_substructure(MPI_Comm comm, int block_size
       return std::make_unique<Substructure<3>>(comm, block_size, local_nodes);
     case 4:
       return std::make_unique<Substructure<4>>(comm, block_size, local_nodes);
+    case 5:
+      return std::make_unique<Substructure<5>>(comm, block_size, local_nodes);
     case 6:
       return std::make_unique<Substructure<6>>(comm, block_size, local_nodes);
+    case 7:
+      return std::make_unique<Substructure<7>>(comm, block_size, local_nodes);
     default:
       return std::make_unique<Substructure<any_block>>(comm, block_size, local_nodes);
   }

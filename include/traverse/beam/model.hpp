@@ -21,6 +21,8 @@ class Distribution {
   bool uniform() const { return x_.empty(); }
   double minimum() const;
   double maximum() const;
+  /// The same quantity with `value` more everywhere.
+  Distribution plus(double value) const;
   /// Stations of the table strictly inside (a, b), without repetition: where an integration has to be split.
   std::vector<double> breaks(double a, double b) const;
 
@@ -139,6 +141,9 @@ struct RailMesh {
   int first_from(double x) const;
 };
 RailMesh rail_mesh(const BeamModel& model);
+
+/// The bridge without its track, whose masses ride on it smeared: its frequencies are those of damping ratios.
+BeamModel bridge_alone(const BeamModel& model);
 
 /// The rail as a beam, eqs. 1-12: free at both ends, without foundation; its layers join it to the sleepers.
 BeamModel rail_model(const BeamModel& model);

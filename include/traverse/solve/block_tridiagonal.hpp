@@ -36,7 +36,7 @@ struct BlockTridiagonal {
 /// system couples the cuts, solved redundantly on every rank. No iteration, no tolerance.
 class SubstructuredCholesky {
  public:
-  /// Collective. local_nodes may be 0 on some ranks. Block sizes 2, 3, 4 and 6 are compiled for their size; others, up
+  /// Collective. local_nodes may be 0 on some ranks. Block sizes 2 to 7 are compiled for their size; others, up
   /// to 16, run a general path that takes about five times as long per entry.
   SubstructuredCholesky(MPI_Comm comm, int block_size, int local_nodes);
   ~SubstructuredCholesky();
