@@ -1,12 +1,14 @@
 #include "traverse/coupling/beam_operator.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace traverse::coupling {
 namespace {
 
 constexpr std::size_t kept_factors = 12;
+constexpr int most_unknowns = beam::kinds;  // of a column
 
 // r += sign*A x for the nodes of one rank; the neighbours' border nodes come in `left` and `right` (null: none).
 // B > 0 fixes the block size at compile time.
@@ -23,15 +25,16 @@ void block_product(const solve::BlockTridiagonal& A, double sign, const double* 
     const double* L = i > 0 ? U - bb : left_upper;
     const double* previous = i > 0 ? xi - b : left;
     double* ri = r + static_cast<std::ptrdiff_t>(i) * b;
-    for (int row = 0; row < b; ++row) {
-      double sum = 0.0;
-      for (int col = 0; col < b; ++col) sum += D[row + col * b] * xi[col];
-      if (next != nullptr)
-        for (int col = 0; col < b; ++col) sum += U[row + col * b] * next[col];
-      if (previous != nullptr && L != nullptr)
-        for (int col = 0; col < b; ++col) sum += L[col + row * b] * previous[col];
-      ri[row] += sign * sum;
-    }
+    std::array<double, (B > 0 ? B : most_unknowns)> sum{};
+    for (int col = 0; col < b; ++col)  // down the columns, as they are stored
+      for (int row = 0; row < b; ++row) sum[row] += D[row + col * b] * xi[col];
+    if (next != nullptr)
+      for (int col = 0; col < b; ++col)
+        for (int row = 0; row < b; ++row) sum[row] += U[row + col * b] * next[col];
+    if (previous != nullptr && L != nullptr)
+      for (int row = 0; row < b; ++row)
+        for (int col = 0; col < b; ++col) sum[row] += L[col + row * b] * previous[col];
+    for (int row = 0; row < b; ++row) ri[row] += sign * sum[row];
   }
 }
 
