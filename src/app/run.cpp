@@ -68,16 +68,18 @@ coupling::SystemInput system_input(const Scene& scene) {
 
 std::string what_track(const beam::Beam& beam) {
   const beam::LayeredTrack& t = *beam.model().track;
-  return fmt::format("layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}, {} unknowns a column",
-                     beam.rail()->mesh.start(), beam.rail()->mesh.end(), beam.rail()->mesh.elements(), t.spacing,
-                     t.ballast ? ", ballast" : "", t.subballast ? ", sub-ballast on the ground" : "", beam.block());
+  return fmt::format(
+      "layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}, {} unknowns a column",
+      beam.rail()->mesh.start(), beam.rail()->mesh.end(), beam.rail()->mesh.elements(), t.spacing,
+      t.ballast ? ", ballast" : "", t.subballast ? ", sub-ballast on the ground" : "", beam.block());
 }
 
 std::string what_beam(const beam::Beam& beam) {
   const beam::BeamModel& m = beam.model();
   return fmt::format("beam of {:g} m, {} span{}{}, {} elements, {} unknowns a node ({})", m.length(), m.spans.size(),
-                     m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "", beam.mesh().elements(),
-                     m.axial ? 3 : 2, m.axial ? "axial, deflection, rotation" : "deflection, rotation");
+                     m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "",
+                     beam.mesh().elements(), m.axial ? 3 : 2,
+                     m.axial ? "axial, deflection, rotation" : "deflection, rotation");
 }
 
 void print_notes(MPI_Comm comm, std::vector<std::string> notes) {

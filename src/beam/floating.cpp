@@ -157,8 +157,8 @@ std::string in_words(const std::vector<RigidMotion>& of_part) {
 }
 
 std::size_t segment_of(const RigidMotion& m, double station, bool from_left) {
-  const auto after = from_left ? std::lower_bound(m.x.begin(), m.x.end(), station)
-                               : std::upper_bound(m.x.begin(), m.x.end(), station);
+  const auto after =
+      from_left ? std::lower_bound(m.x.begin(), m.x.end(), station) : std::upper_bound(m.x.begin(), m.x.end(), station);
   return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - m.x.begin() - 1, 0, std::ssize(m.x) - 2));
 }
 

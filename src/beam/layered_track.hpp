@@ -36,6 +36,9 @@ void visit_ground_springs(const Sleeper& s, const LayeredTrack& track, const Lay
   visit(column + lowest, track.subballast ? *track.subballast : sleeper_moves ? *track.ballast : track.pad, false);
 }
 
+/// The masses of a sleeper's own unknowns: itself, the ballast on the ground.
+std::vector<std::pair<int, double>> masses_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout);
+
 /// What a sleeper on the bridge does to the beam: a spring and a damper from `unknown` above, and a mass that rides;
 /// along x, at the running surface, a spring and a damper from `along` (-1: not modelled).
 struct Ride {

@@ -29,7 +29,7 @@ struct Recovery::Section {
   Station at;
   Element element;
   std::array<int, 6> unknowns;  // global: u1, v1, theta1, u2, v2, theta2; -1: not there
-  double EI = 0.0, EA = 0.0;  // in the element's middle, for the fixed-end deflections
+  double EI = 0.0, EA = 0.0;    // in the element's middle, for the fixed-end deflections
   Hermite psi;
   std::array<double, 2> phi;
   SectionForms stiffness, damping, mass;  // K_e with the foundation, the foundation's C_e, M_e

@@ -268,8 +268,7 @@ bool System::stage_of_fleet(double t, double shift, const double* v0, const doub
     fleet_.place_wheels();
     gather(v0, c_v);
     if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, fleet_.elements());
-    StageData stage{
-        t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, per_node_};
+    StageData stage{t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, per_node_};
     if (!newton_.solve(fleet_, stage, p_.data())) return false;
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
   }

@@ -72,7 +72,7 @@ class Beam {
   struct FoundationMats {
     base::Handle<Mat> vertical_discrete[2], vertical_continuous[2], longitudinal_discrete[2],
         longitudinal_continuous[2], rotational_discrete[2];  // [0] stiffness, [1] damping
-    base::Handle<Mat> layered_track[2];  // rail, pads, ballast, sub-ballast
+    base::Handle<Mat> layered_track[2];                      // rail, pads, ballast, sub-ballast
   };
   const FoundationMats& foundation() const { return foundation_; }
 

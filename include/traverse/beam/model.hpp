@@ -109,8 +109,8 @@ struct BeamModel {
   std::vector<Support> supports;  // one at every span end: spans + 1; where spans are separate it serves both
   Foundation foundation;
   std::optional<LayeredTrack> track;
-  bool axial = true;   // false: no axial unknowns
-  double start = 0.0;  // x of the left end, m: 0, but for a rail that begins before the bridge
+  bool axial = true;            // false: no axial unknowns
+  double start = 0.0;           // x of the left end, m: 0, but for a rail that begins before the bridge
   double surface_height = 0.0;  // of the running surface above the neutral axis, m: forces along x act up there
 
   double length() const;

@@ -22,6 +22,20 @@ struct Layout {
   std::vector<double> supports;  // stations of the span ends, m
   std::vector<double> nodes;     // x of every node, m: the bridge's shape is stored at the worst instants
   std::vector<VehicleNames> vehicles;
+  /// A dataset that belongs to some scenes only: forces of the foundation, the response of a rail.
+  struct Field {
+    std::string name;       // its path in the file
+    std::size_t width = 0;  // numbers in a sample
+    std::string unit;
+  };
+  std::vector<Field> fields;
+  /// What does not change with time: stations that fields belong to.
+  struct Constant {
+    std::string name;
+    std::vector<double> values;
+    std::string unit;
+  };
+  std::vector<Constant> constants;
 };
 
 /// One stored instant.
@@ -41,6 +55,7 @@ struct Sample {
     std::vector<std::array<double, 3>> joints;  // reaction on the second body
   };
   std::vector<Vehicle> vehicles;
+  std::vector<std::vector<double>> fields;  // as in the layout
   struct Energy {
     double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0, residual = 0.0;
   } energy;
