@@ -90,10 +90,9 @@ void release_sleeper(const Sleeper& s, const LayeredTrack& track, const Layout& 
   for (const auto& [unknown, mass] : masses_of(s, track, layout)) slice.release(unknown);
 }
 
-void add_track(const Line& bridge, const Line& rail, const Layout& layout, const Slice& slice, Rows& mass,
-               Rows& stiffness, Rows& damping) {
+void add_track(const Line& bridge, const Layout& layout, const Slice& slice, Rows& mass, Rows& stiffness,
+               Rows& damping) {
   const LayeredTrack& track = *bridge.model.track;
-  add_beam(rail, slice, mass, stiffness);
   for (const Sleeper& s : sleepers_of(bridge, slice.first - 1, slice.first + slice.local + 1)) {
     if (s.on_bridge) {
       add_on_bridge(s, bridge, layout, track, mass, stiffness, damping);

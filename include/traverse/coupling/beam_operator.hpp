@@ -3,9 +3,10 @@
 #pragma once
 
 #include <list>
+#include <optional>
 #include <vector>
 
-#include "traverse/beam/beam.hpp"
+#include "traverse/beam/internal_forces.hpp"
 #include "traverse/solve/block_tridiagonal.hpp"
 
 namespace traverse::coupling {
@@ -14,7 +15,7 @@ class BeamOperator {
  public:
   explicit BeamOperator(const beam::Beam& beam);
 
-  int unknowns() const { return mass_.nodes * mass_.block; }  // on this rank
+  int unknowns() const { return work_.nodes * work_.block; }  // on this rank
 
   /// Collective. r = sign*(M m + C* c + K* k); a null pointer leaves its term out. Arrays of this rank's unknowns.
   void multiply(double sign, const double* m, const double* c, const double* k, double* r) const;
@@ -36,14 +37,27 @@ class BeamOperator {
     long stamp;
     solve::SubstructuredCholesky cholesky;
   };
-  void product(const solve::BlockTridiagonal& A, double sign, const double* x, double* r) const;
+  /// A matrix of this rank's rows, with the block that couples them to the rank on the left.
+  struct Matrix {
+    solve::BlockTridiagonal rows;
+    std::vector<double> left;
+  };
+  Matrix with_neighbour(solve::BlockTridiagonal rows) const;
+  void fetch_halo(const double* x) const;
+  void product(const Matrix& A, double sign, const double* x, double* r) const;
 
   MPI_Comm comm_;
   int left_rank_, right_rank_;  // neighbours with nodes, or MPI_PROC_NULL
   std::vector<char> fixed_;
-  solve::BlockTridiagonal mass_, damping_, stiffness_, work_;
+  Matrix mass_;
+  std::optional<Matrix> springs_, drag_;  // C* = drag + b K_aa; null where there are none
+  solve::BlockTridiagonal damping_, stiffness_, work_;
+  beam::InternalForces internal_;
+  double stiffness_damping_;         // b of eq. 19, s
+  std::vector<double> damped_part_;  // b for the bridge's unknowns, 0 for others of a column
+  mutable std::vector<double> relative_;
   bool damped_ = false;
-  mutable std::vector<double> halo_;  // left node's and right node's values of the neighbours
+  mutable std::vector<double> halo_;  // values of the columns on the left and on the right
   solve::SubstructuredCholesky mass_factor_;
   std::list<Factor> factors_;  // most recent first
   long stamp_ = 0;
