@@ -20,7 +20,7 @@ base::Handle<Mat> matrix(const Band& band) {
   std::vector<PetscInt> starts{0}, columns;
   std::vector<double> values;
   for (PetscInt i = 0; i < n; ++i) {
-    for (PetscInt j = std::max(0, i - Band::width); j <= std::min(n - 1, i + Band::width); ++j) {
+    for (PetscInt j = std::max(0, i - band.width()); j <= std::min(n - 1, i + band.width()); ++j) {
       columns.push_back(j);
       values.push_back(i >= j ? band.at(i, j) : band.at(j, i));
     }
