@@ -17,8 +17,10 @@ using Complex = std::complex<double>;
 
 constexpr double tolerance = 1e-11;  // of SLEPc, relative to the inverted eigenvalue
 constexpr int restarts = 2000;
-constexpr int few_unknowns = 64;  // by LAPACK, all modes at once
-constexpr double crowd = 0.95;    // of 1/b: where the modes begin to crowd that mean nothing
+constexpr int few_unknowns = 64;   // by LAPACK, all modes at once
+constexpr double farthest = 1e-4;  // of lambda: what polishing may change
+constexpr double spoiled = 1e-10;  // error of 1/lambda, relative to the largest one, in ill-conditioned cases
+constexpr double crowd = 0.95;     // of 1/b: where the modes begin to crowd that mean nothing
 
 PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
   return base::guard([&] {
@@ -99,6 +101,42 @@ class Spectrum {
   base::Handle<EPS> eps_;
 };
 
+struct Form {
+  Complex value;      // x^T A x, without conjugation
+  double size = 0.0;  // of its terms: times the machine's epsilon its rounding
+};
+
+Form form(const Band& A, const std::vector<Complex>& x) {
+  Form sum;
+  for (int i = 0; i < A.size(); ++i) {
+    for (int j = std::max(0, i - A.width()); j <= i; ++j) {
+      const Complex term =
+          (i == j ? 1.0 : 2.0) * A.at(i, j) * x[static_cast<std::size_t>(i)] * x[static_cast<std::size_t>(j)];
+      sum.value += term;
+      sum.size += std::abs(term);
+    }
+  }
+  return sum;
+}
+
+/// lambda as the root of x^T (lambda^2 M + lambda C + K) x = 0 next to it, by Newton's method. The matrices being
+/// symmetric, the root's error is the square of that of x, and the rounding of x^T K x. That is done where the latter
+/// is the smaller error: A^-1 has errors like its largest eigenvalue, so one slow mode spoils the others. Left alone
+/// too where two modes are about to merge, and the root is far.
+Complex polished(const Segment& s, const beam::Rayleigh& ab, const DampedPair& mode, double lowest) {
+  const Form stiffness = form(s.K, mode.shape);
+  const Complex mass = form(s.M, mode.shape).value;
+  const Complex damping = ab.a * mass + ab.b * stiffness.value + form(s.D, mode.shape).value;
+  Complex lambda = mode.lambda;
+  for (int i = 0; i < 3; ++i) {
+    lambda -= ((mass * lambda + damping) * lambda + stiffness.value) / (2.0 * mass * lambda + damping);
+  }
+  const double size = std::abs(mode.lambda), error = spoiled * size / lowest;
+  const double rounding =
+      std::numeric_limits<double>::epsilon() * stiffness.size / (size * std::abs(2.0 * mass * mode.lambda + damping));
+  return rounding < error && std::abs(lambda - mode.lambda) < farthest * size ? lambda : mode.lambda;
+}
+
 /// The elastic modes and the decays of rigid motions.
 std::vector<DampedPair> moving(const Segment& s, const beam::Rayleigh& ab, int count) {
   Inverse inverse(s, ab);
@@ -114,6 +152,8 @@ std::vector<DampedPair> moving(const Segment& s, const beam::Rayleigh& ab, int c
     throw SolverError("modes: SLEPc found " + std::to_string(spectrum.converged()) + " of " +
                       std::to_string(eigenvalues) + " damped eigenvalues; use fewer elements or ask for fewer modes");
   }
+  const double lowest = found.empty() ? 1.0 : std::abs(found.front().lambda);
+  for (DampedPair& mode : found) mode.lambda = polished(s, ab, mode, lowest);
   std::erase_if(found, [&](const DampedPair& mode) { return std::abs(mode.lambda) >= end; });
   return found;
 }
