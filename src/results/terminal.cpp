@@ -122,7 +122,12 @@ void print_with_damping(const modes::Modes& modes, const modes::DampedModes& dam
   fmt::print("modes\n  {:>4}{:>18}{:>18}{:10}{:>18}{:>18}{:>18}\n", "", "frequency (Hz)", "omega (rad/s)", "",
              "damped (Hz)", "damping ratio", "decay (1/s)");
   for (std::size_t i = 0; i < std::max(modes.omega.size(), damped.size()); ++i) {
-    fmt::print("  {:>4}{:46}{}\n", i + 1, undamped_part(modes, i), i < damped.size() ? damped_part(damped, i) : "");
+    const std::string undamped = undamped_part(modes, i);
+    if (i < damped.size()) {
+      fmt::print("  {:>4}{:46}{}\n", i + 1, undamped, damped_part(damped, i));
+    } else {
+      fmt::print("  {:>4}{}\n", i + 1, undamped);
+    }
   }
   if (!same_modes(modes, damped)) {
     fmt::print("  undamped and damped modes each in ascending order, of |lambda|: a row need not be one mode\n");
