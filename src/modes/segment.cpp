@@ -1,11 +1,39 @@
 #include "segment.hpp"
 
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace traverse::modes {
 namespace {
 
 using base::check;
+
+/// Calls row(i, columns, values) for each row, columns ascending.
+template <class Row>
+void for_rows(Mat matrix, int size, Row row) {
+  for (PetscInt i = 0; i < size; ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(matrix, i, &count, &columns, &values));
+    row(i, std::span(columns, static_cast<std::size_t>(count)), values);
+    check(MatRestoreRow(matrix, i, &count, &columns, &values));
+  }
+}
+
+/// As wide as the matrix's pattern of non-zeros, which M, K* and C* share.
+Band band_of(Mat matrix, int size) {
+  int width = 0;
+  for_rows(matrix, size, [&](PetscInt i, std::span<const PetscInt> columns, const PetscScalar*) {
+    if (!columns.empty()) width = std::max(width, static_cast<int>(i - columns.front()));
+  });
+  Band band(size, width);
+  for_rows(matrix, size, [&](PetscInt i, std::span<const PetscInt> columns, const PetscScalar* values) {
+    for (std::size_t k = 0; k < columns.size() && columns[k] <= i; ++k) band.at(i, columns[k]) = values[k];
+  });
+  return band;
+}
 
 /// The rows of the axial unknowns (one a node) or of the transverse ones (two a node), of all ranks, on every rank.
 /// Held unknowns have zero rows.
@@ -23,28 +51,18 @@ Band gathered(const beam::Beam& beam, Mat matrix, bool axial) {
   Mat* copies = nullptr;
   const IS raw = set;
   check(MatCreateSubMatrices(matrix, 1, &raw, &raw, MAT_INITIAL_MATRIX, &copies));
-  Band band(static_cast<int>(wanted.size()));
-  for (PetscInt i = 0; i < band.size(); ++i) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(copies[0], i, &count, &columns, &values));
-    for (PetscInt j = 0; j < count; ++j) {
-      if (columns[j] <= i) band.at(i, columns[j]) = values[j];
-    }
-    check(MatRestoreRow(copies[0], i, &count, &columns, &values));
-  }
+  Band band = band_of(copies[0], static_cast<int>(wanted.size()));
   check(MatDestroySubMatrices(1, &copies));
   return band;
 }
 
 /// The unknowns `rows` of a matrix; those in between are held and have no entries.
 Band part_of(const Band& whole, const std::vector<int>& rows) {
-  Band part(static_cast<int>(rows.size()));
+  Band part(static_cast<int>(rows.size()), whole.width());
   for (int i = 0; i < part.size(); ++i) {
-    for (int j = std::max(0, i - Band::width); j <= i; ++j) {
+    for (int j = std::max(0, i - part.width()); j <= i; ++j) {
       const int row = rows[static_cast<std::size_t>(i)], column = rows[static_cast<std::size_t>(j)];
-      if (row - column <= Band::width) part.at(i, j) = whole.at(row, column);
+      if (row - column <= whole.width()) part.at(i, j) = whole.at(row, column);
     }
   }
   return part;
@@ -53,7 +71,7 @@ Band part_of(const Band& whole, const std::vector<int>& rows) {
 bool equal(const Band& a, const Band& b) {
   if (a.size() != b.size()) return false;
   for (int i = 0; i < a.size(); ++i) {
-    for (int j = std::max(0, i - Band::width); j <= i; ++j) {
+    for (int j = std::max(0, i - a.width()); j <= i; ++j) {
       const double scale = std::sqrt(a.at(i, i)) * std::sqrt(a.at(j, j));
       if (!(std::abs(a.at(i, j) - b.at(i, j)) <= 1e-9 * scale)) return false;
     }
@@ -61,12 +79,39 @@ bool equal(const Band& a, const Band& b) {
   return true;
 }
 
+/// D to 1e-9 of its largest entry, whatever the size of b K*, which a weak damper would drown in.
+bool equal_damping(const Segment& a, const Segment& b) {
+  double largest = 0.0, difference = 0.0;
+  for (int i = 0; i < a.D.size(); ++i) {
+    for (int j = std::max(0, i - a.D.width()); j <= i; ++j) {
+      largest = std::max({largest, std::abs(a.D.at(i, j)), std::abs(b.D.at(i, j))});
+      difference = std::max(difference, std::abs(a.D.at(i, j) - b.D.at(i, j)));
+    }
+  }
+  return difference <= 1e-9 * largest;
+}
+
+/// C - a M - b K, with 0 for what is no more than the rounding of C.
+Band beyond_rayleigh(const Band& C, const Band& M, const Band& K, const beam::Rayleigh& ab) {
+  Band D(C.size(), C.width());
+  for (int i = 0; i < D.size(); ++i) {
+    for (int j = std::max(0, i - D.width()); j <= i; ++j) {
+      const double mass_part = ab.a * M.at(i, j), stiffness_part = ab.b * K.at(i, j);
+      const double rounding =
+          4.0 * std::numeric_limits<double>::epsilon() * (std::abs(mass_part) + std::abs(stiffness_part));
+      const double rest = C.at(i, j) - mass_part - stiffness_part;
+      if (std::abs(rest) > rounding) D.at(i, j) = rest;
+    }
+  }
+  return D;
+}
+
 bool equal(const Segment& a, const Segment& b) {
   if (a.size() != b.size() || a.slope != b.slope || a.rigid.size() != b.rigid.size()) return false;
   for (std::size_t i = 0; i < a.nodes.size(); ++i) {
     if (a.nodes[i] - a.nodes[0] != b.nodes[i] - b.nodes[0]) return false;
   }
-  return equal(a.M, b.M) && equal(a.K, b.K);
+  return equal(a.M, b.M) && equal(a.K, b.K) && equal_damping(a, b);
 }
 
 /// The rigid motions of the part of the beam that the segment is. (A segment that is only a piece of its part ends
@@ -85,12 +130,15 @@ void add_rigid_motions(const beam::Beam& beam, const std::vector<beam::RigidMoti
 
 class Splitter {
  public:
-  Splitter(const beam::Beam& beam, bool axial)
+  Splitter(const beam::Beam& beam, bool axial, Damping damping)
       : beam_(beam),
         axial_(axial),
         K_(gathered(beam, beam.stiffness(), axial)),
         M_(gathered(beam, beam.mass(), axial)),
-        motions_(beam::rigid_motions(beam.model())) {}
+        motions_(beam::rigid_motions(beam.model())) {
+    if (damping == Damping::included)
+      D_ = beyond_rayleigh(gathered(beam, beam.damping(), axial), M_, K_, beam.rayleigh());
+  }
 
   std::vector<Segment> split() {
     const int per_node = axial_ ? 1 : 2;
@@ -108,7 +156,7 @@ class Splitter {
   /// Whether an unknown of the node couples to one of the node before.
   bool joins_left(int node, int per_node) const {
     for (int i = node * per_node; i < (node + 1) * per_node; ++i) {
-      for (int j = std::max(0, i - Band::width); j < node * per_node; ++j) {
+      for (int j = std::max(0, i - M_.width()); j < node * per_node; ++j) {
         if (M_.at(i, j) != 0.0) return true;
       }
     }
@@ -125,6 +173,7 @@ class Splitter {
     }
     s.K = part_of(K_, rows);
     s.M = part_of(M_, rows);
+    if (D_.size() > 0) s.D = part_of(D_, rows);
     s.offsets = {0};
     rows.clear();
     add_rigid_motions(beam_, motions_, s);
@@ -138,18 +187,20 @@ class Splitter {
 
   const beam::Beam& beam_;
   bool axial_;
-  Band K_, M_;
+  Band K_, M_, D_;
   std::vector<beam::RigidMotion> motions_;
   std::vector<Segment> segments_;
 };
 
 }  // namespace
 
-std::vector<Segment> transverse_segments(const beam::Beam& beam) { return Splitter(beam, false).split(); }
+std::vector<Segment> transverse_segments(const beam::Beam& beam, Damping damping) {
+  return Splitter(beam, false, damping).split();
+}
 
-std::vector<Segment> axial_segments(const beam::Beam& beam) {
+std::vector<Segment> axial_segments(const beam::Beam& beam, Damping damping) {
   if (!beam.model().axial) return {};
-  return Splitter(beam, true).split();
+  return Splitter(beam, true, damping).split();
 }
 
 }  // namespace traverse::modes

@@ -322,6 +322,31 @@ void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double raylei
   });
 }
 
+void Recorder::damped_modes(const modes::DampedModes& modes) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    std::vector<double> frequency, ratio, decay_rate;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      frequency.push_back(modes.damped_omega(i) / (2.0 * std::numbers::pi));
+      ratio.push_back(modes.ratio(i));
+      decay_rate.push_back(modes.decay_rate(i));
+    }
+    file.dataset("/modes/damped_frequency", {modes.size()}, frequency, "Hz");
+    file.dataset("/modes/damping_ratio", {modes.size()}, ratio, "1");
+    file.dataset("/modes/decay_rate", {modes.size()}, decay_rate, "1/s");
+    file.dataset("/modes/damped_axial", {modes.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
+    if (!modes.shape.empty()) {
+      std::vector<double> parts;
+      for (const auto& shape : modes.shape) {
+        for (const auto& value : shape) parts.insert(parts.end(), {value.real(), value.imag()});
+      }
+      file.dataset("/modes/damped_shape", {modes.size(), modes.shape.front().size(), 2}, parts, "1");
+    }
+    file.flush();
+  });
+}
+
 void Recorder::shape(const Shape& shape) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {

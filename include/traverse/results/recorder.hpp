@@ -101,6 +101,7 @@ class Recorder {
 
   void add(const Sample& sample);
   void modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2);
+  void damped_modes(const modes::DampedModes& modes);
   /// The shape at the instant of the largest deflection: /shape/x, /shape/deflection, attribute time.
   void shape(const Shape& shape);
   /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.
