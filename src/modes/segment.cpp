@@ -35,16 +35,23 @@ Band band_of(Mat matrix, int size) {
   return band;
 }
 
-/// The rows of the axial unknowns (one a node) or of the transverse ones (two a node), of all ranks, on every rank.
-/// Held unknowns have zero rows.
-Band gathered(const beam::Beam& beam, Mat matrix, bool axial) {
+/// Whether sleepers tie the bridge's bending to motion along x: they hold it at a height above its axis.
+bool bending_pulls(const beam::BeamModel& model) { return model.track && model.axial && model.surface_height != 0.0; }
+
+/// Global unknowns that move along x, or the others; all of them where they couple.
+std::vector<PetscInt> unknowns_of(const beam::Beam& beam, bool axial) {
   std::vector<PetscInt> wanted;
-  const int block = beam.block();
+  const bool all = bending_pulls(beam.model());
   for (int column = 0; column < beam.columns(); ++column) {
-    for (int i = 0; i < block; ++i) {
-      if (beam::Layout::axial(beam.layout().kind[i]) == axial) wanted.push_back(column * block + i);
+    for (int i = 0; i < beam.block(); ++i) {
+      if (all || beam::Layout::axial(beam.layout().kind[i]) == axial) wanted.push_back(column * beam.block() + i);
     }
   }
+  return wanted;
+}
+
+/// These rows of all ranks, on every rank. Held unknowns have zero rows.
+Band gathered(Mat matrix, const std::vector<PetscInt>& wanted) {
   base::Handle<IS> set;
   check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES,
                         set.out()));
@@ -114,69 +121,66 @@ bool equal(const Segment& a, const Segment& b) {
   return equal(a.M, b.M) && equal(a.K, b.K) && equal_damping(a, b);
 }
 
-/// The rigid motions of the part of the beam that the segment is. (A segment that is only a piece of its part ends
-/// at a node that is held altogether, and its part has none.)
-void add_rigid_motions(const beam::Beam& beam, const std::vector<beam::RigidMotion>& motions, Segment& s) {
-  const double left = beam.mesh().x(s.nodes.front()), right = beam.mesh().x(s.nodes.back());
-  for (const beam::RigidMotion& motion : motions) {
-    if (motion.axial != s.axial || left < motion.left || right > motion.right) continue;
-    s.rigid.emplace_back();
-    for (std::size_t i = 0; i < s.nodes.size(); ++i) {
-      const double x = beam.mesh().x(s.nodes[i]);
-      s.rigid.back().push_back(s.slope[i] != 0 ? motion.slope(x, true) : motion.value(x));
-    }
-  }
-}
-
 class Splitter {
  public:
   Splitter(const beam::Beam& beam, bool axial, Damping damping)
       : beam_(beam),
         axial_(axial),
-        K_(gathered(beam, beam.stiffness(), axial)),
-        M_(gathered(beam, beam.mass(), axial)),
+        unknowns_(unknowns_of(beam, axial)),
+        K_(gathered(beam.stiffness(), unknowns_)),
+        M_(gathered(beam.mass(), unknowns_)),
         motions_(beam::rigid_motions(beam.model())) {
     if (damping == Damping::included)
-      D_ = beyond_rayleigh(gathered(beam, beam.damping(), axial), M_, K_, beam.rayleigh());
+      D_ = beyond_rayleigh(gathered(beam.damping(), unknowns_), M_, K_, beam.rayleigh());
   }
 
   std::vector<Segment> split() {
-    const int per_node = axial_ ? 1 : 2;
     std::vector<int> rows;
-    for (int i = 0; i < M_.size(); ++i) {
-      const int node = i / per_node;
-      if (i % per_node == 0 && !joins_left(node, per_node)) finish(rows, per_node);
-      if (M_.at(i, i) != 0.0) rows.push_back(i);
+    for (int first = 0; first < M_.size();) {
+      int past = first;
+      while (past < M_.size() && column(past) == column(first)) ++past;
+      if (!joins_left(first, past)) finish(rows);
+      for (int i = first; i < past; ++i) {
+        if (M_.at(i, i) != 0.0) rows.push_back(i);
+      }
+      first = past;
     }
-    finish(rows, per_node);
+    finish(rows);
     return std::move(segments_);
   }
 
  private:
-  /// Whether an unknown of the node couples to one of the node before.
-  bool joins_left(int node, int per_node) const {
-    for (int i = node * per_node; i < (node + 1) * per_node; ++i) {
-      for (int j = std::max(0, i - M_.width()); j < node * per_node; ++j) {
-        if (M_.at(i, j) != 0.0) return true;
+  int column(int row) const { return static_cast<int>(unknowns_[static_cast<std::size_t>(row)]) / beam_.block(); }
+  beam::Kind kind(int row) const {
+    return beam_.layout().kind[unknowns_[static_cast<std::size_t>(row)] % beam_.block()];
+  }
+
+  /// Whether an unknown of the column [first, past) couples to one of the column before.
+  bool joins_left(int first, int past) const {
+    for (int i = first; i < past; ++i) {
+      for (int j = std::max(0, i - M_.width()); j < first; ++j) {
+        if (M_.at(i, j) != 0.0 || K_.at(i, j) != 0.0) return true;
       }
     }
     return false;
   }
 
-  void finish(std::vector<int>& rows, int per_node) {
+  void finish(std::vector<int>& rows) {
     if (rows.empty()) return;
     Segment s;
     s.axial = axial_;
     for (int row : rows) {
-      s.nodes.push_back(row / per_node);
-      s.slope.push_back(!axial_ && row % 2 == 1 ? 1 : 0);
+      s.nodes.push_back(column(row) - beam_.bridge().first_column);
+      // On the ground a layered track's ballast takes the place of the bridge's deflection.
+      const bool bridge = s.nodes.back() >= 0 && s.nodes.back() < beam_.mesh().nodes();
+      s.slope.push_back(bridge && kind(row) == (axial_ ? beam::Kind::u : beam::Kind::v) ? 0 : 1);
     }
     s.K = part_of(K_, rows);
     s.M = part_of(M_, rows);
     if (D_.size() > 0) s.D = part_of(D_, rows);
     s.offsets = {0};
+    add_rigid_motions(s, rows);
     rows.clear();
-    add_rigid_motions(beam_, motions_, s);
     for (Segment& known : segments_) {
       if (!equal(known, s)) continue;
       known.offsets.push_back(s.nodes[0] - known.nodes[0]);
@@ -185,8 +189,24 @@ class Splitter {
     segments_.push_back(std::move(s));
   }
 
+  /// The rigid motions of the part of the beam that the segment is. (A segment that is only a piece of its part ends
+  /// at a node that is held altogether, and its part has none.)
+  void add_rigid_motions(Segment& s, const std::vector<int>& rows) const {
+    for (const beam::RigidMotion& motion : motions_) {
+      const double left = beam_.mesh().x(s.nodes.front()), right = beam_.mesh().x(s.nodes.back());
+      if (motion.axial != s.axial || left < motion.left || right > motion.right) continue;
+      s.rigid.emplace_back();
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        const double x = beam_.mesh().x(s.nodes[i]);
+        s.rigid.back().push_back(s.slope[i] == 0 ? motion.value(x)
+                                                 : motion.slope(x, kind(rows[i]) != beam::Kind::theta_right));
+      }
+    }
+  }
+
   const beam::Beam& beam_;
   bool axial_;
+  std::vector<PetscInt> unknowns_;
   Band K_, M_, D_;
   std::vector<beam::RigidMotion> motions_;
   std::vector<Segment> segments_;
@@ -199,7 +219,7 @@ std::vector<Segment> transverse_segments(const beam::Beam& beam, Damping damping
 }
 
 std::vector<Segment> axial_segments(const beam::Beam& beam, Damping damping) {
-  if (!beam.model().axial) return {};
+  if (!beam.model().axial || bending_pulls(beam.model())) return {};
   return Splitter(beam, true, damping).split();
 }
 

@@ -12,8 +12,8 @@ namespace traverse::modes {
 /// between two nodes that supports hold altogether.
 struct Segment {
   bool axial = false;
-  std::vector<int> nodes;   // of each unknown
-  std::vector<char> slope;  // of each unknown: non-zero for theta
+  std::vector<int> nodes;   // of the bridge, of each unknown; counted on under a layered track's approaches
+  std::vector<char> slope;  // of each unknown: non-zero for theta, and for what is not the bridge's
   Band K, M;                // of the same width
   Band D;  // C* - a M - b K*: what the foundation adds to Rayleigh damping. Empty where it was not asked for
   std::vector<std::vector<double>> rigid;  // its rigid motions, one vector each
