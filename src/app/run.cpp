@@ -153,6 +153,10 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
   double* y = stepper.state();
   for (const std::string& line : system.start(still || scene.start == Start::equilibrium, y)) notes.push_back(line);
   stepper.restore_state(&y);
+  if (system.static_error() > 1e-9)
+    notes.push_back(fmt::format("static deflections: relative error about {:.1g}, by rounding in the many elements "
+                                "between supports",
+                                system.static_error()));
   print_notes(comm, notes);
 
   results::Recorder recorder(comm, scene.output.file, layout_of(scene, system, beam), attributes(comm, scene),
@@ -170,6 +174,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
     summary.steps = stepper.steps();
     summary.solves = system.beam_solves();
     summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    summary.static_error = system.static_error();
     summary.ended = ended;
     recorder.finish(summary);
     progress.done();

@@ -38,6 +38,7 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
   return run;
 }
 
+template <class Real>
 void InternalForces::add(double sign, const double* x, const double* left, const double* right, double* r) const {
   for (const Run& run : runs_) {
     const int count = static_cast<int>(run.elements.size());
@@ -49,9 +50,10 @@ void InternalForces::add(double sign, const double* x, const double* left, const
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(column) * block_;
       const double* x1 = owns_left ? x + at : left;
       const double* x2 = owns_right ? x + at + block_ : right;
-      const double turn = x2[run.theta] - x1[s.theta1];
-      const double rise = x2[run.v] - x1[run.v] - s.h * x1[s.theta1];
-      const double force = sign * (s.A * rise + s.B * turn), moment = sign * (s.C * rise + s.D * turn);
+      const Real turn = Real(x2[run.theta]) - Real(x1[s.theta1]);
+      const Real rise = Real(x2[run.v]) - Real(x1[run.v]) - Real(s.h) * Real(x1[s.theta1]);
+      const auto force = static_cast<double>(Real(sign) * (Real(s.A) * rise + Real(s.B) * turn));
+      const auto moment = static_cast<double>(Real(sign) * (Real(s.C) * rise + Real(s.D) * turn));
       const double along = run.u >= 0 ? sign * s.S * (x2[run.u] - x1[run.u]) : 0.0;
       if (owns_left) {
         r[at + run.v] += force;
@@ -66,5 +68,8 @@ void InternalForces::add(double sign, const double* x, const double* left, const
     }
   }
 }
+
+template void InternalForces::add<double>(double, const double*, const double*, const double*, double*) const;
+template void InternalForces::add<long double>(double, const double*, const double*, const double*, double*) const;
 
 }  // namespace traverse::beam

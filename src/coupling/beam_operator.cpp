@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string>
 
 namespace traverse::coupling {
 namespace {
 
 constexpr std::size_t kept_factors = 12;
+constexpr int most_refinements = 30;        // of a static solution
+constexpr double refined = 4e-16;           // relative correction that is rounding
+constexpr double stagnant = 0.5;            // corrections that do not halve do not converge
+constexpr double most_static_error = 0.1;   // relative
 constexpr int most_unknowns = beam::kinds;  // of a column
 
 // r += sign*A x for the nodes of one rank; the neighbours' border nodes come in `left` and `right` (null: none).
@@ -141,6 +147,44 @@ void BeamOperator::solve_mass(double* x) const {
   mass_factor_.solve(x);
 }
 
+void BeamOperator::solve_static(double* x) {
+  const solve::SubstructuredCholesky& factor = factored(0.0);
+  load_.assign(x, x + unknowns());
+  residual_.resize(unknowns());
+  factor.solve(x);
+  ++solves;
+  double before = 1.0, error = 1.0;
+  for (int i = 0; i < most_refinements; ++i) {
+    residual_ = load_;
+    if (springs_) product(*springs_, -1.0, x, residual_.data());
+    fetch_halo(x);
+    internal_.add<long double>(-1.0, x, halo_.data(), halo_.data() + work_.block, residual_.data());
+    for (int j = 0; j < unknowns(); ++j)
+      if (fixed_[j] != 0) residual_[j] = 0.0;
+    factor.solve(residual_.data());
+    ++solves;
+    double sizes[2] = {0.0, 0.0};  // of the correction, of the solution
+    for (int j = 0; j < unknowns(); ++j) {
+      sizes[0] = std::max(sizes[0], std::abs(residual_[j]));
+      sizes[1] = std::max(sizes[1], std::abs(x[j]));
+      x[j] += residual_[j];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sizes, 2, MPI_DOUBLE, MPI_MAX, comm_);
+    const double change = sizes[1] > 0.0 ? sizes[0] / sizes[1] : 0.0;
+    // What the next correction would be, by the ratio of the last two.
+    const double ratio = std::min(change / before, 1.0);
+    error = change * std::max(ratio, std::numeric_limits<double>::epsilon());
+    if (change <= refined || ratio > stagnant) break;
+    before = change;
+  }
+  static_error_ = std::max(static_error_, error);
+  if (!(error <= most_static_error))
+    throw SolverError("the static deflection of the beam cannot be computed: rounding takes about " +
+                      std::to_string(100.0 * error) +
+                      " % of it, with so many elements between supports; take fewer (beam_elements_per_span), or "
+                      "stiffer supports");
+}
+
 const solve::SubstructuredCholesky& BeamOperator::factored(double shift) {
   auto same = [shift](const Factor& f) { return std::abs(f.shift - shift) <= 1e-9 * std::abs(shift); };
   auto found = std::find_if(factors_.begin(), factors_.end(), same);
@@ -157,9 +201,13 @@ const solve::SubstructuredCholesky& BeamOperator::factored(double shift) {
     work_.combine(shift * shift, mass_.rows, shift, damping_, 1.0, stiffness_);
     try {
       f.cholesky.factor(work_, fixed_);
-    } catch (...) {
+    } catch (const SolverError& error) {
       factors_.pop_front();
-      throw;
+      if (shift > 0.0) throw;
+      throw SolverError(
+          std::string("the beam's static stiffness cannot be factored: a support is missing, or there are so "
+                      "many elements between supports (beam_elements_per_span) that rounding hides them; ") +
+          error.what());
     }
   }
   stamp_ = factors_.front().stamp;

@@ -19,7 +19,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
   } else if (input_.self_weight && beam_ != nullptr) {
     std::copy(dead_load_.begin(), dead_load_.end(), y);
     release_held(y);
-    operator_->factored(0.0).solve(y);
+    operator_->solve_static(y);
   }
   for (MovingVehicle& vehicle : fleet_.vehicles)
     for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
@@ -44,7 +44,7 @@ void System::find_equilibrium(double* v) {
     external_load(0.0, nodal_.data());
     release_held(nodal_.data());
     fleet_.place_wheels();
-    if (input_.self_weight || !loads_.empty()) operator_->factored(0.0).solve(nodal_.data());
+    if (input_.self_weight || !loads_.empty()) operator_->solve_static(nodal_.data());
   }
   const std::vector<double> at_rest(n_, 0.0);
   if (!stage_of_fleet(0.0, 0.0, nodal_.data(), at_rest.data()))
@@ -116,7 +116,7 @@ std::vector<double> System::influence_line(double station) {
   const beam::Station s = beam_->mesh().locate(station);
   add_point_load(beam_->bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
   release_held(nodal_.data());
-  operator_->factored(0.0).solve(nodal_.data());
+  operator_->solve_static(nodal_.data());
   std::vector<double> line(4 * static_cast<std::size_t>(line_->mesh.elements()), 0.0);
   for (int e = 0; e < line_->mesh.elements(); ++e) {
     const auto unknowns = line_->transverse(e);

@@ -268,6 +268,7 @@ void Recorder::Impl::summarise(const Summary& summary) {
   file.attribute(group, "longest_loss", summary.longest_loss);
   file.attribute(group, "energy_residual", summary.energy_residual);
   file.attribute(group, "energy_scale", summary.energy_scale);
+  file.attribute(group, "static_error", summary.static_error);
   file.attribute(group, "steps", summary.steps);
   file.attribute(group, "solves", summary.solves);
   file.attribute(group, "wall_seconds", summary.wall_seconds);

@@ -15,6 +15,8 @@ class InternalForces {
 
   /// r += sign*K x for this rank's unknowns, held ones included (their rows mean nothing). `left` and `right`: the
   /// values of the columns next to this rank's, null where there are none.
+  /// Real: the type to calculate in, double or long double.
+  template <class Real = double>
   void add(double sign, const double* x, const double* left, const double* right, double* r) const;
 
  private:

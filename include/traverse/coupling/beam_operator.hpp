@@ -23,6 +23,13 @@ class BeamOperator {
   /// Collective. Forces the M-solve: x in: nodal forces, out: accelerations. Held unknowns must be zero.
   void solve_mass(double* x) const;
 
+  /// Collective. K* v = P, x in: nodal forces, out: displacements; held unknowns must be zero. Refined with residuals
+  /// that are exact to long double where the first solution has lost digits: on a chain of n elements without
+  /// supports between them about 0.02 eps n^4 of it is rounding. SolverError where nothing is left to trust.
+  void solve_static(double* x);
+  /// The largest relative error that solve_static has left so far, estimated from its last corrections.
+  double static_error() const { return static_error_; }
+
   /// Factorisation of s^2 M + s C* + K*; s = 0 is the static one. Kept for the last few shifts, which are compared
   /// relatively (time integrators compute the same shift with rounding noise).
   const solve::SubstructuredCholesky& factored(double shift);
@@ -56,6 +63,8 @@ class BeamOperator {
   double stiffness_damping_;         // b of eq. 19, s
   std::vector<double> damped_part_;  // b for the bridge's unknowns, 0 for others of a column
   mutable std::vector<double> relative_;
+  std::vector<double> load_, residual_;  // of solve_static
+  double static_error_ = 0.0;
   bool damped_ = false;
   mutable std::vector<double> halo_;  // values of the columns on the left and on the right
   solve::SubstructuredCholesky mass_factor_;

@@ -84,6 +84,7 @@ struct Summary {
   double longest_loss = 0.0;     // s
   double energy_residual = 0.0;  // largest |residual|, J
   double energy_scale = 0.0;     // largest term, J
+  double static_error = 0.0;     // relative, of static solutions, by rounding
   long steps = 0;
   long solves = 0;            // beam solves
   double wall_seconds = 0.0;  // of the time loop
