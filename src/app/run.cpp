@@ -48,8 +48,9 @@ Dynamics damp(beam::Beam& beam, const Scene& scene, bool frequencies_wanted, std
     d.omega = {2.0 * std::numbers::pi * damping.frequencies->first,
                2.0 * std::numbers::pi * damping.frequencies->second};
   else if (damping.ratios || frequencies_wanted)
-    d.omega = beam.rail() == nullptr ? modes::distinct_pair(beam)
-                                     : modes::distinct_pair(beam::Beam(beam.comm(), bridge_alone(beam.model())));
+    d.omega = beam.rail() == nullptr && !beam.model().foundation.nonlinear()
+                  ? modes::distinct_pair(beam)
+                  : modes::distinct_pair(beam::Beam(beam.comm(), linearised(bridge_alone(beam.model()))));
   if (damping.rayleigh) d.rayleigh = {damping.rayleigh->first, damping.rayleigh->second};
   if (damping.ratios)
     d.rayleigh = modes::rayleigh(d.omega->first, d.omega->second, damping.ratios->first, damping.ratios->second);
@@ -68,16 +69,18 @@ coupling::SystemInput system_input(const Scene& scene) {
 
 std::string what_track(const beam::Beam& beam) {
   const beam::LayeredTrack& t = *beam.model().track;
-  return fmt::format("layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}, {} unknowns a column",
-                     beam.rail()->mesh.start(), beam.rail()->mesh.end(), beam.rail()->mesh.elements(), t.spacing,
-                     t.ballast ? ", ballast" : "", t.subballast ? ", sub-ballast on the ground" : "", beam.block());
+  return fmt::format(
+      "layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}, {} unknowns a column",
+      beam.rail()->mesh.start(), beam.rail()->mesh.end(), beam.rail()->mesh.elements(), t.spacing,
+      t.ballast ? ", ballast" : "", t.subballast ? ", sub-ballast on the ground" : "", beam.block());
 }
 
 std::string what_beam(const beam::Beam& beam) {
   const beam::BeamModel& m = beam.model();
   return fmt::format("beam of {:g} m, {} span{}{}, {} elements, {} unknowns a node ({})", m.length(), m.spans.size(),
-                     m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "", beam.mesh().elements(),
-                     m.axial ? 3 : 2, m.axial ? "axial, deflection, rotation" : "deflection, rotation");
+                     m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "",
+                     beam.mesh().elements(), m.axial ? 3 : 2,
+                     m.axial ? "axial, deflection, rotation" : "deflection, rotation");
 }
 
 void print_notes(MPI_Comm comm, std::vector<std::string> notes) {
@@ -211,7 +214,12 @@ int run(MPI_Comm comm, const Scene& scene) {
     if (!floating.empty())
       throw InputError("support_types: the beam can float away (" + floating +
                        "); hold it with supports or a foundation");
-    beam.emplace(comm, *scene.beam);
+    const bool nonlinear = scene.beam->foundation.nonlinear();
+    if (nonlinear)
+      notes.emplace_back(
+          "one-sided foundations and those with a gap or a cubic term are forces; frequencies are those of "
+          "small motions: what has no gap with its k, what has one without");
+    beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
     notes.push_back(what_beam(*beam));
     if (beam->rail() != nullptr) notes.push_back(what_track(*beam));
   }

@@ -48,7 +48,7 @@ void Watch::sample(const integrate::Instant& instant) {
   const double* w = instant.y + system_.beam_unknowns();
   sample_.time = instant.time;
   if (beam_ != nullptr) {
-    recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, sample_.probes);
+    recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
     beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
   }
   fill_vehicles(sample_);

@@ -77,16 +77,19 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
   mass_factor_.factor(mass_, fixed_);
 }
 
+void BeamOperator::borders(const double* x, double* left, double* right) const {
+  if (left_rank_ == MPI_PROC_NULL && right_rank_ == MPI_PROC_NULL) return;
+  const int b = mass_.block;
+  const double* last = x + static_cast<std::ptrdiff_t>(mass_.nodes - 1) * b;
+  MPI_Sendrecv(x, b, MPI_DOUBLE, left_rank_, 1, right, b, MPI_DOUBLE, right_rank_, 1, comm_, MPI_STATUS_IGNORE);
+  MPI_Sendrecv(last, b, MPI_DOUBLE, right_rank_, 2, left, b, MPI_DOUBLE, left_rank_, 2, comm_, MPI_STATUS_IGNORE);
+}
+
 void BeamOperator::product(const solve::BlockTridiagonal& A, double sign, const double* x, double* r) const {
   const int b = A.block;
   double* left = halo_.data();
   double* right = halo_.data() + b;
-  if (left_rank_ != MPI_PROC_NULL || right_rank_ != MPI_PROC_NULL) {
-    const double* first = x;
-    const double* last = x + static_cast<std::ptrdiff_t>(A.nodes - 1) * b;
-    MPI_Sendrecv(first, b, MPI_DOUBLE, left_rank_, 1, right, b, MPI_DOUBLE, right_rank_, 1, comm_, MPI_STATUS_IGNORE);
-    MPI_Sendrecv(last, b, MPI_DOUBLE, right_rank_, 2, left, b, MPI_DOUBLE, left_rank_, 2, comm_, MPI_STATUS_IGNORE);
-  }
+  borders(x, left, right);
   const int kind = &A == &mass_ ? 0 : &A == &damping_ ? 1 : 2;
   const double* left_upper = halo_.data() + 4 * b + kind * b * b;
   const double* l = left_rank_ != MPI_PROC_NULL ? left : nullptr;
@@ -115,20 +118,28 @@ void BeamOperator::solve_mass(double* x) const {
   mass_factor_.solve(x);
 }
 
-const solve::SubstructuredCholesky& BeamOperator::factored(double shift) {
-  auto same = [shift](const Factor& f) { return std::abs(f.shift - shift) <= 1e-9 * std::abs(shift); };
+const solve::SubstructuredCholesky& BeamOperator::factored(double shift, const AddedSprings* added) {
+  const long version = added != nullptr ? added->version : 0;
+  auto same = [&](const Factor& f) {
+    return f.added == version && std::abs(f.shift - shift) <= 1e-9 * std::abs(shift);
+  };
   auto found = std::find_if(factors_.begin(), factors_.end(), same);
   if (found != factors_.end()) {
     factors_.splice(factors_.begin(), factors_, found);
   } else {
     if (factors_.size() < kept_factors)
-      factors_.push_front({shift, 0, solve::SubstructuredCholesky(comm_, work_.block, work_.nodes)});
+      factors_.push_front({shift, version, 0, solve::SubstructuredCholesky(comm_, work_.block, work_.nodes)});
     else
       factors_.splice(factors_.begin(), factors_, std::prev(factors_.end()));
     Factor& f = factors_.front();
     f.shift = shift;
+    f.added = version;
     f.stamp = ++factorisations_;
     work_.combine(shift * shift, mass_, shift, damping_, 1.0, stiffness_);
+    if (added != nullptr) {
+      for (const AddedSprings::Term& t : *added->terms)
+        (t.upper ? work_.upper : work_.diagonal)[t.place] += t.shape * (added->k[t.point] + shift * added->c[t.point]);
+    }
     try {
       f.cholesky.factor(work_, fixed_);
     } catch (...) {
