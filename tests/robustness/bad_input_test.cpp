@@ -144,7 +144,7 @@ TEST(BadFoundations, LawsThatAreNotLinear) {
   expect_refusals(
       workplace,
       {
-          {point({"-foundation_vertical_gap", "-1e-3"}), {"foundation_vertical_gap = -1e-3", "at least 0"}},
+          {point({"-foundation_vertical_gap", "-1e-3"}), {"foundation_vertical_gap = -1e-3", "not below 0"}},
           {point({"-foundation_vertical_cubic", "nan"}), {"foundation_vertical_cubic = nan", "allowed: "}},
           {point({"-foundation_vertical_one_sided", "maybe"}), {"one_sided = maybe", "one of true, false"}},
           {point({"-foundation_vertical_one_sided", "true,true,true"}), {"3 entries", "2, as many as stations"}},
