@@ -1,6 +1,7 @@
 #include "fields.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "traverse/app/transient.hpp"
 
@@ -18,23 +19,25 @@ struct PointKind {
   const char* unit;
   std::vector<PointFoundation> beam::Foundation::*points;
   const double* (GroundForces::*force)() const;
+  std::vector<double> coupling::NonlinearForces::*other;
   bool axial;
 };
 constexpr PointKind point_kinds[] = {
-    {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical, false},
-    {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal, true},
-    {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational, false},
+    {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical, &coupling::NonlinearForces::vertical, false},
+    {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal, &coupling::NonlinearForces::longitudinal, true},
+    {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational, &coupling::NonlinearForces::rotational, false},
 };
 
 struct BedKind {
   const char* name;
   std::optional<beam::Bed> beam::Foundation::*bed;
   const double* (GroundForces::*force)() const;
+  std::vector<double> coupling::NonlinearForces::*other;
   bool axial;
 };
 constexpr BedKind bed_kinds[] = {
-    {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed, false},
-    {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed, true},
+    {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed, &coupling::NonlinearForces::vertical_bed, false},
+    {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed, &coupling::NonlinearForces::longitudinal_bed, true},
 };
 
 /// Calls use(kind, count) for what the beam has and what is stored.
@@ -84,15 +87,16 @@ void describe_foundation(const beam::Beam& beam, results::Layout& layout) {
   });
 }
 
-void fill_foundation(const beam::Beam& beam, const GroundForces& forces, Fields& fields) {
-  for_points(beam, [&](const PointKind& kind, std::size_t count) {
-    const double* first = (forces.*kind.force)();
+void fill_foundation(const beam::Beam& beam, const GroundForces& linear, const coupling::NonlinearForces& other,
+                     Fields& fields) {
+  const auto fill = [&](const auto& kind, std::size_t count) {
+    const double* first = (linear.*kind.force)();
     fields.emplace_back(first, first + count);
-  });
-  for_beds(beam, [&](const BedKind& kind, std::size_t spans) {
-    const double* first = (forces.*kind.force)();
-    fields.emplace_back(first, first + spans);
-  });
+    const std::vector<double>& more = other.*kind.other;
+    for (std::size_t i = 0; i < more.size(); ++i) fields.back()[i] += more[i];
+  };
+  for_points(beam, fill);
+  for_beds(beam, fill);
 }
 
 void describe_balance(results::Layout& layout) {
@@ -111,7 +115,14 @@ void fill_balance(const GroundForces& forces, const coupling::Observation& obser
     support[0] += r[0];
     support[1] += r[1];
   }
-  const auto foundation = forces.foundation(), inertia = forces.inertia(), drag = forces.drag();
+  auto foundation = forces.foundation();
+  const auto add = [](const std::vector<double>& more, double& sum) {
+    sum = std::accumulate(more.begin(), more.end(), sum);
+  };
+  const coupling::NonlinearForces& other = observation.foundation;
+  for (const auto* along : {&other.longitudinal, &other.longitudinal_bed}) add(*along, foundation[0]);
+  for (const auto* up : {&other.vertical, &other.vertical_bed}) add(*up, foundation[1]);
+  const auto inertia = forces.inertia(), drag = forces.drag();
   for (std::size_t i = 0; i < 2; ++i) residual[i] = load[i] + support[i] + foundation[i] + inertia[i] + drag[i];
   for (const auto& term : {load, support, foundation, inertia, drag, residual})
     fields.emplace_back(term.begin(), term.end());

@@ -49,8 +49,9 @@ Dynamics damp(beam::Beam& beam, const Scene& scene, bool frequencies_wanted, std
     d.omega = {2.0 * std::numbers::pi * damping.frequencies->first,
                2.0 * std::numbers::pi * damping.frequencies->second};
   else if (damping.ratios || frequencies_wanted)
-    d.omega = beam.rail() == nullptr ? modes::distinct_pair(beam)
-                                     : modes::distinct_pair(beam::Beam(beam.comm(), bridge_alone(beam.model())));
+    d.omega = beam.rail() == nullptr && !beam.model().foundation.nonlinear()
+                  ? modes::distinct_pair(beam)
+                  : modes::distinct_pair(beam::Beam(beam.comm(), linearised(bridge_alone(beam.model()))));
   if (damping.rayleigh) d.rayleigh = {damping.rayleigh->first, damping.rayleigh->second};
   if (damping.ratios)
     d.rayleigh = modes::rayleigh(d.omega->first, d.omega->second, damping.ratios->first, damping.ratios->second);
@@ -226,7 +227,12 @@ int run(MPI_Comm comm, const Scene& scene) {
     if (!floating.empty())
       throw InputError("support_types: the beam can float away (" + floating +
                        "); hold it with supports or a foundation");
-    beam.emplace(comm, *scene.beam);
+    const bool nonlinear = scene.beam->foundation.nonlinear();
+    if (nonlinear)
+      notes.emplace_back(
+          "one-sided foundations and those with a gap or a cubic term are forces; frequencies are those of "
+          "small motions: what has no gap with its k, what has one without");
+    beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
     notes.push_back(what_beam(*beam));
     if (beam->rail() != nullptr) notes.push_back(what_track(*beam));
   }

@@ -89,32 +89,71 @@ void read_damping(const Options& o, Damping& damping) {
   }
 }
 
-std::vector<beam::PointFoundation> read_points(const Options& o, const std::string& kind, double length) {
+/// Whether two ends of beams meet at x, or the slope may jump there.
+bool is_joint(const beam::BeamModel& beam, double x) {
+  if (std::find(beam.hinges.begin(), beam.hinges.end(), x) != beam.hinges.end()) return true;
+  double end = beam.start;
+  for (std::size_t i = 1; i < beam.spans.size(); ++i) {
+    end += beam.spans[i - 1];
+    if (end == x && beam.joint(static_cast<int>(i)) != beam::Joint::continuous) return true;
+  }
+  return false;
+}
+
+/// Adds a point to the list, on the side of a joint that the user names; or one on each.
+void add_point(const Options& o, const beam::BeamModel& beam, const std::string& option, const std::string& side,
+               beam::PointFoundation point, std::vector<beam::PointFoundation>& points) {
+  if (side != "right" && !is_joint(beam, point.x)) {
+    o.refuse(option, fmt::format("{} at {:g} m, where the beam goes through; allowed there: right", side, point.x));
+  }
+  point.from_left = side != "right";
+  points.push_back(point);
+  if (side != "both") return;
+  point.from_left = false;
+  points.push_back(point);
+}
+
+std::vector<beam::PointFoundation> read_points(const Options& o, const std::string& kind, const beam::BeamModel& beam) {
   const std::string name = "foundation_" + kind;
+  const bool vertical = kind == "vertical";
   std::vector<beam::PointFoundation> points;
   if (!o.has(name + "_x")) {
-    for (const char* what : {"_k", "_c"}) {
+    for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided"}) {
       if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_x, the stations");
     }
     return points;
   }
   const std::vector<double> x = o.numbers(name + "_x");
-  const std::vector<double> k = o.numbers(name + "_k", x.size(), "as many as stations");
-  const std::vector<double> c = o.numbers(name + "_c", x.size(), "as many as stations");
-  if (!o.has(name + "_k") && !o.has(name + "_c")) o.refuse(name + "_x", "needs " + name + "_k or " + name + "_c");
+  const auto numbers = [&](const char* what) { return o.numbers(name + what, x.size(), "as many as stations"); };
+  const auto words = [&](const char* what) { return o.texts(name + what, x.size(), "as many as stations"); };
+  const std::vector<double> k = numbers("_k"), c = numbers("_c"), gap = numbers("_gap"), cubic = numbers("_cubic");
+  const std::vector<std::string> side = words("_side");
+  const std::vector<std::string> one_sided =
+      vertical ? words("_one_sided") : std::vector<std::string>(x.size(), "false");
+  if (!o.has(name + "_k") && !o.has(name + "_c") && !o.has(name + "_cubic"))
+    o.refuse(name + "_x", "needs " + name + "_k, " + name + "_c or " + name + "_cubic");
+  const double length = beam.length();
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (x[i] > length * (1.0 + 1e-12)) {
       o.refuse(name + "_x", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x[i], length));
     }
-    points.push_back({std::min(x[i], length), k[i], c[i]});
+    const beam::FoundationLaw law{one_sided[i] == "true", gap[i], cubic[i]};
+    add_point(o, beam, name + "_side", side[i], {std::min(x[i], length), k[i], c[i], false, law}, points);
   }
   return points;
 }
 
 std::optional<beam::Bed> read_bed(const Options& o, const std::string& kind) {
   const std::string name = "foundation_" + kind + "_bed";
-  if (!o.has(name + "_k") && !o.has(name + "_c")) return std::nullopt;
-  return beam::Bed{read_distribution(o, name + "_k"), read_distribution(o, name + "_c")};
+  const beam::FoundationLaw law{kind == "vertical" && o.flag(name + "_one_sided"), o.number(name + "_gap"),
+                                o.number(name + "_cubic")};
+  if (!o.has(name + "_k") && !o.has(name + "_c") && !o.has(name + "_cubic")) {
+    for (const char* what : {"_gap", "_one_sided"}) {
+      if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_k, the bed");
+    }
+    return std::nullopt;
+  }
+  return beam::Bed{read_distribution(o, name + "_k"), read_distribution(o, name + "_c"), law};
 }
 
 }  // namespace
@@ -132,13 +171,13 @@ beam::Distribution read_distribution(const Options& o, const std::string& name) 
   return table;
 }
 
-beam::Foundation read_foundation(const Options& o, double length) {
+beam::Foundation read_foundation(const Options& o, const beam::BeamModel& beam) {
   beam::Foundation f;
-  f.vertical = read_points(o, "vertical", length);
+  f.vertical = read_points(o, "vertical", beam);
   f.vertical_bed = read_bed(o, "vertical");
-  f.longitudinal = read_points(o, "longitudinal", length);
+  f.longitudinal = read_points(o, "longitudinal", beam);
   f.longitudinal_bed = read_bed(o, "longitudinal");
-  f.rotational = read_points(o, "rotational", length);
+  f.rotational = read_points(o, "rotational", beam);
   return f;
 }
 
@@ -158,7 +197,7 @@ void read_beam(const Options& o, Scene& scene) {
   beam.mass = read_distribution(o, "beam_mass");
   read_joints(o, beam);
   read_supports(o, beam);
-  beam.foundation = read_foundation(o, std::accumulate(beam.spans.begin(), beam.spans.end(), 0.0));
+  beam.foundation = read_foundation(o, beam);
   read_damping(o, scene.damping);
   scene.self_weight = o.flag("beam_self_weight");
   beam.surface_height = o.number("beam_surface_height");

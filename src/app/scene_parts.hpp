@@ -15,7 +15,8 @@ std::vector<std::string> declare_vehicles(options::Options& options);
 Vehicle read_vehicle(const options::Options& options, const std::string& name);
 
 void read_beam(const options::Options& options, Scene& scene);  // beam, supports, damping
-beam::Foundation read_foundation(const options::Options& options, double length);
+/// Of a beam whose spans and joints are known.
+beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);
 /// A number or a file of x,value, inside the range of its row.
 beam::Distribution read_distribution(const options::Options& options, const std::string& name);
 void read_train(const options::Options& options, const std::vector<std::string>& names, Scene& scene);

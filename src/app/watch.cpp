@@ -17,8 +17,6 @@ void note(results::Extreme& extreme, double value, double time, double place) {
   if (std::abs(value) > std::abs(extreme.value)) extreme = {value, time, place};
 }
 
-const std::vector<beam::ElementLoad> no_loads;
-
 }  // namespace
 
 Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
@@ -39,7 +37,7 @@ void Watch::sample(const integrate::Instant& instant) {
   sample_.time = instant.time;
   if (beam_ != nullptr) {
     const bool on_rail = rail_recovery_.has_value();
-    recovery_->evaluate(v, w, observation_.a.data(), on_rail ? no_loads : observation_.loads, sample_.probes);
+    recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
     if (on_rail) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
     beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
   }
@@ -84,7 +82,7 @@ void Watch::fill_vehicles(results::Sample& sample) const {
 // In the order of layout_of.
 void Watch::fill_fields(const double* v, const double* w) {
   ground_->evaluate(v, w, observation_.a.data());
-  fill_foundation(*beam_, *ground_, sample_.fields);
+  fill_foundation(*beam_, *ground_, observation_.foundation, sample_.fields);
   fill_balance(*ground_, observation_, sample_.supports, scene_.self_weight ? scene_.gravity * ground_->mass() : 0.0,
                beam_->model().axial, sample_.fields);
   if (rail_recovery_) fill_rail(rail_, sample_.fields);

@@ -27,6 +27,7 @@ Rows points(const std::vector<PointFoundation>& all, const Line& line, const Sli
   Rows rows(slice);
   const auto [first, past] = elements_of(line, slice);
   for (const PointFoundation& p : all) {
+    if (p.law.nonlinear()) continue;
     const Station at = station_of(line.mesh, p);
     if (at.element < first || at.element >= past) continue;
     rows.add(unknowns(at.element),

@@ -25,12 +25,13 @@ BeamModel checked(BeamModel model) {
 }
 
 bool any(const std::vector<PointFoundation>& points, Term term) {
-  return std::any_of(points.begin(), points.end(),
-                     [&](const PointFoundation& p) { return (term == Term::stiffness ? p.k : p.c) > 0.0; });
+  return std::any_of(points.begin(), points.end(), [&](const PointFoundation& p) {
+    return !p.law.nonlinear() && (term == Term::stiffness ? p.k : p.c) > 0.0;
+  });
 }
 
 bool any(const std::optional<Bed>& bed, Term term) {
-  return bed && (term == Term::stiffness ? bed->k : bed->c).maximum() > 0.0;
+  return bed && !bed->law.nonlinear() && (term == Term::stiffness ? bed->k : bed->c).maximum() > 0.0;
 }
 
 /// A second owner of the same object.

@@ -34,23 +34,29 @@ std::vector<Part> parts_of(const BeamModel& model) {
   return parts;
 }
 
+/// Whose springs count: those in the matrices, or all that may push.
+enum class Springs { linear, all };
+
+bool counts(const FoundationLaw& law, Springs which) { return which == Springs::all || !law.nonlinear(); }
+
 /// Whether a point of the foundation is a spring of this part.
-bool holds(const PointFoundation& p, const Part& part, const BeamModel& model) {
+bool holds(const PointFoundation& p, const Part& part, const BeamModel& model, Springs which) {
   const bool after_left = p.x > part.left() || (p.x == part.left() && (!p.from_left || p.x == model.start));
   const bool before_right = p.x < part.right() || (p.x == part.right() && (p.from_left || p.x == model.end()));
-  return p.k > 0.0 && after_left && before_right;
+  return counts(p.law, which) && (p.k > 0.0 || p.law.cubic > 0.0) && after_left && before_right;
 }
 
 /// The stretches of the part, between its hinges and the bed's own breaks, along which the bed has stiffness.
-std::vector<std::pair<double, double>> bedded(const std::optional<Bed>& bed, const Part& part) {
+std::vector<std::pair<double, double>> bedded(const std::optional<Bed>& bed, const Part& part, Springs which) {
   std::vector<std::pair<double, double>> stretches;
-  if (!bed) return stretches;
+  if (!bed || !counts(bed->law, which)) return stretches;
   for (std::size_t i = 1; i < part.x.size(); ++i) {
     auto ends = bed->k.breaks(part.x[i - 1], part.x[i]);
     ends.push_back(part.x[i]);
     double left = part.x[i - 1];
     for (double right : ends) {  // linear in between
-      if (bed->k.at(left, right) > 0.0 || bed->k.at(right, left) > 0.0) stretches.emplace_back(left, right);
+      if (bed->law.cubic > 0.0 || bed->k.at(left, right) > 0.0 || bed->k.at(right, left) > 0.0)
+        stretches.emplace_back(left, right);
       left = right;
     }
   }
@@ -97,7 +103,8 @@ class Conditions {
   std::vector<Eigen::RowVectorXd> rows_;
 };
 
-Conditions bending_conditions(const BeamModel& model, const Part& part, const std::vector<double>& span_ends) {
+Conditions bending_conditions(const BeamModel& model, const Part& part, const std::vector<double>& span_ends,
+                              Springs which) {
   Conditions conditions(part);
   for (int end = part.first_end; end <= part.last_end; ++end) {
     const double x = span_ends[static_cast<std::size_t>(end)];
@@ -107,22 +114,22 @@ Conditions bending_conditions(const BeamModel& model, const Part& part, const st
     conditions.no_slope(x, true);
   }
   for (const PointFoundation& p : model.foundation.vertical) {
-    if (holds(p, part, model)) conditions.no_deflection(p.x);
+    if (holds(p, part, model, which)) conditions.no_deflection(p.x);
   }
   for (const PointFoundation& p : model.foundation.rotational) {
-    if (holds(p, part, model)) conditions.no_slope(p.x, p.from_left);
+    if (holds(p, part, model, which)) conditions.no_slope(p.x, p.from_left);
   }
-  for (const auto& [left, right] : bedded(model.foundation.vertical_bed, part)) {
+  for (const auto& [left, right] : bedded(model.foundation.vertical_bed, part, which)) {
     conditions.no_deflection(0.5 * (left + right));
     conditions.no_slope(0.5 * (left + right), false);
   }
   return conditions;
 }
 
-bool supported_axially(const BeamModel& model, const Part& part) {
+bool supported_axially(const BeamModel& model, const Part& part, Springs which) {
   const auto& points = model.foundation.longitudinal;
-  bool held = !bedded(model.foundation.longitudinal_bed, part).empty() ||
-              std::any_of(points.begin(), points.end(), [&](const auto& p) { return holds(p, part, model); });
+  bool held = !bedded(model.foundation.longitudinal_bed, part, which).empty() ||
+              std::any_of(points.begin(), points.end(), [&](const auto& p) { return holds(p, part, model, which); });
   for (int end = part.first_end; end <= part.last_end; ++end) held = held || fixes_axial(model.supports[end]);
   return held;
 }
@@ -162,6 +169,22 @@ std::size_t segment_of(const RigidMotion& m, double station, bool from_left) {
   return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - m.x.begin() - 1, 0, std::ssize(m.x) - 2));
 }
 
+std::vector<RigidMotion> motions_of(const BeamModel& model, Springs which) {
+  std::vector<RigidMotion> motions;
+  if (model.track) return motions;
+  const auto span_ends = ends_of(model);
+  const auto parts = parts_of(model);
+  for (const Part& part : parts) {
+    for (RigidMotion& m : bending_motions(part, bending_conditions(model, part, span_ends, which)))
+      motions.push_back(std::move(m));
+    // Of several parts, one that nothing at all holds along x is given a bearing.
+    const bool borne = parts.size() > 1 && !supported_axially(model, part, Springs::all);
+    if (model.axial && !borne && !supported_axially(model, part, which))
+      motions.push_back({part.left(), part.right(), true, {part.left(), part.right()}, {1.0, 1.0}});
+  }
+  return motions;
+}
+
 }  // namespace
 
 double RigidMotion::slope(double station, bool from_left) const {
@@ -179,27 +202,15 @@ std::vector<char> axial_bearings(const BeamModel& model) {
   if (!model.axial || model.track) return needed;
   const auto parts = parts_of(model);
   for (const Part& part : parts) {
-    if (parts.size() > 1) needed[part.first_end] = supported_axially(model, part) ? 0 : 1;
+    if (parts.size() > 1) needed[part.first_end] = supported_axially(model, part, Springs::all) ? 0 : 1;
   }
   return needed;
 }
 
-std::vector<RigidMotion> rigid_motions(const BeamModel& model) {
-  std::vector<RigidMotion> motions;
-  if (model.track) return motions;
-  const auto span_ends = ends_of(model);
-  const auto parts = parts_of(model);
-  for (const Part& part : parts) {
-    for (RigidMotion& m : bending_motions(part, bending_conditions(model, part, span_ends)))
-      motions.push_back(std::move(m));
-    if (model.axial && parts.size() == 1 && !supported_axially(model, part))
-      motions.push_back({part.left(), part.right(), true, {part.left(), part.right()}, {1.0, 1.0}});
-  }
-  return motions;
-}
+std::vector<RigidMotion> rigid_motions(const BeamModel& model) { return motions_of(model, Springs::linear); }
 
 std::string floating_motion(const BeamModel& model) {
-  const auto motions = rigid_motions(model);
+  const auto motions = motions_of(model, Springs::all);
   if (motions.empty()) return {};
   const double left = motions.front().left;
   std::vector<RigidMotion> of_part;

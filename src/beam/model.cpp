@@ -52,6 +52,12 @@ void check_spans(const BeamModel& model) {
           "one at every span end is needed: " + std::to_string(model.spans.size() + 1));
 }
 
+void check_law(const FoundationLaw& law, const std::string& option, const std::string& unit) {
+  require_not_negative(law.gap, option + "_gap", unit == "N m/rad" ? "rad" : "m");
+  const std::string cubic = unit == "N m/rad" ? "N m/rad3" : unit == "N/m" ? "N/m3" : "N/m4";
+  require_not_negative(law.cubic, option + "_cubic", cubic);
+}
+
 void check_points(const std::vector<PointFoundation>& points, const std::string& option, double length,
                   const std::string& unit) {
   for (const PointFoundation& p : points) {
@@ -59,6 +65,7 @@ void check_points(const std::vector<PointFoundation>& points, const std::string&
             "it must lie on the beam, from 0 to " + number(length) + " m");
     require_not_negative(p.k, option + "_k", unit);
     require_not_negative(p.c, option + "_c", unit + " s");
+    check_law(p.law, option, unit);
   }
 }
 
@@ -66,6 +73,7 @@ void check_bed(const std::optional<Bed>& bed, const std::string& option) {
   if (!bed) return;
   for (double value : {bed->k.minimum(), bed->k.maximum()}) require_not_negative(value, option + "_k", "N/m2");
   for (double value : {bed->c.minimum(), bed->c.maximum()}) require_not_negative(value, option + "_c", "N s/m2");
+  check_law(bed->law, option, "N/m2");
 }
 
 void check_joints(const BeamModel& model) {
@@ -126,6 +134,31 @@ double BeamModel::length() const { return std::accumulate(spans.begin(), spans.e
 Joint BeamModel::joint(int span_end) const {
   if (joints.empty()) return Joint::continuous;
   return joints.size() == 1 ? joints.front() : joints[static_cast<std::size_t>(span_end) - 1];
+}
+
+bool Foundation::nonlinear() const {
+  for (const auto* points : {&vertical, &longitudinal, &rotational}) {
+    for (const PointFoundation& p : *points) {
+      if (p.law.nonlinear()) return true;
+    }
+  }
+  return (vertical_bed && vertical_bed->law.nonlinear()) || (longitudinal_bed && longitudinal_bed->law.nonlinear());
+}
+
+BeamModel linearised(const BeamModel& model) {
+  BeamModel linear = model;
+  Foundation& f = linear.foundation;
+  for (auto* points : {&f.vertical, &f.longitudinal, &f.rotational}) {
+    for (PointFoundation& p : *points) {
+      if (p.law.gap > 0.0) p.k = p.c = 0.0;
+      p.law = {};
+    }
+  }
+  for (auto* bed : {&f.vertical_bed, &f.longitudinal_bed}) {
+    if (*bed && (*bed)->law.gap > 0.0) bed->reset();
+    if (*bed) (*bed)->law = {};
+  }
+  return linear;
 }
 
 bool BeamModel::all_separate() const {

@@ -78,6 +78,7 @@ void Recovery::Section::add_foundation(const Line& line) {
   const Foundation& f = model.foundation;
   const auto add_points = [&](const std::vector<PointFoundation>& points, auto add) {
     for (const PointFoundation& p : points) {
+      if (p.law.nonlinear()) continue;  // a load
       // locate() is the judge, as in the assembly; a glance at x spares most of the calls.
       if (p.x < element.x - element.length || p.x > element.x + 2.0 * element.length) continue;
       const Station s = station_of(line.mesh, p);
@@ -94,10 +95,12 @@ void Recovery::Section::add_foundation(const Line& line) {
   };
   add_points(f.vertical, &SectionForms::add_vertical_spring);
   add_points(f.rotational, &SectionForms::add_rotational_spring);
-  if (f.vertical_bed) add_beds(*f.vertical_bed, transverse_bed, &SectionForms::add_transverse_density);
+  if (f.vertical_bed && !f.vertical_bed->law.nonlinear())
+    add_beds(*f.vertical_bed, transverse_bed, &SectionForms::add_transverse_density);
   if (!model.axial) return;
   add_points(f.longitudinal, &SectionForms::add_longitudinal_spring);
-  if (f.longitudinal_bed) add_beds(*f.longitudinal_bed, axial_bed, &SectionForms::add_axial_density);
+  if (f.longitudinal_bed && !f.longitudinal_bed->law.nonlinear())
+    add_beds(*f.longitudinal_bed, axial_bed, &SectionForms::add_axial_density);
 }
 
 void Recovery::Section::add_weight(const BeamModel& model, double gravity) {
@@ -149,6 +152,10 @@ Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stati
     size += 18 + 4 * sections_.back().riders.size();
   }
   gathered_.resize(size);
+  for (std::size_t i = 0; i < sections_.size(); ++i) by_element_.push_back({sections_[i].at.element, i});
+  std::sort(by_element_.begin(), by_element_.end(), [](const Place& a, const Place& b) {
+    return a.element != b.element ? a.element < b.element : a.section < b.section;
+  });
 }
 
 Recovery::Recovery(Recovery&&) noexcept = default;
@@ -238,9 +245,12 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
     out[i] = respond(s, values[0], values[1], values[2]);
     add_riders(s, values.data(), at, out[i]);
     at += 4 * s.riders.size();
-    for (const ElementLoad& load : loads) {
-      if (load.element == s.at.element) s.add_load(load, out[i]);
-    }
+  }
+  for (const ElementLoad& load : loads) {
+    const auto [first, past] =
+        std::equal_range(by_element_.begin(), by_element_.end(), Place{load.element, 0},
+                         [](const Place& one, const Place& other) { return one.element < other.element; });
+    for (auto place = first; place != past; ++place) sections_[place->section].add_load(load, out[place->section]);
   }
 }
 

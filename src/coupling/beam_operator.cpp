@@ -94,19 +94,16 @@ BeamOperator::Matrix BeamOperator::with_neighbour(solve::BlockTridiagonal rows) 
   return {std::move(rows), std::move(left)};
 }
 
-// Values of the neighbours' columns next to this rank's.
-void BeamOperator::fetch_halo(const double* x) const {
+void BeamOperator::borders(const double* x, double* left, double* right) const {
   if (left_rank_ == MPI_PROC_NULL && right_rank_ == MPI_PROC_NULL) return;
   const int b = work_.block;
   const double* last = x + static_cast<std::ptrdiff_t>(work_.nodes - 1) * b;
-  MPI_Sendrecv(x, b, MPI_DOUBLE, left_rank_, 1, halo_.data() + b, b, MPI_DOUBLE, right_rank_, 1, comm_,
-               MPI_STATUS_IGNORE);
-  MPI_Sendrecv(last, b, MPI_DOUBLE, right_rank_, 2, halo_.data(), b, MPI_DOUBLE, left_rank_, 2, comm_,
-               MPI_STATUS_IGNORE);
+  MPI_Sendrecv(x, b, MPI_DOUBLE, left_rank_, 1, right, b, MPI_DOUBLE, right_rank_, 1, comm_, MPI_STATUS_IGNORE);
+  MPI_Sendrecv(last, b, MPI_DOUBLE, right_rank_, 2, left, b, MPI_DOUBLE, left_rank_, 2, comm_, MPI_STATUS_IGNORE);
 }
 
 void BeamOperator::product(const Matrix& A, double sign, const double* x, double* r) const {
-  fetch_halo(x);
+  borders(x, halo_.data(), halo_.data() + work_.block);
   const int b = work_.block;
   const double* left = left_rank_ != MPI_PROC_NULL ? halo_.data() : nullptr;
   const double* right = right_rank_ != MPI_PROC_NULL ? halo_.data() + b : nullptr;
@@ -136,7 +133,7 @@ void BeamOperator::multiply(double sign, const double* m, const double* c, const
       }
     x = relative_.data();
   }
-  fetch_halo(x);
+  borders(x, halo_.data(), halo_.data() + work_.block);
   internal_.add(sign, x, halo_.data(), halo_.data() + work_.block, r);
   for (int i = 0; i < unknowns(); ++i)
     if (fixed_[i] != 0) r[i] = 0.0;
@@ -157,7 +154,7 @@ void BeamOperator::solve_static(double* x) {
   for (int i = 0; i < most_refinements; ++i) {
     residual_ = load_;
     if (springs_) product(*springs_, -1.0, x, residual_.data());
-    fetch_halo(x);
+    borders(x, halo_.data(), halo_.data() + work_.block);
     internal_.add<long double>(-1.0, x, halo_.data(), halo_.data() + work_.block, residual_.data());
     for (int j = 0; j < unknowns(); ++j)
       if (fixed_[j] != 0) residual_[j] = 0.0;
@@ -185,20 +182,28 @@ void BeamOperator::solve_static(double* x) {
                       "stiffer supports");
 }
 
-const solve::SubstructuredCholesky& BeamOperator::factored(double shift) {
-  auto same = [shift](const Factor& f) { return std::abs(f.shift - shift) <= 1e-9 * std::abs(shift); };
+const solve::SubstructuredCholesky& BeamOperator::factored(double shift, const AddedSprings* added) {
+  const long version = added != nullptr ? added->version : 0;
+  auto same = [&](const Factor& f) {
+    return f.added == version && std::abs(f.shift - shift) <= 1e-9 * std::abs(shift);
+  };
   auto found = std::find_if(factors_.begin(), factors_.end(), same);
   if (found != factors_.end()) {
     factors_.splice(factors_.begin(), factors_, found);
   } else {
     if (factors_.size() < kept_factors)
-      factors_.push_front({shift, 0, solve::SubstructuredCholesky(comm_, work_.block, work_.nodes)});
+      factors_.push_front({shift, version, 0, solve::SubstructuredCholesky(comm_, work_.block, work_.nodes)});
     else
       factors_.splice(factors_.begin(), factors_, std::prev(factors_.end()));
     Factor& f = factors_.front();
     f.shift = shift;
+    f.added = version;
     f.stamp = ++factorisations_;
     work_.combine(shift * shift, mass_.rows, shift, damping_, 1.0, stiffness_);
+    if (added != nullptr) {
+      for (const AddedSprings::Term& t : *added->terms)
+        (t.upper ? work_.upper : work_.diagonal)[t.place] += t.shape * (added->k[t.point] + shift * added->c[t.point]);
+    }
     try {
       f.cholesky.factor(work_, fixed_);
     } catch (const SolverError& error) {

@@ -17,15 +17,15 @@ Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
       m_(2 * line_.per_node),
       work_(static_cast<std::size_t>(op.unknowns()) * m_) {}
 
-void Compliance::prepare(double shift, const std::vector<int>& elements) {
-  const solve::SubstructuredCholesky& factor = operator_.factored(shift);
+void Compliance::prepare(double shift, const AddedSprings* added, const std::vector<int>& elements) {
+  const solve::SubstructuredCholesky& factor = operator_.factored(shift, added);
   const long stamp = operator_.factor_stamp();
   if (stamp == stamp_ && elements == elements_) return;
   stamp_ = stamp;
   elements_ = elements;
   count_ = elements.size();
   active_.clear();
-  for (int e : elements) active_.push_back(&column(factor, shift, stamp, e));
+  for (int e : elements) active_.push_back(&column(factor, shift == 0.0 && added == nullptr, stamp, e));
   fill_matrix();
 
   // Forget the oldest columns beyond what is worth keeping.
@@ -40,7 +40,7 @@ void Compliance::prepare(double shift, const std::vector<int>& elements) {
   }
 }
 
-Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& factor, double shift, long stamp,
+Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& factor, bool refined, long stamp,
                                        int element) {
   auto found = std::find_if(columns_.begin(), columns_.end(),
                             [&](const Column& c) { return c.stamp == stamp && c.element == element; });
@@ -55,7 +55,7 @@ Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& facto
     const int unknown = beam_.local(unknowns[j]);
     if (unknown >= 0 && beam_.fixed()[unknown] == 0) work_[static_cast<std::size_t>(j) * n + unknown] = 1.0;
   }
-  if (shift == 0.0) {
+  if (refined) {
     for (int j = 0; j < m_; ++j) operator_.solve_static(work_.data() + static_cast<std::ptrdiff_t>(j) * n);
   } else {
     factor.solve(work_.data(), m_);

@@ -39,6 +39,22 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
   fleet_.partition(0.0);
   on_beam_.assign(input_.load.forces.size(), 0);
   begin_step(0.0, 0.0);
+  note_foundation();
+}
+
+void System::note_foundation() {
+  if (beam_ == nullptr || !beam_->model().foundation.nonlinear()) return;
+  double load = 0.0, greatest = 0.0;
+  for (double weight : dead_load_) load += std::abs(weight);
+  MPI_Allreduce(MPI_IN_PLACE, &load, 1, MPI_DOUBLE, MPI_SUM, comm_);
+  const auto add = [&](double force) {
+    load += force;
+    greatest = std::max(greatest, force);
+  };
+  for (const MovingVehicle& vehicle : fleet_.vehicles) add(vehicle.weight);
+  for (double force : input_.load.forces) add(std::abs(force));
+  nonlinear_.emplace(*beam_, *operator_, load, greatest);
+  stage_load_.resize(n_);
 }
 
 // Of the beam's surface above its axis; a rail's is its axis.
@@ -160,6 +176,10 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
       operator_->multiply(-1.0, nullptr, w, v, acceleration);
       external_load(t, nodal_.data());
       for (int i = 0; i < n_; ++i) acceleration[i] += nodal_[i];
+      if (nonlinear_) {
+        nonlinear_->evaluate(v, w);
+        nonlinear_->add_forces(acceleration);
+      }
     }
     if (part != Part::beam) add_contact_load(acceleration);
     release_held(acceleration);
@@ -192,7 +212,7 @@ void System::evaluate_fleet(double t, const double* y) {
     vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
 }
 
-// Rates of D and W for the state that fleet and moving loads were last set to.
+// Rates of D and W for the state that fleet, moving loads and foundation were last set to.
 void System::powers(const double* w, Part part, double& dissipation, double& work) {
   dissipation = work = 0.0;
   if (beam_ != nullptr && part != Part::contact) {
@@ -204,6 +224,7 @@ void System::powers(const double* w, Part part, double& dissipation, double& wor
     for (const beam::ElementLoad& load : loads_) add_point_load(*line_, load, work_.data());
     if (!loads_.empty())
       for (int i = 0; i < n_; ++i) work += w[i] * work_[i];
+    if (nonlinear_) dissipation += nonlinear_->dissipation();
     double sums[2] = {dissipation, work};
     MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
     dissipation = sums[0];
@@ -234,8 +255,10 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
     external_load(t, work_.data());
     for (int i = 0; i < n_; ++i) nodal_[i] += work_[i];
     release_held(nodal_.data());
-    operator_->factored(shift).solve(nodal_.data());
-    ++operator_->solves;
+    if (nonlinear_) {
+      for (int i = 0; i < n_; ++i) work_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
+      nonlinear_->begin(shift, v_still_.data(), work_.data(), y + n_);
+    }
   }
   const int f = fleet_.freedom();
   if (part == Part::all) {
@@ -246,11 +269,8 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
     // The guess moves on with its velocity, so that wheels are looked for where they will be.
     if (shift > 0.0)
       for (int i = 0; i < f; ++i) p_[i] = (p_[f + i] - c_p_[i]) / shift;
-    for (int i = 0; i < n_; ++i) work_[i] = v_still_[i] + nodal_[i];
-    if (!stage_of_fleet(t, shift, work_.data(), c_v)) return false;
-    if (beam_ != nullptr && !fleet_.elements().empty())
-      compliance_->add_response(newton_.element_loads(), nodal_.data());
   }
+  if (solve_coupled(t, shift, c_v, part, true) != Solution::found) return false;
   for (int i = 0; i < n_; ++i) {
     y[i] = v_still_[i] + nodal_[i];
     y[n_ + i] = shift > 0.0 ? shift * nodal_[i] - c_w[i] / shift : 0.0;
@@ -272,7 +292,40 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
   return true;
 }
 
-bool System::stage_of_fleet(double t, double shift, const double* v0, const double* c_v) {
+// From the beam's load in nodal_ to its z there, and the fleet's p: with a foundation that is not linear, as often as
+// it takes until its forces agree.
+System::Solution System::solve_coupled(double t, double shift, const double* c_v, Part part, bool loaded) {
+  const AddedSprings* added = nullptr;
+  if (nonlinear_) std::copy(nodal_.begin(), nodal_.end(), stage_load_.begin());
+  for (;;) {
+    if (nonlinear_) {
+      added = &nonlinear_->linearise();
+      std::copy(stage_load_.begin(), stage_load_.end(), nodal_.begin());
+      nonlinear_->add_linearised(nodal_.data());
+      release_held(nodal_.data());
+    }
+    if (beam_ != nullptr && (loaded || nonlinear_)) {
+      if (shift == 0.0 && added == nullptr) {
+        operator_->solve_static(nodal_.data());
+      } else {
+        operator_->factored(shift, added).solve(nodal_.data());
+        ++operator_->solves;
+      }
+    }
+    if (part == Part::all) {
+      for (int i = 0; i < n_; ++i) work_[i] = v_still_[i] + nodal_[i];
+      if (!stage_of_fleet(t, shift, work_.data(), c_v, added)) return Solution::fleet_unsettled;
+      if (beam_ != nullptr && !fleet_.elements().empty())
+        compliance_->add_response(newton_.element_loads(), nodal_.data());
+    }
+    if (!nonlinear_) return Solution::found;
+    const NonlinearFoundation::Verdict verdict = nonlinear_->judge(nodal_.data());
+    if (verdict == NonlinearFoundation::Verdict::settled) return Solution::found;
+    if (verdict == NonlinearFoundation::Verdict::failed) return Solution::foundation_unsettled;
+  }
+}
+
+bool System::stage_of_fleet(double t, double shift, const double* v0, const double* c_v, const AddedSprings* added) {
   const int f = fleet_.freedom();
   pdd_.resize(f);
   for (int i = 0; i < f; ++i) pdd_[i] = shift * p_[i] + c_p_[i];
@@ -280,7 +333,7 @@ bool System::stage_of_fleet(double t, double shift, const double* v0, const doub
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
     gather(v0, c_v);
-    if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, fleet_.elements());
+    if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, added, fleet_.elements());
     StageData stage{t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, per_node_};
     if (!newton_.solve(fleet_, stage, p_.data())) return false;
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there

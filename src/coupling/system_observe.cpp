@@ -10,6 +10,7 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
   out.a.assign(ydot + n_, ydot + 2 * n_);
   out.P.resize(n_);
   out.loads.clear();
+  out.bridge_loads.clear();
   if (beam_ != nullptr) {
     external_load(t, out.P.data());
     add_contact_load(out.P.data());
@@ -18,6 +19,12 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
       if (c.slot() < 0 || c.force.normal <= 0.0) continue;
       const Eigen::Vector3d f = c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
       out.loads.push_back({c.patches[c.active].element, c.touch.xi, f.x(), f.y(), -surface_height() * f.x()});
+    }
+    if (beam_->rail() == nullptr) out.bridge_loads = out.loads;
+    if (nonlinear_) {
+      nonlinear_->evaluate(y, y + n_);
+      nonlinear_->add_forces(out.P.data());
+      nonlinear_->report(out.foundation, out.bridge_loads);
     }
   }
   out.energy = energy(y);
@@ -35,6 +42,7 @@ Energy System::energy(const double* y) {
       sums[1] += 0.5 * v[i] * work_[i];
       sums[2] -= v[i] * dead_load_[i];
     }
+    if (nonlinear_) sums[1] += nonlinear_->energy();
   }
   if (rank_ == 0) {
     sums[3] = y[2 * (n_ + fleet_.freedom())];

@@ -18,9 +18,9 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
   if (equilibrium) {
     find_equilibrium(y);
   } else if (input_.self_weight && beam_ != nullptr) {
-    std::copy(dead_load_.begin(), dead_load_.end(), y);
-    release_held(y);
-    operator_->solve_static(y);
+    std::copy(dead_load_.begin(), dead_load_.end(), nodal_.begin());
+    settle(true, Part::beam);
+    std::copy(nodal_.begin(), nodal_.end(), y);
   }
   for (MovingVehicle& vehicle : fleet_.vehicles)
     for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
@@ -56,23 +56,34 @@ void System::find_equilibrium(double* v) {
 
   if (beam_ != nullptr) {
     external_load(0.0, nodal_.data());
-    release_held(nodal_.data());
     fleet_.place_wheels();
-    if (input_.self_weight || !loads_.empty()) operator_->solve_static(nodal_.data());
   }
-  const std::vector<double> at_rest(n_, 0.0);
-  if (!stage_of_fleet(0.0, 0.0, nodal_.data(), at_rest.data()))
-    throw SolverError("no static equilibrium found to start from (forces out of balance by " +
-                      std::to_string(newton_.last_change()) +
-                      " of a vehicle's weight): is every body held by joints, springs or wheels, also against "
-                      "actuators, and every wheel stiff enough to carry its load within its radius? scene_start: given "
-                      "starts from the positions as written");
-  if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->add_response(newton_.element_loads(), nodal_.data());
+  settle(input_.self_weight || !loads_.empty(), Part::all);
   std::copy(nodal_.begin(), nodal_.end(), v);
   fleet_.set(0.0, p_.data(), c_p_.data(), false);
   for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
   for (std::size_t i = 0; i < moving.wheels.size(); ++i) moving.wheels[i].kinematics = fleet_.wheels[i].kinematics;
   fleet_ = std::move(moving);
+}
+
+// Statics under the load in nodal_: the deflection there, and p.
+void System::settle(bool loaded, Part part) {
+  release_held(nodal_.data());
+  std::fill(v_still_.begin(), v_still_.end(), 0.0);
+  const std::vector<double> at_rest(n_, 0.0);
+  if (nonlinear_) nonlinear_->begin(0.0, nullptr, nullptr, nullptr);
+  const Solution found = solve_coupled(0.0, 0.0, at_rest.data(), part, loaded);
+  if (found == Solution::found) return;
+  if (found == Solution::foundation_unsettled)
+    throw SolverError(
+        "no static equilibrium found to start from: the foundation that is one-sided, has a gap or a "
+        "cubic term does not settle, worst " +
+        nonlinear_->worst_point() + "; does the beam rest on it, and what else holds the beam?");
+  throw SolverError("no static equilibrium found to start from (forces out of balance by " +
+                    std::to_string(newton_.last_change()) +
+                    " of a vehicle's weight): is every body held by joints, springs or wheels, also against "
+                    "actuators, and every wheel stiff enough to carry its load within its radius? scene_start: given "
+                    "starts from the positions as written");
 }
 
 void System::note_weights() {
@@ -152,8 +163,8 @@ std::vector<double> System::influence_line(double station) {
 }
 
 double System::static_peak(double station) {
-  if (beam_ == nullptr || weights_.empty()) return 0.0;
-  const bool apart = input_.train.speed != input_.load.speed;  // train and forces pass each other
+  if (beam_ == nullptr || weights_.empty() || nonlinear_) return 0.0;  // without superposition there is none
+  const bool apart = input_.train.speed != input_.load.speed;          // train and forces pass each other
   if (apart && !fleet_.wheels.empty() && !input_.load.forces.empty()) return 0.0;
   const std::vector<double> line = influence_line(station);
   const beam::Mesh& mesh = line_->mesh;

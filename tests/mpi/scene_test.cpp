@@ -129,6 +129,48 @@ TEST(Ranks, MovingForces) {
                            12);
 }
 
+TEST(Ranks, PropWithAGap) {
+  expect_same_on_all_ranks("prop_with_gap",
+                           {{"beam_elements_per_span", "7"}, {"ts_dt", "2e-3"}, {"output_interval", "0.02"}}, 40);
+}
+
+// One-sided bed and points, a cubic term and a buffer, on a bridge with a joint; partly lifted off.
+TEST(Ranks, FoundationsThatAreNotLinear) {
+  expect_same_on_all_ranks("three_span_half_car",
+                           {{"train_vehicles", "half_car"},
+                            {"train_positions", "5"},
+                            {"train_drive", "free"},
+                            {"ts_dt", "2e-3"},
+                            {"ts_max_time", "1.0"},
+                            {"output_interval", "0.02"},
+                            {"beam_continuity", "hinge,continuous"},
+                            {"foundation_vertical_x", "12.3,25,55"},
+                            {"foundation_vertical_k", "1e7,1e8,0"},
+                            {"foundation_vertical_c", "1e4"},
+                            {"foundation_vertical_one_sided", "true,true,false"},
+                            {"foundation_vertical_cubic", "0,0,1e14"},
+                            {"foundation_vertical_bed_k", "1e5"},
+                            {"foundation_vertical_bed_c", "1e3"},
+                            {"foundation_vertical_bed_one_sided", "true"},
+                            {"foundation_longitudinal_x", "80"},
+                            {"foundation_longitudinal_k", "1e8"},
+                            {"foundation_longitudinal_gap", "1e-6"}},
+                           35);
+}
+
+// On the bridge below a layered track.
+TEST(Ranks, PropBelowALayeredTrack) {
+  expect_same_on_all_ranks("r8_ballasted_bridge",
+                           {{"ts_dt", "2e-3"},
+                            {"ts_max_time", "1.5"},
+                            {"output_interval", "0.02"},
+                            {"foundation_vertical_x", "25"},
+                            {"foundation_vertical_k", "1e9"},
+                            {"foundation_vertical_gap", "1e-4"},
+                            {"foundation_vertical_one_sided", "true"}},
+                           20);
+}
+
 TEST(Ranks, ExplicitContact) {
   expect_same_on_all_ranks("r4_hertz_wheel",
                            {{"beam_elements_per_span", "5"},

@@ -135,6 +135,43 @@ TEST(BadCounts, ListsOfTheWrongLength) {
       });
 }
 
+TEST(BadFoundations, LawsThatAreNotLinear) {
+  const Workplace workplace(small_scene());
+  const auto point = [](std::vector<std::string> words) {
+    words.insert(words.end(), {"-foundation_vertical_x", "5,15", "-foundation_vertical_k", "1e7"});
+    return words;
+  };
+  expect_refusals(
+      workplace,
+      {
+          {point({"-foundation_vertical_gap", "-1e-3"}), {"foundation_vertical_gap = -1e-3", "not below 0"}},
+          {point({"-foundation_vertical_cubic", "nan"}), {"foundation_vertical_cubic = nan", "allowed: "}},
+          {point({"-foundation_vertical_one_sided", "maybe"}), {"one_sided = maybe", "one of true, false"}},
+          {point({"-foundation_vertical_one_sided", "true,true,true"}), {"3 entries", "2, as many as stations"}},
+          {point({"-foundation_vertical_side", "middle"}), {"side = middle", "one of right, left, both"}},
+          {point({"-foundation_vertical_side", "both"}), {"side = both", "at 5 m", "allowed there: right"}},
+          {{"-foundation_vertical_gap", "1e-3"}, {"foundation_vertical_gap", "needs foundation_vertical_x"}},
+          {{"-foundation_rotational_x", "5", "-foundation_rotational_gap", "1e-3"},
+           {"foundation_rotational_x", "needs foundation_rotational_k"}},
+          {{"-foundation_rotational_one_sided", "true"}, {"foundation_rotational_one_sided", "did you mean"}},
+          {{"-foundation_vertical_bed_one_sided", "true"}, {"bed_one_sided = true", "needs foundation_vertical_bed_k"}},
+          {{"-foundation_longitudinal_bed_gap", "1e-3"}, {"needs foundation_longitudinal_bed_k"}},
+      });
+}
+
+// What nothing holds in the end is found out in statics, and named.
+TEST(BadFoundations, NoEquilibriumOnThem) {
+  const Workplace workplace(
+      "beam: {spans: 20.0, elements_per_span: 4, EI: 1.0e9, mass: 2000.0}\n"
+      "support: {types: [roller, free]}\n"
+      "foundation: {vertical: {x: 15.0, k: 1.0e7, one_sided: true}}\n"
+      "load: {forces: -1.0e5, positions: 18.0, speed: 1.0}\nts_max_time: 0.1\n");
+  const Outcome outcome = workplace.run({});
+  EXPECT_NE(outcome.status, 0);
+  EXPECT_NE(outcome.err.find("no static equilibrium"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("foundation_vertical at x = 15 m"), std::string::npos) << outcome.err;
+}
+
 TEST(BadPlaces, OffTheBeam) {
   const Workplace workplace(small_scene());
   expect_refusals(workplace,

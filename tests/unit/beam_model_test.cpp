@@ -194,6 +194,14 @@ TEST(Checks, MessagesNameTheOption) {
   complains("foundation_vertical_bed_k", [](auto& m) { m.foundation.vertical_bed = beam::Bed{-1.0, 0.0}; });
   complains("foundation_longitudinal_bed_c", [](auto& m) { m.foundation.longitudinal_bed = beam::Bed{1.0, -1.0}; });
 
+  complains("foundation_vertical_gap", [](auto& m) { m.foundation.vertical = {{3.0, 1.0, 0.0, false, {true, -1.0}}}; });
+  complains("foundation_rotational_cubic", [](auto& m) {
+    m.foundation.rotational = {{3.0, 1.0, 0.0, false, {false, 0.0, -1.0}}};
+  });
+  complains("foundation_vertical_bed_cubic", [&](auto& m) {
+    m.foundation.vertical_bed = beam::Bed{1.0, 1.0, {false, 0.0, nan}};
+  });
+
   auto no_axial = model_of({10}, 2, false);
   no_axial.EA = 0.0;
   EXPECT_NO_THROW(Beam(PETSC_COMM_SELF, no_axial));
@@ -226,6 +234,17 @@ TEST(Checks, FloatingMotions) {
   EXPECT_EQ(motion({free, free, free}, bed), "the beam can move along x");
   bed.longitudinal_bed = beam::Bed{Distribution({0, 25, 25, 30}, {0, 0, 1, 1}, "k"), 0.0};
   EXPECT_EQ(motion({free, free, free}, bed), "");
+
+  // What is one-sided or has a gap may hold; the matrices do not know of it.
+  springs.vertical = {{4.0, 1e6, 0.0, false, {true}}, {9.0, 0.0, 0.0, false, {false, 0.01, 1e9}}};
+  EXPECT_EQ(motion({pinned, free, free}, springs), "");
+  auto known = m;
+  known.supports = {pinned, free, free};
+  known.foundation.vertical = springs.vertical;
+  EXPECT_EQ(beam::rigid_motions(known).size(), 1u);
+  springs.vertical = {{4.0, 0.0, 1e3, false, {true, 0.01}}};
+  springs.rotational.clear();
+  EXPECT_EQ(motion({pinned, free, free}, springs), "the beam can rotate about x = 0 m");
 
   m.joints = {beam::Joint::separate};
   EXPECT_EQ(motion({pinned, roller, roller}), "");

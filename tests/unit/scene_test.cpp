@@ -102,6 +102,38 @@ TEST(SceneBeam, Foundation) {
   EXPECT_TRUE(f.longitudinal.empty());
 }
 
+TEST(SceneBeam, FoundationsThatAreNotLinear) {
+  const Scene s = scene_of(R"(
+beam: {spans: [40.0, 40.0], EI: 8.33e9, mass: 2303.0, continuity: simply_supported, hinges: 20.0}
+foundation:
+  vertical: {x: [5.0, 40.0, 40.0, 40.0], k: 1e7, gap: [0, 1e-3, 0, 0], one_sided: [true, false, false, true], side: [right, right, left, both]}
+  vertical_bed: {k: 1e7, one_sided: true, gap: 1e-3, cubic: 1e9}
+  rotational: {x: 20.0, cubic: 1e9, side: left}
+load: {forces: 1e5, speed: 30}
+)");
+  const beam::Foundation& f = s.beam->foundation;
+  ASSERT_EQ(f.vertical.size(), 5u);
+  const bool one_sided[] = {true, false, false, true, true}, left[] = {false, false, true, true, false};
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(f.vertical[i].law.one_sided, one_sided[i]);
+    EXPECT_EQ(f.vertical[i].from_left, left[i]);
+    EXPECT_EQ(f.vertical[i].law.gap, i == 1 ? 1e-3 : 0.0);
+    EXPECT_EQ(f.vertical[i].k, 1e7);
+    EXPECT_EQ(f.vertical[i].law.nonlinear(), i != 2);
+  }
+  EXPECT_TRUE(f.vertical_bed->law.one_sided);
+  EXPECT_EQ(f.vertical_bed->law.gap, 1e-3);
+  EXPECT_EQ(f.vertical_bed->law.cubic, 1e9);
+  EXPECT_EQ(f.rotational.at(0).law.cubic, 1e9);
+  EXPECT_TRUE(f.rotational[0].from_left);
+  EXPECT_TRUE(f.nonlinear());
+  const beam::Foundation small = beam::linearised(*s.beam).foundation;
+  EXPECT_FALSE(small.nonlinear());
+  EXPECT_FALSE(small.vertical_bed);
+  EXPECT_EQ(small.vertical[0].k, 1e7);
+  EXPECT_EQ(small.vertical[1].k, 0.0);
+}
+
 TEST(SceneBeam, Refusals) {
   EXPECT_PRED2(contains, refused_with("foundation_vertical_k", "1e7"), "foundation_vertical_x");
   EXPECT_PRED2(contains, refused_with("foundation_vertical_x", "5"), "foundation_vertical_k");

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "traverse/beam/foundation_law.hpp"
+
 namespace traverse::beam {
 
 /// A quantity along x: one value, or a piecewise linear table in which a repeated x is a step.
@@ -56,16 +58,18 @@ struct PointFoundation {
   double k = 0.0;
   double c = 0.0;
   bool from_left = false;  // on the end of two separate spans, or beside a hinge: it holds the left one
+  FoundationLaw law = {};
 };
 
 /// A bed along the whole beam: N/m2 and N s/m2, neither negative.
 struct Bed {
   Distribution k;
   Distribution c;
+  FoundationLaw law = {};
 };
 
-/// The paper's section 3: all of it linear, each kind assembled into a matrix of its own. It pushes back: the force
-/// on the beam is -k v - c dv/dt.
+/// The paper's section 3, each kind assembled into a matrix of its own. It pushes back: the force on the beam is
+/// -k v - c dv/dt. What has a law that is not linear is in none of the matrices (nonlinear_points.hpp).
 /// The longitudinal kinds have no effect on a beam without axial unknowns.
 struct Foundation {
   std::vector<PointFoundation> vertical;      // 3.2
@@ -73,6 +77,9 @@ struct Foundation {
   std::vector<PointFoundation> longitudinal;  // 3.4
   std::optional<Bed> longitudinal_bed;        // 3.5
   std::vector<PointFoundation> rotational;    // 3.6
+
+  /// Whether any of it has a law that is not linear.
+  bool nonlinear() const;
 };
 
 /// A spring and a damper of a layer of track: N/m and N s/m for each sleeper.
@@ -145,6 +152,10 @@ RailMesh rail_mesh(const BeamModel& model);
 /// The bridge without its track, whose masses ride on it smeared: its frequencies are those of damping ratios.
 BeamModel bridge_alone(const BeamModel& model);
 
+/// With every foundation linear, as it acts about rest under load: without a gap by its k and c, with one not at all.
+/// Its frequencies are those of small motions.
+BeamModel linearised(const BeamModel& model);
+
 /// The rail as a beam, eqs. 1-12: free at both ends, without foundation; its layers join it to the sleepers.
 BeamModel rail_model(const BeamModel& model);
 
@@ -169,9 +180,11 @@ struct RigidMotion {
   double slope(double station, bool from_left) const;
 };
 /// All of them, found from what holds each part, from left to right. A model with a layered track has none.
+/// What has a law that is not linear does not count: these are the motions that the matrices know.
 std::vector<RigidMotion> rigid_motions(const BeamModel& model);
 
-/// The first of these motions in words, or empty: statics has a unique answer.
+/// The first motion that nothing at all resists, in words, or empty. A foundation that is one-sided or has a gap
+/// counts as resisting: whether it does, statics finds out.
 std::string floating_motion(const BeamModel& model);
 
 }  // namespace traverse::beam

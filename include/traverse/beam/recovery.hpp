@@ -59,6 +59,11 @@ class Recovery {
   const Line& line_;
   std::vector<double> stations_;
   std::vector<Section> sections_;
+  struct Place {
+    int element;
+    std::size_t section;
+  };
+  std::vector<Place> by_element_;  // ascending: many loads of a bed find their few sections
   double gravity_;
   std::vector<double> gathered_;  // of every station: v, w, a, and v, w of what stands above each riding sleeper
 };

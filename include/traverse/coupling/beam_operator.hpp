@@ -11,11 +11,29 @@
 
 namespace traverse::coupling {
 
+/// Springs and dampers at single stations on top of the beam's own matrices: a foundation linearised.
+struct AddedSprings {
+  /// An entry of this rank's blocks on (or above) the diagonal: shape*(k + s c) of a point.
+  struct Term {
+    std::size_t point = 0;
+    bool upper = false;
+    std::size_t place = 0;
+    double shape = 0.0;
+  };
+  long version = 0;  // another one with every change, the same on all ranks
+  const std::vector<Term>* terms = nullptr;
+  std::vector<double> k, c;  // of every point
+};
+
 class BeamOperator {
  public:
   explicit BeamOperator(const beam::Beam& beam);
 
   int unknowns() const { return work_.nodes * work_.block; }  // on this rank
+  int block() const { return work_.block; }                   // unknowns a column
+
+  /// Collective. The neighbours' columns at the borders of this rank's; left as they are where there is none.
+  void borders(const double* x, double* left, double* right) const;
 
   /// Collective. r = sign*(M m + C* c + K* k); a null pointer leaves its term out. Arrays of this rank's unknowns.
   void multiply(double sign, const double* m, const double* c, const double* k, double* r) const;
@@ -30,9 +48,9 @@ class BeamOperator {
   /// The largest relative error that solve_static has left so far, estimated from its last corrections.
   double static_error() const { return static_error_; }
 
-  /// Factorisation of s^2 M + s C* + K*; s = 0 is the static one. Kept for the last few shifts, which are compared
-  /// relatively (time integrators compute the same shift with rounding noise).
-  const solve::SubstructuredCholesky& factored(double shift);
+  /// Factorisation of s^2 M + s C* + K*, with springs added where there are some; s = 0 is the static one. Kept for
+  /// the last few shifts, which are compared relatively (time integrators compute the same shift with rounding noise).
+  const solve::SubstructuredCholesky& factored(double shift, const AddedSprings* added = nullptr);
   /// Changes whenever `factored` hands out another factorisation.
   long factor_stamp() const { return stamp_; }
   bool damped() const { return damped_; }
@@ -41,6 +59,7 @@ class BeamOperator {
  private:
   struct Factor {
     double shift;
+    long added;  // version of the springs; 0: none
     long stamp;
     solve::SubstructuredCholesky cholesky;
   };
@@ -50,7 +69,6 @@ class BeamOperator {
     std::vector<double> left;
   };
   Matrix with_neighbour(solve::BlockTridiagonal rows) const;
-  void fetch_halo(const double* x) const;
   void product(const Matrix& A, double sign, const double* x, double* r) const;
 
   MPI_Comm comm_;

@@ -13,8 +13,9 @@ class Compliance {
  public:
   Compliance(const beam::Beam& beam, BeamOperator& op);
 
-  /// Collective. Prepares the compliance between `elements` for the factorisation of `shift`.
-  void prepare(double shift, const std::vector<int>& elements);
+  /// Collective. Prepares the compliance between `elements` for the factorisation of `shift`, with springs added where
+  /// there are some.
+  void prepare(double shift, const AddedSprings* added, const std::vector<int>& elements);
 
   /// Displacement of unknown i of elements[a] from a unit load on unknown j of elements[b]; i, j < 2*per_node of the
   /// line that wheels run on.
@@ -30,7 +31,7 @@ class Compliance {
     int low = 0, high = 0;       // local unknowns that respond above rounding
     std::vector<double> values;  // (high - low) x 2*per_node, column by column
   };
-  Column& column(const solve::SubstructuredCholesky& factor, double shift, long stamp, int element);
+  Column& column(const solve::SubstructuredCholesky& factor, bool refined, long stamp, int element);
   void fill_matrix();
 
   const beam::Beam& beam_;

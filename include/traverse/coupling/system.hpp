@@ -9,7 +9,8 @@
 //
 // Implicit time integrators ask for y with G(t, y) = s y + c. `solve_stage` eliminates the beam: one solve with
 // A = s^2 M + s C* + K* gives its free response, the columns of A^-1 at the elements under the wheels its
-// compliance, and Newton (ContactNewton) runs on the vehicles and the contact kinematics alone.
+// compliance, and Newton (ContactNewton) runs on the vehicles and the contact kinematics alone. Around this goes a
+// Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
 #pragma once
 
 #include <optional>
@@ -21,6 +22,7 @@
 #include "traverse/coupling/compliance.hpp"
 #include "traverse/coupling/contact_newton.hpp"
 #include "traverse/coupling/fleet.hpp"
+#include "traverse/coupling/nonlinear_foundation.hpp"
 
 namespace traverse::coupling {
 
@@ -47,7 +49,11 @@ struct Energy {
 struct Observation {
   std::vector<double> a;                 // nodal accelerations, this rank
   std::vector<double> P;                 // nodal loads, on held unknowns too, this rank
-  std::vector<beam::ElementLoad> loads;  // concentrated loads on the beam that wheels run on
+  std::vector<beam::ElementLoad> loads;  // of wheels and forces, on the beam that they run on
+  /// All concentrated loads on the bridge: these where they run on it, and the foundation that is not linear. Inside an
+  /// element a bed counts by its points of integration.
+  std::vector<beam::ElementLoad> bridge_loads;
+  NonlinearForces foundation;
   Energy energy;
 };
 
@@ -92,7 +98,7 @@ class System {
   double leaving_time() const;
   /// Collective. Largest magnitude of the static deflection at a station while the train and the forces pass with
   /// their weights at rest, the beam's own weight included where it acts: the influence line of that station (0 when
-  /// there is none).
+  /// there is none, or the foundation not linear).
   double static_peak(double station);
 
   /// Estimated relative error of static solutions so far, from rounding.
@@ -102,12 +108,16 @@ class System {
  private:
   void find_equilibrium(double* v);
   void let_wheels_roll();
+  void settle(bool loaded, Part part);
   double surface_height() const;
   void note_weights();
   std::vector<double> influence_line(double station);
   void share_coordinates(const double* y);
   void gather(const double* first, const double* second);
-  bool stage_of_fleet(double t, double shift, const double* v0, const double* c_v);
+  enum class Solution { found, fleet_unsettled, foundation_unsettled };
+  Solution solve_coupled(double t, double shift, const double* c_v, Part part, bool loaded);
+  bool stage_of_fleet(double t, double shift, const double* v0, const double* c_v, const AddedSprings* added);
+  void note_foundation();
   void moving_loads(double t);
   void external_load(double t, double* nodal);
   void add_contact_load(double* nodal);
@@ -125,6 +135,7 @@ class System {
   SystemInput input_;
   std::optional<BeamOperator> operator_;
   std::optional<Compliance> compliance_;
+  std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
   Fleet fleet_;
   ContactNewton newton_;
   int n_ = 0;  // beam unknowns on this rank
@@ -137,7 +148,7 @@ class System {
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
   std::vector<double> v_, w_;                       // of the elements in touch, 2*per_node each
   std::vector<double> element_work_;
-  std::vector<double> nodal_, work_, v_still_;  // this rank's unknowns
+  std::vector<double> nodal_, work_, v_still_, stage_load_;  // this rank's unknowns
 };
 
 }  // namespace traverse::coupling

@@ -1,0 +1,36 @@
+// Where the foundation acts by a law that is not linear: its points, and the points of integration of its beds.
+//
+// A bed is integrated with four Gauss points an element (and between the breaks of its tables): the number that
+// reproduces the matrix of a linear bed, whose integrand is of degree 6. Each point obeys the law with the stiffness
+// of the length that it stands for, so that an element may have lifted off in part.
+#pragma once
+
+#include <vector>
+
+#include "traverse/beam/line.hpp"
+
+namespace traverse::beam {
+
+enum class Direction { vertical, longitudinal, rotational };
+
+struct NonlinearPoint {
+  Direction direction = Direction::vertical;
+  bool of_bed = false;
+  int index = 0;  // in the foundation's list of points of this direction; of a bed its span
+  double x = 0.0;
+  Station at;
+  double k = 0.0, c = 0.0;  // N/m, N s/m, or N m/rad, N m s/rad
+  FoundationLaw law;
+};
+
+/// Those on the elements [first, past) of the bridge: the points of the lists, then the beds, element by element.
+std::vector<NonlinearPoint> nonlinear_points(const Line& bridge, int first, int past);
+
+/// The displacement at a point is the sum of shape*unknown: four terms, of a longitudinal one two (-1: none).
+struct PointShape {
+  std::array<int, 4> unknown{-1, -1, -1, -1};  // global
+  std::array<double, 4> shape{};
+};
+PointShape shape_of(const Line& bridge, const NonlinearPoint& point);
+
+}  // namespace traverse::beam
