@@ -23,9 +23,12 @@ struct PointKind {
   bool axial;
 };
 constexpr PointKind point_kinds[] = {
-    {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical, &coupling::NonlinearForces::vertical, false},
-    {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal, &coupling::NonlinearForces::longitudinal, true},
-    {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational, &coupling::NonlinearForces::rotational, false},
+    {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical,
+     &coupling::NonlinearForces::vertical, false},
+    {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal,
+     &coupling::NonlinearForces::longitudinal, true},
+    {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational,
+     &coupling::NonlinearForces::rotational, false},
 };
 
 struct BedKind {
@@ -36,8 +39,10 @@ struct BedKind {
   bool axial;
 };
 constexpr BedKind bed_kinds[] = {
-    {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed, &coupling::NonlinearForces::vertical_bed, false},
-    {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed, &coupling::NonlinearForces::longitudinal_bed, true},
+    {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed,
+     &coupling::NonlinearForces::vertical_bed, false},
+    {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed,
+     &coupling::NonlinearForces::longitudinal_bed, true},
 };
 
 /// Calls use(kind, count) for what the beam has and what is stored.

@@ -93,8 +93,7 @@ double TimeFunction::rate(double t) const {
   const double b = (t - times_[k]) / h;
   const double chord = (values_[k + 1] - values_[k]) / h;
   if (curvatures_.empty()) return chord;
-  return chord +
-         ((1.0 - 3.0 * a * a) * curvatures_[k] + (3.0 * b * b - 1.0) * curvatures_[k + 1]) * h / 6.0;
+  return chord + ((1.0 - 3.0 * a * a) * curvatures_[k] + (3.0 * b * b - 1.0) * curvatures_[k + 1]) * h / 6.0;
 }
 
 double TimeFunction::acceleration(double t) const {

@@ -88,8 +88,10 @@ void GroundForces::add_beds(const Line& line) {
       const auto c = load(bed.c, element), k = load(bed.k, element);
       for (std::size_t i = 0; i < c.size(); ++i) add(sum + index(element.span), places[i], c[i], k[i]);
     };
-    if (f.vertical_bed && !f.vertical_bed->law.nonlinear()) add_bed(*f.vertical_bed, vertical_bed_, transverse_load, line.transverse(e));
-    if (f.longitudinal_bed && !f.longitudinal_bed->law.nonlinear()) add_bed(*f.longitudinal_bed, longitudinal_bed_, axial_load, line.axial(e));
+    if (f.vertical_bed && !f.vertical_bed->law.nonlinear())
+      add_bed(*f.vertical_bed, vertical_bed_, transverse_load, line.transverse(e));
+    if (f.longitudinal_bed && !f.longitudinal_bed->law.nonlinear())
+      add_bed(*f.longitudinal_bed, longitudinal_bed_, axial_load, line.axial(e));
   }
 }
 
