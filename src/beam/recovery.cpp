@@ -32,7 +32,8 @@ struct Recovery::Section {
   double EI = 0.0, EA = 0.0;    // in the element's middle, for the fixed-end deflections
   Hermite psi;
   std::array<double, 2> phi;
-  SectionForms stiffness, damping, mass;  // K_e with the foundation, the foundation's C_e, M_e
+  SectionForms bending;                   // K_e of the beam, for nodal values less the element's rigid motion
+  SectionForms stiffness, damping, mass;  // K_e and C_e of the foundation, M_e
   Response weight;                        // of the beam's own weight: deflection, moment and shear
   std::vector<Rider> riders;
 };
@@ -42,6 +43,7 @@ Recovery::Section::Section(const Line& line, double x)
       element(line.mesh.element(at.element)),
       psi(hermite(at.xi, element.length)),
       phi(linear(at.xi)),
+      bending(element, at.xi),
       stiffness(element, at.xi),
       damping(element, at.xi),
       mass(element, at.xi) {
@@ -52,12 +54,12 @@ Recovery::Section::Section(const Line& line, double x)
   const double middle = element.x + 0.5 * element.length;
   EI = model.EI.at(middle, element.x);
   const ElementMatrices matrices = element_matrices(model, element);
-  stiffness.add_end_forces(matrices.stiffness);
+  bending.add_end_forces(matrices.stiffness);
   mass.add_end_forces(matrices.mass);
   mass.add_transverse_density(model.mass);
   if (model.axial) {
     EA = model.EA.at(middle, element.x);
-    stiffness.add_end_forces(matrices.axial_stiffness);
+    bending.add_end_forces(matrices.axial_stiffness);
     mass.add_end_forces(matrices.axial_mass);
     mass.add_axial_density(model.mass);
   }
@@ -191,17 +193,23 @@ Response Recovery::respond(const Section& s, const Values& v, const Values& w, c
   const double drag = &line_ == &beam_.bridge() ? beam_.rayleigh().a : 0.0;
   for (std::size_t i = 0; i < 6; ++i) inertial[i] += drag * w[i];
 
+  // Of the displacements what bends and stretches: the rest would cancel, but for its rounding.
+  const double h = s.element.length;
+  const Values bent{0.0, 0.0, 0.0, v[3] - v[0], v[4] - v[1] - h * v[2], v[5] - v[2]};
+
   Response r = s.weight;
   r.deflection += transverse(s.psi.value, v);
   r.velocity = transverse(s.psi.value, w);
   r.acceleration = transverse(s.psi.value, a);
+  r.moment += transverse(s.bending.moment(), bent);
+  r.shear += transverse(s.bending.shear(), bent);
   r.moment +=
       transverse(s.stiffness.moment(), v) + transverse(s.damping.moment(), w) + transverse(s.mass.moment(), inertial);
   r.shear +=
       transverse(s.stiffness.shear(), v) + transverse(s.damping.shear(), w) + transverse(s.mass.shear(), inertial);
   r.axial_displacement = axial(s.phi, v);
   r.axial_force =
-      axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) + axial(s.mass.axial_force(), inertial);
+      axial(s.bending.axial_force(), bent) + axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) + axial(s.mass.axial_force(), inertial);
   return r;
 }
 

