@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -104,15 +105,22 @@ int run_modes(MPI_Comm comm, const Scene& scene, beam::Beam& beam, std::vector<s
   options::check_all_used(options::in_force());
   print_notes(comm, notes);
   const modes::Modes found = modes::natural_modes(beam, scene.mode_count, true);
+  const bool damping = modes::damped(beam);
+  const modes::DampedModes damped = damping ? modes::damped_modes(beam, scene.mode_count, true) : modes::DampedModes();
   results::Layout layout;
   layout.supports = beam.mesh().span_ends();
   for (int i = 0; i < beam.mesh().nodes(); ++i) layout.nodes.push_back(beam.mesh().x(i));
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  if (rank == 0) results::print_modes(found, d.omega->first, d.omega->second, d.rayleigh.a, d.rayleigh.b);
+  if (rank == 0) results::print_modes(found, d.omega->first, d.omega->second, d.rayleigh.a, d.rayleigh.b, damped);
+  if (rank == 0 && d.rayleigh.b != 0.0 && damped.size() < found.omega.size())
+    fmt::print(
+        "  damped modes are listed below |lambda| = 1/b = {:.6g} rad/s: above it the elements decide, not the beam\n",
+        1.0 / std::abs(d.rayleigh.b));
   if (scene.output.file.empty()) return 0;
   results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
   recorder.modes(found, d.rayleigh.a, d.rayleigh.b, d.omega->first, d.omega->second);
+  if (damping) recorder.damped_modes(damped);
   results::Summary summary;
   summary.ended = "reached its end";
   recorder.finish(summary);
@@ -146,6 +154,11 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
   double* y = stepper.state();
   for (const std::string& line : system.start(still || scene.start == Start::equilibrium, y)) notes.push_back(line);
   stepper.restore_state(&y);
+  if (system.static_error() > 1e-9)
+    notes.push_back(
+        fmt::format("static deflections: relative error about {:.1g}, by rounding in the many elements "
+                    "between supports",
+                    system.static_error()));
   print_notes(comm, notes);
 
   results::Recorder recorder(comm, scene.output.file, layout_of(scene, system, beam), attributes(comm, scene),
@@ -163,6 +176,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
     summary.steps = stepper.steps();
     summary.solves = system.beam_solves();
     summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    summary.static_error = system.static_error();
     summary.ended = ended;
     recorder.finish(summary);
     progress.done();

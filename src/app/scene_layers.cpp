@@ -12,7 +12,7 @@ namespace {
 using options::Options;
 
 constexpr double least_approach = 30.0;  // m
-constexpr double behind_train = 12.0;    // m of track behind the last wheel at the start, and before the first at the end
+constexpr double behind_train = 12.0;  // m of track behind the last wheel at the start, and before the first at the end
 
 /// Track on either side long enough for the whole train to stand on it at the start and at the end.
 double approach_of(const Scene& scene) {
@@ -48,9 +48,9 @@ std::optional<beam::Layer> read_optional_layer(const Options& o, const std::stri
 
 void read_layers(const Options& o, Scene& scene) {
   if (!o.has("track_rail_EI")) {
-    for (const char* prefix : {"track_rail", "track_spacing", "track_offset", "track_pad", "track_sleeper",
-                               "track_ballast", "track_subballast", "track_longitudinal", "track_approach",
-                               "track_elements"}) {
+    for (const char* prefix :
+         {"track_rail", "track_spacing", "track_offset", "track_pad", "track_sleeper", "track_ballast",
+          "track_subballast", "track_longitudinal", "track_approach", "track_elements"}) {
       if (const options::Entry* entry = o.first_with_prefix(prefix))
         o.refuse(entry->name, "belongs to a layered track, which needs track_rail_EI");
     }
@@ -73,12 +73,14 @@ void read_layers(const Options& o, Scene& scene) {
   const auto approach = o.optional_number("track_approach");
   track.approach = approach.value_or(approach_of(scene));
   if (!approach)
-    scene.notes.push_back(fmt::format("track: {:g} m on either side, so that the whole train stands on it at the start "
-                                      "and the end; -track_approach changes it",
-                                      track.approach));
+    scene.notes.push_back(
+        fmt::format("track: {:g} m on either side, so that the whole train stands on it at the start "
+                    "and the end; -track_approach changes it",
+                    track.approach));
   if (o.has("beam_elements_per_span"))
-    scene.notes.emplace_back("beam_elements_per_span has no effect on the run: the rail's elements set the bridge's "
-                             "mesh (track_elements_per_bay)");
+    scene.notes.emplace_back(
+        "beam_elements_per_span has no effect on the run: the rail's elements set the bridge's "
+        "mesh (track_elements_per_bay)");
   scene.beam->track = track;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fields.hpp"
 #include "traverse/app/transient.hpp"
 
 namespace traverse::app {
@@ -18,26 +19,13 @@ void note(results::Extreme& extreme, double value, double time, double place) {
 
 }  // namespace
 
-results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam) {
-  results::Layout layout;
-  if (beam != nullptr) {
-    layout.probes = scene.output.probes;
-    layout.supports = beam->mesh().span_ends();
-    for (int i = 0; i < beam->mesh().nodes(); ++i) layout.nodes.push_back(beam->mesh().x(i));
-  }
-  for (const coupling::MovingVehicle& vehicle : system.fleet().vehicles) {
-    results::Layout::VehicleNames names;
-    for (const multibody::Body& b : vehicle.mechanism.model().bodies) names.bodies.push_back(b.name);
-    for (const coupling::Wheel& w : vehicle.wheels) names.wheels.push_back(w.name);
-    for (const multibody::Joint& j : vehicle.mechanism.model().joints) names.joints.push_back(j.name);
-    layout.vehicles.push_back(std::move(names));
-  }
-  return layout;
-}
-
 Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
     : scene_(scene), system_(system), beam_(beam), recorder_(recorder) {
-  if (beam != nullptr) recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
+  if (beam != nullptr) {
+    recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
+    ground_.emplace(*beam);
+    if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
+  }
   lost_since_.assign(system.fleet().wheels.size(), -1.0);
   summary_.least_wheel_force = std::numeric_limits<double>::infinity();
 }
@@ -48,8 +36,14 @@ void Watch::sample(const integrate::Instant& instant) {
   const double* w = instant.y + system_.beam_unknowns();
   sample_.time = instant.time;
   if (beam_ != nullptr) {
+    const bool on_rail = rail_recovery_.has_value();
     recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
+    if (on_rail) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
     beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
+  }
+  if (beam_ != nullptr) {
+    sample_.fields.clear();
+    fill_fields(v, w);
   }
   fill_vehicles(sample_);
   const coupling::Energy& e = observation_.energy;
@@ -83,6 +77,15 @@ void Watch::fill_vehicles(results::Sample& sample) const {
       out.joints[j] = {r.x(), r.y(), r.z()};
     }
   }
+}
+
+// In the order of layout_of.
+void Watch::fill_fields(const double* v, const double* w) {
+  ground_->evaluate(v, w, observation_.a.data());
+  fill_foundation(*beam_, *ground_, observation_.foundation, sample_.fields);
+  fill_balance(*ground_, observation_, sample_.supports, scene_.self_weight ? scene_.gravity * ground_->mass() : 0.0,
+               beam_->model().axial, sample_.fields);
+  if (rail_recovery_) fill_rail(rail_, sample_.fields);
 }
 
 void Watch::note_extremes(const results::Sample& sample, const double* v) {

@@ -108,17 +108,19 @@ void Beam::assemble(const Slice& slice) {
   add_beam(bridge_, slice, beam_mass, beam_stiffness);
   std::vector<std::pair<base::Handle<Mat>*, Rows>> own;  // matrices of the foundation's kinds
   add_foundation(slice, stiffness, damping, own);
-  Rows mass = beam_mass;
+  Rows mass = beam_mass, beams = beam_stiffness;
   if (rail_) {
+    add_beam(*rail_, slice, mass, beams);
     Rows track_stiffness(slice), track_damping(slice);
-    add_track(bridge_, *rail_, layout_, slice, mass, track_stiffness, track_damping);
+    add_track(bridge_, layout_, slice, mass, track_stiffness, track_damping);
     own.emplace_back(&foundation_.layered_track[0], track_stiffness);
     own.emplace_back(&foundation_.layered_track[1], track_damping);
     stiffness.add(1.0, track_stiffness);
     damping.add(1.0, track_damping);
   }
   for (auto& [handle, rows] : own) *handle = rows.matrix(comm_, rows);
-  stiffness.add(1.0, beam_stiffness);
+  const Rows springs = stiffness;
+  stiffness.add(1.0, beams);
   note_reactions(slice, mass, beam_mass, beam_stiffness, stiffness, damping);
   for (int i = begin; i < end; ++i) {
     const Kind kind = layout_.kind[index(i % block())];
@@ -136,6 +138,7 @@ void Beam::assemble(const Slice& slice) {
   beam_mass_ = rail_ ? beam_mass.matrix(comm_, pattern) : shared(mass_);
   beam_stiffness_ = beam_stiffness.matrix(comm_, pattern);
   stiffness_ = own.empty() ? shared(beam_stiffness_) : stiffness.matrix(comm_, pattern);
+  if (!own.empty()) springs_ = springs.matrix(comm_, springs);
   if (!own.empty()) foundation_damping_ = damping.matrix(comm_, pattern);
 }
 

@@ -38,16 +38,13 @@ void add_on_bridge(const Sleeper& s, const Line& bridge, const Layout& layout, c
   });
 }
 
-void add_on_ground(const Sleeper& s, const Layout& layout, const LayeredTrack& track, Rows& mass, Rows& stiffness,
-                   Rows& damping) {
+void add_on_ground(const Sleeper& s, const Layout& layout, const LayeredTrack& track, Rows& stiffness, Rows& damping) {
   const int column = s.rail_node * layout.block;
   visit_ground_springs(s, track, layout, [&](int unknown, const Layer& layer, bool) {
-    add_layer(layer, stiffness, damping,
-              [&](double k, Rows& rows) { rows.add(std::array{unknown}, std::array{k}); });
+    add_layer(layer, stiffness, damping, [&](double k, Rows& rows) { rows.add(std::array{unknown}, std::array{k}); });
   });
   if (!track.ballast || !track.subballast) return;
   const int ballast = column + layout.place[v];
-  mass.add(std::array{ballast}, std::array{track.ballast_mass});
   add_layer(*track.ballast, stiffness, damping, [&](double k, Rows& rows) {
     rows.add(std::array{column + layout.place[sleeper], ballast}, between(k));
   });
@@ -79,25 +76,33 @@ Ride ride_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout) 
   return {column + layout.place[rail_v], track.pad, track.sleeper_mass, along};
 }
 
-void release_sleeper(const Sleeper& s, const LayeredTrack& track, const Layout& layout, Slice& slice) {
+std::vector<std::pair<int, double>> masses_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout) {
+  std::vector<std::pair<int, double>> masses;
   const int column = s.rail_node * layout.block;
-  if (track.ballast || (track.subballast && !s.on_bridge)) slice.release(column + layout.place[sleeper]);
-  if (track.ballast && track.subballast && !s.on_bridge) slice.release(column + layout.place[v]);
+  if (track.ballast || (track.subballast && !s.on_bridge))
+    masses.emplace_back(column + layout.place[sleeper], track.sleeper_mass);
+  if (track.ballast && track.subballast && !s.on_bridge)
+    masses.emplace_back(column + layout.place[v], track.ballast_mass);
+  return masses;
 }
 
-void add_track(const Line& bridge, const Line& rail, const Layout& layout, const Slice& slice, Rows& mass,
-               Rows& stiffness, Rows& damping) {
+void release_sleeper(const Sleeper& s, const LayeredTrack& track, const Layout& layout, Slice& slice) {
+  for (const auto& [unknown, mass] : masses_of(s, track, layout)) slice.release(unknown);
+}
+
+void add_track(const Line& bridge, const Layout& layout, const Slice& slice, Rows& mass, Rows& stiffness,
+               Rows& damping) {
   const LayeredTrack& track = *bridge.model.track;
-  add_beam(rail, slice, mass, stiffness);
   for (const Sleeper& s : sleepers_of(bridge, slice.first - 1, slice.first + slice.local + 1)) {
     if (s.on_bridge) {
       add_on_bridge(s, bridge, layout, track, mass, stiffness, damping);
     } else {
-      add_on_ground(s, layout, track, mass, stiffness, damping);
+      add_on_ground(s, layout, track, stiffness, damping);
     }
-    if (!track.ballast && (s.on_bridge || !track.subballast)) continue;  // no sleeper of its own
+    const auto masses = masses_of(s, track, layout);
+    for (const auto& [unknown, its_mass] : masses) mass.add(std::array{unknown}, std::array{its_mass});
+    if (masses.empty()) continue;  // no sleeper of its own: the pad stands on the next layer
     const int column = s.rail_node * layout.block;
-    mass.add(std::array{column + layout.place[sleeper]}, std::array{track.sleeper_mass});
     add_layer(track.pad, stiffness, damping, [&](double k, Rows& rows) {
       rows.add(std::array{column + layout.place[rail_v], column + layout.place[sleeper]}, between(k));
     });

@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <string>
 
 namespace traverse::coupling {
 namespace {
 
 constexpr std::size_t kept_factors = 12;
+constexpr int most_refinements = 30;        // of a static solution
+constexpr double refined = 4e-16;           // relative correction that is rounding
+constexpr double stagnant = 0.5;            // corrections that do not halve do not converge
+constexpr double most_static_error = 0.1;   // relative
 constexpr int most_unknowns = beam::kinds;  // of a column
 
 // r += sign*A x for the nodes of one rank; the neighbours' border nodes come in `left` and `right` (null: none).
@@ -45,77 +51,142 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
       left_rank_(MPI_PROC_NULL),
       right_rank_(MPI_PROC_NULL),
       fixed_(beam.fixed()),
-      mass_(solve::BlockTridiagonal::from(beam.mass(), beam.block())),
       damping_(solve::BlockTridiagonal::from(beam.damping(), beam.block())),
       stiffness_(solve::BlockTridiagonal::from(beam.stiffness(), beam.block())),
       work_(beam.block(), beam.local_columns()),
-      halo_(4 * static_cast<std::size_t>(beam.block()) + static_cast<std::size_t>(beam.block()) * beam.block() * 3),
+      internal_(beam),
+      stiffness_damping_(beam.rayleigh().b),
+      halo_(2 * static_cast<std::size_t>(beam.block())),
       mass_factor_(beam.comm(), beam.block(), beam.local_columns()) {
   if (beam.local_columns() > 0) {
     if (beam.first_column() > 0) left_rank_ = beam.owner(beam.first_column() - 1);
     if (beam.first_column() + beam.local_columns() < beam.columns())
       right_rank_ = beam.owner(beam.first_column() + beam.local_columns());
   }
-  damped_ = std::any_of(damping_.diagonal.begin(), damping_.diagonal.end(), [](double d) { return d != 0.0; });
-  int damped = damped_ ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &damped, 1, MPI_INT, MPI_MAX, comm_);
-  damped_ = damped != 0;
-
-  // The coupling block to the left neighbour's last node is that rank's; fetch it once for M, C, K.
-  const int b = mass_.block;
-  const int bb = b * b;
-  std::vector<double> send(3 * static_cast<std::size_t>(bb), 0.0);
-  double* received = halo_.data() + 4 * b;
-  if (mass_.nodes > 0) {
-    const std::size_t last = static_cast<std::size_t>(mass_.nodes - 1) * bb;
-    std::copy_n(mass_.upper.data() + last, bb, send.data());
-    std::copy_n(damping_.upper.data() + last, bb, send.data() + bb);
-    std::copy_n(stiffness_.upper.data() + last, bb, send.data() + 2 * bb);
+  const auto read = [&](Mat matrix) { return solve::BlockTridiagonal::from(matrix, beam.block()); };
+  mass_ = with_neighbour(read(beam.mass()));
+  if (beam.springs() != nullptr) springs_ = with_neighbour(read(beam.springs()));
+  const bool dampers = beam.dampers() != nullptr;
+  if (beam.rayleigh().a != 0.0 || dampers) {
+    solve::BlockTridiagonal drag = read(beam.beam_mass());
+    drag.combine(beam.rayleigh().a, drag, dampers ? 1.0 : 0.0, dampers ? read(beam.dampers()) : drag, 0.0, drag);
+    drag_ = with_neighbour(std::move(drag));
   }
-  MPI_Sendrecv(send.data(), 3 * bb, MPI_DOUBLE, right_rank_, 0, received, 3 * bb, MPI_DOUBLE, left_rank_, 0, comm_,
+  for (int i = 0; i < beam.block(); ++i) {
+    const beam::Kind kind = beam.layout().kind[i];
+    const bool bridge =
+        kind != beam::rail_u && kind != beam::rail_v && kind != beam::rail_theta && kind != beam::sleeper;
+    damped_part_.push_back(bridge ? stiffness_damping_ : 0.0);
+  }
+  damped_ = drag_ || stiffness_damping_ != 0.0;
+  relative_.resize(unknowns());
+  mass_factor_.factor(mass_.rows, fixed_);
+}
+
+// The block that couples to the left neighbour's last column is that rank's.
+BeamOperator::Matrix BeamOperator::with_neighbour(solve::BlockTridiagonal rows) const {
+  const int bb = rows.block * rows.block;
+  std::vector<double> send(bb, 0.0), left(bb, 0.0);
+  if (rows.nodes > 0)
+    std::copy_n(rows.upper.data() + static_cast<std::ptrdiff_t>(rows.nodes - 1) * bb, bb, send.data());
+  MPI_Sendrecv(send.data(), bb, MPI_DOUBLE, right_rank_, 0, left.data(), bb, MPI_DOUBLE, left_rank_, 0, comm_,
                MPI_STATUS_IGNORE);
-  mass_factor_.factor(mass_, fixed_);
+  return {std::move(rows), std::move(left)};
 }
 
 void BeamOperator::borders(const double* x, double* left, double* right) const {
   if (left_rank_ == MPI_PROC_NULL && right_rank_ == MPI_PROC_NULL) return;
-  const int b = mass_.block;
-  const double* last = x + static_cast<std::ptrdiff_t>(mass_.nodes - 1) * b;
+  const int b = work_.block;
+  const double* last = x + static_cast<std::ptrdiff_t>(work_.nodes - 1) * b;
   MPI_Sendrecv(x, b, MPI_DOUBLE, left_rank_, 1, right, b, MPI_DOUBLE, right_rank_, 1, comm_, MPI_STATUS_IGNORE);
   MPI_Sendrecv(last, b, MPI_DOUBLE, right_rank_, 2, left, b, MPI_DOUBLE, left_rank_, 2, comm_, MPI_STATUS_IGNORE);
 }
 
-void BeamOperator::product(const solve::BlockTridiagonal& A, double sign, const double* x, double* r) const {
-  const int b = A.block;
-  double* left = halo_.data();
-  double* right = halo_.data() + b;
-  borders(x, left, right);
-  const int kind = &A == &mass_ ? 0 : &A == &damping_ ? 1 : 2;
-  const double* left_upper = halo_.data() + 4 * b + kind * b * b;
-  const double* l = left_rank_ != MPI_PROC_NULL ? left : nullptr;
-  const double* rt = right_rank_ != MPI_PROC_NULL ? right : nullptr;
-  if (b == 2)
-    block_product<2>(A, sign, x, l, rt, left_upper, r);
-  else if (b == 3)
-    block_product<3>(A, sign, x, l, rt, left_upper, r);
-  else if (b == 5)
-    block_product<5>(A, sign, x, l, rt, left_upper, r);
-  else if (b == 7)
-    block_product<7>(A, sign, x, l, rt, left_upper, r);
-  else
-    block_product<0>(A, sign, x, l, rt, left_upper, r);
+void BeamOperator::fetch_halo(const double* x) const { borders(x, halo_.data(), halo_.data() + work_.block); }
+
+void BeamOperator::product(const Matrix& A, double sign, const double* x, double* r) const {
+  fetch_halo(x);
+  const int b = work_.block;
+  const double* left = left_rank_ != MPI_PROC_NULL ? halo_.data() : nullptr;
+  const double* right = right_rank_ != MPI_PROC_NULL ? halo_.data() + b : nullptr;
+  const auto kernel = b == 2   ? block_product<2>
+                      : b == 3 ? block_product<3>
+                      : b == 5 ? block_product<5>
+                      : b == 7 ? block_product<7>
+                               : block_product<0>;
+  kernel(A.rows, sign, x, left, right, A.left.data(), r);
 }
 
 void BeamOperator::multiply(double sign, const double* m, const double* c, const double* k, double* r) const {
   std::fill_n(r, unknowns(), 0.0);
   if (m != nullptr) product(mass_, sign, m, r);
-  if (c != nullptr && damped_) product(damping_, sign, c, r);
-  if (k != nullptr) product(stiffness_, sign, k, r);
+  if (c != nullptr && drag_) product(*drag_, sign, c, r);
+  if (k != nullptr && springs_) product(*springs_, sign, k, r);
+  // The beams' elastic forces and their damping by b K_aa together.
+  const bool damps = c != nullptr && stiffness_damping_ != 0.0;
+  if (k == nullptr && !damps) return;
+  const double* x = k;
+  if (damps) {
+    const int b = work_.block;
+    for (int i = 0; i < work_.nodes; ++i)
+      for (int j = 0; j < b; ++j) {
+        const int at = i * b + j;
+        relative_[at] = (k != nullptr ? k[at] : 0.0) + damped_part_[j] * c[at];
+      }
+    x = relative_.data();
+  }
+  fetch_halo(x);
+  internal_.add(sign, x, halo_.data(), halo_.data() + work_.block, r);
+  for (int i = 0; i < unknowns(); ++i)
+    if (fixed_[i] != 0) r[i] = 0.0;
 }
 
 void BeamOperator::solve_mass(double* x) const {
   ++solves;
   mass_factor_.solve(x);
+}
+
+void BeamOperator::solve_static(double* x, const AddedSprings* added) {
+  const solve::SubstructuredCholesky& factor = factored(0.0, added);
+  load_.assign(x, x + unknowns());
+  residual_.resize(unknowns());
+  factor.solve(x);
+  ++solves;
+  double before = 1.0, error = 1.0;
+  for (int i = 0; i < most_refinements; ++i) {
+    residual_ = load_;
+    if (springs_) product(*springs_, -1.0, x, residual_.data());
+    fetch_halo(x);
+    internal_.add<long double>(-1.0, x, halo_.data(), halo_.data() + work_.block, residual_.data());
+    if (added != nullptr) {
+      for (const AddedSprings::Term& t : *added->terms)
+        residual_[t.row] -=
+            t.shape * added->k[t.point] * (t.column < unknowns() ? x[t.column] : halo_[t.column - unknowns()]);
+    }
+    for (int j = 0; j < unknowns(); ++j)
+      if (fixed_[j] != 0) residual_[j] = 0.0;
+    factor.solve(residual_.data());
+    ++solves;
+    double sizes[2] = {0.0, 0.0};  // of the correction, of the solution
+    for (int j = 0; j < unknowns(); ++j) {
+      sizes[0] = std::max(sizes[0], std::abs(residual_[j]));
+      sizes[1] = std::max(sizes[1], std::abs(x[j]));
+      x[j] += residual_[j];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sizes, 2, MPI_DOUBLE, MPI_MAX, comm_);
+    const double change = sizes[1] > 0.0 ? sizes[0] / sizes[1] : 0.0;
+    // What the next correction would be, by the ratio of the last two.
+    const double ratio = std::min(change / before, 1.0);
+    error = change * std::max(ratio, std::numeric_limits<double>::epsilon());
+    if (change <= refined || ratio > stagnant) break;
+    before = change;
+  }
+  static_error_ = std::max(static_error_, error);
+  if (!(error <= most_static_error))
+    throw SolverError("the static deflection of the beam cannot be computed: rounding takes about " +
+                      std::to_string(100.0 * error) +
+                      " % of it, with so many elements between supports; take fewer (beam_elements_per_span), or "
+                      "stiffer supports");
 }
 
 const solve::SubstructuredCholesky& BeamOperator::factored(double shift, const AddedSprings* added) {
@@ -135,16 +206,22 @@ const solve::SubstructuredCholesky& BeamOperator::factored(double shift, const A
     f.shift = shift;
     f.added = version;
     f.stamp = ++factorisations_;
-    work_.combine(shift * shift, mass_, shift, damping_, 1.0, stiffness_);
+    work_.combine(shift * shift, mass_.rows, shift, damping_, 1.0, stiffness_);
     if (added != nullptr) {
       for (const AddedSprings::Term& t : *added->terms)
-        (t.upper ? work_.upper : work_.diagonal)[t.place] += t.shape * (added->k[t.point] + shift * added->c[t.point]);
+        if (t.place >= 0)
+          (t.upper ? work_.upper : work_.diagonal)[t.place] +=
+              t.shape * (added->k[t.point] + shift * added->c[t.point]);
     }
     try {
       f.cholesky.factor(work_, fixed_);
-    } catch (...) {
+    } catch (const SolverError& error) {
       factors_.pop_front();
-      throw;
+      if (shift > 0.0) throw;
+      throw SolverError(
+          std::string("the beam's static stiffness cannot be factored: a support is missing, or there are so "
+                      "many elements between supports (beam_elements_per_span) that rounding hides them; ") +
+          error.what());
     }
   }
   stamp_ = factors_.front().stamp;

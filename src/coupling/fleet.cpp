@@ -59,7 +59,11 @@ MovingVehicle::MovingVehicle(multibody::MechanismModel model, std::vector<Wheel>
 
 Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
              const track::Profile* profile, double surface_height)
-    : mesh_(mesh), profile_(profile), speed_(frozen ? 0.0 : train.speed), frozen_(frozen), surface_height_(surface_height) {
+    : mesh_(mesh),
+      profile_(profile),
+      speed_(frozen ? 0.0 : train.speed),
+      frozen_(frozen),
+      surface_height_(surface_height) {
   for (std::size_t k = 0; k < train.vehicles.size(); ++k) {
     const Vehicle& type = types[train.vehicles[k]];
     multibody::MechanismModel model = placed(type.mechanism, train.positions[k], train.speed, gravity);

@@ -291,9 +291,11 @@ System::Solution System::solve_coupled(double t, double shift, const double* c_v
       nonlinear_->add_linearised(nodal_.data());
       release_held(nodal_.data());
     }
-    if (beam_ != nullptr && (loaded || nonlinear_)) {
+    if (shift > 0.0 && beam_ != nullptr) {
       operator_->factored(shift, added).solve(nodal_.data());
       ++operator_->solves;
+    } else if (loaded || nonlinear_) {
+      operator_->solve_static(nodal_.data(), added);
     }
     if (part == Part::all) {
       for (int i = 0; i < n_; ++i) work_[i] = v_still_[i] + nodal_[i];

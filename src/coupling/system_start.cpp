@@ -127,7 +127,7 @@ std::vector<double> System::influence_line(double station) {
   const beam::Station s = beam_->mesh().locate(station);
   add_point_load(beam_->bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
   release_held(nodal_.data());
-  operator_->factored(0.0).solve(nodal_.data());
+  operator_->solve_static(nodal_.data());
   std::vector<double> line(4 * static_cast<std::size_t>(line_->mesh.elements()), 0.0);
   for (int e = 0; e < line_->mesh.elements(); ++e) {
     const auto unknowns = line_->transverse(e);

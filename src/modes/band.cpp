@@ -1,38 +1,99 @@
 #include "band.hpp"
 
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace traverse::modes {
 
-int count_below(const Band& K, const Band& M, double sigma) {
-  constexpr int w = Band::width;
-  // Row i of L and its pivot, for the last rows only.
-  std::array<std::array<double, w>, w + 1> L{};
-  std::array<double, w + 1> d{};
+namespace {
+
+/// The negative pivots. `Width` is a constant for the common beams: count_below runs many times over long ones.
+template <class Width>
+int negative_pivots(const Band& K, const Band& M, double sigma, Width width) {
+  const int w = width;
+  // The last rows of L and their pivots, in rings whose lengths are a power of two.
+  const unsigned ring = std::bit_ceil(static_cast<unsigned>(w) + 1), mask = ring - 1;
+  const auto in_ring = [mask](int i) { return static_cast<unsigned>(i) & mask; };
+  std::vector<double> L(ring * ring), d(ring);
   int negative = 0;
   for (int i = 0; i < K.size(); ++i) {
     const int first = std::max(0, i - w);
-    auto& row = L[static_cast<std::size_t>(i % (w + 1))];
-    double pivot = K.at(i, i) - sigma * M.at(i, i);
-    const double size = std::abs(K.at(i, i)) + std::abs(sigma * M.at(i, i));
+    const double *k = K.row(i), *m = M.row(i);
+    double* row = &L[in_ring(i) * ring];
+    double pivot = k[0] - sigma * m[0];
+    const double size = std::abs(k[0]) + std::abs(sigma * m[0]);
     for (int j = first; j < i; ++j) {
-      double scaled = K.at(i, j) - sigma * M.at(i, j);  // L_ij d_j
-      const auto& other = L[static_cast<std::size_t>(j % (w + 1))];
+      double scaled = k[i - j] - sigma * m[i - j];  // L_ij d_j
+      const double* other = &L[in_ring(j) * ring];
       for (int p = std::max(first, j - w); p < j; ++p) {
-        scaled -= row[static_cast<std::size_t>(p % w)] * d[static_cast<std::size_t>(p % (w + 1))] *
-                  other[static_cast<std::size_t>(p % w)];
+        scaled -= row[in_ring(p)] * d[in_ring(p)] * other[in_ring(p)];
       }
-      const double l = scaled / d[static_cast<std::size_t>(j % (w + 1))];
-      row[static_cast<std::size_t>(j % w)] = l;
+      const double l = scaled / d[in_ring(j)];
+      row[in_ring(j)] = l;
       pivot -= l * scaled;
     }
     const double least = std::numeric_limits<double>::epsilon() * size;
     if (std::abs(pivot) < least * 1e-3) pivot = least * 1e-3;
-    d[static_cast<std::size_t>(i % (w + 1))] = pivot;
+    d[in_ring(i)] = pivot;
     if (pivot < 0.0) ++negative;
   }
   return negative;
+}
+
+}  // namespace
+
+int count_below(const Band& K, const Band& M, double sigma) {
+  switch (K.width()) {
+    case 1:
+      return negative_pivots(K, M, sigma, std::integral_constant<int, 1>());
+    case 3:
+      return negative_pivots(K, M, sigma, std::integral_constant<int, 3>());
+    default:
+      return negative_pivots(K, M, sigma, K.width());
+  }
+}
+
+void add_product(const Band& A, double factor, const double* x, double* y) {
+  for (int i = 0; i < A.size(); ++i) {
+    const double* row = A.row(i);
+    double sum = row[0] * x[i];
+    for (int j = std::max(0, i - A.width()); j < i; ++j) {
+      sum += row[i - j] * x[j];
+      y[j] += factor * row[i - j] * x[i];
+    }
+    y[i] += factor * sum;
+  }
+}
+
+Factor::Factor(const Band& K) : rows_(K) {
+  const int w = K.width();
+  for (int i = 0; i < K.size(); ++i) {
+    const int first = std::max(0, i - w);
+    for (int j = first; j < i; ++j) {
+      double scaled = rows_.at(i, j);  // L_ij d_j, of which rows_.at(i, p), p < j, are ready
+      for (int p = std::max(first, j - w); p < j; ++p) scaled -= rows_.at(i, p) * rows_.at(j, p);
+      rows_.at(i, j) = scaled;
+    }
+    for (int j = first; j < i; ++j) {
+      const double scaled = rows_.at(i, j);
+      rows_.at(i, j) = scaled / rows_.at(j, j);
+      rows_.at(i, i) -= rows_.at(i, j) * scaled;
+    }
+    positive_ = positive_ && rows_.at(i, i) > 0.0;
+  }
+}
+
+void Factor::solve(double* x) const {
+  const int n = rows_.size(), w = rows_.width();
+  for (int i = 0; i < n; ++i) {
+    for (int j = std::max(0, i - w); j < i; ++j) x[i] -= rows_.at(i, j) * x[j];
+  }
+  for (int i = 0; i < n; ++i) x[i] /= rows_.at(i, i);
+  for (int i = n - 1; i >= 0; --i) {
+    for (int j = std::max(0, i - w); j < i; ++j) x[j] -= rows_.at(i, j) * x[i];
+  }
 }
 
 double highest_quotient(const Band& K, const Band& M) {

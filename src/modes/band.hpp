@@ -2,30 +2,55 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <vector>
 
 namespace traverse::modes {
 
-/// Lower half of a symmetric band, three codiagonals: the transverse unknowns of a beam (the axial ones need one).
+/// Lower half of a symmetric band with `width` codiagonals: three for the transverse unknowns of a plain beam, one for
+/// the axial ones.
 class Band {
  public:
-  static constexpr int width = 3;
-
-  explicit Band(int n = 0) : rows_(static_cast<std::size_t>(n)) {}
-  int size() const { return static_cast<int>(rows_.size()); }
+  Band() = default;
+  Band(int size, int width)
+      : size_(size), width_(width), values_(static_cast<std::size_t>(size) * static_cast<std::size_t>(width + 1)) {}
+  int size() const { return size_; }
+  int width() const { return width_; }
   /// Entry (i, j), i - width <= j <= i.
-  double& at(int i, int j) { return rows_[static_cast<std::size_t>(i)][static_cast<std::size_t>(i - j)]; }
-  double at(int i, int j) const { return rows_[static_cast<std::size_t>(i)][static_cast<std::size_t>(i - j)]; }
+  double& at(int i, int j) { return values_[place(i, j)]; }
+  double at(int i, int j) const { return values_[place(i, j)]; }
+  /// Row i, with its diagonal entry: at(i, j) is row(i)[i - j].
+  const double* row(int i) const { return &values_[place(i, i)]; }
 
  private:
-  std::vector<std::array<double, width + 1>> rows_;
+  std::size_t place(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(width_ + 1) + static_cast<std::size_t>(i - j);
+  }
+
+  int size_ = 0, width_ = 0;
+  std::vector<double> values_;
 };
 
+/// y += factor A x.
+void add_product(const Band& A, double factor, const double* x, double* y);
+
 /// How many eigenvalues of K x = lambda M x lie below `sigma`: the negative pivots of K - sigma M = L D L^T
-/// (Sylvester's law of inertia).
+/// (Sylvester's law of inertia). K and M have the same width.
 int count_below(const Band& K, const Band& M, double sigma);
+
+/// K = L D L^T of a positive definite band.
+class Factor {
+ public:
+  explicit Factor(const Band& K);
+  /// False where a pivot was not positive: K is singular, or so close to it that rounding decides.
+  bool positive() const { return positive_; }
+  /// x becomes K^-1 x.
+  void solve(double* x) const;
+
+ private:
+  Band rows_;  // of L, the pivots in place of its ones
+  bool positive_ = true;
+};
 
 /// The largest K_ii/M_ii: the size of the highest eigenvalues, and times the machine's epsilon that of rounding.
 double highest_quotient(const Band& K, const Band& M);

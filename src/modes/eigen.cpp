@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <string>
+
+#include "vectors.hpp"
 
 namespace traverse::modes {
 namespace {
@@ -20,7 +21,7 @@ base::Handle<Mat> matrix(const Band& band) {
   std::vector<PetscInt> starts{0}, columns;
   std::vector<double> values;
   for (PetscInt i = 0; i < n; ++i) {
-    for (PetscInt j = std::max(0, i - Band::width); j <= std::min(n - 1, i + Band::width); ++j) {
+    for (PetscInt j = std::max(0, i - band.width()); j <= std::min(n - 1, i + band.width()); ++j) {
       columns.push_back(j);
       values.push_back(i >= j ? band.at(i, j) : band.at(j, i));
     }
@@ -33,27 +34,6 @@ base::Handle<Mat> matrix(const Band& band) {
   check(MatSeqAIJSetPreallocationCSR(m, starts.data(), columns.data(), values.data()));
   check(MatSetOption(m, MAT_SYMMETRIC, PETSC_TRUE));
   return m;
-}
-
-base::Handle<Vec> vector(const std::vector<double>& values) {
-  base::Handle<Vec> v;
-  check(VecCreateSeq(PETSC_COMM_SELF, static_cast<PetscInt>(values.size()), v.out()));
-  PetscScalar* raw = nullptr;
-  check(VecGetArray(v, &raw));
-  std::copy(values.begin(), values.end(), raw);
-  check(VecRestoreArray(v, &raw));
-  return v;
-}
-
-/// A start that hardly any mode is orthogonal to, always the same. (-1, 1), by a linear congruential generator.
-std::vector<double> start_vector(int size, unsigned seed) {
-  std::vector<double> values(static_cast<std::size_t>(size));
-  std::uint64_t state = 0x9E3779B97F4A7C15ULL + seed;
-  for (double& value : values) {
-    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-    value = static_cast<double>(state >> 11) * 0x1p-52 - 1.0;
-  }
-  return values;
 }
 
 /// From where to look when there are rigid motions, or nearly so: from below zero. The eigenvalues of a beam spread

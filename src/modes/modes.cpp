@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "eigen.hpp"
+#include "nodal_shape.hpp"
 #include "segment.hpp"
 
 namespace traverse::modes {
@@ -35,24 +36,6 @@ std::vector<Mode> lowest(const std::vector<Segment>& segments, int count) {
   return modes;
 }
 
-/// Displacements at all nodes, the largest 1; zero where a mode has none at nodes (one element a span: slopes only).
-std::vector<double> nodal_shape(const Mode& mode, int nodes) {
-  const Segment& s = *mode.segment;
-  std::vector<double> shape(static_cast<std::size_t>(nodes), 0.0);
-  double largest = 0.0, slope = 0.0;
-  for (std::size_t i = 0; i < mode.shape.size(); ++i) {
-    if (s.slope[i] != 0) {
-      slope = std::max(slope, std::abs(mode.shape[i]));
-      continue;
-    }
-    const int node = s.nodes[i] + mode.offset;
-    shape[static_cast<std::size_t>(node)] = mode.shape[i];
-    if (std::abs(mode.shape[i]) > (1.0 + 1e-9) * std::abs(largest)) largest = mode.shape[i];
-  }
-  for (double& v : shape) v = std::abs(largest) > 1e-9 * slope ? v / largest : 0.0;
-  return shape;
-}
-
 /// The lowest frequencies of one segment that differ and are not zero: two, or as many as it has.
 std::vector<double> distinct_of(const Segment& s) {
   for (int count = 2 + static_cast<int>(s.rigid.size());; count *= 2) {
@@ -74,7 +57,7 @@ Modes natural_modes(const beam::Beam& beam, int count, bool shapes) {
   for (const Mode& mode : lowest(segments, std::max(count, 0))) {
     result.omega.push_back(mode.omega);
     result.axial.push_back(mode.segment->axial ? 1 : 0);
-    if (shapes) result.shape.push_back(nodal_shape(mode, beam.mesh().nodes()));
+    if (shapes) result.shape.push_back(nodal_shape(*mode.segment, mode.offset, mode.shape, beam.mesh().nodes()));
   }
   return result;
 }

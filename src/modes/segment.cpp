@@ -1,50 +1,75 @@
 #include "segment.hpp"
 
 #include <cmath>
+#include <limits>
+#include <span>
 
 namespace traverse::modes {
 namespace {
 
 using base::check;
 
-/// The rows of the axial unknowns (one a node) or of the transverse ones (two a node), of all ranks, on every rank.
-/// Held unknowns have zero rows.
-Band gathered(const beam::Beam& beam, Mat matrix, bool axial) {
+/// Calls row(i, columns, values) for each row, columns ascending.
+template <class Row>
+void for_rows(Mat matrix, int size, Row row) {
+  for (PetscInt i = 0; i < size; ++i) {
+    PetscInt count = 0;
+    const PetscInt* columns = nullptr;
+    const PetscScalar* values = nullptr;
+    check(MatGetRow(matrix, i, &count, &columns, &values));
+    row(i, std::span(columns, static_cast<std::size_t>(count)), values);
+    check(MatRestoreRow(matrix, i, &count, &columns, &values));
+  }
+}
+
+/// As wide as the matrix's pattern of non-zeros, which M, K* and C* share.
+Band band_of(Mat matrix, int size) {
+  int width = 0;
+  for_rows(matrix, size, [&](PetscInt i, std::span<const PetscInt> columns, const PetscScalar*) {
+    if (!columns.empty()) width = std::max(width, static_cast<int>(i - columns.front()));
+  });
+  Band band(size, width);
+  for_rows(matrix, size, [&](PetscInt i, std::span<const PetscInt> columns, const PetscScalar* values) {
+    for (std::size_t k = 0; k < columns.size() && columns[k] <= i; ++k) band.at(i, columns[k]) = values[k];
+  });
+  return band;
+}
+
+/// Whether sleepers tie the bridge's bending to motion along x: they hold it at a height above its axis.
+bool bending_pulls(const beam::BeamModel& model) { return model.track && model.axial && model.surface_height != 0.0; }
+
+/// Global unknowns that move along x, or the others; all of them where they couple.
+std::vector<PetscInt> unknowns_of(const beam::Beam& beam, bool axial) {
   std::vector<PetscInt> wanted;
-  const int block = beam.block();
+  const bool all = bending_pulls(beam.model());
   for (int column = 0; column < beam.columns(); ++column) {
-    for (int i = 0; i < block; ++i) {
-      if (beam::Layout::axial(beam.layout().kind[i]) == axial) wanted.push_back(column * block + i);
+    for (int i = 0; i < beam.block(); ++i) {
+      if (all || beam::Layout::axial(beam.layout().kind[i]) == axial) wanted.push_back(column * beam.block() + i);
     }
   }
+  return wanted;
+}
+
+/// These rows of all ranks, on every rank. Held unknowns have zero rows.
+Band gathered(Mat matrix, const std::vector<PetscInt>& wanted) {
   base::Handle<IS> set;
   check(ISCreateGeneral(PETSC_COMM_SELF, static_cast<PetscInt>(wanted.size()), wanted.data(), PETSC_COPY_VALUES,
                         set.out()));
   Mat* copies = nullptr;
   const IS raw = set;
   check(MatCreateSubMatrices(matrix, 1, &raw, &raw, MAT_INITIAL_MATRIX, &copies));
-  Band band(static_cast<int>(wanted.size()));
-  for (PetscInt i = 0; i < band.size(); ++i) {
-    PetscInt count = 0;
-    const PetscInt* columns = nullptr;
-    const PetscScalar* values = nullptr;
-    check(MatGetRow(copies[0], i, &count, &columns, &values));
-    for (PetscInt j = 0; j < count; ++j) {
-      if (columns[j] <= i) band.at(i, columns[j]) = values[j];
-    }
-    check(MatRestoreRow(copies[0], i, &count, &columns, &values));
-  }
+  Band band = band_of(copies[0], static_cast<int>(wanted.size()));
   check(MatDestroySubMatrices(1, &copies));
   return band;
 }
 
 /// The unknowns `rows` of a matrix; those in between are held and have no entries.
 Band part_of(const Band& whole, const std::vector<int>& rows) {
-  Band part(static_cast<int>(rows.size()));
+  Band part(static_cast<int>(rows.size()), whole.width());
   for (int i = 0; i < part.size(); ++i) {
-    for (int j = std::max(0, i - Band::width); j <= i; ++j) {
+    for (int j = std::max(0, i - part.width()); j <= i; ++j) {
       const int row = rows[static_cast<std::size_t>(i)], column = rows[static_cast<std::size_t>(j)];
-      if (row - column <= Band::width) part.at(i, j) = whole.at(row, column);
+      if (row - column <= whole.width()) part.at(i, j) = whole.at(row, column);
     }
   }
   return part;
@@ -53,7 +78,7 @@ Band part_of(const Band& whole, const std::vector<int>& rows) {
 bool equal(const Band& a, const Band& b) {
   if (a.size() != b.size()) return false;
   for (int i = 0; i < a.size(); ++i) {
-    for (int j = std::max(0, i - Band::width); j <= i; ++j) {
+    for (int j = std::max(0, i - a.width()); j <= i; ++j) {
       const double scale = std::sqrt(a.at(i, i)) * std::sqrt(a.at(j, j));
       if (!(std::abs(a.at(i, j) - b.at(i, j)) <= 1e-9 * scale)) return false;
     }
@@ -61,73 +86,101 @@ bool equal(const Band& a, const Band& b) {
   return true;
 }
 
+/// D to 1e-9 of its largest entry, whatever the size of b K*, which a weak damper would drown in.
+bool equal_damping(const Segment& a, const Segment& b) {
+  double largest = 0.0, difference = 0.0;
+  for (int i = 0; i < a.D.size(); ++i) {
+    for (int j = std::max(0, i - a.D.width()); j <= i; ++j) {
+      largest = std::max({largest, std::abs(a.D.at(i, j)), std::abs(b.D.at(i, j))});
+      difference = std::max(difference, std::abs(a.D.at(i, j) - b.D.at(i, j)));
+    }
+  }
+  return difference <= 1e-9 * largest;
+}
+
+/// C - a M - b K, with 0 for what is no more than the rounding of C.
+Band beyond_rayleigh(const Band& C, const Band& M, const Band& K, const beam::Rayleigh& ab) {
+  Band D(C.size(), C.width());
+  for (int i = 0; i < D.size(); ++i) {
+    for (int j = std::max(0, i - D.width()); j <= i; ++j) {
+      const double mass_part = ab.a * M.at(i, j), stiffness_part = ab.b * K.at(i, j);
+      const double rounding =
+          4.0 * std::numeric_limits<double>::epsilon() * (std::abs(mass_part) + std::abs(stiffness_part));
+      const double rest = C.at(i, j) - mass_part - stiffness_part;
+      if (std::abs(rest) > rounding) D.at(i, j) = rest;
+    }
+  }
+  return D;
+}
+
 bool equal(const Segment& a, const Segment& b) {
   if (a.size() != b.size() || a.slope != b.slope || a.rigid.size() != b.rigid.size()) return false;
   for (std::size_t i = 0; i < a.nodes.size(); ++i) {
     if (a.nodes[i] - a.nodes[0] != b.nodes[i] - b.nodes[0]) return false;
   }
-  return equal(a.M, b.M) && equal(a.K, b.K);
-}
-
-/// The rigid motions of the part of the beam that the segment is. (A segment that is only a piece of its part ends
-/// at a node that is held altogether, and its part has none.)
-void add_rigid_motions(const beam::Beam& beam, const std::vector<beam::RigidMotion>& motions, Segment& s) {
-  const double left = beam.mesh().x(s.nodes.front()), right = beam.mesh().x(s.nodes.back());
-  for (const beam::RigidMotion& motion : motions) {
-    if (motion.axial != s.axial || left < motion.left || right > motion.right) continue;
-    s.rigid.emplace_back();
-    for (std::size_t i = 0; i < s.nodes.size(); ++i) {
-      const double x = beam.mesh().x(s.nodes[i]);
-      s.rigid.back().push_back(s.slope[i] != 0 ? motion.slope(x, true) : motion.value(x));
-    }
-  }
+  return equal(a.M, b.M) && equal(a.K, b.K) && equal_damping(a, b);
 }
 
 class Splitter {
  public:
-  Splitter(const beam::Beam& beam, bool axial)
+  Splitter(const beam::Beam& beam, bool axial, Damping damping)
       : beam_(beam),
         axial_(axial),
-        K_(gathered(beam, beam.stiffness(), axial)),
-        M_(gathered(beam, beam.mass(), axial)),
-        motions_(beam::rigid_motions(beam.model())) {}
+        unknowns_(unknowns_of(beam, axial)),
+        K_(gathered(beam.stiffness(), unknowns_)),
+        M_(gathered(beam.mass(), unknowns_)),
+        motions_(beam::rigid_motions(beam.model())) {
+    if (damping == Damping::included)
+      D_ = beyond_rayleigh(gathered(beam.damping(), unknowns_), M_, K_, beam.rayleigh());
+  }
 
   std::vector<Segment> split() {
-    const int per_node = axial_ ? 1 : 2;
     std::vector<int> rows;
-    for (int i = 0; i < M_.size(); ++i) {
-      const int node = i / per_node;
-      if (i % per_node == 0 && !joins_left(node, per_node)) finish(rows, per_node);
-      if (M_.at(i, i) != 0.0) rows.push_back(i);
+    for (int first = 0; first < M_.size();) {
+      int past = first;
+      while (past < M_.size() && column(past) == column(first)) ++past;
+      if (!joins_left(first, past)) finish(rows);
+      for (int i = first; i < past; ++i) {
+        if (M_.at(i, i) != 0.0) rows.push_back(i);
+      }
+      first = past;
     }
-    finish(rows, per_node);
+    finish(rows);
     return std::move(segments_);
   }
 
  private:
-  /// Whether an unknown of the node couples to one of the node before.
-  bool joins_left(int node, int per_node) const {
-    for (int i = node * per_node; i < (node + 1) * per_node; ++i) {
-      for (int j = std::max(0, i - Band::width); j < node * per_node; ++j) {
-        if (M_.at(i, j) != 0.0) return true;
+  int column(int row) const { return static_cast<int>(unknowns_[static_cast<std::size_t>(row)]) / beam_.block(); }
+  beam::Kind kind(int row) const {
+    return beam_.layout().kind[unknowns_[static_cast<std::size_t>(row)] % beam_.block()];
+  }
+
+  /// Whether an unknown of the column [first, past) couples to one of the column before.
+  bool joins_left(int first, int past) const {
+    for (int i = first; i < past; ++i) {
+      for (int j = std::max(0, i - M_.width()); j < first; ++j) {
+        if (M_.at(i, j) != 0.0 || K_.at(i, j) != 0.0) return true;
       }
     }
     return false;
   }
 
-  void finish(std::vector<int>& rows, int per_node) {
+  void finish(std::vector<int>& rows) {
     if (rows.empty()) return;
     Segment s;
     s.axial = axial_;
     for (int row : rows) {
-      s.nodes.push_back(row / per_node);
-      s.slope.push_back(!axial_ && row % 2 == 1 ? 1 : 0);
+      s.nodes.push_back(column(row) - beam_.bridge().first_column);
+      // On the ground a layered track's ballast takes the place of the bridge's deflection.
+      const bool bridge = s.nodes.back() >= 0 && s.nodes.back() < beam_.mesh().nodes();
+      s.slope.push_back(bridge && kind(row) == (axial_ ? beam::Kind::u : beam::Kind::v) ? 0 : 1);
     }
     s.K = part_of(K_, rows);
     s.M = part_of(M_, rows);
+    if (D_.size() > 0) s.D = part_of(D_, rows);
     s.offsets = {0};
+    add_rigid_motions(s, rows);
     rows.clear();
-    add_rigid_motions(beam_, motions_, s);
     for (Segment& known : segments_) {
       if (!equal(known, s)) continue;
       known.offsets.push_back(s.nodes[0] - known.nodes[0]);
@@ -136,20 +189,38 @@ class Splitter {
     segments_.push_back(std::move(s));
   }
 
+  /// The rigid motions of the part of the beam that the segment is. (A segment that is only a piece of its part ends
+  /// at a node that is held altogether, and its part has none.)
+  void add_rigid_motions(Segment& s, const std::vector<int>& rows) const {
+    for (const beam::RigidMotion& motion : motions_) {
+      const double left = beam_.mesh().x(s.nodes.front()), right = beam_.mesh().x(s.nodes.back());
+      if (motion.axial != s.axial || left < motion.left || right > motion.right) continue;
+      s.rigid.emplace_back();
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        const double x = beam_.mesh().x(s.nodes[i]);
+        s.rigid.back().push_back(s.slope[i] == 0 ? motion.value(x)
+                                                 : motion.slope(x, kind(rows[i]) != beam::Kind::theta_right));
+      }
+    }
+  }
+
   const beam::Beam& beam_;
   bool axial_;
-  Band K_, M_;
+  std::vector<PetscInt> unknowns_;
+  Band K_, M_, D_;
   std::vector<beam::RigidMotion> motions_;
   std::vector<Segment> segments_;
 };
 
 }  // namespace
 
-std::vector<Segment> transverse_segments(const beam::Beam& beam) { return Splitter(beam, false).split(); }
+std::vector<Segment> transverse_segments(const beam::Beam& beam, Damping damping) {
+  return Splitter(beam, false, damping).split();
+}
 
-std::vector<Segment> axial_segments(const beam::Beam& beam) {
-  if (!beam.model().axial) return {};
-  return Splitter(beam, true).split();
+std::vector<Segment> axial_segments(const beam::Beam& beam, Damping damping) {
+  if (!beam.model().axial || bending_pulls(beam.model())) return {};
+  return Splitter(beam, true, damping).split();
 }
 
 }  // namespace traverse::modes

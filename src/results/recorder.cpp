@@ -42,6 +42,7 @@ void share_failure(MPI_Comm comm, std::string failure) {
 /// Numbers in one sample.
 std::size_t sample_size(const Layout& layout) {
   std::size_t size = 7 + 7 * layout.probes.size() + 3 * layout.supports.size();
+  for (const auto& field : layout.fields) size += field.width;
   for (const auto& vehicle : layout.vehicles) {
     size += 9 * vehicle.bodies.size() + 3 * vehicle.wheels.size() + 3 * vehicle.joints.size();
   }
@@ -50,6 +51,9 @@ std::size_t sample_size(const Layout& layout) {
 
 bool fits(const Sample& sample, const Layout& layout) {
   if (sample.probes.size() != layout.probes.size() || sample.supports.size() != layout.supports.size()) return false;
+  if (!std::equal(sample.fields.begin(), sample.fields.end(), layout.fields.begin(), layout.fields.end(),
+                  [](const auto& values, const auto& field) { return values.size() == field.width; }))
+    return false;
   return std::equal(sample.vehicles.begin(), sample.vehicles.end(), layout.vehicles.begin(), layout.vehicles.end(),
                     [](const Sample::Vehicle& values, const Layout::VehicleNames& names) {
                       return values.bodies.size() == names.bodies.size() &&
@@ -130,6 +134,8 @@ Recorder::Impl::Impl(const std::string& path, const Layout& given, const Pairs& 
     file.table("/options", options);
     if (!layout.probes.empty()) file.dataset("/probes/x", {layout.probes.size()}, layout.probes, "m");
     if (!layout.supports.empty()) file.dataset("/supports/x", {layout.supports.size()}, layout.supports, "m");
+    for (const auto& constant : layout.constants)
+      file.dataset(constant.name, {constant.values.size()}, constant.values, constant.unit);
     file.flush();
   });
 }
@@ -170,6 +176,7 @@ void Recorder::Impl::create_series() {
     }
   }
   if (!layout.supports.empty()) create("/supports/reaction", {layout.supports.size(), 3}, kReactionUnit);
+  for (const auto& field : layout.fields) create(field.name, {field.width}, field.unit);
   for (const auto& term : kEnergyTerms) create(std::string("/energy/") + term.name, {}, "J");
   for (std::size_t k = 0; k < layout.vehicles.size(); ++k) {
     const std::string vehicle = "/vehicles/" + std::to_string(k) + "/";
@@ -203,6 +210,10 @@ void Recorder::Impl::add(const Sample& sample) {
   }
   if (!sample.supports.empty()) {
     for (const auto& reaction : sample.supports) next->add(reaction);
+    ++next;
+  }
+  for (const auto& values : sample.fields) {
+    for (const double value : values) next->add(value);
     ++next;
   }
   for (const auto& term : kEnergyTerms) next++->add(sample.energy.*term.member);
@@ -257,6 +268,7 @@ void Recorder::Impl::summarise(const Summary& summary) {
   file.attribute(group, "longest_loss", summary.longest_loss);
   file.attribute(group, "energy_residual", summary.energy_residual);
   file.attribute(group, "energy_scale", summary.energy_scale);
+  file.attribute(group, "static_error", summary.static_error);
   file.attribute(group, "steps", summary.steps);
   file.attribute(group, "solves", summary.solves);
   file.attribute(group, "wall_seconds", summary.wall_seconds);
@@ -307,6 +319,31 @@ void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double raylei
     file.attribute("/modes", "rayleigh_b", rayleigh_b);
     file.attribute("/modes", "omega1", omega1);
     file.attribute("/modes", "omega2", omega2);
+    file.flush();
+  });
+}
+
+void Recorder::damped_modes(const modes::DampedModes& modes) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    std::vector<double> frequency, ratio, decay_rate;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      frequency.push_back(modes.damped_omega(i) / (2.0 * std::numbers::pi));
+      ratio.push_back(modes.ratio(i));
+      decay_rate.push_back(modes.decay_rate(i));
+    }
+    file.dataset("/modes/damped_frequency", {modes.size()}, frequency, "Hz");
+    file.dataset("/modes/damping_ratio", {modes.size()}, ratio, "1");
+    file.dataset("/modes/decay_rate", {modes.size()}, decay_rate, "1/s");
+    file.dataset("/modes/damped_axial", {modes.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
+    if (!modes.shape.empty()) {
+      std::vector<double> parts;
+      for (const auto& shape : modes.shape) {
+        for (const auto& value : shape) parts.insert(parts.end(), {value.real(), value.imag()});
+      }
+      file.dataset("/modes/damped_shape", {modes.size(), modes.shape.front().size(), 2}, parts, "1");
+    }
     file.flush();
   });
 }

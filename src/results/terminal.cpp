@@ -90,6 +90,50 @@ const char* mode_kind(const modes::Modes& modes, std::size_t i) {
   return i < modes.axial.size() && modes.axial[i] != 0 ? "   along x" : "";
 }
 
+std::string damped_kind(const modes::DampedModes& modes, std::size_t i) {
+  if (modes.lambda[i] == 0.0) return "   rigid";
+  return fmt::format("{}{}", modes.axial[i] != 0 ? "   along x" : "",
+                     modes.damped_omega(i) == 0.0 ? "   overdamped" : "");
+}
+
+std::string undamped_part(const modes::Modes& modes, std::size_t i) {
+  if (i >= modes.omega.size()) return fmt::format("{:36}", "");
+  const double omega = modes.omega[i];
+  return fmt::format("{:>18.6g}{:>18.6g}{}", omega / (2.0 * std::numbers::pi), omega, mode_kind(modes, i));
+}
+
+std::string damped_part(const modes::DampedModes& modes, std::size_t i) {
+  return fmt::format("{:>18.6g}{:>18.6g}{:>18.6g}{}", modes.damped_omega(i) / (2.0 * std::numbers::pi), modes.ratio(i),
+                     modes.decay_rate(i), damped_kind(modes, i));
+}
+
+/// Whether each damped mode is the undamped one of its row: so for C = a M + b K, as long as all oscillate.
+bool same_modes(const modes::Modes& modes, const modes::DampedModes& damped) {
+  constexpr double rounding = 1e-9;
+  if (modes.omega.size() != damped.size()) return false;
+  for (std::size_t i = 0; i < damped.size(); ++i) {
+    const bool real = damped.damped_omega(i) == 0.0 && damped.lambda[i] != 0.0;
+    if (real || std::abs(damped.omega(i) - modes.omega[i]) > rounding * modes.omega[i]) return false;
+  }
+  return true;
+}
+
+void print_with_damping(const modes::Modes& modes, const modes::DampedModes& damped) {
+  fmt::print("modes\n  {:>4}{:>18}{:>18}{:10}{:>18}{:>18}{:>18}\n", "", "frequency (Hz)", "omega (rad/s)", "",
+             "damped (Hz)", "damping ratio", "decay (1/s)");
+  for (std::size_t i = 0; i < std::max(modes.omega.size(), damped.size()); ++i) {
+    const std::string undamped = undamped_part(modes, i);
+    if (i < damped.size()) {
+      fmt::print("  {:>4}{:46}{}\n", i + 1, undamped, damped_part(damped, i));
+    } else {
+      fmt::print("  {:>4}{}\n", i + 1, undamped);
+    }
+  }
+  if (!same_modes(modes, damped)) {
+    fmt::print("  undamped and damped modes each in ascending order, of |lambda|: a row need not be one mode\n");
+  }
+}
+
 }  // namespace
 
 void print_modelled(const std::vector<std::string>& lines) {
@@ -149,12 +193,14 @@ void print_summary(const Summary& summary, const std::string& file) {
   std::fflush(stdout);
 }
 
-void print_modes(const modes::Modes& modes, double omega1, double omega2, double rayleigh_a, double rayleigh_b) {
+void print_modes(const modes::Modes& modes, double omega1, double omega2, double rayleigh_a, double rayleigh_b,
+                 const modes::DampedModes& damped) {
   if (!is_first_rank()) return;
-  fmt::print("modes\n  {:>4}{:>18}{:>18}\n", "", "frequency (Hz)", "omega (rad/s)");
-  for (std::size_t i = 0; i < modes.omega.size(); ++i) {
-    const double omega = modes.omega[i];
-    fmt::print("  {:>4}{:>18.6g}{:>18.6g}{}\n", i + 1, omega / (2.0 * std::numbers::pi), omega, mode_kind(modes, i));
+  if (damped.size() > 0) {
+    print_with_damping(modes, damped);
+  } else {
+    fmt::print("modes\n  {:>4}{:>18}{:>18}\n", "", "frequency (Hz)", "omega (rad/s)");
+    for (std::size_t i = 0; i < modes.omega.size(); ++i) fmt::print("  {:>4}{}\n", i + 1, undamped_part(modes, i));
   }
   if (rayleigh_a != 0.0 || rayleigh_b != 0.0) {
     line("damping C = a M + b K", fmt::format("a = {:.6g} 1/s, b = {:.6g} s, from omega = {:.6g} and {:.6g} rad/s",

@@ -54,7 +54,7 @@ void expect_same(Results& one, Results& all, std::size_t least, double at_rest =
   EXPECT_EQ(names, datasets(all.file()));
   EXPECT_GE(names.size(), least);
   for (const std::string& name : names) {
-    if (name == "/energy/residual") continue;
+    if (name.ends_with("residual")) continue;
     const std::size_t modes = name == "/modes/shape" ? one("/modes/frequency").size() : 0;
     const std::vector<double> a = modes > 0 ? with_sign(all(name), modes) : all(name);
     const std::vector<double> b = modes > 0 ? with_sign(one(name), modes) : one(name);

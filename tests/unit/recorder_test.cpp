@@ -151,6 +151,26 @@ TEST_F(RecorderTest, WritesModes) {
   EXPECT_FALSE(reader.has("/time"));
 }
 
+TEST_F(RecorderTest, WritesDampedModes) {
+  auto recorder = open(small_layout());
+  const double omega = 2.0 * std::numbers::pi;
+  recorder->damped_modes({.lambda = {-2.0, {-0.6 * omega, 0.8 * omega}},
+                          .axial = {0, 1},
+                          .shape = {{0.0, 1.0, 0.0}, {{0.5, 0.25}, 0.0, 1.0}}});
+  recorder->finish({});
+  const Reader reader(file_);
+  EXPECT_EQ(reader.values("/modes/damped_frequency")[0], 0.0);
+  EXPECT_DOUBLE_EQ(reader.values("/modes/damped_frequency")[1], 0.8);
+  EXPECT_EQ(reader.values("/modes/damping_ratio")[0], 1.0);
+  EXPECT_DOUBLE_EQ(reader.values("/modes/damping_ratio")[1], 0.6);
+  EXPECT_EQ(reader.values("/modes/decay_rate")[0], 2.0);
+  EXPECT_EQ(reader.values("/modes/damped_axial"), (std::vector{0.0, 1.0}));
+  EXPECT_EQ(reader.shape("/modes/damped_shape"), (Shape1{2, 3, 2}));
+  EXPECT_EQ(reader.values("/modes/damped_shape")[7], 0.25);
+  EXPECT_EQ(reader.text("/modes/decay_rate", "unit"), "1/s");
+  EXPECT_EQ(reader.text("/modes/damped_frequency", "unit"), "Hz");
+}
+
 TEST_F(RecorderTest, KeepsEveryRowAtBlockBoundaries) {
   for (const long n : {1L, kBlock - 1, kBlock, kBlock + 1, 2 * kBlock}) {
     auto recorder = open(small_layout());

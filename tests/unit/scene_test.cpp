@@ -316,7 +316,7 @@ TEST(SceneTrack, Profiles) {
   EXPECT_PRED2(contains, refused_with("track_profile", "iso8608_F"), "iso8608_A to iso8608_E");
   EXPECT_PRED2(contains, refused_with("track_profile", "bumpy"), "allowed: none, bump");
   EXPECT_PRED2(contains, refused_with("track_profile", "no.csv"), "no such file");
-  EXPECT_PRED2(contains, refused_with("track_pad_k", "1e7"), "not modelled yet");
+  EXPECT_PRED2(contains, refused_with("track_pad_k", "1e7"), "needs track_rail_EI");
 }
 
 TEST(SceneModel, AxialOnlyWhereItMatters) {

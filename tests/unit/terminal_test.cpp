@@ -59,6 +59,26 @@ TEST(TerminalTest, ModesArePrintedInHertz) {
   EXPECT_TRUE(contains(text, "a = 0.5 1/s, b = 0.001 s")) << text;
 }
 
+TEST(TerminalTest, DampedModesStandBesideTheUndampedOnes) {
+  const double omega = 31.41592653589793;
+  const modes::DampedModes same = {.lambda = {0.0, {-0.6 * omega, 0.8 * omega}}, .axial = {0, 1}, .shape = {}};
+  const std::string text = printed([&] {
+    print_modes({.omega = {0.0, omega}, .axial = {0, 1}, .shape = {}}, omega, 60.0, 0.0, 0.0, same);
+  });
+  EXPECT_TRUE(contains(text, "damped (Hz)")) << text;
+  EXPECT_TRUE(contains(text, "31.4159   along x                 4               0.6           18.8496   along x"))
+      << text;
+  EXPECT_FALSE(contains(text, "need not be")) << text;
+
+  const modes::DampedModes overdamped = {.lambda = {0.0, -20.0, {-1.0, 40.0}}, .axial = {0, 0, 1}, .shape = {}};
+  const std::string more = printed([&] {
+    print_modes({.omega = {0.0, omega}, .axial = {0, 1}, .shape = {}}, omega, 60.0, 0.0, 0.0, overdamped);
+  });
+  EXPECT_TRUE(contains(more, " 1                20   overdamped")) << more;
+  EXPECT_TRUE(contains(more, "   3                                      ")) << more;
+  EXPECT_TRUE(contains(more, "a row need not be one mode")) << more;
+}
+
 TEST(TerminalTest, ShortRunsShowNoProgress) {
   const std::string text = printed([] {
     Progress progress(0.0, 1.0, false);

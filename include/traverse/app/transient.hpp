@@ -6,6 +6,7 @@
 
 #include "traverse/app/plan.hpp"
 #include "traverse/app/scene.hpp"
+#include "traverse/beam/ground_forces.hpp"
 #include "traverse/beam/recovery.hpp"
 #include "traverse/coupling/system.hpp"
 #include "traverse/integrate/stepper.hpp"
@@ -26,13 +27,16 @@ class Watch {
 
  private:
   void fill_vehicles(results::Sample& sample) const;
+  void fill_fields(const double* v, const double* w);
   void note_extremes(const results::Sample& sample, const double* v);
 
   const Scene& scene_;
   coupling::System& system_;
   const beam::Beam* beam_;
   results::Recorder& recorder_;
-  std::optional<beam::Recovery> recovery_;
+  std::optional<beam::Recovery> recovery_, rail_recovery_;
+  std::optional<beam::GroundForces> ground_;
+  std::vector<beam::Response> rail_;
   coupling::Observation observation_;
   results::Sample sample_;
   results::Summary summary_;

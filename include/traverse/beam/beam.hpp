@@ -66,6 +66,9 @@ class Beam {
 
   Mat mass() const { return mass_; }                      // M_aa, with that of a layered track
   Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
+  Mat springs() const { return springs_; }                // K* less all beams': foundation, track layers; or null
+  Mat dampers() const { return foundation_damping_; }     // of foundation and track layers; or null
+  Mat beam_mass() const { return beam_mass_; }            // of the bridge alone
   Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
   Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
   /// The foundation's own matrices, stiffness and damping of each kind of section 3, for who wants to look.
@@ -113,7 +116,7 @@ class Beam {
   int first_ = 0, local_ = 0;  // columns
   std::vector<char> fixed_;
   Rayleigh rayleigh_;
-  base::Handle<Mat> mass_, beam_mass_, beam_stiffness_, stiffness_, damping_;
+  base::Handle<Mat> mass_, beam_mass_, beam_stiffness_, springs_, stiffness_, damping_;
   base::Handle<Mat> foundation_damping_;  // of all kinds together, with the pattern of the mass; null without any
   std::vector<double> weight_;            // of one m/s2 downward, this rank
   FoundationMats foundation_;

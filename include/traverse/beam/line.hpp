@@ -17,7 +17,7 @@ enum Kind { rail_u, rail_v, rail_theta, sleeper, u, v, theta, theta_right, kinds
 struct Layout {
   explicit Layout(const BeamModel& model);
 
-  int block = 0;                  // unknowns a column
+  int block = 0;                   // unknowns a column
   std::array<int, kinds> place{};  // within a column; -1: not modelled
   std::array<Kind, kinds> kind{};  // of each place < block
 
@@ -33,7 +33,7 @@ struct Line {
   Mesh mesh;
   int first_column = 0;  // of its first node
   int block = 0;
-  int per_node = 2;             // unknowns of a node that an element sees: (v, theta), or (u, v, theta)
+  int per_node = 2;            // unknowns of a node that an element sees: (v, theta), or (u, v, theta)
   std::array<int, 4> place{};  // of u, v, theta, theta_right in a column; -1: not there
 
   /// Global unknowns v1, theta1, v2, theta2 of an element; u1, u2 (only where axial).

@@ -3,20 +3,22 @@
 #pragma once
 
 #include <list>
+#include <optional>
 #include <vector>
 
-#include "traverse/beam/beam.hpp"
+#include "traverse/beam/internal_forces.hpp"
 #include "traverse/solve/block_tridiagonal.hpp"
 
 namespace traverse::coupling {
 
 /// Springs and dampers at single stations on top of the beam's own matrices: a foundation linearised.
 struct AddedSprings {
-  /// An entry of this rank's blocks on (or above) the diagonal: shape*(k + s c) of a point.
+  /// shape*(k + s c) of a point in a row of this rank's.
   struct Term {
     std::size_t point = 0;
-    bool upper = false;
-    std::size_t place = 0;
+    int row = 0, column = 0;  // local; beyond this rank's unknowns the left neighbour's column, then the right one's
+    bool upper = false;       // of the block above the diagonal, or of that on it
+    int place = -1;           // in these blocks; -1: below them, known by symmetry
     double shape = 0.0;
   };
   long version = 0;  // another one with every change, the same on all ranks
@@ -28,8 +30,8 @@ class BeamOperator {
  public:
   explicit BeamOperator(const beam::Beam& beam);
 
-  int unknowns() const { return mass_.nodes * mass_.block; }  // on this rank
-  int block() const { return mass_.block; }                   // unknowns a column
+  int unknowns() const { return work_.nodes * work_.block; }  // on this rank
+  int block() const { return work_.block; }                   // unknowns a column
 
   /// Collective. The neighbours' columns at the borders of this rank's; left as they are where there is none.
   void borders(const double* x, double* left, double* right) const;
@@ -39,6 +41,14 @@ class BeamOperator {
 
   /// Collective. Forces the M-solve: x in: nodal forces, out: accelerations. Held unknowns must be zero.
   void solve_mass(double* x) const;
+
+  /// Collective. K* v = P, with springs added where there are some, x in: nodal forces, out: displacements; held
+  /// unknowns must be zero. Refined with residuals that are exact to long double where the first solution has lost
+  /// digits: on a chain of n elements without supports between them about 0.02 eps n^4 of it is rounding. SolverError
+  /// where nothing is left to trust.
+  void solve_static(double* x, const AddedSprings* added = nullptr);
+  /// The largest relative error that solve_static has left so far, estimated from its last corrections.
+  double static_error() const { return static_error_; }
 
   /// Factorisation of s^2 M + s C* + K*, with springs added where there are some; s = 0 is the static one. Kept for
   /// the last few shifts, which are compared relatively (time integrators compute the same shift with rounding noise).
@@ -55,14 +65,29 @@ class BeamOperator {
     long stamp;
     solve::SubstructuredCholesky cholesky;
   };
-  void product(const solve::BlockTridiagonal& A, double sign, const double* x, double* r) const;
+  /// A matrix of this rank's rows, with the block that couples them to the rank on the left.
+  struct Matrix {
+    solve::BlockTridiagonal rows;
+    std::vector<double> left;
+  };
+  Matrix with_neighbour(solve::BlockTridiagonal rows) const;
+  void fetch_halo(const double* x) const;
+  void product(const Matrix& A, double sign, const double* x, double* r) const;
 
   MPI_Comm comm_;
   int left_rank_, right_rank_;  // neighbours with nodes, or MPI_PROC_NULL
   std::vector<char> fixed_;
-  solve::BlockTridiagonal mass_, damping_, stiffness_, work_;
+  Matrix mass_;
+  std::optional<Matrix> springs_, drag_;  // C* = drag + b K_aa; null where there are none
+  solve::BlockTridiagonal damping_, stiffness_, work_;
+  beam::InternalForces internal_;
+  double stiffness_damping_;         // b of eq. 19, s
+  std::vector<double> damped_part_;  // b for the bridge's unknowns, 0 for others of a column
+  mutable std::vector<double> relative_;
+  std::vector<double> load_, residual_;  // of solve_static
+  double static_error_ = 0.0;
   bool damped_ = false;
-  mutable std::vector<double> halo_;  // left node's and right node's values of the neighbours
+  mutable std::vector<double> halo_;  // values of the columns on the left and on the right
   solve::SubstructuredCholesky mass_factor_;
   std::list<Factor> factors_;  // most recent first
   long stamp_ = 0;

@@ -95,6 +95,8 @@ class System {
   /// their weights at rest: the influence line of that station (0 when there is none, or the foundation not linear).
   double static_peak(double station);
 
+  /// Estimated relative error of static solutions so far, from rounding.
+  double static_error() const { return operator_ ? operator_->static_error() : 0.0; }
   long beam_solves() const { return operator_ ? operator_->solves : 0; }
 
  private:

@@ -34,7 +34,8 @@ struct Touch {
 };
 
 /// q, qd: x, y, phi of the wheel's body and their rates. v, w: the element's unknowns and their rates (2*block
-/// values, where block is the number of unknowns of a node; not read on rigid ground). Returns false where no contact point exists (the centre lies below the surface).
+/// values, where block is the number of unknowns of a node; not read on rigid ground). Returns false where no contact
+/// point exists (the centre lies below the surface).
 bool touch(const Patch& patch, const track::Profile& profile, double radius, const Eigen::Vector3d& q,
            const Eigen::Vector3d& qd, int block, const double* v, const double* w, Touch& out);
 

@@ -22,6 +22,20 @@ struct Layout {
   std::vector<double> supports;  // stations of the span ends, m
   std::vector<double> nodes;     // x of every node, m: the bridge's shape is stored at the worst instants
   std::vector<VehicleNames> vehicles;
+  /// A dataset that belongs to some scenes only: forces of the foundation, the response of a rail.
+  struct Field {
+    std::string name;       // its path in the file
+    std::size_t width = 0;  // numbers in a sample
+    std::string unit;
+  };
+  std::vector<Field> fields;
+  /// What does not change with time: stations that fields belong to.
+  struct Constant {
+    std::string name;
+    std::vector<double> values;
+    std::string unit;
+  };
+  std::vector<Constant> constants;
 };
 
 /// One stored instant.
@@ -41,6 +55,7 @@ struct Sample {
     std::vector<std::array<double, 3>> joints;  // reaction on the second body
   };
   std::vector<Vehicle> vehicles;
+  std::vector<std::vector<double>> fields;  // as in the layout
   struct Energy {
     double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0, residual = 0.0;
   } energy;
@@ -69,6 +84,7 @@ struct Summary {
   double longest_loss = 0.0;     // s
   double energy_residual = 0.0;  // largest |residual|, J
   double energy_scale = 0.0;     // largest term, J
+  double static_error = 0.0;     // relative, of static solutions, by rounding
   long steps = 0;
   long solves = 0;            // beam solves
   double wall_seconds = 0.0;  // of the time loop
@@ -86,6 +102,7 @@ class Recorder {
 
   void add(const Sample& sample);
   void modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2);
+  void damped_modes(const modes::DampedModes& modes);
   /// The shape at the instant of the largest deflection: /shape/x, /shape/deflection, attribute time.
   void shape(const Shape& shape);
   /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.

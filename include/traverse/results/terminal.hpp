@@ -30,6 +30,8 @@ class Progress {
 };
 
 void print_summary(const Summary& summary, const std::string& file);
-void print_modes(const modes::Modes& modes, double omega1, double omega2, double rayleigh_a, double rayleigh_b);
+/// With damping each row ends with a damped mode. Both sides ascend; where they are not the same modes, a line says so.
+void print_modes(const modes::Modes& modes, double omega1, double omega2, double rayleigh_a, double rayleigh_b,
+                 const modes::DampedModes& damped = {});
 
 }  // namespace traverse::results

@@ -1,0 +1,168 @@
+#include "fields.hpp"
+
+#include <algorithm>
+
+#include "traverse/app/transient.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr std::size_t most_points = 2000;  // of a kind whose forces are stored one by one
+
+using beam::GroundForces;
+using beam::PointFoundation;
+
+struct PointKind {
+  const char* name;
+  const char* quantity;
+  const char* unit;
+  std::vector<PointFoundation> beam::Foundation::*points;
+  const double* (GroundForces::*force)() const;
+  std::vector<double> coupling::NonlinearForces::*nonlinear;
+  bool axial;
+};
+constexpr PointKind point_kinds[] = {
+    {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical,
+     &coupling::NonlinearForces::vertical, false},
+    {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal,
+     &coupling::NonlinearForces::longitudinal, true},
+    {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational,
+     &coupling::NonlinearForces::rotational, false},
+};
+
+struct BedKind {
+  const char* name;
+  std::optional<beam::Bed> beam::Foundation::*bed;
+  const double* (GroundForces::*force)() const;
+  std::vector<double> coupling::NonlinearForces::*nonlinear;
+  bool axial;
+};
+constexpr BedKind bed_kinds[] = {
+    {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed,
+     &coupling::NonlinearForces::vertical_bed, false},
+    {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed,
+     &coupling::NonlinearForces::longitudinal_bed, true},
+};
+
+/// Calls use(kind, count) for what the beam has and what is stored.
+template <class Use>
+void for_points(const beam::Beam& beam, Use use) {
+  for (const PointKind& kind : point_kinds) {
+    const std::size_t count = (beam.model().foundation.*kind.points).size();
+    if (count > 0 && count <= most_points && (!kind.axial || beam.model().axial)) use(kind, count);
+  }
+}
+
+template <class Use>
+void for_beds(const beam::Beam& beam, Use use) {
+  const std::size_t spans = beam.model().spans.size();
+  for (const BedKind& kind : bed_kinds) {
+    if (beam.model().foundation.*kind.bed && spans <= most_points && (!kind.axial || beam.model().axial))
+      use(kind, spans);
+  }
+}
+
+struct RailQuantity {
+  const char* name;
+  const char* unit;
+  double beam::Response::*member;
+};
+constexpr RailQuantity rail_quantities[] = {
+    {"deflection", "m", &beam::Response::deflection},
+    {"velocity", "m/s", &beam::Response::velocity},
+    {"acceleration", "m/s2", &beam::Response::acceleration},
+    {"moment", "N m", &beam::Response::moment},
+    {"axial_displacement", "m", &beam::Response::axial_displacement},
+    {"axial_force", "N", &beam::Response::axial_force},
+};
+
+}  // namespace
+
+void describe_foundation(const beam::Beam& beam, results::Layout& layout) {
+  for_points(beam, [&](const PointKind& kind, std::size_t count) {
+    const std::string group = std::string("/foundation/") + kind.name + "/";
+    std::vector<double> x;
+    for (const PointFoundation& p : beam.model().foundation.*kind.points) x.push_back(p.x);
+    layout.constants.push_back({group + "x", x, "m"});
+    layout.fields.push_back({group + kind.quantity, count, kind.unit});
+  });
+  for_beds(beam, [&](const BedKind& kind, std::size_t spans) {
+    layout.fields.push_back({std::string("/foundation/") + kind.name + "/force", spans, "N"});
+  });
+}
+
+void fill_foundation(const beam::Beam& beam, const GroundForces& forces, const coupling::NonlinearForces& others,
+                     Fields& fields) {
+  // What is not linear is zero among the linear forces, and the other way round.
+  const auto add = [&](const double* linear, std::size_t count, const std::vector<double>& nonlinear) {
+    fields.emplace_back(linear, linear + count);
+    for (std::size_t i = 0; i < nonlinear.size(); ++i) fields.back()[i] += nonlinear[i];
+  };
+  for_points(beam, [&](const PointKind& kind, std::size_t count) {
+    add((forces.*kind.force)(), count, others.*kind.nonlinear);
+  });
+  for_beds(beam,
+           [&](const BedKind& kind, std::size_t spans) { add((forces.*kind.force)(), spans, others.*kind.nonlinear); });
+}
+
+void describe_balance(results::Layout& layout) {
+  for (const char* name : {"load", "support", "foundation", "inertia", "drag", "residual"})
+    layout.fields.push_back({std::string("/balance/") + name, 2, "N, N"});
+}
+
+void fill_balance(const GroundForces& forces, const coupling::Observation& observation,
+                  const std::vector<std::array<double, 3>>& supports, double weight, bool axial, Fields& fields) {
+  std::array<double, 2> load{0.0, -weight}, support{}, residual{};
+  for (const beam::ElementLoad& l : observation.loads) {
+    if (axial) load[0] += l.fx;
+    load[1] += l.fy;
+  }
+  for (const auto& r : supports) {
+    support[0] += r[0];
+    support[1] += r[1];
+  }
+  auto foundation = forces.foundation();
+  const coupling::NonlinearForces& others = observation.foundation;
+  for (const auto* list : {&others.longitudinal, &others.longitudinal_bed})
+    for (double force : *list) foundation[0] += force;
+  for (const auto* list : {&others.vertical, &others.vertical_bed})
+    for (double force : *list) foundation[1] += force;
+  const auto inertia = forces.inertia(), drag = forces.drag();
+  for (std::size_t i = 0; i < 2; ++i) residual[i] = load[i] + support[i] + foundation[i] + inertia[i] + drag[i];
+  for (const auto& term : {load, support, foundation, inertia, drag, residual})
+    fields.emplace_back(term.begin(), term.end());
+}
+
+void describe_rail(const std::vector<double>& stations, results::Layout& layout) {
+  for (const RailQuantity& q : rail_quantities)
+    layout.fields.push_back({std::string("/rail/") + q.name, stations.size(), q.unit});
+}
+
+void fill_rail(const std::vector<beam::Response>& rail, Fields& fields) {
+  for (const RailQuantity& q : rail_quantities) {
+    fields.emplace_back();
+    for (const beam::Response& r : rail) fields.back().push_back(r.*q.member);
+  }
+}
+
+results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam) {
+  results::Layout layout;
+  if (beam != nullptr) {
+    layout.probes = scene.output.probes;
+    layout.supports = beam->mesh().span_ends();
+    for (int i = 0; i < beam->mesh().nodes(); ++i) layout.nodes.push_back(beam->mesh().x(i));
+    describe_foundation(*beam, layout);
+    describe_balance(layout);
+    if (beam->rail() != nullptr) describe_rail(scene.output.probes, layout);
+  }
+  for (const coupling::MovingVehicle& vehicle : system.fleet().vehicles) {
+    results::Layout::VehicleNames names;
+    for (const multibody::Body& b : vehicle.mechanism.model().bodies) names.bodies.push_back(b.name);
+    for (const coupling::Wheel& w : vehicle.wheels) names.wheels.push_back(w.name);
+    for (const multibody::Joint& j : vehicle.mechanism.model().joints) names.joints.push_back(j.name);
+    layout.vehicles.push_back(std::move(names));
+  }
+  return layout;
+}
+
+}  // namespace traverse::app

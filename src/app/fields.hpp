@@ -1,0 +1,29 @@
+// Datasets that belong to some scenes only: forces of the foundation, the balance of forces, the rail.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "traverse/beam/ground_forces.hpp"
+#include "traverse/coupling/system.hpp"
+#include "traverse/results/recorder.hpp"
+
+namespace traverse::app {
+
+/// Each `fill` adds its fields to a sample in the order in which its `describe` adds them to the layout.
+using Fields = std::vector<std::vector<double>>;
+
+void describe_foundation(const beam::Beam& beam, results::Layout& layout);
+void fill_foundation(const beam::Beam& beam, const beam::GroundForces& forces, const coupling::NonlinearForces& others,
+                     Fields& fields);
+
+/// Resultants {x, y} of everything that acts on the structure, and what is left of their sum; those along x are zero
+/// where the structure has no axial unknowns.
+void describe_balance(results::Layout& layout);
+void fill_balance(const beam::GroundForces& forces, const coupling::Observation& observation,
+                  const std::vector<std::array<double, 3>>& supports, double weight, bool axial, Fields& fields);
+
+void describe_rail(const std::vector<double>& stations, results::Layout& layout);
+void fill_rail(const std::vector<beam::Response>& rail, Fields& fields);
+
+}  // namespace traverse::app

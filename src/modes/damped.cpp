@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "eigen.hpp"
+#include "nodal_shape.hpp"
+#include "quadratic.hpp"
+#include "traverse/modes/modes.hpp"
+
+namespace traverse::modes {
+namespace {
+
+using Complex = std::complex<double>;
+
+struct Mode {
+  Complex lambda;
+  const Segment* segment = nullptr;
+  int offset = 0;
+  std::vector<Complex> shape;  // of the segment's unknowns
+};
+
+/// a and b of the segment's C = a M + b K, where it is that: without dampers, or with a bed like its mass.
+std::optional<beam::Rayleigh> proportional(const Segment& s, const beam::Rayleigh& ab) {
+  const double more = s.D.at(0, 0) / s.M.at(0, 0);
+  for (int i = 0; i < s.size(); ++i) {
+    if ((s.D.at(i, i) != 0.0) != (more != 0.0)) return std::nullopt;
+    for (int j = std::max(0, i - s.D.width()); j <= i; ++j) {
+      const double D = s.D.at(i, j), from_mass = more * s.M.at(i, j);
+      // D has the rounding of the element matrices, and that of C.
+      const double rounding = 1e-13 * (std::abs(D) + std::abs(from_mass)) +
+                              16.0 * std::numeric_limits<double>::epsilon() * std::abs(ab.b * s.K.at(i, j));
+      if (std::abs(D - from_mass) > rounding) return std::nullopt;
+    }
+  }
+  return beam::Rayleigh{ab.a + more, ab.b};
+}
+
+/// Roots of lambda^2 + (a + b omega^2) lambda + omega^2 = 0: the one with Im > 0 of a pair, or both real ones. A rigid
+/// motion has 0 and, where it is damped, -a.
+std::vector<Complex> roots(double omega, const beam::Rayleigh& ab) {
+  const double half = 0.5 * (ab.a + ab.b * omega * omega);
+  if (omega == 0.0) {
+    if (ab.a == 0.0) return {0.0};
+    return {0.0, -ab.a};
+  }
+  if (std::abs(half) < omega) return {Complex(-half, std::sqrt((omega - half) * (omega + half)))};
+  const double far = half + std::copysign(std::sqrt((half - omega) * (half + omega)), half);
+  return {-omega * (omega / far), -far};
+}
+
+/// The modes of one segment.
+std::vector<DampedPair> modes_of(const Segment& s, const beam::Rayleigh& ab, int count) {
+  const auto own = proportional(s, ab);
+  if (!own) return lowest_damped(s, ab, count);
+  std::vector<DampedPair> modes;
+  for (const Eigenpair& natural : lowest_modes(s, count)) {
+    for (const Complex lambda : roots(natural.omega, *own)) {
+      modes.push_back({lambda, {natural.shape.begin(), natural.shape.end()}});
+    }
+  }
+  return modes;
+}
+
+std::vector<Mode> lowest(const std::vector<Segment>& segments, const beam::Rayleigh& ab, int count) {
+  std::vector<Mode> modes;
+  for (const Segment& s : segments) {
+    const int equal = static_cast<int>(s.offsets.size());
+    for (const DampedPair& pair : modes_of(s, ab, (count + equal - 1) / equal)) {
+      for (int offset : s.offsets) modes.push_back({pair.lambda, &s, offset, pair.shape});
+    }
+  }
+  std::stable_sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) {
+    return std::tuple(std::abs(a.lambda), a.segment->nodes[0] + a.offset) <
+           std::tuple(std::abs(b.lambda), b.segment->nodes[0] + b.offset);
+  });
+  modes.resize(std::min(modes.size(), static_cast<std::size_t>(count)));
+  return modes;
+}
+
+}  // namespace
+
+DampedModes damped_modes(const beam::Beam& beam, int count, bool shapes) {
+  auto segments = transverse_segments(beam, Damping::included);
+  for (Segment& s : axial_segments(beam, Damping::included)) segments.push_back(std::move(s));
+  DampedModes result;
+  for (const Mode& mode : lowest(segments, beam.rayleigh(), std::max(count, 0))) {
+    result.lambda.push_back(mode.lambda);
+    result.axial.push_back(mode.segment->axial ? 1 : 0);
+    if (shapes) result.shape.push_back(nodal_shape(*mode.segment, mode.offset, mode.shape, beam.mesh().nodes()));
+  }
+  return result;
+}
+
+bool damped(const beam::Beam& beam) {
+  PetscReal norm = 0.0;
+  base::check(MatNorm(beam.damping(), NORM_INFINITY, &norm));
+  return norm > 0.0;
+}
+
+}  // namespace traverse::modes

@@ -1,0 +1,15 @@
+// PETSc vectors of one rank for the eigensolvers.
+#pragma once
+
+#include <vector>
+
+#include "traverse/base/petsc.hpp"
+
+namespace traverse::modes {
+
+base::Handle<Vec> vector(const std::vector<double>& values);
+
+/// A start that hardly any mode is orthogonal to, always the same. (-1, 1), by a linear congruential generator.
+std::vector<double> start_vector(int size, unsigned seed);
+
+}  // namespace traverse::modes
