@@ -206,7 +206,7 @@ void VehicleReader::wheel(const std::string& name) {
 void VehicleReader::actuator_table(multibody::Actuator& a) const {
   const auto columns = options::read_columns(o_.path(key("table")), 2, 4);
   const std::size_t first = columns.size() == 2 ? 2 : 0;  // t,moment or t,fx,fy[,moment]
-  for (std::size_t i = 1; i < columns.size(); ++i) a.action[first + i - 1] = {columns[0], columns[i]};
+  for (std::size_t i = 1; i < columns.size(); ++i) a.action[first + i - 1] = base::TimeFunction::piecewise_linear(columns[0], columns[i]);
 }
 
 void VehicleReader::actuator(const std::string& name) {

@@ -60,8 +60,19 @@ TimeFunction::TimeFunction(std::vector<double> times, std::vector<double> values
   curvatures_ = natural_curvatures(times_, values_);
 }
 
+TimeFunction TimeFunction::piecewise_linear(std::vector<double> times, std::vector<double> values) {
+  TimeFunction f(std::move(times), std::move(values));
+  f.curvatures_.clear();
+  return f;
+}
+
 double TimeFunction::value(double t) const {
   if (times_.empty()) return value_ + rate_ * t;
+  if (curvatures_.empty()) {
+    t = std::clamp(t, times_.front(), times_.back());
+    const std::size_t k = interval(times_, t);
+    return values_[k] + (values_[k + 1] - values_[k]) * ((t - times_[k]) / (times_[k + 1] - times_[k]));
+  }
   if (t < times_.front()) return values_.front() + rate(times_.front()) * (t - times_.front());
   if (t > times_.back()) return values_.back() + rate(times_.back()) * (t - times_.back());
   const std::size_t k = interval(times_, t);
@@ -74,17 +85,20 @@ double TimeFunction::value(double t) const {
 
 double TimeFunction::rate(double t) const {
   if (times_.empty()) return rate_;
+  if (curvatures_.empty() && (t < times_.front() || t >= times_.back())) return 0.0;
   t = std::clamp(t, times_.front(), times_.back());
   const std::size_t k = interval(times_, t);
   const double h = times_[k + 1] - times_[k];
   const double a = (times_[k + 1] - t) / h;
   const double b = (t - times_[k]) / h;
-  return (values_[k + 1] - values_[k]) / h +
+  const double chord = (values_[k + 1] - values_[k]) / h;
+  if (curvatures_.empty()) return chord;
+  return chord +
          ((1.0 - 3.0 * a * a) * curvatures_[k] + (3.0 * b * b - 1.0) * curvatures_[k + 1]) * h / 6.0;
 }
 
 double TimeFunction::acceleration(double t) const {
-  if (times_.empty() || t <= times_.front() || t >= times_.back()) return 0.0;
+  if (curvatures_.empty() || t <= times_.front() || t >= times_.back()) return 0.0;
   const std::size_t k = interval(times_, t);
   const double b = (t - times_[k]) / (times_[k + 1] - times_[k]);
   return (1.0 - b) * curvatures_[k] + b * curvatures_[k + 1];

@@ -38,6 +38,8 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
                  &input_.profile, surface_height());
   fleet_.partition(0.0);
   note_foundation();
+  on_beam_.assign(input_.load.forces.size(), 0);
+  begin_step(0.0, 0.0);
 }
 
 void System::note_foundation() {
@@ -68,11 +70,22 @@ void System::moving_loads(double t) {
   loads_.clear();
   if (beam_ == nullptr) return;
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
-    const double x = input_.load.positions[i] + input_.load.speed * t;
-    if (x < line_->mesh.start() || x > line_->mesh.end()) continue;
-    const beam::Station s = line_->mesh.locate(x);
+    if (on_beam_[i] == 0) continue;
+    const beam::Station s = line_->mesh.locate(input_.load.positions[i] + input_.load.speed * t);
     loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0});
   }
+}
+
+bool System::begin_step(double from, double to) {
+  if (line_ == nullptr) return false;
+  bool changed = false;
+  for (std::size_t i = 0; i < on_beam_.size(); ++i) {
+    const double x = input_.load.positions[i] + input_.load.speed * 0.5 * (from + to);
+    const char on = x >= line_->mesh.start() && x <= line_->mesh.end() ? 1 : 0;
+    changed = changed || on != on_beam_[i];
+    on_beam_[i] = on;
+  }
+  return changed;
 }
 
 void System::add_point_load(const beam::Line& line, const beam::ElementLoad& load, double* nodal) const {

@@ -9,6 +9,7 @@
 namespace traverse::coupling {
 namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double free_to_turn = 1e-9;   // m: arm of a joint about the wheel's centre
 constexpr int static_positions = 2000;  // of the train along its way, for the static peak
 }  // namespace
 
@@ -24,10 +25,23 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
   for (MovingVehicle& vehicle : fleet_.vehicles)
     for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
       vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
+  let_wheels_roll();
   std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   note_weights();
   return notes;
+}
+
+// A wheel with friction that can turn freely begins without sliding, unless its turning speed is given.
+void System::let_wheels_roll() {
+  for (const WheelContact& c : fleet_.wheels) {
+    MovingVehicle& vehicle = fleet_.vehicles[c.vehicle];
+    const int turn = 3 * fleet_.body(c) + 2;
+    const Eigen::MatrixXd& Phi_q = vehicle.state.Phi_q;
+    const bool held = Phi_q.rows() > 0 && Phi_q.col(turn).lpNorm<Eigen::Infinity>() > free_to_turn;
+    if (held || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
+    vehicle.state.qd[turn] = -fleet_.velocities(c).x() / (fleet_.wheel(c).radius - c.kinematics.penetration);
+  }
 }
 
 // The stage problem at shift 0 with every drive standing still: K v = P + contacts, vehicles at rest.
@@ -104,6 +118,11 @@ std::vector<double> System::known_events(double end) const {
   if (input_.train.drive == Drive::constant)
     for (const WheelContact& c : fleet_.wheels) add(fleet_.coordinates(c).x(), input_.train.speed);
   for (double x : input_.load.positions) add(x, input_.load.speed);
+  for (const MovingVehicle& vehicle : fleet_.vehicles)
+    for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)
+      for (const base::TimeFunction& f : actuator.action)
+        for (double t : f.kinks())
+          if (t > 0.0 && t < end) events.push_back(t);
   std::sort(events.begin(), events.end());
   return events;
 }
@@ -128,6 +147,9 @@ std::vector<double> System::influence_line(double station) {
   add_point_load(beam_->bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
   release_held(nodal_.data());
   operator_->solve_static(nodal_.data());
+  influence_of_weight_ = 0.0;
+  for (int i = 0; i < n_; ++i) influence_of_weight_ -= nodal_[i] * dead_load_[i];
+  MPI_Allreduce(MPI_IN_PLACE, &influence_of_weight_, 1, MPI_DOUBLE, MPI_SUM, comm_);
   std::vector<double> line(4 * static_cast<std::size_t>(line_->mesh.elements()), 0.0);
   for (int e = 0; e < line_->mesh.elements(); ++e) {
     const auto unknowns = line_->transverse(e);
@@ -162,7 +184,7 @@ double System::static_peak(double station) {
   // Every weight over the station in turn (where the line peaks), and evenly along the whole way.
   double peak = 0.0;
   auto try_shift = [&](double shift) {
-    double sum = 0.0;
+    double sum = influence_of_weight_;
     for (const auto& [x, force] : weights_) sum += force * ordinate(x + shift);
     peak = std::max(peak, std::abs(sum));
   };

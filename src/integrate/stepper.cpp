@@ -197,6 +197,12 @@ void Stepper::take_step(double left) {
   const double count = std::max(1.0, std::ceil(left / wanted * (1.0 - 1e-9)));
   const double h = left / count;
   if (multistep_ && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
+  PetscReal from = 0.0;
+  check(TSGetTime(ts_, &from));
+  if (system_.begin_step(from, from + h)) {  // a jump: what is known of the rate belongs to its other side
+    known_ = false;
+    check(TSRestartStep(ts_));
+  }
   check(TSSetTimeStep(ts_, h));
   check(TSStep(ts_));
   TSConvergedReason reason = TS_CONVERGED_ITERATING;

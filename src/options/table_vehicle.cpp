@@ -77,7 +77,7 @@ constexpr Row actuator[] = {
   {"bodies", texts, "", "", any, "", 2, "body and reaction body in one"},
   {"force", numbers, "N", "0, 0", any, "", 2, "fx, fy at the centre of mass"},
   {"moment", number, "Nm", "0", any, "", 0, "counter-clockwise"},
-  {"table", file, "", "", any, "", 0, "a file instead: t,moment or t,fx,fy or t,fx,fy,moment"},
+  {"table", file, "", "", any, "", 0, "a file instead: t,moment or t,fx,fy or t,fx,fy,moment; straight lines between its rows"},
 };
 
 constexpr Row driver[] = {
@@ -85,7 +85,7 @@ constexpr Row driver[] = {
   {"coordinate", choice, "", "", any, "x y phi", 0, "which one; x counts from the vehicle's origin"},
   {"value", number, "m or rad", "(as at t = 0)", any, "", 0, "at t = 0"},
   {"rate", number, "m/s or rad/s", "0", any, "", 0, "constant rate"},
-  {"table", file, "", "", any, "", 0, "a file t,value instead of value and rate"},
+  {"table", file, "", "", any, "", 0, "a file t,value instead of value and rate; a smooth curve (natural cubic spline) through its rows"},
 };
 
 constexpr Row contact[] = {

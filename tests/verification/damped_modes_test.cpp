@@ -341,7 +341,7 @@ TEST(DampedModes, ShapeOfACantileverWithATipDamper) {
 
 BeamModel isolated_spans(int elements, std::vector<double> dampers) {
   BeamModel model = model_of(Support::pinned, Support::pinned, elements);
-  model.isolated = true;
+  model.joints = {beam::Joint::separate};
   model.spans.assign(dampers.size(), L);
   model.elements.assign(dampers.size(), elements);
   model.supports.assign(dampers.size() + 1, Support::pinned);

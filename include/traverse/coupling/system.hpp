@@ -84,15 +84,21 @@ class System {
   /// Collective. Fills `out` for a state with its rate, and the fleet with accelerations, reactions, wheel forces.
   void observe(double t, const double* y, const double* ydot, Observation& out);
 
+  /// Settles which moving forces are on the beam during the coming step, which ends at known events: by its middle, so
+  /// that a force that jumps at an event has its value of either side there. True when that has changed.
+  bool begin_step(double from, double to);
+
   /// Collective. Chooses new independent coordinates where the old ones have become poor. True when y was rewritten.
   bool repartition(double t, double* y);
 
-  /// Times in (0, end) at which a wheel or force passes a kink of the running surface; for a prescribed speed only.
+  /// Times in (0, end) at which a wheel or force passes a kink of the running surface (for a prescribed speed only), or
+  /// an actuator's table has a kink.
   std::vector<double> known_events(double end) const;
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
   double leaving_time() const;
   /// Collective. Largest magnitude of the static deflection at a station while the train and the forces pass with
-  /// their weights at rest: the influence line of that station (0 when there is none, or the foundation not linear).
+  /// their weights at rest, the beam's own weight included where it acts: the influence line of that station (0 when
+  /// there is none, or the foundation is not linear).
   double static_peak(double station);
 
   /// Estimated relative error of static solutions so far, from rounding.
@@ -102,6 +108,7 @@ class System {
  private:
   void find_equilibrium(double* v);
   void settle(bool loaded, Part part);
+  void let_wheels_roll();
   double surface_height() const;
   void note_weights();
   std::vector<double> influence_line(double station);
@@ -135,7 +142,9 @@ class System {
 
   std::vector<double> dead_load_;                   // of self-weight, this rank
   std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
+  std::vector<char> on_beam_;                       // of each moving force, during the step under way
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
+  double influence_of_weight_ = 0.0;                // deflection of the influence line's station under self-weight, m
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
   std::vector<double> v_, w_;                       // of the elements in touch, 2*per_node each
   std::vector<double> element_work_;
