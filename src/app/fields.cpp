@@ -1,6 +1,7 @@
 #include "fields.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "traverse/app/transient.hpp"
 
@@ -18,30 +19,25 @@ struct PointKind {
   const char* unit;
   std::vector<PointFoundation> beam::Foundation::*points;
   const double* (GroundForces::*force)() const;
-  std::vector<double> coupling::NonlinearForces::*nonlinear;
+  std::vector<double> coupling::NonlinearForces::*other;
   bool axial;
 };
 constexpr PointKind point_kinds[] = {
-    {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical,
-     &coupling::NonlinearForces::vertical, false},
-    {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal,
-     &coupling::NonlinearForces::longitudinal, true},
-    {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational,
-     &coupling::NonlinearForces::rotational, false},
+    {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical, &coupling::NonlinearForces::vertical, false},
+    {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal, &coupling::NonlinearForces::longitudinal, true},
+    {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational, &coupling::NonlinearForces::rotational, false},
 };
 
 struct BedKind {
   const char* name;
   std::optional<beam::Bed> beam::Foundation::*bed;
   const double* (GroundForces::*force)() const;
-  std::vector<double> coupling::NonlinearForces::*nonlinear;
+  std::vector<double> coupling::NonlinearForces::*other;
   bool axial;
 };
 constexpr BedKind bed_kinds[] = {
-    {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed,
-     &coupling::NonlinearForces::vertical_bed, false},
-    {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed,
-     &coupling::NonlinearForces::longitudinal_bed, true},
+    {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed, &coupling::NonlinearForces::vertical_bed, false},
+    {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed, &coupling::NonlinearForces::longitudinal_bed, true},
 };
 
 /// Calls use(kind, count) for what the beam has and what is stored.
@@ -91,18 +87,16 @@ void describe_foundation(const beam::Beam& beam, results::Layout& layout) {
   });
 }
 
-void fill_foundation(const beam::Beam& beam, const GroundForces& forces, const coupling::NonlinearForces& others,
+void fill_foundation(const beam::Beam& beam, const GroundForces& linear, const coupling::NonlinearForces& other,
                      Fields& fields) {
-  // What is not linear is zero among the linear forces, and the other way round.
-  const auto add = [&](const double* linear, std::size_t count, const std::vector<double>& nonlinear) {
-    fields.emplace_back(linear, linear + count);
-    for (std::size_t i = 0; i < nonlinear.size(); ++i) fields.back()[i] += nonlinear[i];
+  const auto fill = [&](const auto& kind, std::size_t count) {
+    const double* first = (linear.*kind.force)();
+    fields.emplace_back(first, first + count);
+    const std::vector<double>& more = other.*kind.other;
+    for (std::size_t i = 0; i < more.size(); ++i) fields.back()[i] += more[i];
   };
-  for_points(beam, [&](const PointKind& kind, std::size_t count) {
-    add((forces.*kind.force)(), count, others.*kind.nonlinear);
-  });
-  for_beds(beam,
-           [&](const BedKind& kind, std::size_t spans) { add((forces.*kind.force)(), spans, others.*kind.nonlinear); });
+  for_points(beam, fill);
+  for_beds(beam, fill);
 }
 
 void describe_balance(results::Layout& layout) {
@@ -122,11 +116,12 @@ void fill_balance(const GroundForces& forces, const coupling::Observation& obser
     support[1] += r[1];
   }
   auto foundation = forces.foundation();
-  const coupling::NonlinearForces& others = observation.foundation;
-  for (const auto* list : {&others.longitudinal, &others.longitudinal_bed})
-    for (double force : *list) foundation[0] += force;
-  for (const auto* list : {&others.vertical, &others.vertical_bed})
-    for (double force : *list) foundation[1] += force;
+  const auto add = [](const std::vector<double>& more, double& sum) {
+    sum = std::accumulate(more.begin(), more.end(), sum);
+  };
+  const coupling::NonlinearForces& other = observation.foundation;
+  for (const auto* along : {&other.longitudinal, &other.longitudinal_bed}) add(*along, foundation[0]);
+  for (const auto* up : {&other.vertical, &other.vertical_bed}) add(*up, foundation[1]);
   const auto inertia = forces.inertia(), drag = forces.drag();
   for (std::size_t i = 0; i < 2; ++i) residual[i] = load[i] + support[i] + foundation[i] + inertia[i] + drag[i];
   for (const auto& term : {load, support, foundation, inertia, drag, residual})

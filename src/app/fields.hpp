@@ -14,7 +14,7 @@ namespace traverse::app {
 using Fields = std::vector<std::vector<double>>;
 
 void describe_foundation(const beam::Beam& beam, results::Layout& layout);
-void fill_foundation(const beam::Beam& beam, const beam::GroundForces& forces, const coupling::NonlinearForces& others,
+void fill_foundation(const beam::Beam& beam, const beam::GroundForces& linear, const coupling::NonlinearForces& other,
                      Fields& fields);
 
 /// Resultants {x, y} of everything that acts on the structure, and what is left of their sum; those along x are zero

@@ -155,10 +155,9 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
   for (const std::string& line : system.start(still || scene.start == Start::equilibrium, y)) notes.push_back(line);
   stepper.restore_state(&y);
   if (system.static_error() > 1e-9)
-    notes.push_back(
-        fmt::format("static deflections: relative error about {:.1g}, by rounding in the many elements "
-                    "between supports",
-                    system.static_error()));
+    notes.push_back(fmt::format("static deflections: relative error about {:.1g}, by rounding in the many elements "
+                                "between supports",
+                                system.static_error()));
   print_notes(comm, notes);
 
   results::Recorder recorder(comm, scene.output.file, layout_of(scene, system, beam), attributes(comm, scene),

@@ -62,10 +62,14 @@ void GroundForces::add_points(const Line& line) {
   const Foundation& f = line.model.foundation;
   const auto add_kind = [&](const std::vector<PointFoundation>& points, std::size_t sum, auto unknowns, auto shape) {
     for (const PointFoundation& p : points) {
+      if (p.law.nonlinear()) {
+        ++sum;
+        continue;
+      }
       const Station at = station_of(line.mesh, p);
       const auto s = shape(at.xi, line.mesh.element(at.element).length);
       const auto places = unknowns(at.element);
-      for (std::size_t i = 0; i < s.size() && !p.law.nonlinear(); ++i) add(sum, places[i], p.c * s[i], p.k * s[i]);
+      for (std::size_t i = 0; i < s.size(); ++i) add(sum, places[i], p.c * s[i], p.k * s[i]);
       ++sum;
     }
   };
@@ -81,12 +85,11 @@ void GroundForces::add_beds(const Line& line) {
   for (int e = 0; e < line.mesh.elements(); ++e) {
     const Element& element = line.mesh.element(e);
     const auto add_bed = [&](const Bed& bed, std::size_t sum, auto load, const auto& places) {
-      if (bed.law.nonlinear()) return;
       const auto c = load(bed.c, element), k = load(bed.k, element);
       for (std::size_t i = 0; i < c.size(); ++i) add(sum + index(element.span), places[i], c[i], k[i]);
     };
-    if (f.vertical_bed) add_bed(*f.vertical_bed, vertical_bed_, transverse_load, line.transverse(e));
-    if (f.longitudinal_bed) add_bed(*f.longitudinal_bed, longitudinal_bed_, axial_load, line.axial(e));
+    if (f.vertical_bed && !f.vertical_bed->law.nonlinear()) add_bed(*f.vertical_bed, vertical_bed_, transverse_load, line.transverse(e));
+    if (f.longitudinal_bed && !f.longitudinal_bed->law.nonlinear()) add_bed(*f.longitudinal_bed, longitudinal_bed_, axial_load, line.axial(e));
   }
 }
 

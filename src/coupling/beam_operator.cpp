@@ -102,10 +102,8 @@ void BeamOperator::borders(const double* x, double* left, double* right) const {
   MPI_Sendrecv(last, b, MPI_DOUBLE, right_rank_, 2, left, b, MPI_DOUBLE, left_rank_, 2, comm_, MPI_STATUS_IGNORE);
 }
 
-void BeamOperator::fetch_halo(const double* x) const { borders(x, halo_.data(), halo_.data() + work_.block); }
-
 void BeamOperator::product(const Matrix& A, double sign, const double* x, double* r) const {
-  fetch_halo(x);
+  borders(x, halo_.data(), halo_.data() + work_.block);
   const int b = work_.block;
   const double* left = left_rank_ != MPI_PROC_NULL ? halo_.data() : nullptr;
   const double* right = right_rank_ != MPI_PROC_NULL ? halo_.data() + b : nullptr;
@@ -135,7 +133,7 @@ void BeamOperator::multiply(double sign, const double* m, const double* c, const
       }
     x = relative_.data();
   }
-  fetch_halo(x);
+  borders(x, halo_.data(), halo_.data() + work_.block);
   internal_.add(sign, x, halo_.data(), halo_.data() + work_.block, r);
   for (int i = 0; i < unknowns(); ++i)
     if (fixed_[i] != 0) r[i] = 0.0;
@@ -146,8 +144,8 @@ void BeamOperator::solve_mass(double* x) const {
   mass_factor_.solve(x);
 }
 
-void BeamOperator::solve_static(double* x, const AddedSprings* added) {
-  const solve::SubstructuredCholesky& factor = factored(0.0, added);
+void BeamOperator::solve_static(double* x) {
+  const solve::SubstructuredCholesky& factor = factored(0.0);
   load_.assign(x, x + unknowns());
   residual_.resize(unknowns());
   factor.solve(x);
@@ -156,13 +154,8 @@ void BeamOperator::solve_static(double* x, const AddedSprings* added) {
   for (int i = 0; i < most_refinements; ++i) {
     residual_ = load_;
     if (springs_) product(*springs_, -1.0, x, residual_.data());
-    fetch_halo(x);
+    borders(x, halo_.data(), halo_.data() + work_.block);
     internal_.add<long double>(-1.0, x, halo_.data(), halo_.data() + work_.block, residual_.data());
-    if (added != nullptr) {
-      for (const AddedSprings::Term& t : *added->terms)
-        residual_[t.row] -=
-            t.shape * added->k[t.point] * (t.column < unknowns() ? x[t.column] : halo_[t.column - unknowns()]);
-    }
     for (int j = 0; j < unknowns(); ++j)
       if (fixed_[j] != 0) residual_[j] = 0.0;
     factor.solve(residual_.data());
@@ -209,9 +202,7 @@ const solve::SubstructuredCholesky& BeamOperator::factored(double shift, const A
     work_.combine(shift * shift, mass_.rows, shift, damping_, 1.0, stiffness_);
     if (added != nullptr) {
       for (const AddedSprings::Term& t : *added->terms)
-        if (t.place >= 0)
-          (t.upper ? work_.upper : work_.diagonal)[t.place] +=
-              t.shape * (added->k[t.point] + shift * added->c[t.point]);
+        (t.upper ? work_.upper : work_.diagonal)[t.place] += t.shape * (added->k[t.point] + shift * added->c[t.point]);
     }
     try {
       f.cholesky.factor(work_, fixed_);

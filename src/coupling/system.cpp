@@ -37,9 +37,9 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
   fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
                  &input_.profile, surface_height());
   fleet_.partition(0.0);
-  note_foundation();
   on_beam_.assign(input_.load.forces.size(), 0);
   begin_step(0.0, 0.0);
+  note_foundation();
 }
 
 void System::note_foundation() {
@@ -304,11 +304,13 @@ System::Solution System::solve_coupled(double t, double shift, const double* c_v
       nonlinear_->add_linearised(nodal_.data());
       release_held(nodal_.data());
     }
-    if (shift > 0.0 && beam_ != nullptr) {
-      operator_->factored(shift, added).solve(nodal_.data());
-      ++operator_->solves;
-    } else if (loaded || nonlinear_) {
-      operator_->solve_static(nodal_.data(), added);
+    if (beam_ != nullptr && (loaded || nonlinear_)) {
+      if (shift == 0.0 && added == nullptr) {
+        operator_->solve_static(nodal_.data());
+      } else {
+        operator_->factored(shift, added).solve(nodal_.data());
+        ++operator_->solves;
+      }
     }
     if (part == Part::all) {
       for (int i = 0; i < n_; ++i) work_[i] = v_still_[i] + nodal_[i];

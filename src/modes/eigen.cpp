@@ -185,7 +185,8 @@ class Hunt {
     Bracket b;
     if (s_.rigid.empty()) b = bracket_lowest(s_.K, s_.M);
     if (b.low > 0.0) {
-      b = narrow(b, std::min(count, at_once), resolution, [this](double sigma) { return unknown(sigma); });
+      // Two at least: a free beam on a bed has one frequency twice, and no bracket is narrow enough to part them.
+      b = narrow(b, std::clamp(count, 2, at_once), resolution, [this](double sigma) { return unknown(sigma); });
       floor_ = b.low;
       solver_.find(shift_below(b), std::clamp(unknown(b.high), 1, at_once));
     } else {

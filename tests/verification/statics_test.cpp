@@ -1,17 +1,17 @@
 // Static deflections, moments and reactions against textbook formulas. Cubic elements with consistent loads are exact
 // at the nodes of a uniform beam, and the recovery is exact everywhere: 1e-8 stands for rounding.
-#include "support/statics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "support/static_case.hpp"
+
 namespace traverse {
 namespace {
 
-using beam::Beam;
 using beam::BeamModel;
 using beam::Support;
+using test::Case;
 
 constexpr double EI = 2.5e9, EA = 1.0e10, tolerance = 1e-8;
 
@@ -25,43 +25,6 @@ BeamModel model_of(std::vector<double> spans, std::vector<Support> supports, int
   m.mass = 1000.0;
   return m;
 }
-
-/// A beam under loads at rest.
-struct Case {
-  explicit Case(const BeamModel& model) : beam(PETSC_COMM_WORLD, model), P(beam.local_unknowns(), 0.0) {
-    beam.set_rayleigh({0.3, 0.01});  // of no effect at rest
-  }
-  Case& load(double x, double fy, double moment = 0.0, double fx = 0.0) {
-    loads.push_back(test::add_load(beam, x, fy, moment, fx, P.data()));
-    return *this;
-  }
-  Case& weight(double g) {
-    gravity = g;
-    beam.add_self_weight(g, P.data());
-    return *this;
-  }
-  Case& solve() {
-    v = test::static_solution(beam, P);
-    return *this;
-  }
-  beam::Response at(double x) {
-    const std::vector<double> zero(v.size(), 0.0);
-    std::vector<beam::Response> out;
-    beam::Recovery(beam, {x}, gravity).evaluate(v.data(), zero.data(), zero.data(), loads, out);
-    return out[0];
-  }
-  std::vector<std::array<double, 3>> reactions() {
-    const std::vector<double> zero(v.size(), 0.0);
-    std::vector<std::array<double, 3>> out;
-    beam.reactions(v.data(), zero.data(), zero.data(), P.data(), out);
-    return out;
-  }
-
-  Beam beam;
-  std::vector<double> P, v;
-  std::vector<beam::ElementLoad> loads;
-  double gravity = 0.0;
-};
 
 void expect_close(double value, double exact, double scale, const std::string& what) {
   EXPECT_NEAR(value, exact, tolerance * std::abs(scale)) << what;

@@ -1,6 +1,6 @@
-// What acts on the structure besides its loads and supports: the foundation of section 3, the ground under a layered
-// track, and the resultants of inertia, all linear in the nodal values. With loads and reactions they add up to zero.
-// A foundation with a law that is not linear (nonlinear_points.hpp) counts as none here.
+// What acts on the structure besides its loads and supports: the linear part of the foundation of section 3, the
+// ground under a layered track, and the resultants of inertia, all linear in the nodal values. With loads, reactions
+// and what of the foundation is not linear they add up to zero.
 #pragma once
 
 #include <array>

@@ -98,7 +98,7 @@ class System {
   double leaving_time() const;
   /// Collective. Largest magnitude of the static deflection at a station while the train and the forces pass with
   /// their weights at rest, the beam's own weight included where it acts: the influence line of that station (0 when
-  /// there is none, or the foundation is not linear).
+  /// there is none, or the foundation not linear).
   double static_peak(double station);
 
   /// Estimated relative error of static solutions so far, from rounding.
@@ -107,8 +107,8 @@ class System {
 
  private:
   void find_equilibrium(double* v);
-  void settle(bool loaded, Part part);
   void let_wheels_roll();
+  void settle(bool loaded, Part part);
   double surface_height() const;
   void note_weights();
   std::vector<double> influence_line(double station);
