@@ -165,7 +165,7 @@ TEST(Ranks, PropBelowALayeredTrack) {
                             {"ts_max_time", "1.5"},
                             {"output_interval", "0.02"},
                             {"foundation_vertical_x", "25"},
-                            {"foundation_vertical_k", "1e9"},
+                            {"foundation_vertical_k", "1e8"},
                             {"foundation_vertical_gap", "1e-4"},
                             {"foundation_vertical_one_sided", "true"}},
                            20);

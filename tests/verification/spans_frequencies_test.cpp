@@ -110,7 +110,7 @@ TEST(Frequencies, IsolatedSpansRepeatThem) {
   exact.resize(count);
   const auto model = [&](int n) {
     BeamModel isolated = bridge(spans, n);
-    isolated.isolated = true;
+    isolated.joints = {beam::Joint::separate};
     return isolated;
   };
   test::expect_convergence(exact, model, 20, 0, {4.0, 0.1, 3e-6, 1e-6});  // (6 pi/80)^4/1440 = 2e-6
