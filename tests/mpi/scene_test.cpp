@@ -161,7 +161,8 @@ TEST(Ranks, FoundationsThatAreNotLinear) {
 // On the bridge below a layered track.
 TEST(Ranks, PropBelowALayeredTrack) {
   expect_same_on_all_ranks("r8_ballasted_bridge",
-                           {{"ts_dt", "2e-3"},
+                           {{"track_elements_per_bay", "1"},
+                            {"ts_dt", "2e-3"},
                             {"ts_max_time", "1.5"},
                             {"output_interval", "0.02"},
                             {"foundation_vertical_x", "25"},
