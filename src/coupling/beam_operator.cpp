@@ -144,8 +144,8 @@ void BeamOperator::solve_mass(double* x) const {
   mass_factor_.solve(x);
 }
 
-void BeamOperator::solve_static(double* x) {
-  const solve::SubstructuredCholesky& factor = factored(0.0);
+void BeamOperator::solve_static(double* x, const AddedSprings* added) {
+  const solve::SubstructuredCholesky& factor = factored(0.0, added);
   load_.assign(x, x + unknowns());
   residual_.resize(unknowns());
   factor.solve(x);
@@ -156,6 +156,11 @@ void BeamOperator::solve_static(double* x) {
     if (springs_) product(*springs_, -1.0, x, residual_.data());
     borders(x, halo_.data(), halo_.data() + work_.block);
     internal_.add<long double>(-1.0, x, halo_.data(), halo_.data() + work_.block, residual_.data());
+    if (added != nullptr) {
+      for (const AddedSprings::Term& t : *added->terms)
+        residual_[t.row] -=
+            t.shape * added->k[t.point] * (t.column < unknowns() ? x[t.column] : halo_[t.column - unknowns()]);
+    }
     for (int j = 0; j < unknowns(); ++j)
       if (fixed_[j] != 0) residual_[j] = 0.0;
     factor.solve(residual_.data());
@@ -202,7 +207,9 @@ const solve::SubstructuredCholesky& BeamOperator::factored(double shift, const A
     work_.combine(shift * shift, mass_.rows, shift, damping_, 1.0, stiffness_);
     if (added != nullptr) {
       for (const AddedSprings::Term& t : *added->terms)
-        (t.upper ? work_.upper : work_.diagonal)[t.place] += t.shape * (added->k[t.point] + shift * added->c[t.point]);
+        if (t.place >= 0)
+          (t.upper ? work_.upper : work_.diagonal)[t.place] +=
+              t.shape * (added->k[t.point] + shift * added->c[t.point]);
     }
     try {
       f.cholesky.factor(work_, fixed_);

@@ -25,7 +25,7 @@ void Compliance::prepare(double shift, const AddedSprings* added, const std::vec
   elements_ = elements;
   count_ = elements.size();
   active_.clear();
-  for (int e : elements) active_.push_back(&column(factor, shift == 0.0 && added == nullptr, stamp, e));
+  for (int e : elements) active_.push_back(&column(factor, shift, added, stamp, e));
   fill_matrix();
 
   // Forget the oldest columns beyond what is worth keeping.
@@ -40,8 +40,8 @@ void Compliance::prepare(double shift, const AddedSprings* added, const std::vec
   }
 }
 
-Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& factor, bool refined, long stamp,
-                                       int element) {
+Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& factor, double shift,
+                                       const AddedSprings* added, long stamp, int element) {
   auto found = std::find_if(columns_.begin(), columns_.end(),
                             [&](const Column& c) { return c.stamp == stamp && c.element == element; });
   if (found != columns_.end()) {
@@ -55,8 +55,8 @@ Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& facto
     const int unknown = beam_.local(unknowns[j]);
     if (unknown >= 0 && beam_.fixed()[unknown] == 0) work_[static_cast<std::size_t>(j) * n + unknown] = 1.0;
   }
-  if (refined) {
-    for (int j = 0; j < m_; ++j) operator_.solve_static(work_.data() + static_cast<std::ptrdiff_t>(j) * n);
+  if (shift == 0.0) {
+    for (int j = 0; j < m_; ++j) operator_.solve_static(work_.data() + static_cast<std::ptrdiff_t>(j) * n, added);
   } else {
     factor.solve(work_.data(), m_);
     operator_.solves += m_;

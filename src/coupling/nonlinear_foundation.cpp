@@ -87,9 +87,8 @@ void NonlinearFoundation::note_terms(const beam::Beam& beam) {
       for (std::size_t j = 0; j < 4; ++j) {
         if (s.unknown[j] < 0 || s.shape[i] * s.shape[j] == 0.0) continue;
         const int ahead = s.unknown[j] / b - s.unknown[i] / b;
-        if (ahead < 0) continue;  // known by symmetry
-        const int place = (row / b * b + s.unknown[j] % b) * b + row % b;
-        terms_.push_back({n, ahead > 0, static_cast<std::size_t>(place), s.shape[i] * s.shape[j]});
+        const int place = ahead < 0 ? -1 : (row / b * b + s.unknown[j] % b) * b + row % b;
+        terms_.push_back({n, row, points_[n].place[j], ahead > 0, place, s.shape[i] * s.shape[j]});
       }
     }
   }

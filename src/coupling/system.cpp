@@ -305,8 +305,8 @@ System::Solution System::solve_coupled(double t, double shift, const double* c_v
       release_held(nodal_.data());
     }
     if (beam_ != nullptr && (loaded || nonlinear_)) {
-      if (shift == 0.0 && added == nullptr) {
-        operator_->solve_static(nodal_.data());
+      if (shift == 0.0) {
+        operator_->solve_static(nodal_.data(), added);
       } else {
         operator_->factored(shift, added).solve(nodal_.data());
         ++operator_->solves;

@@ -162,11 +162,12 @@ TEST(Ranks, FoundationsThatAreNotLinear) {
 // On the bridge below a layered track.
 TEST(Ranks, PropBelowALayeredTrack) {
   expect_same_on_all_ranks("r8_ballasted_bridge",
-                           {{"ts_dt", "2e-3"},
+                           {{"track_elements_per_bay", "1"},
+                            {"ts_dt", "2e-3"},
                             {"ts_max_time", "1.5"},
                             {"output_interval", "0.02"},
                             {"foundation_vertical_x", "25"},
-                            {"foundation_vertical_k", "1e9"},
+                            {"foundation_vertical_k", "1e8"},
                             {"foundation_vertical_gap", "1e-4"},
                             {"foundation_vertical_one_sided", "true"}},
                            20);

@@ -13,11 +13,12 @@ namespace traverse::coupling {
 
 /// Springs and dampers at single stations on top of the beam's own matrices: a foundation linearised.
 struct AddedSprings {
-  /// An entry of this rank's blocks on (or above) the diagonal: shape*(k + s c) of a point.
+  /// shape*(k + s c) of a point in a row of this rank's.
   struct Term {
     std::size_t point = 0;
-    bool upper = false;
-    std::size_t place = 0;
+    int row = 0, column = 0;  // local; beyond this rank's unknowns the left neighbour's column, then the right one's
+    bool upper = false;       // of the block above the diagonal, or of that on it
+    int place = -1;           // in these blocks; -1: below them, known by symmetry
     double shape = 0.0;
   };
   long version = 0;  // another one with every change, the same on all ranks
@@ -41,10 +42,11 @@ class BeamOperator {
   /// Collective. Forces the M-solve: x in: nodal forces, out: accelerations. Held unknowns must be zero.
   void solve_mass(double* x) const;
 
-  /// Collective. K* v = P, x in: nodal forces, out: displacements; held unknowns must be zero. Refined with residuals
-  /// that are exact to long double where the first solution has lost digits: on a chain of n elements without
-  /// supports between them about 0.02 eps n^4 of it is rounding. SolverError where nothing is left to trust.
-  void solve_static(double* x);
+  /// Collective. K* v = P, with the springs added, x in: nodal forces, out: displacements; held unknowns must be zero.
+  /// Refined with residuals that are exact to long double where the first solution has lost digits: on a chain of n
+  /// elements without supports between them about 0.02 eps n^4 of it is rounding. SolverError where nothing is left to
+  /// trust.
+  void solve_static(double* x, const AddedSprings* added = nullptr);
   /// The largest relative error that solve_static has left so far, estimated from its last corrections.
   double static_error() const { return static_error_; }
 
