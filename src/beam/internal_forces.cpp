@@ -1,5 +1,7 @@
 #include "traverse/beam/internal_forces.hpp"
 
+#include <iterator>
+
 #include "assembly.hpp"
 
 namespace traverse::beam {
@@ -31,40 +33,53 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
     length = element.length;
     s.theta1 = line.mesh.hinged(element.left) ? line.place[3] : line.place[2];
     run.elements.resize(index(column - run.first + 1));  // leaves a gap between separate spans
-    run.there.resize(run.elements.size(), 0);
     run.elements.back() = s;
-    run.there.back() = 1;
   }
   return run;
+}
+
+// From left to right; what an element does to its right node is carried there.
+template <class Real, bool axial>
+void InternalForces::add_run(const Run& run, double sign, const double* x, const double* left, const double* right,
+                             double* r) const {
+  const std::ptrdiff_t b = block_, v = run.v, theta = run.theta, u = run.u;
+  double force = 0.0, moment = 0.0, along = 0.0;  // of the element to the left of a node, on the node
+  const double* x1 = run.first < 0 ? left : x + run.first * b;
+  for (std::ptrdiff_t i = 0, column = run.first; i < std::ssize(run.elements); ++i, ++column) {
+    const Stiffness& s = run.elements[static_cast<std::size_t>(i)];
+    const double* x2 = column + 1 < local_ ? x + (column + 1) * b : right;
+    const Real turn = Real(x2[theta]) - Real(x1[s.theta1]);
+    const Real rise = Real(x2[v]) - Real(x1[v]) - Real(s.h) * Real(x1[s.theta1]);
+    const double f = sign * static_cast<double>(Real(s.A) * rise + Real(s.B) * turn);
+    const double m = sign * static_cast<double>(Real(s.C) * rise + Real(s.D) * turn);
+    double n = 0.0;
+    if constexpr (axial) n = sign * static_cast<double>(Real(s.S) * (Real(x2[u]) - Real(x1[u])));
+    if (column >= 0) {
+      double* node = r + column * b;
+      node[v] += force + f;
+      node[theta] += moment;
+      node[s.theta1] += m;
+      if constexpr (axial) node[u] += along + n;
+    }
+    force = -f;
+    moment = f * s.h - m;
+    if constexpr (axial) along = -n;
+    x1 = x2;
+  }
+  const std::ptrdiff_t last = run.first + std::ssize(run.elements);
+  if (last >= local_ || last < 0 || run.elements.empty()) return;
+  r[last * b + v] += force;
+  r[last * b + theta] += moment;
+  if constexpr (axial) r[last * b + u] += along;
 }
 
 template <class Real>
 void InternalForces::add(double sign, const double* x, const double* left, const double* right, double* r) const {
   for (const Run& run : runs_) {
-    const int count = static_cast<int>(run.elements.size());
-    for (int i = 0; i < count; ++i) {
-      if (run.there[index(i)] == 0) continue;
-      const Stiffness& s = run.elements[index(i)];
-      const int column = run.first + i;
-      const bool owns_left = column >= 0, owns_right = column + 1 < local_;
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(column) * block_;
-      const double* x1 = owns_left ? x + at : left;
-      const double* x2 = owns_right ? x + at + block_ : right;
-      const Real turn = Real(x2[run.theta]) - Real(x1[s.theta1]);
-      const Real rise = Real(x2[run.v]) - Real(x1[run.v]) - Real(s.h) * Real(x1[s.theta1]);
-      const auto force = static_cast<double>(Real(sign) * (Real(s.A) * rise + Real(s.B) * turn));
-      const auto moment = static_cast<double>(Real(sign) * (Real(s.C) * rise + Real(s.D) * turn));
-      const double along = run.u >= 0 ? sign * s.S * (x2[run.u] - x1[run.u]) : 0.0;
-      if (owns_left) {
-        r[at + run.v] += force;
-        r[at + s.theta1] += moment;
-        if (run.u >= 0) r[at + run.u] += along;
-      }
-      if (owns_right) {
-        r[at + block_ + run.v] -= force;
-        r[at + block_ + run.theta] += force * s.h - moment;
-        if (run.u >= 0) r[at + block_ + run.u] -= along;
-      }
+    if (run.u >= 0) {
+      add_run<Real, true>(run, sign, x, left, right, r);
+    } else {
+      add_run<Real, false>(run, sign, x, left, right, r);
     }
   }
 }

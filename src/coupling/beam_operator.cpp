@@ -123,20 +123,23 @@ void BeamOperator::multiply(double sign, const double* m, const double* c, const
   // The beams' elastic forces and their damping by b K_aa together.
   const bool damps = c != nullptr && stiffness_damping_ != 0.0;
   if (k == nullptr && !damps) return;
-  const double* x = k;
-  if (damps) {
-    const int b = work_.block;
-    for (int i = 0; i < work_.nodes; ++i)
-      for (int j = 0; j < b; ++j) {
-        const int at = i * b + j;
-        relative_[at] = (k != nullptr ? k[at] : 0.0) + damped_part_[j] * c[at];
-      }
-    x = relative_.data();
-  }
+  if (damps) add_damped_part(c, k);
+  const double* x = damps ? relative_.data() : k;
   borders(x, halo_.data(), halo_.data() + work_.block);
   internal_.add(sign, x, halo_.data(), halo_.data() + work_.block, r);
-  for (int i = 0; i < unknowns(); ++i)
-    if (fixed_[i] != 0) r[i] = 0.0;
+}
+
+// k + b c; a rail's unknowns have no b.
+void BeamOperator::add_damped_part(const double* c, const double* k) const {
+  const int n = unknowns(), block = work_.block;
+  const double b = stiffness_damping_;
+  for (int i = 0; i < n; ++i) relative_[i] = b * c[i];
+  for (int j = 0; j < block; ++j) {
+    if (damped_part_[j] != 0.0) continue;
+    for (int i = j; i < n; i += block) relative_[i] = 0.0;
+  }
+  if (k == nullptr) return;
+  for (int i = 0; i < n; ++i) relative_[i] += k[i];
 }
 
 void BeamOperator::solve_mass(double* x) const {

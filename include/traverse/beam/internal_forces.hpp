@@ -3,6 +3,7 @@
 // larger terms that cancel in a product with the assembled matrix, and the forces on an element's ends balance exactly.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "traverse/beam/beam.hpp"
@@ -21,18 +22,19 @@ class InternalForces {
 
  private:
   /// Forces and moment at the left end from t = (v2 - v1 - h theta1, theta2 - theta1): {A, B; C, D} t; N and N m.
-  /// Along x: S (u2 - u1).
+  /// Along x: S (u2 - u1). All zero between separate spans.
   struct Stiffness {
     double h, A, B, C, D, S;
-    int theta1;  // its place in the left column: beside a hinge another one
+    std::ptrdiff_t theta1;  // its place in the left column: beside a hinge another one
   };
   struct Run {
     int first = 0;  // local column of its first element's left node, -1: a neighbour rank's
     int u = -1, v = 0, theta = 0;
     std::vector<Stiffness> elements;
-    std::vector<char> there;  // separate spans have no element between them
   };
   Run run_of(const Beam& beam, const Line& line) const;
+  template <class Real, bool axial>
+  void add_run(const Run& run, double sign, const double* x, const double* left, const double* right, double* r) const;
 
   int block_, local_;
   std::vector<Run> runs_;

@@ -36,7 +36,8 @@ class BeamOperator {
   /// Collective. The neighbours' columns at the borders of this rank's; left as they are where there is none.
   void borders(const double* x, double* left, double* right) const;
 
-  /// Collective. r = sign*(M m + C* c + K* k); a null pointer leaves its term out. Arrays of this rank's unknowns.
+  /// Collective. r = sign*(M m + C* c + K* k); a null pointer leaves its term out. Arrays of this rank's unknowns;
+  /// the rows of held ones mean nothing.
   void multiply(double sign, const double* m, const double* c, const double* k, double* r) const;
 
   /// Collective. Forces the M-solve: x in: nodal forces, out: accelerations. Held unknowns must be zero.
@@ -71,6 +72,7 @@ class BeamOperator {
     std::vector<double> left;
   };
   Matrix with_neighbour(solve::BlockTridiagonal rows) const;
+  void add_damped_part(const double* c, const double* k) const;
   void product(const Matrix& A, double sign, const double* x, double* r) const;
 
   MPI_Comm comm_;
