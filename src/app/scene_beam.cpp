@@ -113,17 +113,30 @@ void add_point(const Options& o, const beam::BeamModel& beam, const std::string&
   points.push_back(point);
 }
 
+/// The stations as listed, or from the first to the last at equal distances.
+std::vector<double> read_stations(const Options& o, const std::string& name) {
+  std::vector<double> x = o.numbers(name + "_x");
+  if (!o.has(name + "_spacing")) return x;
+  if (x.size() != 2 || !(x[1] > x[0])) o.refuse(name + "_x", "with a spacing: the first and the last station");
+  const double spacing = o.number(name + "_spacing"), bays = std::round((x[1] - x[0]) / spacing);
+  if (bays > most_elements || std::abs(x[0] + bays * spacing - x[1]) > 1e-6 * spacing)
+    o.refuse(name + "_spacing", fmt::format("does not divide the distance from {:g} to {:g} m", x[0], x[1]));
+  std::vector<double> all;
+  for (int i = 0; i <= static_cast<int>(bays); ++i) all.push_back(x[0] + i * spacing);
+  return all;
+}
+
 std::vector<beam::PointFoundation> read_points(const Options& o, const std::string& kind, const beam::BeamModel& beam) {
   const std::string name = "foundation_" + kind;
   const bool vertical = kind == "vertical";
   std::vector<beam::PointFoundation> points;
   if (!o.has(name + "_x")) {
-    for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided"}) {
+    for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided", "_spacing"}) {
       if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_x, the stations");
     }
     return points;
   }
-  const std::vector<double> x = o.numbers(name + "_x");
+  const std::vector<double> x = read_stations(o, name);
   const auto numbers = [&](const char* what) { return o.numbers(name + what, x.size(), "as many as stations"); };
   const auto words = [&](const char* what) { return o.texts(name + what, x.size(), "as many as stations"); };
   const std::vector<double> k = numbers("_k"), c = numbers("_c"), gap = numbers("_gap"), cubic = numbers("_cubic");

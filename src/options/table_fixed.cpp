@@ -27,6 +27,7 @@ constexpr Row rows[] = {
   {"support_types", choice_list, "", "(pinned, then rollers; simply supported spans: all pinned)", any, "free roller pinned clamped guided", 0, "support at every span end, one word serves all"},
 
   {"foundation_vertical_x", numbers, "m", "", not_negative, "", 0, "stations of vertical springs and dampers"},
+  {"foundation_vertical_spacing", number, "m", "", positive, "", 0, "of stations at equal distances: x holds the first and the last"},
   {"foundation_vertical_k", numbers, "N/m", "0", not_negative, "", 0, "their stiffness, one serves all"},
   {"foundation_vertical_c", numbers, "Ns/m", "0", not_negative, "", 0, "their damping, one serves all"},
   {"foundation_vertical_one_sided", choice_list, "", "false", any, "true false", 0, "pushes only, where the beam is pressed down; one word serves all"},
@@ -39,6 +40,7 @@ constexpr Row rows[] = {
   {"foundation_vertical_bed_gap", number, "m", "0", not_negative, "", 0, "vertical bed: before it acts"},
   {"foundation_vertical_bed_cubic", number, "N/m4", "0", not_negative, "", 0, "vertical bed: cubic term of the spring"},
   {"foundation_longitudinal_x", numbers, "m", "", not_negative, "", 0, "stations of longitudinal springs and dampers"},
+  {"foundation_longitudinal_spacing", number, "m", "", positive, "", 0, "of stations at equal distances: x holds the first and the last"},
   {"foundation_longitudinal_k", numbers, "N/m", "0", not_negative, "", 0, "their stiffness, one serves all"},
   {"foundation_longitudinal_c", numbers, "Ns/m", "0", not_negative, "", 0, "their damping, one serves all"},
   {"foundation_longitudinal_gap", numbers, "m", "0", not_negative, "", 0, "to and fro before it acts, one serves all"},
@@ -49,6 +51,7 @@ constexpr Row rows[] = {
   {"foundation_longitudinal_bed_gap", number, "m", "0", not_negative, "", 0, "longitudinal bed: before it acts"},
   {"foundation_longitudinal_bed_cubic", number, "N/m4", "0", not_negative, "", 0, "longitudinal bed: cubic term of the spring"},
   {"foundation_rotational_x", numbers, "m", "", not_negative, "", 0, "stations of rotational springs and dampers"},
+  {"foundation_rotational_spacing", number, "m", "", positive, "", 0, "of stations at equal distances: x holds the first and the last"},
   {"foundation_rotational_k", numbers, "Nm/rad", "0", not_negative, "", 0, "their stiffness, one serves all"},
   {"foundation_rotational_c", numbers, "Nms/rad", "0", not_negative, "", 0, "their damping, one serves all"},
   {"foundation_rotational_gap", numbers, "rad", "0", not_negative, "", 0, "either way before it acts, one serves all"},
