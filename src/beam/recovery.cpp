@@ -208,8 +208,8 @@ Response Recovery::respond(const Section& s, const Values& v, const Values& w, c
   r.shear +=
       transverse(s.stiffness.shear(), v) + transverse(s.damping.shear(), w) + transverse(s.mass.shear(), inertial);
   r.axial_displacement = axial(s.phi, v);
-  r.axial_force =
-      axial(s.bending.axial_force(), bent) + axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) + axial(s.mass.axial_force(), inertial);
+  r.axial_force = axial(s.bending.axial_force(), bent) + axial(s.stiffness.axial_force(), v) +
+                  axial(s.damping.axial_force(), w) + axial(s.mass.axial_force(), inertial);
   return r;
 }
 
