@@ -47,9 +47,9 @@ std::vector<double> with_sign(std::vector<double> shapes, std::size_t modes) {
   return shapes;
 }
 
-// To 1e-9 of each dataset's peak; what is left of the energy balance is rounding.
+// To `bound` of each dataset's peak; what is left of the energy balance is rounding.
 // Accelerations below `at_rest` (m/s2) are rounding too.
-void expect_same(Results& one, Results& all, std::size_t least, double at_rest = 0.0) {
+void expect_same(Results& one, Results& all, std::size_t least, double at_rest = 0.0, double bound = 1e-9) {
   const std::vector<std::string> names = datasets(one.file());
   EXPECT_EQ(names, datasets(all.file()));
   EXPECT_GE(names.size(), least);
@@ -64,14 +64,14 @@ void expect_same(Results& one, Results& all, std::size_t least, double at_rest =
       EXPECT_LT(std::max(std::abs(peak(a).first), std::abs(peak(b).first)), at_rest) << name;
       continue;
     }
-    EXPECT_LT(relative_difference(a, b), 1e-9) << name;
+    EXPECT_LT(relative_difference(a, b), bound) << name;
   }
 }
 
-void expect_same_on_all_ranks(const std::string& scene, const Values& options, std::size_t least) {
+void expect_same_on_all_ranks(const std::string& scene, const Values& options, std::size_t least, double bound = 1e-9) {
   Results all = run_scene(scene, options, PETSC_COMM_WORLD);
   Results one = run_scene(scene, options, PETSC_COMM_SELF);
-  expect_same(one, all, least);
+  expect_same(one, all, least, 0.0, bound);
 }
 
 TEST(Ranks, HalfCarWithFrictionOnThreeSpans) {
@@ -159,7 +159,9 @@ TEST(Ranks, FoundationsThatAreNotLinear) {
                            35);
 }
 
-// On the bridge below a layered track.
+// On the bridge below a layered track. A penetration is a difference of lengths of 0.46 m: by their rounding a Hertz
+// contact's force has 1e-7 N of noise, which on the 72 kg of a bay of rail is 1e-9 m/s2 of a peak of 0.06 m/s2 (ten
+// times less with contacts ten times softer).
 TEST(Ranks, PropBelowALayeredTrack) {
   expect_same_on_all_ranks("r8_ballasted_bridge",
                            {{"track_elements_per_bay", "1"},
@@ -170,7 +172,7 @@ TEST(Ranks, PropBelowALayeredTrack) {
                             {"foundation_vertical_k", "1e8"},
                             {"foundation_vertical_gap", "1e-4"},
                             {"foundation_vertical_one_sided", "true"}},
-                           20);
+                           20, 1e-8);
 }
 
 TEST(Ranks, ExplicitContact) {
