@@ -11,7 +11,7 @@ template <class Compute, class Add>
 void for_elements(const Line& line, const Slice& slice, bool uniform, Compute compute, Add add) {
   double length = 0.0;
   decltype(compute(line.mesh.element(0))) matrices{};
-  const auto [first, past] = elements_of(line, slice);
+  const auto [first, past] = line.elements_at(slice.first, slice.local);
   for (int e = first; e < past; ++e) {
     const Element& element = line.mesh.element(e);
     if (!uniform || element.length != length) matrices = compute(element);
@@ -25,7 +25,7 @@ template <class Shape, class Unknowns>
 Rows points(const std::vector<PointFoundation>& all, const Line& line, const Slice& slice, Term term, Shape shape,
             Unknowns unknowns) {
   Rows rows(slice);
-  const auto [first, past] = elements_of(line, slice);
+  const auto [first, past] = line.elements_at(slice.first, slice.local);
   for (const PointFoundation& p : all) {
     if (p.law.nonlinear()) continue;
     const Station at = station_of(line.mesh, p);
@@ -54,25 +54,6 @@ auto axial_of(const Line& line) {
 }
 
 }  // namespace
-
-ElementRange elements_of(const Line& line, const Slice& slice) {
-  // Elements are sorted by their left node.
-  const auto first_from = [&](int node) {
-    int low = 0, high = line.mesh.elements();
-    while (low < high) {
-      const int middle = low + (high - low) / 2;
-      if (line.mesh.element(middle).left < node) {
-        low = middle + 1;
-      } else {
-        high = middle;
-      }
-    }
-    return low;
-  };
-  if (slice.local == 0) return {};
-  const int node = slice.first - line.first_column;
-  return {first_from(node - 1), first_from(node + slice.local)};
-}
 
 Station station_of(const Mesh& mesh, const PointFoundation& point) { return mesh.locate(point.x, point.from_left); }
 

@@ -6,12 +6,6 @@
 
 namespace traverse::beam {
 
-/// The elements of a line that have a node among the columns of a slice: [first, past).
-struct ElementRange {
-  int first = 0, past = 0;
-};
-ElementRange elements_of(const Line& line, const Slice& slice);
-
 /// Mass and stiffness of a beam itself, eqs. 8-12.
 void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness);
 

@@ -19,7 +19,7 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
   run.theta = line.place[2];
   const BeamModel& model = line.model;
   const bool uniform = model.EI.uniform() && (!model.axial || model.EA.uniform());
-  const auto [first, past] = elements_of(line, Slice(block_, beam.first_column(), local_));
+  const auto [first, past] = line.elements_at(beam.first_column(), local_);
   double length = 0.0;
   Stiffness s{};
   for (int e = first; e < past; ++e) {

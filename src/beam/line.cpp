@@ -39,6 +39,24 @@ Line::Line(BeamModel its_model, const Layout& layout, bool rail, int its_first_c
   }
 }
 
+std::pair<int, int> Line::elements_at(int first, int count) const {
+  // Elements are sorted by their left node.
+  const auto first_from = [&](int node) {
+    int low = 0, high = mesh.elements();
+    while (low < high) {
+      const int middle = low + (high - low) / 2;
+      if (mesh.element(middle).left < node) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return low;
+  };
+  if (count == 0) return {0, 0};
+  return {first_from(first - first_column - 1), first_from(first - first_column + count)};
+}
+
 std::array<int, 4> Line::transverse(int element) const {
   const int left = mesh.element(element).left;
   return {unknown(left, 1), unknown(left, mesh.hinged(left) ? 3 : 2), unknown(left + 1, 1), unknown(left + 1, 2)};

@@ -24,22 +24,6 @@ bool near(double kept, double wanted, double share) {
   return std::abs(kept - wanted) <= share * std::max(std::abs(kept), std::abs(wanted));
 }
 
-/// The elements of the bridge that touch this rank's columns: [first, past).
-std::pair<int, int> elements_here(const beam::Beam& beam) {
-  const beam::Mesh& mesh = beam.bridge().mesh;
-  const auto first_from = [&](int node) {
-    int low = 0, high = mesh.elements();
-    while (low < high) {
-      const int middle = low + (high - low) / 2;
-      (mesh.element(middle).left < node ? low : high) = mesh.element(middle).left < node ? middle + 1 : middle;
-    }
-    return low;
-  };
-  if (beam.local_columns() == 0) return {0, 0};
-  const int node = beam.first_column() - beam.bridge().first_column;
-  return {first_from(node - 1), first_from(node + beam.local_columns())};
-}
-
 }  // namespace
 
 NonlinearFoundation::NonlinearFoundation(const beam::Beam& beam, const BeamOperator& op, double load, double point_load)
@@ -51,7 +35,7 @@ NonlinearFoundation::NonlinearFoundation(const beam::Beam& beam, const BeamOpera
       block_(op.block()),
       point_load_(point_load),
       borders_(2 * static_cast<std::size_t>(op.block()), 0.0) {
-  const auto [first, past] = elements_here(beam);
+  const auto [first, past] = beam.bridge().elements_at(beam.first_column(), beam.local_columns());
   for (const beam::NonlinearPoint& its : beam::nonlinear_points(beam.bridge(), first, past)) {
     Point p;
     p.its = its;

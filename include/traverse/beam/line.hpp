@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 
 #include "traverse/beam/mesh.hpp"
 
@@ -36,6 +37,8 @@ struct Line {
   int per_node = 2;            // unknowns of a node that an element sees: (v, theta), or (u, v, theta)
   std::array<int, 4> place{};  // of u, v, theta, theta_right in a column; -1: not there
 
+  /// The elements that have a node among `count` columns from the first: [first, past).
+  std::pair<int, int> elements_at(int first, int count) const;
   /// Global unknowns v1, theta1, v2, theta2 of an element; u1, u2 (only where axial).
   std::array<int, 4> transverse(int element) const;
   std::array<int, 2> axial(int element) const;
