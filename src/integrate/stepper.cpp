@@ -235,6 +235,10 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample) {
   for (int i = 0; i < system_.beam_unknowns(); ++i) bounds[1] = std::max(bounds[1], std::abs(y.data[i]));
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, system_.comm());
   const bool off = system_.beam() != nullptr && bounds[1] > system_.beam()->model().length();
+  if (t == 0.0 && off)
+    throw SolverError(
+        "at rest the beam deflects by more than its length: what holds it is far too soft for its loads; look at the "
+        "units of beam_EI, the foundation's k and the loads");
   if (!std::isfinite(bounds[0]) || off)
     throw SolverError("the motion has grown beyond all bounds by t = " + std::to_string(t) +
                       " s: the step is too long for this integrator; take a smaller -ts_dt or an implicit -ts_type");
