@@ -184,10 +184,10 @@ void BeamOperator::solve_static(double* x, const AddedSprings* added) {
   }
   static_error_ = std::max(static_error_, error);
   if (!(error <= most_static_error))
-    throw SolverError("the static deflection of the beam cannot be computed: rounding takes about " +
-                      std::to_string(100.0 * error) +
-                      " % of it, with so many elements between supports; take fewer (beam_elements_per_span), or "
-                      "stiffer supports");
+    throw SolverError(
+        "the static deflection of the beam cannot be computed: rounding takes about " + std::to_string(100.0 * error) +
+        " % of it. Either nothing holds the beam (support_types, foundation, track), or there are too many "
+        "elements between supports (beam_elements_per_span)");
 }
 
 const solve::SubstructuredCholesky& BeamOperator::factored(double shift, const AddedSprings* added) {
