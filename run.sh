@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Builds Traverse where needed, then runs it in this folder.
-#   ./run.sh                                                    the example: a train over three spans, with a picture
+# Builds Traverse where needed, runs it in this folder and draws what it has written to results/.
+#   ./run.sh                                                     the example: a train over three spans
 #   ./run.sh -options_file options/scenes/x.yml -train_speed 40  any arguments of the program
 #   RANKS=2 ./run.sh ...                                         on two ranks
 set -euo pipefail
@@ -10,14 +10,13 @@ program=(build/traverse)
 if [ "${RANKS:-1}" != 1 ]; then
   program=(mpirun --oversubscribe -n "$RANKS" "${program[@]}")
 fi
-mkdir -p results
-if [ $# -gt 0 ]; then
-  exec "${program[@]}" "$@"
-fi
+[ $# -gt 0 ] || set -- -options_file options/scenes/three_span_train.yml
 
-"${program[@]}" -options_file options/scenes/three_span_train.yml | tee build/run.log
-# The program's line "results  FILE.h5" names what there is to draw.
-results=$(sed -n 's/^[[:space:]]*results[[:space:]:]\{1,\}\(.*\.h5\).*$/\1/p' build/run.log | tail -n 1)
-if [ -n "$results" ]; then
+mkdir -p results
+touch build/run.start
+status=0
+"${program[@]}" "$@" || status=$?
+find results -name '*.h5' -newer build/run.start | while read -r results; do
   /usr/bin/python3 scripts/picture.py "$results" "${results%.h5}.png"
-fi
+done
+exit "$status"
