@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 
+#include "support/one_span.hpp"
 #include "traverse/modes/modes.hpp"
 
 namespace traverse {
@@ -18,19 +19,7 @@ using beam::Support;
 using std::numbers::pi;
 using Complex = std::complex<double>;
 
-constexpr double EI = 1.96e9, EA = 1.0e10, m = 1000.0, L = 20.0;
-
-BeamModel model_of(Support left, Support right, int elements) {
-  BeamModel model;
-  model.spans = {L};
-  model.elements = {elements};
-  model.supports = {left, right};
-  model.EI = EI;
-  model.EA = EA;
-  model.mass = m;
-  model.axial = false;
-  return model;
-}
+using namespace test::one_span;
 
 modes::DampedModes damped(const BeamModel& model, int count, beam::Rayleigh ab = {}) {
   beam::Beam beam(PETSC_COMM_WORLD, model);
@@ -125,19 +114,19 @@ struct Case {
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 Case in_span(const char* name, double c, double x, int overdamped, double k = 0.0, beam::Rayleigh ab = {}) {
-  BeamModel model = model_of(Support::pinned, Support::roller, 1);
+  BeamModel model = span(Support::pinned, Support::roller, 1);
   model.foundation.vertical = {{x, k, c}};
   return {name, model, point_in_span(k, c, x, ab), 0, overdamped, ab};
 }
 
 Case at_end(const char* name, double c, Support left, const Equation& exact, int rigid, int overdamped) {
-  BeamModel model = model_of(left, Support::free, 1);
+  BeamModel model = span(left, Support::free, 1);
   model.foundation.vertical = {{L, 0.0, c}};
   return {name, model, exact, rigid, overdamped};
 }
 
 Case turning(const char* name, double c, int overdamped) {
-  BeamModel model = model_of(Support::pinned, Support::roller, 1);
+  BeamModel model = span(Support::pinned, Support::roller, 1);
   model.foundation.rotational = {{0.0, 0.0, c}};
   return {name, model, rotational_damper(c), 0, overdamped};
 }
@@ -200,7 +189,7 @@ TEST_P(DampedBending, NoneIsMissed) {
 // the order is three. An overdamped mode shows it: lambda = -1/(c G), nearly.
 TEST(DampedModes, DamperWithinAnElementThirdOrder) {
   const auto first = [](int elements) {
-    BeamModel model = model_of(Support::pinned, Support::roller, elements);
+    BeamModel model = span(Support::pinned, Support::roller, elements);
     model.foundation.vertical = {{L / 2, 0.0, 2e6}};
     return damped(model, 1).lambda.at(0);
   };
@@ -222,7 +211,7 @@ Complex bar(double c, int mode) {
 }
 
 std::vector<Complex> axial_modes(double c, int elements) {
-  BeamModel model = model_of(Support::pinned, Support::roller, elements);
+  BeamModel model = span(Support::pinned, Support::roller, elements);
   model.axial = true;
   model.foundation.longitudinal = {{L, 0.0, c}};
   const auto found = damped(model, 8);
@@ -261,7 +250,7 @@ std::pair<Complex, Complex> quadratic(double half, double square) {
 // Rayleigh damping of the beam, a m + b EI beta^4 joins c.
 TEST(DampedModes, BedUnderAFreeBeam) {
   const double k = 1e6, c = 4e3;
-  auto model = model_of(Support::free, Support::free, 40);
+  auto model = span(Support::free, Support::free, 40);
   model.foundation.vertical_bed = beam::Bed{k, c};
   for (const beam::Rayleigh ab : {beam::Rayleigh{}, beam::Rayleigh{0.3, 1e-4}}) {
     const auto found = damped(model, 4, ab);
@@ -276,7 +265,7 @@ TEST(DampedModes, BedUnderAFreeBeam) {
 
 // A bed of dampers only: both rigid motions stay where they are put, and each dies away with c/m.
 TEST(DampedModes, DampingBedAlone) {
-  auto model = model_of(Support::free, Support::free, 40);
+  auto model = span(Support::free, Support::free, 40);
   model.foundation.vertical_bed = beam::Bed{0.0, 4e3};
   const auto found = damped(model, 5);
   EXPECT_EQ(found.lambda[0], 0.0);
@@ -290,7 +279,7 @@ TEST(DampedModes, DampingBedAlone) {
 
 TEST(DampedModes, RayleighAlone) {
   const beam::Rayleigh ab{100.0, 1e-3};  // zeta 1.46, 0.43, 0.32, 0.37, 0.49
-  const auto model = model_of(Support::pinned, Support::roller, 24);
+  const auto model = span(Support::pinned, Support::roller, 24);
   const auto omega = modes::natural_modes(beam::Beam(PETSC_COMM_WORLD, model), 5, false).omega;
   const auto found = damped(model, 5, ab);
   ASSERT_EQ(found.size(), 5u);
@@ -312,7 +301,7 @@ TEST(DampedModes, RayleighAlone) {
 // ---------------------------------------------------------------------------------------------- what must not matter
 
 TEST(DampedModes, FewAtATimeAreThoseOfAllAtOnce) {
-  BeamModel model = model_of(Support::free, Support::free, 50);  // 102 unknowns
+  BeamModel model = span(Support::free, Support::free, 50);  // 102 unknowns
   model.foundation.vertical = {{3.3, 1e6, 1e5}, {12.0, 0.0, 3e6}};
   model.foundation.rotational = {{L, 0.0, 1e7}};
   const auto few = damped(model, 12), all = damped(model, 80);  // by Krylov-Schur; more than half, by LAPACK
@@ -324,7 +313,7 @@ TEST(DampedModes, FewAtATimeAreThoseOfAllAtOnce) {
 }
 
 TEST(DampedModes, ShapeOfACantileverWithATipDamper) {
-  BeamModel model = model_of(Support::clamped, Support::free, 48);
+  BeamModel model = span(Support::clamped, Support::free, 48);
   model.foundation.vertical = {{L, 0.0, 1e5}};
   const auto found = damped(model, 3);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -340,7 +329,7 @@ TEST(DampedModes, ShapeOfACantileverWithATipDamper) {
 }
 
 BeamModel isolated_spans(int elements, std::vector<double> dampers) {
-  BeamModel model = model_of(Support::pinned, Support::pinned, elements);
+  BeamModel model = span(Support::pinned, Support::pinned, elements);
   model.joints = {beam::Joint::separate};
   model.spans.assign(dampers.size(), L);
   model.elements.assign(dampers.size(), elements);
@@ -368,7 +357,7 @@ TEST(DampedModes, WeakDamperTellsSpansApart) {
 // Every high frequency of the mesh has a real mode near 1/b: none of them among the beam's own.
 TEST(DampedModes, ListEndsWhereModesCrowd) {
   const beam::Rayleigh ab{0.5, 1e-3};
-  BeamModel model = model_of(Support::pinned, Support::roller, 20);
+  BeamModel model = span(Support::pinned, Support::roller, 20);
   model.foundation.vertical = {{L / 2, 0.0, 1e5}};
   for (int elements : {20, 100}) {  // by LAPACK and by Krylov-Schur
     model.elements = {elements};

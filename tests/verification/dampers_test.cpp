@@ -9,6 +9,7 @@
 
 #include "support/exact_model.hpp"
 #include "support/message.hpp"
+#include "support/one_span.hpp"
 #include "support/rows.hpp"
 #include "support/scene_run.hpp"
 #include "traverse/beam/beam.hpp"
@@ -21,19 +22,7 @@ using beam::Support;
 using std::numbers::pi;
 using test::exact::chain_of;
 
-constexpr double EI = 1.96e9, m = 1000.0, L = 20.0;
-const double unit = std::sqrt(EI / m) / (L * L);
-
-BeamModel span(Support left, Support right, int elements) {
-  BeamModel model;
-  model.spans = {L};
-  model.elements = {elements};
-  model.supports = {left, right};
-  model.EI = EI;
-  model.mass = m;
-  model.axial = false;
-  return model;
-}
+using namespace test::one_span;
 
 /// A root s of det(s^2 M + s C + K) next to `start`, by the secant method.
 std::complex<double> damped_root(const BeamModel& model, std::complex<double> start) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "support/convergence.hpp"
+#include "support/one_span.hpp"
 
 namespace traverse {
 namespace {
@@ -19,19 +20,7 @@ using test::expect_exact;
 using test::frequencies;
 using test::exact::chain_of;
 
-constexpr double EI = 1.96e9, m = 1000.0, L = 20.0;
-const double unit = std::sqrt(EI / m) / (L * L);  // rad/s for beta L = 1
-
-BeamModel span(Support left, Support right, int elements) {
-  BeamModel model;
-  model.spans = {L};
-  model.elements = {elements};
-  model.supports = {left, right};
-  model.EI = EI;
-  model.mass = m;
-  model.axial = false;
-  return model;
-}
+using namespace test::one_span;
 
 // Blevins 1979, Formulas for Natural Frequency and Mode Shape, table 8-1, to all digits of a double.
 TEST(ExactStiffness, RootsOfTheFrequencyEquations) {

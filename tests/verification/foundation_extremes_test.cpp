@@ -7,6 +7,7 @@
 
 #include "support/convergence.hpp"
 #include "support/curve.hpp"
+#include "support/one_span.hpp"
 #include "support/static_case.hpp"
 
 namespace traverse {
@@ -21,20 +22,7 @@ using test::frequencies;
 using test::exact::chain_of;
 using test::exact::Motion;
 
-constexpr double EI = 1.96e9, EA = 1.0e10, m = 1000.0, L = 20.0;
-const double unit = std::sqrt(EI / m) / (L * L);
-
-BeamModel span(Support left, Support right, int elements, bool axial = false) {
-  BeamModel model;
-  model.spans = {L};
-  model.elements = {elements};
-  model.supports = {left, right};
-  model.EI = EI;
-  model.EA = EA;
-  model.mass = m;
-  model.axial = axial;
-  return model;
-}
+using namespace test::one_span;
 
 std::vector<double> decades() {
   std::vector<double> k;

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "support/convergence.hpp"
+#include "support/one_span.hpp"
 #include "support/ritz.hpp"
 
 namespace traverse {
@@ -18,18 +19,7 @@ using beam::Distribution;
 using beam::Support;
 using test::expect_exact;
 
-constexpr double EI = 1.96e9, m = 1000.0, L = 20.0;
-
-BeamModel span(Support left, Support right, int elements) {
-  BeamModel model;
-  model.spans = {L};
-  model.elements = {elements};
-  model.supports = {left, right};
-  model.EI = EI;
-  model.mass = m;
-  model.axial = false;
-  return model;
-}
+using namespace test::one_span;
 
 /// From 1 at x = 0 to `end` at x = L.
 double wedge(double x, double end) { return 1.0 + (end - 1.0) * x / L; }
