@@ -25,7 +25,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
   for (MovingVehicle& vehicle : fleet_.vehicles)
     for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
       vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
-  let_wheels_roll();
+  if (equilibrium) let_wheels_roll();
   std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   note_weights();
