@@ -254,5 +254,47 @@ TEST(Checks, FloatingMotions) {
   EXPECT_EQ(motion({roller, roller, roller}), "");
 }
 
+TEST(Mesh, HingesDivideSpansAndBendTheSurface) {
+  auto m = model_of({10, 20}, 4);
+  m.hinges = {15.0};
+  const beam::Mesh mesh(m);
+  EXPECT_EQ(mesh.elements(), 4 + 1 + 3);  // a quarter and three quarters of the second span
+  EXPECT_TRUE(mesh.hinged(5));
+  EXPECT_FALSE(mesh.hinged(4));
+  EXPECT_EQ(mesh.kinks(), (std::vector<double>{0.0, 15.0, 30.0}));
+  EXPECT_EQ(mesh.smooth_reach(2), (std::pair{0.0, 15.0}));
+  EXPECT_EQ(mesh.smooth_reach(5), (std::pair{15.0, 30.0}));
+  EXPECT_EQ(mesh.locate(15.0).element, 5);
+  EXPECT_EQ(mesh.locate(15.0, true).element, 4);
+}
+
+/// The promise of the numbering (doc/decisions/004): a sleeper stands on an element of the bridge beside its own
+/// column.
+TEST(Mesh, SleepersStandBesideTheirOwnColumn) {
+  for (const double offset : {0.0, 0.1, 0.37, 0.5999}) {
+    for (const bool separate : {false, true}) {
+      auto m = model_of({7.3, 12.0, 3.1, 25.25}, 1);
+      if (separate) m.joints = {beam::Joint::separate};
+      m.hinges = {9.9};
+      m.track.emplace();
+      m.track->rail_EI = m.track->rail_EA = m.track->rail_mass = 1e6;
+      m.track->pad.k = m.track->longitudinal.k = 1e8;
+      m.track->offset = offset;
+      m.track->approach = 5.0;
+      const beam::Beam b(PETSC_COMM_SELF, m);
+      const beam::RailMesh rail = beam::rail_mesh(m);
+      EXPECT_LE(rail.start, -5.0);
+      EXPECT_GE(rail.x(rail.elements), m.length() + 5.0);
+      for (int node = 0; node <= rail.elements; node += m.track->elements_per_bay) {
+        const double x = rail.x(node);
+        if (x < 0.0 || x > m.length()) continue;
+        const int left = b.bridge().first_column + b.mesh().element(b.mesh().locate(x).element).left;
+        EXPECT_GE(left, node - 1) << x;
+        EXPECT_LE(left, node) << x;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace traverse

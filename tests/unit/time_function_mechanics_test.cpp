@@ -90,5 +90,18 @@ TEST(TimeFunction, RefusesBadTables) {
   EXPECT_THROW(TimeFunction({0.0, 1.0}, {1.0, std::numeric_limits<double>::infinity()}), InputError);
 }
 
+TEST(TimeFunction, ForcesGoStraightAndHoldTheirEndValues) {
+  const auto f = TimeFunction::piecewise_linear({0.4, 1.0, 100.0}, {0.0, 8000.0, 8000.0});
+  EXPECT_EQ(f.value(0.0), 0.0);
+  EXPECT_NEAR(f.value(0.7), 4000.0, 1e-9);
+  EXPECT_EQ(f.value(50.0), 8000.0);  // a spline would swing beyond
+  EXPECT_EQ(f.value(200.0), 8000.0);
+  EXPECT_EQ(f.rate(0.0), 0.0);
+  EXPECT_NEAR(f.rate(0.5), 8000.0 / 0.6, 1e-9);
+  EXPECT_EQ(f.acceleration(0.5), 0.0);
+  EXPECT_EQ(f.kinks(), (std::vector<double>{0.4, 1.0, 100.0}));
+  EXPECT_TRUE(TimeFunction({0.0, 1.0}, {0.0, 1.0}).kinks().empty());
+}
+
 }  // namespace
 }  // namespace traverse::base
