@@ -96,9 +96,10 @@ void fill_foundation(const beam::Beam& beam, const GroundForces& linear, const c
                      Fields& fields) {
   const auto fill = [&](const auto& kind, std::size_t count) {
     const double* first = (linear.*kind.force)();
-    fields.emplace_back(first, first + count);
+    std::vector<double>& field = fields.next();
+    field.assign(first, first + count);
     const std::vector<double>& more = other.*kind.other;
-    for (std::size_t i = 0; i < more.size(); ++i) fields.back()[i] += more[i];
+    for (std::size_t i = 0; i < more.size(); ++i) field[i] += more[i];
   };
   for_points(beam, fill);
   for_beds(beam, fill);
@@ -130,7 +131,7 @@ void fill_balance(const GroundForces& forces, const coupling::Observation& obser
   const auto inertia = forces.inertia(), drag = forces.drag();
   for (std::size_t i = 0; i < 2; ++i) residual[i] = load[i] + support[i] + foundation[i] + inertia[i] + drag[i];
   for (const auto& term : {load, support, foundation, inertia, drag, residual})
-    fields.emplace_back(term.begin(), term.end());
+    fields.next().assign(term.begin(), term.end());
 }
 
 void describe_rail(const std::vector<double>& stations, results::Layout& layout) {
@@ -140,8 +141,8 @@ void describe_rail(const std::vector<double>& stations, results::Layout& layout)
 
 void fill_rail(const std::vector<beam::Response>& rail, Fields& fields) {
   for (const RailQuantity& q : rail_quantities) {
-    fields.emplace_back();
-    for (const beam::Response& r : rail) fields.back().push_back(r.*q.member);
+    std::vector<double>& field = fields.next();
+    for (const beam::Response& r : rail) field.push_back(r.*q.member);
   }
 }
 

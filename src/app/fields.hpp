@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "traverse/beam/ground_forces.hpp"
@@ -10,8 +11,22 @@
 
 namespace traverse::app {
 
-/// Each `fill` adds its fields to a sample in the order in which its `describe` adds them to the layout.
-using Fields = std::vector<std::vector<double>>;
+/// Each `fill` writes its fields into a sample in the order in which its `describe` adds them to the layout. What an
+/// earlier sample has allocated is used again.
+class Fields {
+ public:
+  explicit Fields(std::vector<std::vector<double>>& values) : values_(values) {}
+  /// The next field, empty.
+  std::vector<double>& next() {
+    if (at_ == values_.size()) values_.emplace_back();
+    values_[at_].clear();
+    return values_[at_++];
+  }
+
+ private:
+  std::vector<std::vector<double>>& values_;
+  std::size_t at_ = 0;
+};
 
 void describe_foundation(const beam::Beam& beam, results::Layout& layout);
 void fill_foundation(const beam::Beam& beam, const beam::GroundForces& linear, const coupling::NonlinearForces& other,

@@ -40,9 +40,6 @@ void Watch::sample(const integrate::Instant& instant) {
     recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
     if (on_rail) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
     beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
-  }
-  if (beam_ != nullptr) {
-    sample_.fields.clear();
     fill_fields(v, w);
   }
   fill_vehicles(sample_);
@@ -82,10 +79,11 @@ void Watch::fill_vehicles(results::Sample& sample) const {
 // In the order of layout_of.
 void Watch::fill_fields(const double* v, const double* w) {
   ground_->evaluate(v, w, observation_.a.data());
-  fill_foundation(*beam_, *ground_, observation_.foundation, sample_.fields);
+  Fields fields(sample_.fields);
+  fill_foundation(*beam_, *ground_, observation_.foundation, fields);
   fill_balance(*ground_, observation_, sample_.supports, scene_.self_weight ? scene_.gravity * ground_->mass() : 0.0,
-               beam_->model().axial, sample_.fields);
-  if (rail_recovery_) fill_rail(rail_, sample_.fields);
+               beam_->model().axial, fields);
+  if (rail_recovery_) fill_rail(rail_, fields);
 }
 
 void Watch::note_extremes(const results::Sample& sample, const double* v) {

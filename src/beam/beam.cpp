@@ -122,15 +122,11 @@ void Beam::assemble(const Slice& slice) {
   const Rows springs = stiffness;
   stiffness.add(1.0, beams);
   note_reactions(slice, mass, beam_mass, beam_stiffness, stiffness, damping);
-  for (int i = begin; i < end; ++i) {
-    const Kind kind = layout_.kind[index(i % block())];
-    const bool falls = kind == rail_v || kind == sleeper || kind == v;
-    weight_.push_back(mass.times(i, [&](int j) {
-      const Kind k = layout_.kind[index(j % block())];
-      return k == rail_v || k == sleeper || k == v ? -1.0 : 0.0;
-    }));
-    if (!falls && Layout::axial(kind)) weight_.back() = 0.0;
-  }
+  const auto falls = [&](int unknown) {
+    const Kind kind = layout_.kind[index(unknown % block())];
+    return kind == rail_v || kind == sleeper || kind == v;
+  };
+  for (int i = begin; i < end; ++i) weight_.push_back(mass.times(i, [&](int j) { return falls(j) ? -1.0 : 0.0; }));
 
   Rows pattern(slice);
   for (const Rows* rows : {&mass, &beam_stiffness, &stiffness, &damping}) pattern.add_pattern(*rows);

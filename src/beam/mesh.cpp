@@ -32,7 +32,6 @@ Mesh::Mesh(const BeamModel& model) {
   }
   piece_ends_.push_back(x_.back());
   first_element_.push_back(elements());
-  any_hinge_ = std::find(hinged_.begin(), hinged_.end(), 1) != hinged_.end();
 }
 
 Station Mesh::locate(double x, bool from_left) const {

@@ -37,7 +37,6 @@ class Mesh {
   std::pair<int, int> nodes_at(int span_end) const { return nodes_at_[span_end]; }
   /// Whether the slope may jump at a node: it has a rotation for either side.
   bool hinged(int node) const { return hinged_[node] != 0; }
-  bool any_hinge() const { return any_hinge_; }
 
   /// The element that holds x (clamped into [start, end]); at a node shared by two elements the right one,
   /// except at the end of the beam. `from_left`: the left one. Costs O(log spans).
@@ -56,7 +55,6 @@ class Mesh {
   std::vector<std::pair<int, int>> nodes_at_;
   std::vector<double> piece_ends_;  // left end of each run of equal elements, and the beam's end
   std::vector<int> first_element_;  // of each of them, and one past the last
-  bool any_hinge_ = false;
 };
 
 }  // namespace traverse::beam
