@@ -10,8 +10,6 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 // Within this part of its radius from a kink a wheel may touch on either side of it.
 constexpr double reach = 0.1;
-// Of a partition's quality when it was chosen.
-constexpr double poor_partition = 0.05;
 
 base::TimeFunction frozen_function(const base::TimeFunction& f) { return {f.value(0.0), 0.0}; }
 
@@ -95,13 +93,33 @@ Eigen::Vector3d Fleet::velocities(const WheelContact& c) const {
 
 std::vector<std::string> Fleet::partition(double t) {
   std::vector<std::string> notes;
+  for (MovingVehicle& vehicle : vehicles)
+    for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
+      notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
+  number(t);
+  return notes;
+}
+
+bool Fleet::worn() const {
+  return std::any_of(vehicles.begin(), vehicles.end(),
+                     [](const MovingVehicle& v) { return v.mechanism.worn(v.state); });
+}
+
+bool Fleet::accept(double t) {
+  bool renewed = false;
+  for (MovingVehicle& vehicle : vehicles) {
+    renewed = vehicle.mechanism.renew_partition(vehicle.state) || renewed;
+    vehicle.mechanism.accept(vehicle.state);
+  }
+  if (renewed) number(t);
+  return renewed;
+}
+
+void Fleet::number(double t) {
   home_.clear();
   cruise_.clear();
   freedom_ = 0;
   for (MovingVehicle& vehicle : vehicles) {
-    for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
-      notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
-    vehicle.quality = 0.0;
     vehicle.offset = freedom_;
     freedom_ += vehicle.mechanism.freedom();
     for (int i : vehicle.mechanism.partition().independent) {
@@ -112,17 +130,6 @@ std::vector<std::string> Fleet::partition(double t) {
   }
   position_.resize(home_.size());
   velocity_.resize(home_.size());
-  return notes;
-}
-
-bool Fleet::poorly_partitioned() {
-  bool poor = false;
-  for (MovingVehicle& vehicle : vehicles) {
-    const double quality = vehicle.mechanism.partition_quality(vehicle.state);
-    if (vehicle.quality == 0.0) vehicle.quality = quality;
-    poor = poor || quality < poor_partition * vehicle.quality;
-  }
-  return poor;
 }
 
 bool Fleet::set(double t, const double* p, const double* pd, bool derivatives) {
@@ -131,10 +138,14 @@ bool Fleet::set(double t, const double* p, const double* pd, bool derivatives) {
     velocity_[i] = cruise_[i] + pd[i];
   }
   for (MovingVehicle& vehicle : vehicles) {
-    if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) return false;
+    if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) {
+      stuck_ = static_cast<int>(&vehicle - vehicles.data());
+      return false;
+    }
     vehicle.mechanism.set_velocities(vehicle.state, t, velocity_.data() + vehicle.offset);
     vehicle.mechanism.compute_forces(vehicle.state, derivatives);
   }
+  stuck_ = -1;
   return true;
 }
 

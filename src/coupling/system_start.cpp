@@ -94,13 +94,6 @@ void System::note_weights() {
     weights_.emplace_back(input_.load.positions[i], input_.load.forces[i]);
 }
 
-bool System::repartition(double t, double* y) {
-  if (!fleet_.poorly_partitioned()) return false;
-  fleet_.partition(t);
-  if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
-  return true;
-}
-
 std::vector<double> System::known_events(double end) const {
   std::vector<double> kinks = input_.profile.kinks();
   if (beam_ != nullptr) {

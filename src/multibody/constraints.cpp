@@ -70,6 +70,24 @@ void Mechanism::compute_gamma(MechanismState& s) const {
   }
 }
 
+/// Moves the dependent coordinates to where they are expected at p: along Taylor's series from the last accepted
+/// instant at a new time, along the last velocities' sensitivity within a time. Near a singular position, where
+/// branches meet, this decides which one Newton finds.
+void Mechanism::predict(MechanismState& s, double t, const double* p) const {
+  const int f = freedom();
+  const Instant& a = s.accepted;
+  if (t != s.time && a.partition_version == partition_version_) {
+    const double dt = t - a.time;
+    s.q = a.q + dt * (a.qd + 0.5 * dt * a.qdd);
+    for (int k = 0; k < f; ++k) s.change[k] = p[k] - s.q[partition_.independent[k]];
+    a.sensitivity.add(s.change, partition_.independent, s.q);
+  } else if (s.velocities_set) {
+    for (int k = 0; k < f; ++k) s.change[k] = p[k] - s.q[partition_.independent[k]];
+    s.dependent_block.expand(s.change.data(), s.q);
+  }
+  for (int k = 0; k < f; ++k) s.q[partition_.independent[k]] = p[k];
+}
+
 /// Gives the workspaces the sizes and the order of elimination of the mechanism's partition.
 void Mechanism::fit(MechanismState& s) const {
   if (s.partition_version == partition_version_) return;
@@ -80,12 +98,14 @@ void Mechanism::fit(MechanismState& s) const {
   s.d.setZero();
   s.lambda.setZero();
   s.reduced.setZero(f);
+  s.change.setZero(f);
   place_frames(s);
   compute_Phi_q(s);
   s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
   s.reduced_mass.plan(s.dependent_block);
   s.partition_version = partition_version_;
   s.factored = false;
+  s.velocities_set = false;
   s.mass_factored = false;
 }
 
@@ -93,6 +113,7 @@ void Mechanism::fit(MechanismState& s) const {
 void Mechanism::factor(MechanismState& s) const {
   compute_Phi_q(s);
   if (!s.dependent_block.factor(s.Phi_q)) {
+    s.velocities_set = false;
     s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
     s.reduced_mass.plan(s.dependent_block);
     s.B.setZero();
@@ -158,7 +179,7 @@ bool Mechanism::solve_dependent(MechanismState& s, double t) const {
 
 bool Mechanism::set_positions(MechanismState& s, double t, const double* p) const {
   fit(s);
-  for (int k = 0; k < freedom(); ++k) s.q[partition_.independent[k]] = p[k];
+  predict(s, t, p);
   if (!solve_dependent(s, t)) return false;
   if (static_cast<int>(partition_.rows.size()) == constraints()) return true;
   for (int row = 0; row < constraints(); ++row) {

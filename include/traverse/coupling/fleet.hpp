@@ -22,7 +22,6 @@ struct MovingVehicle {
   std::vector<Wheel> wheels;
   double weight = 0.0;   // N
   double scale = 0.0;    // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
-  double quality = 0.0;  // of its partition when it was chosen; 0: not yet looked at
   int offset = 0;        // of its independent coordinates in p
   int first_wheel = 0;   // in the list of all wheels
   Eigen::VectorXd Q;     // generalized forces of the wheels, n
@@ -65,12 +64,17 @@ class Fleet {
   /// p keep their digits. Returns lines on redundant joints.
   std::vector<std::string> partition(double t);
 
-  /// Have some vehicle's independent coordinates become much worse than when they were chosen?
-  bool poorly_partitioned();
+  /// Whether some vehicle's independent coordinates may have worn out.
+  bool worn() const;
+  /// Notes the vehicles' states, just evaluated, as accepted at t. Where independent coordinates have worn out others
+  /// take their place: true then, and p has a new meaning.
+  bool accept(double t);
 
   /// Positions, velocities and forces of all vehicles from p and p' (freedom values each). False where a mechanism
-  /// cannot be assembled.
+  /// cannot be assembled, which is stuck() then.
   bool set(double t, const double* p, const double* pd, bool derivatives);
+  /// The vehicle that could not be assembled when set() failed last; null when it did not.
+  const MovingVehicle* stuck() const { return stuck_ < 0 ? nullptr : &vehicles[static_cast<std::size_t>(stuck_)]; }
   /// p and p' (freedom values each) of the vehicles' q and q' at t.
   void coordinates_of_state(double t, double* p, double* pd) const;
 
@@ -92,6 +96,7 @@ class Fleet {
   double contact_potential() const;
 
  private:
+  void number(double t);
   void add_patch(WheelContact& c, int element, double low, double high);
 
   const beam::Mesh* mesh_ = nullptr;
@@ -99,6 +104,7 @@ class Fleet {
   int freedom_ = 0;
   double speed_ = 0.0;
   bool frozen_ = false;
+  int stuck_ = -1;
   double surface_height_ = 0.0;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p

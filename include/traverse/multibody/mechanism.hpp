@@ -21,6 +21,14 @@
 
 namespace traverse::multibody {
 
+/// What was at an accepted instant: from there the motion is continued by Taylor's series where a guess is needed.
+struct Instant {
+  double time = 0.0;
+  int partition_version = 0;   // 0: none
+  Eigen::VectorXd q, qd, qdd;  // n
+  Sensitivity sensitivity;     // B
+};
+
 /// Everything that changes with time for one mechanism; sized once by Mechanism::make_state.
 struct MechanismState {
   double time = 0.0;
@@ -41,11 +49,16 @@ struct MechanismState {
   std::vector<Frame> frames;  // ground first, then the bodies: see Mechanism
   DependentBlock dependent_block;
   ReducedMass reduced_mass;
+  Instant accepted;            // the last accepted instant
   int partition_version = 0;   // which partition the workspaces belong to
   bool factored = false;       // dependent_block holds a factorisation of Phi_q near the current q
+  bool velocities_set = false; // dependent_block holds the sensitivity at the last velocities
   bool mass_factored = false;  // reduced_mass belongs to B
   Eigen::VectorXd work;        // n
   Eigen::VectorXd reduced;     // f
+  Eigen::VectorXd change;      // f
+  Eigen::VectorXd centre;         // n: q of a nearly singular position
+  Eigen::MatrixXd interpolated;   // n x (f + 2): B, b, d there
 };
 
 /// Powers and stored energies of a mechanism in a state, J and W.
@@ -76,18 +89,29 @@ class Mechanism {
   /// solved for, velocities that do not fit the constraints are projected in the metric of the masses. The caller reads
   /// p and p' from s.q and s.qd. Rows of drivers are kept before rows of joints; redundant rows are dropped.
   /// Throws InputError naming the joints and drivers when rows contradict each other (in position, speed or
-  /// acceleration), cannot be met, or depend on each other in this position only (a dead point); SolverError when the
-  /// freedom differs from that of an earlier choice. Returns the names of joints and drivers with dropped rows.
+  /// acceleration), cannot be met, or depend on each other in this position only (a dead point). Returns the names of
+  /// joints and drivers with dropped rows.
   std::vector<std::string> choose_partition(MechanismState& s, double t);
 
+  /// Notes that s is an accepted instant: Newton and nearly singular positions start from its continuation.
+  void accept(MechanismState& s) const;
+
+  /// Whether coordinates have come to depend strongly on the independent ones, or Phi_u is nearly singular.
+  bool worn(const MechanismState& s) const;
+  /// Chooses the partition anew at the consistent state s where it is worn and another choice serves better. A position
+  /// in which all choices are singular is passed with the old one. False when the old one stays.
+  bool renew_partition(MechanismState& s);
+
   /// A number in (0, 1]: 1 when no dependent coordinate moves more than an independent one that moves it, q for 1/q
-  /// times as much (angles at a typical arm); it tends to 0 where the dependent block becomes singular. With
-  /// velocities set. Worth a new choice below about 0.05 of what the last choice gave.
+  /// times as much (angles at a typical arm); it tends to 0 where the partition wears out. With velocities set.
   double partition_quality(const MechanismState& s) const;
 
-  /// Sets the independent coordinates to p and solves Phi = 0 for the others by Newton from the current s.q.
-  /// Returns false when it does not converge (s.q then holds the last iterate), or when a dropped row is not met.
+  /// Sets the independent coordinates to p and solves Phi = 0 for the others by Newton, from where the last accepted
+  /// instant or the last velocities would take them. Returns false when it does not converge (s.q then holds the last
+  /// iterate), or when a dropped row is not met.
   bool set_positions(MechanismState& s, double t, const double* p) const;
+  /// After set_positions has failed: which joint or driver is not met, and by how much.
+  std::string worst_row(const MechanismState& s) const;
 
   /// With positions set: q' from p', and B, b, d.
   void set_velocities(MechanismState& s, double t, const double* pd) const;
@@ -131,9 +155,16 @@ class Mechanism {
   double kept_residual(const MechanismState& s) const;
   bool correct_dependent(MechanismState& s) const;
   bool solve_dependent(MechanismState& s, double t) const;
+  void predict(MechanismState& s, double t, const double* p) const;
+  void velocities_at(MechanismState& s, double t, const double* pd) const;
+  bool interpolate_velocities(MechanismState& s, double t, const double* pd) const;
   void compute_force_derivatives(MechanismState& s) const;
 
-  Partition pivot(const MechanismState& s) const;
+  struct Choice {
+    Partition partition;
+    double least_pivot;
+  };
+  Choice pivot(const MechanismState& s) const;
   void assemble(MechanismState& s, double t);
   void check_dropped_positions(MechanismState& s) const;
   void check_dropped_rates(MechanismState& s) const;
@@ -146,6 +177,7 @@ class Mechanism {
   MechanismModel model_;
   Partition partition_;
   int partition_version_ = 0;  // 0: none chosen
+  double chosen_quality_ = 1.0;  // of the partition when it was chosen
   Eigen::VectorXd mass_;
   std::vector<JointGeometry> joints_;
   std::vector<SpringGeometry> springs_;
