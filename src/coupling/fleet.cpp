@@ -132,7 +132,7 @@ void Fleet::number(double t) {
   velocity_.resize(home_.size());
 }
 
-bool Fleet::set(double t, const double* p, const double* pd, bool derivatives) {
+bool Fleet::set(double t, const double* p, const double* pd) {
   for (int i = 0; i < freedom_; ++i) {
     position_[i] = home_[i] + cruise_[i] * t + p[i];
     velocity_[i] = cruise_[i] + pd[i];
@@ -143,7 +143,7 @@ bool Fleet::set(double t, const double* p, const double* pd, bool derivatives) {
       return false;
     }
     vehicle.mechanism.set_velocities(vehicle.state, t, velocity_.data() + vehicle.offset);
-    vehicle.mechanism.compute_forces(vehicle.state, derivatives);
+    vehicle.mechanism.compute_forces(vehicle.state);
   }
   stuck_ = -1;
   return true;

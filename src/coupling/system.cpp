@@ -198,7 +198,7 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
 void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
   evaluated_time_ = t;
-  if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom(), false))
+  if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom()))
     throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
   fleet_.place_wheels();
   gather(y, y + n_);
@@ -355,7 +355,7 @@ bool System::stage_of_fleet(double t, double shift, const double* v0, const doub
   evaluated_time_ = t;
   pdd_.resize(f);
   for (int i = 0; i < f; ++i) pdd_[i] = shift * p_[i] + c_p_[i];
-  if (!fleet_.set(t, p_.data(), pdd_.data(), false)) return false;
+  if (!fleet_.set(t, p_.data(), pdd_.data())) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
     gather(v0, c_v);

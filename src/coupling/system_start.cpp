@@ -60,7 +60,7 @@ void System::find_equilibrium(double* v) {
   }
   settle(input_.self_weight || !loads_.empty(), Part::all);
   std::copy(nodal_.begin(), nodal_.end(), v);
-  fleet_.set(0.0, p_.data(), c_p_.data(), false);
+  fleet_.set(0.0, p_.data(), c_p_.data());
   for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
   for (std::size_t i = 0; i < moving.wheels.size(); ++i) moving.wheels[i].kinematics = fleet_.wheels[i].kinematics;
   fleet_ = std::move(moving);

@@ -103,10 +103,25 @@ void Mechanism::fit(MechanismState& s) const {
   compute_Phi_q(s);
   s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
   s.reduced_mass.plan(s.dependent_block);
+  find_columns(s);
   s.partition_version = partition_version_;
   s.factored = false;
   s.velocities_set = false;
   s.mass_factored = false;
+}
+
+void Mechanism::find_columns(MechanismState& s) const {
+  s.columns.assign(model_.bodies.size(), {freedom(), 0});
+  const auto reach = [&](int coordinate, int k) {
+    ColumnRange& range = s.columns[coordinate / 3];
+    range.first = std::min(range.first, k);
+    range.last = std::max(range.last, k + 1);
+  };
+  for (int k = 0; k < freedom(); ++k) reach(partition_.independent[k], k);
+  const DependentBlock& block = s.dependent_block;
+  for (int i = 0; i < block.size(); ++i)
+    for (const int* k = block.sensitivity_begin(i); k != block.sensitivity_end(i); ++k) reach(block.coordinate(i), *k);
+  for (ColumnRange& range : s.columns) range.first = std::min(range.first, range.last);
 }
 
 /// Factors the dependent block at the current frames, in a new order when the old one has worn out.
@@ -116,6 +131,7 @@ void Mechanism::factor(MechanismState& s) const {
     s.velocities_set = false;
     s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
     s.reduced_mass.plan(s.dependent_block);
+    find_columns(s);
     s.B.setZero();
     for (int k = 0; k < freedom(); ++k) s.B(partition_.independent[k], k) = 1.0;
   }

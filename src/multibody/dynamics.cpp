@@ -114,13 +114,4 @@ void Mechanism::recover(MechanismState& s, const Eigen::VectorXd& Q, const doubl
   s.dependent_block.solve_transposed(s.work, s.lambda);
 }
 
-void Mechanism::compute_lambda_curvature(MechanismState& s) const {
-  s.lambda_curvature.setZero();
-  JointCurvature K;
-  for (const JointGeometry& joint : joints_) {
-    joint_curvature(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row, K);
-    add_pair(joint.first, joint.second, K, s.lambda_curvature);
-  }
-}
-
 }  // namespace traverse::multibody

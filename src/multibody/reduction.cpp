@@ -235,7 +235,7 @@ void DependentBlock::expand(const double* p, Eigen::VectorXd& x) const {
   }
 }
 
-void DependentBlock::project(const Eigen::VectorXd& r, Eigen::VectorXd& reduced) const {
+void DependentBlock::project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced) const {
   const int f = freedom();
   for (int k = 0; k < f; ++k) reduced[k] = r[independent_[k]];
   for (int i = 0; i < size(); ++i) {

@@ -72,7 +72,7 @@ class Fleet {
 
   /// Positions, velocities and forces of all vehicles from p and p' (freedom values each). False where a mechanism
   /// cannot be assembled, which is stuck() then.
-  bool set(double t, const double* p, const double* pd, bool derivatives);
+  bool set(double t, const double* p, const double* pd);
   /// The vehicle that could not be assembled when set() failed last; null when it did not.
   const MovingVehicle* stuck() const { return stuck_ < 0 ? nullptr : &vehicles[static_cast<std::size_t>(stuck_)]; }
   /// p and p' (freedom values each) of the vehicles' q and q' at t.

@@ -29,6 +29,11 @@ struct Instant {
   Sensitivity sensitivity;     // B
 };
 
+/// Columns [first, last) of a matrix.
+struct ColumnRange {
+  int first = 0, last = 0;
+};
+
 /// Everything that changes with time for one mechanism; sized once by Mechanism::make_state.
 struct MechanismState {
   double time = 0.0;
@@ -37,16 +42,14 @@ struct MechanismState {
   Eigen::VectorXd b;                  // n: q' = B p' + b
   Eigen::VectorXd d;                  // n: q'' = B p'' + d
   Eigen::VectorXd g;                  // n: gravity, springs, actuators
-  Eigen::MatrixXd g_q;                // n x n: dg/dq
-  Eigen::MatrixXd g_qd;               // n x n: dg/dq'
   Eigen::VectorXd qdd;                // n
   Eigen::VectorXd lambda;             // one a row of Phi; 0 for dropped rows
-  Eigen::MatrixXd lambda_curvature;   // n x n: d(Phi_q^T lambda)/dq at fixed lambda
   Eigen::MatrixXd Phi_q;              // rows of Phi x n, redundant rows included
   Eigen::VectorXd Phi, gamma, Phi_t;  // one a row of Phi
 
   // workspaces of the implementation
   std::vector<Frame> frames;  // ground first, then the bodies: see Mechanism
+  std::vector<ColumnRange> columns;  // of B that a body's rows reach into; one a body
   DependentBlock dependent_block;
   ReducedMass reduced_mass;
   Instant accepted;            // the last accepted instant
@@ -116,8 +119,8 @@ class Mechanism {
   /// With positions set: q' from p', and B, b, d.
   void set_velocities(MechanismState& s, double t, const double* pd) const;
 
-  /// With positions and velocities set: g, and when asked g_q and g_qd.
-  void compute_forces(MechanismState& s, bool derivatives) const;
+  /// With positions and velocities set: g.
+  void compute_forces(MechanismState& s) const;
 
   /// p'' from the projected equations with external forces Q (n); also q'' and lambda.
   void accelerations(MechanismState& s, const Eigen::VectorXd& Q, double* pdd) const;
@@ -125,8 +128,9 @@ class Mechanism {
   /// q'' from a given p'', and lambda from the dependent rows of the equations of motion.
   void recover(MechanismState& s, const Eigen::VectorXd& Q, const double* pdd) const;
 
-  /// d(Phi_q^T lambda)/dq for the current q and lambda into s.lambda_curvature.
-  void compute_lambda_curvature(MechanismState& s) const;
+  /// (by_q dg/dq + by_qd dg/dq' + by_lambda d(Phi_q^T lambda)/dq) B into product (n x f), at fixed lambda.
+  void multiply_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda,
+                        Eigen::MatrixXd& product) const;
 
   /// Reaction of joint j on its second body: fx, fy, moment about the joint's point as it moves with that body (for
   /// `distance`: about `to`). Rows dropped as redundant carry nothing.
@@ -146,6 +150,7 @@ class Mechanism {
   void find_pattern();
 
   void fit(MechanismState& s) const;
+  void find_columns(MechanismState& s) const;
   void place_frames(MechanismState& s) const;
   void move_frames(MechanismState& s) const;
   void compute_Phi(MechanismState& s) const;
@@ -158,7 +163,6 @@ class Mechanism {
   void predict(MechanismState& s, double t, const double* p) const;
   void velocities_at(MechanismState& s, double t, const double* pd) const;
   bool interpolate_velocities(MechanismState& s, double t, const double* pd) const;
-  void compute_force_derivatives(MechanismState& s) const;
 
   struct Choice {
     Partition partition;

@@ -56,7 +56,7 @@ class DependentBlock {
   /// x_p = p and x_u = x_u + sensitivity * p.
   void expand(const double* p, Eigen::VectorXd& x) const;
   /// The projection B^T r.
-  void project(const Eigen::VectorXd& r, Eigen::VectorXd& reduced) const;
+  void project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced) const;
   /// Writes the sensitivity into the dependent rows of B (n x f); the rest of B is left alone.
   void scatter(Eigen::MatrixXd& B) const;
   /// The largest scaled sensitivity.
