@@ -312,6 +312,17 @@ TEST(SceneTrack, Profiles) {
   const Scene rough = scene_with({{"track_profile", "iso8608_B"}, {"train_positions", "-20"}});
   EXPECT_EQ(rough.profile.at(-19.5).value, 0.0);
   EXPECT_NE(rough.profile.at(5.0).value, 0.0);
+  for (const char* name : {"german_low", "german_high", "fra_1", "fra_6"}) {
+    const Scene rails = scene_with({{"track_profile", name}, {"train_positions", "-20"}});
+    EXPECT_EQ(rails.profile.at(-19.5).value, 0.0);
+    EXPECT_NE(rails.profile.at(5.0).value, 0.0);
+    const Scene short_waves = scene_with({{"track_profile", name}, {"track_wavelengths", "1, 3"}});
+    EXPECT_LT(std::abs(short_waves.profile.at(55.0).value), 0.01);
+    EXPECT_NE(short_waves.profile.at(55.0).value, scene_with({{"track_profile", name}}).profile.at(55.0).value);
+  }
+  EXPECT_PRED2(contains, refused_with("track_profile", "fra_7"), "fra_1 to fra_6");
+  EXPECT_PRED2(contains, refused_with("track_profile", "german_medium"), "german_low, german_high");
+  EXPECT_PRED2(any_contains, scene_with({{"track_wavelengths", "1, 3"}}).notes, "track_wavelengths has no effect");
   EXPECT_PRED2(any_contains, scene_with({{"track_bump_start", "10"}}).notes, "track_bump_start has no effect");
   EXPECT_PRED2(contains, refused_with("track_profile", "iso8608_F"), "iso8608_A to iso8608_E");
   EXPECT_PRED2(contains, refused_with("track_profile", "bumpy"), "allowed: none, bump");
