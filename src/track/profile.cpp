@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -178,6 +179,11 @@ Height waves_at(const std::vector<double>& amplitude, const std::vector<double>&
 }
 
 }  // namespace
+
+double Profile::shortest_wave() const {
+  if (kind_ == Kind::bump) return length_;
+  return kind_ == Kind::waves ? 1.0 / frequency_.back() : std::numeric_limits<double>::infinity();
+}
 
 Height Profile::at(double x) const {
   switch (kind_) {

@@ -302,6 +302,29 @@ TEST(SceneLoad, ForcesAndRefusals) {
   EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: 1, speed: 0}\n"), "load_speed is 0");
 }
 
+TEST(SceneVehicle, WheelsOutOfRound) {
+  const auto shape = [](std::initializer_list<std::pair<std::string, std::string>> values) {
+    return scene_with(values).vehicles[0].wheels[0].shape;
+  };
+  EXPECT_TRUE(shape({}).round());
+  EXPECT_DOUBLE_EQ(shape({{"vehicle_car_wheel_flat_length", "0.05"}}).flat_length, 0.05);
+  EXPECT_DOUBLE_EQ(shape({{"vehicle_car_wheel_flat_length", "0.05"}}).flat_angle, std::acos(-1.0));
+  const track::WheelShape polygon =
+      shape({{"vehicle_car_wheel_polygon_order", "18"}, {"vehicle_car_wheel_polygon_amplitude", "2e-5"}});
+  EXPECT_EQ(polygon.polygon_order, 18);
+  EXPECT_DOUBLE_EQ(polygon.polygon_amplitude, 2e-5);
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_flat_length", "0.5"), "the wheel's radius");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_flat_angle", "1"), "needs vehicle_car_wheel_flat_length");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_polygon_order", "3"), "polygon_amplitude: missing");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_polygon_amplitude", "1e-5"), "polygon_order: missing");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_polygon_phase", "1"), "needs vehicle_car_wheel_polygon_order");
+  EXPECT_PRED2(
+      contains, message_of([] {
+        scene_with({{"vehicle_car_wheel_polygon_order", "10"}, {"vehicle_car_wheel_polygon_amplitude", "5e-3"}});
+      }),
+      "hollow; allowed: below 0.0046 m");
+}
+
 TEST(SceneTrack, Profiles) {
   EXPECT_TRUE(scene_with({}).profile.level());
   const Scene bump = scene_with({{"track_profile", "bump"},

@@ -39,6 +39,8 @@ class Profile {
   /// Upper bound of |curvature| (1/m; for roughness six standard deviations of it): a wheel of radius R needs 1/R above
   /// it to touch at one point only.
   double greatest_curvature() const { return greatest_curvature_; }
+  /// Length of the bump or of the shortest wave of roughness, m; infinite for level tracks and tables.
+  double shortest_wave() const;
 
  private:
   enum class Kind { level, bump, table, waves };
