@@ -10,6 +10,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 // Within this part of its radius from a kink a wheel may touch on either side of it.
 constexpr double reach = 0.1;
+constexpr double free_to_turn = 1e-9;  // m: arm of a joint about the wheel's centre
 
 base::TimeFunction frozen_function(const base::TimeFunction& f) { return {f.value(0.0), 0.0}; }
 
@@ -81,6 +82,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       wheels.push_back(c);
     }
   }
+  start_rolling();
 }
 
 Eigen::Vector3d Fleet::coordinates(const WheelContact& c) const {
@@ -89,6 +91,34 @@ Eigen::Vector3d Fleet::coordinates(const WheelContact& c) const {
 
 Eigen::Vector3d Fleet::velocities(const WheelContact& c) const {
   return vehicles[c.vehicle].state.qd.segment<3>(3 * body(c));
+}
+
+bool Fleet::held(const WheelContact& c) const {
+  const Eigen::MatrixXd& Phi_q = vehicles[c.vehicle].state.Phi_q;
+  return Phi_q.rows() > 0 && Phi_q.col(3 * body(c) + 2).lpNorm<Eigen::Infinity>() > free_to_turn;
+}
+
+void Fleet::start_rolling() {
+  for (WheelContact& c : wheels) {
+    c.turns = !frozen_ && !held(c) && (wheel(c).law.friction > 0.0 || velocities(c).z() != 0.0);
+    c.home = c.turns ? coordinates(c).z() : coordinates(c).x();
+  }
+}
+
+double Fleet::rolled_angle(const WheelContact& c) const {
+  return c.turns ? c.home - coordinates(c).z() : (coordinates(c).x() - c.home) / wheel(c).radius;
+}
+
+// What a wheel out of round adds to its contact: alpha = R + dr(a) - distance, with a of the body's angle or of x.
+void Fleet::add_shape(WheelContact& c) const {
+  const Wheel& w = wheel(c);
+  if (w.shape.round()) return;
+  const track::RadiusGain gain = track::radius_gain(w.shape, w.radius, rolled_angle(c));
+  const int along = c.turns ? 2 : 0;
+  const double slope = c.turns ? -gain.slope : gain.slope / w.radius;
+  c.touch.kinematics.penetration += gain.value;
+  c.touch.kinematics.penetration_rate += slope * velocities(c)[along];
+  c.touch.normal_on_body[along] += slope;
 }
 
 std::vector<std::string> Fleet::partition(double t) {
@@ -249,6 +279,7 @@ bool Fleet::touch(int per_node, const double* v, const double* w) {
       c.active = i;
       c.touch = candidate;
     }
+    add_shape(c);
   }
   return true;
 }

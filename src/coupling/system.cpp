@@ -38,6 +38,7 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
   fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
                  &input_.profile, surface_height());
   fleet_.partition(0.0);
+  fleet_.start_rolling();
   on_beam_.assign(input_.load.forces.size(), 0);
   begin_step(0.0, 0.0);
   note_foundation();

@@ -9,7 +9,6 @@
 namespace traverse::coupling {
 namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double free_to_turn = 1e-9;   // m: arm of a joint about the wheel's centre
 constexpr int static_positions = 2000;  // of the train along its way, for the static peak
 }  // namespace
 
@@ -27,6 +26,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
       vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
   if (equilibrium) let_wheels_roll();
   std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
+  fleet_.start_rolling();
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   note_weights();
   return notes;
@@ -37,9 +37,7 @@ void System::let_wheels_roll() {
   for (const WheelContact& c : fleet_.wheels) {
     MovingVehicle& vehicle = fleet_.vehicles[c.vehicle];
     const int turn = 3 * fleet_.body(c) + 2;
-    const Eigen::MatrixXd& Phi_q = vehicle.state.Phi_q;
-    const bool held = Phi_q.rows() > 0 && Phi_q.col(turn).lpNorm<Eigen::Infinity>() > free_to_turn;
-    if (held || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
+    if (fleet_.held(c) || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
     vehicle.state.qd[turn] = -fleet_.velocities(c).x() / (fleet_.wheel(c).radius - c.kinematics.penetration);
   }
 }
@@ -94,6 +92,16 @@ void System::note_weights() {
     weights_.emplace_back(input_.load.positions[i], input_.load.forces[i]);
 }
 
+// When the ends of a wheel's flat meet the rail, where it rolls as its x is prescribed.
+void System::add_flats(const WheelContact& c, double end, std::vector<double>& events) const {
+  const Wheel& wheel = fleet_.wheel(c);
+  if (c.turns || input_.train.speed <= 0.0) return;
+  const double turning = input_.train.speed / wheel.radius;
+  std::optional<double> angle = track::next_flat_end(wheel.shape, wheel.radius, 0.0);
+  for (; angle && *angle < turning * end; angle = track::next_flat_end(wheel.shape, wheel.radius, *angle))
+    events.push_back(*angle / turning);
+}
+
 std::vector<double> System::known_events(double end) const {
   std::vector<double> kinks = input_.profile.kinks();
   if (beam_ != nullptr) {
@@ -109,7 +117,10 @@ std::vector<double> System::known_events(double end) const {
     }
   };
   if (input_.train.drive == Drive::constant)
-    for (const WheelContact& c : fleet_.wheels) add(fleet_.coordinates(c).x(), input_.train.speed);
+    for (const WheelContact& c : fleet_.wheels) {
+      add(fleet_.coordinates(c).x(), input_.train.speed);
+      add_flats(c, end, events);
+    }
   for (double x : input_.load.positions) add(x, input_.load.speed);
   for (const MovingVehicle& vehicle : fleet_.vehicles)
     for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)

@@ -39,6 +39,8 @@ struct WheelContact {
   contact::Kinematics kinematics;
   contact::Force force;
   double approach_speed = 0.0;  // of the impact now going on, m/s
+  bool turns = false;           // its body turns with it; else it has rolled by the distance gone over its radius
+  double home = 0.0;            // angle (rad) or x (m) where it starts to roll
   int slot() const { return slots[active]; }
 };
 
@@ -58,6 +60,13 @@ class Fleet {
   int body(const WheelContact& c) const { return wheel(c).body; }
   Eigen::Vector3d coordinates(const WheelContact& c) const;
   Eigen::Vector3d velocities(const WheelContact& c) const;
+  /// Does a joint or driver hold the angle of the wheel's body? With a partition chosen.
+  bool held(const WheelContact& c) const;
+  /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free
+  /// to turn, and does (by friction, or as its given speed says), is where its body's angle says; any other one rolls
+  /// without sliding, however its body is held.
+  void start_rolling();
+  double rolled_angle(const WheelContact& c) const;
 
   /// Chooses every vehicle's independent coordinates at t and numbers them. From then on p counts from where the
   /// vehicles are now, moving on with the train and rolling on: small numbers, so that velocities found as shift times
@@ -98,6 +107,7 @@ class Fleet {
  private:
   void number(double t);
   void add_patch(WheelContact& c, int element, double low, double high);
+  void add_shape(WheelContact& c) const;
 
   const beam::Mesh* mesh_ = nullptr;
   const track::Profile* profile_ = nullptr;

@@ -95,7 +95,8 @@ class System {
   /// Why the last stage could not be solved, and what to do about it.
   std::string trouble() const;
 
-  /// Times in (0, end) at which a wheel or force passes a kink of the running surface (for a prescribed speed only), or
+  /// Times in (0, end) at which a wheel or force passes a kink of the running surface or the end of its own
+  /// flat (for a prescribed speed only), or
   /// an actuator's table has a kink.
   std::vector<double> known_events(double end) const;
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
@@ -113,6 +114,7 @@ class System {
   void find_equilibrium(double* v);
   void let_wheels_roll();
   void settle(bool loaded, Part part);
+  void add_flats(const WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
   void note_weights();
   std::vector<double> influence_line(double station);
