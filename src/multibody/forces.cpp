@@ -7,7 +7,7 @@ void Mechanism::compute_forces(MechanismState& s, bool derivatives) const {
   s.g.setZero();
   for (int i = 1; i < s.g.size(); i += 3) s.g[i] = -mass_[i] * model_.gravity;
   for (const SpringGeometry& spring : springs_) {
-    const PairForce force = spring_force(spring, frame(s, spring.first), frame(s, spring.second));
+    const PairForce force = multibody::spring_force(spring, frame(s, spring.first), frame(s, spring.second));
     if (spring.first != ground) s.g.segment<3>(3 * spring.first) += force.head<3>();
     if (spring.second != ground) s.g.segment<3>(3 * spring.second) += force.tail<3>();
   }
@@ -36,15 +36,26 @@ void Mechanism::compute_force_derivatives(MechanismState& s) const {
     add_pair(spring.first, spring.second, g_qd, s.g_qd);
   }
   for (const TorsionGeometry& spring : torsion_springs_) {
+    const TorsionTangent tangent = torsion_tangent(spring, frame(s, spring.first), frame(s, spring.second));
     g_q.setZero();
-    g_q(2, 2) = g_q(5, 5) = -spring.stiffness;
-    g_q(2, 5) = g_q(5, 2) = spring.stiffness;
+    g_q(2, 2) = g_q(5, 5) = -tangent.stiffness;
+    g_q(2, 5) = g_q(5, 2) = tangent.stiffness;
     g_qd.setZero();
-    g_qd(2, 2) = g_qd(5, 5) = -spring.damping;
-    g_qd(2, 5) = g_qd(5, 2) = spring.damping;
+    g_qd(2, 2) = g_qd(5, 5) = -tangent.damping;
+    g_qd(2, 5) = g_qd(5, 2) = tangent.damping;
     add_pair(spring.first, spring.second, g_q, s.g_q);
     add_pair(spring.first, spring.second, g_qd, s.g_qd);
   }
+}
+
+double Mechanism::spring_force(const MechanismState& s, int k) const {
+  const SpringGeometry& spring = springs_[k];
+  return spring_tension(spring, frame(s, spring.first), frame(s, spring.second));
+}
+
+double Mechanism::torsion_spring_moment(const MechanismState& s, int k) const {
+  const TorsionGeometry& spring = torsion_springs_[k];
+  return torsion_moment(spring, frame(s, spring.first), frame(s, spring.second));
 }
 
 MechanismEnergy Mechanism::energy(const MechanismState& s) const {
