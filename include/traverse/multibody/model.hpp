@@ -72,10 +72,10 @@ struct Spring {
 struct TorsionSpring {
   std::string name;
   std::array<int, 2> bodies = {ground, ground};
-  double stiffness = 0.0;            // N m/rad
-  double damping = 0.0;              // N m s/rad
-  std::optional<double> free_angle;  // rad; left out: the angle at t = 0
-  std::optional<ForceLaw> law;       // instead of stiffness and damping, over the twist
+  double stiffness = 0.0;                      // N m/rad
+  double damping = 0.0;                        // N m s/rad
+  std::optional<double> free_angle;            // rad; left out: the angle at t = 0
+  std::optional<ForceLaw> law = std::nullopt;  // instead of stiffness and damping, over the twist
 };
 
 /// A force at the centre of mass and a moment over time on `body`, the opposite on `reaction_body`
