@@ -161,6 +161,9 @@ results::Layout layout_of(const Scene& scene, const coupling::System& system, co
     for (const multibody::Body& b : vehicle.mechanism.model().bodies) names.bodies.push_back(b.name);
     for (const coupling::Wheel& w : vehicle.wheels) names.wheels.push_back(w.name);
     for (const multibody::Joint& j : vehicle.mechanism.model().joints) names.joints.push_back(j.name);
+    for (const multibody::Spring& s : vehicle.mechanism.model().springs) names.springs.push_back(s.name);
+    for (const multibody::TorsionSpring& s : vehicle.mechanism.model().torsion_springs)
+      names.torsion_springs.push_back(s.name);
     layout.vehicles.push_back(std::move(names));
   }
   return layout;

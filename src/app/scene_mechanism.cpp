@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "scene_parts.hpp"
+#include "traverse/base/error.hpp"
 #include "traverse/options/data_file.hpp"
 
 namespace traverse::app {
@@ -83,6 +84,9 @@ class VehicleReader {
 
   void body(const std::string& name);
   void joint(const std::string& name);
+  multibody::Polyline polyline(std::string_view field) const;
+  std::optional<multibody::ForceLaw> force_law() const;
+  void check_spring_given(std::string_view kind) const;
   void spring(const std::string& name);
   void torsion_spring(const std::string& name);
   void wheel(const std::string& name);
@@ -138,6 +142,44 @@ void VehicleReader::joint(const std::string& name) {
   vehicle_.mechanism.joints.push_back(j);
 }
 
+multibody::Polyline VehicleReader::polyline(std::string_view field) const {
+  auto columns = options::read_columns(o_.path(key(field)), 2, 2);
+  try {
+    return {std::move(columns[0]), std::move(columns[1])};
+  } catch (const InputError& error) {
+    o_.refuse(key(field), error.what());
+  }
+}
+
+/// Nothing for a linear spring.
+std::optional<multibody::ForceLaw> VehicleReader::force_law() const {
+  const std::string side = o_.choice(key("side"));
+  multibody::ForceLaw law;
+  law.gap = number("gap");
+  law.side = side == "tension"       ? multibody::Side::tension
+             : side == "compression" ? multibody::Side::compression
+                                     : multibody::Side::both;
+  if (!law.lets_go() && !has("table") && !has("damper_table")) return {};
+  for (const auto& [table, constant] : {std::pair("table", "stiffness"), std::pair("damper_table", "damping")}) {
+    if (has(table) && has(constant)) o_.refuse(key(table), fmt::format("give either {} or {}", table, key(constant)));
+  }
+  law.elastic = has("table") ? polyline("table") : multibody::Polyline::line(number("stiffness"));
+  law.damper = has("damper_table") ? polyline("damper_table") : multibody::Polyline::line(number("damping"));
+  if (const std::string gains = law.damper.opposing(); !gains.empty())
+    o_.refuse(key("damper_table"), "a damper takes energy, its force must have the sign of the rate; " + gains);
+  if (const std::string pushes = law.lets_go() ? law.elastic.opposing() : ""; !pushes.empty())
+    o_.refuse(key("table"), "with a gap or a side the force must have the sign of the elongation; " + pushes);
+  return law;
+}
+
+void VehicleReader::check_spring_given(std::string_view kind) const {
+  for (const char* field : {"stiffness", "damping", "table", "damper_table", "preload"}) {
+    if (std::string_view(field) == "preload" && kind != "spring") continue;
+    if (has(field)) return;
+  }
+  o_.refuse(key("stiffness"), fmt::format("missing: a {} needs a stiffness, a damping or a table", kind));
+}
+
 void VehicleReader::spring(const std::string& name) {
   multibody::Spring s;
   s.name = name;
@@ -145,14 +187,18 @@ void VehicleReader::spring(const std::string& name) {
   s.from = vector("from");
   s.to = vector("to");
   check_apart(s.from, s.to);
-  s.stiffness = number("stiffness");
-  s.damping = number("damping");
-  if (!has("stiffness") && !has("damping") && !has("preload")) {
-    o_.refuse(key("stiffness"), "missing: a spring needs a stiffness or a damping");
+  check_spring_given("spring");
+  s.law = force_law();
+  if (!s.law) {
+    s.stiffness = number("stiffness");
+    s.damping = number("damping");
   }
   s.free_length = o_.optional_number(key("free_length"));
   s.preload = o_.optional_number(key("preload"));
   if (s.free_length && s.preload) o_.refuse(key("preload"), "give either a preload or " + key("free_length"));
+  if (s.law && s.preload && !s.law->elongation_at(*s.preload)) {
+    o_.refuse(key("preload"), "allowed: a force that the spring has at one elongation, or " + key("free_length"));
+  }
   vehicle_.mechanism.springs.push_back(s);
 }
 
@@ -160,10 +206,11 @@ void VehicleReader::torsion_spring(const std::string& name) {
   multibody::TorsionSpring s;
   s.name = name;
   s.bodies = two_bodies();
-  s.stiffness = number("stiffness");
-  s.damping = number("damping");
-  if (!has("stiffness") && !has("damping")) {
-    o_.refuse(key("stiffness"), "missing: a torsion spring needs a stiffness or a damping");
+  check_spring_given("torsion spring");
+  s.law = force_law();
+  if (!s.law) {
+    s.stiffness = number("stiffness");
+    s.damping = number("damping");
   }
   s.free_angle = o_.optional_number(key("free_angle"));
   vehicle_.mechanism.torsion_springs.push_back(s);

@@ -73,6 +73,12 @@ void Watch::fill_vehicles(results::Sample& sample) const {
       const Eigen::Vector3d r = vehicle.mechanism.joint_reaction(vehicle.state, static_cast<int>(j));
       out.joints[j] = {r.x(), r.y(), r.z()};
     }
+    out.springs.resize(model.springs.size());
+    for (std::size_t i = 0; i < model.springs.size(); ++i)
+      out.springs[i] = vehicle.mechanism.spring_force(vehicle.state, static_cast<int>(i));
+    out.torsion_springs.resize(model.torsion_springs.size());
+    for (std::size_t i = 0; i < model.torsion_springs.size(); ++i)
+      out.torsion_springs[i] = vehicle.mechanism.torsion_spring_moment(vehicle.state, static_cast<int>(i));
   }
 }
 

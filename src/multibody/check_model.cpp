@@ -92,6 +92,15 @@ void check_driver(const Part& part, const Driver& driver) {
   part.finite("rate", driver.value.rate(0.0));
 }
 
+void check_law(const Part& part, const ForceLaw& law, double stiffness, double damping) {
+  if (stiffness != 0.0 || damping != 0.0) part.fail("give a law or stiffness and damping, not both");
+  part.not_negative("gap", law.gap);
+  const std::string gains = law.damper.opposing();
+  if (!gains.empty()) part.fail("damper table: force and rate must not have opposite signs, " + gains);
+  const std::string pushes = law.lets_go() ? law.elastic.opposing() : std::string();
+  if (!pushes.empty()) part.fail("table: with a gap or a side force and elongation must not differ in sign, " + pushes);
+}
+
 void check_spring(const Part& part, const Spring& spring) {
   part.pair(spring.bodies);
   part.finite_vector("from", spring.from);
@@ -101,6 +110,11 @@ void check_spring(const Part& part, const Spring& spring) {
   if (spring.free_length && spring.preload) part.fail("give free_length or preload, not both");
   if (spring.free_length) part.not_negative("free_length", *spring.free_length);
   if (spring.preload) part.finite("preload", *spring.preload);
+  if (!spring.law) return;
+  check_law(part, *spring.law, spring.stiffness, spring.damping);
+  if (spring.preload && !spring.law->elongation_at(*spring.preload)) {
+    part.fail("preload: there is no length at which alone the law gives this force; give free_length");
+  }
 }
 
 void check_torsion_spring(const Part& part, const TorsionSpring& spring) {
@@ -108,6 +122,7 @@ void check_torsion_spring(const Part& part, const TorsionSpring& spring) {
   part.not_negative("stiffness", spring.stiffness);
   part.not_negative("damping", spring.damping);
   if (spring.free_angle) part.finite("free_angle", *spring.free_angle);
+  if (spring.law) check_law(part, *spring.law, spring.stiffness, spring.damping);
 }
 
 void check_actuator(const Part& part, const Actuator& actuator) {

@@ -17,8 +17,10 @@ struct Line {
   Vector2d d, rate;         // from the first to the second point, and its time derivative
   double length;            // m
   Vector2d u;               // unit vector along d, zero for a spring shrunk to a point
-  double elastic;           // N, without the damper
+  double elastic;           // N, without the damper; meaningless with a law
   double force_per_length;  // N/m: tension / length, its limit for a zero-length spring
+  double stiffness;         // N/m: tangents of the tension
+  double damping;           // N s/m
   Line(const SpringGeometry& s, const Frame& first, const Frame& second)
       : a1(first.to_global(s.first_arm)),
         a2(second.to_global(s.second_arm)),
@@ -26,7 +28,13 @@ struct Line {
         rate(second.velocity_at(a2) - first.velocity_at(a1)),
         length(d.norm()),
         u(length > shortest ? Vector2d(d / length) : Vector2d::Zero()),
-        elastic(s.preload + s.stiffness * (length - s.reference_length)) {
+        elastic(s.preload + s.stiffness * (length - s.reference_length)),
+        stiffness(s.stiffness),
+        damping(s.damping) {
+    if (s.law != nullptr) [[unlikely]] {
+      obey(s);
+      return;
+    }
     const bool zero_length_spring = s.preload == 0.0 && s.reference_length <= shortest;
     if (length > shortest) {
       force_per_length = (elastic + s.damping * u.dot(rate)) / length;
@@ -34,8 +42,31 @@ struct Line {
       force_per_length = zero_length_spring ? s.stiffness : 0.0;
     }
   }
+  /// Tension and tangents of a spring with a law.
+  void obey(const SpringGeometry& s) {
+    const Tension t = tension(*s.law, length - s.reference_length, u.dot(rate));
+    stiffness = t.by_elongation;
+    damping = t.by_rate;
+    if (length > shortest) {
+      force_per_length = t.tension / length;
+    } else {
+      force_per_length = s.reference_length <= shortest && t.tension == 0.0 ? stiffness : 0.0;
+    }
+  }
   Vector2d force() const { return force_per_length * d; }
 };
+
+double twist_of(const TorsionGeometry& s, const Frame& first, const Frame& second) {
+  return second.angle - first.angle - s.free_angle;
+}
+
+Tension torsion_law(const TorsionGeometry& s, const Frame& first, const Frame& second) {
+  return tension(*s.law, twist_of(s, first, second), second.omega - first.omega);
+}
+
+std::shared_ptr<const ForceLaw> shared(const std::optional<ForceLaw>& law) {
+  return law ? std::make_shared<const ForceLaw>(*law) : nullptr;
+}
 
 }  // namespace
 
@@ -48,13 +79,22 @@ SpringGeometry spring_geometry(const Spring& spring, const Frame& first, const F
   s.stiffness = spring.stiffness;
   s.damping = spring.damping;
   s.reference_length = spring.free_length.value_or((spring.to - spring.from).norm());
-  s.preload = spring.preload.value_or(0.0);
+  if (spring.law) {
+    s.law = shared(spring.law);
+    if (spring.preload) s.reference_length -= s.law->elongation_at(*spring.preload).value();
+  } else {
+    s.preload = spring.preload.value_or(0.0);
+  }
   return s;
 }
 
 TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first, const Frame& second) {
-  return {spring.bodies[0], spring.bodies[1], spring.stiffness, spring.damping,
-          spring.free_angle.value_or(second.angle - first.angle)};
+  return {spring.bodies[0],
+          spring.bodies[1],
+          spring.stiffness,
+          spring.damping,
+          spring.free_angle.value_or(second.angle - first.angle),
+          shared(spring.law)};
 }
 
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second) {
@@ -63,6 +103,11 @@ PairForce spring_force(const SpringGeometry& spring, const Frame& first, const F
   PairForce g;
   g << f, quarter_turn(line.a1).dot(f), -f, -quarter_turn(line.a2).dot(f);
   return g;
+}
+
+double spring_tension(const SpringGeometry& spring, const Frame& first, const Frame& second) {
+  const Line line(spring, first, second);
+  return line.force_per_length * line.length;
 }
 
 void spring_derivatives(const SpringGeometry& spring, const Frame& first, const Frame& second, PairMatrix& g_q,
@@ -79,10 +124,10 @@ void spring_derivatives(const SpringGeometry& spring, const Frame& first, const 
   Matrix2d f_d = line.force_per_length * (Matrix2d::Identity() - along);
   if (line.length > shortest) {
     const Vector2d u_rate = (line.rate - line.u * line.u.dot(line.rate)) / line.length;
-    f_d += line.u * (spring.stiffness * line.u + spring.damping * u_rate).transpose();
+    f_d += line.u * (line.stiffness * line.u + line.damping * u_rate).transpose();
   }
-  const PairRows f_qd = spring.damping * along * d_q;
-  const PairRows f_q = f_d * d_q + spring.damping * along * rate_q;
+  const PairRows f_qd = line.damping * along * d_q;
+  const PairRows f_q = f_d * d_q + line.damping * along * rate_q;
   g_q.noalias() = -d_q.transpose() * f_q;
   g_qd.noalias() = -d_q.transpose() * f_qd;
   const Vector2d f = line.force();
@@ -92,6 +137,7 @@ void spring_derivatives(const SpringGeometry& spring, const Frame& first, const 
 
 double spring_strain_energy(const SpringGeometry& spring, const Frame& first, const Frame& second) {
   const Line line(spring, first, second);
+  if (spring.law != nullptr) return stored_energy(*spring.law, line.length - spring.reference_length);
   if (spring.stiffness == 0.0) return spring.preload * (line.length - spring.reference_length);
   return 0.5 * line.elastic * line.elastic / spring.stiffness;
 }
@@ -99,19 +145,30 @@ double spring_strain_energy(const SpringGeometry& spring, const Frame& first, co
 double spring_dissipation(const SpringGeometry& spring, const Frame& first, const Frame& second) {
   const Line line(spring, first, second);
   const double rate = line.u.dot(line.rate);
+  if (spring.law != nullptr) return tension(*spring.law, line.length - spring.reference_length, rate).dissipation;
   return spring.damping * rate * rate;
 }
 
 double torsion_moment(const TorsionGeometry& s, const Frame& first, const Frame& second) {
-  return -s.stiffness * (second.angle - first.angle - s.free_angle) - s.damping * (second.omega - first.omega);
+  if (s.law != nullptr) [[unlikely]]
+    return -torsion_law(s, first, second).tension;
+  return -s.stiffness * twist_of(s, first, second) - s.damping * (second.omega - first.omega);
+}
+
+TorsionTangent torsion_tangent(const TorsionGeometry& s, const Frame& first, const Frame& second) {
+  if (s.law == nullptr) return {s.stiffness, s.damping};
+  const Tension t = torsion_law(s, first, second);
+  return {t.by_elongation, t.by_rate};
 }
 
 double torsion_strain_energy(const TorsionGeometry& s, const Frame& first, const Frame& second) {
-  const double twist = second.angle - first.angle - s.free_angle;
+  const double twist = twist_of(s, first, second);
+  if (s.law != nullptr) return stored_energy(*s.law, twist);
   return 0.5 * s.stiffness * twist * twist;
 }
 
 double torsion_dissipation(const TorsionGeometry& s, const Frame& first, const Frame& second) {
+  if (s.law != nullptr) return torsion_law(s, first, second).dissipation;
   const double rate = second.omega - first.omega;
   return s.damping * rate * rate;
 }

@@ -7,7 +7,7 @@ void Mechanism::compute_forces(MechanismState& s) const {
   s.g.setZero();
   for (int i = 1; i < s.g.size(); i += 3) s.g[i] = -mass_[i] * model_.gravity;
   for (const SpringGeometry& spring : springs_) {
-    const PairForce force = spring_force(spring, frame(s, spring.first), frame(s, spring.second));
+    const PairForce force = multibody::spring_force(spring, frame(s, spring.first), frame(s, spring.second));
     if (spring.first != ground) s.g.segment<3>(3 * spring.first) += force.head<3>();
     if (spring.second != ground) s.g.segment<3>(3 * spring.second) += force.tail<3>();
   }
@@ -54,7 +54,8 @@ void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by
     add_pair_times_B(spring.first, spring.second, K, s, product);
   }
   for (const TorsionGeometry& spring : torsion_springs_) {
-    const double k = by_q * spring.stiffness + by_qd * spring.damping;
+    const TorsionTangent tangent = torsion_tangent(spring, frame(s, spring.first), frame(s, spring.second));
+    const double k = by_q * tangent.stiffness + by_qd * tangent.damping;
     K.setZero();
     K(2, 2) = K(5, 5) = -k;
     K(2, 5) = K(5, 2) = k;
@@ -66,6 +67,16 @@ void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by
     K *= by_lambda;
     add_pair_times_B(joint.first, joint.second, K, s, product);
   }
+}
+
+double Mechanism::spring_force(const MechanismState& s, int k) const {
+  const SpringGeometry& spring = springs_[k];
+  return spring_tension(spring, frame(s, spring.first), frame(s, spring.second));
+}
+
+double Mechanism::torsion_spring_moment(const MechanismState& s, int k) const {
+  const TorsionGeometry& spring = torsion_springs_[k];
+  return torsion_moment(spring, frame(s, spring.first), frame(s, spring.second));
 }
 
 MechanismEnergy Mechanism::energy(const MechanismState& s) const {

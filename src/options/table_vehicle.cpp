@@ -47,6 +47,10 @@ constexpr Row spring[] = {
   {"damping", number, "Ns/m", "0", not_negative, "", 0, "damping"},
   {"free_length", number, "m", "(the distance at t = 0)", not_negative, "", 0, "length without force"},
   {"preload", number, "N", "0", any, "", 0, "force at t = 0, tension positive; instead of free_length"},
+  {"table", file, "", "", any, "", 0, "a file elongation,force instead of stiffness: m beyond the free length, N in tension; straight lines, the end ones continued"},
+  {"damper_table", file, "", "", any, "", 0, "a file rate,force instead of damping: m/s of elongation, N in tension; straight lines, the end ones continued"},
+  {"gap", number, "m", "0", not_negative, "", 0, "play: loose until longer or shorter than free by this; stiffness or table count from there"},
+  {"side", choice, "", "both", any, "both compression tension", 0, "compression: never pulls (a bump stop); tension: never pushes (a rope)"},
 };
 
 constexpr Row torsion_spring[] = {
@@ -54,6 +58,10 @@ constexpr Row torsion_spring[] = {
   {"stiffness", number, "Nm/rad", "0", not_negative, "", 0, "stiffness"},
   {"damping", number, "Nms/rad", "0", not_negative, "", 0, "damping"},
   {"free_angle", number, "rad", "(the angle at t = 0)", any, "", 0, "angle of the second body against the first without moment"},
+  {"table", file, "", "", any, "", 0, "a file twist,moment instead of stiffness: rad beyond the free angle, Nm that turns it back; straight lines, the end ones continued"},
+  {"damper_table", file, "", "", any, "", 0, "a file rate,moment instead of damping: rad/s, Nm; straight lines, the end ones continued"},
+  {"gap", number, "rad", "0", not_negative, "", 0, "play: loose until twisted by this either way; stiffness or table count from there"},
+  {"side", choice, "", "both", any, "both compression tension", 0, "compression: acts on negative twist only; tension: on positive"},
 };
 
 constexpr Row wheel[] = {

@@ -44,7 +44,8 @@ std::size_t sample_size(const Layout& layout) {
   std::size_t size = 7 + 7 * layout.probes.size() + 3 * layout.supports.size();
   for (const auto& field : layout.fields) size += field.width;
   for (const auto& vehicle : layout.vehicles) {
-    size += 9 * vehicle.bodies.size() + 3 * vehicle.wheels.size() + 3 * vehicle.joints.size();
+    size += 9 * vehicle.bodies.size() + 3 * vehicle.wheels.size() + 3 * vehicle.joints.size() + vehicle.springs.size() +
+            vehicle.torsion_springs.size();
   }
   return size;
 }
@@ -57,7 +58,10 @@ bool fits(const Sample& sample, const Layout& layout) {
   return std::equal(sample.vehicles.begin(), sample.vehicles.end(), layout.vehicles.begin(), layout.vehicles.end(),
                     [](const Sample::Vehicle& values, const Layout::VehicleNames& names) {
                       return values.bodies.size() == names.bodies.size() &&
-                             values.wheels.size() == names.wheels.size() && values.joints.size() == names.joints.size();
+                             values.wheels.size() == names.wheels.size() &&
+                             values.joints.size() == names.joints.size() &&
+                             values.springs.size() == names.springs.size() &&
+                             values.torsion_springs.size() == names.torsion_springs.size();
                     });
 }
 
@@ -191,6 +195,8 @@ void Recorder::Impl::create_series() {
       create(vehicle + wheel + "/penetration", {}, "m");
     }
     for (const auto& joint : layout.vehicles[k].joints) create(vehicle + joint + "/reaction", {3}, kReactionUnit);
+    for (const auto& spring : layout.vehicles[k].springs) create(vehicle + spring + "/force", {}, "N");
+    for (const auto& spring : layout.vehicles[k].torsion_springs) create(vehicle + spring + "/moment", {}, "N m");
   }
 }
 
@@ -229,6 +235,8 @@ void Recorder::Impl::add(const Sample& sample) {
       next++->add(wheel.penetration);
     }
     for (const auto& reaction : vehicle.joints) next++->add(reaction);
+    for (const double force : vehicle.springs) next++->add(force);
+    for (const double moment : vehicle.torsion_springs) next++->add(moment);
   }
   ++waiting;
   if (waiting >= block_rows || seconds_since(last_flush) > std::max(kLongestWait, kCostFactor * flush_cost)) flush();

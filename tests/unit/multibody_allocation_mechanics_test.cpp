@@ -25,6 +25,9 @@ TEST(Evaluation, TakesNoMemory) {
   MechanismModel model = slider_crank(0.7);
   model.bodies[0].velocity.z() = 3.0;
   model.springs = {make_spring("s", ground, 1, {6.0, 0.0}, model.bodies[1].position.head<2>(), 300.0, 3.0)};
+  model.springs.push_back(model.springs[0]);
+  model.springs[1].stiffness = model.springs[1].damping = 0.0;
+  model.springs[1].law = ForceLaw{Polyline::line(40.0), Polyline::line(2.0), 0.01, Side::both};
   Motion motion(model);
   double pdd = 0.0;
   Eigen::MatrixXd product(motion.mechanism.coordinates(), 1);

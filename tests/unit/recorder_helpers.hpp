@@ -25,7 +25,8 @@ inline Layout small_layout() {
   layout.probes = {2.5, 5.0};
   layout.supports = {0.0, 5.0, 10.0};
   layout.nodes = {0.0, 5.0, 10.0};
-  layout.vehicles = {{{"car"}, {"front_wheel", "rear_wheel"}, {"guide"}}, {{"car", "bogie"}, {}, {}}};
+  layout.vehicles = {{{"car"}, {"front_wheel", "rear_wheel"}, {"guide"}, {"spring"}, {"bar"}},
+                     {{"car", "bogie"}, {}, {}, {}, {}}};
   return layout;
 }
 
@@ -41,6 +42,8 @@ inline Sample sample_at(long i) {
   sample.vehicles[0].bodies = {{{t + 0.3, t + 0.31, t + 0.32}, {t + 0.33, t + 0.34, t + 0.35}, {t + 0.36, t, t}}};
   sample.vehicles[0].wheels = {{t + 0.4, t + 0.41, t + 0.42}, {t + 0.43, t + 0.44, t + 0.45}};
   sample.vehicles[0].joints = {{t + 0.5, t + 0.51, t + 0.52}};
+  sample.vehicles[0].springs = {t + 0.53};
+  sample.vehicles[0].torsion_springs = {t + 0.54};
   sample.vehicles[1].bodies = {{{t + 0.6, t, t}, {t, t, t}, {t, t, t}}, {{t + 0.7, t, t}, {t, t, t}, {t, t, t}}};
   sample.energy = {t + 0.8, t + 0.81, t + 0.82, t + 0.83, t + 0.84, t + 0.85};
   return sample;

@@ -90,6 +90,9 @@ TEST_F(RecorderTest, WritesEveryDatasetOfTheTable) {
   EXPECT_DOUBLE_EQ(reader.values("/vehicles/0/car/acceleration")[3 * 257], 257.36);
   EXPECT_DOUBLE_EQ(reader.values("/vehicles/1/bogie/position")[0], 0.7);
   EXPECT_EQ(reader.shape("/vehicles/0/guide/reaction"), (Shape1{rows, 3}));
+  EXPECT_EQ(reader.shape("/vehicles/0/spring/force"), (Shape1{rows}));
+  EXPECT_DOUBLE_EQ(reader.values("/vehicles/0/spring/force")[599], 599.53);
+  EXPECT_DOUBLE_EQ(reader.values("/vehicles/0/bar/moment")[599], 599.54);
   expect_ramp(reader, "/vehicles/0/front_wheel/normal_force", rows, 0.4);
   expect_ramp(reader, "/vehicles/0/front_wheel/friction_force", rows, 0.41);
   expect_ramp(reader, "/vehicles/0/rear_wheel/penetration", rows, 0.45);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "traverse/multibody/frame.hpp"
 #include "traverse/multibody/model.hpp"
@@ -12,7 +13,8 @@ namespace traverse::multibody {
 using PairForce = Eigen::Matrix<double, 6, 1>;
 using PairMatrix = Eigen::Matrix<double, 6, 6>;
 
-/// A spring in body-fixed terms: tension = preload + stiffness*(length - reference_length) + damping*rate.
+/// A spring in body-fixed terms: tension = preload + stiffness*(length - reference_length) + damping*rate, or
+/// law(length - reference_length, rate).
 struct SpringGeometry {
   int first = ground;
   int second = ground;
@@ -22,14 +24,16 @@ struct SpringGeometry {
   double damping = 0.0;                                  // N s/m
   double reference_length = 0.0;                         // m
   double preload = 0.0;                                  // N, at the reference length
+  std::shared_ptr<const ForceLaw> law;                   // null: linear
 };
 
 struct TorsionGeometry {
   int first = ground;
   int second = ground;
-  double stiffness = 0.0;   // N m/rad
-  double damping = 0.0;     // N m s/rad
-  double free_angle = 0.0;  // rad
+  double stiffness = 0.0;                         // N m/rad
+  double damping = 0.0;                           // N m s/rad
+  double free_angle = 0.0;                        // rad
+  std::shared_ptr<const ForceLaw> law = nullptr;  // null: linear
 };
 
 /// `first` and `second` are the bodies' frames at t = 0.
@@ -39,17 +43,25 @@ TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first
 /// Generalized force on both bodies. A spring shrunk to a point has no direction: it then only pulls with
 /// stiffness times displacement when it is a zero-length spring, and not at all otherwise.
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second);
+/// Tension along the spring, N, damper included.
+double spring_tension(const SpringGeometry& spring, const Frame& first, const Frame& second);
 /// Derivatives of spring_force with respect to the coordinates and to the velocities.
 void spring_derivatives(const SpringGeometry& spring, const Frame& first, const Frame& second, PairMatrix& g_q,
                         PairMatrix& g_qd);
 /// Stored energy, J: its slope over length is the elastic tension. Zero where that tension is zero; with a
-/// preload and no stiffness zero at the reference length.
+/// preload and no stiffness, and with a law, zero at the reference length.
 double spring_strain_energy(const SpringGeometry& spring, const Frame& first, const Frame& second);
 /// Power lost in the damper, W, >= 0.
 double spring_dissipation(const SpringGeometry& spring, const Frame& first, const Frame& second);
 
 /// Moment on the second body; the opposite acts on the first.
 double torsion_moment(const TorsionGeometry& spring, const Frame& first, const Frame& second);
+/// What the moment on the second body falls by with the twist and with its rate.
+struct TorsionTangent {
+  double stiffness = 0.0;  // N m/rad
+  double damping = 0.0;    // N m s/rad
+};
+TorsionTangent torsion_tangent(const TorsionGeometry& spring, const Frame& first, const Frame& second);
 double torsion_strain_energy(const TorsionGeometry& spring, const Frame& first, const Frame& second);
 double torsion_dissipation(const TorsionGeometry& spring, const Frame& first, const Frame& second);
 

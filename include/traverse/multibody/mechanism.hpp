@@ -67,7 +67,7 @@ struct MechanismState {
 /// Powers and stored energies of a mechanism in a state, J and W.
 struct MechanismEnergy {
   double kinetic = 0.0;
-  double strain = 0.0;       // springs, torsion springs (linear elements: 1/2 k e^2)
+  double strain = 0.0;       // springs, torsion springs: 1/2 k e^2, or the integral of a law
   double potential = 0.0;    // gravity
   double dissipation = 0.0;  // power lost in dampers, >= 0
   double work = 0.0;         // power of actuators and of rheonomic constraints (drivers)
@@ -137,6 +137,10 @@ class Mechanism {
   Eigen::Vector3d joint_reaction(const MechanismState& s, int j) const;
   /// Generalized force that driver k exerts on its coordinate.
   double driver_force(const MechanismState& s, int k) const;
+  /// Tension of spring k, N, damper included.
+  double spring_force(const MechanismState& s, int k) const;
+  /// Moment of torsion spring k on its second body, N m.
+  double torsion_spring_moment(const MechanismState& s, int k) const;
 
   MechanismEnergy energy(const MechanismState& s) const;
 

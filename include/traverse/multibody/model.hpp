@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "traverse/base/time_function.hpp"
+#include "traverse/multibody/force_law.hpp"
 
 namespace traverse::multibody {
 
@@ -50,9 +51,10 @@ struct Driver {
   base::TimeFunction value;
 };
 
-/// Linear spring-damper between two points: force = preload + stiffness*(length - free_length) + damping*rate,
+/// Spring-damper between two points: force = preload + stiffness*(length - free_length) + damping*rate,
 /// positive in tension. Exactly one of free_length and preload may be given; with neither, the spring is
 /// without force at t = 0's geometry. With a preload, it is the force (tension positive) at t = 0's geometry.
+/// With a law: force = law(length - free_length, rate).
 struct Spring {
   std::string name;
   std::array<int, 2> bodies = {ground, ground};
@@ -62,15 +64,18 @@ struct Spring {
   double damping = 0.0;                            // N s/m
   std::optional<double> free_length;               // m
   std::optional<double> preload;                   // N
+  std::optional<ForceLaw> law;                     // instead of stiffness and damping, over the elongation
 };
 
 /// Moment on the second body = -stiffness*(phi_2 - phi_1 - free_angle) - damping*(rate), opposite on the first.
+/// With a law: -law(phi_2 - phi_1 - free_angle, rate).
 struct TorsionSpring {
   std::string name;
   std::array<int, 2> bodies = {ground, ground};
-  double stiffness = 0.0;            // N m/rad
-  double damping = 0.0;              // N m s/rad
-  std::optional<double> free_angle;  // rad; left out: the angle at t = 0
+  double stiffness = 0.0;                      // N m/rad
+  double damping = 0.0;                        // N m s/rad
+  std::optional<double> free_angle;            // rad; left out: the angle at t = 0
+  std::optional<ForceLaw> law = std::nullopt;  // instead of stiffness and damping, over the twist
 };
 
 /// A force at the centre of mass and a moment over time on `body`, the opposite on `reaction_body`

@@ -16,7 +16,7 @@ namespace traverse::results {
 /// What the file will hold, fixed before the first sample.
 struct Layout {
   struct VehicleNames {
-    std::vector<std::string> bodies, wheels, joints;
+    std::vector<std::string> bodies, wheels, joints, springs, torsion_springs;
   };
   std::vector<double> probes;    // stations, m; empty without a beam
   std::vector<double> supports;  // stations of the span ends, m
@@ -53,6 +53,8 @@ struct Sample {
     std::vector<Body> bodies;
     std::vector<Wheel> wheels;
     std::vector<std::array<double, 3>> joints;  // reaction on the second body
+    std::vector<double> springs;                // tension, N
+    std::vector<double> torsion_springs;        // moment on the second body, N m
   };
   std::vector<Vehicle> vehicles;
   std::vector<std::vector<double>> fields;  // as in the layout
