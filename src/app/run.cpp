@@ -65,7 +65,7 @@ Dynamics damp(beam::Beam& beam, const Scene& scene, bool frequencies_wanted, std
 }
 
 coupling::SystemInput system_input(const Scene& scene) {
-  return {scene.vehicles, scene.train, scene.load, scene.profile, scene.gravity, scene.self_weight};
+  return {scene.vehicles, scene.train, scene.load, scene.profile, scene.gravity, scene.self_weight, scene.impact_steps};
 }
 
 std::string what_track(const beam::Beam& beam) {
@@ -142,8 +142,8 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
   const double period = dynamics.omega ? 2.0 * std::numbers::pi / dynamics.omega->first : 0.0;
   Plan plan{0.0, 1.0, 1.0};
   if (!still) plan = make_plan(scene, system, period, notes);
-  integrate::Stepper stepper(system,
-                             {plan.end_time, plan.time_step, plan.interval, system.known_events(plan.end_time)});
+  integrate::Stepper stepper(system, {plan.end_time, plan.time_step, plan.interval, system.known_events(plan.end_time),
+                                      scene.contact_tolerance.value_or(1e-3 * plan.time_step)});
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
                               system.fleet().vehicles.size(), system.freedom(), scene.load.forces.size()));

@@ -35,6 +35,8 @@ void read_run(const Options& o, Scene& scene) {
   scene.end_time = o.optional_number("ts_max_time");
   scene.time_step = o.optional_number("ts_dt");
   scene.mode_count = o.integer("modes_count");
+  scene.contact_tolerance = o.optional_number("contact_tolerance");
+  scene.impact_steps = o.integer("contact_impact_steps");
   scene.accuracy = o.number("accuracy");
 }
 

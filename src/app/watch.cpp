@@ -26,7 +26,6 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
     ground_.emplace(*beam);
     if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
   }
-  lost_since_.assign(system.fleet().wheels.size(), -1.0);
   summary_.least_wheel_force = std::numeric_limits<double>::infinity();
 }
 
@@ -117,19 +116,25 @@ void Watch::step(double t) {
       summary_.least_wheel_force_time = t;
       summary_.least_wheel = "vehicle " + std::to_string(c.vehicle) + ", " + fleet.wheel(c).name;
     }
-    if (c.force.normal > 0.0) {
-      if (lost_since_[i] >= 0.0) summary_.longest_loss = std::max(summary_.longest_loss, t - lost_since_[i]);
-      lost_since_[i] = -1.0;
-    } else if (lost_since_[i] < 0.0) {
-      lost_since_[i] = t;
-      ++summary_.contact_losses;
-    }
   }
 }
 
+void Watch::note_separations() {
+  const coupling::Fleet& fleet = system_.fleet();
+  std::vector<results::Separation> list;
+  for (const coupling::Separation& s : system_.separations().list()) {
+    const double duration = s.duration >= 0.0 ? s.duration : system_.separations().time() - s.start;
+    list.push_back({std::to_string(fleet.contact(s.contact).vehicle), fleet.name(s.contact), s.x, s.start, duration,
+                    s.approach_speed, s.impact_force});
+    if (s.from_start || s.contact >= static_cast<int>(fleet.wheels.size())) continue;
+    ++summary_.contact_losses;
+    summary_.longest_loss = std::max(summary_.longest_loss, duration);
+  }
+  recorder_.separations(list);
+}
+
 results::Summary Watch::finish() {
-  for (double since : lost_since_)
-    if (since >= 0.0) summary_.longest_loss = std::max(summary_.longest_loss, sample_.time - since);
+  note_separations();
   if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
   if (beam_ == nullptr) return summary_;
   int some = worst_shape_.empty() && system_.beam_unknowns() > 0 ? 0 : 1;

@@ -7,6 +7,10 @@
 namespace traverse::contact {
 namespace {
 
+// m: a stage of an implicit method that ends just where the damper comes on would have no solution if it came at once
+constexpr double damper_ramp = 1e-9;
+constexpr double slowest_approach = 1e-3;  // m/s: gentler touches are damped as this one
+
 /// k*alpha^n and its derivative at alpha > 0.
 struct Elastic {
   double force = 0.0;  // N
@@ -19,34 +23,34 @@ Elastic elastic(const Law& law, double alpha) {
   return {law.stiffness * alpha * root, 1.5 * law.stiffness * root};
 }
 
-/// Eq. 45, or Lankarani and Nikravesh's hysteresis damping, held at zero from below: no sticking.
-void normal_force(const Law& law, const Kinematics& k, double approach_speed, Force& f) {
-  if (!(k.penetration > 0.0)) return;
+/// Eq. 45, or hysteresis damping: the force and its derivatives before it is held at zero.
+Force tendency(const Law& law, const Kinematics& k, double approach_speed) {
   const auto [force, slope] = elastic(law, k.penetration);
-  double normal = force, by_penetration = slope, by_rate = 0.0;
-  if (!law.restitution) {
-    normal += law.damping * k.penetration_rate;
-    by_rate = law.damping;
+  Force f;
+  f.normal = force;
+  f.normal_by_penetration = slope;
+  if (!law.hysteresis) {
+    const double share = std::clamp(k.penetration / damper_ramp, 0.0, 1.0);
+    f.normal += share * law.damping * k.penetration_rate;
+    f.normal_by_rate = share * law.damping;
+    if (share < 1.0) f.normal_by_penetration += law.damping * k.penetration_rate / damper_ramp;
   } else if (approach_speed > 0.0) {
-    const double e = *law.restitution;
-    const double hysteresis = 0.75 * (1.0 - e * e) / approach_speed;
+    const double hysteresis = *law.hysteresis / std::max(approach_speed, slowest_approach);
     const double factor = 1.0 + hysteresis * k.penetration_rate;
-    normal = force * factor;
-    by_penetration = slope * factor;
-    by_rate = force * hysteresis;
+    f.normal = force * factor;
+    f.normal_by_penetration = slope * factor;
+    f.normal_by_rate = force * hysteresis;
   }
-  if (!(normal > 0.0)) return;
-  f.normal = normal;
-  f.normal_by_penetration = by_penetration;
-  f.normal_by_rate = by_rate;
+  return f;
 }
 
 }  // namespace
 
 Force force(const Law& law, const Kinematics& kinematics, double approach_speed) {
-  Force f;
-  normal_force(law, kinematics, approach_speed, f);
-  if (f.normal == 0.0 || law.friction == 0.0) return f;
+  if (!(kinematics.penetration > 0.0)) return {};
+  Force f = tendency(law, kinematics, approach_speed);
+  if (!(f.normal > 0.0)) return {};  // no sticking
+  if (law.friction == 0.0) return f;
   const double t = std::tanh(kinematics.sliding_speed / law.transition_speed);  // eq. 49
   const double mu = law.friction * t;
   f.tangential = mu * f.normal;
@@ -54,6 +58,15 @@ Force force(const Law& law, const Kinematics& kinematics, double approach_speed)
   f.tangential_by_rate = mu * f.normal_by_rate;
   f.tangential_by_sliding = law.friction * (1.0 - t * t) / law.transition_speed * f.normal;
   return f;
+}
+
+double normal_tendency(const Law& law, const Kinematics& kinematics, double approach_speed) {
+  return tendency(law, kinematics, approach_speed).normal;
+}
+
+double impact_duration(const Law& law, double mass, double speed) {
+  if (law.kind == LawKind::linear) return std::numbers::pi * std::sqrt(mass / law.stiffness);
+  return 2.9432750 * std::pow(1.25 * mass * speed * speed / law.stiffness, 0.4) / speed;
 }
 
 double potential(const Law& law, double penetration) {
@@ -70,12 +83,24 @@ double penetration_at_rest(const Law& law, double normal) {
   return root * root;
 }
 
-double hertz_stiffness(double radius, double young_wheel, double poisson_wheel, double young_rail,
-                       double poisson_rail) {
+double hertz_stiffness(double radius, double young_i, double poisson_i, double young_j, double poisson_j) {
   using std::numbers::pi;
-  const double h_wheel = (1.0 - poisson_wheel * poisson_wheel) / (pi * young_wheel);
-  const double h_rail = (1.0 - poisson_rail * poisson_rail) / (pi * young_rail);
-  return 4.0 / (3.0 * pi * (h_wheel + h_rail)) * std::sqrt(radius);
+  const double h_i = (1.0 - poisson_i * poisson_i) / (pi * young_i);
+  const double h_j = (1.0 - poisson_j * poisson_j) / (pi * young_j);
+  return 4.0 / (3.0 * pi * (h_i + h_j)) * std::sqrt(radius);
+}
+
+double lankarani_nikravesh_hysteresis(double e) { return 0.75 * (1.0 - e * e); }
+
+double exact_hysteresis(double e) {
+  if (e >= 1.0) return 0.0;
+  // ln((1 + d)/(1 - e d)) - (1 + e) d is below 0 at first and rises without bound towards d = 1/e
+  double low = 0.0, high = 1.0 / e;
+  for (int i = 0; i < 200; ++i) {
+    const double d = 0.5 * (low + high);
+    (std::log1p(d) - std::log1p(-e * d) < (1.0 + e) * d ? low : high) = d;
+  }
+  return low;
 }
 
 }  // namespace traverse::contact

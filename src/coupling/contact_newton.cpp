@@ -22,7 +22,7 @@ Eigen::Matrix2d tangent(const contact::Force& f, double shift) {
 }
 
 // What the linearised law gives at the geometry's kinematics, less the force at the kinematics held: per component.
-Eigen::Vector2d force_correction(const WheelContact& c) {
+Eigen::Vector2d force_correction(const Contact& c) {
   const double a = c.touch.kinematics.penetration - c.kinematics.penetration;
   const double r = c.touch.kinematics.penetration_rate - c.kinematics.penetration_rate;
   const double s = c.touch.kinematics.sliding_speed - c.kinematics.sliding_speed;
@@ -114,29 +114,32 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
   const multibody::Mechanism& mechanism = vehicle.mechanism;
   VehicleWork& w = work_[k];
   const int f = mechanism.freedom();
-  w.wheel.clear();
+  w.contact.clear();
   w.component.clear();
-  for (std::size_t i = 0; i < vehicle.wheels.size(); ++i)
-    for (int component = 0; component < (vehicle.wheels[i].law.friction > 0.0 ? 2 : 1); ++component) {
-      w.wheel.push_back(vehicle.first_wheel + static_cast<int>(i));
+  for (const int i : vehicle.touching)
+    for (int component = 0; component < (fleet.contact(i).law.friction > 0.0 ? 2 : 1); ++component) {
+      w.contact.push_back(i);
       w.component.push_back(component);
     }
-  const int rows = static_cast<int>(w.wheel.size());
+  const int rows = static_cast<int>(w.contact.size());
   w.G.resize(rows, f);
   w.D.setZero(rows, rows);
   w.correction.resize(rows);
   vehicle.Q.setZero();
   for (int i = 0; i < rows; ++i) {
-    const WheelContact& c = fleet.wheels[w.wheel[i]];
-    const int body = 3 * fleet.body(c);
-    const Eigen::Vector3d& direction = w.component[i] == 0 ? c.touch.normal_on_body : c.touch.tangent_on_body;
-    w.G.row(i).noalias() = direction.transpose() * state.B.middleRows<3>(body);
+    const Contact& c = fleet.contact(w.contact[i]);
+    const bool normal = w.component[i] == 0;
+    w.G.row(i).noalias() =
+        (normal ? c.touch.normal_on_body : c.touch.tangent_on_body).transpose() * state.B.middleRows<3>(3 * c.body);
+    if (c.other_body != multibody::ground)
+      w.G.row(i).noalias() += (normal ? c.touch.normal_on_other : c.touch.tangent_on_other).transpose() *
+                              state.B.middleRows<3>(3 * c.other_body);
     const Eigen::Matrix2d D = tangent(c.force, s.shift);
     w.D(i, i) = D(w.component[i], w.component[i]);
     if (w.component[i] == 1) w.D(i, i - 1) = D(1, 0);
     w.correction[i] = force_correction(c)[w.component[i]];
-    const double force = (w.component[i] == 0 ? c.force.normal : c.force.tangential) + w.correction[i];
-    vehicle.Q.segment<3>(body) -= force * direction;
+    const double force = (normal ? c.force.normal : c.force.tangential) + w.correction[i];
+    Fleet::add_load(c, normal ? force : 0.0, normal ? 0.0 : force, vehicle.Q);
   }
 
   const Eigen::Map<const Eigen::VectorXd> pdd(pdd_.data() + vehicle.offset, f);
@@ -189,8 +192,8 @@ bool ContactNewton::list_rows(const Fleet& fleet) {
   previous_rows_.swap(rows_);
   rows_.clear();
   for (std::size_t k = 0; k < work_.size(); ++k)
-    for (std::size_t i = 0; i < work_[k].wheel.size(); ++i) {
-      const WheelContact& c = fleet.wheels[work_[k].wheel[i]];
+    for (std::size_t i = 0; i < work_[k].contact.size(); ++i) {
+      const Contact& c = fleet.contact(work_[k].contact[i]);
       if (c.slot() >= 0) rows_.push_back({static_cast<int>(k), static_cast<int>(i), c.slot()});
     }
   return rows_ != previous_rows_;
@@ -200,7 +203,7 @@ void ContactNewton::mutual_compliance(const Fleet& fleet, const StageData& s) {
   const int n = static_cast<int>(rows_.size());
   const int m = 2 * s.per_node;
   auto direction_of = [&](const Row& row) {
-    const Touch& touch = fleet.wheels[work_[row.vehicle].wheel[row.index]].touch;
+    const Touch& touch = fleet.contact(work_[row.vehicle].contact[row.index]).touch;
     return (work_[row.vehicle].component[row.index] == 0 ? touch.normal_on_beam : touch.tangent_on_beam).data();
   };
   W_.resize(n, n);
@@ -244,16 +247,16 @@ double ContactNewton::update(Fleet& fleet, const StageData& s, double* p) {
   for (std::size_t k = 0; k < work_.size(); ++k) {
     VehicleWork& w = work_[k];
     const MovingVehicle& vehicle = fleet.vehicles[k];
-    const int rows = static_cast<int>(w.wheel.size());
+    const int rows = static_cast<int>(w.contact.size());
     if (w.R.size() > 0) change = std::max(change, w.R.lpNorm<Eigen::Infinity>() / vehicle.scale);
     w.correction.setZero(rows);  // now: displacement of the beam along the rows
     for (int i = 0; i < rows; ++i)
-      if (fleet.wheels[w.wheel[i]].slot() >= 0) w.correction[i] = du_[row++];
+      if (fleet.contact(w.contact[i]).slot() >= 0) w.correction[i] = du_[row++];
     w.f_hat += w.T * w.correction;
     w.dp -= w.Z * w.correction;
     w.correction += w.G * w.dp;
     for (int i = 0; i < rows; ++i) {
-      WheelContact& c = fleet.wheels[w.wheel[i]];
+      Contact& c = fleet.contact(w.contact[i]);
       change = std::max(change, std::abs(w.f_hat[i]) / vehicle.scale);
       if (w.component[i] == 0) {
         c.kinematics.penetration = c.touch.kinematics.penetration + w.correction[i];

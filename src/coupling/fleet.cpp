@@ -40,6 +40,15 @@ multibody::MechanismModel placed(multibody::MechanismModel model, double x, doub
   return model;
 }
 
+std::vector<contact::BodyContact> placed(std::vector<contact::BodyContact> contacts, double x) {
+  for (contact::BodyContact& c : contacts)
+    for (std::size_t i = 0; i < 2; ++i) {
+      c.centres[i].x() += x;
+      c.line[i].x() += x;
+    }
+  return contacts;
+}
+
 // The driving constraint of a train at prescribed speed: x of the vehicle's first body.
 void add_drive(multibody::MechanismModel& model, double speed) {
   model.drivers.push_back({"drive", 0, 0, base::TimeFunction(model.bodies.front().position.x(), speed)});
@@ -47,8 +56,12 @@ void add_drive(multibody::MechanismModel& model, double speed) {
 
 }  // namespace
 
-MovingVehicle::MovingVehicle(multibody::MechanismModel model, std::vector<Wheel> its_wheels)
-    : mechanism(std::move(model)), state(mechanism.make_state()), wheels(std::move(its_wheels)) {
+MovingVehicle::MovingVehicle(multibody::MechanismModel model, std::vector<Wheel> its_wheels,
+                             std::vector<contact::BodyContact> its_contacts)
+    : mechanism(std::move(model)),
+      state(mechanism.make_state()),
+      wheels(std::move(its_wheels)),
+      contacts(std::move(its_contacts)) {
   Q.setZero(mechanism.coordinates());
   double mass = 0.0;
   for (const multibody::Body& b : mechanism.model().bodies) mass += b.mass;
@@ -70,7 +83,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
     if (held && (frozen || train.drive == Drive::constant)) add_drive(model, train.speed);
     if (frozen)
       for (multibody::Driver& d : model.drivers) d.value = frozen_function(d.value);
-    vehicles.emplace_back(std::move(model), type.wheels);
+    vehicles.emplace_back(std::move(model), type.wheels, placed(type.contacts, train.positions[k]));
     MovingVehicle& vehicle = vehicles.back();
     vehicle.first_wheel = static_cast<int>(wheels.size());
     const double share = vehicle.wheels.empty() ? 0.0 : vehicle.weight / static_cast<double>(vehicle.wheels.size());
@@ -78,24 +91,55 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       WheelContact c;
       c.vehicle = static_cast<int>(k);
       c.wheel = static_cast<int>(i);
+      c.body = vehicle.wheels[i].body;
+      c.law = vehicle.wheels[i].law;
       c.kinematics.penetration = contact::penetration_at_rest(vehicle.wheels[i].law, share);
       wheels.push_back(c);
     }
+    add_pairs(static_cast<int>(k));
+  }
+  for (std::size_t k = 0; k < vehicles.size(); ++k) {
+    MovingVehicle& vehicle = vehicles[k];
+    for (int i = 0; i < contacts(); ++i)
+      if (contact(i).vehicle == static_cast<int>(k)) vehicle.touching.push_back(i);
   }
   start_rolling();
 }
 
-Eigen::Vector3d Fleet::coordinates(const WheelContact& c) const {
-  return vehicles[c.vehicle].state.q.segment<3>(3 * body(c));
+void Fleet::add_pairs(int k) {
+  MovingVehicle& vehicle = vehicles[k];
+  vehicle.first_pair = static_cast<int>(pairs.size());
+  const std::vector<multibody::Frame>& frames = vehicle.state.frames;  // the ground's first
+  for (const contact::BodyContact& contact : vehicle.contacts) {
+    PairContact c;
+    c.vehicle = k;
+    c.body = contact.bodies[0];
+    c.other_body = contact.bodies[1];
+    c.law = contact.law;
+    c.geometry = contact::pair_geometry(contact, frames[c.body + 1], frames[c.other_body + 1]);
+    pairs.push_back(c);
+  }
 }
 
-Eigen::Vector3d Fleet::velocities(const WheelContact& c) const {
-  return vehicles[c.vehicle].state.qd.segment<3>(3 * body(c));
+const std::string& Fleet::name(int i) const {
+  const std::size_t k = static_cast<std::size_t>(i);
+  if (k < wheels.size()) return wheel(wheels[k]).name;
+  const PairContact& c = pairs[k - wheels.size()];
+  const MovingVehicle& vehicle = vehicles[c.vehicle];
+  return vehicle.contacts[k - wheels.size() - static_cast<std::size_t>(vehicle.first_pair)].name;
+}
+
+Eigen::Vector3d Fleet::coordinates(const Contact& c) const {
+  return vehicles[c.vehicle].state.q.segment<3>(3 * c.body);
+}
+
+Eigen::Vector3d Fleet::velocities(const Contact& c) const {
+  return vehicles[c.vehicle].state.qd.segment<3>(3 * c.body);
 }
 
 bool Fleet::held(const WheelContact& c) const {
   const Eigen::MatrixXd& Phi_q = vehicles[c.vehicle].state.Phi_q;
-  return Phi_q.rows() > 0 && Phi_q.col(3 * body(c) + 2).lpNorm<Eigen::Infinity>() > free_to_turn;
+  return Phi_q.rows() > 0 && Phi_q.col(3 * c.body + 2).lpNorm<Eigen::Infinity>() > free_to_turn;
 }
 
 void Fleet::start_rolling() {
@@ -281,18 +325,48 @@ bool Fleet::touch(int per_node, const double* v, const double* w) {
     }
     add_shape(c);
   }
+  return std::all_of(pairs.begin(), pairs.end(), [this](PairContact& pair) { return touch(pair); });
+}
+
+bool Fleet::touch(PairContact& c) const {
+  const std::vector<multibody::Frame>& frames = vehicles[c.vehicle].state.frames;
+  contact::PairTouch pair;
+  if (!contact::touch(c.geometry, frames[c.body + 1], frames[c.other_body + 1], pair)) return false;
+  c.touch.kinematics = pair.kinematics;
+  c.touch.normal_on_body = pair.normal[0];
+  c.touch.normal_on_other = pair.normal[1];
+  c.touch.tangent_on_body = pair.tangent[0];
+  c.touch.tangent_on_other = pair.tangent[1];
+  c.point = pair.point;
   return true;
 }
 
-void Fleet::contact_forces() {
-  for (WheelContact& c : wheels) c.force = contact::force(wheel(c).law, c.kinematics, c.approach_speed);
+void Fleet::note_sides() {
+  for (PairContact& c : pairs) {
+    const std::vector<multibody::Frame>& frames = vehicles[c.vehicle].state.frames;
+    contact::note_side(c.geometry, frames[c.body + 1], frames[c.other_body + 1]);
+  }
 }
 
-void Fleet::wheel_loads() {
+void Fleet::add_load(const Contact& c, double normal, double tangential, Eigen::VectorXd& Q) {
+  Q.segment<3>(3 * c.body) -= normal * c.touch.normal_on_body + tangential * c.touch.tangent_on_body;
+  if (c.other_body == multibody::ground) return;
+  Q.segment<3>(3 * c.other_body) -= normal * c.touch.normal_on_other + tangential * c.touch.tangent_on_other;
+}
+
+void Fleet::contact_forces() {
+  for (int i = 0; i < contacts(); ++i) {
+    Contact& c = contact(i);
+    c.force = contact::force(c.law, c.kinematics, c.approach_speed);
+  }
+}
+
+void Fleet::contact_loads() {
   for (MovingVehicle& vehicle : vehicles) vehicle.Q.setZero();
-  for (const WheelContact& c : wheels)
-    vehicles[c.vehicle].Q.segment<3>(3 * body(c)) -=
-        c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
+  for (int i = 0; i < contacts(); ++i) {
+    const Contact& c = contact(i);
+    add_load(c, c.force.normal, c.force.tangential, vehicles[c.vehicle].Q);
+  }
 }
 
 void Fleet::element_loads(int per_node, std::vector<double>& loads) const {
@@ -306,12 +380,23 @@ void Fleet::element_loads(int per_node, std::vector<double>& loads) const {
   }
 }
 
+double Fleet::impact_duration(int i) {
+  const Contact& c = contact(i);
+  MovingVehicle& vehicle = vehicles[c.vehicle];
+  vehicle.Q.setZero();
+  add_load(c, -1.0, 0.0, vehicle.Q);
+  const double mass = vehicle.mechanism.effective_mass(vehicle.state, vehicle.Q);
+  return contact::impact_duration(c.law, mass, c.kinematics.penetration_rate);
+}
+
 double Fleet::contact_dissipation() const {
   double power = 0.0;
-  for (const WheelContact& c : wheels) {
-    contact::Law elastic = wheel(c).law;
+  for (int i = 0; i < contacts(); ++i) {
+    const Contact& c = contact(i);
+    if (c.released && c.force.normal == 0.0) continue;
+    contact::Law elastic = c.law;
     elastic.damping = 0.0;
-    elastic.restitution.reset();
+    elastic.hysteresis.reset();
     elastic.friction = 0.0;
     const double stored = contact::force(elastic, c.kinematics, 0.0).normal;
     power +=
@@ -322,7 +407,9 @@ double Fleet::contact_dissipation() const {
 
 double Fleet::contact_potential() const {
   double sum = 0.0;
-  for (const WheelContact& c : wheels) sum += contact::potential(wheel(c).law, c.kinematics.penetration);
+  for (int i = 0; i < contacts(); ++i)
+    if (!contact(i).released || contact(i).force.normal > 0.0)
+      sum += contact::potential(contact(i).law, contact(i).kinematics.penetration);
   return sum;
 }
 

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "traverse/beam/shape.hpp"
 
 namespace traverse::coupling {
 namespace {
 
-constexpr int most_placements = 4;     // of the wheels on elements within one stage
-constexpr double same_place = 1e-9;    // m or rad: a step's last stage is its end
+constexpr int most_placements = 4;   // of the wheels on elements within one stage
+constexpr double same_place = 1e-9;  // m or rad: a step's last stage is its end
 
 }  // namespace
 
@@ -207,25 +208,89 @@ void System::evaluate_fleet(double t, const double* y) {
     throw SolverError("a wheel has fallen below the running surface at t = " + std::to_string(t) +
                       " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too "
                       "soft");
-  for (WheelContact& c : fleet_.wheels) c.kinematics = c.touch.kinematics;
+  for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).kinematics = fleet_.contact(i).touch.kinematics;
   fleet_.contact_forces();
-  fleet_.wheel_loads();
+  fleet_.contact_loads();
   pdd_.resize(fleet_.freedom());
   for (MovingVehicle& vehicle : fleet_.vehicles)
     vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
 }
 
-bool System::accept(double t, double* y) {
+void System::arrive(double t, const double* y) {
   const int f = fleet_.freedom();
-  if (f == 0) return false;
   evaluated_.assign(p_.begin(), p_.begin() + f);
   share_coordinates(y);
   double moved = 0.0;
   for (int i = 0; i < f; ++i) moved = std::max(moved, std::abs(p_[i] - evaluated_[i]));
-  if (t != evaluated_time_ || moved > same_place || fleet_.worn()) evaluate_fleet(t, y);
-  if (!fleet_.accept(t)) return false;
+  if (t != evaluated_time_ || moved > same_place) evaluate_fleet(t, y);
+}
+
+bool System::accept(double t, double* y) {
+  if (fleet_.vehicles.empty()) return false;
+  arrive(t, y);
+  const double lost = note_contacts(t);
+  if (fleet_.worn()) evaluate_fleet(t, y);
+  const bool renewed = fleet_.accept(t);
+  if (rank_ == 0) y[2 * (n_ + fleet_.freedom())] += lost;
+  if (!renewed) return lost != 0.0;
   if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   return true;
+}
+
+// Contacts lost and gained, the speeds with which they approach, the impacts that begin or are to come. Returns the
+// energy that goes where a damper lets go of a surface not yet back, J.
+double System::note_contacts(double t) {
+  double lost = 0.0;
+  for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
+    Contact& c = fleet_.contact(i);
+    const bool touches = c.force.normal > 0.0;
+    const double stored = contact::potential(c.law, c.kinematics.penetration);
+    if (separations_.touching(i) && !touches) {
+      c.released = true;
+      lost += stored;
+    } else if (c.released && (touches || stored == 0.0)) {
+      c.released = false;
+      lost -= stored;
+    }
+  }
+  separations_.accept(fleet_, t);
+  fleet_.note_sides();
+  impacts_.resize(static_cast<std::size_t>(fleet_.contacts()));
+  for (int i = 0; i < fleet_.contacts(); ++i) {
+    Contact& c = fleet_.contact(i);
+    Impact& impact = impacts_[i];
+    const bool touching = separations_.touching(i);
+    if (touching && !separations_.met(i)) continue;
+    c.approach_speed = std::max(c.kinematics.penetration_rate, 0.0);
+    impact = {};
+    if (input_.impact_steps == 0 || c.approach_speed == 0.0) continue;
+    const double duration = fleet_.impact_duration(i);
+    impact.step = duration / input_.impact_steps;
+    if (touching) impact.end = t + 2.0 * duration;
+  }
+  return lost;
+}
+
+std::optional<Change> System::contact_change(double t, double tolerance) const {
+  return separations_.change(
+      fleet_, t, [&](int i) { return separations_.time_to_touch(i) <= 2.0 * change_tolerance(i, tolerance); });
+}
+
+// A damper comes on with a jump, which must lie at a step's border; an elastic force grows from nothing.
+double System::change_tolerance(int contact, double tolerance) const {
+  const contact::Law& law = fleet_.contact(contact).law;
+  const double share = !law.hysteresis && law.damping > 0.0 ? 1e-3 : 0.1;
+  return std::min(tolerance, share * impacts_[contact].step);
+}
+
+double System::step_limit(double t, double tolerance) const {
+  double limit = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
+    const double across = 2.0 * change_tolerance(i, tolerance);
+    if (t < impacts_[i].end) limit = std::min(limit, impacts_[i].step);
+    if (separations_.time_to_touch(i) <= across) limit = std::min(limit, across);
+  }
+  return limit;
 }
 
 std::string System::trouble() const {
@@ -366,7 +431,7 @@ bool System::stage_of_fleet(double t, double shift, const double* v0, const doub
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
   }
   for (int i = 0; i < f; ++i) pdd_[i] = shift * (shift * p_[i] + c_p_[i]) + c_p_[f + i];
-  fleet_.wheel_loads();
+  fleet_.contact_loads();
   for (MovingVehicle& vehicle : fleet_.vehicles)
     vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
   return true;

@@ -36,7 +36,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
 void System::let_wheels_roll() {
   for (const WheelContact& c : fleet_.wheels) {
     MovingVehicle& vehicle = fleet_.vehicles[c.vehicle];
-    const int turn = 3 * fleet_.body(c) + 2;
+    const int turn = 3 * c.body + 2;
     if (fleet_.held(c) || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
     vehicle.state.qd[turn] = -fleet_.velocities(c).x() / (fleet_.wheel(c).radius - c.kinematics.penetration);
   }
@@ -60,7 +60,7 @@ void System::find_equilibrium(double* v) {
   std::copy(nodal_.begin(), nodal_.end(), v);
   fleet_.set(0.0, p_.data(), c_p_.data());
   for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
-  for (std::size_t i = 0; i < moving.wheels.size(); ++i) moving.wheels[i].kinematics = fleet_.wheels[i].kinematics;
+  for (int i = 0; i < moving.contacts(); ++i) moving.contact(i).kinematics = fleet_.contact(i).kinematics;
   fleet_ = std::move(moving);
 }
 

@@ -17,6 +17,7 @@ using coupling::Part;
 constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS wants some bound
 constexpr int most_rejections = 12;                                      // of one step, each a quarter as long
 constexpr double near_event = 1e-3;     // of a step: events closer than this share the end of a step
+constexpr int most_trials = 40;         // of a step's end at the change of a contact
 constexpr double restart_growth = 2.0;  // steps of a multistep method may not grow faster
 
 bool is(TS ts, const char* type) {
@@ -68,6 +69,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   check(VecCreateMPI(comm, n, PETSC_DETERMINE, y_.out()));
   check(VecDuplicate(y_, residual_.out()));
   check(VecDuplicate(y_, rate_.out()));
+  check(VecDuplicate(y_, before_.out()));
   check(VecSet(residual_, 0.0));
   stage_c_.resize(n);
   known_y_.resize(n);
@@ -157,11 +159,16 @@ void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array));
 
 double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step) {
   const double slack = near_event * std::min(settings_.time_step, settings_.end_time);
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::max(settings_.end_time, 1.0);
   std::size_t event = 0;
   long stored = 0;
   double t = 0.0;
   bool going = true;
   sample_now(sample);
+  {
+    Array y(y_);
+    system_.accept(t, y.data);
+  }
   while (going && t < settings_.end_time - slack) {
     double next_sample = static_cast<double>(stored + 1) * settings_.interval;
     if (next_sample > settings_.end_time - slack) next_sample = settings_.end_time;
@@ -174,7 +181,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       PetscReal now = 0.0;
       check(TSGetTime(ts_, &now));
       t = now;
-      if (t > target - slack) {
+      if (t > target - rounding) {
         t = target;
         check(TSSetTime(ts_, t));
       }
@@ -193,32 +200,76 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
 
 // One step no longer than what is left to the next target, shared evenly among the steps that it takes.
 void Stepper::take_step(double left) {
-  const double wanted = adaptive_ ? next_step_ : settings_.time_step;
+  PetscReal from = 0.0;
+  check(TSGetTime(ts_, &from));
+  const double wanted =
+      std::min(adaptive_ ? next_step_ : settings_.time_step, system_.step_limit(from, settings_.contact_tolerance));
   const double count = std::max(1.0, std::ceil(left / wanted * (1.0 - 1e-9)));
   const double h = left / count;
   if (multistep_ && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
-  PetscReal from = 0.0;
-  check(TSGetTime(ts_, &from));
   if (system_.begin_step(from, from + h)) {  // a jump: what is known of the rate belongs to its other side
     known_ = false;
     check(TSRestartStep(ts_));
   }
+  const bool locating = settings_.contact_tolerance > 0.0 && system_.fleet().contacts() > 0;
+  if (locating) check(VecCopy(y_, before_));
+  double t = step_to(from + h);
+  PetscReal next = 0.0;
+  check(TSGetTimeStep(ts_, &next));
+  if (locating) {
+    locate_contact_change(from);
+    check(TSGetTime(ts_, &t));
+  }
+  last_step_ = t - from;
+  if (adaptive_) next_step_ = count > 1.0 || next < next_step_ ? next : std::max(next_step_, next);
+  next_step_ = std::min(next_step_, settings_.time_step);
+  ++steps_;
+}
+
+// From where TS is to `end` or, where that cannot be solved, not as far. Returns the time reached.
+double Stepper::step_to(double end) {
+  PetscReal t = 0.0;
+  check(TSGetTime(ts_, &t));
+  const double h = end - t;
   check(TSSetTimeStep(ts_, h));
   check(TSStep(ts_));
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
   check(TSGetConvergedReason(ts_, &reason));
-  PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
   if (reason < 0)
     throw SolverError("the step of " + std::to_string(h) + " s at t = " + std::to_string(t) +
                       " s could not be taken, not even shortened: " + system_.trouble());
-  PetscReal previous = 0.0, next = 0.0;
-  check(TSGetPrevTime(ts_, &previous));
-  check(TSGetTimeStep(ts_, &next));
-  last_step_ = t - previous;
-  if (adaptive_) next_step_ = count > 1.0 || next < next_step_ ? next : std::max(next_step_, next);
-  next_step_ = std::min(next_step_, settings_.time_step);
-  ++steps_;
+  return t;
+}
+
+// Takes the step from `from` again, shorter, where a contact is lost or gained in it: until it ends just behind the
+// first loss, or just before the first gain, since a stiff contact must not be met in a long step.
+void Stepper::locate_contact_change(double from) {
+  const auto arrive = [&] {
+    PetscReal t = 0.0;
+    check(TSGetTime(ts_, &t));
+    ReadArray y(y_);
+    system_.arrive(t, y.data);
+    return t;
+  };
+  const auto again = [&](double end) {
+    check(VecCopy(before_, y_));
+    check(TSSetTime(ts_, from));
+    check(TSRestartStep(ts_));
+    known_ = false;
+    step_to(end);
+    return arrive();
+  };
+  const double full = arrive();
+  auto change = system_.contact_change(full, settings_.contact_tolerance);
+  if (!change) return;
+  coupling::ChangeBracket bracket(system_, *change, from, full, settings_.contact_tolerance);
+  double at = full;
+  for (int i = 0; i < most_trials && !bracket.found(); ++i) {
+    at = again(bracket.trial());
+    bracket.tried(at, system_.contact_change(at, settings_.contact_tolerance));
+  }
+  if (at != bracket.end()) again(bracket.end());
 }
 
 void Stepper::sample_now(const std::function<void(const Instant&)>& sample) {

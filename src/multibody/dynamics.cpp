@@ -81,6 +81,15 @@ bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double
   return true;
 }
 
+double Mechanism::effective_mass(MechanismState& s, const Eigen::VectorXd& direction) const {
+  if (!s.mass_factored) s.reduced_mass.factor(s.dependent_block, mass_);
+  s.mass_factored = true;
+  s.dependent_block.project(direction, s.reduced);
+  s.change = s.reduced;
+  s.reduced_mass.solve(s.reduced);
+  return 1.0 / s.change.dot(s.reduced);
+}
+
 void Mechanism::accept(MechanismState& s) const {
   if (partition_.rows.empty()) return;
   Instant& a = s.accepted;

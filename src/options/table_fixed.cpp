@@ -101,6 +101,8 @@ constexpr Row rows[] = {
   {"ts_max_time", number, "s", "(when the last wheel has left)", positive, "", 0, "the run's end"},
   {"ts_dt", number, "s", "(from accuracy)", positive, "", 0, "the step, or the first one"},
   {"modes_count", integer, "", "10", {1, 100000}, "", 0, "frequencies with scene_analysis modes"},
+  {"contact_tolerance", number, "s", "(a thousandth of the step)", not_negative, "", 0, "steps end so close behind the loss or gain of a contact; 0: wherever they end"},
+  {"contact_impact_steps", integer, "", "20", {0, 100000}, "", 0, "steps that an impact after a separation takes at least; 0: as the step is"},
   {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where left open"},
 
   {"model_axial", choice, "", "auto", any, "auto true false", 0, "axial unknowns of the beam; auto: where there is longitudinal action"},

@@ -8,6 +8,8 @@ namespace {
 
 using enum Kind;
 
+constexpr Range share = {0.0, 1.0, true};
+
 // clang-format off
 constexpr Row vehicle[] = {
   {"file", file, "", "", any, "", 0, "a YAML file with this vehicle's options, without vehicle_<name>_ before them"},
@@ -19,7 +21,7 @@ constexpr Row vehicle[] = {
   {"wheels", texts, "", "", any, "", 0, "names of the wheels"},
   {"actuators", texts, "", "", any, "", 0, "names of the prescribed forces"},
   {"drivers", texts, "", "", any, "", 0, "names of the prescribed motions"},
-  {"contacts", texts, "", "", any, "", 0, "names of contacts between bodies: not in this version"},
+  {"contacts", texts, "", "", any, "", 0, "names of the contacts between bodies"},
 };
 
 constexpr Row body[] = {
@@ -70,7 +72,8 @@ constexpr Row wheel[] = {
   {"law", choice, "", "hertz", any, "hertz linear", 0, "force over penetration: k a^1.5 or k a"},
   {"stiffness", number, "N/m^1.5 or N/m", "", positive, "", 0, "k of the law"},
   {"damping", number, "Ns/m", "0", not_negative, "", 0, "of the contact"},
-  {"restitution", number, "1", "", {0.0, 1.0}, "", 0, "not in this version"},
+  {"restitution", number, "1", "", share, "", 0, "speed after an impact over that before it, instead of damping"},
+  {"restitution_law", choice, "", "exact", any, "exact lankarani_nikravesh", 0, "how the hysteresis damping follows from it; the latter is for values near 1"},
   {"friction", number, "1", "0", not_negative, "", 0, "coefficient of friction"},
   {"transition_speed", number, "m/s", "0.01", positive, "", 0, "sliding speed at which friction is nearly full (eq. 49)"},
   {"flat_length", number, "m", "", positive, "", 0, "of a rounded flat on the tread, L^2/(16 radius) deep"},
@@ -102,17 +105,22 @@ constexpr Row driver[] = {
 };
 
 constexpr Row contact[] = {
-  {"type", choice, "", "", any, "arc_arc arc_line", 0, "not in this version"},
-  {"bodies", texts, "", "", any, "", 2, "not in this version"},
-  {"radii", numbers, "m", "", positive, "", 0, "not in this version"},
-  {"centres", numbers, "m", "", any, "", 0, "not in this version"},
-  {"line", numbers, "m", "", any, "", 4, "not in this version"},
-  {"law", choice, "", "hertz", any, "hertz linear", 0, "not in this version"},
-  {"stiffness", number, "", "", positive, "", 0, "not in this version"},
-  {"damping", number, "Ns/m", "0", not_negative, "", 0, "not in this version"},
-  {"restitution", number, "1", "", {0.0, 1.0}, "", 0, "not in this version"},
-  {"friction", number, "1", "0", not_negative, "", 0, "not in this version"},
-  {"transition_speed", number, "m/s", "0.01", positive, "", 0, "not in this version"},
+  {"type", choice, "", "", any, "arc_arc arc_line", 0, "two arcs, or an arc on a straight line"},
+  {"bodies", texts, "", "", any, "", 2, "the two bodies, with arc_line that with the arc first; ground is the fixed frame"},
+  {"radii", numbers, "m", "", any, "", 0, "of the two arcs, or of the arc on the line; below 0: a hollow arc, the other one inside"},
+  {"centres", numbers, "m", "", any, "", 0, "x, y of each arc's centre at t = 0"},
+  {"line", numbers, "m", "", any, "", 4, "arc_line: x, y of its two ends at t = 0; beyond an end its end point touches"},
+  {"law", choice, "", "hertz", any, "hertz linear", 0, "force over penetration: k a^1.5 or k a"},
+  {"stiffness", number, "N/m^1.5 or N/m", "", positive, "", 0, "k of the law"},
+  {"damping", number, "Ns/m", "0", not_negative, "", 0, "of the contact"},
+  {"restitution", number, "1", "", share, "", 0, "speed after an impact over that before it, instead of damping"},
+  {"restitution_law", choice, "", "exact", any, "exact lankarani_nikravesh", 0, "how the hysteresis damping follows from it; the latter is for values near 1"},
+  {"friction", number, "1", "0", not_negative, "", 0, "coefficient of friction"},
+  {"transition_speed", number, "m/s", "0.01", positive, "", 0, "sliding speed at which friction is nearly full (eq. 49)"},
+  {"young", number, "N/m2", "", positive, "", 0, "modulus of the first body (eq. 48), instead of stiffness"},
+  {"poisson", number, "1", "0.3", {-0.99, 0.5}, "", 0, "Poisson's ratio of the first body"},
+  {"other_young", number, "N/m2", "(the first's)", positive, "", 0, "modulus of the second body"},
+  {"other_poisson", number, "1", "(the first's)", {-0.99, 0.5}, "", 0, "Poisson's ratio of the second body"},
 };
 // clang-format on
 

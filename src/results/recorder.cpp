@@ -369,6 +369,26 @@ void Recorder::shape(const Shape& shape) {
   });
 }
 
+void Recorder::separations(const std::vector<Separation>& list) {
+  if (impl_ == nullptr || list.empty()) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    Pairs contacts;
+    for (const Separation& s : list) contacts.emplace_back(s.vehicle, s.contact);
+    file.table("/separations/contact", contacts);
+    const auto column = [&](const char* name, double Separation::*member, const char* unit) {
+      std::vector<double> values;
+      for (const Separation& s : list) values.push_back(s.*member);
+      file.dataset(std::string("/separations/") + name, {values.size()}, values, unit);
+    };
+    column("x", &Separation::x, "m");
+    column("start", &Separation::start, "s");
+    column("duration", &Separation::duration, "s");
+    column("approach_speed", &Separation::approach_speed, "m/s");
+    column("impact_force", &Separation::impact_force, "N");
+  });
+}
+
 void Recorder::finish(const Summary& summary) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {

@@ -27,7 +27,7 @@ Law linear() {
 
 Law impact() {
   Law law = hertz();
-  law.restitution = 0.6;
+  law.hysteresis = lankarani_nikravesh_hysteresis(0.6);
   return law;
 }
 
@@ -113,7 +113,7 @@ TEST(ContactLaw, FrictionActsWithTheSlidingSpeedAndSaturates) {
 // to second order in 1 - e.
 double rebound(double e) {
   Law law = impact();
-  law.restitution = e;
+  law.hysteresis = lankarani_nikravesh_hysteresis(e);
   const double mass = 1000.0, v0 = 0.3, dt = 2e-7;
   double a = 0.0, v = v0;  // penetration and its rate; semi-implicit Euler
   do {

@@ -51,6 +51,8 @@ struct Scene {
   std::optional<double> end_time;   // -ts_max_time
   std::optional<double> time_step;  // -ts_dt
   int mode_count = 10;
+  std::optional<double> contact_tolerance;  // s
+  int impact_steps = 20;
   double accuracy = 1e-3;
   Output output;
   bool quiet = false;                                        // -output_quiet: no progress

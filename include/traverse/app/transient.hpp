@@ -28,6 +28,7 @@ class Watch {
  private:
   void fill_vehicles(results::Sample& sample) const;
   void fill_fields(const double* v, const double* w);
+  void note_separations();
   void note_extremes(const results::Sample& sample, const double* v);
 
   const Scene& scene_;
@@ -43,7 +44,6 @@ class Watch {
   std::vector<double> worst_shape_;  // nodal unknowns of this rank at the largest deflection
   double energy_at_start_ = 0.0;
   bool first_ = true;
-  std::vector<double> lost_since_;  // per wheel: since when it has been off the surface; negative: in contact
 };
 
 /// The recorder's layout for a scene.

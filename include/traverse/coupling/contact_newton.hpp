@@ -39,7 +39,7 @@ class ContactNewton {
     Eigen::MatrixXd J, own, G, D, Z, T, NB;  // own: J without contacts; G: contact directions times B; D: law's tangent
     Eigen::VectorXd R, dp, f_hat, correction, r;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
-    std::vector<int> wheel, component;  // of every row of G: which wheel, 0 normal or 1 tangential
+    std::vector<int> contact, component;  // of every row of G: which contact, 0 normal or 1 tangential
   };
   struct Row {  // of the coupled system: a row of a vehicle's G, and the element that carries it
     int vehicle, index, slot;

@@ -16,32 +16,50 @@ namespace traverse::coupling {
 
 /// One vehicle of the train.
 struct MovingVehicle {
-  MovingVehicle(multibody::MechanismModel model, std::vector<Wheel> its_wheels);
+  MovingVehicle(multibody::MechanismModel model, std::vector<Wheel> its_wheels,
+                std::vector<contact::BodyContact> its_contacts);
   multibody::Mechanism mechanism;
   multibody::MechanismState state;
   std::vector<Wheel> wheels;
-  double weight = 0.0;   // N
-  double scale = 0.0;    // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
-  int offset = 0;        // of its independent coordinates in p
-  int first_wheel = 0;   // in the list of all wheels
-  Eigen::VectorXd Q;     // generalized forces of the wheels, n
+  std::vector<contact::BodyContact> contacts;
+  double weight = 0.0;        // N
+  double scale = 0.0;         // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
+  int offset = 0;             // of its independent coordinates in p
+  int first_wheel = 0;        // in Fleet::wheels
+  int first_pair = 0;         // in Fleet::pairs
+  std::vector<int> touching;  // its wheels and pairs, numbered as Fleet::contact does
+  Eigen::VectorXd Q;          // generalized forces of the wheels, n
 };
 
-/// A wheel's contact at the state last evaluated.
-struct WheelContact {
+/// A contact at the state last evaluated.
+struct Contact {
   int vehicle = 0;
-  int wheel = 0;                        // of its vehicle
-  std::array<Patch, 2> patches;         // the surface under the wheel, and the neighbour across a near kink
-  std::array<int, 2> slots = {-1, -1};  // of the patches' elements in Fleet::elements(); -1: ground
-  int candidates = 1;
-  int active = 0;  // the patch with the deepest penetration
+  int body = 0;
+  int other_body = multibody::ground;
+  contact::Law law;
   Touch touch;
   contact::Kinematics kinematics;
   contact::Force force;
-  double approach_speed = 0.0;  // of the impact now going on, m/s
-  bool turns = false;           // its body turns with it; else it has rolled by the distance gone over its radius
-  double home = 0.0;            // angle (rad) or x (m) where it starts to roll
+  double approach_speed = 0.0;          // of the impact now going on or to come, m/s
+  bool released = false;                // its damper let go of a surface not yet back, whose energy is lost
+  std::array<int, 2> slots = {-1, -1};  // of the patches' elements in Fleet::elements(); -1: ground
+  int active = 0;                       // the patch with the deepest penetration
   int slot() const { return slots[active]; }
+};
+
+/// Two bodies of a vehicle, or a body and the ground.
+struct PairContact : Contact {
+  contact::PairGeometry geometry;
+  Eigen::Vector2d point = Eigen::Vector2d::Zero();  // m
+};
+
+/// A wheel on the track.
+struct WheelContact : Contact {
+  int wheel = 0;                 // of its vehicle
+  std::array<Patch, 2> patches;  // the surface under the wheel, and the neighbour across a near kink
+  int candidates = 1;
+  bool turns = false;  // its body turns with it; else it has rolled by the distance gone over its radius
+  double home = 0.0;   // angle (rad) or x (m) where it starts to roll
 };
 
 class Fleet {
@@ -54,12 +72,21 @@ class Fleet {
 
   std::vector<MovingVehicle> vehicles;
   std::vector<WheelContact> wheels;
+  std::vector<PairContact> pairs;
+
+  /// All contacts, the wheels first.
+  int contacts() const { return static_cast<int>(wheels.size() + pairs.size()); }
+  Contact& contact(int i) { return const_cast<Contact&>(static_cast<const Fleet&>(*this).contact(i)); }
+  const Contact& contact(int i) const {
+    const std::size_t k = static_cast<std::size_t>(i);
+    return k < wheels.size() ? static_cast<const Contact&>(wheels[k]) : pairs[k - wheels.size()];
+  }
+  const std::string& name(int contact) const;
 
   int freedom() const { return freedom_; }
   const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
-  int body(const WheelContact& c) const { return wheel(c).body; }
-  Eigen::Vector3d coordinates(const WheelContact& c) const;
-  Eigen::Vector3d velocities(const WheelContact& c) const;
+  Eigen::Vector3d coordinates(const Contact& c) const;
+  Eigen::Vector3d velocities(const Contact& c) const;
   /// Does a joint or driver hold the angle of the wheel's body? With a partition chosen.
   bool held(const WheelContact& c) const;
   /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free
@@ -87,27 +114,38 @@ class Fleet {
   /// p and p' (freedom values each) of the vehicles' q and q' at t.
   void coordinates_of_state(double t, double* p, double* pd) const;
 
+  /// Arcs that have gone round the end of a line are on its other side from then on.
+  void note_sides();
+
   /// Finds the patches under the wheels and the list of beam elements in touch.
   void place_wheels();
   bool wheels_in_place() const;
   const std::vector<int>& elements() const { return elements_; }
 
-  /// Contact geometry from the elements' unknowns v and rates w (2*per_node an element of elements()).
+  /// Contact geometry from the elements' unknowns v and rates w (2*per_node an element of elements()). False where a
+  /// contact is driven through.
   bool touch(int per_node, const double* v, const double* w);
-  /// Forces from the kinematics held in `wheels`.
+  /// Forces from the kinematics held in the contacts.
   void contact_forces();
   /// The vehicles' Q from the contact forces.
-  void wheel_loads();
+  void contact_loads();
+  /// Adds a contact's forces to its vehicle's Q.
+  static void add_load(const Contact& contact, double normal, double tangential, Eigen::VectorXd& Q);
   /// Contact forces as nodal values of the elements in touch, 2*per_node each, on the beam.
   void element_loads(int per_node, std::vector<double>& loads) const;
+  /// How long the impact lasts that a contact now begins, the bodies of its vehicle alone taking part, s.
+  double impact_duration(int contact);
   /// Power lost in contact damping and friction, W.
   double contact_dissipation() const;
+  /// Energy stored in the contacts, J.
   double contact_potential() const;
 
  private:
   void number(double t);
   void add_patch(WheelContact& c, int element, double low, double high);
   void add_shape(WheelContact& c) const;
+  void add_pairs(int vehicle);
+  bool touch(PairContact& pair) const;
 
   const beam::Mesh* mesh_ = nullptr;
   const track::Profile* profile_ = nullptr;

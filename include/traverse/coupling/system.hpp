@@ -13,6 +13,7 @@
 // Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@
 #include "traverse/coupling/contact_newton.hpp"
 #include "traverse/coupling/fleet.hpp"
 #include "traverse/coupling/nonlinear_foundation.hpp"
+#include "traverse/coupling/separations.hpp"
 
 namespace traverse::coupling {
 
@@ -34,6 +36,7 @@ struct SystemInput {
   track::Profile profile;
   double gravity = 9.81;
   bool self_weight = false;  // gravity acts on the beam too
+  int impact_steps = 20;     // of an impact, at least; 0: as the step is
 };
 
 /// Which terms of G are meant: all; or, for implicit-explicit integrators, the beam with the moving forces
@@ -88,9 +91,19 @@ class System {
   /// that a force that jumps at an event has its value of either side there. True when that has changed.
   bool begin_step(double from, double to);
 
-  /// Collective. Notes y as accepted at t and chooses new independent coordinates where the old ones have worn out. True
-  /// when y was rewritten for that.
+  /// Collective. Sets the vehicles to y at t, the end of a step, unless they are there.
+  void arrive(double t, const double* y);
+  /// When they are there: the first contact lost or gained in the step, but for gains that were to come within the
+  /// tolerance (s).
+  std::optional<Change> contact_change(double t, double tolerance) const;
+  const Separations& separations() const { return separations_; }
+  /// Collective. Notes y as accepted at t and chooses new independent coordinates where the old ones have worn out.
+  /// True when y was rewritten for that.
   bool accept(double t, double* y);
+  /// Steps may be no longer than this while an impact goes on or is to come within the tolerance, s.
+  double step_limit(double t, double tolerance) const;
+  /// Of a contact's change: s.
+  double change_tolerance(int contact, double tolerance) const;
 
   /// Why the last stage could not be solved, and what to do about it.
   std::string trouble() const;
@@ -118,6 +131,7 @@ class System {
   double surface_height() const;
   void note_weights();
   std::vector<double> influence_line(double station);
+  double note_contacts(double t);
   void share_coordinates(const double* y);
   void gather(const double* first, const double* second);
   enum class Solution { found, fleet_unsettled, foundation_unsettled };
@@ -143,6 +157,12 @@ class System {
   std::optional<Compliance> compliance_;
   std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
   Fleet fleet_;
+  Separations separations_;
+  struct Impact {
+    double end = 0.0;                                       // s; past: none
+    double step = std::numeric_limits<double>::infinity();  // s, the longest while it goes on
+  };
+  std::vector<Impact> impacts_;  // of every contact
   ContactNewton newton_;
   int n_ = 0;  // beam unknowns on this rank
 
@@ -154,7 +174,7 @@ class System {
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
   std::vector<double> evaluated_;                   // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
-  std::vector<double> v_, w_;                       // of the elements in touch, 2*per_node each
+  std::vector<double> v_, w_;  // of the elements in touch, 2*per_node each
   std::vector<double> element_work_;
   std::vector<double> nodal_, work_, v_still_, stage_load_;  // this rank's unknowns
 };

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "traverse/contact/law.hpp"
+#include "traverse/contact/body_contact.hpp"
 #include "traverse/multibody/model.hpp"
 #include "traverse/track/wheel_shape.hpp"
 
@@ -24,6 +24,7 @@ struct Vehicle {
   std::string name;
   multibody::MechanismModel mechanism;
   std::vector<Wheel> wheels;
+  std::vector<contact::BodyContact> contacts;
 };
 
 /// constant: x of each vehicle's first body is prescribed; free: only forces act.

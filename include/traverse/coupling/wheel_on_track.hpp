@@ -26,8 +26,10 @@ inline constexpr int most_element_unknowns = 6;
 /// (v, theta) or (u, v, theta) of the left node, then of the right one.
 struct Touch {
   contact::Kinematics kinematics;
-  Eigen::Vector3d normal_on_body = Eigen::Vector3d::Zero();     // d alpha / d(x, y, phi)
-  Eigen::Vector3d tangent_on_body = Eigen::Vector3d::Zero();    // d beta' / d(x', y', phi')
+  Eigen::Vector3d normal_on_body = Eigen::Vector3d::Zero();   // d alpha / d(x, y, phi)
+  Eigen::Vector3d tangent_on_body = Eigen::Vector3d::Zero();  // d beta' / d(x', y', phi')
+  Eigen::Vector3d normal_on_other = Eigen::Vector3d::Zero();  // the same of the other body, where two bodies touch
+  Eigen::Vector3d tangent_on_other = Eigen::Vector3d::Zero();
   std::array<double, most_element_unknowns> normal_on_beam{};   // d alpha / d(element unknowns)
   std::array<double, most_element_unknowns> tangent_on_beam{};  // d beta' / d(their rates)
   double xi = 0.0;                                              // of the contact point in the element

@@ -9,15 +9,17 @@
 #include <vector>
 
 #include "traverse/base/petsc.hpp"
+#include "traverse/coupling/change_bracket.hpp"
 #include "traverse/coupling/system.hpp"
 
 namespace traverse::integrate {
 
 struct Settings {
-  double end_time = 0.0;       // s
-  double time_step = 0.0;      // s, the longest
-  double interval = 0.0;       // s between samples
-  std::vector<double> events;  // ascending times at which a step has to end
+  double end_time = 0.0;           // s
+  double time_step = 0.0;          // s, the longest
+  double interval = 0.0;           // s between samples
+  std::vector<double> events;      // ascending times at which a step has to end
+  double contact_tolerance = 0.0;  // s: steps end so close behind the loss or gain of a contact; 0: wherever
 };
 
 /// An accepted instant: y and y' = G(t, y) of this rank.
@@ -55,6 +57,8 @@ class Stepper {
   void set_up_type();
   void advance(double target);
   void take_step(double longest);
+  double step_to(double end);
+  void locate_contact_change(double from);
   void sample_now(const std::function<void(const Instant&)>& sample);
   void rate(double t, Vec y, Vec ydot, coupling::Part part);
   bool remembered(double t, const double* y) const;
@@ -69,7 +73,7 @@ class Stepper {
   coupling::System& system_;
   Settings settings_;
   base::Handle<TS> ts_;
-  base::Handle<Vec> y_, residual_, rate_;
+  base::Handle<Vec> y_, residual_, rate_, before_;  // before_: y at the start of the step
   base::Handle<Mat> jacobian_;
   Request request_;
   coupling::Part implicit_part_ = coupling::Part::all;

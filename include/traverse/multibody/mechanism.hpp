@@ -48,20 +48,20 @@ struct MechanismState {
   Eigen::VectorXd Phi, gamma, Phi_t;  // one a row of Phi
 
   // workspaces of the implementation
-  std::vector<Frame> frames;  // ground first, then the bodies: see Mechanism
+  std::vector<Frame> frames;         // ground first, then the bodies: see Mechanism
   std::vector<ColumnRange> columns;  // of B that a body's rows reach into; one a body
   DependentBlock dependent_block;
   ReducedMass reduced_mass;
-  Instant accepted;            // the last accepted instant
-  int partition_version = 0;   // which partition the workspaces belong to
-  bool factored = false;       // dependent_block holds a factorisation of Phi_q near the current q
-  bool velocities_set = false; // dependent_block holds the sensitivity at the last velocities
-  bool mass_factored = false;  // reduced_mass belongs to B
-  Eigen::VectorXd work;        // n
-  Eigen::VectorXd reduced;     // f
-  Eigen::VectorXd change;      // f
-  Eigen::VectorXd centre;         // n: q of a nearly singular position
-  Eigen::MatrixXd interpolated;   // n x (f + 2): B, b, d there
+  Instant accepted;              // the last accepted instant
+  int partition_version = 0;     // which partition the workspaces belong to
+  bool factored = false;         // dependent_block holds a factorisation of Phi_q near the current q
+  bool velocities_set = false;   // dependent_block holds the sensitivity at the last velocities
+  bool mass_factored = false;    // reduced_mass belongs to B
+  Eigen::VectorXd work;          // n
+  Eigen::VectorXd reduced;       // f
+  Eigen::VectorXd change;        // f
+  Eigen::VectorXd centre;        // n: q of a nearly singular position
+  Eigen::MatrixXd interpolated;  // n x (f + 2): B, b, d there
 };
 
 /// Powers and stored energies of a mechanism in a state, J and W.
@@ -144,6 +144,10 @@ class Mechanism {
 
   MechanismEnergy energy(const MechanismState& s) const;
 
+  /// The mass (kg) that a generalized force along `direction` (n) meets when it sets the mechanism in motion: the force
+  /// over the acceleration along it. Infinite where it moves nothing. With velocities set.
+  double effective_mass(MechanismState& s, const Eigen::VectorXd& direction) const;
+
  private:
   const Frame& frame(const MechanismState& s, int body) const { return s.frames[body + 1]; }
   int driver_row(int k) const { return joint_row_count_ + k; }
@@ -184,7 +188,7 @@ class Mechanism {
 
   MechanismModel model_;
   Partition partition_;
-  int partition_version_ = 0;  // 0: none chosen
+  int partition_version_ = 0;    // 0: none chosen
   double chosen_quality_ = 1.0;  // of the partition when it was chosen
   Eigen::VectorXd mass_;
   std::vector<JointGeometry> joints_;

@@ -69,6 +69,16 @@ struct Shape {
   std::vector<double> deflection;
 };
 
+/// From the loss of a contact to the impact that ends it.
+struct Separation {
+  std::string vehicle, contact;  // its number in the train, the wheel or contact
+  double x = 0.0;                // m, of its body where they part
+  double start = 0.0;            // s
+  double duration = 0.0;         // s
+  double approach_speed = 0.0;   // m/s; 0: still apart at the end
+  double impact_force = 0.0;     // N, the greatest of the compression that follows
+};
+
 /// Extremes over the run, for the terminal and as attributes of /summary.
 struct Extreme {
   double value = 0.0;  // signed, of the largest magnitude
@@ -107,6 +117,8 @@ class Recorder {
   void damped_modes(const modes::DampedModes& modes);
   /// The shape at the instant of the largest deflection: /shape/x, /shape/deflection, attribute time.
   void shape(const Shape& shape);
+  /// /separations/contact ([m,2]: vehicle, name), x, start, duration, approach_speed, impact_force ([m]).
+  void separations(const std::vector<Separation>& list);
   /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.
   void finish(const Summary& summary);
 

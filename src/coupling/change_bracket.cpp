@@ -1,0 +1,67 @@
+#include "traverse/coupling/change_bracket.hpp"
+
+#include <algorithm>
+
+namespace traverse::coupling {
+
+ChangeBracket::ChangeBracket(const System& system, const Change& change, double from, double to, double tolerance)
+    : system_(system),
+      change_(change),
+      full_(to),
+      low_(from),
+      high_(to),
+      below_(system.separations().kinematics(change.contact)),
+      above_(now()),
+      tolerance_(tolerance),
+      wanted_(system.change_tolerance(change.contact, tolerance)),
+      end_(to) {
+  if (!change.gain && !change.hidden && to - change.time <= wanted_) found_ = true;
+}
+
+const contact::Kinematics& ChangeBracket::now() const { return system_.fleet().contact(change_.contact).kinematics; }
+
+double ChangeBracket::trial() {
+  const double width = high_ - low_;
+  const double margin = std::min(0.3 * wanted_, 0.1 * width);
+  trial_ = std::clamp(change_.time + (change_.gain ? -margin : margin), low_ + margin, high_ - margin);
+  return trial_;
+}
+
+void ChangeBracket::end_at(double end) {
+  found_ = true;
+  end_ = end;
+}
+
+void ChangeBracket::tried(double at, const std::optional<Change>& change) {
+  if (change) {
+    const bool other = change->contact != change_.contact;
+    const bool was_hidden = change_.hidden;
+    high_ = at;
+    change_ = *change;
+    wanted_ = system_.change_tolerance(change_.contact, tolerance_);
+    above_ = now();
+    if (other) low_ = system_.separations().time();
+    if (other) below_ = system_.separations().kinematics(change_.contact);
+    if (!change_.gain && !change_.hidden && at - change_.time <= wanted_) return end_at(at);
+    // a gain met in a step that was not short enough: what comes after the impact says little of when it was
+    if (change_.gain && (change_.hidden || was_hidden)) change_.time = 0.5 * (low_ + high_);
+  } else {
+    const bool cut = at < trial_ - 0.1 * wanted_;  // it could not be taken that far
+    low_ = at;
+    below_ = now();
+    if (cut) return end_at(at);
+    if (!change_.gain) {
+      if (change_.hidden) return end_at(full_);  // it only seemed so
+      change_.time =
+          system_.separations().change_between(system_.fleet(), change_.contact, low_, below_, high_, above_);
+    } else {
+      const double left = below_.penetration_rate > 0.0 ? -below_.penetration / below_.penetration_rate : high_ - low_;
+      if (left <= wanted_) return end_at(at);
+      if (below_.penetration_rate <= 0.0 && change_.hidden) return end_at(full_);
+      change_.time = std::min(low_ + left, high_);
+    }
+  }
+  if (high_ - low_ <= 0.1 * wanted_) end_at(change_.gain ? low_ : high_);
+}
+
+}  // namespace traverse::coupling
