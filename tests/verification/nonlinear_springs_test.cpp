@@ -27,7 +27,7 @@ vehicle:
     body:   {mass: 2.0, inertia: 0.1, position: [0.0, 0.0], velocity: [1.5, 0.0, 0.0]}
     guide:  {type: prismatic, bodies: [ground, body], point: [0.0, 0.0], axis: [1.0, 0.0]}
     spring: {bodies: [ground, body], from: [-3.0, 0.0], to: [0.0, 0.0]}
-train: {positions: 0.0}
+train: {vehicles: slider}
 scene: {start: given}
 gravity: 0.0
 )";
@@ -42,7 +42,7 @@ vehicle:
     body:   {mass: 1.0, inertia: 2.0, position: [0.0, 0.0], velocity: [0.0, 0.0, 1.5]}
     guide:  {type: revolute, bodies: [ground, body], point: [0.0, 0.0]}
     spring: {bodies: [ground, body]}
-train: {positions: 0.0}
+train: {vehicles: slider}
 scene: {start: given}
 gravity: 0.0
 )";
