@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace traverse::app {
 namespace {
 
 constexpr double steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
+constexpr double steps_a_wave = 20.0;     // of the track or of a wheel out of round, at that accuracy
 constexpr double mechanism_step = 1e-3;   // s, where there is no beam to judge by
 constexpr double least_steps_a_span = 10.0;
 constexpr double most_steps = 1e10;
@@ -49,8 +51,29 @@ void check_step(const Scene& scene, const Plan& plan) {
                                  plan.time_step, crossing, crossing / least_steps_a_span));
 }
 
+// The shortest time in which the train's wheels run over a wave of the track, or over one of their own.
+double shortest_excitation(const Scene& scene) {
+  double wave = scene.profile.shortest_wave();
+  for (const int index : scene.train.vehicles)
+    for (const Wheel& wheel : scene.vehicles[static_cast<std::size_t>(index)].wheels) {
+      if (wheel.shape.flat_length > 0.0) wave = std::min(wave, wheel.shape.flat_length);
+      if (wheel.shape.polygon_amplitude > 0.0)
+        wave = std::min(wave, 2.0 * std::numbers::pi * wheel.radius / wheel.shape.polygon_order);
+    }
+  return wave / scene.train.speed;
+}
+
 double chosen_step(const Scene& scene, double first_period, std::vector<std::string>& notes) {
+  const double finer = std::pow(scene.accuracy / 1e-3, 0.25);
+  const double wave_step = round_down(std::min(shortest_excitation(scene), 1e6) / steps_a_wave * finer);
+  const auto by_waves = [&] {
+    notes.push_back(
+        fmt::format("time step {:g} s: from accuracy {:g} and the shortest wave of track and wheels; -ts_dt changes it",
+                    wave_step, scene.accuracy));
+    return wave_step;
+  };
   if (!scene.beam) {
+    if (wave_step < mechanism_step) return by_waves();
     notes.push_back(fmt::format("time step {:g} s: no beam to judge by; -ts_dt changes it", mechanism_step));
     return mechanism_step;
   }
@@ -58,7 +81,8 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
   const double speed = greatest_speed(scene);
   const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
   if (speed > 0.0) scale = std::min(scale, span / speed);
-  const double step = round_down(scale / steps_a_period * std::pow(scene.accuracy / 1e-3, 0.25));
+  const double step = round_down(scale / steps_a_period * finer);
+  if (wave_step < step) return by_waves();
   notes.push_back(fmt::format(
       "time step {:g} s: from accuracy {:g}, the first period and the crossing of a span; -ts_dt changes it", step,
       scene.accuracy));

@@ -1,6 +1,8 @@
 // One vehicle's parts out of the options: bodies, joints, springs, wheels, actuators, drivers.
 #include <fmt/format.h>
 
+#include <numbers>
+
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/data_file.hpp"
@@ -89,6 +91,7 @@ class VehicleReader {
   void torsion_spring(const std::string& name);
   void wheel(const std::string& name);
   contact::Law law(double radius) const;
+  track::WheelShape wheel_shape(double radius) const;
   double stiffness(contact::LawKind kind, double radius) const;
   void actuator(const std::string& name);
   void actuator_table(multibody::Actuator& a) const;
@@ -241,12 +244,38 @@ contact::Law VehicleReader::law(double radius) const {
   return law;
 }
 
+track::WheelShape VehicleReader::wheel_shape(double radius) const {
+  track::WheelShape shape;
+  if (has("flat_length")) {
+    shape.flat_length = number("flat_length");
+    if (shape.flat_length > radius) o_.refuse(key("flat_length"), "allowed: up to the wheel's radius");
+  } else if (has("flat_angle")) {
+    o_.refuse(key("flat_angle"), "needs " + key("flat_length"));
+  }
+  shape.flat_angle = has("flat_angle") ? number("flat_angle") : std::numbers::pi;
+  if (has("polygon_order") != has("polygon_amplitude"))
+    o_.refuse(key(has("polygon_order") ? "polygon_amplitude" : "polygon_order"),
+              "missing: a polygonal wheel needs polygon_order and polygon_amplitude");
+  if (!has("polygon_order")) {
+    if (has("polygon_phase")) o_.refuse(key("polygon_phase"), "needs " + key("polygon_order"));
+    return shape;
+  }
+  shape.polygon_order = o_.integer(key("polygon_order"));
+  shape.polygon_amplitude = number("polygon_amplitude");
+  shape.polygon_phase = number("polygon_phase");
+  const double most = radius / (shape.polygon_order * shape.polygon_order);
+  if (shape.polygon_amplitude >= most)
+    o_.refuse(key("polygon_amplitude"), fmt::format("the tread would be hollow; allowed: below {:g} m", most));
+  return shape;
+}
+
 void VehicleReader::wheel(const std::string& name) {
   Wheel w;
   w.name = name;
   w.body = moving_body(key("body"), o_.text(key("body")));
   w.radius = number("radius");
   w.law = law(w.radius);
+  w.shape = wheel_shape(w.radius);
   vehicle_.wheels.push_back(w);
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "scene_parts.hpp"
 #include "traverse/options/data_file.hpp"
@@ -27,6 +28,27 @@ double front_wheel(const Scene& scene) {
   return front;
 }
 
+std::optional<track::Spectrum> spectrum_of(const std::string& profile) {
+  const auto grade = [&](std::string_view kind, char first, char last) {
+    return profile.size() == kind.size() + 1 && profile.starts_with(kind) && profile.back() >= first &&
+           profile.back() <= last;
+  };
+  if (grade("iso8608_", 'A', 'E')) return track::iso8608(profile.back());
+  if (grade("fra_", '1', '6')) return track::fra(profile.back() - '0');
+  if (profile == "german_low" || profile == "german_high") return track::german(profile == "german_high");
+  return {};
+}
+
+track::Profile rough(const Options& o, const Scene& scene, const track::Spectrum& spectrum) {
+  std::vector<double> wavelengths = {spectrum.shortest, spectrum.longest};
+  if (o.has("track_wavelengths")) {
+    wavelengths = o.numbers("track_wavelengths");
+    if (!(wavelengths[0] < wavelengths[1])) o.refuse("track_wavelengths", "allowed: the shortest, then the longest");
+  }
+  return track::Profile::rough(spectrum, wavelengths[0], wavelengths[1], front_wheel(scene),
+                               static_cast<std::uint64_t>(o.integer("track_seed")));
+}
+
 }  // namespace
 
 void read_track(const Options& o, Scene& scene) {
@@ -38,14 +60,18 @@ void read_track(const Options& o, Scene& scene) {
     return;
   }
   if (bump != nullptr) scene.notes.push_back(bump->name + " has no effect: track_profile is " + profile);
+  const std::optional<track::Spectrum> spectrum = spectrum_of(profile);
+  if (!spectrum && o.has("track_wavelengths"))
+    scene.notes.push_back("track_wavelengths has no effect: track_profile is " + profile);
   if (profile == "none") return;
-  if (profile.starts_with("iso8608_") && profile.size() == 9 && profile[8] >= 'A' && profile[8] <= 'E') {
-    scene.profile =
-        track::Profile::iso8608(profile[8], front_wheel(scene), static_cast<std::uint64_t>(o.integer("track_seed")));
+  if (spectrum) {
+    scene.profile = rough(o, scene, *spectrum);
     return;
   }
-  if (profile.find_first_of("./") == std::string::npos || profile.starts_with("iso8608_")) {
-    o.refuse("track_profile", "allowed: none, bump, iso8608_A to iso8608_E, or a file x,height");
+  if (profile.find_first_of("./") == std::string::npos) {
+    o.refuse("track_profile",
+             "allowed: none, bump, iso8608_A to iso8608_E, german_low, german_high, fra_1 to fra_6, or "
+             "a file x,height");
   }
   const std::string path = o.path("track_profile");
   auto columns = options::read_columns(path, 2, 2);

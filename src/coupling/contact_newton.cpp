@@ -54,7 +54,7 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
     // The vehicles' own part of the Newton matrix hardly changes within a stage: kept after the first iteration,
     // and taken in full, constraint curvature included, where that turns out not to be enough.
     const Tangent own = s.shift == 0.0 || i > 2 ? Tangent::full : i == 0 ? Tangent::fresh : Tangent::kept;
-    if (!evaluate(fleet, s, p, own != Tangent::kept)) return false;
+    if (!evaluate(fleet, s, p)) return false;
     for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) vehicle_system(fleet, static_cast<int>(k), s, own);
     couple_beam(fleet, s, own);
     const double before = change_;
@@ -75,12 +75,12 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
 }
 
 // Vehicles at p, contacts from the kinematics held, the beam under these forces, the geometry at all of it.
-bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* p, bool derivatives) {
+bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* p) {
   for (int i = 0; i < fleet.freedom(); ++i) {
     pd_[i] = s.shift * p[i] + s.c_p[i];
     pdd_[i] = s.shift * pd_[i] + s.c_p[fleet.freedom() + i];
   }
-  if (!fleet.set(s.t, p, pd_.data(), derivatives)) return false;
+  if (!fleet.set(s.t, p, pd_.data())) return false;
   fleet.contact_forces();
   fleet.element_loads(s.per_node, loads_);
   beam_field(s, fleet);
@@ -141,20 +141,24 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
 
   const Eigen::Map<const Eigen::VectorXd> pdd(pdd_.data() + vehicle.offset, f);
   const Eigen::VectorXd& N = mechanism.mass_diagonal();
-  w.r.noalias() = state.B * pdd;
-  w.r = N.cwiseProduct(w.r + state.d) - state.g - vehicle.Q;
-  w.R.noalias() = state.B.transpose() * w.r;
+  w.r = state.d;
+  state.dependent_block.expand(pdd.data(), w.r);
+  w.r = N.cwiseProduct(w.r) - state.g - vehicle.Q;
+  w.R.resize(f);
+  state.dependent_block.project(w.r, w.R);
 
   if (own != Tangent::kept) {
-    w.gB = -state.g_q - s.shift * state.g_qd;
-    if (own == Tangent::full && mechanism.constraints() > 0) {
-      mechanism.recover(state, vehicle.Q, pdd.data());
-      mechanism.compute_lambda_curvature(state);
-      w.gB += state.lambda_curvature;
+    const bool full = own == Tangent::full && mechanism.constraints() > 0;
+    if (full) mechanism.recover(state, vehicle.Q, pdd.data());
+    mechanism.multiply_tangent(state, -1.0, -s.shift, full ? 1.0 : 0.0, w.NB);
+    for (std::size_t b = 0; b < state.columns.size(); ++b) {
+      const auto [first, last] = state.columns[b];
+      const Eigen::Index row = 3 * static_cast<Eigen::Index>(b);
+      w.NB.block(row, first, 3, last - first) +=
+          s.shift * s.shift * N.segment<3>(row).asDiagonal() * state.B.block(row, first, 3, last - first);
     }
-    w.gB.diagonal() += s.shift * s.shift * N;
-    w.NB.noalias() = w.gB * state.B;
-    w.own.noalias() = state.B.transpose() * w.NB;
+    w.own.resize(f, f);
+    for (int k = 0; k < f; ++k) state.dependent_block.project(w.NB.col(k), w.own.col(k));
   }
   w.J = w.own;
   w.Z.noalias() = w.D * w.G;  // D G, for now

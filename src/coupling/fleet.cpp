@@ -10,8 +10,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 // Within this part of its radius from a kink a wheel may touch on either side of it.
 constexpr double reach = 0.1;
-// Of a partition's quality when it was chosen.
-constexpr double poor_partition = 0.05;
+constexpr double free_to_turn = 1e-9;  // m: arm of a joint about the wheel's centre
 
 base::TimeFunction frozen_function(const base::TimeFunction& f) { return {f.value(0.0), 0.0}; }
 
@@ -83,6 +82,7 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       wheels.push_back(c);
     }
   }
+  start_rolling();
 }
 
 Eigen::Vector3d Fleet::coordinates(const WheelContact& c) const {
@@ -93,15 +93,63 @@ Eigen::Vector3d Fleet::velocities(const WheelContact& c) const {
   return vehicles[c.vehicle].state.qd.segment<3>(3 * body(c));
 }
 
+bool Fleet::held(const WheelContact& c) const {
+  const Eigen::MatrixXd& Phi_q = vehicles[c.vehicle].state.Phi_q;
+  return Phi_q.rows() > 0 && Phi_q.col(3 * body(c) + 2).lpNorm<Eigen::Infinity>() > free_to_turn;
+}
+
+void Fleet::start_rolling() {
+  for (WheelContact& c : wheels) {
+    c.turns = !frozen_ && !held(c) && (wheel(c).law.friction > 0.0 || velocities(c).z() != 0.0);
+    c.home = c.turns ? coordinates(c).z() : coordinates(c).x();
+  }
+}
+
+double Fleet::rolled_angle(const WheelContact& c) const {
+  return c.turns ? c.home - coordinates(c).z() : (coordinates(c).x() - c.home) / wheel(c).radius;
+}
+
+// What a wheel out of round adds to its contact: alpha = R + dr(a) - distance, with a of the body's angle or of x.
+void Fleet::add_shape(WheelContact& c) const {
+  const Wheel& w = wheel(c);
+  if (w.shape.round()) return;
+  const track::RadiusGain gain = track::radius_gain(w.shape, w.radius, rolled_angle(c));
+  const int along = c.turns ? 2 : 0;
+  const double slope = c.turns ? -gain.slope : gain.slope / w.radius;
+  c.touch.kinematics.penetration += gain.value;
+  c.touch.kinematics.penetration_rate += slope * velocities(c)[along];
+  c.touch.normal_on_body[along] += slope;
+}
+
 std::vector<std::string> Fleet::partition(double t) {
   std::vector<std::string> notes;
+  for (MovingVehicle& vehicle : vehicles)
+    for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
+      notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
+  number(t);
+  return notes;
+}
+
+bool Fleet::worn() const {
+  return std::any_of(vehicles.begin(), vehicles.end(),
+                     [](const MovingVehicle& v) { return v.mechanism.worn(v.state); });
+}
+
+bool Fleet::accept(double t) {
+  bool renewed = false;
+  for (MovingVehicle& vehicle : vehicles) {
+    renewed = vehicle.mechanism.renew_partition(vehicle.state) || renewed;
+    vehicle.mechanism.accept(vehicle.state);
+  }
+  if (renewed) number(t);
+  return renewed;
+}
+
+void Fleet::number(double t) {
   home_.clear();
   cruise_.clear();
   freedom_ = 0;
   for (MovingVehicle& vehicle : vehicles) {
-    for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
-      notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
-    vehicle.quality = 0.0;
     vehicle.offset = freedom_;
     freedom_ += vehicle.mechanism.freedom();
     for (int i : vehicle.mechanism.partition().independent) {
@@ -112,29 +160,22 @@ std::vector<std::string> Fleet::partition(double t) {
   }
   position_.resize(home_.size());
   velocity_.resize(home_.size());
-  return notes;
 }
 
-bool Fleet::poorly_partitioned() {
-  bool poor = false;
-  for (MovingVehicle& vehicle : vehicles) {
-    const double quality = vehicle.mechanism.partition_quality(vehicle.state);
-    if (vehicle.quality == 0.0) vehicle.quality = quality;
-    poor = poor || quality < poor_partition * vehicle.quality;
-  }
-  return poor;
-}
-
-bool Fleet::set(double t, const double* p, const double* pd, bool derivatives) {
+bool Fleet::set(double t, const double* p, const double* pd) {
   for (int i = 0; i < freedom_; ++i) {
     position_[i] = home_[i] + cruise_[i] * t + p[i];
     velocity_[i] = cruise_[i] + pd[i];
   }
   for (MovingVehicle& vehicle : vehicles) {
-    if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) return false;
+    if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) {
+      stuck_ = static_cast<int>(&vehicle - vehicles.data());
+      return false;
+    }
     vehicle.mechanism.set_velocities(vehicle.state, t, velocity_.data() + vehicle.offset);
-    vehicle.mechanism.compute_forces(vehicle.state, derivatives);
+    vehicle.mechanism.compute_forces(vehicle.state);
   }
+  stuck_ = -1;
   return true;
 }
 
@@ -238,6 +279,7 @@ bool Fleet::touch(int per_node, const double* v, const double* w) {
       c.active = i;
       c.touch = candidate;
     }
+    add_shape(c);
   }
   return true;
 }

@@ -8,7 +8,8 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr int most_placements = 4;  // of the wheels on elements within one stage
+constexpr int most_placements = 4;     // of the wheels on elements within one stage
+constexpr double same_place = 1e-9;    // m or rad: a step's last stage is its end
 
 }  // namespace
 
@@ -37,6 +38,7 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
   fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
                  &input_.profile, surface_height());
   fleet_.partition(0.0);
+  fleet_.start_rolling();
   on_beam_.assign(input_.load.forces.size(), 0);
   begin_step(0.0, 0.0);
   note_foundation();
@@ -196,7 +198,8 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
 // Vehicles and contacts at a state: positions, forces, accelerations, all from the kinematics as they are.
 void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
-  if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom(), false))
+  evaluated_time_ = t;
+  if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom()))
     throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
   fleet_.place_wheels();
   gather(y, y + n_);
@@ -210,6 +213,29 @@ void System::evaluate_fleet(double t, const double* y) {
   pdd_.resize(fleet_.freedom());
   for (MovingVehicle& vehicle : fleet_.vehicles)
     vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+}
+
+bool System::accept(double t, double* y) {
+  const int f = fleet_.freedom();
+  if (f == 0) return false;
+  evaluated_.assign(p_.begin(), p_.begin() + f);
+  share_coordinates(y);
+  double moved = 0.0;
+  for (int i = 0; i < f; ++i) moved = std::max(moved, std::abs(p_[i] - evaluated_[i]));
+  if (t != evaluated_time_ || moved > same_place || fleet_.worn()) evaluate_fleet(t, y);
+  if (!fleet_.accept(t)) return false;
+  if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
+  return true;
+}
+
+std::string System::trouble() const {
+  const MovingVehicle* stuck = fleet_.stuck();
+  if (stuck == nullptr)
+    return "the contact iteration does not converge: try a smaller -ts_dt, softer contacts, or look at the state just "
+           "before";
+  const multibody::Mechanism& mechanism = stuck->mechanism;
+  return "vehicle '" + mechanism.model().name + "' is locked: " + mechanism.worst_row(stuck->state) +
+         ", wherever else its bodies go; a driver pulls it beyond its reach or through a dead point";
 }
 
 // Rates of D and W for the state that fleet, moving loads and foundation were last set to.
@@ -327,9 +353,10 @@ System::Solution System::solve_coupled(double t, double shift, const double* c_v
 
 bool System::stage_of_fleet(double t, double shift, const double* v0, const double* c_v, const AddedSprings* added) {
   const int f = fleet_.freedom();
+  evaluated_time_ = t;
   pdd_.resize(f);
   for (int i = 0; i < f; ++i) pdd_[i] = shift * p_[i] + c_p_[i];
-  if (!fleet_.set(t, p_.data(), pdd_.data(), false)) return false;
+  if (!fleet_.set(t, p_.data(), pdd_.data())) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
     gather(v0, c_v);

@@ -9,7 +9,6 @@
 namespace traverse::coupling {
 namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr double free_to_turn = 1e-9;   // m: arm of a joint about the wheel's centre
 constexpr int static_positions = 2000;  // of the train along its way, for the static peak
 }  // namespace
 
@@ -27,6 +26,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
       vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
   if (equilibrium) let_wheels_roll();
   std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
+  fleet_.start_rolling();
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   note_weights();
   return notes;
@@ -37,9 +37,7 @@ void System::let_wheels_roll() {
   for (const WheelContact& c : fleet_.wheels) {
     MovingVehicle& vehicle = fleet_.vehicles[c.vehicle];
     const int turn = 3 * fleet_.body(c) + 2;
-    const Eigen::MatrixXd& Phi_q = vehicle.state.Phi_q;
-    const bool held = Phi_q.rows() > 0 && Phi_q.col(turn).lpNorm<Eigen::Infinity>() > free_to_turn;
-    if (held || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
+    if (fleet_.held(c) || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
     vehicle.state.qd[turn] = -fleet_.velocities(c).x() / (fleet_.wheel(c).radius - c.kinematics.penetration);
   }
 }
@@ -60,7 +58,7 @@ void System::find_equilibrium(double* v) {
   }
   settle(input_.self_weight || !loads_.empty(), Part::all);
   std::copy(nodal_.begin(), nodal_.end(), v);
-  fleet_.set(0.0, p_.data(), c_p_.data(), false);
+  fleet_.set(0.0, p_.data(), c_p_.data());
   for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
   for (std::size_t i = 0; i < moving.wheels.size(); ++i) moving.wheels[i].kinematics = fleet_.wheels[i].kinematics;
   fleet_ = std::move(moving);
@@ -94,11 +92,14 @@ void System::note_weights() {
     weights_.emplace_back(input_.load.positions[i], input_.load.forces[i]);
 }
 
-bool System::repartition(double t, double* y) {
-  if (!fleet_.poorly_partitioned()) return false;
-  fleet_.partition(t);
-  if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
-  return true;
+// When the ends of a wheel's flat meet the rail, where it rolls as its x is prescribed.
+void System::add_flats(const WheelContact& c, double end, std::vector<double>& events) const {
+  const Wheel& wheel = fleet_.wheel(c);
+  if (c.turns || input_.train.speed <= 0.0) return;
+  const double turning = input_.train.speed / wheel.radius;
+  std::optional<double> angle = track::next_flat_end(wheel.shape, wheel.radius, 0.0);
+  for (; angle && *angle < turning * end; angle = track::next_flat_end(wheel.shape, wheel.radius, *angle))
+    events.push_back(*angle / turning);
 }
 
 std::vector<double> System::known_events(double end) const {
@@ -116,7 +117,10 @@ std::vector<double> System::known_events(double end) const {
     }
   };
   if (input_.train.drive == Drive::constant)
-    for (const WheelContact& c : fleet_.wheels) add(fleet_.coordinates(c).x(), input_.train.speed);
+    for (const WheelContact& c : fleet_.wheels) {
+      add(fleet_.coordinates(c).x(), input_.train.speed);
+      add_flats(c, end, events);
+    }
   for (double x : input_.load.positions) add(x, input_.load.speed);
   for (const MovingVehicle& vehicle : fleet_.vehicles)
     for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)

@@ -179,7 +179,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
         check(TSSetTime(ts_, t));
       }
       Array y(y_);
-      const bool rewritten = system_.repartition(t, y.data);
+      const bool rewritten = system_.accept(t, y.data);
       if (rewritten) check(TSRestartStep(ts_));
       going = step(t, steps_) && !stopped_at_limit();
     }
@@ -211,9 +211,7 @@ void Stepper::take_step(double left) {
   check(TSGetTime(ts_, &t));
   if (reason < 0)
     throw SolverError("the step of " + std::to_string(h) + " s at t = " + std::to_string(t) +
-                      " s could not be taken, not even shortened (contact iteration does not converge): try a smaller "
-                      "-ts_dt, softer contacts, or look at "
-                      "the state just before");
+                      " s could not be taken, not even shortened: " + system_.trouble());
   PetscReal previous = 0.0, next = 0.0;
   check(TSGetPrevTime(ts_, &previous));
   check(TSGetTimeStep(ts_, &next));

@@ -70,6 +70,24 @@ void Mechanism::compute_gamma(MechanismState& s) const {
   }
 }
 
+/// Moves the dependent coordinates to where they are expected at p: along Taylor's series from the last accepted
+/// instant at a new time, along the last velocities' sensitivity within a time. Near a singular position, where
+/// branches meet, this decides which one Newton finds.
+void Mechanism::predict(MechanismState& s, double t, const double* p) const {
+  const int f = freedom();
+  const Instant& a = s.accepted;
+  if (t != s.time && a.partition_version == partition_version_) {
+    const double dt = t - a.time;
+    s.q = a.q + dt * (a.qd + 0.5 * dt * a.qdd);
+    for (int k = 0; k < f; ++k) s.change[k] = p[k] - s.q[partition_.independent[k]];
+    a.sensitivity.add(s.change, partition_.independent, s.q);
+  } else if (s.velocities_set) {
+    for (int k = 0; k < f; ++k) s.change[k] = p[k] - s.q[partition_.independent[k]];
+    s.dependent_block.expand(s.change.data(), s.q);
+  }
+  for (int k = 0; k < f; ++k) s.q[partition_.independent[k]] = p[k];
+}
+
 /// Gives the workspaces the sizes and the order of elimination of the mechanism's partition.
 void Mechanism::fit(MechanismState& s) const {
   if (s.partition_version == partition_version_) return;
@@ -80,21 +98,40 @@ void Mechanism::fit(MechanismState& s) const {
   s.d.setZero();
   s.lambda.setZero();
   s.reduced.setZero(f);
+  s.change.setZero(f);
   place_frames(s);
   compute_Phi_q(s);
   s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
   s.reduced_mass.plan(s.dependent_block);
+  find_columns(s);
   s.partition_version = partition_version_;
   s.factored = false;
+  s.velocities_set = false;
   s.mass_factored = false;
+}
+
+void Mechanism::find_columns(MechanismState& s) const {
+  s.columns.assign(model_.bodies.size(), {freedom(), 0});
+  const auto reach = [&](int coordinate, int k) {
+    ColumnRange& range = s.columns[coordinate / 3];
+    range.first = std::min(range.first, k);
+    range.last = std::max(range.last, k + 1);
+  };
+  for (int k = 0; k < freedom(); ++k) reach(partition_.independent[k], k);
+  const DependentBlock& block = s.dependent_block;
+  for (int i = 0; i < block.size(); ++i)
+    for (const int* k = block.sensitivity_begin(i); k != block.sensitivity_end(i); ++k) reach(block.coordinate(i), *k);
+  for (ColumnRange& range : s.columns) range.first = std::min(range.first, range.last);
 }
 
 /// Factors the dependent block at the current frames, in a new order when the old one has worn out.
 void Mechanism::factor(MechanismState& s) const {
   compute_Phi_q(s);
   if (!s.dependent_block.factor(s.Phi_q)) {
+    s.velocities_set = false;
     s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
     s.reduced_mass.plan(s.dependent_block);
+    find_columns(s);
     s.B.setZero();
     for (int k = 0; k < freedom(); ++k) s.B(partition_.independent[k], k) = 1.0;
   }
@@ -158,7 +195,7 @@ bool Mechanism::solve_dependent(MechanismState& s, double t) const {
 
 bool Mechanism::set_positions(MechanismState& s, double t, const double* p) const {
   fit(s);
-  for (int k = 0; k < freedom(); ++k) s.q[partition_.independent[k]] = p[k];
+  predict(s, t, p);
   if (!solve_dependent(s, t)) return false;
   if (static_cast<int>(partition_.rows.size()) == constraints()) return true;
   for (int row = 0; row < constraints(); ++row) {

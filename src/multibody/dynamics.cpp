@@ -1,15 +1,28 @@
 // Velocities, forces and accelerations in a partition: q' = B p' + b, q'' = B p'' + d,
 // B^T N B p'' = B^T (g + Q - N d), Phi_u^T lambda = (g + Q - N q'')_u   (eq. 42 projected; Wehage & Haug 1982).
+#include <algorithm>
+#include <cmath>
+
 #include "traverse/multibody/mechanism.hpp"
 
 namespace traverse::multibody {
+
+namespace {
+constexpr double safe_way = 0.02;  // of the mechanism's size, from a nearly singular position
+}  // namespace
 
 void Mechanism::set_velocities(MechanismState& s, double t, const double* pd) const {
   fit(s);
   s.time = t;
   factor(s);
+  if (!s.dependent_block.nearly_singular() || !interpolate_velocities(s, t, pd)) velocities_at(s, t, pd);
+}
+
+/// With Phi_q factored: B, b, q', d.
+void Mechanism::velocities_at(MechanismState& s, double t, const double* pd) const {
   s.mass_factored = false;
   s.dependent_block.compute_sensitivity();
+  s.velocities_set = true;
   s.dependent_block.scatter(s.B);
   for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
     s.Phi_t[driver_row(static_cast<int>(k))] = -model_.drivers[k].value.rate(t);
@@ -21,6 +34,62 @@ void Mechanism::set_velocities(MechanismState& s, double t, const double* pd) co
   move_frames(s);
   compute_gamma(s);
   s.dependent_block.solve(s.gamma, s.d);
+}
+
+/// B, b, q', d near a singular position, where rounding of q grows by 1/sigma in B and 1/sigma^3 in d, sigma being the
+/// least singular value of Phi_u: all four-bars flat, a parallelogram in its dead points. On a branch of the motion
+/// they are smooth all the same, so they are interpolated from four positions around, a safe way off along p'. False
+/// when one of them cannot be reached.
+bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double* pd) const {
+  const int f = freedom();
+  if (s.accepted.partition_version != partition_version_) return false;
+  double speed = 0.0;
+  for (int k = 0; k < f; ++k) speed = std::max(speed, std::abs(pd[k]) / scaling_.column[partition_.independent[k]]);
+  if (!(speed > 0.0)) return false;
+  constexpr double place[] = {-3.0, -1.0, 1.0, 3.0};
+  constexpr double weight[] = {-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0};
+  s.centre = s.q;
+  s.interpolated.setZero(coordinates(), f + 2);
+  bool reached = true;
+  for (int i = 0; i < 4 && reached; ++i) {
+    s.q = s.centre;
+    for (int k = 0; k < f; ++k) s.change[k] = place[i] * safe_way * length_ / speed * pd[k];
+    s.accepted.sensitivity.add(s.change, partition_.independent, s.q);
+    reached = solve_dependent(s, t);
+    if (!reached) break;
+    factor(s);
+    velocities_at(s, t, pd);
+    s.interpolated.leftCols(f) += weight[i] * s.B;
+    s.interpolated.col(f) += weight[i] * s.b;
+    s.interpolated.col(f + 1) += weight[i] * s.d;
+  }
+  s.q = s.centre;
+  place_frames(s);
+  compute_Phi(s);
+  factor(s);
+  if (!reached) return false;
+  s.dependent_block.set_sensitivity(s.interpolated.leftCols(f));
+  s.dependent_block.scatter(s.B);
+  s.mass_factored = false;
+  s.velocities_set = true;
+  s.b = s.interpolated.col(f);
+  s.d = s.interpolated.col(f + 1);
+  s.qd = s.b;
+  s.dependent_block.expand(pd, s.qd);
+  move_frames(s);
+  compute_gamma(s);
+  return true;
+}
+
+void Mechanism::accept(MechanismState& s) const {
+  if (partition_.rows.empty()) return;
+  Instant& a = s.accepted;
+  a.time = s.time;
+  a.partition_version = partition_version_;
+  a.q = s.q;
+  a.qd = s.qd;
+  a.qdd = s.qdd;
+  s.dependent_block.copy_sensitivity(a.sensitivity);
 }
 
 double Mechanism::partition_quality(const MechanismState& s) const {
@@ -43,15 +112,6 @@ void Mechanism::recover(MechanismState& s, const Eigen::VectorXd& Q, const doubl
   s.dependent_block.expand(pdd, s.qdd);
   s.work = s.g + Q - mass_.cwiseProduct(s.qdd);
   s.dependent_block.solve_transposed(s.work, s.lambda);
-}
-
-void Mechanism::compute_lambda_curvature(MechanismState& s) const {
-  s.lambda_curvature.setZero();
-  JointCurvature K;
-  for (const JointGeometry& joint : joints_) {
-    joint_curvature(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row, K);
-    add_pair(joint.first, joint.second, K, s.lambda_curvature);
-  }
 }
 
 }  // namespace traverse::multibody

@@ -70,16 +70,6 @@ std::shared_ptr<const ForceLaw> shared(const std::optional<ForceLaw>& law) {
 
 }  // namespace
 
-void add_pair(int first, int second, const PairMatrix& pair, Eigen::MatrixXd& all) {
-  const int bodies[2] = {first, second};
-  for (int j = 0; j < 2; ++j) {
-    if (bodies[j] == ground) continue;
-    for (int i = 0; i < 2; ++i) {
-      if (bodies[i] != ground) all.block<3, 3>(3 * bodies[i], 3 * bodies[j]) += pair.block<3, 3>(3 * i, 3 * j);
-    }
-  }
-}
-
 SpringGeometry spring_geometry(const Spring& spring, const Frame& first, const Frame& second) {
   SpringGeometry s;
   s.first = spring.bodies[0];

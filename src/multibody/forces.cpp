@@ -3,7 +3,7 @@
 
 namespace traverse::multibody {
 
-void Mechanism::compute_forces(MechanismState& s, bool derivatives) const {
+void Mechanism::compute_forces(MechanismState& s) const {
   s.g.setZero();
   for (int i = 1; i < s.g.size(); i += 3) s.g[i] = -mass_[i] * model_.gravity;
   for (const SpringGeometry& spring : springs_) {
@@ -23,28 +23,49 @@ void Mechanism::compute_forces(MechanismState& s, bool derivatives) const {
       if (actuator.reaction_body != ground) s.g[3 * actuator.reaction_body + c] -= action;
     }
   }
-  if (derivatives) compute_force_derivatives(s);
 }
 
-void Mechanism::compute_force_derivatives(MechanismState& s) const {
-  s.g_q.setZero();
-  s.g_qd.setZero();
-  PairMatrix g_q, g_qd;
+namespace {
+
+/// product += K B for the matrix K of a pair of bodies.
+void add_pair_times_B(int first, int second, const PairMatrix& K, const MechanismState& s, Eigen::MatrixXd& product) {
+  const int bodies[2] = {first, second};
+  for (int j = 0; j < 2; ++j) {
+    if (bodies[j] == ground) continue;
+    const ColumnRange range = s.columns[bodies[j]];
+    const int width = range.last - range.first;
+    const auto B = s.B.block(3 * bodies[j], range.first, 3, width);
+    for (int i = 0; i < 2; ++i) {
+      if (bodies[i] == ground) continue;
+      product.block(3 * bodies[i], range.first, 3, width).noalias() += K.block<3, 3>(3 * i, 3 * j).lazyProduct(B);
+    }
+  }
+}
+
+}  // namespace
+
+void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda,
+                                 Eigen::MatrixXd& product) const {
+  product.setZero(coordinates(), freedom());
+  PairMatrix K, g_qd;
   for (const SpringGeometry& spring : springs_) {
-    spring_derivatives(spring, frame(s, spring.first), frame(s, spring.second), g_q, g_qd);
-    add_pair(spring.first, spring.second, g_q, s.g_q);
-    add_pair(spring.first, spring.second, g_qd, s.g_qd);
+    spring_derivatives(spring, frame(s, spring.first), frame(s, spring.second), K, g_qd);
+    K = by_q * K + by_qd * g_qd;
+    add_pair_times_B(spring.first, spring.second, K, s, product);
   }
   for (const TorsionGeometry& spring : torsion_springs_) {
     const TorsionTangent tangent = torsion_tangent(spring, frame(s, spring.first), frame(s, spring.second));
-    g_q.setZero();
-    g_q(2, 2) = g_q(5, 5) = -tangent.stiffness;
-    g_q(2, 5) = g_q(5, 2) = tangent.stiffness;
-    g_qd.setZero();
-    g_qd(2, 2) = g_qd(5, 5) = -tangent.damping;
-    g_qd(2, 5) = g_qd(5, 2) = tangent.damping;
-    add_pair(spring.first, spring.second, g_q, s.g_q);
-    add_pair(spring.first, spring.second, g_qd, s.g_qd);
+    const double k = by_q * tangent.stiffness + by_qd * tangent.damping;
+    K.setZero();
+    K(2, 2) = K(5, 5) = -k;
+    K(2, 5) = K(5, 2) = k;
+    add_pair_times_B(spring.first, spring.second, K, s, product);
+  }
+  if (by_lambda == 0.0) return;
+  for (const JointGeometry& joint : joints_) {
+    joint_curvature(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row, K);
+    K *= by_lambda;
+    add_pair_times_B(joint.first, joint.second, K, s, product);
   }
 }
 

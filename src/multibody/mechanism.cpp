@@ -99,7 +99,6 @@ MechanismState Mechanism::make_state() const {
   s.frames.resize(model_.bodies.size() + 1);
   for (Eigen::VectorXd* v : {&s.q, &s.qd, &s.b, &s.d, &s.g, &s.qdd, &s.work}) v->setZero(n);
   for (Eigen::VectorXd* v : {&s.Phi, &s.gamma, &s.Phi_t, &s.lambda}) v->setZero(m);
-  for (Eigen::MatrixXd* M : {&s.g_q, &s.g_qd, &s.lambda_curvature}) M->setZero(n, n);
   s.Phi_q.setZero(m, n);
   for (int i = 0; i < n / 3; ++i) {
     s.q.segment<3>(3 * i) = model_.bodies[i].position;

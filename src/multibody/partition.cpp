@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
-#include <utility>
 
+#include "active_rows.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/multibody/mechanism.hpp"
 
@@ -13,6 +13,8 @@ namespace {
 
 constexpr double rank_tolerance = 1e-8;      // scaled pivots below are rounding or sloppy geometry
 constexpr double tie = 1e-9;                 // pivots closer than this are equal, so that rounding decides nothing
+constexpr double nearly_singular = 1e-2;     // scaled pivots of a new choice must be larger
+constexpr double poor_quality = 0.05;        // of a partition, over that when it was chosen
 constexpr double position_tolerance = 1e-6;  // of the mechanism's size
 constexpr double rate_tolerance = 1e-6;      // of the terms that should cancel
 constexpr double rate_floor = 1e-9;          // of the mechanism's size, per s or s2: less is rest
@@ -23,47 +25,54 @@ constexpr double probe_tolerance = 1e-9;     // of the mechanism's size
 /// Gaussian elimination with full pivoting on a scaled copy of Phi_q.
 class FullPivoting {
  public:
-  explicit FullPivoting(Eigen::MatrixXd scaled)
-      : A_(std::move(scaled)), row_used_(A_.rows(), false), column_used_(A_.cols(), false) {}
+  explicit FullPivoting(const Eigen::MatrixXd& scaled) : column_used_(scaled.cols(), false) { A_.assign(scaled); }
 
   /// Eliminates with the rows in [from, to) as long as there is a pivot.
   void eliminate(int from, int to) {
     int row, column;
     while (find(from, to, row, column)) {
-      row_used_[row] = column_used_[column] = true;
-      for (int i = 0; i < A_.rows(); ++i) {
-        if (row_used_[i] || A_(i, column) == 0.0) continue;
-        A_.row(i) -= A_(i, column) / A_(row, column) * A_.row(row);
-      }
+      column_used_[column] = true;
+      row_used_.push_back(row);
+      A_.eliminate(row, column);
     }
   }
 
+  double least_pivot() const { return least_; }
+
   Partition partition() const {
     Partition p;
-    for (int i = 0; i < A_.rows(); ++i)
-      if (row_used_[i]) p.rows.push_back(i);
-    for (int j = 0; j < A_.cols(); ++j) (column_used_[j] ? p.dependent : p.independent).push_back(j);
+    p.rows = row_used_;
+    std::sort(p.rows.begin(), p.rows.end());
+    for (int j = 0; j < A_.columns(); ++j) (column_used_[j] ? p.dependent : p.independent).push_back(j);
     return p;
   }
 
  private:
-  /// Of equal pivots the first row and the last column: a body listed first keeps its coordinates independent.
-  bool find(int from, int to, int& row, int& column) const {
+  /// Of equal pivots the last column and the first row: a body listed first keeps its coordinates independent.
+  bool find(int from, int to, int& row, int& column) {
     double best = 0.0;
-    for (int j = static_cast<int>(A_.cols()) - 1; j >= 0; --j) {
-      if (column_used_[j]) continue;
-      for (int i = from; i < to; ++i) {
-        if (row_used_[i] || !(std::abs(A_(i, j)) > best * (1.0 + tie))) continue;
-        best = std::abs(A_(i, j));
+    for (int i = from; i < to; ++i) {
+      if (!A_.active(i)) continue;
+      for (const ActiveRows::Entry& e : A_.row(i)) best = std::max(best, std::abs(e.value));
+    }
+    if (!(best > rank_tolerance)) return false;
+    column = -1;
+    for (int i = from; i < to; ++i) {
+      if (!A_.active(i)) continue;
+      for (const ActiveRows::Entry& e : A_.row(i)) {
+        if (e.column <= column || std::abs(e.value) * (1.0 + tie) < best) continue;
+        column = e.column;
         row = i;
-        column = j;
       }
     }
-    return best > rank_tolerance;
+    least_ = std::min(least_, best);
+    return true;
   }
 
-  Eigen::MatrixXd A_;
-  std::vector<bool> row_used_, column_used_;
+  ActiveRows A_;
+  std::vector<int> row_used_;
+  std::vector<bool> column_used_;
+  double least_ = 1.0;
 };
 
 std::string number(double value) {
@@ -75,21 +84,15 @@ std::string number(double value) {
 
 }  // namespace
 
-Partition Mechanism::pivot(const MechanismState& s) const {
+Mechanism::Choice Mechanism::pivot(const MechanismState& s) const {
   FullPivoting elimination(scaling_.row.asDiagonal() * s.Phi_q * scaling_.column.asDiagonal());
   elimination.eliminate(joint_row_count_, constraints());  // drivers are kept before joints
   elimination.eliminate(0, joint_row_count_);
-  return elimination.partition();
+  return {elimination.partition(), elimination.least_pivot()};
 }
 
 std::vector<std::string> Mechanism::choose_partition(MechanismState& s, double t) {
-  const int earlier_freedom = partition_version_ > 0 ? freedom() : -1;
   assemble(s, t);
-  if (earlier_freedom >= 0 && freedom() != earlier_freedom) {
-    throw SolverError("vehicle '" + model_.name + "': the mechanism has " + std::to_string(freedom()) +
-                      " degrees of freedom at t = " + number(t) + " s, it had " + std::to_string(earlier_freedom) +
-                      " before: it passes through a dead point");
-  }
   check_dropped_positions(s);
   fit_velocities(s);
   const std::vector<int> dropped = dropped_rows();
@@ -103,7 +106,29 @@ std::vector<std::string> Mechanism::choose_partition(MechanismState& s, double t
     const std::string& name = part_name(row);  // a part's rows stand together
     if (names.empty() || names.back() != name) names.push_back(name);
   }
+  chosen_quality_ = partition_quality(s);
   return names;
+}
+
+bool Mechanism::worn(const MechanismState& s) const {
+  if (partition_.rows.empty() || !s.velocities_set) return false;
+  return s.dependent_block.nearly_singular() || partition_quality(s) < poor_quality * chosen_quality_;
+}
+
+bool Mechanism::renew_partition(MechanismState& s) {
+  if (!worn(s)) return false;
+  compute_Phi_q(s);
+  const Choice choice = pivot(s);
+  const bool singular = choice.partition.rows.size() < partition_.rows.size() || choice.least_pivot < nearly_singular;
+  if (singular || choice.partition.independent == partition_.independent) return false;
+  partition_ = choice.partition;
+  ++partition_version_;
+  fit(s);
+  Eigen::VectorXd pd(freedom());
+  for (int k = 0; k < freedom(); ++k) pd[k] = s.qd[partition_.independent[k]];
+  set_velocities(s, s.time, pd.data());
+  chosen_quality_ = partition_quality(s);
+  return true;
 }
 
 /// Chooses the partition and solves the constraints; again when the bodies moved far in doing so.
@@ -111,22 +136,25 @@ void Mechanism::assemble(MechanismState& s, double t) {
   for (int pass = 0; pass < 4; ++pass) {
     place_frames(s);
     compute_Phi_q(s);
-    partition_ = pivot(s);
+    partition_ = pivot(s).partition;
     ++partition_version_;
     fit(s);
     s.factored = false;
     const Eigen::VectorXd start = s.q;
     if (!solve_dependent(s, t)) {
-      int worst = partition_.rows.front();
-      for (const int row : partition_.rows)
-        if (std::abs(s.Phi[row]) * scaling_.row[row] > std::abs(s.Phi[worst]) * scaling_.row[worst]) worst = row;
       throw InputError("vehicle '" + model_.name + "' cannot be put together at t = " + number(t) +
-                       " s: " + row_name(worst) + " is off by " + number(s.Phi[worst]) + " " + row_unit(worst) +
-                       "; check positions and drivers");
+                       " s: " + worst_row(s) + "; check positions and drivers");
     }
     const double moved = (s.q - start).cwiseQuotient(scaling_.column).cwiseAbs().maxCoeff();
     if (moved <= moved_far * length_) return;
   }
+}
+
+std::string Mechanism::worst_row(const MechanismState& s) const {
+  int worst = 0;
+  for (int row = 0; row < constraints(); ++row)
+    if (std::abs(s.Phi[row]) * scaling_.row[row] > std::abs(s.Phi[worst]) * scaling_.row[worst]) worst = row;
+  return row_name(worst) + " is off by " + number(s.Phi[worst]) + " " + row_unit(worst);
 }
 
 /// Velocities that satisfy the constraints: the given ones, or the nearest in the metric of the masses, as after an

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+
+#include "active_rows.hpp"
 
 namespace traverse::multibody {
 
@@ -11,33 +12,38 @@ namespace {
 
 constexpr double acceptable_pivot = 0.1;  // of the largest in its row, when the order is chosen
 constexpr double worn_pivot = 0.1;        // of what it was when the order was chosen
+constexpr double no_pivot = 1e-13;        // scaled: its direction is then left as it is
 
-/// The best pivot of the active matrix from (k, k) on: the one that fills least (Markowitz) among those large enough;
-/// the larger one of two that fill alike.
-void find_pivot(const Eigen::MatrixXd& A, int k, int& row, int& column) {
-  const int left = static_cast<int>(A.rows()) - k;
-  const auto active = A.bottomRightCorner(left, left).array();
-  const Eigen::Array<Eigen::Index, 1, Eigen::Dynamic> in_column = (active != 0.0).colwise().count();
-  Eigen::Index best_fill = std::numeric_limits<Eigen::Index>::max();
+/// The pivot that fills least (Markowitz) among those large enough in their row; the larger one of two that fill alike.
+void find_pivot(const ActiveRows& A, int& row, int& column) {
+  long best_fill = std::numeric_limits<long>::max();
   double best_size = 0.0;
-  row = column = k;
-  for (int i = 0; i < left; ++i) {
-    const double acceptable = acceptable_pivot * active.row(i).abs().maxCoeff();
-    const Eigen::Index in_row = (active.row(i) != 0.0).count();
-    for (int j = 0; j < left; ++j) {
-      const double size = std::abs(active(i, j));
-      if (!(size > 0.0) || size < acceptable) continue;
-      const Eigen::Index fill = (in_row - 1) * (in_column[j] - 1);
+  for (int i = 0; i < A.rows(); ++i) {
+    if (!A.active(i)) continue;
+    double largest = 0.0;
+    for (const ActiveRows::Entry& e : A.row(i)) largest = std::max(largest, std::abs(e.value));
+    const long in_row = static_cast<long>(A.row(i).size());
+    for (const ActiveRows::Entry& e : A.row(i)) {
+      const double size = std::abs(e.value);
+      if (!(size > 0.0) || size < acceptable_pivot * largest) continue;
+      const long fill = (in_row - 1) * (A.count(e.column) - 1);
       if (fill > best_fill || (fill == best_fill && size <= best_size)) continue;
       best_fill = fill;
       best_size = size;
-      row = k + i;
-      column = k + j;
+      row = i;
+      column = e.column;
     }
   }
 }
 
 }  // namespace
+
+void Sensitivity::add(const Eigen::VectorXd& change, const std::vector<int>& places, Eigen::VectorXd& q) const {
+  for (std::size_t k = 0; k < places.size(); ++k) q[places[k]] += change[static_cast<Eigen::Index>(k)];
+  for (std::size_t i = 0; i < coordinate.size(); ++i)
+    for (int j = independent.start[i]; j < independent.start[i + 1]; ++j)
+      q[coordinate[i]] += value[j] * change[independent.index[j]];
+}
 
 void DependentBlock::plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>& pattern, const Partition& partition,
                           const Scaling& scaling) {
@@ -51,32 +57,43 @@ void DependentBlock::plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>&
   planned_pivot_.assign(m, 0.0);
   work_.assign(m, 0.0);
   factor(Phi_q);
+  planned_singular_ = nearly_singular();
   for (int k = 0; k < m; ++k) planned_pivot_[k] = std::abs(block(k, k));
 }
 
 void DependentBlock::choose_order(const Eigen::MatrixXd& Phi_q, const Partition& partition, const Scaling& scaling) {
-  row_of_ = partition.rows;
-  column_of_ = partition.dependent;
   independent_ = partition.independent;
-  const int m = size();
-  active_.resize(m, m);
+  const int m = static_cast<int>(partition.rows.size());
+  Eigen::MatrixXd scaled(m, m);
   for (int j = 0; j < m; ++j)
-    for (int i = 0; i < m; ++i)
-      active_(i, j) = Phi_q(row_of_[i], column_of_[j]) * scaling.row[row_of_[i]] * scaling.column[column_of_[j]];
-  for (int k = 0; k < m; ++k) {
-    int row, column;
-    find_pivot(active_, k, row, column);
-    active_.row(k).swap(active_.row(row));
-    active_.col(k).swap(active_.col(column));
-    std::swap(row_of_[k], row_of_[row]);
-    std::swap(column_of_[k], column_of_[column]);
-    for (int i = k + 1; i < m; ++i) {
-      if (active_(i, k) == 0.0) continue;
-      const double factor = active_(i, k) / active_(k, k);
-      active_(i, k) = 0.0;
-      for (int j = k + 1; j < m; ++j) active_(i, j) -= factor * active_(k, j);
+    for (int i = 0; i < m; ++i) {
+      const int row = partition.rows[i], column = partition.dependent[j];
+      scaled(i, j) = Phi_q(row, column) * scaling.row[row] * scaling.column[column];
     }
+  ActiveRows active;
+  active.assign(scaled);
+  std::vector<char> row_taken(m, 0), column_taken(m, 0);
+  row_of_.clear();
+  column_of_.clear();
+  const auto take = [&](int row, int column) {
+    row_of_.push_back(partition.rows[row]);
+    column_of_.push_back(partition.dependent[column]);
+    row_taken[row] = column_taken[column] = 1;
+  };
+  for (int k = 0; k < m; ++k) {
+    int row = -1, column = -1;
+    find_pivot(active, row, column);
+    if (row < 0) break;  // singular to the last bit
+    active.eliminate(row, column);
+    take(row, column);
   }
+  for (int row = 0, column = 0; row < m; ++row) {  // what is left has no pivot
+    if (row_taken[row]) continue;
+    while (column_taken[column]) ++column;
+    take(row, column);
+  }
+  pivot_scale_.resize(m);
+  for (int k = 0; k < m; ++k) pivot_scale_[k] = scaling.row[row_of_[k]] * scaling.column[column_of_[k]];
 }
 
 void DependentBlock::find_fill(const std::vector<char>& pattern, int rows) {
@@ -143,16 +160,19 @@ bool DependentBlock::factor(const Eigen::MatrixXd& Phi_q) {
   for (const Source& s : block_sources_) block_[s.to] = numbers[s.from];
   for (const Source& s : sensitivity_sources_) sensitivity_[s.to] = -numbers[s.from];
   bool sound = true;
+  least_pivot_ = 1.0;
   for (int i = 0; i < m; ++i) {
     for (const int* k = lower_.begin(i); k != lower_.end(i); ++k) {
       const double l = block(i, *k) * inverse_pivot_[*k];
       block(i, *k) = l;
       for (const int* j = upper_.begin(*k); j != upper_.end(*k); ++j) block(i, *j) -= l * block(*k, *j);
     }
-    inverse_pivot_[i] = 1.0 / block(i, i);
-    if (std::abs(block(i, i)) < worn_pivot * planned_pivot_[i]) sound = false;
+    const double size = std::abs(block(i, i));
+    least_pivot_ = std::min(least_pivot_, size * pivot_scale_[i]);
+    if (size < worn_pivot * planned_pivot_[i]) sound = false;
+    inverse_pivot_[i] = size * pivot_scale_[i] > no_pivot ? 1.0 / block(i, i) : 0.0;
   }
-  return sound;
+  return sound || (planned_singular_ && nearly_singular());
 }
 
 void DependentBlock::compute_sensitivity() {
@@ -215,7 +235,7 @@ void DependentBlock::expand(const double* p, Eigen::VectorXd& x) const {
   }
 }
 
-void DependentBlock::project(const Eigen::VectorXd& r, Eigen::VectorXd& reduced) const {
+void DependentBlock::project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced) const {
   const int f = freedom();
   for (int k = 0; k < f; ++k) reduced[k] = r[independent_[k]];
   for (int i = 0; i < size(); ++i) {
@@ -242,89 +262,43 @@ double DependentBlock::largest_sensitivity(const Scaling& scaling) const {
   return largest;
 }
 
+void DependentBlock::set_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& B) {
+  for (int i = 0; i < size(); ++i)
+    for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j)
+      sensitivity_[i * freedom() + *j] = B(column_of_[i], *j);
+}
+
+void DependentBlock::copy_sensitivity(Sensitivity& copy) const {
+  copy.coordinate = column_of_;
+  copy.independent = sensitive_;
+  copy.value.clear();
+  for (int i = 0; i < size(); ++i)
+    for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j) copy.value.push_back(sensitivity(i, *j));
+}
+
 void ReducedMass::plan(const DependentBlock& block) {
   const int f = block.freedom();
   filled_.assign(static_cast<std::size_t>(f) * f, 0);
   for (int i = 0; i < block.size(); ++i)
     for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a)
       for (const int* b = block.sensitivity_begin(i); b != block.sensitivity_end(i); ++b) filled_[*a * f + *b] = 1;
-  entries_.assign(static_cast<std::size_t>(f) * f, 0.0);
-  inverse_.assign(f, 0.0);
-  work_.assign(f, 0.0);
-  place_.assign(f, -1);
-  order_.clear();
-  below_.clear();
-  for (int k = 0; k < f; ++k) {
-    const int next = least_coupled();
-    place_[next] = k;
-    order_.push_back(next);
-    for (int i = 0; i < f; ++i) {
-      if (place_[i] >= 0 || !filled_[next * f + i]) continue;
-      below_.index.push_back(i);  // renumbered when all places are known
-      for (int j = 0; j < f; ++j)
-        if (filled_[next * f + j]) filled_[i * f + j] = 1;
-    }
-    below_.close();
-  }
-  for (int& i : below_.index) i = place_[i];
-  for (int k = 0; k < f; ++k)
-    std::sort(below_.index.data() + below_.start[k], below_.index.data() + below_.start[k + 1]);
-}
-
-/// The coordinate not yet placed that is coupled with the fewest others that are not.
-int ReducedMass::least_coupled() const {
-  const int f = static_cast<int>(place_.size());
-  int best = -1;
-  int fewest = f + 1;
-  for (int i = 0; i < f; ++i) {
-    if (place_[i] >= 0) continue;
-    int count = 0;
-    for (int j = 0; j < f; ++j)
-      if (place_[j] < 0 && filled_[i * f + j]) ++count;
-    if (count >= fewest) continue;
-    fewest = count;
-    best = i;
-  }
-  return best;
+  ldl_.plan(f, filled_);
 }
 
 void ReducedMass::factor(const DependentBlock& block, const Eigen::VectorXd& mass) {
-  const int f = static_cast<int>(order_.size());
-  for (int k = 0; k < f; ++k) {
-    for (const int* i = below_.begin(k); i != below_.end(k); ++i) entries_[k * f + *i] = 0.0;
-    entries_[k * f + k] = mass[block.independent(order_[k])];
-  }
+  ldl_.set_zero();
+  for (int k = 0; k < ldl_.size(); ++k) ldl_.entry(k, k) = mass[block.independent(k)];
   for (int i = 0; i < block.size(); ++i) {
     const double inertia = mass[block.coordinate(i)];
     for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a) {
       const double weighted = inertia * block.sensitivity(i, *a);
-      const int column = place_[*a];
-      for (const int* b = block.sensitivity_begin(i); b != block.sensitivity_end(i); ++b)
-        if (place_[*b] >= column) entries_[column * f + place_[*b]] += weighted * block.sensitivity(i, *b);
+      for (const int* b = a; b != block.sensitivity_end(i); ++b)
+        ldl_.entry(*a, *b) += weighted * block.sensitivity(i, *b);
     }
   }
-  for (int k = 0; k < f; ++k) {
-    double* column = entries_.data() + k * f;
-    inverse_[k] = 1.0 / column[k];
-    for (const int* j = below_.begin(k); j != below_.end(k); ++j) {
-      const double l = column[*j] * inverse_[k];
-      for (const int* i = j; i != below_.end(k); ++i) entries_[*j * f + *i] -= l * column[*i];
-      column[*j] = l;  // the rows further down are still to be scaled, this one is not needed again
-    }
-  }
+  ldl_.factor();
 }
 
-void ReducedMass::solve(Eigen::VectorXd& x) {
-  const int f = static_cast<int>(order_.size());
-  for (int k = 0; k < f; ++k) work_[k] = x[order_[k]];
-  for (int k = 0; k < f; ++k)
-    for (const int* i = below_.begin(k); i != below_.end(k); ++i) work_[*i] -= entries_[k * f + *i] * work_[k];
-  for (int k = f - 1; k >= 0; --k) {
-    double sum = work_[k] * inverse_[k];
-    for (const int* i = below_.begin(k); i != below_.end(k); ++i) sum -= entries_[k * f + *i] * work_[*i];
-    work_[k] = sum;
-    x[order_[k]] = sum;
-  }
-}
+void ReducedMass::solve(Eigen::VectorXd& x) { ldl_.solve(x.data()); }
 
 }  // namespace traverse::multibody

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -13,8 +14,8 @@ namespace traverse::track {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double fade_length = 20.0;  // m
-constexpr int waves_in_all = 240;     // 80 a decade
+constexpr double least_fade = 20.0;  // m
+constexpr int waves_in_all = 240;
 
 /// Second derivatives of the natural cubic spline at its knots (Thomas algorithm).
 std::vector<double> natural_spline(const std::vector<double>& x, const std::vector<double>& h) {
@@ -43,12 +44,6 @@ void check_table(const std::vector<double>& x, const std::vector<double>& h, con
       throw InputError(name + ": x must increase from line to line; it does not at x = " + std::to_string(x[i]));
     }
   }
-}
-
-/// Displacement spectrum at n0 = 0.1 cycles/m, m3: the geometric mean of the class (ISO 8608, table C.1).
-double spectrum_at_n0(char grade) {
-  if (grade < 'A' || grade > 'E') throw InputError(std::string("ISO 8608 class '") + grade + "': allowed are A to E");
-  return 16e-6 * std::pow(4.0, grade - 'A');
 }
 
 /// From 0 to 1 over s in [0, 1], with slope and curvature 0 at both ends; derivatives by s.
@@ -85,19 +80,21 @@ Profile Profile::table(std::vector<double> x, std::vector<double> h, const std::
   return p;
 }
 
-Profile Profile::iso8608(char grade, double start, std::uint64_t seed) {
-  constexpr double n0 = 0.1, lowest = 0.01, highest = 10.0;  // cycles/m
-  const double level = spectrum_at_n0(grade) * n0 * n0;
+Profile Profile::rough(const Spectrum& spectrum, double shortest, double longest, double start, std::uint64_t seed) {
+  if (!(shortest > 0.0) || !(longest > shortest) || !std::isfinite(longest))
+    throw InputError("roughness needs two wavelengths, the shorter one above 0 first");
+  const double lowest = two_pi / longest, highest = two_pi / shortest;  // rad/m
   Profile p;
   p.kind_ = Kind::waves;
   p.start_ = start;
+  p.length_ = std::max(least_fade, longest / 5.0);
   std::mt19937_64 random(seed);
   double variance = 0.0;  // of the curvature
   for (int i = 0; i < waves_in_all; ++i) {
     const double a = lowest * std::pow(highest / lowest, double(i) / waves_in_all);
     const double b = lowest * std::pow(highest / lowest, double(i + 1) / waves_in_all);
-    const double power = level * (1.0 / a - 1.0 / b);  // the spectrum's integral over this band
-    const double k = two_pi * std::sqrt(a * b);
+    const double power = spectrum.power(a, b);
+    const double k = std::sqrt(a * b);
     p.amplitude_.push_back(std::sqrt(2.0 * power));
     p.frequency_.push_back(k / two_pi);
     p.phase_.push_back(static_cast<double>(random() >> 11) * 0x1.0p-53);
@@ -161,7 +158,7 @@ void sine_cosine(const Lanes& u, Lanes& sine, Lanes& cosine) {
 
 /// The sum of all waves at s, which is counted in m from the start; frequency in cycles/m, phase in cycles.
 Height waves_at(const std::vector<double>& amplitude, const std::vector<double>& frequency,
-                const std::vector<double>& phase, double s) {
+                const std::vector<double>& phase, double s, double fade) {
   Lanes value = Lanes::Zero(), slope = Lanes::Zero(), curvature = Lanes::Zero(), sine, cosine;
   for (std::size_t i = 0; i < amplitude.size(); i += lanes) {
     const Eigen::Map<const Lanes> a(&amplitude[i]), f(&frequency[i]), p(&phase[i]);
@@ -173,15 +170,20 @@ Height waves_at(const std::vector<double>& amplitude, const std::vector<double>&
     curvature -= k * k * a * cosine;
   }
   const Height w{value.sum(), slope.sum(), curvature.sum()};
-  if (s >= fade_length) return w;
-  Height f = smooth_step(s / fade_length);
-  f.slope /= fade_length;
-  f.curvature /= fade_length * fade_length;
+  if (s >= fade) return w;
+  Height f = smooth_step(s / fade);
+  f.slope /= fade;
+  f.curvature /= fade * fade;
   return {f.value * w.value, f.slope * w.value + f.value * w.slope,
           f.curvature * w.value + 2.0 * f.slope * w.slope + f.value * w.curvature};
 }
 
 }  // namespace
+
+double Profile::shortest_wave() const {
+  if (kind_ == Kind::bump) return length_;
+  return kind_ == Kind::waves ? 1.0 / frequency_.back() : std::numeric_limits<double>::infinity();
+}
 
 Height Profile::at(double x) const {
   switch (kind_) {
@@ -192,7 +194,7 @@ Height Profile::at(double x) const {
     case Kind::table:
       return spline_at(x_, h_, h2_, x);
     case Kind::waves:
-      return x > start_ ? waves_at(amplitude_, frequency_, phase_, x - start_) : Height{};
+      return x > start_ ? waves_at(amplitude_, frequency_, phase_, x - start_, length_) : Height{};
   }
   return {};
 }

@@ -130,7 +130,7 @@ class Motion {
   bool evaluate(double t, double* pdd) {
     if (!mechanism.set_positions(state, t, p.data())) return false;
     mechanism.set_velocities(state, t, pd.data());
-    mechanism.compute_forces(state, false);
+    mechanism.compute_forces(state);
     mechanism.accelerations(state, Q, pdd);
     return true;
   }

@@ -1,7 +1,8 @@
-// Track profiles: derivatives against differences, kinks, the ISO 8608 spectrum level.
+// Track profiles: derivatives against differences, kinks, the levels of the spectra.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -80,14 +81,14 @@ TEST(Profile, BadTablesAreRefusedByName) {
 }
 
 TEST(Profile, IsoStartsLevelAndIsSmooth) {
-  const Profile p = Profile::iso8608('C', 5.0, 7);
+  const Profile p = Profile::rough(iso8608('C'), 5.0, 7);
   EXPECT_EQ(p.at(5.0).value, 0.0);
   EXPECT_EQ(p.at(-100.0).value, 0.0);
   expect_derivatives(p, {5.3, 9.0, 18.2, 24.999, 25.0, 25.001, 60.0, 777.7});
   EXPECT_NEAR(p.at(25.0 - 1e-12).curvature, p.at(25.0 + 1e-12).curvature, 1e-7);
-  EXPECT_NE(p.at(60.0).value, Profile::iso8608('C', 5.0, 8).at(60.0).value);
-  EXPECT_EQ(p.at(60.0).value, Profile::iso8608('C', 5.0, 7).at(60.0).value);
-  EXPECT_THROW(Profile::iso8608('F', 0.0, 1), InputError);
+  EXPECT_NE(p.at(60.0).value, Profile::rough(iso8608('C'), 5.0, 8).at(60.0).value);
+  EXPECT_EQ(p.at(60.0).value, Profile::rough(iso8608('C'), 5.0, 7).at(60.0).value);
+  EXPECT_THROW(iso8608('F'), InputError);
 }
 
 // The variance between 0.01 and 10 cycles/m is the integral of Gd(n0) (n0/n)^2: Gd(n0) 0.01 (100 - 0.1).
@@ -96,14 +97,15 @@ TEST(Profile, IsoVarianceAndClasses) {
   double sum = 0.0;
   const int samples = 40000, seeds = 8;
   for (int seed = 0; seed < seeds; ++seed) {
-    const Profile p = Profile::iso8608('A', 0.0, seed);
+    const Profile p = Profile::rough(iso8608('A'), 0.0, seed);
     for (int i = 0; i < samples / seeds; ++i) {
       const double h = p.at(100.0 + 7.3 * i).value;
       sum += h * h;
     }
   }
   EXPECT_NEAR(sum / samples, mean_square, 0.05 * mean_square);
-  const double a = Profile::iso8608('A', 0.0, 3).at(333.0).value, e = Profile::iso8608('E', 0.0, 3).at(333.0).value;
+  const double a = Profile::rough(iso8608('A'), 0.0, 3).at(333.0).value,
+               e = Profile::rough(iso8608('E'), 0.0, 3).at(333.0).value;
   EXPECT_NEAR(e / a, 16.0, 1e-9);
 }
 
@@ -115,7 +117,7 @@ TEST(Profile, IsoSpectrumLevel) {
   const double first = 0.09, last = 0.11;
   const int seeds = 3;
   for (int seed = 0; seed < seeds; ++seed) {
-    const Profile p = Profile::iso8608('A', -50.0, 40 + seed);
+    const Profile p = Profile::rough(iso8608('A'), -50.0, 40 + seed);
     std::vector<double> h(n);
     for (int i = 0; i < n; ++i) h[i] = p.at(i * dx).value;
     for (int k = static_cast<int>(first * length); k < static_cast<int>(last * length); ++k) {
@@ -136,6 +138,90 @@ TEST(Profile, IsoSpectrumLevel) {
   // integral of 16e-6 (0.1/n)^2 over the band; the waves are 240 in three decades, 7 of them in this band
   const double expected = 16e-6 * 0.01 * (1.0 / first - 1.0 / last);
   EXPECT_NEAR(power / seeds, expected, 0.2 * expected);
+}
+
+// The spectra's closed integrals against Simpson's rule, and their values where the literature can be read off.
+TEST(Spectrum, PowerIsTheIntegralOfTheDensity) {
+  for (const Spectrum& s : {iso8608('B'), german(false), german(true), fra(1), fra(6)}) {
+    for (double low : {0.01, 0.3, 7.0}) {
+      const double high = 1.7 * low;
+      const int n = 200;  // even
+      double sum = s.density(low) + s.density(high);
+      for (int i = 1; i < n; ++i) sum += (i % 2 == 1 ? 4.0 : 2.0) * s.density(low + (high - low) * i / n);
+      sum *= (high - low) / (3.0 * n);
+      EXPECT_NEAR(s.power(low, high), sum, 1e-9 * sum);
+    }
+  }
+  const double c = 0.8246 * 0.8246, r = 0.0206 * 0.0206;
+  EXPECT_NEAR(german(false).density(0.5), 4.032e-7 * c / ((0.25 + r) * (0.25 + c)), 1e-20);
+  EXPECT_NEAR(german(true).density(1.0) / german(false).density(1.0), 10.80 / 4.032, 1e-12);
+  EXPECT_NEAR(fra(4).density(1.0), 0.25 * 0.5376e-4 * 0.8245 * 0.8245 / (1.0 + 0.8245 * 0.8245), 1e-18);
+  EXPECT_NEAR(iso8608('A').density(2.0 * pi * 0.1) * 2.0 * pi, 16e-6, 1e-18);
+  EXPECT_THROW(fra(0), InputError);
+  EXPECT_THROW(fra(7), InputError);
+}
+
+// Mean square of the part of a profile between the wavenumbers low and 2 low, averaged over seeds: by projection on the
+// harmonics of a window 48 waves long (of Hann's shape, mean square 3/8, which keeps long waves out of short ones), the
+// two at the ends by half.
+double octave_variance(const Spectrum& spectrum, double low) {
+  constexpr int first = 48, last = 96, seeds = 40;
+  const double length = first * 2.0 * pi / low;
+  const int n = static_cast<int>(length / (0.4 * spectrum.shortest)) + 1;
+  double power = 0.0;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const Profile p = Profile::rough(spectrum, -1000.0, static_cast<std::uint64_t>(seed));
+    std::vector<double> h(static_cast<std::size_t>(n));
+    for (int i = 0; i < n; ++i)
+      h[static_cast<std::size_t>(i)] = p.at(i * length / n).value * std::pow(std::sin(pi * i / n), 2);
+    for (int k = first; k <= last; ++k) {
+      std::complex<double> sum = 0.0, turn = 1.0;
+      const std::complex<double> step = std::polar(1.0, -2.0 * pi * k / n);
+      for (double value : h) {
+        sum += value * turn;
+        turn *= step;
+      }
+      const double weight = k == first || k == last ? 0.5 : 1.0;
+      power += weight * 2.0 * std::norm(sum) / (double(n) * n) / (3.0 / 8.0);
+    }
+  }
+  return power / seeds;
+}
+
+TEST(Spectrum, TrackHasItsVarianceBandByBand) {
+  for (const Spectrum& s : {german(false), german(true), fra(3), fra(6)}) {
+    for (double low : {0.1, 0.4, 1.6}) {
+      const double expected = s.power(low, 2.0 * low);
+      EXPECT_NEAR(octave_variance(s, low) / expected, 1.0, 0.05) << "from " << low << " rad/m";
+    }
+  }
+}
+
+TEST(Spectrum, RoughRails) {
+  for (const Spectrum& s : {german(false), fra(2)}) {
+    const Profile p = Profile::rough(s, 5.0, 7);
+    EXPECT_EQ(p.at(5.0).value, 0.0);
+    EXPECT_EQ(p.at(-100.0).value, 0.0);
+    expect_derivatives(p, {5.3, 18.2, 25.0, 64.99, 65.0, 200.0, 777.7});
+    EXPECT_EQ(p.at(60.0).value, Profile::rough(s, 5.0, 7).at(60.0).value);
+    EXPECT_NE(p.at(60.0).value, Profile::rough(s, 5.0, 8).at(60.0).value);
+  }
+}
+
+// All power of a narrow band: amplitude sqrt(2 power) of what is nearly one wave, whose length is the band's.
+TEST(Spectrum, WavelengthsCanBeChosen) {
+  const double power = german(true).power(2.0 * pi / 3.03, 2.0 * pi / 3.0);
+  double sum = 0.0;
+  const int seeds = 8000;
+  for (int seed = 0; seed < seeds; ++seed) {
+    const Height h = Profile::rough(german(true), 3.0, 3.03, 0.0, static_cast<std::uint64_t>(seed)).at(1000.0);
+    sum += h.value * h.value / seeds;
+    const double k = 2.0 * pi / 3.015;
+    EXPECT_NEAR(h.curvature, -h.value * k * k, 0.02 * k * k * 5.0 * std::sqrt(power));
+  }
+  EXPECT_NEAR(sum, power, 0.05 * power);
+  EXPECT_THROW(Profile::rough(german(true), 3.0, 3.0, 0.0, 1), InputError);
+  EXPECT_THROW(Profile::rough(german(true), 0.0, 3.0, 0.0, 1), InputError);
 }
 
 }  // namespace

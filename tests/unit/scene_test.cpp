@@ -302,6 +302,29 @@ TEST(SceneLoad, ForcesAndRefusals) {
   EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: 1, speed: 0}\n"), "load_speed is 0");
 }
 
+TEST(SceneVehicle, WheelsOutOfRound) {
+  const auto shape = [](std::initializer_list<std::pair<std::string, std::string>> values) {
+    return scene_with(values).vehicles[0].wheels[0].shape;
+  };
+  EXPECT_TRUE(shape({}).round());
+  EXPECT_DOUBLE_EQ(shape({{"vehicle_car_wheel_flat_length", "0.05"}}).flat_length, 0.05);
+  EXPECT_DOUBLE_EQ(shape({{"vehicle_car_wheel_flat_length", "0.05"}}).flat_angle, std::acos(-1.0));
+  const track::WheelShape polygon =
+      shape({{"vehicle_car_wheel_polygon_order", "18"}, {"vehicle_car_wheel_polygon_amplitude", "2e-5"}});
+  EXPECT_EQ(polygon.polygon_order, 18);
+  EXPECT_DOUBLE_EQ(polygon.polygon_amplitude, 2e-5);
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_flat_length", "0.5"), "the wheel's radius");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_flat_angle", "1"), "needs vehicle_car_wheel_flat_length");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_polygon_order", "3"), "polygon_amplitude: missing");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_polygon_amplitude", "1e-5"), "polygon_order: missing");
+  EXPECT_PRED2(contains, refused_with("vehicle_car_wheel_polygon_phase", "1"), "needs vehicle_car_wheel_polygon_order");
+  EXPECT_PRED2(
+      contains, message_of([] {
+        scene_with({{"vehicle_car_wheel_polygon_order", "10"}, {"vehicle_car_wheel_polygon_amplitude", "5e-3"}});
+      }),
+      "hollow; allowed: below 0.0046 m");
+}
+
 TEST(SceneTrack, Profiles) {
   EXPECT_TRUE(scene_with({}).profile.level());
   const Scene bump = scene_with({{"track_profile", "bump"},
@@ -312,6 +335,17 @@ TEST(SceneTrack, Profiles) {
   const Scene rough = scene_with({{"track_profile", "iso8608_B"}, {"train_positions", "-20"}});
   EXPECT_EQ(rough.profile.at(-19.5).value, 0.0);
   EXPECT_NE(rough.profile.at(5.0).value, 0.0);
+  for (const char* name : {"german_low", "german_high", "fra_1", "fra_6"}) {
+    const Scene rails = scene_with({{"track_profile", name}, {"train_positions", "-20"}});
+    EXPECT_EQ(rails.profile.at(-19.5).value, 0.0);
+    EXPECT_NE(rails.profile.at(5.0).value, 0.0);
+    const Scene short_waves = scene_with({{"track_profile", name}, {"track_wavelengths", "1, 3"}});
+    EXPECT_LT(std::abs(short_waves.profile.at(55.0).value), 0.01);
+    EXPECT_NE(short_waves.profile.at(55.0).value, scene_with({{"track_profile", name}}).profile.at(55.0).value);
+  }
+  EXPECT_PRED2(contains, refused_with("track_profile", "fra_7"), "fra_1 to fra_6");
+  EXPECT_PRED2(contains, refused_with("track_profile", "german_medium"), "german_low, german_high");
+  EXPECT_PRED2(any_contains, scene_with({{"track_wavelengths", "1, 3"}}).notes, "track_wavelengths has no effect");
   EXPECT_PRED2(any_contains, scene_with({{"track_bump_start", "10"}}).notes, "track_bump_start has no effect");
   EXPECT_PRED2(contains, refused_with("track_profile", "iso8608_F"), "iso8608_A to iso8608_E");
   EXPECT_PRED2(contains, refused_with("track_profile", "bumpy"), "allowed: none, bump");

@@ -36,8 +36,7 @@ class ContactNewton {
 
  private:
   struct VehicleWork {
-    Eigen::MatrixXd J, own, G, D, Z, T, NB,
-        gB;  // own: J without contacts; G: contact directions times B; D: law's tangent
+    Eigen::MatrixXd J, own, G, D, Z, T, NB;  // own: J without contacts; G: contact directions times B; D: law's tangent
     Eigen::VectorXd R, dp, f_hat, correction, r;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
     std::vector<int> wheel, component;  // of every row of G: which wheel, 0 normal or 1 tangential
@@ -47,7 +46,7 @@ class ContactNewton {
     bool operator==(const Row&) const = default;
   };
   enum class Tangent { kept, fresh, full };
-  bool evaluate(Fleet& fleet, const StageData& s, const double* p, bool derivatives);
+  bool evaluate(Fleet& fleet, const StageData& s, const double* p);
   void beam_field(const StageData& s, const Fleet& fleet);
   void vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own);
   bool list_rows(const Fleet& fleet);

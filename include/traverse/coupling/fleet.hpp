@@ -22,7 +22,6 @@ struct MovingVehicle {
   std::vector<Wheel> wheels;
   double weight = 0.0;   // N
   double scale = 0.0;    // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
-  double quality = 0.0;  // of its partition when it was chosen; 0: not yet looked at
   int offset = 0;        // of its independent coordinates in p
   int first_wheel = 0;   // in the list of all wheels
   Eigen::VectorXd Q;     // generalized forces of the wheels, n
@@ -40,6 +39,8 @@ struct WheelContact {
   contact::Kinematics kinematics;
   contact::Force force;
   double approach_speed = 0.0;  // of the impact now going on, m/s
+  bool turns = false;           // its body turns with it; else it has rolled by the distance gone over its radius
+  double home = 0.0;            // angle (rad) or x (m) where it starts to roll
   int slot() const { return slots[active]; }
 };
 
@@ -59,18 +60,30 @@ class Fleet {
   int body(const WheelContact& c) const { return wheel(c).body; }
   Eigen::Vector3d coordinates(const WheelContact& c) const;
   Eigen::Vector3d velocities(const WheelContact& c) const;
+  /// Does a joint or driver hold the angle of the wheel's body? With a partition chosen.
+  bool held(const WheelContact& c) const;
+  /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free
+  /// to turn, and does (by friction, or as its given speed says), is where its body's angle says; any other one rolls
+  /// without sliding, however its body is held.
+  void start_rolling();
+  double rolled_angle(const WheelContact& c) const;
 
   /// Chooses every vehicle's independent coordinates at t and numbers them. From then on p counts from where the
   /// vehicles are now, moving on with the train and rolling on: small numbers, so that velocities found as shift times
   /// p keep their digits. Returns lines on redundant joints.
   std::vector<std::string> partition(double t);
 
-  /// Have some vehicle's independent coordinates become much worse than when they were chosen?
-  bool poorly_partitioned();
+  /// Whether some vehicle's independent coordinates may have worn out.
+  bool worn() const;
+  /// Notes the vehicles' states, just evaluated, as accepted at t. Where independent coordinates have worn out others
+  /// take their place: true then, and p has a new meaning.
+  bool accept(double t);
 
   /// Positions, velocities and forces of all vehicles from p and p' (freedom values each). False where a mechanism
-  /// cannot be assembled.
-  bool set(double t, const double* p, const double* pd, bool derivatives);
+  /// cannot be assembled, which is stuck() then.
+  bool set(double t, const double* p, const double* pd);
+  /// The vehicle that could not be assembled when set() failed last; null when it did not.
+  const MovingVehicle* stuck() const { return stuck_ < 0 ? nullptr : &vehicles[static_cast<std::size_t>(stuck_)]; }
   /// p and p' (freedom values each) of the vehicles' q and q' at t.
   void coordinates_of_state(double t, double* p, double* pd) const;
 
@@ -92,13 +105,16 @@ class Fleet {
   double contact_potential() const;
 
  private:
+  void number(double t);
   void add_patch(WheelContact& c, int element, double low, double high);
+  void add_shape(WheelContact& c) const;
 
   const beam::Mesh* mesh_ = nullptr;
   const track::Profile* profile_ = nullptr;
   int freedom_ = 0;
   double speed_ = 0.0;
   bool frozen_ = false;
+  int stuck_ = -1;
   double surface_height_ = 0.0;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p

@@ -88,10 +88,15 @@ class System {
   /// that a force that jumps at an event has its value of either side there. True when that has changed.
   bool begin_step(double from, double to);
 
-  /// Collective. Chooses new independent coordinates where the old ones have become poor. True when y was rewritten.
-  bool repartition(double t, double* y);
+  /// Collective. Notes y as accepted at t and chooses new independent coordinates where the old ones have worn out. True
+  /// when y was rewritten for that.
+  bool accept(double t, double* y);
 
-  /// Times in (0, end) at which a wheel or force passes a kink of the running surface (for a prescribed speed only), or
+  /// Why the last stage could not be solved, and what to do about it.
+  std::string trouble() const;
+
+  /// Times in (0, end) at which a wheel or force passes a kink of the running surface or the end of its own
+  /// flat (for a prescribed speed only), or
   /// an actuator's table has a kink.
   std::vector<double> known_events(double end) const;
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
@@ -109,6 +114,7 @@ class System {
   void find_equilibrium(double* v);
   void let_wheels_roll();
   void settle(bool loaded, Part part);
+  void add_flats(const WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
   void note_weights();
   std::vector<double> influence_line(double station);
@@ -146,6 +152,8 @@ class System {
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
   double influence_of_weight_ = 0.0;                // deflection of the influence line's station under self-weight, m
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
+  std::vector<double> evaluated_;                   // p of the state that the fleet was last set to
+  double evaluated_time_ = 0.0;
   std::vector<double> v_, w_;                       // of the elements in touch, 2*per_node each
   std::vector<double> element_work_;
   std::vector<double> nodal_, work_, v_still_, stage_load_;  // this rank's unknowns

@@ -6,6 +6,7 @@
 
 #include "traverse/contact/law.hpp"
 #include "traverse/multibody/model.hpp"
+#include "traverse/track/wheel_shape.hpp"
 
 namespace traverse::coupling {
 
@@ -15,6 +16,7 @@ struct Wheel {
   int body = 0;
   double radius = 0.0;  // m
   contact::Law law;
+  track::WheelShape shape;  // what is out of round
 };
 
 /// One vehicle type; positions relative to the vehicle's origin.

@@ -36,9 +36,6 @@ struct TorsionGeometry {
   std::shared_ptr<const ForceLaw> law = nullptr;  // null: linear
 };
 
-/// Adds the blocks of a pair of bodies to a matrix over all coordinates; the ground's are left out.
-void add_pair(int first, int second, const PairMatrix& pair, Eigen::MatrixXd& all);
-
 /// `first` and `second` are the bodies' frames at t = 0.
 SpringGeometry spring_geometry(const Spring& spring, const Frame& first, const Frame& second);
 TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first, const Frame& second);

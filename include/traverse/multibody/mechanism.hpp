@@ -21,6 +21,19 @@
 
 namespace traverse::multibody {
 
+/// What was at an accepted instant: from there the motion is continued by Taylor's series where a guess is needed.
+struct Instant {
+  double time = 0.0;
+  int partition_version = 0;   // 0: none
+  Eigen::VectorXd q, qd, qdd;  // n
+  Sensitivity sensitivity;     // B
+};
+
+/// Columns [first, last) of a matrix.
+struct ColumnRange {
+  int first = 0, last = 0;
+};
+
 /// Everything that changes with time for one mechanism; sized once by Mechanism::make_state.
 struct MechanismState {
   double time = 0.0;
@@ -29,23 +42,26 @@ struct MechanismState {
   Eigen::VectorXd b;                  // n: q' = B p' + b
   Eigen::VectorXd d;                  // n: q'' = B p'' + d
   Eigen::VectorXd g;                  // n: gravity, springs, actuators
-  Eigen::MatrixXd g_q;                // n x n: dg/dq
-  Eigen::MatrixXd g_qd;               // n x n: dg/dq'
   Eigen::VectorXd qdd;                // n
   Eigen::VectorXd lambda;             // one a row of Phi; 0 for dropped rows
-  Eigen::MatrixXd lambda_curvature;   // n x n: d(Phi_q^T lambda)/dq at fixed lambda
   Eigen::MatrixXd Phi_q;              // rows of Phi x n, redundant rows included
   Eigen::VectorXd Phi, gamma, Phi_t;  // one a row of Phi
 
   // workspaces of the implementation
   std::vector<Frame> frames;  // ground first, then the bodies: see Mechanism
+  std::vector<ColumnRange> columns;  // of B that a body's rows reach into; one a body
   DependentBlock dependent_block;
   ReducedMass reduced_mass;
+  Instant accepted;            // the last accepted instant
   int partition_version = 0;   // which partition the workspaces belong to
   bool factored = false;       // dependent_block holds a factorisation of Phi_q near the current q
+  bool velocities_set = false; // dependent_block holds the sensitivity at the last velocities
   bool mass_factored = false;  // reduced_mass belongs to B
   Eigen::VectorXd work;        // n
   Eigen::VectorXd reduced;     // f
+  Eigen::VectorXd change;      // f
+  Eigen::VectorXd centre;         // n: q of a nearly singular position
+  Eigen::MatrixXd interpolated;   // n x (f + 2): B, b, d there
 };
 
 /// Powers and stored energies of a mechanism in a state, J and W.
@@ -76,24 +92,35 @@ class Mechanism {
   /// solved for, velocities that do not fit the constraints are projected in the metric of the masses. The caller reads
   /// p and p' from s.q and s.qd. Rows of drivers are kept before rows of joints; redundant rows are dropped.
   /// Throws InputError naming the joints and drivers when rows contradict each other (in position, speed or
-  /// acceleration), cannot be met, or depend on each other in this position only (a dead point); SolverError when the
-  /// freedom differs from that of an earlier choice. Returns the names of joints and drivers with dropped rows.
+  /// acceleration), cannot be met, or depend on each other in this position only (a dead point). Returns the names of
+  /// joints and drivers with dropped rows.
   std::vector<std::string> choose_partition(MechanismState& s, double t);
 
+  /// Notes that s is an accepted instant: Newton and nearly singular positions start from its continuation.
+  void accept(MechanismState& s) const;
+
+  /// Whether coordinates have come to depend strongly on the independent ones, or Phi_u is nearly singular.
+  bool worn(const MechanismState& s) const;
+  /// Chooses the partition anew at the consistent state s where it is worn and another choice serves better. A position
+  /// in which all choices are singular is passed with the old one. False when the old one stays.
+  bool renew_partition(MechanismState& s);
+
   /// A number in (0, 1]: 1 when no dependent coordinate moves more than an independent one that moves it, q for 1/q
-  /// times as much (angles at a typical arm); it tends to 0 where the dependent block becomes singular. With
-  /// velocities set. Worth a new choice below about 0.05 of what the last choice gave.
+  /// times as much (angles at a typical arm); it tends to 0 where the partition wears out. With velocities set.
   double partition_quality(const MechanismState& s) const;
 
-  /// Sets the independent coordinates to p and solves Phi = 0 for the others by Newton from the current s.q.
-  /// Returns false when it does not converge (s.q then holds the last iterate), or when a dropped row is not met.
+  /// Sets the independent coordinates to p and solves Phi = 0 for the others by Newton, from where the last accepted
+  /// instant or the last velocities would take them. Returns false when it does not converge (s.q then holds the last
+  /// iterate), or when a dropped row is not met.
   bool set_positions(MechanismState& s, double t, const double* p) const;
+  /// After set_positions has failed: which joint or driver is not met, and by how much.
+  std::string worst_row(const MechanismState& s) const;
 
   /// With positions set: q' from p', and B, b, d.
   void set_velocities(MechanismState& s, double t, const double* pd) const;
 
-  /// With positions and velocities set: g, and when asked g_q and g_qd.
-  void compute_forces(MechanismState& s, bool derivatives) const;
+  /// With positions and velocities set: g.
+  void compute_forces(MechanismState& s) const;
 
   /// p'' from the projected equations with external forces Q (n); also q'' and lambda.
   void accelerations(MechanismState& s, const Eigen::VectorXd& Q, double* pdd) const;
@@ -101,8 +128,9 @@ class Mechanism {
   /// q'' from a given p'', and lambda from the dependent rows of the equations of motion.
   void recover(MechanismState& s, const Eigen::VectorXd& Q, const double* pdd) const;
 
-  /// d(Phi_q^T lambda)/dq for the current q and lambda into s.lambda_curvature.
-  void compute_lambda_curvature(MechanismState& s) const;
+  /// (by_q dg/dq + by_qd dg/dq' + by_lambda d(Phi_q^T lambda)/dq) B into product (n x f), at fixed lambda.
+  void multiply_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda,
+                        Eigen::MatrixXd& product) const;
 
   /// Reaction of joint j on its second body: fx, fy, moment about the joint's point as it moves with that body (for
   /// `distance`: about `to`). Rows dropped as redundant carry nothing.
@@ -126,6 +154,7 @@ class Mechanism {
   void find_pattern();
 
   void fit(MechanismState& s) const;
+  void find_columns(MechanismState& s) const;
   void place_frames(MechanismState& s) const;
   void move_frames(MechanismState& s) const;
   void compute_Phi(MechanismState& s) const;
@@ -135,9 +164,15 @@ class Mechanism {
   double kept_residual(const MechanismState& s) const;
   bool correct_dependent(MechanismState& s) const;
   bool solve_dependent(MechanismState& s, double t) const;
-  void compute_force_derivatives(MechanismState& s) const;
+  void predict(MechanismState& s, double t, const double* p) const;
+  void velocities_at(MechanismState& s, double t, const double* pd) const;
+  bool interpolate_velocities(MechanismState& s, double t, const double* pd) const;
 
-  Partition pivot(const MechanismState& s) const;
+  struct Choice {
+    Partition partition;
+    double least_pivot;
+  };
+  Choice pivot(const MechanismState& s) const;
   void assemble(MechanismState& s, double t);
   void check_dropped_positions(MechanismState& s) const;
   void check_dropped_rates(MechanismState& s) const;
@@ -150,6 +185,7 @@ class Mechanism {
   MechanismModel model_;
   Partition partition_;
   int partition_version_ = 0;  // 0: none chosen
+  double chosen_quality_ = 1.0;  // of the partition when it was chosen
   Eigen::VectorXd mass_;
   std::vector<JointGeometry> joints_;
   std::vector<SpringGeometry> springs_;

@@ -8,6 +8,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "traverse/multibody/sparse_ldl.hpp"
+
 namespace traverse::multibody {
 
 /// Which coordinates are independent, and which rows of Phi are kept (redundant ones are dropped).
@@ -23,17 +25,14 @@ struct Scaling {
   Eigen::VectorXd column;  // times q's unit: 1 for x and y, 1/length for an angle
 };
 
-/// Several lists of indices in one array; list i is [begin(i), end(i)).
-struct IndexLists {
-  std::vector<int> start = {0};
-  std::vector<int> index;
-  const int* begin(int i) const { return index.data() + start[i]; }
-  const int* end(int i) const { return index.data() + start[i + 1]; }
-  void clear() {
-    start.resize(1);
-    index.clear();
-  }
-  void close() { start.push_back(static_cast<int>(index.size())); }
+/// How dependent coordinates follow the independent ones: coordinate[i] by value[j] for every j in its list.
+struct Sensitivity {
+  std::vector<int> coordinate;  // of list i, in the numbering of q
+  IndexLists independent;       // 0..f-1, ascending
+  std::vector<double> value;
+
+  /// Moves q by a change of the independent coordinates, which stand at `places`.
+  void add(const Eigen::VectorXd& change, const std::vector<int>& places, Eigen::VectorXd& q) const;
 };
 
 /// LU of Phi_u, the kept rows and dependent columns of Phi_q, and the sensitivity -Phi_u^-1 Phi_p of the dependent
@@ -44,7 +43,8 @@ class DependentBlock {
   /// ever be non-zero.
   void plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>& pattern, const Partition& partition,
             const Scaling& scaling);
-  /// Factors. False when a pivot has shrunk so much since the plan was made that a new one is due.
+  /// Factors. False when a pivot has shrunk so much since the plan was made that a new one is due; not when the block was
+  /// nearly singular then and still is, which no order mends.
   bool factor(const Eigen::MatrixXd& Phi_q);
   /// Computes the sensitivity; after factor.
   void compute_sensitivity();
@@ -56,11 +56,14 @@ class DependentBlock {
   /// x_p = p and x_u = x_u + sensitivity * p.
   void expand(const double* p, Eigen::VectorXd& x) const;
   /// The projection B^T r.
-  void project(const Eigen::VectorXd& r, Eigen::VectorXd& reduced) const;
+  void project(const Eigen::Ref<const Eigen::VectorXd>& r, Eigen::Ref<Eigen::VectorXd> reduced) const;
   /// Writes the sensitivity into the dependent rows of B (n x f); the rest of B is left alone.
   void scatter(Eigen::MatrixXd& B) const;
   /// The largest scaled sensitivity.
   double largest_sensitivity(const Scaling& scaling) const;
+  /// Whether some scaled pivot of the last factorisation has become so small that rounding shows in accelerations.
+  bool nearly_singular() const { return least_pivot_ < small_pivot; }
+  void copy_sensitivity(Sensitivity& copy) const;
 
   int size() const { return static_cast<int>(row_of_.size()); }
   int freedom() const { return static_cast<int>(independent_.size()); }
@@ -70,8 +73,11 @@ class DependentBlock {
   const int* sensitivity_begin(int pivot) const { return sensitive_.begin(pivot); }
   const int* sensitivity_end(int pivot) const { return sensitive_.end(pivot); }
   double sensitivity(int pivot, int k) const { return sensitivity_[pivot * freedom() + k]; }
+  /// Takes the sensitivity from B (n x f).
+  void set_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& B);
 
  private:
+  static constexpr double small_pivot = 3e-3;
   struct Source {
     int from;  // in Phi_q's storage
     int to;    // in block_ or sensitivity_
@@ -85,9 +91,10 @@ class DependentBlock {
   IndexLists lower_, upper_, sensitive_;               // non-zero columns of every pivot's row
   std::vector<Source> block_sources_, sensitivity_sources_;
   std::vector<double> block_, sensitivity_;  // size x size, size x freedom, by rows
-  std::vector<double> inverse_pivot_, planned_pivot_, work_;
+  std::vector<double> inverse_pivot_, planned_pivot_, pivot_scale_, work_;
+  double least_pivot_ = 1.0;
+  bool planned_singular_ = false;
   std::vector<char> filled_;  // scratch of plan
-  Eigen::MatrixXd active_;    // scratch of plan
 };
 
 /// L D L^T of the projected mass matrix B^T N B, eliminated in the order of least fill.
@@ -99,13 +106,7 @@ class ReducedMass {
   void solve(Eigen::VectorXd& x);  // in place
 
  private:
-  int least_coupled() const;
-
-  std::vector<int> order_, place_;  // the coordinate eliminated k-th, and the other way round
-  IndexLists below_;                // non-zero rows below the diagonal, by columns
-  std::vector<double> entries_;     // by columns
-  std::vector<double> inverse_;     // of D
-  std::vector<double> work_;
+  SparseLdl ldl_;
   std::vector<char> filled_;  // scratch of plan
 };
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "traverse/track/spectrum.hpp"
+
 namespace traverse::track {
 
 struct Height {
@@ -21,23 +23,29 @@ class Profile {
   static Profile bump(double start, double length, double height);
   /// Natural cubic spline through a table, level with its end values outside.
   static Profile table(std::vector<double> x, std::vector<double> h, const std::string& name);
-  /// ISO 8608 class 'A'..'E': a sum of cosines with random phases from a seed, spatial frequencies 0.01 to 10
-  /// cycles/m in log spacing, displacement spectrum Gd(n) = Gd(n0)(n/n0)^-2, n0 = 0.1 cycles/m, geometric mean of
-  /// the class; faded in over the first 20 m from `start` so that a train starts on level track.
-  static Profile iso8608(char grade, double start, std::uint64_t seed);
+  /// Roughness of a spectrum: a sum of 240 cosines with random phases from a seed, wavelengths from `shortest` to
+  /// `longest` (m) in log spacing, each with the power of its band; faded in from `start` over 20 m, or a fifth of the
+  /// longest wave where that is more, so that a train starts on level track.
+  static Profile rough(const Spectrum& spectrum, double shortest, double longest, double start, std::uint64_t seed);
+  /// The same between the spectrum's own wavelengths.
+  static Profile rough(const Spectrum& spectrum, double start, std::uint64_t seed) {
+    return rough(spectrum, spectrum.shortest, spectrum.longest, start, seed);
+  }
 
   bool level() const { return kind_ == Kind::level; }
   Height at(double x) const;
   /// Stations where the slope or curvature jumps: integration steps end where wheels pass them.
   const std::vector<double>& kinks() const { return kinks_; }
-  /// Upper bound of |curvature| (1/m; for ISO 8608 six standard deviations of it): a wheel of radius R needs 1/R above
+  /// Upper bound of |curvature| (1/m; for roughness six standard deviations of it): a wheel of radius R needs 1/R above
   /// it to touch at one point only.
   double greatest_curvature() const { return greatest_curvature_; }
+  /// Length of the bump or of the shortest wave of roughness, m; infinite for level tracks and tables.
+  double shortest_wave() const;
 
  private:
   enum class Kind { level, bump, table, waves };
   Kind kind_ = Kind::level;
-  double start_ = 0.0, length_ = 0.0, height_ = 0.0;
+  double start_ = 0.0, length_ = 0.0, height_ = 0.0;   // length: of the bump, or of the fade
   std::vector<double> x_, h_, h2_;                     // table
   std::vector<double> amplitude_, frequency_, phase_;  // waves: m, cycles/m, cycles
   std::vector<double> kinks_;

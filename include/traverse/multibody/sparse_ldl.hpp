@@ -1,0 +1,47 @@
+// L D L^T of a small symmetric positive definite matrix with few non-zeros, eliminated in the order of least fill. The
+// order and the places that can be non-zero are found once; numbers are then computed without touching a zero and
+// without allocating.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace traverse::multibody {
+
+/// Several lists of indices in one array; list i is [begin(i), end(i)).
+struct IndexLists {
+  std::vector<int> start = {0};
+  std::vector<int> index;
+  const int* begin(int i) const { return index.data() + start[i]; }
+  const int* end(int i) const { return index.data() + start[i + 1]; }
+  void clear() {
+    start.resize(1);
+    index.clear();
+  }
+  void close() { start.push_back(static_cast<int>(index.size())); }
+};
+
+class SparseLdl {
+ public:
+  /// `filled` (size x size, symmetric) is true where the matrix can be non-zero; it is overwritten.
+  void plan(int size, std::vector<char>& filled);
+  void set_zero();
+  /// Entry (i, j) of the matrix, to be added to; call it for one of (i, j) and (j, i) only, whichever.
+  double& entry(int i, int j) {
+    const int a = place_[i], b = place_[j];
+    return a < b ? entries_[a * size() + b] : entries_[b * size() + a];
+  }
+  void factor();
+  void solve(double* x);  // in place
+
+  int size() const { return static_cast<int>(order_.size()); }
+
+ private:
+  std::vector<int> order_, place_;  // the index eliminated k-th, and the other way round
+  IndexLists below_;                // non-zero rows below the diagonal, by columns
+  std::vector<double> entries_;     // size x size, by columns
+  std::vector<double> inverse_;     // of D
+  std::vector<double> work_;
+};
+
+}  // namespace traverse::multibody

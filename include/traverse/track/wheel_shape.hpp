@@ -1,0 +1,45 @@
+// Wheels out of round: what the radius gains over its nominal value R at the angle rolled since the start.
+//
+// The angle a grows as the wheel rolls to the right (a = x/R without sliding); the point of the tread that touches at
+// the start is at a = 0. A wheel has a polygonal shape, a flat, or both:
+//
+//   polygon: dr = A cos(n a + phase), n waves around the wheel (see J. C. O. Nielsen and A. Johansson, Out-of-round
+//            railway wheels - a literature survey, Proc. Instn Mech. Engrs F 214 (2000) 79-91);
+//   flat:    dr = -d/2 (1 + cos(2 pi R (a - flat_angle)/L)) within L/2 of its middle, depth d = L^2/(16 R): the
+//            rounded (worn) flat of W. M. Zhai and others, Dynamic effects of vehicles on tracks in the case of raising
+//            train speeds, Proc. Instn Mech. Engrs F 215 (2001) 125-135. A fresh flat, a chord, is twice as deep.
+//
+// The shape changes the radius where the wheel's normal meets the tread; that a flat touches with its edges, off that
+// normal, is left out, as these models do.
+#pragma once
+
+#include <optional>
+
+namespace traverse::track {
+
+struct WheelShape {
+  double flat_length = 0.0;        // L, m; 0: none
+  double flat_angle = 0.0;         // of its middle, rad
+  int polygon_order = 0;           // n; 0: none
+  double polygon_amplitude = 0.0;  // A, m
+  double polygon_phase = 0.0;      // rad
+
+  bool round() const { return flat_length == 0.0 && polygon_amplitude == 0.0; }
+};
+
+struct RadiusGain {
+  double value = 0.0;      // dr, m
+  double slope = 0.0;      // by a, m/rad
+  double curvature = 0.0;  // by a twice, m/rad2
+};
+
+/// dr at the rolled angle a (rad) of a wheel of the given radius (m).
+RadiusGain radius_gain(const WheelShape& shape, double radius, double angle);
+
+/// Depth of a rounded flat, m.
+double flat_depth(double length, double radius);
+
+/// The next angle above a at which an end of the flat meets the rail: there the curvature jumps. None without a flat.
+std::optional<double> next_flat_end(const WheelShape& shape, double radius, double angle);
+
+}  // namespace traverse::track

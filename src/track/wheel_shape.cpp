@@ -1,0 +1,44 @@
+#include "traverse/track/wheel_shape.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace traverse::track {
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+
+}  // namespace
+
+double flat_depth(double length, double radius) { return length * length / (16.0 * radius); }
+
+RadiusGain radius_gain(const WheelShape& shape, double radius, double angle) {
+  RadiusGain g;
+  if (shape.polygon_amplitude != 0.0) {
+    const double n = shape.polygon_order, A = shape.polygon_amplitude;
+    const double at = n * angle + shape.polygon_phase;
+    g = {A * std::cos(at), -n * A * std::sin(at), -n * n * A * std::cos(at)};
+  }
+  if (shape.flat_length > 0.0) {
+    const double from_middle = std::remainder(angle - shape.flat_angle, two_pi);
+    const double k = two_pi * radius / shape.flat_length;
+    if (std::abs(k * from_middle) < std::numbers::pi) {
+      const double half = 0.5 * flat_depth(shape.flat_length, radius);
+      const double c = std::cos(k * from_middle);
+      g.value -= half * (1.0 + c);
+      g.slope += half * k * std::sin(k * from_middle);
+      g.curvature += half * k * k * c;
+    }
+  }
+  return g;
+}
+
+std::optional<double> next_flat_end(const WheelShape& shape, double radius, double angle) {
+  if (!(shape.flat_length > 0.0)) return {};
+  const double half = 0.5 * shape.flat_length / radius;
+  const auto next = [&](double end) { return end + two_pi * (std::floor((angle - end) / two_pi) + 1.0); };
+  return std::min(next(shape.flat_angle - half), next(shape.flat_angle + half));
+}
+
+}  // namespace traverse::track
