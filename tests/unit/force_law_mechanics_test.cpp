@@ -186,11 +186,13 @@ TEST(MechanismWithLaws, ForceDerivativesMatchDifferences) {
         const auto force = [&](const Eigen::VectorXd& at, const Eigen::VectorXd& rate) {
           motion.mechanism.set_positions(motion.state, 0.0, at.data());
           motion.mechanism.set_velocities(motion.state, 0.0, rate.data());
-          motion.mechanism.compute_forces(motion.state, true);
+          motion.mechanism.compute_forces(motion.state);
           return motion.state.g;
         };
         force(q, qd);
-        const Eigen::MatrixXd g_q = motion.state.g_q, g_qd = motion.state.g_qd;
+        Eigen::MatrixXd g_q, g_qd;  // without joints B is the identity
+        motion.mechanism.multiply_tangent(motion.state, 1.0, 0.0, 0.0, g_q);
+        motion.mechanism.multiply_tangent(motion.state, 0.0, 1.0, 0.0, g_qd);
         for (int j = 0; j < 6; ++j) {
           const Eigen::VectorXd step = 1e-6 * Eigen::VectorXd::Unit(6, j);
           const Eigen::VectorXd by_q = (force(q + step, qd) - force(q - step, qd)) / 2e-6;
