@@ -99,7 +99,9 @@ Imbalance newton_imbalance(Results& run) {
   const multibody::MechanismModel model = app::read_scene().vehicles.at(0).mechanism;
   Imbalance worst, scale;
   for (std::size_t row = 0; row < run("/time").size(); ++row) Balance(run, model, row).compare(worst, scale);
-  return {worst.force / scale.force, worst.moment / scale.moment};
+  if (scale.force > 0.0) worst.force /= scale.force;  // without any force, an acceleration is wrong as it is
+  if (scale.moment > 0.0) worst.moment /= scale.moment;
+  return worst;
 }
 
 }  // namespace traverse::test

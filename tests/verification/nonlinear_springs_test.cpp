@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "support/curve.hpp"
+#include "support/newton_law.hpp"
 #include "support/temporary_folder.hpp"
 #include "traverse/base/error.hpp"
 
@@ -78,6 +79,8 @@ Differences of_play(Results run, const std::string& coordinate, std::size_t colu
     largest.position = std::max(largest.position, std::abs(x[i] - exact.position));
     largest.force = std::max(largest.force, std::abs(sign * f[i] - exact.force));
   }
+  EXPECT_LT(newton_imbalance(run).force, 1e-9);
+  EXPECT_LT(newton_imbalance(run).moment, 1e-9);
   return largest;
 }
 
