@@ -190,7 +190,7 @@ TEST(MechanismWithLaws, ForceDerivativesMatchDifferences) {
           return motion.state.g;
         };
         force(q, qd);
-        Eigen::MatrixXd g_q, g_qd;  // B is the identity
+        Eigen::MatrixXd g_q, g_qd;  // without joints B is the identity
         motion.mechanism.multiply_tangent(motion.state, 1.0, 0.0, 0.0, g_q);
         motion.mechanism.multiply_tangent(motion.state, 0.0, 1.0, 0.0, g_qd);
         for (int j = 0; j < 6; ++j) {
@@ -204,24 +204,29 @@ TEST(MechanismWithLaws, ForceDerivativesMatchDifferences) {
     }
 }
 
-TEST(MechanismWithLaws, TwoBodiesLoseWhatTheDampersTake) {
-  for (const Side side : sides) {
-    MechanismModel model = with_laws(0.05, side);
-    model.gravity = 0.0;
-    model.bodies[0].velocity = (side == Side::tension ? -1.0 : 1.0) * Eigen::Vector3d(1.0, -0.5, 2.0);
-    Motion motion(model);
+/// What does not balance after a second, over what the dampers took.
+double unbalanced(double gap, Side side) {
+  MechanismModel model = with_laws(gap, side);
+  model.gravity = 0.0;
+  model.bodies[0].velocity = (side == Side::tension ? -1.0 : 1.0) * Eigen::Vector3d(1.0, -0.5, 2.0);
+  Motion motion(model);
+  motion.finish();
+  const double start = motion.total_energy(), h = 5e-5;
+  double lost = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    lost += 0.5 * h * motion.mechanism.energy(motion.state).dissipation;
+    motion.step(h);
     motion.finish();
-    const double start = motion.total_energy(), h = 1e-4;
-    double lost = 0.0;
-    for (int i = 0; i < 10000; ++i) {
-      lost += 0.5 * h * motion.mechanism.energy(motion.state).dissipation;
-      motion.step(h);
-      motion.finish();
-      lost += 0.5 * h * motion.mechanism.energy(motion.state).dissipation;
-    }
-    EXPECT_GT(lost, 0.02 * start);
-    EXPECT_NEAR(motion.total_energy() + lost, start, 50.0 * h) << "a damper of some 50 W comes on inside a step";
+    lost += 0.5 * h * motion.mechanism.energy(motion.state).dissipation;
   }
+  EXPECT_GT(lost, 0.02 * start);
+  return std::abs(motion.total_energy() + lost - start) / lost;
+}
+
+TEST(MechanismWithLaws, TwoBodiesLoseWhatTheDampersTake) {
+  EXPECT_LT(unbalanced(0.0, Side::both), 1e-5);
+  // a damper that comes on inside a step leaves its power times a part of the step
+  for (const Side side : sides) EXPECT_LT(unbalanced(0.05, side), 3e-3);
 }
 
 TEST(MechanismWithLaws, ReportsItsForces) {

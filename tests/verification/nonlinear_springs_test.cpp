@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "support/curve.hpp"
+#include "support/newton_law.hpp"
 #include "support/temporary_folder.hpp"
 #include "traverse/base/error.hpp"
 
@@ -27,7 +28,7 @@ vehicle:
     body:   {mass: 2.0, inertia: 0.1, position: [0.0, 0.0], velocity: [1.5, 0.0, 0.0]}
     guide:  {type: prismatic, bodies: [ground, body], point: [0.0, 0.0], axis: [1.0, 0.0]}
     spring: {bodies: [ground, body], from: [-3.0, 0.0], to: [0.0, 0.0]}
-train: {positions: 0.0}
+train: {vehicles: slider}
 scene: {start: given}
 gravity: 0.0
 )";
@@ -42,7 +43,7 @@ vehicle:
     body:   {mass: 1.0, inertia: 2.0, position: [0.0, 0.0], velocity: [0.0, 0.0, 1.5]}
     guide:  {type: revolute, bodies: [ground, body], point: [0.0, 0.0]}
     spring: {bodies: [ground, body]}
-train: {positions: 0.0}
+train: {vehicles: slider}
 scene: {start: given}
 gravity: 0.0
 )";
@@ -78,6 +79,8 @@ Differences of_play(Results run, const std::string& coordinate, std::size_t colu
     largest.position = std::max(largest.position, std::abs(x[i] - exact.position));
     largest.force = std::max(largest.force, std::abs(sign * f[i] - exact.force));
   }
+  EXPECT_LT(newton_imbalance(run).force, 1e-9);
+  EXPECT_LT(newton_imbalance(run).moment, 1e-9);
   return largest;
 }
 

@@ -1,0 +1,107 @@
+#include "support/newton_law.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "traverse/app/scene.hpp"
+
+namespace traverse::test {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using multibody::ground;
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+/// The forces and moments that add up on every body at one instant.
+class Balance {
+ public:
+  Balance(Results& run, const multibody::MechanismModel& model, std::size_t row) : run_(run), model_(model), row_(row) {
+    for (const multibody::Body& body : model.bodies) {
+      position_.push_back(triple("/vehicles/0/" + body.name + "/position"));
+      sum_.emplace_back(0.0, -body.mass * model.gravity, 0.0);
+    }
+    for (const multibody::Joint& joint : model.joints) add(joint);
+    for (const multibody::Spring& spring : model.springs) add(spring);
+    for (const multibody::TorsionSpring& spring : model.torsion_springs) {
+      const double moment = run("/vehicles/0/" + spring.name + "/moment")[row];
+      pair(spring.bodies, {}, {}, Vector3d(0.0, 0.0, moment));
+    }
+    for (const multibody::Actuator& actuator : model.actuators) {
+      const double t = run("/time")[row];
+      const Vector3d action(actuator.action[0].value(t), actuator.action[1].value(t), actuator.action[2].value(t));
+      force(actuator.body, centre(actuator.body), action);
+      if (actuator.reaction_body != ground) force(actuator.reaction_body, centre(actuator.reaction_body), -action);
+    }
+  }
+
+  void compare(Imbalance& worst, Imbalance& scale) {
+    for (std::size_t b = 0; b < sum_.size(); ++b) {
+      const multibody::Body& body = model_.bodies[b];
+      const Vector3d a = triple("/vehicles/0/" + body.name + "/acceleration");
+      worst.force = std::max(worst.force, (sum_[b].head<2>() - body.mass * a.head<2>()).norm());
+      worst.moment = std::max(worst.moment, std::abs(sum_[b].z() - body.inertia * a.z()));
+    }
+    scale.force = std::max(scale.force, largest_.force);
+    scale.moment = std::max(scale.moment, largest_.moment);
+  }
+
+ private:
+  Vector3d triple(const std::string& name) { return Eigen::Map<const Vector3d>(&run_(name)[3 * row_]); }
+  Vector2d centre(int body) const { return position_[static_cast<std::size_t>(body)].head<2>(); }
+
+  /// Where a point of a body, given at t = 0, is now.
+  Vector2d now(int body, const Vector2d& point) const {
+    if (body == ground) return point;
+    const Vector3d& start = model_.bodies[static_cast<std::size_t>(body)].position;
+    const Vector3d& q = position_[static_cast<std::size_t>(body)];
+    return q.head<2>() + Eigen::Rotation2Dd(q.z() - start.z()) * (point - start.head<2>());
+  }
+
+  /// A force at a point and a moment on a body.
+  void force(int body, const Vector2d& at, const Vector3d& f) {
+    if (body == ground) return;
+    const double moment = f.z() + cross(at - centre(body), f.head<2>());
+    sum_[static_cast<std::size_t>(body)] += Vector3d(f.x(), f.y(), moment);
+    largest_.force = std::max(largest_.force, f.head<2>().norm());
+    largest_.moment = std::max(largest_.moment, std::abs(moment));
+  }
+  void pair(const std::array<int, 2>& bodies, const Vector2d& first, const Vector2d& second,
+            const Vector3d& on_second) {
+    force(bodies[0], first, -on_second);
+    force(bodies[1], second, on_second);
+  }
+
+  void add(const multibody::Joint& joint) {
+    const bool rod = joint.type == multibody::JointType::distance;
+    const Vector2d at = now(joint.bodies[1], rod ? joint.to : joint.point);
+    pair(joint.bodies, at, at, triple("/vehicles/0/" + joint.name + "/reaction"));
+  }
+  void add(const multibody::Spring& spring) {
+    const Vector2d from = now(spring.bodies[0], spring.from), to = now(spring.bodies[1], spring.to);
+    const Vector2d pull = run_("/vehicles/0/" + spring.name + "/force")[row_] * (from - to).normalized();
+    pair(spring.bodies, from, to, Vector3d(pull.x(), pull.y(), 0.0));
+  }
+
+  Results& run_;
+  const multibody::MechanismModel& model_;
+  std::size_t row_;
+  std::vector<Vector3d> position_, sum_;
+  Imbalance largest_;
+};
+
+}  // namespace
+
+Imbalance newton_imbalance(Results& run) {
+  const multibody::MechanismModel model = app::read_scene().vehicles.at(0).mechanism;
+  Imbalance worst, scale;
+  for (std::size_t row = 0; row < run("/time").size(); ++row) Balance(run, model, row).compare(worst, scale);
+  if (scale.force > 0.0) worst.force /= scale.force;  // without any force, an acceleration is wrong as it is
+  if (scale.moment > 0.0) worst.moment /= scale.moment;
+  return worst;
+}
+
+}  // namespace traverse::test
