@@ -56,6 +56,16 @@ Force force(const Law& law, const Kinematics& kinematics, double approach_speed)
   return f;
 }
 
+Force operator-(const Force& f) {
+  return {-f.normal,
+          -f.tangential,
+          -f.normal_by_penetration,
+          -f.normal_by_rate,
+          -f.tangential_by_penetration,
+          -f.tangential_by_rate,
+          -f.tangential_by_sliding};
+}
+
 double potential(const Law& law, double penetration) {
   if (!(penetration > 0.0)) return 0.0;
   if (law.kind == LawKind::linear) return 0.5 * law.stiffness * penetration * penetration;

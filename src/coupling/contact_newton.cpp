@@ -116,9 +116,9 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
   const int f = mechanism.freedom();
   w.wheel.clear();
   w.component.clear();
-  for (std::size_t i = 0; i < vehicle.wheels.size(); ++i)
-    for (int component = 0; component < (vehicle.wheels[i].law.friction > 0.0 ? 2 : 1); ++component) {
-      w.wheel.push_back(vehicle.first_wheel + static_cast<int>(i));
+  for (int i = vehicle.first_wheel; i < vehicle.first_wheel + vehicle.contacts; ++i)
+    for (int component = 0; component < (fleet.wheel(fleet.wheels[i]).law.friction > 0.0 ? 2 : 1); ++component) {
+      w.wheel.push_back(i);
       w.component.push_back(component);
     }
   const int rows = static_cast<int>(w.wheel.size());

@@ -35,6 +35,9 @@ struct Force {
   double tangential_by_penetration = 0.0, tangential_by_rate = 0.0, tangential_by_sliding = 0.0;
 };
 
+/// The force and all its derivatives with the other sign.
+Force operator-(const Force& f);
+
 /// approach_speed: of the impact now going on, m/s, used with a restitution only (0: no impact, no damping).
 Force force(const Law& law, const Kinematics& kinematics, double approach_speed);
 

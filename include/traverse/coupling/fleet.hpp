@@ -11,6 +11,7 @@
 #include "traverse/coupling/vehicle.hpp"
 #include "traverse/coupling/wheel_on_track.hpp"
 #include "traverse/multibody/mechanism.hpp"
+#include "traverse/track/touching.hpp"
 
 namespace traverse::coupling {
 
@@ -24,11 +25,15 @@ struct MovingVehicle {
   double scale = 0.0;    // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
   double quality = 0.0;  // of its partition when it was chosen; 0: not yet looked at
   int offset = 0;        // of its independent coordinates in p
-  int first_wheel = 0;   // in the list of all wheels
+  int first_wheel = 0;   // in the list of all contacts: one a wheel, then the further ones of its wheels
+  int contacts = 0;      // of all its wheels
   Eigen::VectorXd Q;     // generalized forces of the wheels, n
 };
 
-/// A wheel's contact at the state last evaluated.
+/// A wheel's contact at the state last evaluated. A wheel sharper than the track's valleys may touch at several points
+/// (track::TouchingPoints): it has further entries for the other points, from left to right, and then for what
+/// neighbouring points share, with the sign -1. Where it touches at fewer, the others have no candidates, a negative
+/// penetration and no force.
 struct WheelContact {
   int vehicle = 0;
   int wheel = 0;                        // of its vehicle
@@ -42,7 +47,16 @@ struct WheelContact {
   double approach_speed = 0.0;  // of the impact now going on, m/s
   bool turns = false;           // its body turns with it; else it has rolled by the distance gone over its radius
   double home = 0.0;            // angle (rad) or x (m) where it starts to roll
+  int further = 0;              // index of the first further entry of this wheel; 0: none
+  bool is_further = false;
+  double sign = 1.0;
+  double divide = 0.0;  // sign -1: station of the minimum between the points, as it was found, m
   int slot() const { return slots[active]; }
+};
+
+struct WheelLoad {
+  double normal = 0.0, tangential = 0.0;  // N
+  double penetration = 0.0;               // m
 };
 
 class Fleet {
@@ -61,6 +75,14 @@ class Fleet {
   int body(const WheelContact& c) const { return wheel(c).body; }
   Eigen::Vector3d coordinates(const WheelContact& c) const;
   Eigen::Vector3d velocities(const WheelContact& c) const;
+  /// Of a wheel's first entry: what all its points add up to, and the deepest penetration.
+  WheelLoad load(const WheelContact& c) const;
+  /// The first wheel (by its first entry) that has overlapped the track at more points than are modelled, and where.
+  struct Crowded {
+    int contact = -1;  // none
+    double x = 0.0;
+  };
+  const Crowded& crowded() const { return crowded_; }
   /// Does a joint or driver hold the angle of the wheel's body? With a partition chosen.
   bool held(const WheelContact& c) const;
   /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free
@@ -101,7 +123,21 @@ class Fleet {
   double contact_potential() const;
 
  private:
-  void add_patch(WheelContact& c, int element, double low, double high);
+  void add_patch(WheelContact& c, int element, double start, double low, double high);
+  void find_patches(WheelContact& c, double x, double from, double to, double low, double high);
+  void find_points(WheelContact& c);
+  void take_away(WheelContact& c);
+  bool touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find);
+  bool touch_points(WheelContact& c, int per_node, const double* v, const double* w);
+  void lose(WheelContact& c) const;
+  WheelContact& point(const WheelContact& first, int i) {
+    return i == 0 ? wheels[index(first)] : further(first, i - 1);
+  }
+  WheelContact& between(const WheelContact& first, int i) { return further(first, track::most_points - 1 + i); }
+  WheelContact& further(const WheelContact& first, int i) {
+    return wheels[static_cast<std::size_t>(first.further + i)];
+  }
+  std::size_t index(const WheelContact& c) const { return static_cast<std::size_t>(&c - wheels.data()); }
   void add_shape(WheelContact& c) const;
 
   const beam::Mesh* mesh_ = nullptr;
@@ -110,6 +146,7 @@ class Fleet {
   double speed_ = 0.0;
   bool frozen_ = false;
   double surface_height_ = 0.0;
+  Crowded crowded_;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p
   std::vector<double> position_, velocity_;  // of one vehicle
