@@ -14,7 +14,8 @@ namespace traverse::track {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double least_fade = 20.0;  // m
+constexpr double least_fade = 20.0;    // m
+constexpr double least_corner = 5e-3;  // of slope: below it a wheel of 0.5 m bridges the corner by a micrometre
 constexpr double stations_a_wave = 16.0;
 constexpr int waves_in_all = 240;
 
@@ -99,6 +100,9 @@ void Profile::bound_table() {
     greatest_slope_ = std::max({greatest_slope_, std::abs(low), std::abs(high)});
     greatest_valley_ = std::max(greatest_valley_, std::max(a, b) / std::pow(1.0 + flattest * flattest, 1.5));
     resolution_ = std::min(resolution_, 4.0 * d / stations_a_wave);
+    const bool first = i == 0, last = i + 2 == x_.size();  // where the level ground beyond turns upward
+    if ((first && left > least_corner) || (last && right < -least_corner))
+      greatest_valley_ = std::numeric_limits<double>::infinity();
   }
 }
 
@@ -207,7 +211,7 @@ Height waves_at(const std::vector<double>& amplitude, const std::vector<double>&
 
 double Profile::shortest_wave() const {
   if (kind_ == Kind::bump) return length_;
-  return kind_ == Kind::waves ? 1.0 / frequency_.back() : std::numeric_limits<double>::infinity();
+  return kind_ == Kind::waves ? stations_a_wave * resolution_ : std::numeric_limits<double>::infinity();
 }
 
 Height Profile::at(double x) const {

@@ -68,7 +68,10 @@ class Scan {
     for (int i = 1; i <= steps; ++i) {
       const double to = i < steps ? first + (last - first) * i / steps : last;
       for (double kink : profile_.kinks())
-        if (kink > before && kink < to) visit(kink);
+        if (kink > before && kink < to) {  // from both sides
+          visit(std::nextafter(kink, first));
+          visit(std::nextafter(kink, last));
+        }
       visit(to);
       before = to;
     }

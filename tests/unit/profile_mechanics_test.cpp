@@ -68,7 +68,8 @@ TEST(Profile, TableIsANaturalSpline) {
 // (1 + h'^2)^1.5, where a natural spline through it keeps away from its ends.
 TEST(Profile, BoundsOfTables) {
   const Profile crest = Profile::table({0.0, 1.0, 2.0}, {0.0, 1.0, 0.0}, "t.csv");
-  EXPECT_EQ(crest.greatest_valley(), 0.0);
+  EXPECT_EQ(crest.greatest_valley(), std::numeric_limits<double>::infinity());                    // corners at its feet
+  EXPECT_EQ(Profile::table({0.0, 1.0, 2.0}, {0.0, 0.001, 0.0}, "t.csv").greatest_valley(), 0.0);  // hardly any
   EXPECT_DOUBLE_EQ(crest.greatest_slope(), 1.5);  // h'' = -3 at the top, straight at the ends
   const Profile valley = Profile::table({0.0, 1.0, 2.0}, {0.0, -1.0, 0.0}, "t.csv");
   EXPECT_DOUBLE_EQ(valley.greatest_valley(), 3.0);

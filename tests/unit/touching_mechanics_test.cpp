@@ -72,10 +72,18 @@ TEST(Touching, SharpBump) {
   EXPECT_EQ(most, 2);  // the ground straight below, and the bump
 }
 
-// A crest may be as sharp as it likes: a table's spike on a straight ramp has a valley at either foot, none alone.
+// A crest may be as sharp as it likes; at its feet, corners, a wheel touches ground and slope.
 TEST(Touching, CrestsTouchOnce) {
-  const Profile crest = Profile::table({0.0, 0.5, 1.0}, {0.0, 0.2, 0.0}, "t.csv");
-  EXPECT_FALSE(is_sharp(crest, 100.0));
+  const Profile crest = Profile::table({0.0, 0.05, 0.1}, {0.0, 0.01, 0.0}, "t.csv");
+  EXPECT_GT(-crest.at(0.05).curvature * R, 5.0);
+  for (double x = 0.02; x < 0.081; x += 0.01) EXPECT_EQ(touching_points(crest, R, x).count, 1) << "x = " << x;
+  bool twice = false;
+  for (double x = -0.2; x < 0.3; x += 0.0031) {
+    expect_points(crest, x);
+    twice = twice || touching_points(crest, R, x).points[1].depth > -1e-4;
+  }
+  EXPECT_TRUE(twice);
+  EXPECT_TRUE(is_sharp(crest, R));
   const Profile valley = Profile::table({0.0, 0.5, 1.0}, {0.0, -0.2, 0.0}, "t.csv");
   EXPECT_TRUE(is_sharp(valley, R));
 }

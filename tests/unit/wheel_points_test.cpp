@@ -162,6 +162,17 @@ TEST(WheelContacts, GradientOfThePotentialOverALowBump) {
   EXPECT_GT(sharing, 50);
 }
 
+// Corners at the feet of a table's ramp, where the level ground ends.
+TEST(WheelContacts, GradientOfThePotentialAtACorner) {
+  Placed placed(wheelset(1e7, contact::LawKind::linear),
+                track::Profile::table({2.0, 2.25, 2.5}, {0.0, 0.01, 0.0}, "ramp"));
+  ASSERT_EQ(placed.fleet.wheels.size(), 5u);
+  for (double x = 1.9; x < 2.15; x += 0.00173) {
+    const double highest = track::touching_points(placed.profile, R, x).height;
+    for (double overlap : {1e-5, 1e-4, 1e-3}) expect_gradient(placed, {x, highest - overlap, 0.0});
+  }
+}
+
 // h = sqrt(a^2 + s^2 x^2), a valley with smooth ground: slope s far out, curvature s^2/a in the middle.
 constexpr double slope = 0.3, bottom = 0.009;
 track::Profile valley() {
