@@ -208,6 +208,13 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
   } catch (const FileError& error) {
     leave_together(comm, error);
   }
+  if (const auto& crowded = system.fleet().crowded(); crowded.contact >= 0 && rank == 0) {
+    const coupling::WheelContact& c = system.fleet().wheels[static_cast<std::size_t>(crowded.contact)];
+    fmt::print(
+        "  note: {} of vehicle {} overlapped the track's profile at more than {} points (first at x = {:g} m): the {} "
+        "deepest carried\n",
+        system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
+  }
   if (summary.energy_residual > unbalanced * summary.energy_scale)
     throw SolverError(
         fmt::format("the energy does not balance: {:g} J of {:g} J are missing; the step is too long for "

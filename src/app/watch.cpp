@@ -64,8 +64,8 @@ void Watch::fill_vehicles(results::Sample& sample) const {
       out.bodies[b] = {triple(vehicle.state.q, b), triple(vehicle.state.qd, b), triple(vehicle.state.qdd, b)};
     out.wheels.resize(vehicle.wheels.size());
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
-      const coupling::WheelContact& c = fleet.wheels[vehicle.first_wheel + static_cast<int>(i)];
-      out.wheels[i] = {c.force.normal, c.force.tangential, c.kinematics.penetration};
+      const coupling::WheelLoad load = fleet.load(fleet.wheels[vehicle.first_wheel + static_cast<int>(i)]);
+      out.wheels[i] = {load.normal, load.tangential, load.penetration};
     }
     out.joints.resize(model.joints.size());
     for (std::size_t j = 0; j < model.joints.size(); ++j) {
@@ -110,9 +110,11 @@ void Watch::step(double t) {
   const coupling::Fleet& fleet = system_.fleet();
   for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
     const coupling::WheelContact& c = fleet.wheels[i];
-    summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, c.force.normal);
-    if (c.force.normal < summary_.least_wheel_force) {
-      summary_.least_wheel_force = c.force.normal;
+    if (c.is_further) continue;
+    const double normal = fleet.load(c).normal;
+    summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, normal);
+    if (normal < summary_.least_wheel_force) {
+      summary_.least_wheel_force = normal;
       summary_.least_wheel_force_time = t;
       summary_.least_wheel = "vehicle " + std::to_string(c.vehicle) + ", " + fleet.wheel(c).name;
     }

@@ -69,6 +69,16 @@ double impact_duration(const Law& law, double mass, double speed) {
   return 2.9432750 * std::pow(1.25 * mass * speed * speed / law.stiffness, 0.4) / speed;
 }
 
+Force operator-(const Force& f) {
+  return {-f.normal,
+          -f.tangential,
+          -f.normal_by_penetration,
+          -f.normal_by_rate,
+          -f.tangential_by_penetration,
+          -f.tangential_by_rate,
+          -f.tangential_by_sliding};
+}
+
 double potential(const Law& law, double penetration) {
   if (!(penetration > 0.0)) return 0.0;
   if (law.kind == LawKind::linear) return 0.5 * law.stiffness * penetration * penetration;

@@ -31,11 +31,12 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
   v_still_.resize(n_);
   for (const Vehicle& type : input_.types)
     for (const Wheel& wheel : type.wheels)
-      if (wheel.radius * input_.profile.greatest_curvature() >= 1.0)
-        throw InputError("vehicle_" + type.name + "_" + wheel.name + "_radius " + std::to_string(wheel.radius) +
-                         ": the wheel would touch the track's profile at more than one point; the radius must stay "
-                         "below " +
-                         std::to_string(1.0 / input_.profile.greatest_curvature()) + " m");
+      if (track::too_rough(input_.profile, wheel.radius))
+        throw InputError(
+            "vehicle_" + type.name + "_" + wheel.name + "_radius " + std::to_string(wheel.radius) +
+            ": the wheel would touch the track's profile, whose shortest wave is " +
+            std::to_string(input_.profile.shortest_wave()) + " m, at more than " + std::to_string(track::most_points) +
+            " points at a time; take a smoother track, longer waves (track_wavelengths) or a smaller wheel");
   fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
                  &input_.profile, surface_height());
   fleet_.partition(0.0);

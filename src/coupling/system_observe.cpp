@@ -16,7 +16,7 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
     add_contact_load(out.P.data());
     out.loads = loads_;
     for (const WheelContact& c : fleet_.wheels) {
-      if (c.slot() < 0 || c.force.normal <= 0.0) continue;
+      if (c.slot() < 0 || c.force.normal == 0.0) continue;
       const Eigen::Vector3d f = c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
       out.loads.push_back({c.patches[c.active].element, c.touch.xi, f.x(), f.y(), -surface_height() * f.x()});
     }

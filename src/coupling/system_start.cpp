@@ -35,6 +35,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
 // A wheel with friction that can turn freely begins without sliding, unless its turning speed is given.
 void System::let_wheels_roll() {
   for (const WheelContact& c : fleet_.wheels) {
+    if (c.is_further) continue;
     MovingVehicle& vehicle = fleet_.vehicles[c.vehicle];
     const int turn = 3 * c.body + 2;
     if (fleet_.held(c) || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
@@ -118,6 +119,7 @@ std::vector<double> System::known_events(double end) const {
   };
   if (input_.train.drive == Drive::constant)
     for (const WheelContact& c : fleet_.wheels) {
+      if (c.is_further) continue;
       add(fleet_.coordinates(c).x(), input_.train.speed);
       add_flats(c, end, events);
     }

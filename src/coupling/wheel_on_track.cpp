@@ -59,13 +59,33 @@ double closest_station(const Surface& surface, const Eigen::Vector2d& c, double 
   return x;
 }
 
+// The station between low and high where the distance to c is least (sign 1) or greatest (sign -1), from the start on:
+// Newton, kept in the right direction by bisection, which ends at low or high where there is none.
+double station_within(const Surface& surface, const Eigen::Vector2d& c, double sign) {
+  double low = surface.patch.low, high = surface.patch.high;
+  double x = std::clamp(surface.patch.start, low, high);
+  for (int i = 0; i < 100; ++i) {
+    const SurfacePoint s = surface.at(x);
+    const Eigen::Vector2d d = c - s.P;
+    const double f = sign * d.dot(s.P_x);  // above 0: it lies to the right
+    const double f_x = sign * (d.dot(s.P_xx) - s.P_x.squaredNorm());
+    const double tiny = 1e-15 * (1.0 + std::abs(x));
+    (f > 0.0 ? low : high) = x;
+    if (high - low <= tiny || (f_x < 0.0 && std::abs(f) <= -f_x * tiny)) break;
+    const double newton = f_x < 0.0 ? x - f / f_x : low;
+    x = newton > low && newton < high ? newton : 0.5 * (low + high);
+  }
+  return x;
+}
+
 }  // namespace
 
 bool touch(const Patch& patch, const track::Profile& profile, double radius, const Eigen::Vector3d& q,
-           const Eigen::Vector3d& qd, int block, const double* v, const double* w, Touch& out) {
+           const Eigen::Vector3d& qd, int block, const double* v, const double* w, Touch& out, Find find) {
   const Surface surface{patch, profile, block, v};
   const Eigen::Vector2d c = q.head<2>();
-  const double x = closest_station(surface, c, patch.low, patch.high);
+  const double x = find == Find::closest ? closest_station(surface, c, patch.low, patch.high)
+                                         : station_within(surface, c, find == Find::closest_within ? 1.0 : -1.0);
   const SurfacePoint s = surface.at(x);
   const Eigen::Vector2d from_surface = c - s.P;
   const double distance = from_surface.norm();
@@ -75,6 +95,7 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
 
   Eigen::Vector2d relative = qd.head<2>();  // of the centre against the surface's material
   out.xi = 0.0;
+  out.station = x;
   if (patch.element >= 0) {
     out.xi = (x - patch.x) / patch.length;
     const beam::Hermite psi = beam::hermite(out.xi, patch.length);

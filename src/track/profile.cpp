@@ -14,7 +14,9 @@ namespace traverse::track {
 namespace {
 
 constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double least_fade = 20.0;  // m
+constexpr double least_fade = 20.0;    // m
+constexpr double least_corner = 5e-3;  // of slope: below it a wheel of 0.5 m bridges the corner by a micrometre
+constexpr double stations_a_wave = 16.0;
 constexpr int waves_in_all = 240;
 
 /// Second derivatives of the natural cubic spline at its knots (Thomas algorithm).
@@ -64,7 +66,9 @@ Profile Profile::bump(double start, double length, double height) {
   p.length_ = length;
   p.height_ = height;
   p.kinks_ = {start, start + length};
-  p.greatest_curvature_ = 0.5 * std::abs(height) * (two_pi / length) * (two_pi / length);
+  p.greatest_slope_ = 0.5 * std::abs(height) * two_pi / length;
+  p.greatest_valley_ = p.greatest_slope_ * two_pi / length;  // level there: at both ends, or in the middle of a dip
+  p.resolution_ = length / stations_a_wave;
   return p;
 }
 
@@ -74,10 +78,32 @@ Profile Profile::table(std::vector<double> x, std::vector<double> h, const std::
   p.kind_ = Kind::table;
   p.h2_ = natural_spline(x, h);
   p.kinks_ = {x.front(), x.back()};
-  for (double c : p.h2_) p.greatest_curvature_ = std::max(p.greatest_curvature_, std::abs(c));
   p.x_ = std::move(x);
   p.h_ = std::move(h);
+  p.bound_table();
   return p;
+}
+
+// Slopes are parabolas between the lines of a table: greatest at an end or where the curvature vanishes.
+void Profile::bound_table() {
+  resolution_ = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
+    const double d = x_[i + 1] - x_[i], mean = (h_[i + 1] - h_[i]) / d, a = h2_[i], b = h2_[i + 1];
+    const double left = mean - d * (2.0 * a + b) / 6.0, right = mean + d * (a + 2.0 * b) / 6.0;
+    double low = std::min(left, right), high = std::max(left, right);
+    if (a * b < 0.0) {
+      const double turn = left + 0.5 * d * a * a / (a - b);
+      low = std::min(low, turn);
+      high = std::max(high, turn);
+    }
+    const double flattest = low * high <= 0.0 ? 0.0 : std::min(std::abs(low), std::abs(high));
+    greatest_slope_ = std::max({greatest_slope_, std::abs(low), std::abs(high)});
+    greatest_valley_ = std::max(greatest_valley_, std::max(a, b) / std::pow(1.0 + flattest * flattest, 1.5));
+    resolution_ = std::min(resolution_, 4.0 * d / stations_a_wave);
+    const bool first = i == 0, last = i + 2 == x_.size();  // where the level ground beyond turns upward
+    if ((first && left > least_corner) || (last && right < -least_corner))
+      greatest_valley_ = std::numeric_limits<double>::infinity();
+  }
 }
 
 Profile Profile::rough(const Spectrum& spectrum, double shortest, double longest, double start, std::uint64_t seed) {
@@ -89,7 +115,7 @@ Profile Profile::rough(const Spectrum& spectrum, double shortest, double longest
   p.start_ = start;
   p.length_ = std::max(least_fade, longest / 5.0);
   std::mt19937_64 random(seed);
-  double variance = 0.0;  // of the curvature
+  double of_slope = 0.0, of_curvature = 0.0;  // variances
   for (int i = 0; i < waves_in_all; ++i) {
     const double a = lowest * std::pow(highest / lowest, double(i) / waves_in_all);
     const double b = lowest * std::pow(highest / lowest, double(i + 1) / waves_in_all);
@@ -98,9 +124,12 @@ Profile Profile::rough(const Spectrum& spectrum, double shortest, double longest
     p.amplitude_.push_back(std::sqrt(2.0 * power));
     p.frequency_.push_back(k / two_pi);
     p.phase_.push_back(static_cast<double>(random() >> 11) * 0x1.0p-53);
-    variance += power * k * k * k * k;
+    of_slope += power * k * k;
+    of_curvature += power * k * k * k * k;
   }
-  p.greatest_curvature_ = 6.0 * std::sqrt(variance);
+  p.greatest_slope_ = 6.0 * std::sqrt(of_slope);
+  p.greatest_valley_ = 6.0 * std::sqrt(of_curvature);
+  p.resolution_ = shortest / stations_a_wave;
   return p;
 }
 
@@ -182,7 +211,7 @@ Height waves_at(const std::vector<double>& amplitude, const std::vector<double>&
 
 double Profile::shortest_wave() const {
   if (kind_ == Kind::bump) return length_;
-  return kind_ == Kind::waves ? 1.0 / frequency_.back() : std::numeric_limits<double>::infinity();
+  return kind_ == Kind::waves ? stations_a_wave * resolution_ : std::numeric_limits<double>::infinity();
 }
 
 Height Profile::at(double x) const {

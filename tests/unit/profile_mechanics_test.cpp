@@ -15,12 +15,13 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 void expect_derivatives(const Profile& p, const std::vector<double>& stations, double d = 1e-5) {
-  const double bound = p.greatest_curvature();
+  const double bound = p.greatest_valley();
   for (double x : stations) {
     const Height h = p.at(x), right = p.at(x + d), left = p.at(x - d);
     EXPECT_NEAR(h.slope, (right.value - left.value) / (2.0 * d), 1e-5 * bound * 1.0 + 1e-10) << "x = " << x;
     EXPECT_NEAR(h.curvature, (right.slope - left.slope) / (2.0 * d), 1e-4 * bound + 1e-10) << "x = " << x;
-    EXPECT_LE(std::abs(h.curvature), bound * (1.0 + 1e-12));
+    EXPECT_LE(h.curvature / std::pow(1.0 + h.slope * h.slope, 1.5), bound * (1.0 + 1e-12));
+    EXPECT_LE(std::abs(h.slope), p.greatest_slope() * (1.0 + 1e-12));
   }
 }
 
@@ -39,7 +40,7 @@ TEST(Profile, Bump) {
   EXPECT_EQ(p.at(9.999).value, 0.0);
   EXPECT_EQ(p.at(11.001).value, 0.0);
   EXPECT_EQ(p.kinks(), (std::vector<double>{10.0, 11.0}));
-  EXPECT_NEAR(p.greatest_curvature(), 0.005 * 4.0 * pi * pi, 1e-12);
+  EXPECT_NEAR(p.greatest_valley(), 0.005 * 4.0 * pi * pi, 1e-12);
   expect_derivatives(p, {9.5, 10.1, 10.3, 10.5, 10.77, 12.0});
   EXPECT_THROW(Profile::bump(0.0, 0.0, 0.01), InputError);
   EXPECT_THROW(Profile::bump(0.0, 1.0, std::numeric_limits<double>::quiet_NaN()), InputError);
@@ -61,6 +62,28 @@ TEST(Profile, TableIsANaturalSpline) {
   EXPECT_EQ(p.at(50.0).slope, 0.0);
   EXPECT_EQ(p.kinks(), (std::vector<double>{0.0, 20.0}));
   EXPECT_EQ(p.at(0.0).curvature, 0.0);
+}
+
+// Crests do not count, and a steep valley is less sharp than its second derivative: a parabola's h'' over
+// (1 + h'^2)^1.5, where a natural spline through it keeps away from its ends.
+TEST(Profile, BoundsOfTables) {
+  const Profile crest = Profile::table({0.0, 1.0, 2.0}, {0.0, 1.0, 0.0}, "t.csv");
+  EXPECT_EQ(crest.greatest_valley(), std::numeric_limits<double>::infinity());                    // corners at its feet
+  EXPECT_EQ(Profile::table({0.0, 1.0, 2.0}, {0.0, 0.001, 0.0}, "t.csv").greatest_valley(), 0.0);  // hardly any
+  EXPECT_DOUBLE_EQ(crest.greatest_slope(), 1.5);  // h'' = -3 at the top, straight at the ends
+  const Profile valley = Profile::table({0.0, 1.0, 2.0}, {0.0, -1.0, 0.0}, "t.csv");
+  EXPECT_DOUBLE_EQ(valley.greatest_valley(), 3.0);
+  for (const Profile& p :
+       {Profile::table({0.0, 0.3, 1.0, 1.2, 2.0}, {0.0, 0.3, 0.2, -0.1, 0.4}, "t.csv"), crest, valley}) {
+    double slope = 0.0, sharpest = 0.0;
+    for (int i = 0; i <= 20000; ++i) {
+      const Height h = p.at(1e-4 * i);
+      slope = std::max(slope, std::abs(h.slope));
+      sharpest = std::max(sharpest, h.curvature / std::pow(1.0 + h.slope * h.slope, 1.5));
+    }
+    EXPECT_NEAR(p.greatest_slope(), slope, 1e-6 * slope);
+    EXPECT_GE(p.greatest_valley(), sharpest * (1.0 - 1e-12));
+  }
 }
 
 TEST(Profile, TwoPointsAreALine) {

@@ -88,6 +88,14 @@ TEST(PolygonalWheel, TurnsWithItsBody) {
   EXPECT_LT(peak(free("/energy/residual")).first, 1e-6 * range(free("/energy/work")));
 }
 
+// The step that is chosen resolves 20 to a wave, here 1.6 ms long, rounded down to 1, 2 or 5.
+TEST(PolygonalWheel, IsResolvedByTheChosenStep) {
+  std::string scene = alone;
+  scene.erase(scene.find(", dt: 5.0e-5"), std::string(", dt: 5.0e-5").size());
+  Results run = run_yaml(scene, {{"vehicle_axle_wheel_polygon_order", "60"}});
+  EXPECT_EQ(run.attribute("/", "steps"), 0.1 / 5e-5);
+}
+
 // A quarter car with a flat of 60 mm at 20 m/s: the wheel leaves the ground and strikes.
 constexpr const char* quarter_car_with_flat = R"(
 vehicle:

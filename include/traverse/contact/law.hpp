@@ -42,6 +42,9 @@ double exact_hysteresis(double restitution);
 /// Lankarani and Nikravesh 1990: 3(1 - e^2)/4, the same to first order in 1 - e; rebounds come out higher than e.
 double lankarani_nikravesh_hysteresis(double restitution);
 
+/// The force and all its derivatives with the other sign.
+Force operator-(const Force& f);
+
 /// approach_speed: of the impact now going on, m/s, used with a hysteresis only (0: no impact, no damping).
 Force force(const Law& law, const Kinematics& kinematics, double approach_speed);
 

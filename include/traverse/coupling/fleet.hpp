@@ -11,6 +11,7 @@
 #include "traverse/coupling/vehicle.hpp"
 #include "traverse/coupling/wheel_on_track.hpp"
 #include "traverse/multibody/mechanism.hpp"
+#include "traverse/track/touching.hpp"
 
 namespace traverse::coupling {
 
@@ -25,7 +26,7 @@ struct MovingVehicle {
   double weight = 0.0;        // N
   double scale = 0.0;         // N: forces are judged against it; the weight, or the mass times 1 m/s2 without gravity
   int offset = 0;             // of its independent coordinates in p
-  int first_wheel = 0;        // in Fleet::wheels
+  int first_wheel = 0;        // in Fleet::wheels: one a wheel, then the further ones of its wheels
   int first_pair = 0;         // in Fleet::pairs
   std::vector<int> touching;  // its wheels and pairs, numbered as Fleet::contact does
   Eigen::VectorXd Q;          // generalized forces of the wheels, n
@@ -43,6 +44,7 @@ struct Contact {
   double approach_speed = 0.0;          // of the impact now going on or to come, m/s
   bool released = false;                // its damper let go of a surface not yet back, whose energy is lost
   std::array<int, 2> slots = {-1, -1};  // of the patches' elements in Fleet::elements(); -1: ground
+  double sign = 1.0;                    // of its force
   int active = 0;                       // the patch with the deepest penetration
   int slot() const { return slots[active]; }
 };
@@ -53,13 +55,23 @@ struct PairContact : Contact {
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  // m
 };
 
-/// A wheel on the track.
+/// A wheel on the track. A wheel sharper than the track's valleys may touch at several points (track::TouchingPoints): it
+/// has further entries for the other points, from left to right, and then for what neighbouring points share, with the
+/// sign -1. Where it touches at fewer, the others have no candidates, a negative penetration and no force.
 struct WheelContact : Contact {
   int wheel = 0;                 // of its vehicle
   std::array<Patch, 2> patches;  // the surface under the wheel, and the neighbour across a near kink
   int candidates = 1;
   bool turns = false;  // its body turns with it; else it has rolled by the distance gone over its radius
   double home = 0.0;   // angle (rad) or x (m) where it starts to roll
+  int further = 0;     // index of the first further entry of this wheel; 0: none
+  bool is_further = false;
+  double divide = 0.0;  // sign -1: station of the minimum between the points, as it was found, m
+};
+
+struct WheelLoad {
+  double normal = 0.0, tangential = 0.0;  // N
+  double penetration = 0.0;               // m
 };
 
 class Fleet {
@@ -87,6 +99,14 @@ class Fleet {
   const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
   Eigen::Vector3d coordinates(const Contact& c) const;
   Eigen::Vector3d velocities(const Contact& c) const;
+  /// Of a wheel's first entry: what all its points add up to, and the deepest penetration.
+  WheelLoad load(const WheelContact& c) const;
+  /// The first wheel (by its first entry) that has overlapped the track at more points than are modelled, and where.
+  struct Crowded {
+    int contact = -1;  // none
+    double x = 0.0;
+  };
+  const Crowded& crowded() const { return crowded_; }
   /// Does a joint or driver hold the angle of the wheel's body? With a partition chosen.
   bool held(const WheelContact& c) const;
   /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free
@@ -142,7 +162,21 @@ class Fleet {
 
  private:
   void number(double t);
-  void add_patch(WheelContact& c, int element, double low, double high);
+  void add_patch(WheelContact& c, int element, double start, double low, double high);
+  void find_patches(WheelContact& c, double x, double from, double to, double low, double high);
+  void find_points(WheelContact& c);
+  void take_away(WheelContact& c);
+  bool touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find);
+  bool touch_points(WheelContact& c, int per_node, const double* v, const double* w);
+  void lose(WheelContact& c) const;
+  WheelContact& point(const WheelContact& first, int i) {
+    return i == 0 ? wheels[index(first)] : further(first, i - 1);
+  }
+  WheelContact& between(const WheelContact& first, int i) { return further(first, track::most_points - 1 + i); }
+  WheelContact& further(const WheelContact& first, int i) {
+    return wheels[static_cast<std::size_t>(first.further + i)];
+  }
+  std::size_t index(const WheelContact& c) const { return static_cast<std::size_t>(&c - wheels.data()); }
   void add_shape(WheelContact& c) const;
   void add_pairs(int vehicle);
   bool touch(PairContact& pair) const;
@@ -154,6 +188,7 @@ class Fleet {
   bool frozen_ = false;
   int stuck_ = -1;
   double surface_height_ = 0.0;
+  Crowded crowded_;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p
   std::vector<double> position_, velocity_;  // of one vehicle

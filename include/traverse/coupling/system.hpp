@@ -62,8 +62,8 @@ struct Observation {
 
 class System {
  public:
-  /// beam may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel that
-  /// would touch the profile at more than one point.
+  /// beam may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel
+  /// that would touch the profile at more points than are modelled.
   System(MPI_Comm comm, const beam::Beam* beam, SystemInput input);
 
   MPI_Comm comm() const { return comm_; }

@@ -18,6 +18,7 @@ struct Patch {
   double x = 0.0, length = 0.0;  // of the element, m
   double height = 0.0;           // of the surface above the beam's neutral axis, m
   double low = 0.0, high = 0.0;  // stations between which the piece reaches; a wheel beyond touches its corner
+  double start = 0.0;            // where Find::closest_within and farthest_within begin to look
 };
 
 inline constexpr int most_element_unknowns = 6;
@@ -33,12 +34,19 @@ struct Touch {
   std::array<double, most_element_unknowns> normal_on_beam{};   // d alpha / d(element unknowns)
   std::array<double, most_element_unknowns> tangent_on_beam{};  // d beta' / d(their rates)
   double xi = 0.0;                                              // of the contact point in the element
+  double station = 0.0;                                         // x of the contact point on the undeformed track, m
 };
+
+/// Which point of a patch is meant: the one closest to the wheel's centre, looked for from below it; where there may be
+/// several such points, the one next to the patch's start (or its end, towards which the distance falls on), or the
+/// farthest one between two of them.
+enum class Find { closest, closest_within, farthest_within };
 
 /// q, qd: x, y, phi of the wheel's body and their rates. v, w: the element's unknowns and their rates (2*block
 /// values, where block is the number of unknowns of a node; not read on rigid ground). Returns false where no contact
 /// point exists (the centre lies below the surface).
 bool touch(const Patch& patch, const track::Profile& profile, double radius, const Eigen::Vector3d& q,
-           const Eigen::Vector3d& qd, int block, const double* v, const double* w, Touch& out);
+           const Eigen::Vector3d& qd, int block, const double* v, const double* w, Touch& out,
+           Find find = Find::closest);
 
 }  // namespace traverse::coupling

@@ -33,23 +33,31 @@ class Profile {
   }
 
   bool level() const { return kind_ == Kind::level; }
+  bool is_rough() const { return kind_ == Kind::waves; }
   Height at(double x) const;
   /// Stations where the slope or curvature jumps: integration steps end where wheels pass them.
   const std::vector<double>& kinks() const { return kinks_; }
-  /// Upper bound of |curvature| (1/m; for roughness six standard deviations of it): a wheel of radius R needs 1/R above
-  /// it to touch at one point only.
-  double greatest_curvature() const { return greatest_curvature_; }
+  /// Upper bound of the curvature of valleys, h''/(1 + h'^2)^1.5 (1/m; for roughness six standard deviations of h''): a
+  /// wheel of radius R with 1/R above it touches at one point only. Crests may be as sharp as they like. Infinite for a table that
+  /// meets the level ground before or behind it at a corner.
+  double greatest_valley() const { return greatest_valley_; }
+  /// Upper bound of |h'|, for roughness six standard deviations.
+  double greatest_slope() const { return greatest_slope_; }
+  /// Stations this far apart (m) show every crest and valley.
+  double resolution() const { return resolution_; }
   /// Length of the bump or of the shortest wave of roughness, m; infinite for level tracks and tables.
   double shortest_wave() const;
 
  private:
   enum class Kind { level, bump, table, waves };
+  void bound_table();
+
   Kind kind_ = Kind::level;
   double start_ = 0.0, length_ = 0.0, height_ = 0.0;   // length: of the bump, or of the fade
   std::vector<double> x_, h_, h2_;                     // table
   std::vector<double> amplitude_, frequency_, phase_;  // waves: m, cycles/m, cycles
   std::vector<double> kinks_;
-  double greatest_curvature_ = 0.0;
+  double greatest_valley_ = 0.0, greatest_slope_ = 0.0, resolution_ = 0.0;
 };
 
 }  // namespace traverse::track

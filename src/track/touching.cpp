@@ -1,0 +1,167 @@
+#include "traverse/track/touching.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace traverse::track {
+namespace {
+
+constexpr double slack = 1.01;        // of the reach
+constexpr double whole = 0.999;       // of the radius: the reach of a wheel on a wall
+constexpr int most_stations = 10000;  // of a scan
+
+// g and its slope.
+struct Sample {
+  double station, value, slope;
+};
+
+double crossing(const Sample& a, const Sample& b) {
+  return a.station + (b.station - a.station) * a.value / (a.value - b.value);
+}
+
+// Among the deepest, in place of the least deep where there are enough.
+void keep(TouchingPoints& all, const TouchingPoint& point) {
+  if (all.count < most_points) {
+    all.points[static_cast<std::size_t>(all.count++)] = point;
+    return;
+  }
+  const auto least = std::min_element(all.points.begin(), all.points.end(),
+                                      [](const auto& a, const auto& b) { return a.depth < b.depth; });
+  all.left_out = std::max(all.left_out, std::min(least->depth, point.depth));
+  if (point.depth <= least->depth) return;
+  std::move(std::next(least), all.points.end(), least);
+  all.points.back() = point;
+}
+
+// From left to right over the stations in reach.
+class Scan {
+ public:
+  Scan(const Profile& profile, double radius, double x)
+      : profile_(profile), radius_(radius), x_(x), half_(reach(profile, radius)) {}
+
+  TouchingPoints run() {
+    all_.left_out = -std::numeric_limits<double>::infinity();
+    all_.height = height();
+    point_.low = x_ - half_;
+    bool first = true;
+    over_stations([&](double s) {
+      if (first)
+        begin(at(s));
+      else
+        advance(at(s));
+      first = false;
+    });
+    if (falling_) found(before_.station);
+    point_.high = x_ + half_;
+    keep(all_, point_);
+    return all_;
+  }
+
+ private:
+  template <class Visit>
+  void over_stations(Visit&& visit) const {
+    const double first = x_ - half_, last = x_ + half_;
+    const int steps = std::clamp(static_cast<int>(std::ceil(2.0 * half_ / profile_.resolution())), 4, most_stations);
+    double before = first;
+    visit(first);
+    for (int i = 1; i <= steps; ++i) {
+      const double to = i < steps ? first + (last - first) * i / steps : last;
+      for (double kink : profile_.kinks())
+        if (kink > before && kink < to) {  // from both sides
+          visit(std::nextafter(kink, first));
+          visit(std::nextafter(kink, last));
+        }
+      visit(to);
+      before = to;
+    }
+  }
+
+  // The greatest e: the station that shows it, and from there to its top by Newton.
+  double height() const {
+    double highest = -std::numeric_limits<double>::infinity(), top = x_, spacing = 0.0, before = x_ - half_;
+    const auto e = [&](double s) { return profile_.at(s).value + std::sqrt(radius_ * radius_ - (s - x_) * (s - x_)); };
+    over_stations([&](double s) {
+      const double here = e(s);
+      if (here > highest) {
+        highest = here;
+        top = s;
+      }
+      spacing = std::max(spacing, s - before);
+      before = s;
+    });
+    double s = top;
+    for (int i = 0; i < 4; ++i) {
+      const Height h = profile_.at(s);
+      const double below = std::sqrt(radius_ * radius_ - (s - x_) * (s - x_));
+      const double slope = h.slope - (s - x_) / below;
+      const double curvature = h.curvature - radius_ * radius_ / (below * below * below);
+      if (curvature >= 0.0) break;
+      s = std::clamp(s - slope / curvature, std::max(top - spacing, x_ - half_), std::min(top + spacing, x_ + half_));
+      highest = std::max(highest, e(s));
+    }
+    return highest;
+  }
+
+  Sample at(double s) const {
+    const Height h = profile_.at(s);
+    const double above = all_.height - h.value;
+    return {s, x_ - s + above * h.slope, above * h.curvature - 1.0 - h.slope * h.slope};
+  }
+
+  void begin(const Sample& here) {
+    if (here.value <= 0.0) found(here.station);
+    before_ = here;
+  }
+
+  // Where the slope of g changes its sign g is greatest or least: it may vanish on either side.
+  void advance(const Sample& here) {
+    if (before_.slope * here.slope < 0.0 && before_.value * here.value > 0.0)
+      take(at(before_.station + (here.station - before_.station) * before_.slope / (before_.slope - here.slope)));
+    take(here);
+  }
+
+  void take(const Sample& here) {
+    if (falling_ && here.value <= 0.0) {
+      found(crossing(before_, here));
+    } else if (!falling_ && here.value > 0.0) {
+      point_.high = crossing(before_, here);
+      keep(all_, point_);
+      point_.low = point_.high;
+      ++point_.number;
+      falling_ = true;
+    }
+    before_ = here;
+  }
+
+  void found(double station) {
+    point_.station = station;
+    point_.depth = radius_ - std::hypot(station - x_, all_.height - profile_.at(station).value);
+    falling_ = false;
+  }
+
+  const Profile& profile_;
+  double radius_, x_, half_;
+  TouchingPoints all_;
+  TouchingPoint point_;
+  Sample before_{};
+  bool falling_ = true;  // the distance does
+};
+
+}  // namespace
+
+double reach(const Profile& profile, double radius) {
+  const double slope = profile.greatest_slope();
+  return std::min(whole, slack * slope / std::hypot(1.0, slope)) * radius;
+}
+
+bool too_rough(const Profile& profile, double radius) {
+  return profile.is_rough() && is_sharp(profile, radius) &&
+         2.0 * reach(profile, radius) > most_points * profile.shortest_wave();
+}
+
+TouchingPoints touching_points(const Profile& profile, double radius, double x) {
+  return Scan(profile, radius, x).run();
+}
+
+}  // namespace traverse::track
