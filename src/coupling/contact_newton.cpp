@@ -37,6 +37,15 @@ double rounding_of_inertia(const StageData& s, int freedom, const double* p) {
   return 8.0 * std::numeric_limits<double>::epsilon() * s.shift * greatest / 9.81;
 }
 
+// What rounding of p'' = shift*(shift*p + c) + c' is worth in p: steps below it change nothing.
+double rounding_of_coordinates(const StageData& s, int freedom, const double* p) {
+  double greatest = 0.0;
+  for (int i = 0; i < freedom; ++i)
+    greatest = std::max(
+        greatest, std::abs(p[i]) + std::abs(s.c_p[i]) / s.shift + std::abs(s.c_p[freedom + i]) / (s.shift * s.shift));
+  return 2.0 * std::numeric_limits<double>::epsilon() * greatest;
+}
+
 template <class Right>
 void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Right& x) {
   x = lu.permutationP() * x;
@@ -64,8 +73,13 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
     // (at the start of a run not at all); where rounding rules it no longer falls.
     const double ratio = std::clamp(change_ / before, s.shift > 0.0 ? best_ratio : 1.0, 1.0);
     const double floor = std::max(rounding, rounding_of_inertia(s, fleet.freedom(), p));
-    if (i > 0 &&
-        (change_ <= tolerance || change_ * ratio <= tolerance || (change_ <= floor && change_ > 0.1 * before))) {
+    double step = 0.0;
+    for (const VehicleWork& w : work_)
+      if (w.dp.size() > 0) step = std::max(step, w.dp.lpNorm<Eigen::Infinity>());
+    const bool still =
+        s.shift > 0.0 && change_ > 0.1 * before && step <= rounding_of_coordinates(s, fleet.freedom(), p);
+    if (i > 0 && (still || change_ <= tolerance || change_ * ratio <= tolerance ||
+                  (change_ <= floor && change_ > 0.1 * before))) {
       fleet.contact_forces();
       fleet.element_loads(s.per_node, loads_);
       return true;
@@ -161,7 +175,7 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
           s.shift * s.shift * N.segment<3>(row).asDiagonal() * state.B.block(row, first, 3, last - first);
     }
     w.own.resize(f, f);
-    for (int k = 0; k < f; ++k) state.dependent_block.project(w.NB.col(k), w.own.col(k));
+    for (int j = 0; j < f; ++j) state.dependent_block.project(w.NB.col(j), w.own.col(j));
   }
   w.J = w.own;
   w.Z.noalias() = w.D * w.G;  // D G, for now

@@ -216,7 +216,6 @@ TEST(SceneVehicle, Refusals) {
   EXPECT_PRED2(contains, refused_with("vehicle_car_spring_to", "0.5,2"), "the same point");
   EXPECT_PRED2(contains, refused_with("vehicle_car_springs", "spring,axle"), "'axle' is the name of a body already");
   EXPECT_PRED2(contains, refused_with("vehicle_car_bodies", "body,axle,ground"), "'ground' cannot be a part's name");
-  EXPECT_PRED2(contains, refused_with("vehicle_car_contacts", "c"), "not modelled yet");
   EXPECT_PRED2(contains, message_of([] {
                  scene_with({{"vehicle_car_joints", "guide,second"}});
                }),

@@ -51,7 +51,7 @@ struct Placed {
     ASSERT_TRUE(fleet.touch(2, none.data(), none.data()));
     for (WheelContact& c : fleet.wheels) c.kinematics = c.touch.kinematics;
     fleet.contact_forces();
-    fleet.wheel_loads();
+    fleet.contact_loads();
   }
   double potential(const Eigen::Vector3d& q) {
     put(q);
