@@ -72,7 +72,7 @@ std::optional<Change> Separations::change(const Fleet& fleet, double t,
   for (int i = 0; i < fleet.contacts(); ++i) {
     const Seen& seen = seen_[i];
     const Contact& c = fleet.contact(i);
-    const bool gain = !seen.touching;
+    const bool gain = !seen.touching && !(seen.kinematics.penetration > 0.0);
     std::optional<Change> found;
     if (seen.touching != touches(c)) {
       found = Change{i, change_between(fleet, i, time_, seen.kinematics, t, c.kinematics), gain, false};

@@ -25,7 +25,7 @@ struct Separation {
 struct Change {
   int contact;
   double time;  // s, as the cubic has it
-  bool gain;
+  bool gain;    // surfaces meet: not those that a damper grips again before they have parted
   bool hidden;  // parts and meets again, or the other way round, between the two instants
 };
 
