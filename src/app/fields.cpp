@@ -146,8 +146,37 @@ void fill_rail(const std::vector<beam::Response>& rail, Fields& fields) {
   }
 }
 
+void describe_couplers(const coupling::Train& train, results::Layout& layout) {
+  for (const coupling::Coupler& c : train.couplers) {
+    const std::string group = "/couplers/" + c.name + "/";
+    layout.constants.push_back({group + "gap", {c.gaps.begin(), c.gaps.end()}, "1"});
+    if (!c.joint) layout.fields.push_back({group + "force", c.gaps.size(), "N"});
+    if (!c.joint) continue;
+    layout.fields.push_back({group + "fx", c.gaps.size(), "N"});
+    layout.fields.push_back({group + "fy", c.gaps.size(), "N"});
+    layout.fields.push_back({group + "moment", c.gaps.size(), "N m"});
+  }
+}
+
+void fill_couplers(const coupling::Fleet& fleet, const coupling::Train& train, Fields& fields) {
+  auto part = fleet.couplers.begin();
+  for (const coupling::Coupler& c : train.couplers) {
+    const auto first = part;
+    part += static_cast<std::ptrdiff_t>(c.gaps.size());
+    for (int component = 0; component < (c.joint ? 3 : 1); ++component) {
+      std::vector<double>& field = fields.next();
+      for (auto gap = first; gap != part; ++gap) {
+        const coupling::MovingVehicle& unit = fleet.vehicles[gap->unit];
+        field.push_back(c.joint ? unit.mechanism.joint_reaction(unit.state, gap->part)[component]
+                                : unit.mechanism.spring_force(unit.state, gap->part));
+      }
+    }
+  }
+}
+
 results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam) {
   results::Layout layout;
+  describe_couplers(scene.train, layout);
   if (beam != nullptr) {
     layout.probes = scene.output.probes;
     layout.supports = beam->mesh().span_ends();
@@ -156,14 +185,15 @@ results::Layout layout_of(const Scene& scene, const coupling::System& system, co
     describe_balance(layout);
     if (beam->rail() != nullptr) describe_rail(scene.output.probes, layout);
   }
-  for (const coupling::MovingVehicle& vehicle : system.fleet().vehicles) {
+  for (const coupling::Member& member : system.fleet().members) {
     results::Layout::VehicleNames names;
-    for (const multibody::Body& b : vehicle.mechanism.model().bodies) names.bodies.push_back(b.name);
-    for (const coupling::Wheel& w : vehicle.wheels) names.wheels.push_back(w.name);
-    for (const multibody::Joint& j : vehicle.mechanism.model().joints) names.joints.push_back(j.name);
-    for (const multibody::Spring& s : vehicle.mechanism.model().springs) names.springs.push_back(s.name);
-    for (const multibody::TorsionSpring& s : vehicle.mechanism.model().torsion_springs)
-      names.torsion_springs.push_back(s.name);
+    const coupling::Vehicle& type = *member.type;
+    for (const multibody::Body& b : type.mechanism.bodies) names.bodies.push_back(b.name);
+    for (const coupling::Wheel& w : type.wheels) names.wheels.push_back(w.name);
+    for (const contact::BodyContact& c : type.contacts) names.wheels.push_back(c.name);
+    for (const multibody::Joint& j : type.mechanism.joints) names.joints.push_back(j.name);
+    for (const multibody::Spring& s : type.mechanism.springs) names.springs.push_back(s.name);
+    for (const multibody::TorsionSpring& s : type.mechanism.torsion_springs) names.torsion_springs.push_back(s.name);
     layout.vehicles.push_back(std::move(names));
   }
   return layout;

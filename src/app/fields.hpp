@@ -1,4 +1,4 @@
-// Datasets that belong to some scenes only: forces of the foundation, the balance of forces, the rail.
+// Datasets that belong to some scenes only: forces of couplers and of the foundation, the balance of forces, the rail.
 #pragma once
 
 #include <array>
@@ -27,6 +27,10 @@ class Fields {
   std::vector<std::vector<double>>& values_;
   std::size_t at_ = 0;
 };
+
+/// Forces of couplers: fx, fy, moment of a joint on the vehicle behind, or the tension of a spring.
+void describe_couplers(const coupling::Train& train, results::Layout& layout);
+void fill_couplers(const coupling::Fleet& fleet, const coupling::Train& train, Fields& fields);
 
 void describe_foundation(const beam::Beam& beam, results::Layout& layout);
 void fill_foundation(const beam::Beam& beam, const beam::GroundForces& linear, const coupling::NonlinearForces& other,

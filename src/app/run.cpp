@@ -146,7 +146,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, beam::Beam* beam, std::vect
                                       scene.contact_tolerance.value_or(1e-3 * plan.time_step)});
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
-                              system.fleet().vehicles.size(), system.freedom(), scene.load.forces.size()));
+                              system.fleet().members.size(), system.freedom(), scene.load.forces.size()));
   if (!still)
     notes.push_back(fmt::format("integrator {}, steps of at most {:g} s to {:g} s, samples every {:g} s",
                                 stepper.method(), plan.time_step, plan.end_time, plan.interval));

@@ -39,8 +39,8 @@ void Watch::sample(const integrate::Instant& instant) {
     recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
     if (on_rail) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
     beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
-    fill_fields(v, w);
   }
+  fill_fields(v, w);
   fill_vehicles(sample_);
   const coupling::Energy& e = observation_.energy;
   const double stored = e.kinetic + e.strain + e.potential;
@@ -54,37 +54,48 @@ void Watch::sample(const integrate::Instant& instant) {
 
 void Watch::fill_vehicles(results::Sample& sample) const {
   const coupling::Fleet& fleet = system_.fleet();
-  sample.vehicles.resize(fleet.vehicles.size());
-  for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
-    const coupling::MovingVehicle& vehicle = fleet.vehicles[k];
-    const multibody::MechanismModel& model = vehicle.mechanism.model();
+  sample.vehicles.resize(fleet.members.size());
+  for (std::size_t k = 0; k < fleet.members.size(); ++k) {
+    const coupling::Member& member = fleet.members[k];
+    const coupling::MovingVehicle& vehicle = fleet.vehicles[member.unit];
+    const multibody::MechanismModel& model = member.type->mechanism;
     results::Sample::Vehicle& out = sample.vehicles[k];
     out.bodies.resize(model.bodies.size());
-    for (std::size_t b = 0; b < model.bodies.size(); ++b)
-      out.bodies[b] = {triple(vehicle.state.q, b), triple(vehicle.state.qd, b), triple(vehicle.state.qdd, b)};
-    out.wheels.resize(vehicle.wheels.size());
-    for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
-      const coupling::WheelLoad load = fleet.load(fleet.wheels[vehicle.first_wheel + static_cast<int>(i)]);
-      out.wheels[i] = {load.normal, load.tangential, load.penetration};
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+      const std::size_t b = member.first_body + i;
+      out.bodies[i] = {triple(vehicle.state.q, b), triple(vehicle.state.qd, b), triple(vehicle.state.qdd, b)};
+    }
+    out.wheels.clear();
+    for (std::size_t i = 0; i < member.type->wheels.size(); ++i) {
+      const coupling::WheelLoad load = fleet.load(fleet.wheels[vehicle.first_wheel + member.first_wheel + i]);
+      out.wheels.push_back({load.normal, load.tangential, load.penetration});
+    }
+    for (std::size_t i = 0; i < member.type->contacts.size(); ++i) {
+      const coupling::Contact& c = fleet.pairs[vehicle.first_pair + member.first_contact + i];
+      out.wheels.push_back({c.force.normal, c.force.tangential, c.kinematics.penetration});
     }
     out.joints.resize(model.joints.size());
-    for (std::size_t j = 0; j < model.joints.size(); ++j) {
-      const Eigen::Vector3d r = vehicle.mechanism.joint_reaction(vehicle.state, static_cast<int>(j));
-      out.joints[j] = {r.x(), r.y(), r.z()};
+    for (std::size_t i = 0; i < model.joints.size(); ++i) {
+      const int j = member.first_joint + static_cast<int>(i);
+      const Eigen::Vector3d r = vehicle.mechanism.joint_reaction(vehicle.state, j);
+      out.joints[i] = {r.x(), r.y(), r.z()};
     }
     out.springs.resize(model.springs.size());
     for (std::size_t i = 0; i < model.springs.size(); ++i)
-      out.springs[i] = vehicle.mechanism.spring_force(vehicle.state, static_cast<int>(i));
+      out.springs[i] = vehicle.mechanism.spring_force(vehicle.state, member.first_spring + static_cast<int>(i));
     out.torsion_springs.resize(model.torsion_springs.size());
     for (std::size_t i = 0; i < model.torsion_springs.size(); ++i)
-      out.torsion_springs[i] = vehicle.mechanism.torsion_spring_moment(vehicle.state, static_cast<int>(i));
+      out.torsion_springs[i] =
+          vehicle.mechanism.torsion_spring_moment(vehicle.state, member.first_torsion_spring + static_cast<int>(i));
   }
 }
 
 // In the order of layout_of.
 void Watch::fill_fields(const double* v, const double* w) {
-  ground_->evaluate(v, w, observation_.a.data());
   Fields fields(sample_.fields);
+  fill_couplers(system_.fleet(), scene_.train, fields);
+  if (beam_ == nullptr) return;
+  ground_->evaluate(v, w, observation_.a.data());
   fill_foundation(*beam_, *ground_, observation_.foundation, fields);
   fill_balance(*ground_, observation_, sample_.supports, scene_.self_weight ? scene_.gravity * ground_->mass() : 0.0,
                beam_->model().axial, fields);
@@ -116,7 +127,7 @@ void Watch::step(double t) {
     if (normal < summary_.least_wheel_force) {
       summary_.least_wheel_force = normal;
       summary_.least_wheel_force_time = t;
-      summary_.least_wheel = "vehicle " + std::to_string(c.vehicle) + ", " + fleet.wheel(c).name;
+      summary_.least_wheel = "vehicle " + std::to_string(fleet.member(static_cast<int>(i))) + ", " + fleet.wheel(c).name;
     }
   }
 }
@@ -126,7 +137,7 @@ void Watch::note_separations() {
   std::vector<results::Separation> list;
   for (const coupling::Separation& s : system_.separations().list()) {
     const double duration = s.duration >= 0.0 ? s.duration : system_.separations().time() - s.start;
-    list.push_back({std::to_string(fleet.contact(s.contact).vehicle), fleet.name(s.contact), s.x, s.start, duration,
+    list.push_back({std::to_string(fleet.member(s.contact)), fleet.name(s.contact), s.x, s.start, duration,
                     s.approach_speed, s.impact_force});
     if (s.from_start || s.contact >= static_cast<int>(fleet.wheels.size())) continue;
     ++summary_.contact_losses;

@@ -18,7 +18,7 @@ ChangeBracket::ChangeBracket(const System& system, const Change& change, double 
   if (!change.gain && !change.hidden && to - change.time <= wanted_) found_ = true;
 }
 
-const contact::Kinematics& ChangeBracket::now() const { return system_.fleet().contact(change_.contact).kinematics; }
+const contact::Kinematics& ChangeBracket::now() const { return system_.fleet().kinematics(change_.contact); }
 
 double ChangeBracket::trial() {
   const double width = high_ - low_;

@@ -13,56 +13,13 @@ constexpr double nearby = 0.1;
 constexpr double at_end = 1e-10;       // m: of a patch
 constexpr double free_to_turn = 1e-9;  // m: arm of a joint about the wheel's centre
 
-base::TimeFunction frozen_function(const base::TimeFunction& f) { return {f.value(0.0), 0.0}; }
-
-bool drives_x(const multibody::MechanismModel& model) {
-  return std::any_of(model.drivers.begin(), model.drivers.end(),
-                     [](const multibody::Driver& d) { return d.coordinate == 0; });
-}
-
-// The mechanism of one vehicle, its origin at x, moving with the train.
-multibody::MechanismModel placed(multibody::MechanismModel model, double x, double speed, double gravity) {
-  model.gravity = gravity;
-  for (multibody::Body& b : model.bodies) {
-    b.position.x() += x;
-    b.velocity.x() += speed;
-  }
-  for (multibody::Joint& j : model.joints) {
-    j.point.x() += x;
-    j.from.x() += x;
-    j.to.x() += x;
-  }
-  for (multibody::Spring& s : model.springs) {
-    s.from.x() += x;
-    s.to.x() += x;
-  }
-  for (multibody::Driver& d : model.drivers)
-    if (d.coordinate == 0) d.value.shift(x);
-  return model;
-}
-
-std::vector<contact::BodyContact> placed(std::vector<contact::BodyContact> contacts, double x) {
-  for (contact::BodyContact& c : contacts)
-    for (std::size_t i = 0; i < 2; ++i) {
-      c.centres[i].x() += x;
-      c.line[i].x() += x;
-    }
-  return contacts;
-}
-
-// The driving constraint of a train at prescribed speed: x of the vehicle's first body.
-void add_drive(multibody::MechanismModel& model, double speed) {
-  model.drivers.push_back({"drive", 0, 0, base::TimeFunction(model.bodies.front().position.x(), speed)});
-}
-
 }  // namespace
 
-MovingVehicle::MovingVehicle(multibody::MechanismModel model, std::vector<Wheel> its_wheels,
-                             std::vector<contact::BodyContact> its_contacts)
-    : mechanism(std::move(model)),
+MovingVehicle::MovingVehicle(Unit unit)
+    : mechanism(std::move(unit.mechanism)),
       state(mechanism.make_state()),
-      wheels(std::move(its_wheels)),
-      contacts(std::move(its_contacts)) {
+      wheels(std::move(unit.wheels)),
+      contacts(std::move(unit.contacts)) {
   Q.setZero(mechanism.coordinates());
   double mass = 0.0;
   for (const multibody::Body& b : mechanism.model().bodies) mass += b.mass;
@@ -77,14 +34,11 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       speed_(frozen ? 0.0 : train.speed),
       frozen_(frozen),
       surface_height_(surface_height) {
-  for (std::size_t k = 0; k < train.vehicles.size(); ++k) {
-    const Vehicle& type = types[train.vehicles[k]];
-    multibody::MechanismModel model = placed(type.mechanism, train.positions[k], train.speed, gravity);
-    const bool held = !type.wheels.empty() && !drives_x(model);
-    if (held && (frozen || train.drive == Drive::constant)) add_drive(model, train.speed);
-    if (frozen)
-      for (multibody::Driver& d : model.drivers) d.value = frozen_function(d.value);
-    vehicles.emplace_back(std::move(model), type.wheels, placed(type.contacts, train.positions[k]));
+  AssembledTrain assembled = assemble(types, train, gravity, frozen);
+  members = std::move(assembled.members);
+  couplers = std::move(assembled.couplers);
+  for (std::size_t k = 0; k < assembled.units.size(); ++k) {
+    vehicles.emplace_back(std::move(assembled.units[k]));
     MovingVehicle& vehicle = vehicles.back();
     vehicle.first_wheel = static_cast<int>(wheels.size());
     const double share = vehicle.wheels.empty() ? 0.0 : vehicle.weight / static_cast<double>(vehicle.wheels.size());
@@ -134,6 +88,15 @@ void Fleet::add_pairs(int k) {
     c.geometry = contact::pair_geometry(contact, frames[c.body + 1], frames[c.other_body + 1]);
     pairs.push_back(c);
   }
+}
+
+int Fleet::member(int i) const {
+  const Contact& c = contact(i);
+  const auto begins_behind = [](const std::pair<int, int>& place, const Member& member) {
+    return place < std::pair(member.unit, member.first_body);
+  };
+  const auto next = std::upper_bound(members.begin(), members.end(), std::pair(c.vehicle, c.body), begins_behind);
+  return static_cast<int>(next - members.begin()) - 1;
 }
 
 const std::string& Fleet::name(int i) const {
@@ -507,6 +470,28 @@ void Fleet::element_loads(int per_node, std::vector<double>& loads) const {
     for (int i = 0; i < m; ++i)
       f[i] -= c.force.normal * c.touch.normal_on_beam[i] + c.force.tangential * c.touch.tangent_on_beam[i];
   }
+}
+
+bool Fleet::touches(int i) const {
+  const std::size_t k = static_cast<std::size_t>(i);
+  if (k >= wheels.size()) return contact(i).force.normal > 0.0;
+  return wheels[k].is_further || load(wheels[k]).normal > 0.0;
+}
+
+bool Fleet::has_points(int i) const {
+  const std::size_t k = static_cast<std::size_t>(i);
+  return k < wheels.size() && (wheels[k].is_further || wheels[k].further > 0);
+}
+
+const contact::Kinematics& Fleet::kinematics(int i) const {
+  const contact::Kinematics* deepest = &contact(i).kinematics;
+  const std::size_t k = static_cast<std::size_t>(i);
+  if (k >= wheels.size() || wheels[k].further == 0) return *deepest;
+  for (int j = 0; j < track::most_points - 1; ++j) {
+    const contact::Kinematics& other = wheels[static_cast<std::size_t>(wheels[k].further + j)].kinematics;
+    if (other.penetration > deepest->penetration) deepest = &other;
+  }
+  return *deepest;
 }
 
 double Fleet::impact_duration(int i) {

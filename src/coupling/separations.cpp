@@ -7,8 +7,6 @@
 namespace traverse::coupling {
 namespace {
 
-bool touches(const Contact& c) { return c.force.normal > 0.0; }
-
 /// The cubic through two values with their slopes, on [0, 1].
 struct Cubic {
   double a, b, c, d;  // a + b s + c s^2 + d s^3
@@ -71,14 +69,14 @@ std::optional<Change> Separations::change(const Fleet& fleet, double t,
   const double h = t - time_;
   for (int i = 0; i < fleet.contacts(); ++i) {
     const Seen& seen = seen_[i];
-    const Contact& c = fleet.contact(i);
+    const contact::Kinematics& now = fleet.kinematics(i);
     const bool gain = !seen.touching && !(seen.kinematics.penetration > 0.0);
     std::optional<Change> found;
-    if (seen.touching != touches(c)) {
-      found = Change{i, change_between(fleet, i, time_, seen.kinematics, t, c.kinematics), gain, false};
+    if (seen.touching != fleet.touches(i)) {
+      found = Change{i, change_between(fleet, i, time_, seen.kinematics, t, now), gain, false};
     } else {
       const double sign = seen.touching ? -1.0 : 1.0;
-      const Cubic alpha = penetration(seen.kinematics, c.kinematics, h);
+      const Cubic alpha = penetration(seen.kinematics, now, h);
       const std::optional<double> s = alpha.extreme(sign);
       if (s && sign * alpha.at(*s) > 0.0) {
         found = Change{i, time_ + *s * h, gain, true};
@@ -97,25 +95,26 @@ void Separations::accept(const Fleet& fleet, double t) {
   for (int i = 0; i < fleet.contacts(); ++i) {
     Seen& seen = seen_[i];
     const Contact& c = fleet.contact(i);
-    const bool touching = touches(c);
+    const contact::Kinematics& now = fleet.kinematics(i);
+    const bool touching = fleet.touches(i);
     seen.met = !first && touching && !seen.touching;
     if (seen.compressed_by >= 0) note_impact(fleet, i, t, seen);
     if (!touching && (first || seen.touching)) {
       seen.open = static_cast<int>(list_.size());
-      const double start = first ? t : change_between(fleet, i, time_, seen.kinematics, t, c.kinematics);
+      const double start = first ? t : change_between(fleet, i, time_, seen.kinematics, t, now);
       list_.push_back({i, first, fleet.coordinates(c).x(), start});
     } else if (seen.met && seen.open >= 0) {
       Separation& entry = list_[seen.open];
       const double across = t - time_, left = time_to_touch(i);  // a damper that comes on bends the cubic
-      const double met_at = left < across ? time_ + left : change_between(fleet, i, time_, seen.kinematics, t, c.kinematics);
+      const double met_at = left < across ? time_ + left : change_between(fleet, i, time_, seen.kinematics, t, now);
       entry.duration = met_at - entry.start;
-      entry.approach_speed = std::max(seen.kinematics.penetration_rate, c.kinematics.penetration_rate);
+      entry.approach_speed = std::max(seen.kinematics.penetration_rate, now.penetration_rate);
       entry.impact_force = c.force.normal;
-      seen.compressed_by = c.kinematics.penetration_rate > 0.0 ? seen.open : -1;
+      seen.compressed_by = now.penetration_rate > 0.0 ? seen.open : -1;
       seen.open = -1;
     }
     seen.touching = touching;
-    seen.kinematics = c.kinematics;
+    seen.kinematics = now;
   }
   time_ = t;
 }
@@ -123,11 +122,12 @@ void Separations::accept(const Fleet& fleet, double t) {
 /// The compression ends where the rate changes its sign: there the force is that of the penetration alone.
 void Separations::note_impact(const Fleet& fleet, int contact, double t, Seen& seen) {
   const Contact& c = fleet.contact(contact);
+  const contact::Kinematics& now = fleet.kinematics(contact);
   double& greatest = list_[seen.compressed_by].impact_force;
   greatest = std::max(greatest, c.force.normal);
-  if (c.kinematics.penetration_rate > 0.0) return;
+  if (now.penetration_rate > 0.0) return;
   seen.compressed_by = -1;
-  const Cubic alpha = penetration(seen.kinematics, c.kinematics, t - time_);
+  const Cubic alpha = penetration(seen.kinematics, now, t - time_);
   if (const std::optional<double> s = alpha.extreme(1.0))
     greatest = std::max(greatest, contact::force(c.law, {alpha.at(*s), 0.0, 0.0}, c.approach_speed).normal);
 }

@@ -243,8 +243,9 @@ bool System::accept(double t, double* y) {
 double System::note_contacts(double t) {
   double lost = 0.0;
   for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
+    if (fleet_.has_points(i)) continue;
     Contact& c = fleet_.contact(i);
-    const bool touches = c.force.normal > 0.0;
+    const bool touches = fleet_.touches(i);
     const double stored = contact::potential(c.law, c.kinematics.penetration);
     if (separations_.touching(i) && !touches) {
       c.released = true;

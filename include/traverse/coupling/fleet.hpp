@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "traverse/beam/mesh.hpp"
+#include "traverse/coupling/train_unit.hpp"
 #include "traverse/coupling/vehicle.hpp"
 #include "traverse/coupling/wheel_on_track.hpp"
 #include "traverse/multibody/mechanism.hpp"
@@ -15,10 +16,9 @@
 
 namespace traverse::coupling {
 
-/// One vehicle of the train.
+/// One vehicle of the train, or several that couplers join.
 struct MovingVehicle {
-  MovingVehicle(multibody::MechanismModel model, std::vector<Wheel> its_wheels,
-                std::vector<contact::BodyContact> its_contacts);
+  explicit MovingVehicle(Unit unit);
   multibody::Mechanism mechanism;
   multibody::MechanismState state;
   std::vector<Wheel> wheels;
@@ -83,6 +83,8 @@ class Fleet {
         const track::Profile* profile, double surface_height);
 
   std::vector<MovingVehicle> vehicles;
+  std::vector<Member> members;  // the vehicles of the train
+  std::vector<CoupledGap> couplers;
   std::vector<WheelContact> wheels;
   std::vector<PairContact> pairs;
 
@@ -94,6 +96,8 @@ class Fleet {
     return k < wheels.size() ? static_cast<const Contact&>(wheels[k]) : pairs[k - wheels.size()];
   }
   const std::string& name(int contact) const;
+  /// The number of its vehicle in the train.
+  int member(int contact) const;
 
   int freedom() const { return freedom_; }
   const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
@@ -153,6 +157,12 @@ class Fleet {
   static void add_load(const Contact& contact, double normal, double tangential, Eigen::VectorXd& Q);
   /// Contact forces as nodal values of the elements in touch, 2*per_node each, on the beam.
   void element_loads(int per_node, std::vector<double>& loads) const;
+  /// Whether a contact carries force, and its penetration; of a wheel with several points all of them and the deepest. The
+  /// further points of a wheel count with their first.
+  bool touches(int contact) const;
+  const contact::Kinematics& kinematics(int contact) const;
+  /// Whether it is one of several points at which a wheel may touch.
+  bool has_points(int contact) const;
   /// How long the impact lasts that a contact now begins, the bodies of its vehicle alone taking part, s.
   double impact_duration(int contact);
   /// Power lost in contact damping and friction, W.

@@ -1,6 +1,8 @@
 // Vehicles, trains and moving forces as they meet the track.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,11 +32,22 @@ struct Vehicle {
 /// constant: x of each vehicle's first body is prescribed; free: only forces act.
 enum class Drive { constant, free };
 
+/// What joins neighbours in a train: a joint, or else a spring. `point` and `from` count from the origin of the vehicle in
+/// front, `to` from that of the one behind.
+struct Coupler {
+  std::string name;
+  std::array<std::string, 2> bodies;  // of the vehicle in front, of the one behind
+  std::vector<int> gaps;              // behind which vehicles of the train, from 0
+  std::optional<multibody::Joint> joint;
+  multibody::Spring spring;
+};
+
 struct Train {
   std::vector<int> vehicles;      // indices into a list of types, front one first
   std::vector<double> positions;  // x of each origin at t = 0, m
   double speed = 0.0;             // m/s
   Drive drive = Drive::constant;
+  std::vector<Coupler> couplers;
 };
 
 /// Moving constant forces.
