@@ -98,9 +98,7 @@ void System::add_flats(const WheelContact& c, double end, std::vector<double>& e
   const Wheel& wheel = fleet_.wheel(c);
   if (c.turns || input_.train.speed <= 0.0) return;
   const double turning = input_.train.speed / wheel.radius;
-  std::optional<double> angle = track::next_flat_end(wheel.shape, wheel.radius, 0.0);
-  for (; angle && *angle < turning * end; angle = track::next_flat_end(wheel.shape, wheel.radius, *angle))
-    events.push_back(*angle / turning);
+  for (double angle : track::flat_ends(wheel.shape, wheel.radius, turning * end)) events.push_back(angle / turning);
 }
 
 std::vector<double> System::known_events(double end) const {

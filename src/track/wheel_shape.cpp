@@ -34,11 +34,15 @@ RadiusGain radius_gain(const WheelShape& shape, double radius, double angle) {
   return g;
 }
 
-std::optional<double> next_flat_end(const WheelShape& shape, double radius, double angle) {
-  if (!(shape.flat_length > 0.0)) return {};
+std::vector<double> flat_ends(const WheelShape& shape, double radius, double last) {
+  std::vector<double> angles;
+  if (!(shape.flat_length > 0.0)) return angles;
   const double half = 0.5 * shape.flat_length / radius;
-  const auto next = [&](double end) { return end + two_pi * (std::floor((angle - end) / two_pi) + 1.0); };
-  return std::min(next(shape.flat_angle - half), next(shape.flat_angle + half));
+  for (double end : {shape.flat_angle - half, shape.flat_angle + half})
+    for (double turn = std::floor(-end / two_pi); end + two_pi * turn < last; turn += 1.0)
+      if (end + two_pi * turn > 0.0) angles.push_back(end + two_pi * turn);
+  std::sort(angles.begin(), angles.end());
+  return angles;
 }
 
 }  // namespace traverse::track

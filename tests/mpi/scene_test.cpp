@@ -106,6 +106,24 @@ TEST(Ranks, FreeTrainOnABridgeWithFoundationAndBump) {
                            35);
 }
 
+// A flat on one wheel, a polygon on the other, over a bump that is sharper than the wheels.
+TEST(Ranks, WheelsOutOfRoundOverASharpBump) {
+  expect_same_on_all_ranks("three_span_half_car",
+                           {{"train_vehicles", "half_car"},
+                            {"train_positions", "5"},
+                            {"ts_dt", "5e-4"},
+                            {"ts_max_time", "0.6"},
+                            {"output_interval", "0.02"},
+                            {"vehicle_half_car_front_wheel_flat_length", "0.05"},
+                            {"vehicle_half_car_rear_wheel_polygon_order", "5"},
+                            {"vehicle_half_car_rear_wheel_polygon_amplitude", "1e-4"},
+                            {"track_profile", "bump"},
+                            {"track_bump_start", "15"},
+                            {"track_bump_length", "0.2"},
+                            {"track_bump_height", "0.008"}},
+                           35, 1e-7);
+}
+
 // Two coaches over spans of their own.
 TEST(Ranks, TrainOverIsolatedSpans) {
   expect_same_on_all_ranks("three_span_train",

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "traverse/track/wheel_shape.hpp"
 
@@ -50,15 +51,21 @@ TEST(WheelShape, Flat) {
 
 TEST(WheelShape, EndsOfTheFlatInTurn) {
   WheelShape shape;
-  EXPECT_FALSE(next_flat_end(shape, R, 0.0).has_value());
+  EXPECT_TRUE(flat_ends(shape, R, 100.0).empty());
   shape.flat_length = 0.05;
   shape.flat_angle = 0.02;  // its rear end is at a negative angle
   const double half = 0.025 / R;
-  double angle = 0.0;
-  for (double expected : {0.02 + half, 0.02 - half + 2.0 * pi, 0.02 + half + 2.0 * pi, 0.02 - half + 4.0 * pi}) {
-    angle = *next_flat_end(shape, R, angle);
-    EXPECT_NEAR(angle, expected, 1e-13);
-  }
+  const std::vector<double> exact = {0.02 + half, 0.02 - half + 2.0 * pi, 0.02 + half + 2.0 * pi,
+                                     0.02 - half + 4.0 * pi};
+  const std::vector<double> ends = flat_ends(shape, R, 4.0 * pi);
+  ASSERT_EQ(ends.size(), exact.size());
+  for (std::size_t i = 0; i < exact.size(); ++i) EXPECT_NEAR(ends[i], exact[i], 1e-13);
+  for (double length : {0.01, 0.05, 0.1234})  // of any flat, two in every turn
+    for (double angle : {-7.0, 0.5, pi, 30.0}) {
+      shape.flat_length = length;
+      shape.flat_angle = angle;
+      EXPECT_EQ(flat_ends(shape, R, 2000.0 * pi).size(), 2000u);
+    }
 }
 
 }  // namespace

@@ -38,8 +38,8 @@ class Profile {
   /// Stations where the slope or curvature jumps: integration steps end where wheels pass them.
   const std::vector<double>& kinks() const { return kinks_; }
   /// Upper bound of the curvature of valleys, h''/(1 + h'^2)^1.5 (1/m; for roughness six standard deviations of h''): a
-  /// wheel of radius R with 1/R above it touches at one point only. Crests may be as sharp as they like. Infinite for a table that
-  /// meets the level ground before or behind it at a corner.
+  /// wheel of radius R with 1/R above it touches at one point only. Crests may be as sharp as they like. Infinite for a
+  /// table that meets the level ground before or behind it at a corner.
   double greatest_valley() const { return greatest_valley_; }
   /// Upper bound of |h'|, for roughness six standard deviations.
   double greatest_slope() const { return greatest_slope_; }

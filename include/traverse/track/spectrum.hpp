@@ -25,8 +25,7 @@ Spectrum iso8608(char grade);
 /// German railways, vertical profile, low or high disturbance: A_v Omega_c^2/((Omega^2 + Omega_r^2)(Omega^2 +
 /// Omega_c^2)), A_v = 4.032e-7 or 1.080e-6 m rad, Omega_c = 0.8246, Omega_r = 0.0206 rad/m (after ORE B 176; in Claus
 /// and Schiehlen, Modeling and simulation of railway bogie structural vibrations, Vehicle System Dynamics 29 (1998)
-/// S1, 538-552). Sources differ in whether they call it one- or two-sided; it is taken as one-sided, as those do who
-/// sum cosines of amplitude sqrt(2 S dOmega). 0.5 to 80 m.
+/// S1, 538-552). Taken as one-sided, as programs do that sum cosines of amplitude sqrt(2 S dOmega). 0.5 to 80 m.
 Spectrum german(bool high_disturbance);
 
 /// US Federal Railroad Administration, vertical profile of track class 1 (poor) to 6 (good): k A_v Omega_c^2/(Omega^2

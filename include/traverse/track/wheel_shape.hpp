@@ -13,7 +13,7 @@
 // normal, is left out, as these models do.
 #pragma once
 
-#include <optional>
+#include <vector>
 
 namespace traverse::track {
 
@@ -39,7 +39,7 @@ RadiusGain radius_gain(const WheelShape& shape, double radius, double angle);
 /// Depth of a rounded flat, m.
 double flat_depth(double length, double radius);
 
-/// The next angle above a at which an end of the flat meets the rail: there the curvature jumps. None without a flat.
-std::optional<double> next_flat_end(const WheelShape& shape, double radius, double angle);
+/// The angles in (0, last), ascending, at which an end of the flat meets the rail: there the curvature jumps.
+std::vector<double> flat_ends(const WheelShape& shape, double radius, double last);
 
 }  // namespace traverse::track
