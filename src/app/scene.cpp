@@ -115,6 +115,7 @@ void check_scene(const Options& o, Scene& scene) {
 Scene read_scene(Options o) {
   Scene scene;
   const std::vector<std::string> train = declare_vehicles(o);
+  declare_couplers(o);
   o.check_names();
   o.check_values();
   refuse_unfinished(o);

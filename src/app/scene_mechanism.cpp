@@ -21,6 +21,10 @@ class VehicleReader {
     vehicle_.mechanism.name = name;
   }
 
+  /// Reads the parts of a train instead: prefix train_.
+  explicit VehicleReader(const options::Options& options) : o_(options), prefix_("train_") {}
+  Coupler read_coupler(const std::string& name);
+
   Vehicle read() {
     vehicle_.mechanism.gravity = o_.number("gravity");
     if (!o_.has(prefix_ + "bodies")) o_.refuse(prefix_ + "bodies", "a vehicle needs at least one body");
@@ -72,13 +76,14 @@ class VehicleReader {
   }
 
   std::array<int, 2> two_bodies() const {
+    if (coupler_) return {0, 1};
     const std::vector<std::string> names = o_.texts(key("bodies"));
     if (names[0] == names[1]) o_.refuse(key("bodies"), "allowed: two different bodies");
     return {index_of(key("bodies"), names[0]), index_of(key("bodies"), names[1])};
   }
 
   void check_apart(const Vector2d& from, const Vector2d& to) const {
-    if ((to - from).norm() > 0.0) return;
+    if (coupler_ || (to - from).norm() > 0.0) return;  // a coupler's points count from two origins
     o_.refuse(key("to"), "from and to are the same point: the direction between them is not defined");
   }
 
@@ -103,7 +108,25 @@ class VehicleReader {
   std::string part_;    // vehicle_NAME_PART_
   std::vector<std::string> bodies_;
   Vehicle vehicle_;
+  bool coupler_ = false;
 };
+
+Coupler VehicleReader::read_coupler(const std::string& name) {
+  coupler_ = true;
+  part_ = prefix_ + name + "_";
+  Coupler c;
+  c.name = name;
+  const std::vector<std::string> bodies = o_.texts(key("bodies"));
+  c.bodies = {bodies[0], bodies[1]};
+  if (o_.choice(key("type")) == "spring") {
+    spring(name);
+    c.spring = vehicle_.mechanism.springs.back();
+  } else {
+    joint(name);
+    c.joint = vehicle_.mechanism.joints.back();
+  }
+  return c;
+}
 
 void VehicleReader::body(const std::string& name) {
   part_ = prefix_ + name + "_";
@@ -371,6 +394,10 @@ void VehicleReader::driver(const std::string& name) {
 }
 
 }  // namespace
+
+Coupler read_coupler(const options::Options& options, const std::string& name) {
+  return VehicleReader(options).read_coupler(name);
+}
 
 Vehicle read_vehicle(const options::Options& options, const std::string& name) {
   return VehicleReader(options, name).read();

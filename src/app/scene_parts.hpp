@@ -14,6 +14,11 @@ namespace traverse::app {
 std::vector<std::string> declare_vehicles(options::Options& options);
 Vehicle read_vehicle(const options::Options& options, const std::string& name);
 
+/// Makes the options of the train's couplers known.
+void declare_couplers(options::Options& options);
+/// Bodies are not yet looked for.
+Coupler read_coupler(const options::Options& options, const std::string& name);
+
 void read_beam(const options::Options& options, Scene& scene);  // beam, supports, damping
 /// Of a beam whose spans and joints are known.
 beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);

@@ -129,6 +129,37 @@ void read_forces(const Options& o, MovingLoad& load) {
   o.refuse("load_positions", o.has("load_positions") ? why : "missing: x of each force at t = 0");
 }
 
+/// The gaps of a coupler, each between vehicles that have its bodies.
+std::vector<int> read_gaps(const Options& o, const Scene& scene, const Coupler& coupler) {
+  const int last = static_cast<int>(scene.train.vehicles.size()) - 1;
+  const std::string after = "train_" + coupler.name + "_after", bodies = "train_" + coupler.name + "_bodies";
+  std::vector<int> gaps;
+  if (o.has(after)) {
+    gaps = o.integers(after);
+  } else {
+    for (int k = 0; k < last; ++k) gaps.push_back(k);
+  }
+  if (gaps.empty())
+    o.refuse("train_couplers",
+             fmt::format("there is nothing for {} to join: give a train of two vehicles or more", coupler.name));
+  std::sort(gaps.begin(), gaps.end());
+  if (std::adjacent_find(gaps.begin(), gaps.end()) != gaps.end()) o.refuse(after, "allowed: every vehicle once");
+  for (const int gap : gaps) {
+    if (gap >= last)
+      o.refuse(after, fmt::format("behind vehicle {} there is none; allowed: from 0 to {}", gap, last - 1));
+    for (std::size_t end = 0; end < 2; ++end) {
+      const Vehicle& vehicle =
+          scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[static_cast<std::size_t>(gap) + end])];
+      const auto& names = vehicle.mechanism.bodies;
+      const auto same = [&](const multibody::Body& b) { return b.name == coupler.bodies[end]; };
+      if (std::none_of(names.begin(), names.end(), same))
+        o.refuse(bodies, fmt::format("vehicle {} of the train, a {}, has no body '{}'", gap + static_cast<int>(end),
+                                     vehicle.name, coupler.bodies[end]));
+    }
+  }
+  return gaps;
+}
+
 }  // namespace
 
 void read_train(const Options& o, const std::vector<std::string>& names, Scene& scene) {
@@ -143,6 +174,11 @@ void read_train(const Options& o, const std::vector<std::string>& names, Scene& 
   }
   if (names.empty()) return;
   scene.train.positions = read_positions(o, scene);
+  if (o.has("train_couplers"))
+    for (const std::string& name : o.texts("train_couplers")) {
+      scene.train.couplers.push_back(read_coupler(o, name));
+      scene.train.couplers.back().gaps = read_gaps(o, scene, scene.train.couplers.back());
+    }
   const auto has_wheels = [](const Vehicle& v) { return !v.wheels.empty(); };
   const bool rolls = std::any_of(scene.vehicles.begin(), scene.vehicles.end(), has_wheels);
   const std::string drive = o.has("train_drive") ? o.choice("train_drive") : rolls ? "constant" : "free";

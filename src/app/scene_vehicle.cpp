@@ -137,4 +137,17 @@ std::vector<std::string> declare_vehicles(Options& o) {
   return train;
 }
 
+void declare_couplers(Options& o) {
+  if (!o.has("train_couplers")) return;
+  for (const std::string& name : o.texts("train_couplers")) {
+    if (!is_word(name))
+      o.refuse("train_couplers", fmt::format("'{}' cannot be a coupler's name; allowed: a word", name));
+    for (const options::Row& row : options::coupler_rows()) {
+      const std::string full = fmt::format("train_{}_{}", name, row.name);
+      if (!o.declare(full, row))
+        o.refuse("train_couplers", fmt::format("there would be two options {}; rename one", full));
+    }
+  }
+}
+
 }  // namespace traverse::app

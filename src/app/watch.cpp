@@ -127,7 +127,8 @@ void Watch::step(double t) {
     if (normal < summary_.least_wheel_force) {
       summary_.least_wheel_force = normal;
       summary_.least_wheel_force_time = t;
-      summary_.least_wheel = "vehicle " + std::to_string(fleet.member(static_cast<int>(i))) + ", " + fleet.wheel(c).name;
+      summary_.least_wheel =
+          "vehicle " + std::to_string(fleet.member(static_cast<int>(i))) + ", " + fleet.wheel(c).name;
     }
   }
 }

@@ -61,7 +61,8 @@ void ChangeBracket::tried(double at, const std::optional<Change>& change) {
       change_.time = std::min(low_ + left, high_);
     }
   }
-  if (high_ - low_ <= 0.1 * wanted_) end_at(change_.gain ? low_ : high_);
+  const bool at_once = low_ == system_.separations().time();  // no step is left before the gain
+  if (high_ - low_ <= 0.1 * wanted_) end_at(change_.gain && !at_once ? low_ : high_);
 }
 
 }  // namespace traverse::coupling

@@ -8,6 +8,7 @@ namespace traverse::coupling {
 namespace {
 
 constexpr int most_iterations = 40;
+constexpr int small_vehicle = 24;    // degrees of freedom up to which its Newton matrix is taken as full
 constexpr double tolerance = 1e-13;  // of the weight: what is left in forces after the last step
 constexpr double best_ratio = 1e-3;
 constexpr double rounding = 1e-9;  // of the weight: below this a change that stays is taken as rounding
@@ -136,21 +137,33 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
       w.component.push_back(component);
     }
   const int rows = static_cast<int>(w.contact.size());
-  w.G.resize(rows, f);
-  w.D.setZero(rows, rows);
+  w.G.setZero(rows, f);
+  w.DG.setZero(rows, f);
+  w.D.resize(rows, 2);
   w.correction.resize(rows);
+  w.range.resize(static_cast<std::size_t>(rows));
+  w.on_beam.clear();
   vehicle.Q.setZero();
   for (int i = 0; i < rows; ++i) {
     const Contact& c = fleet.contact(w.contact[i]);
     const bool normal = w.component[i] == 0;
-    w.G.row(i).noalias() =
-        (normal ? c.touch.normal_on_body : c.touch.tangent_on_body).transpose() * state.B.middleRows<3>(3 * c.body);
+    multibody::ColumnRange range = state.columns[c.body];
+    auto row = w.G.row(i);
+    const auto add = [&](int body, const Eigen::Vector3d& direction) {
+      const auto [first, last] = state.columns[body];
+      range = {std::min(range.first, first), std::max(range.last, last)};
+      row.segment(first, last - first).noalias() +=
+          direction.transpose() * state.B.block(3 * static_cast<Eigen::Index>(body), first, 3, last - first);
+    };
+    add(c.body, normal ? c.touch.normal_on_body : c.touch.tangent_on_body);
     if (c.other_body != multibody::ground)
-      w.G.row(i).noalias() += (normal ? c.touch.normal_on_other : c.touch.tangent_on_other).transpose() *
-                              state.B.middleRows<3>(3 * c.other_body);
+      add(c.other_body, normal ? c.touch.normal_on_other : c.touch.tangent_on_other);
+    w.range[i] = range;
     const Eigen::Matrix2d D = tangent(c.force, s.shift);
-    w.D(i, i) = D(w.component[i], w.component[i]);
-    if (w.component[i] == 1) w.D(i, i - 1) = D(1, 0);
+    w.D.row(i) << (normal ? 0.0 : D(1, 0)), D(w.component[i], w.component[i]);
+    w.DG.row(i) = w.D(i, 1) * row;
+    if (!normal) w.DG.row(i) += w.D(i, 0) * w.G.row(i - 1);
+    if (c.slot() >= 0) w.on_beam.push_back(i);
     w.correction[i] = force_correction(c)[w.component[i]];
     const double force = (normal ? c.force.normal : c.force.tangential) + w.correction[i];
     Fleet::add_load(c, normal ? force : 0.0, normal ? 0.0 : force, vehicle.Q);
@@ -178,26 +191,60 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
     for (int j = 0; j < f; ++j) state.dependent_block.project(w.NB.col(j), w.own.col(j));
   }
   w.J = w.own;
-  w.Z.noalias() = w.D * w.G;  // D G, for now
-  w.J.noalias() += w.G.transpose() * w.Z;
-
-  // Right-hand sides: -R and G^T D, whose solution says how dp follows the beam.
-  w.NB.resize(f, rows + 1);
-  w.NB.col(0) = -w.R;
-  w.NB.rightCols(rows).noalias() = w.G.transpose() * w.D;
-  if (f > 0) {
-    if (s.shift == 0.0) {  // statics may have neutral coordinates
-      w.NB = w.J.completeOrthogonalDecomposition().solve(w.NB).eval();
-    } else {
-      w.lu.compute(w.J);
-      solve_in_place(w.lu, w.NB);
-    }
+  for (int i = 0; i < rows; ++i) {
+    const auto [first, last] = w.range[i];
+    const int width = last - first;
+    w.J.block(first, first, width, width).noalias() +=
+        w.G.row(i).segment(first, width).transpose() * w.DG.row(i).segment(first, width);
   }
+
+  // Right-hand sides: -R and, of every row on the beam, G^T D, whose solution says how dp follows the beam.
+  const int on_beam = static_cast<int>(w.on_beam.size());
+  w.NB.resize(f, on_beam + 1);
+  w.NB.col(0) = -w.R;
+  for (int j = 0; j < on_beam; ++j) {
+    const int i = w.on_beam[j];
+    w.NB.col(j + 1) = w.D(i, 1) * w.G.row(i).transpose();
+    if (tangential_behind(w, i)) w.NB.col(j + 1) += w.D(i + 1, 0) * w.G.row(i + 1).transpose();
+  }
+  solve_vehicle(w, s.shift);
   w.dp = w.NB.col(0);
-  w.f_hat = w.correction + w.Z * w.dp;
-  w.T.noalias() = -w.Z * w.NB.rightCols(rows);
-  w.T += w.D;
-  w.Z = w.NB.rightCols(rows);
+  w.Z = w.NB.rightCols(on_beam);
+  w.f_hat.resize(rows);
+  w.T.resize(rows, on_beam);
+  for (int i = 0; i < rows; ++i) {
+    const auto [first, last] = w.range[i];
+    const auto row = w.DG.row(i).segment(first, last - first);
+    w.f_hat[i] = w.correction[i] + row.dot(w.dp.segment(first, last - first));
+    w.T.row(i).noalias() = -row * w.Z.middleRows(first, last - first);
+  }
+  for (int j = 0; j < on_beam; ++j) {
+    const int i = w.on_beam[j];
+    w.T(i, j) += w.D(i, 1);
+    if (tangential_behind(w, i)) w.T(i + 1, j) += w.D(i + 1, 0);
+  }
+}
+
+bool ContactNewton::tangential_behind(const VehicleWork& w, int row) {
+  return static_cast<std::size_t>(row) + 1 < w.component.size() && w.component[row + 1] == 1;
+}
+
+// J X = NB in place.
+void ContactNewton::solve_vehicle(VehicleWork& w, double shift) {
+  const int f = static_cast<int>(w.J.rows());
+  if (f == 0) return;
+  if (shift == 0.0) {  // statics may have neutral coordinates
+    w.NB = w.J.completeOrthogonalDecomposition().solve(w.NB).eval();
+    return;
+  }
+  const int band = f > small_vehicle ? half_bandwidth(w.J) : f;
+  if (3 * band < f) {
+    w.band_lu.compute(w.J, band);
+    w.band_lu.solve_in_place(w.NB);
+  } else {
+    w.lu.compute(w.J);
+    solve_in_place(w.lu, w.NB);
+  }
 }
 
 // Rows of the coupled system: contact components of the wheels on the beam. Their mutual compliance W is a Newton
@@ -206,9 +253,9 @@ bool ContactNewton::list_rows(const Fleet& fleet) {
   previous_rows_.swap(rows_);
   rows_.clear();
   for (std::size_t k = 0; k < work_.size(); ++k)
-    for (std::size_t i = 0; i < work_[k].contact.size(); ++i) {
-      const Contact& c = fleet.contact(work_[k].contact[i]);
-      if (c.slot() >= 0) rows_.push_back({static_cast<int>(k), static_cast<int>(i), c.slot()});
+    for (std::size_t j = 0; j < work_[k].on_beam.size(); ++j) {
+      const int i = work_[k].on_beam[j];
+      rows_.push_back({static_cast<int>(k), i, static_cast<int>(j), fleet.contact(work_[k].contact[i]).slot()});
     }
   return rows_ != previous_rows_;
 }
@@ -247,7 +294,7 @@ void ContactNewton::couple_beam(const Fleet& fleet, const StageData& s, Tangent 
     const VehicleWork& w = work_[rows_[b].vehicle];
     du_ -= W_.col(b) * w.f_hat[rows_[b].index];
     for (int c = 0; c < n; ++c)
-      if (rows_[c].vehicle == rows_[b].vehicle) coupled_.col(c) += W_.col(b) * w.T(rows_[b].index, rows_[c].index);
+      if (rows_[c].vehicle == rows_[b].vehicle) coupled_.col(c) += W_.col(b) * w.T(rows_[b].index, rows_[c].column);
   }
   lu_.compute(coupled_);
   solve_in_place(lu_, du_);
@@ -263,12 +310,16 @@ double ContactNewton::update(Fleet& fleet, const StageData& s, double* p) {
     const MovingVehicle& vehicle = fleet.vehicles[k];
     const int rows = static_cast<int>(w.contact.size());
     if (w.R.size() > 0) change = std::max(change, w.R.lpNorm<Eigen::Infinity>() / vehicle.scale);
-    w.correction.setZero(rows);  // now: displacement of the beam along the rows
-    for (int i = 0; i < rows; ++i)
-      if (fleet.contact(w.contact[i]).slot() >= 0) w.correction[i] = du_[row++];
-    w.f_hat += w.T * w.correction;
-    w.dp -= w.Z * w.correction;
-    w.correction += w.G * w.dp;
+    const int on_beam = static_cast<int>(w.on_beam.size());
+    const auto beam = du_.segment(row, on_beam);  // its displacement along the rows on it
+    row += on_beam;
+    w.f_hat.noalias() += w.T * beam;
+    w.dp.noalias() -= w.Z * beam;
+    for (int i = 0; i < rows; ++i) {
+      const auto [first, last] = w.range[i];
+      w.correction[i] = w.G.row(i).segment(first, last - first).dot(w.dp.segment(first, last - first));
+    }
+    for (int j = 0; j < on_beam; ++j) w.correction[w.on_beam[j]] += beam[j];
     for (int i = 0; i < rows; ++i) {
       Contact& c = fleet.contact(w.contact[i]);
       change = std::max(change, std::abs(w.f_hat[i]) / vehicle.scale);

@@ -105,8 +105,14 @@ void add_drive(const Placing& to, double speed, MechanismModel& model) {
 Member next_member(const Vehicle& type, int number, const Unit& unit) {
   const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
   const MechanismModel& m = unit.mechanism;
-  return {&type,           number,           size(m.bodies), size(m.joints), size(m.springs), size(m.torsion_springs),
-          size(unit.wheels), size(unit.contacts)};
+  return {&type,
+          number,
+          size(m.bodies),
+          size(m.joints),
+          size(m.springs),
+          size(m.torsion_springs),
+          size(unit.wheels),
+          size(unit.contacts)};
 }
 
 int body_named(const Vehicle& type, const std::string& name) {

@@ -132,10 +132,11 @@ std::string help_text() {
   append_rows(out, vehicle_rows(), "vehicle_NAME_");
   for (int kind = 0; kind < part_kinds; ++kind) {
     const Part part = static_cast<Part>(kind);
-    if (part == Part::contact) continue;
     out += fmt::format("\nEach {} PART in the list of {} of vehicle NAME\n", part_word(part), part_list(part));
     append_rows(out, part_rows(part), "vehicle_NAME_PART_");
   }
+  out += "\nEach coupler NAME in the list of train_couplers\n";
+  append_rows(out, coupler_rows(), "train_NAME_");
   out +=
       "\nOptions of PETSc and SLEPc pass on to them, -ts_type, -ts_adapt_type, -snes_rtol, -eps_tol, -log_view and so "
       "on.\n";

@@ -62,6 +62,7 @@ constexpr Row rows[] = {
   {"train_positions", numbers, "m", "(front wheel at 0)", any, "", 0, "x of each vehicle's origin at t = 0, or of the first one"},
   {"train_spacing", numbers, "m", "(from vehicle lengths)", positive, "", 0, "distance from origin to origin, one number or one per gap"},
   {"train_speed", number, "m/s", "", {0.0, 1e4}, "", 0, "speed towards the right at t = 0"},
+  {"train_couplers", texts, "", "", any, "", 0, "names of what joins neighbouring vehicles: springs, joints, shared bogies"},
   {"train_drive", choice, "", "(constant; free without wheels)", any, "constant free", 0, "constant: each vehicle's x is driven at the speed; free: only forces act"},
 
   {"load_forces", numbers, "N", "", any, "", 0, "moving constant forces, downward"},

@@ -122,6 +122,23 @@ constexpr Row contact[] = {
   {"other_young", number, "N/m2", "(the first's)", positive, "", 0, "modulus of the second body"},
   {"other_poisson", number, "1", "(the first's)", {-0.99, 0.5}, "", 0, "Poisson's ratio of the second body"},
 };
+constexpr Row coupler[] = {
+  {"type", choice, "", "spring", any, "spring revolute prismatic slot weld distance", 0, "what joins two neighbours"},
+  {"bodies", texts, "", "", any, "", 2, "a body of the vehicle in front, one of the vehicle behind"},
+  {"after", integers, "", "(all but the last)", {0, 100000}, "", 0, "the vehicles, counted from 0, behind which it is"},
+  {"point", numbers, "m", "", any, "", 2, "revolute, prismatic, slot, weld: x, y at t = 0, from the front vehicle's origin"},
+  {"axis", numbers, "1", "", any, "", 2, "prismatic, slot: direction, fixed in the front vehicle's body"},
+  {"from", numbers, "m", "", any, "", 2, "spring, distance: x, y on the front one's body, from its origin"},
+  {"to", numbers, "m", "", any, "", 2, "spring, distance: x, y on the other body, from the rear one's origin"},
+  {"stiffness", number, "N/m", "0", not_negative, "", 0, "stiffness"},
+  {"damping", number, "Ns/m", "0", not_negative, "", 0, "damping"},
+  {"free_length", number, "m", "(the distance at t = 0)", not_negative, "", 0, "length without force"},
+  {"preload", number, "N", "0", any, "", 0, "force at t = 0, tension positive; instead of free_length"},
+  {"table", file, "", "", any, "", 0, "a file elongation,force instead of stiffness: m beyond the free length, N in tension; straight lines, the end ones continued"},
+  {"damper_table", file, "", "", any, "", 0, "a file rate,force instead of damping: m/s of elongation, N in tension; straight lines, the end ones continued"},
+  {"gap", number, "m", "0", not_negative, "", 0, "play: loose until longer or shorter than free by this; stiffness or table count from there"},
+  {"side", choice, "", "both", any, "both compression tension", 0, "compression: never pulls (a bump stop); tension: never pushes (a rope)"},
+};
 // clang-format on
 
 struct PartTable {
@@ -141,6 +158,7 @@ const PartTable& table_of(Part part) { return parts[static_cast<std::size_t>(par
 
 }  // namespace
 
+std::span<const Row> coupler_rows() { return coupler; }
 std::span<const Row> vehicle_rows() { return vehicle; }
 std::span<const Row> part_rows(Part part) { return table_of(part).rows; }
 std::string_view part_list(Part part) { return table_of(part).list; }

@@ -17,6 +17,7 @@ namespace traverse::app {
 enum class Analysis { transient, modes, static_response };
 enum class Start { equilibrium, given };
 
+using coupling::Coupler;
 using coupling::Drive;
 using coupling::MovingLoad;
 using coupling::Train;

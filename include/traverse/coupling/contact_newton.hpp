@@ -1,13 +1,14 @@
 // Newton's method for one implicit stage of all vehicles and contacts, the beam condensed onto the elements under
 // the wheels. Unknowns: the independent coordinates p of every vehicle and the contact kinematics of every wheel
 // (penetration, its rate, sliding speed); the contact law enters as a function of these, which keeps the problem
-// convex in flight and under impact. A vehicle's Newton matrix is dense and small; wheels on the beam are coupled
-// by a dense system of their number.
+// convex in flight and under impact. A vehicle's Newton matrix is dense and small, or banded where
+// couplers join many; wheels on the beam are coupled by a dense system of their number.
 #pragma once
 
 #include <Eigen/Dense>
 #include <vector>
 
+#include "traverse/coupling/band_lu.hpp"
 #include "traverse/coupling/compliance.hpp"
 #include "traverse/coupling/fleet.hpp"
 
@@ -36,19 +37,27 @@ class ContactNewton {
 
  private:
   struct VehicleWork {
-    Eigen::MatrixXd J, own, G, D, Z, T, NB;  // own: J without contacts; G: contact directions times B; D: law's tangent
+    Eigen::MatrixXd J, own, Z, T, NB;                                              // own: J without contacts
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> G, DG;  // contact directions times B
+    Eigen::Matrix<double, Eigen::Dynamic, 2>
+        D;  // the law's tangent: by the row before (of a tangential one), by the row
     Eigen::VectorXd R, dp, f_hat, correction, r;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
-    std::vector<int> contact, component;  // of every row of G: which contact, 0 normal or 1 tangential
+    BandLu band_lu;
+    std::vector<int> contact, component;        // of every row of G: which contact, 0 normal or 1 tangential
+    std::vector<multibody::ColumnRange> range;  // of every row of G
+    std::vector<int> on_beam;                   // the rows whose contact is on the beam
   };
-  struct Row {  // of the coupled system: a row of a vehicle's G, and the element that carries it
-    int vehicle, index, slot;
+  struct Row {  // of the coupled system: a row of a vehicle's G, its column of T and Z, the element that carries it
+    int vehicle, index, column, slot;
     bool operator==(const Row&) const = default;
   };
   enum class Tangent { kept, fresh, full };
   bool evaluate(Fleet& fleet, const StageData& s, const double* p);
   void beam_field(const StageData& s, const Fleet& fleet);
   void vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own);
+  static bool tangential_behind(const VehicleWork& w, int row);
+  static void solve_vehicle(VehicleWork& w, double shift);
   bool list_rows(const Fleet& fleet);
   void mutual_compliance(const Fleet& fleet, const StageData& s);
   void couple_beam(const Fleet& fleet, const StageData& s, Tangent own);

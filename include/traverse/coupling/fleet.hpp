@@ -55,9 +55,9 @@ struct PairContact : Contact {
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  // m
 };
 
-/// A wheel on the track. A wheel sharper than the track's valleys may touch at several points (track::TouchingPoints): it
-/// has further entries for the other points, from left to right, and then for what neighbouring points share, with the
-/// sign -1. Where it touches at fewer, the others have no candidates, a negative penetration and no force.
+/// A wheel on the track. A wheel sharper than the track's valleys may touch at several points (track::TouchingPoints):
+/// it has further entries for the other points, from left to right, and then for what neighbouring points share, with
+/// the sign -1. Where it touches at fewer, the others have no candidates, a negative penetration and no force.
 struct WheelContact : Contact {
   int wheel = 0;                 // of its vehicle
   std::array<Patch, 2> patches;  // the surface under the wheel, and the neighbour across a near kink
@@ -157,8 +157,8 @@ class Fleet {
   static void add_load(const Contact& contact, double normal, double tangential, Eigen::VectorXd& Q);
   /// Contact forces as nodal values of the elements in touch, 2*per_node each, on the beam.
   void element_loads(int per_node, std::vector<double>& loads) const;
-  /// Whether a contact carries force, and its penetration; of a wheel with several points all of them and the deepest. The
-  /// further points of a wheel count with their first.
+  /// Whether a contact carries force, and its penetration; of a wheel with several points all of them and the deepest.
+  /// The further points of a wheel count with their first.
   bool touches(int contact) const;
   const contact::Kinematics& kinematics(int contact) const;
   /// Whether it is one of several points at which a wheel may touch.

@@ -31,12 +31,12 @@ struct CoupledGap {
 
 struct AssembledTrain {
   std::vector<Unit> units;
-  std::vector<Member> members;      // one a vehicle of the train
+  std::vector<Member> members;       // one a vehicle of the train
   std::vector<CoupledGap> couplers;  // by coupler, then from the front backwards
 };
 
-/// frozen: every drive stands still at its place at t = 0, and a free train is held: for the static start. `types` has to
-/// outlive the result.
+/// frozen: every drive stands still at its place at t = 0, and a free train is held: for the static start. `types` has
+/// to outlive the result.
 AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen);
 
 }  // namespace traverse::coupling

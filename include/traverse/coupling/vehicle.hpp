@@ -32,8 +32,8 @@ struct Vehicle {
 /// constant: x of each vehicle's first body is prescribed; free: only forces act.
 enum class Drive { constant, free };
 
-/// What joins neighbours in a train: a joint, or else a spring. `point` and `from` count from the origin of the vehicle in
-/// front, `to` from that of the one behind.
+/// What joins neighbours in a train: a joint, or else a spring. `point` and `from` count from the origin of the vehicle
+/// in front, `to` from that of the one behind.
 struct Coupler {
   std::string name;
   std::array<std::string, 2> bodies;  // of the vehicle in front, of the one behind

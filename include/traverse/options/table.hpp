@@ -59,6 +59,9 @@ std::span<const Row> vehicle_rows();
 /// Options vehicle_<name>_<part>_<row>.
 std::span<const Row> part_rows(Part part);
 
+/// Options train_<coupler>_<row>.
+std::span<const Row> coupler_rows();
+
 const Row* find_row(std::span<const Row> rows, std::string_view name);
 
 /// Does PETSc or SLEPc own this name? Ours that PETSc shares (-ts_dt) are theirs, too.
