@@ -109,6 +109,25 @@ TEST(BadNames, MisspeltOnesGetAProposal) {
                   });
 }
 
+TEST(BadNames, CouplersThatJoinNothing) {
+  const Workplace workplace(small_scene());
+  const auto coupler = [](std::vector<std::string> more) {
+    std::vector<std::string> all = {"-train_vehicles", "car*2", "-train_spacing",        "10",
+                                    "-train_couplers", "gear",  "-train_gear_from",      "-4,1",
+                                    "-train_gear_to",  "4,1",   "-train_gear_stiffness", "1e6"};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  expect_refusals(
+      workplace,
+      {
+          {coupler({"-train_gear_bodies", "body,bogie"}), {"vehicle 1", "no body 'bogie'"}},
+          {coupler({"-train_gear_bodies", "body,body", "-train_gear_after", "1"}), {"after = 1", "from 0 to 0"}},
+          {coupler({"-train_gear_bodies", "body,body", "-train_vehicles", "car"}), {"nothing for gear to join"}},
+          {coupler({"-train_gear_bodies", "body,body", "-train_gear_typ", "slot"}), {"gear_type?"}},
+      });
+}
+
 TEST(BadNames, PartsThatNoListNames) {
   const Workplace workplace(small_scene());
   expect_refusals(workplace, {

@@ -87,15 +87,14 @@ train: {vehicles: both, positions: -7.0, speed: 40.0}
 TEST(Couplers, JoinedVehiclesAreOneMechanism) {
   Results joined = run_yaml(std::string(scene) + two_vehicles);
   Results whole = run_yaml(std::string(scene) + one_vehicle);
-  const std::vector<std::pair<std::string, std::string>> same = {
-      {"0/car/position", "0/car/position"},
-      {"0/shared/acceleration", "0/shared/acceleration"},
-      {"1/car/position", "0/second/position"},
-      {"1/rear/acceleration", "0/rear/acceleration"},
-      {"0/wheel_2/normal_force", "0/wheel_2/normal_force"},
-      {"1/wheel_3/normal_force", "0/wheel_3/normal_force"},
-      {"1/rear_guide/reaction", "0/rear_guide/reaction"},
-      {"0/shared_spring/force", "0/shared_spring/force"}};
+  const std::vector<std::pair<std::string, std::string>> same = {{"0/car/position", "0/car/position"},
+                                                                 {"0/shared/acceleration", "0/shared/acceleration"},
+                                                                 {"1/car/position", "0/second/position"},
+                                                                 {"1/rear/acceleration", "0/rear/acceleration"},
+                                                                 {"0/wheel_2/normal_force", "0/wheel_2/normal_force"},
+                                                                 {"1/wheel_3/normal_force", "0/wheel_3/normal_force"},
+                                                                 {"1/rear_guide/reaction", "0/rear_guide/reaction"},
+                                                                 {"0/shared_spring/force", "0/shared_spring/force"}};
   double worst = 0.0;
   for (const auto& [a, b] : same) {
     const double difference = relative_difference(joined("/vehicles/" + a), whole("/vehicles/" + b));
@@ -114,8 +113,8 @@ TEST(Couplers, JoinedVehiclesAreOneMechanism) {
 }
 
 TEST(Couplers, AWeakSpringChangesNothing) {
-  const Values weak = {{"train_couplers", "b"},       {"train_b_bodies", "car,car"}, {"train_b_from", "-12.6,1.6"},
-                       {"train_b_to", "12.6,1.6"},    {"train_b_stiffness", "1e-6"}, {"train_vehicles", "coach*3"},
+  const Values weak = {{"train_couplers", "b"},    {"train_b_bodies", "car,car"}, {"train_b_from", "-12.6,1.6"},
+                       {"train_b_to", "12.6,1.6"}, {"train_b_stiffness", "1e-6"}, {"train_vehicles", "coach*3"},
                        {"output_interval", "0.02"}};
   Results joined = run_scene("three_span_train", weak);
   Results apart = run_scene("three_span_train", {{"train_vehicles", "coach*3"}, {"output_interval", "0.02"}});
@@ -144,14 +143,18 @@ vehicle:
   wagon:
     bodies: [car]
     actuators: [brake]
+    drivers: [level]
     wheels: [front, rear]
+    level: {body: car, coordinate: phi}
     car: {mass: 30000.0, inertia: 3.0e5, position: [0.0, 0.5]}
     brake: {body: car, force: [-10000.0, 0.0]}
     front: {body: car, radius: 0.5, law: linear, stiffness: 1.0e8}
     rear:  {body: car, radius: 0.5, law: linear, stiffness: 1.0e8}
   trailer:
     bodies: [car]
+    drivers: [level]
     wheels: [front, rear]
+    level: {body: car, coordinate: phi}
     car: {mass: 20000.0, inertia: 3.0e5, position: [0.0, 0.5]}
     front: {body: car, radius: 0.5, law: linear, stiffness: 1.0e8}
     rear:  {body: car, radius: 0.5, law: linear, stiffness: 1.0e8}
@@ -162,7 +165,6 @@ train:
   drive: free
   couplers: [gear]
   gear: {bodies: [car, car], from: [-5.0, 0.5], to: [5.0, 0.5], stiffness: 1.0e6, damping: 8.0e4}
-scene: {start: given}
 ts: {max_time: 8.0, dt: 0.002}
 output: {interval: 0.1}
 )";
