@@ -179,7 +179,7 @@ bool Mechanism::solve_dependent(MechanismState& s, double t) const {
     if (residual <= rounding) return true;
     const bool poor = residual > poor_contraction * before;
     if (poor && fresh && residual <= 100.0 * rounding) return true;  // as good as it gets
-    if (!s.factored || (poor && i > 0)) {
+    if (!s.factored || s.dependent_block.nearly_singular() || (poor && i > 0)) {
       factor(s);
       fresh = true;
     } else {

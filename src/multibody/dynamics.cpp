@@ -38,13 +38,12 @@ void Mechanism::velocities_at(MechanismState& s, double t, const double* pd) con
 
 /// B, b, q', d near a singular position, where rounding of q grows by 1/sigma in B and 1/sigma^3 in d, sigma being the
 /// least singular value of Phi_u: all four-bars flat, a parallelogram in its dead points. On a branch of the motion
-/// they are smooth all the same, so they are interpolated from four positions around, a safe way off along p'. False
-/// when one of them cannot be reached.
+/// they are smooth all the same, so they are interpolated from four instants around, a safe way off at the velocities of
+/// the last accepted one. False when one of them cannot be reached.
 bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double* pd) const {
   const int f = freedom();
   if (s.accepted.partition_version != partition_version_) return false;
-  double speed = 0.0;
-  for (int k = 0; k < f; ++k) speed = std::max(speed, std::abs(pd[k]) / scaling_.column[partition_.independent[k]]);
+  const double speed = s.accepted.qd.cwiseQuotient(scaling_.column).lpNorm<Eigen::Infinity>();
   if (!(speed > 0.0)) return false;
   constexpr double place[] = {-3.0, -1.0, 1.0, 3.0};
   constexpr double weight[] = {-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0};
@@ -52,18 +51,20 @@ bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double
   s.interpolated.setZero(coordinates(), f + 2);
   bool reached = true;
   for (int i = 0; i < 4 && reached; ++i) {
-    s.q = s.centre;
-    for (int k = 0; k < f; ++k) s.change[k] = place[i] * safe_way * length_ / speed * pd[k];
+    const double later = place[i] * safe_way * length_ / speed;
+    s.q = s.centre + later * s.accepted.qd;
+    for (int k = 0; k < f; ++k) s.change[k] = later * (pd[k] - s.accepted.qd[partition_.independent[k]]);
     s.accepted.sensitivity.add(s.change, partition_.independent, s.q);
-    reached = solve_dependent(s, t);
+    reached = solve_dependent(s, t + later);
     if (!reached) break;
     factor(s);
-    velocities_at(s, t, pd);
+    velocities_at(s, t + later, pd);
     s.interpolated.leftCols(f) += weight[i] * s.B;
     s.interpolated.col(f) += weight[i] * s.b;
     s.interpolated.col(f + 1) += weight[i] * s.d;
   }
   s.q = s.centre;
+  s.time = t;
   place_frames(s);
   compute_Phi(s);
   factor(s);

@@ -57,7 +57,6 @@ void DependentBlock::plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>&
   planned_pivot_.assign(m, 0.0);
   work_.assign(m, 0.0);
   factor(Phi_q);
-  planned_singular_ = nearly_singular();
   for (int k = 0; k < m; ++k) planned_pivot_[k] = std::abs(block(k, k));
 }
 
@@ -172,7 +171,7 @@ bool DependentBlock::factor(const Eigen::MatrixXd& Phi_q) {
     if (size < worn_pivot * planned_pivot_[i]) sound = false;
     inverse_pivot_[i] = size * pivot_scale_[i] > no_pivot ? 1.0 / block(i, i) : 0.0;
   }
-  return sound || (planned_singular_ && nearly_singular());
+  return sound && !nearly_singular();
 }
 
 void DependentBlock::compute_sensitivity() {

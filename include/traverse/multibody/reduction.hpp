@@ -43,8 +43,8 @@ class DependentBlock {
   /// ever be non-zero.
   void plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>& pattern, const Partition& partition,
             const Scaling& scaling);
-  /// Factors. False when a pivot has shrunk so much since the plan was made that a new one is due; not when the block was
-  /// nearly singular then and still is, which no order mends.
+  /// Factors. False when a pivot has shrunk so much since the plan was made that a new one is due, or is small: in its
+  /// order at least the block is nearly singular then.
   bool factor(const Eigen::MatrixXd& Phi_q);
   /// Computes the sensitivity; after factor.
   void compute_sensitivity();
@@ -93,7 +93,6 @@ class DependentBlock {
   std::vector<double> block_, sensitivity_;  // size x size, size x freedom, by rows
   std::vector<double> inverse_pivot_, planned_pivot_, pivot_scale_, work_;
   double least_pivot_ = 1.0;
-  bool planned_singular_ = false;
   std::vector<char> filled_;  // scratch of plan
 };
 
