@@ -65,6 +65,8 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
     const Tangent own = s.shift == 0.0 || i > 2 ? Tangent::full : i == 0 ? Tangent::fresh : Tangent::kept;
     if (!evaluate(fleet, s, p)) return false;
     for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) vehicle_system(fleet, static_cast<int>(k), s, own);
+    for (const MovingVehicle& vehicle : fleet.vehicles)
+      if (vehicle.state.friction.jammed) return false;
     couple_beam(fleet, s, own);
     const double before = change_;
     change_ = update(fleet, s, p);
@@ -120,6 +122,21 @@ void ContactNewton::beam_field(const StageData& s, const Fleet& fleet) {
   }
 }
 
+// Contact directions times B.
+void ContactNewton::contact_directions(const Fleet& fleet, const VehicleWork& w, const Eigen::MatrixXd& B,
+                                       Eigen::MatrixXd& G) {
+  G.resize(static_cast<Eigen::Index>(w.contact.size()), B.cols());
+  for (int i = 0; i < G.rows(); ++i) {
+    const Contact& c = fleet.contact(w.contact[i]);
+    const bool normal = w.component[i] == 0;
+    G.row(i).noalias() =
+        (normal ? c.touch.normal_on_body : c.touch.tangent_on_body).transpose() * B.middleRows<3>(3 * c.body);
+    if (c.other_body != multibody::ground)
+      G.row(i).noalias() +=
+          (normal ? c.touch.normal_on_other : c.touch.tangent_on_other).transpose() * B.middleRows<3>(3 * c.other_body);
+  }
+}
+
 // One vehicle with its contacts linearised and the surface held: J dp0 = -R, and what a displacement of the beam
 // along the contacts would do to dp (-Z) and to the forces (T).
 void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own) {
@@ -136,18 +153,13 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
       w.component.push_back(component);
     }
   const int rows = static_cast<int>(w.contact.size());
-  w.G.resize(rows, f);
+  contact_directions(fleet, w, state.B, w.G);
   w.D.setZero(rows, rows);
   w.correction.resize(rows);
   vehicle.Q.setZero();
   for (int i = 0; i < rows; ++i) {
     const Contact& c = fleet.contact(w.contact[i]);
     const bool normal = w.component[i] == 0;
-    w.G.row(i).noalias() =
-        (normal ? c.touch.normal_on_body : c.touch.tangent_on_body).transpose() * state.B.middleRows<3>(3 * c.body);
-    if (c.other_body != multibody::ground)
-      w.G.row(i).noalias() += (normal ? c.touch.normal_on_other : c.touch.tangent_on_other).transpose() *
-                              state.B.middleRows<3>(3 * c.other_body);
     const Eigen::Matrix2d D = tangent(c.force, s.shift);
     w.D(i, i) = D(w.component[i], w.component[i]);
     if (w.component[i] == 1) w.D(i, i - 1) = D(1, 0);
@@ -161,12 +173,19 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
   w.r = state.d;
   state.dependent_block.expand(pdd.data(), w.r);
   w.r = N.cwiseProduct(w.r) - state.g - vehicle.Q;
+  const bool rubs = mechanism.rubs();
+  if (rubs) {  // whose slope changes too much to be kept
+    mechanism.recover(state, vehicle.Q, pdd.data());
+    mechanism.friction_projector(state, w.projector);
+    for (int i = 0; i < state.friction.force.size(); ++i) w.r -= state.friction.force[i] * state.friction.A.col(i);
+    own = Tangent::full;
+  }
   w.R.resize(f);
   state.dependent_block.project(w.r, w.R);
 
   if (own != Tangent::kept) {
     const bool full = own == Tangent::full && mechanism.constraints() > 0;
-    if (full) mechanism.recover(state, vehicle.Q, pdd.data());
+    if (full && !rubs) mechanism.recover(state, vehicle.Q, pdd.data());
     mechanism.multiply_tangent(state, -1.0, -s.shift, full ? 1.0 : 0.0, w.NB);
     for (std::size_t b = 0; b < state.columns.size(); ++b) {
       const auto [first, last] = state.columns[b];
@@ -175,16 +194,22 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
           s.shift * s.shift * N.segment<3>(row).asDiagonal() * state.B.block(row, first, 3, last - first);
     }
     w.own.resize(f, f);
-    for (int j = 0; j < f; ++j) state.dependent_block.project(w.NB.col(j), w.own.col(j));
+    if (rubs) {
+      w.own.noalias() = w.projector.transpose() * w.NB;
+    } else {
+      for (int j = 0; j < f; ++j) state.dependent_block.project(w.NB.col(j), w.own.col(j));
+    }
   }
   w.J = w.own;
   w.Z.noalias() = w.D * w.G;  // D G, for now
-  w.J.noalias() += w.G.transpose() * w.Z;
+  if (rubs) contact_directions(fleet, w, w.projector, w.projected);
+  const Eigen::MatrixXd& G = rubs ? w.projected : w.G;
+  w.J.noalias() += G.transpose() * w.Z;
 
   // Right-hand sides: -R and G^T D, whose solution says how dp follows the beam.
   w.NB.resize(f, rows + 1);
   w.NB.col(0) = -w.R;
-  w.NB.rightCols(rows).noalias() = w.G.transpose() * w.D;
+  w.NB.rightCols(rows).noalias() = G.transpose() * w.D;
   if (f > 0) {
     if (s.shift == 0.0) {  // statics may have neutral coordinates
       w.NB = w.J.completeOrthogonalDecomposition().solve(w.NB).eval();

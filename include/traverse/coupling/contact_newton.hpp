@@ -37,6 +37,7 @@ class ContactNewton {
  private:
   struct VehicleWork {
     Eigen::MatrixXd J, own, G, D, Z, T, NB;  // own: J without contacts; G: contact directions times B; D: law's tangent
+    Eigen::MatrixXd projector, projected;  // in place of B, and of G = directions times B, where joints rub
     Eigen::VectorXd R, dp, f_hat, correction, r;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
     std::vector<int> contact, component;  // of every row of G: which contact, 0 normal or 1 tangential
@@ -48,6 +49,8 @@ class ContactNewton {
   enum class Tangent { kept, fresh, full };
   bool evaluate(Fleet& fleet, const StageData& s, const double* p);
   void beam_field(const StageData& s, const Fleet& fleet);
+  static void contact_directions(const Fleet& fleet, const VehicleWork& w, const Eigen::MatrixXd& B,
+                                 Eigen::MatrixXd& G);
   void vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own);
   bool list_rows(const Fleet& fleet);
   void mutual_compliance(const Fleet& fleet, const StageData& s);
