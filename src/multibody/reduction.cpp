@@ -276,6 +276,23 @@ void DependentBlock::copy_sensitivity(Sensitivity& copy) const {
     for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j) copy.value.push_back(sensitivity(i, *j));
 }
 
+BlockOperations DependentBlock::operations() const {
+  const auto length = [](const IndexLists& lists, int i) { return static_cast<long>(lists.end(i) - lists.begin(i)); };
+  BlockOperations count;
+  for (int i = 0; i < size(); ++i) {
+    count.factor += 3;  // a pivot is compared twice and inverted
+    for (const int* k = lower_.begin(i); k != lower_.end(i); ++k) {
+      count.factor += 1 + 2 * length(upper_, *k);
+      count.sensitivity += 2 * length(sensitive_, *k);
+    }
+    for (const int* k = upper_.begin(i); k != upper_.end(i); ++k) count.sensitivity += 2 * length(sensitive_, *k);
+    count.sensitivity += length(sensitive_, i);
+    count.solve += 2 * (length(lower_, i) + length(upper_, i)) + 1;
+    count.expand += 2 * length(sensitive_, i);
+  }
+  return count;
+}
+
 void ReducedMass::plan(const DependentBlock& block) {
   const int f = block.freedom();
   filled_.assign(static_cast<std::size_t>(f) * f, 0);
@@ -300,5 +317,14 @@ void ReducedMass::factor(const DependentBlock& block, const Eigen::VectorXd& mas
 }
 
 void ReducedMass::solve(Eigen::VectorXd& x) { ldl_.solve(x.data()); }
+
+MassOperations ReducedMass::operations(const DependentBlock& block) const {
+  long product = 0;
+  for (int i = 0; i < block.size(); ++i) {
+    const long width = block.sensitivity_end(i) - block.sensitivity_begin(i);
+    product += width + width * (width + 1);
+  }
+  return {product + ldl_.factor_operations(), ldl_.solve_operations()};
+}
 
 }  // namespace traverse::multibody

@@ -78,6 +78,7 @@ struct MechanismState {
   bool factored = false;         // dependent_block holds a factorisation of Phi_q near the current q
   bool velocities_set = false;   // dependent_block holds the sensitivity at the last velocities
   bool mass_factored = false;    // reduced_mass belongs to B
+  long corrections = 0;          // Newton steps on positions so far
   Eigen::VectorXd work;          // n
   Eigen::VectorXd reduced;       // f
   Eigen::VectorXd change;        // f

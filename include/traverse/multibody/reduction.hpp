@@ -35,6 +35,17 @@ struct Sensitivity {
   void add(const Eigen::VectorXd& change, const std::vector<int>& places, Eigen::VectorXd& q) const;
 };
 
+/// How many floating-point operations (+, -, *, / and square roots count one each) a call takes, from the places that
+/// are computed with.
+struct BlockOperations {
+  long factor = 0, sensitivity = 0;  // compute_sensitivity
+  long solve = 0;                    // or solve_transposed
+  long expand = 0;                   // or project
+};
+struct MassOperations {
+  long factor = 0, solve = 0;
+};
+
 /// LU of Phi_u, the kept rows and dependent columns of Phi_q, and the sensitivity -Phi_u^-1 Phi_p of the dependent
 /// to the independent coordinates. Vectors are given in the numbering of Phi's rows and of q.
 class DependentBlock {
@@ -64,6 +75,7 @@ class DependentBlock {
   /// Whether some scaled pivot of the last factorisation has become so small that rounding shows in accelerations.
   bool nearly_singular() const { return least_pivot_ < small_pivot; }
   void copy_sensitivity(Sensitivity& copy) const;
+  BlockOperations operations() const;
 
   int size() const { return static_cast<int>(row_of_.size()); }
   int freedom() const { return static_cast<int>(independent_.size()); }
@@ -104,6 +116,7 @@ class ReducedMass {
   /// After compute_sensitivity.
   void factor(const DependentBlock& block, const Eigen::VectorXd& mass);
   void solve(Eigen::VectorXd& x);  // in place
+  MassOperations operations(const DependentBlock& block) const;
 
  private:
   SparseLdl ldl_;

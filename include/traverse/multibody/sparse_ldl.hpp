@@ -34,6 +34,9 @@ class SparseLdl {
   void factor();
   void solve(double* x);  // in place
 
+  long factor_operations() const;
+  long solve_operations() const;
+
   int size() const { return static_cast<int>(order_.size()); }
 
  private:
