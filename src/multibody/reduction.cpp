@@ -300,17 +300,26 @@ void ReducedMass::plan(const DependentBlock& block) {
     for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a)
       for (const int* b = block.sensitivity_begin(i); b != block.sensitivity_end(i); ++b) filled_[*a * f + *b] = 1;
   ldl_.plan(f, filled_);
+  diagonal_.clear();
+  target_.clear();
+  for (int k = 0; k < f; ++k) diagonal_.push_back(ldl_.where(k, k));
+  for (int i = 0; i < block.size(); ++i)
+    for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a)
+      for (const int* b = a; b != block.sensitivity_end(i); ++b) target_.push_back(ldl_.where(*a, *b));
 }
 
 void ReducedMass::factor(const DependentBlock& block, const Eigen::VectorXd& mass) {
   ldl_.set_zero();
-  for (int k = 0; k < ldl_.size(); ++k) ldl_.entry(k, k) = mass[block.independent(k)];
+  double* entries = ldl_.entries();
+  for (int k = 0; k < ldl_.size(); ++k) entries[diagonal_[k]] = mass[block.independent(k)];
+  const int* target = target_.data();
   for (int i = 0; i < block.size(); ++i) {
     const double inertia = mass[block.coordinate(i)];
-    for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a) {
-      const double weighted = inertia * block.sensitivity(i, *a);
-      for (const int* b = a; b != block.sensitivity_end(i); ++b)
-        ldl_.entry(*a, *b) += weighted * block.sensitivity(i, *b);
+    const double* sensitivity = block.sensitivities(i);
+    const int* end = block.sensitivity_end(i);
+    for (const int* a = block.sensitivity_begin(i); a != end; ++a) {
+      const double weighted = inertia * sensitivity[*a];
+      for (const int* b = a; b != end; ++b) entries[*target++] += weighted * sensitivity[*b];
     }
   }
   ldl_.factor();

@@ -84,7 +84,8 @@ class DependentBlock {
   /// The independent coordinates (0..f-1, ascending) that pivot's coordinate depends on, and how much on each of them.
   const int* sensitivity_begin(int pivot) const { return sensitive_.begin(pivot); }
   const int* sensitivity_end(int pivot) const { return sensitive_.end(pivot); }
-  double sensitivity(int pivot, int k) const { return sensitivity_[pivot * freedom() + k]; }
+  const double* sensitivities(int pivot) const { return sensitivity_.data() + pivot * freedom(); }
+  double sensitivity(int pivot, int k) const { return sensitivities(pivot)[k]; }
   /// Takes the sensitivity from B (n x f).
   void set_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& B);
 
@@ -120,6 +121,7 @@ class ReducedMass {
 
  private:
   SparseLdl ldl_;
+  std::vector<int> diagonal_, target_;  // where the products of factor go, in their order
   std::vector<char> filled_;  // scratch of plan
 };
 
