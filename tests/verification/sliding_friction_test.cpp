@@ -207,6 +207,35 @@ TEST(SlidingFriction, RefusesJointsThatDoNotSlide) {
   EXPECT_TRUE(contains(run("vehicle_slider_crank_guide_friction", "-0.1"), "guide_friction"));
 }
 
+// A light shoe under a heavy block, a steep strut between: mu tan(slope) is 0.95, then 1.25.
+constexpr const char* strut = R"(
+vehicle:
+  strut:
+    bodies: [shoe, block]
+    joints: [floor, wall, rod]
+    shoe: {mass: 0.01, inertia: 0.1, position: [0.0, 0.0], velocity: [-1.0, 0.0, 0.0]}
+    block: {mass: 50.0, inertia: 0.1, position: [0.2, 1.0], velocity: [0.0, -0.2, 0.0]}
+    floor: {type: prismatic, bodies: [ground, shoe], point: [0.0, 0.0], axis: [1.0, 0.0], friction: 0.19, transition_speed: 1.0e-3}
+    wall: {type: prismatic, bodies: [ground, block], point: [0.2, 1.0], axis: [0.0, 1.0]}
+    rod: {type: distance, bodies: [shoe, block], from: [0.0, 0.0], to: [0.2, 1.0]}
+scene: {start: given}
+ts: {max_time: 0.05, dt: 1.0e-3}
+output: {interval: 0.01}
+)";
+
+TEST(SlidingFriction, ThatJamsEndsTheRunInWords) {
+  Results run = run_yaml(strut);
+  EXPECT_LT(energy_error(run), 1e-9);
+  for (const char* method : {"arkimex", "rk"}) {
+    try {
+      run_yaml(strut, {{"vehicle_strut_floor_friction", "0.25"}, {"ts_type", method}});
+      ADD_FAILURE() << "it does not jam";
+    } catch (const SolverError& error) {
+      EXPECT_TRUE(contains(error.what(), "friction jams joint 'floor'")) << error.what();
+    }
+  }
+}
+
 // The guides slip on the bump and hold again: the bounce dies out with the last of them, whatever the springs are.
 TEST(SlidingFriction, AFreightWagonComesToRestInItsGuides) {
   Results run = run_scene("freight_wagon");
