@@ -37,7 +37,7 @@ class ContactNewton {
  private:
   struct VehicleWork {
     Eigen::MatrixXd J, own, G, D, Z, T, NB;  // own: J without contacts; G: contact directions times B; D: law's tangent
-    Eigen::MatrixXd projector, projected;  // in place of B, and of G = directions times B, where joints rub
+    Eigen::MatrixXd projector, projected;    // in place of B, and of G = directions times B, where joints rub
     Eigen::VectorXd R, dp, f_hat, correction, r;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
     std::vector<int> contact, component;  // of every row of G: which contact, 0 normal or 1 tangential

@@ -54,8 +54,8 @@ class DependentBlock {
   /// ever be non-zero.
   void plan(const Eigen::MatrixXd& Phi_q, const std::vector<char>& pattern, const Partition& partition,
             const Scaling& scaling);
-  /// Factors. False when a pivot has shrunk so much since the plan was made that a new one is due; not when the block was
-  /// nearly singular then and still is, which no order mends.
+  /// Factors. False when a pivot has shrunk so much since the plan was made that a new one is due; not when the block
+  /// was nearly singular then and still is, which no order mends.
   bool factor(const Eigen::MatrixXd& Phi_q);
   /// Computes the sensitivity; after factor.
   void compute_sensitivity();
@@ -122,7 +122,7 @@ class ReducedMass {
  private:
   SparseLdl ldl_;
   std::vector<int> diagonal_, target_;  // where the products of factor go, in their order
-  std::vector<char> filled_;  // scratch of plan
+  std::vector<char> filled_;            // scratch of plan
 };
 
 }  // namespace traverse::multibody
