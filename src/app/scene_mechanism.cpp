@@ -162,6 +162,13 @@ void VehicleReader::joint(const std::string& name) {
     j.axis = vector("axis");
     if (!(j.axis.norm() > 0.0)) o_.refuse(key("axis"), "allowed: a direction, not 0, 0");
     j.axis.normalize();
+    j.friction = {number("friction"), number("friction_force"), number("transition_speed")};
+  }
+  for (const char* field : {"friction", "friction_force", "transition_speed"}) {
+    if (!has(field)) continue;
+    if (type != "prismatic" && type != "slot") o_.refuse(key(field), "belongs to joints that slide: prismatic or slot");
+    if (!j.friction.acts() && std::string_view(field) == "transition_speed")
+      o_.refuse(key(field), "needs friction or friction_force");
   }
   vehicle_.mechanism.joints.push_back(j);
 }

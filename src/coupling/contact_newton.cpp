@@ -66,6 +66,8 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
     const Tangent own = s.shift == 0.0 || i > 2 ? Tangent::full : i == 0 ? Tangent::fresh : Tangent::kept;
     if (!evaluate(fleet, s, p)) return false;
     for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) vehicle_system(fleet, static_cast<int>(k), s, own);
+    for (const MovingVehicle& vehicle : fleet.vehicles)
+      if (vehicle.state.friction.jammed) return false;
     couple_beam(fleet, s, own);
     const double before = change_;
     change_ = update(fleet, s, p);
@@ -121,6 +123,25 @@ void ContactNewton::beam_field(const StageData& s, const Fleet& fleet) {
   }
 }
 
+// Contact directions times B, whose rows of a body reach into the columns given.
+void ContactNewton::contact_directions(const Fleet& fleet, const VehicleWork& w,
+                                       const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
+                                       RowMatrix& G) {
+  G.setZero(static_cast<Eigen::Index>(w.contact.size()), B.cols());
+  for (int i = 0; i < G.rows(); ++i) {
+    const Contact& c = fleet.contact(w.contact[i]);
+    const auto add = [&](int body, const Eigen::Vector3d& direction) {
+      const auto [first, last] = columns[body];
+      G.row(i).segment(first, last - first).noalias() +=
+          direction.transpose() * B.block(3 * static_cast<Eigen::Index>(body), first, 3, last - first);
+    };
+    const bool normal = w.component[i] == 0;
+    add(c.body, normal ? c.touch.normal_on_body : c.touch.tangent_on_body);
+    if (c.other_body != multibody::ground)
+      add(c.other_body, normal ? c.touch.normal_on_other : c.touch.tangent_on_other);
+  }
+}
+
 // One vehicle with its contacts linearised and the surface held: J dp0 = -R, and what a displacement of the beam
 // along the contacts would do to dp (-Z) and to the forces (T).
 void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own) {
@@ -137,7 +158,7 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
       w.component.push_back(component);
     }
   const int rows = static_cast<int>(w.contact.size());
-  w.G.setZero(rows, f);
+  contact_directions(fleet, w, state.columns, state.B, w.G);
   w.DG.setZero(rows, f);
   w.D.resize(rows, 2);
   w.correction.resize(rows);
@@ -147,21 +168,15 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
   for (int i = 0; i < rows; ++i) {
     const Contact& c = fleet.contact(w.contact[i]);
     const bool normal = w.component[i] == 0;
-    multibody::ColumnRange range = state.columns[c.body];
-    auto row = w.G.row(i);
-    const auto add = [&](int body, const Eigen::Vector3d& direction) {
-      const auto [first, last] = state.columns[body];
-      range = {std::min(range.first, first), std::max(range.last, last)};
-      row.segment(first, last - first).noalias() +=
-          direction.transpose() * state.B.block(3 * static_cast<Eigen::Index>(body), first, 3, last - first);
-    };
-    add(c.body, normal ? c.touch.normal_on_body : c.touch.tangent_on_body);
-    if (c.other_body != multibody::ground)
-      add(c.other_body, normal ? c.touch.normal_on_other : c.touch.tangent_on_other);
-    w.range[i] = range;
+    const multibody::ColumnRange own_range = state.columns[c.body];
+    w.range[i] = own_range;
+    if (c.other_body != multibody::ground) {
+      const multibody::ColumnRange other = state.columns[c.other_body];
+      w.range[i] = {std::min(own_range.first, other.first), std::max(own_range.last, other.last)};
+    }
     const Eigen::Matrix2d D = tangent(c.force, s.shift);
     w.D.row(i) << (normal ? 0.0 : D(1, 0)), D(w.component[i], w.component[i]);
-    w.DG.row(i) = w.D(i, 1) * row;
+    w.DG.row(i) = w.D(i, 1) * w.G.row(i);
     if (!normal) w.DG.row(i) += w.D(i, 0) * w.G.row(i - 1);
     if (c.slot() >= 0) w.on_beam.push_back(i);
     w.correction[i] = force_correction(c)[w.component[i]];
@@ -174,12 +189,19 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
   w.r = state.d;
   state.dependent_block.expand(pdd.data(), w.r);
   w.r = N.cwiseProduct(w.r) - state.g - vehicle.Q;
+  const bool rubs = mechanism.rubs();
+  if (rubs) {  // whose slope changes too much to be kept
+    mechanism.recover(state, vehicle.Q, pdd.data());
+    mechanism.friction_projector(state, w.projector);
+    for (int i = 0; i < state.friction.force.size(); ++i) w.r -= state.friction.force[i] * state.friction.A.col(i);
+    own = Tangent::full;
+  }
   w.R.resize(f);
   state.dependent_block.project(w.r, w.R);
 
   if (own != Tangent::kept) {
     const bool full = own == Tangent::full && mechanism.constraints() > 0;
-    if (full) mechanism.recover(state, vehicle.Q, pdd.data());
+    if (full && !rubs) mechanism.recover(state, vehicle.Q, pdd.data());
     mechanism.multiply_tangent(state, -1.0, -s.shift, full ? 1.0 : 0.0, w.NB);
     for (std::size_t b = 0; b < state.columns.size(); ++b) {
       const auto [first, last] = state.columns[b];
@@ -188,14 +210,23 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
           s.shift * s.shift * N.segment<3>(row).asDiagonal() * state.B.block(row, first, 3, last - first);
     }
     w.own.resize(f, f);
-    for (int j = 0; j < f; ++j) state.dependent_block.project(w.NB.col(j), w.own.col(j));
+    if (rubs) {
+      w.own.noalias() = w.projector.transpose() * w.NB;
+    } else {
+      for (int j = 0; j < f; ++j) state.dependent_block.project(w.NB.col(j), w.own.col(j));
+    }
   }
   w.J = w.own;
+  if (rubs) {
+    w.everything.assign(state.columns.size(), {0, f});
+    contact_directions(fleet, w, w.everything, w.projector, w.projected);
+  }
+  const RowMatrix& G = rubs ? w.projected : w.G;
   for (int i = 0; i < rows; ++i) {
     const auto [first, last] = w.range[i];
-    const int width = last - first;
-    w.J.block(first, first, width, width).noalias() +=
-        w.G.row(i).segment(first, width).transpose() * w.DG.row(i).segment(first, width);
+    const int from = rubs ? 0 : first, width = rubs ? f : last - first;
+    w.J.block(from, first, width, last - first).noalias() +=
+        G.row(i).segment(from, width).transpose() * w.DG.row(i).segment(first, last - first);
   }
 
   // Right-hand sides: -R and, of every row on the beam, G^T D, whose solution says how dp follows the beam.
@@ -204,8 +235,8 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
   w.NB.col(0) = -w.R;
   for (int j = 0; j < on_beam; ++j) {
     const int i = w.on_beam[j];
-    w.NB.col(j + 1) = w.D(i, 1) * w.G.row(i).transpose();
-    if (tangential_behind(w, i)) w.NB.col(j + 1) += w.D(i + 1, 0) * w.G.row(i + 1).transpose();
+    w.NB.col(j + 1) = w.D(i, 1) * G.row(i).transpose();
+    if (tangential_behind(w, i)) w.NB.col(j + 1) += w.D(i + 1, 0) * G.row(i + 1).transpose();
   }
   solve_vehicle(w, s.shift);
   w.dp = w.NB.col(0);

@@ -296,6 +296,8 @@ double System::step_limit(double t, double tolerance) const {
 }
 
 std::string System::trouble() const {
+  for (const MovingVehicle& vehicle : fleet_.vehicles)
+    if (vehicle.state.friction.jammed) return vehicle.mechanism.jam(vehicle.state);
   const MovingVehicle* stuck = fleet_.stuck();
   if (stuck == nullptr)
     return "the contact iteration does not converge: try a smaller -ts_dt, softer contacts, or look at the state just "

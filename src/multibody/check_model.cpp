@@ -65,8 +65,17 @@ void check_body(const Part& part, const Body& body) {
   part.finite_vector("velocity", body.velocity);
 }
 
+void check_friction(const Part& part, const Joint& joint) {
+  part.not_negative("friction", joint.friction.coefficient);
+  part.not_negative("friction_force", joint.friction.force);
+  part.positive("transition_speed", joint.friction.transition_speed);
+  const bool slides = joint.type == JointType::prismatic || joint.type == JointType::slot;
+  if (joint.friction.acts() && !slides) part.fail("friction needs a joint that slides: prismatic or slot");
+}
+
 void check_joint(const Part& part, const Joint& joint) {
   part.pair(joint.bodies);
+  check_friction(part, joint);
   switch (joint.type) {
     case JointType::distance:
       part.finite_vector("from", joint.from);

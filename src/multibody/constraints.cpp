@@ -150,6 +150,7 @@ double Mechanism::kept_residual(const MechanismState& s) const {
 
 /// One Newton step on the dependent coordinates with the factorisation at hand. False when it is not finite.
 bool Mechanism::correct_dependent(MechanismState& s) const {
+  ++s.corrections;
   s.dependent_block.solve(s.Phi, s.work);
   double turn = 0.0;
   bool finite = true;

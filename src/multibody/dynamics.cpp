@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traverse/base/error.hpp"
 #include "traverse/multibody/mechanism.hpp"
 
 namespace traverse::multibody {
@@ -111,17 +112,30 @@ void Mechanism::accelerations(MechanismState& s, const Eigen::VectorXd& Q, doubl
   if (!s.mass_factored) s.reduced_mass.factor(s.dependent_block, mass_);
   s.mass_factored = true;
   s.work = s.g + Q - mass_.cwiseProduct(s.d);
+  if (rubs()) {
+    friction_in_motion(s);
+    if (s.friction.jammed) throw SolverError(jam(s) + " (at t = " + std::to_string(s.time) + " s)");
+  }
   s.dependent_block.project(s.work, s.reduced);
   s.reduced_mass.solve(s.reduced);
   for (int k = 0; k < freedom(); ++k) pdd[k] = s.reduced[k];
-  recover(s, Q, pdd);
+  spread(s, pdd);
+  s.work = s.g + Q - mass_.cwiseProduct(s.qdd);
+  if (rubs()) add_friction(s);
+  s.dependent_block.solve_transposed(s.work, s.lambda);
 }
 
 void Mechanism::recover(MechanismState& s, const Eigen::VectorXd& Q, const double* pdd) const {
+  spread(s, pdd);
+  s.work = s.g + Q - mass_.cwiseProduct(s.qdd);
+  if (rubs()) friction_in_given_motion(s);
+  s.dependent_block.solve_transposed(s.work, s.lambda);
+}
+
+/// q'' from p''.
+void Mechanism::spread(MechanismState& s, const double* pdd) const {
   s.qdd = s.d;
   s.dependent_block.expand(pdd, s.qdd);
-  s.work = s.g + Q - mass_.cwiseProduct(s.qdd);
-  s.dependent_block.solve_transposed(s.work, s.lambda);
 }
 
 }  // namespace traverse::multibody

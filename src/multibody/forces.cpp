@@ -1,4 +1,5 @@
 // The generalized forces g of eq. 42 without contact: gravity, springs, actuators; and the energy balance.
+#include "pair_times_B.hpp"
 #include "traverse/multibody/mechanism.hpp"
 
 namespace traverse::multibody {
@@ -23,11 +24,9 @@ void Mechanism::compute_forces(MechanismState& s) const {
       if (actuator.reaction_body != ground) s.g[3 * actuator.reaction_body + c] -= action;
     }
   }
+  if (rubs()) place_friction(s);
 }
 
-namespace {
-
-/// product += K B for the matrix K of a pair of bodies.
 void add_pair_times_B(int first, int second, const PairMatrix& K, const MechanismState& s, Eigen::MatrixXd& product) {
   const int bodies[2] = {first, second};
   for (int j = 0; j < 2; ++j) {
@@ -41,8 +40,6 @@ void add_pair_times_B(int first, int second, const PairMatrix& K, const Mechanis
     }
   }
 }
-
-}  // namespace
 
 void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda,
                                  Eigen::MatrixXd& product) const {
@@ -61,6 +58,7 @@ void Mechanism::multiply_tangent(const MechanismState& s, double by_q, double by
     K(2, 5) = K(5, 2) = k;
     add_pair_times_B(spring.first, spring.second, K, s, product);
   }
+  if (rubs()) multiply_friction_tangent(s, by_q, by_qd, product);
   if (by_lambda == 0.0) return;
   for (const JointGeometry& joint : joints_) {
     joint_curvature(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row, K);
@@ -91,6 +89,7 @@ MechanismEnergy Mechanism::energy(const MechanismState& s) const {
     e.strain += torsion_strain_energy(spring, frame(s, spring.first), frame(s, spring.second));
     e.dissipation += torsion_dissipation(spring, frame(s, spring.first), frame(s, spring.second));
   }
+  for (int k = 0; k < s.friction.force.size(); ++k) e.dissipation -= s.friction.force[k] * s.friction.speed[k];
   for (const Actuator& actuator : model_.actuators) {
     for (int c = 0; c < 3; ++c) {
       double rate = s.qd[3 * actuator.body + c];

@@ -18,11 +18,19 @@ struct Placement {
         d((second.origin - first.origin) + (a2 - a1)) {}
 };
 
-/// What the normal equation needs: n . e - offset = 0.
+/// What the normal equation n . e - offset = 0 needs, and the same of another direction n of the first body.
 struct NormalPlacement {
-  Vector2d a2, n, e;  // second arm, normal, P2 - r1
+  Vector2d a2, n, e;  // second arm, direction, P2 - r1
   NormalPlacement(const JointGeometry& j, const Frame& first, const Frame& second)
-      : a2(second.to_global(j.second_arm)), n(first.to_global(j.normal)), e(second.origin - first.origin + a2) {}
+      : NormalPlacement(j, j.normal, first, second) {}
+  NormalPlacement(const JointGeometry& j, const Vector2d& direction, const Frame& first, const Frame& second)
+      : a2(second.to_global(j.second_arm)), n(first.to_global(direction)), e(second.origin - first.origin + a2) {}
+  /// Of n . e.
+  Eigen::Matrix<double, 1, 6> gradient() const {
+    Eigen::Matrix<double, 1, 6> g;
+    g << -n.x(), -n.y(), quarter_turn(n).dot(e), n.x(), n.y(), n.dot(quarter_turn(a2));
+    return g;
+  }
 };
 
 void point_jacobian(const JointGeometry& j, const Frame& first, const Frame& second, JointJacobian& J) {
@@ -33,8 +41,7 @@ void point_jacobian(const JointGeometry& j, const Frame& first, const Frame& sec
 }
 
 void normal_jacobian(const JointGeometry& j, const Frame& first, const Frame& second, JointJacobian& J) {
-  const NormalPlacement p(j, first, second);
-  J.row(0) << -p.n.x(), -p.n.y(), quarter_turn(p.n).dot(p.e), p.n.x(), p.n.y(), p.n.dot(quarter_turn(p.a2));
+  J.row(0) = NormalPlacement(j, first, second).gradient();
 }
 
 void distance_jacobian(const JointGeometry& j, const Frame& first, const Frame& second, JointJacobian& J) {
@@ -67,9 +74,7 @@ void point_curvature(const JointGeometry& j, const Frame& first, const Frame& se
   K(5, 5) -= lambda.dot(second.to_global(j.second_arm));
 }
 
-void normal_curvature(const JointGeometry& j, const Frame& first, const Frame& second, double lambda,
-                      JointCurvature& K) {
-  const NormalPlacement p(j, first, second);
+void normal_curvature(const NormalPlacement& p, double lambda, JointCurvature& K) {
   const Vector2d t = lambda * quarter_turn(p.n);
   const double lever = lambda * p.n.dot(p.a2);
   K.block<2, 1>(0, 2) -= t;
@@ -126,6 +131,7 @@ JointGeometry joint_geometry(const Joint& joint, const Frame& first, const Frame
       if (std::abs(component) < 1e-15) component = 0.0;
     j.normal = first.to_body(n);
     j.offset = j.normal.dot(j.first_arm);
+    j.friction = joint.friction;
   }
   j.angle = second.angle - first.angle;
   j.length = distance ? (joint.to - joint.from).norm() : 0.0;
@@ -203,12 +209,21 @@ void joint_curvature(const JointGeometry& j, const Frame& first, const Frame& se
       break;
     case JointType::prismatic:
     case JointType::slot:
-      normal_curvature(j, first, second, lambda[0], curvature);
+      normal_curvature(NormalPlacement(j, first, second), lambda[0], curvature);
       break;
     case JointType::distance:
       distance_curvature(j, first, second, lambda[0], curvature);
       break;
   }
+}
+
+Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& j, const Frame& first, const Frame& second) {
+  return NormalPlacement(j, quarter_turn(j.normal), first, second).gradient().transpose();
+}
+
+void slide_curvature(const JointGeometry& j, const Frame& first, const Frame& second, JointCurvature& curvature) {
+  curvature.setZero();
+  normal_curvature(NormalPlacement(j, quarter_turn(j.normal), first, second), 1.0, curvature);
 }
 
 Eigen::Vector3d joint_reaction(const JointGeometry& j, const Frame& first, const Frame& second, const double* lambda) {

@@ -35,6 +35,9 @@ Mechanism::Mechanism(MechanismModel model) : model_(std::move(model)) {
     joints_.push_back(joint_geometry(joint, start_frame(model_, joint.bodies[0]), start_frame(model_, joint.bodies[1]),
                                      joint_row_count_));
     joint_row_count_ += joint_rows(joint.type);
+    if (!joint.friction.acts()) continue;
+    rubbing_.push_back(static_cast<int>(joints_.size()) - 1);
+    presses_ = presses_ || joint.friction.coefficient > 0.0;
   }
   for (const Spring& spring : model_.springs) {
     springs_.push_back(
@@ -105,6 +108,17 @@ MechanismState Mechanism::make_state() const {
     s.qd.segment<3>(3 * i) = model_.bodies[i].velocity;
     s.frames[i + 1] = start_frame(model_, i);
   }
+  if (rubs()) {
+    const auto r = static_cast<int>(rubbing_.size());
+    FrictionState& friction = s.friction;
+    for (Eigen::MatrixXd* matrix : {&friction.A, &friction.H}) matrix->setZero(n, r);
+    for (Eigen::MatrixXd* matrix : {&friction.gain, &friction.system, &friction.inverse}) matrix->setZero(r, r);
+    for (Eigen::VectorXd* v : {&friction.speed, &friction.share, &friction.force, &friction.normal_force,
+                               &friction.start, &friction.by_lambda})
+      v->setZero(r);
+    friction.unit.setZero(m);
+    friction.work.setZero(n);
+  }
   fit(s);
   return s;
 }
@@ -130,7 +144,14 @@ std::string Mechanism::row_name(int row) const {
 
 Eigen::Vector3d Mechanism::joint_reaction(const MechanismState& s, int j) const {
   const JointGeometry& joint = joints_[j];
-  return multibody::joint_reaction(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row);
+  Eigen::Vector3d reaction =
+      multibody::joint_reaction(joint, frame(s, joint.first), frame(s, joint.second), s.lambda.data() + joint.row);
+  const auto rubbing = std::find(rubbing_.begin(), rubbing_.end(), j);
+  if (rubbing != rubbing_.end()) {
+    const double force = s.friction.force[rubbing - rubbing_.begin()];
+    reaction.head<2>() += force * frame(s, joint.first).to_global(quarter_turn(joint.normal));
+  }
+  return reaction;
 }
 
 double Mechanism::driver_force(const MechanismState& s, int k) const { return -s.lambda[driver_row(k)]; }

@@ -100,6 +100,7 @@ std::vector<std::string> Mechanism::choose_partition(MechanismState& s, double t
     check_dropped_rates(s);
     check_dead_point(s);
     check_dropped_accelerations(s);
+    check_dropped_friction();
   }
   std::vector<std::string> names;
   for (const int row : dropped) {
@@ -221,6 +222,18 @@ void Mechanism::check_dropped_accelerations(MechanismState& s) const {
     if (std::abs(missed) <= rate_tolerance * terms + rate_floor * length_ / scaling_.row[row]) continue;
     throw InputError(conflict(s, row, "contradicts") + ": their accelerations differ by " + number(missed) + " " +
                      row_unit(row) + "/s2 at t = " + number(s.time) + " s");
+  }
+}
+
+/// A normal force that the other joints could take as well is not determined, nor is its friction.
+void Mechanism::check_dropped_friction() const {
+  const std::vector<int> dropped = dropped_rows();
+  for (const int j : rubbing_) {
+    if (joints_[j].friction.coefficient == 0.0) continue;
+    if (std::binary_search(dropped.begin(), dropped.end(), joints_[j].row))
+      throw InputError("vehicle '" + model_.name + "', joint '" + model_.joints[j].name +
+                       "': other joints guide the same motion, so its normal force is not determined and friction "
+                       "cannot follow from it; give friction_force instead, or leave the other joints out");
   }
 }
 

@@ -275,6 +275,23 @@ void DependentBlock::copy_sensitivity(Sensitivity& copy) const {
     for (const int* j = sensitive_.begin(i); j != sensitive_.end(i); ++j) copy.value.push_back(sensitivity(i, *j));
 }
 
+BlockOperations DependentBlock::operations() const {
+  const auto length = [](const IndexLists& lists, int i) { return static_cast<long>(lists.end(i) - lists.begin(i)); };
+  BlockOperations count;
+  for (int i = 0; i < size(); ++i) {
+    count.factor += 3;  // a pivot is compared twice and inverted
+    for (const int* k = lower_.begin(i); k != lower_.end(i); ++k) {
+      count.factor += 1 + 2 * length(upper_, *k);
+      count.sensitivity += 2 * length(sensitive_, *k);
+    }
+    for (const int* k = upper_.begin(i); k != upper_.end(i); ++k) count.sensitivity += 2 * length(sensitive_, *k);
+    count.sensitivity += length(sensitive_, i);
+    count.solve += 2 * (length(lower_, i) + length(upper_, i)) + 1;
+    count.expand += 2 * length(sensitive_, i);
+  }
+  return count;
+}
+
 void ReducedMass::plan(const DependentBlock& block) {
   const int f = block.freedom();
   filled_.assign(static_cast<std::size_t>(f) * f, 0);
@@ -282,22 +299,40 @@ void ReducedMass::plan(const DependentBlock& block) {
     for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a)
       for (const int* b = block.sensitivity_begin(i); b != block.sensitivity_end(i); ++b) filled_[*a * f + *b] = 1;
   ldl_.plan(f, filled_);
+  diagonal_.clear();
+  target_.clear();
+  for (int k = 0; k < f; ++k) diagonal_.push_back(ldl_.where(k, k));
+  for (int i = 0; i < block.size(); ++i)
+    for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a)
+      for (const int* b = a; b != block.sensitivity_end(i); ++b) target_.push_back(ldl_.where(*a, *b));
 }
 
 void ReducedMass::factor(const DependentBlock& block, const Eigen::VectorXd& mass) {
   ldl_.set_zero();
-  for (int k = 0; k < ldl_.size(); ++k) ldl_.entry(k, k) = mass[block.independent(k)];
+  double* entries = ldl_.entries();
+  for (int k = 0; k < ldl_.size(); ++k) entries[diagonal_[k]] = mass[block.independent(k)];
+  const int* target = target_.data();
   for (int i = 0; i < block.size(); ++i) {
     const double inertia = mass[block.coordinate(i)];
-    for (const int* a = block.sensitivity_begin(i); a != block.sensitivity_end(i); ++a) {
-      const double weighted = inertia * block.sensitivity(i, *a);
-      for (const int* b = a; b != block.sensitivity_end(i); ++b)
-        ldl_.entry(*a, *b) += weighted * block.sensitivity(i, *b);
+    const double* sensitivity = block.sensitivities(i);
+    const int* end = block.sensitivity_end(i);
+    for (const int* a = block.sensitivity_begin(i); a != end; ++a) {
+      const double weighted = inertia * sensitivity[*a];
+      for (const int* b = a; b != end; ++b) entries[*target++] += weighted * sensitivity[*b];
     }
   }
   ldl_.factor();
 }
 
 void ReducedMass::solve(Eigen::VectorXd& x) { ldl_.solve(x.data()); }
+
+MassOperations ReducedMass::operations(const DependentBlock& block) const {
+  long product = 0;
+  for (int i = 0; i < block.size(); ++i) {
+    const long width = block.sensitivity_end(i) - block.sensitivity_begin(i);
+    product += width + width * (width + 1);
+  }
+  return {product + ldl_.factor_operations(), ldl_.solve_operations()};
+}
 
 }  // namespace traverse::multibody

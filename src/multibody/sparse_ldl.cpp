@@ -70,6 +70,17 @@ void SparseLdl::factor() {
   }
 }
 
+long SparseLdl::factor_operations() const {
+  long count = 0;
+  for (int k = 0; k < size(); ++k) {
+    const long below = below_.end(k) - below_.begin(k);
+    count += 1 + below + below * (below + 1);
+  }
+  return count;
+}
+
+long SparseLdl::solve_operations() const { return 4 * static_cast<long>(below_.index.size()) + size(); }
+
 void SparseLdl::solve(double* x) {
   const int n = size();
   for (int k = 0; k < n; ++k) work_[k] = x[order_[k]];

@@ -39,6 +39,9 @@ constexpr Row joint[] = {
   {"axis", numbers, "1", "", any, "", 2, "prismatic, slot: direction, fixed in the first body"},
   {"from", numbers, "m", "", any, "", 2, "distance: x, y on the first body at t = 0"},
   {"to", numbers, "m", "", any, "", 2, "distance: x, y on the second body at t = 0"},
+  {"friction", number, "1", "0", not_negative, "", 0, "prismatic, slot: coefficient of dry friction along the axis, on the joint's normal force"},
+  {"friction_force", number, "N", "0", not_negative, "", 0, "prismatic, slot: dry friction whatever the normal force, as of clamped plates; on top of friction"},
+  {"transition_speed", number, "m/s", "0.01", positive, "", 0, "sliding speed at which friction is nearly full: times tanh(speed/transition_speed)"},
 };
 
 constexpr Row spring[] = {

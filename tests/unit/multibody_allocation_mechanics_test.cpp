@@ -28,9 +28,10 @@ TEST(Evaluation, TakesNoMemory) {
   model.springs.push_back(model.springs[0]);
   model.springs[1].stiffness = model.springs[1].damping = 0.0;
   model.springs[1].law = ForceLaw{Polyline::line(40.0), Polyline::line(2.0), 0.01, Side::both};
+  model.joints[1].friction = {0.2, 1.0, 0.01};
   Motion motion(model);
   double pdd = 0.0;
-  Eigen::MatrixXd product(motion.mechanism.coordinates(), 1);
+  Eigen::MatrixXd product(motion.mechanism.coordinates(), 1), projector(motion.mechanism.coordinates(), 1);
   const long before = allocations;
   std::vector<double> counted(10);
   ASSERT_GT(allocations, before);  // the counting works
@@ -41,6 +42,7 @@ TEST(Evaluation, TakesNoMemory) {
     motion.mechanism.compute_forces(motion.state);
     motion.mechanism.recover(motion.state, motion.Q, &pdd);
     motion.mechanism.multiply_tangent(motion.state, -1.0, -2.0, 1.0, product);
+    motion.mechanism.friction_projector(motion.state, projector);
     motion.converged = motion.converged && converged;
   }
   EXPECT_EQ(allocations, start);

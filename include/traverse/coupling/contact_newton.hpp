@@ -36,17 +36,19 @@ class ContactNewton {
   double last_change() const { return change_; }
 
  private:
+  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   struct VehicleWork {
-    Eigen::MatrixXd J, own, Z, T, NB;                                              // own: J without contacts
-    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> G, DG;  // contact directions times B
-    Eigen::Matrix<double, Eigen::Dynamic, 2>
-        D;  // the law's tangent: by the row before (of a tangential one), by the row
+    Eigen::MatrixXd J, own, Z, T, NB;  // own: J without contacts
+    Eigen::MatrixXd projector;         // in place of B where joints rub
+    RowMatrix G, DG, projected;  // contact directions times B, the law's tangent times G, directions times projector
+    Eigen::Matrix<double, Eigen::Dynamic, 2> D;  // that tangent: by the row before (of a tangential one), by the row
     Eigen::VectorXd R, dp, f_hat, correction, r;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
     BandLu band_lu;
     std::vector<int> contact, component;        // of every row of G: which contact, 0 normal or 1 tangential
     std::vector<multibody::ColumnRange> range;  // of every row of G
-    std::vector<int> on_beam;                   // the rows whose contact is on the beam
+    std::vector<multibody::ColumnRange> everything;
+    std::vector<int> on_beam;  // the rows whose contact is on the beam
   };
   struct Row {  // of the coupled system: a row of a vehicle's G, its column of T and Z, the element that carries it
     int vehicle, index, column, slot;
@@ -55,6 +57,9 @@ class ContactNewton {
   enum class Tangent { kept, fresh, full };
   bool evaluate(Fleet& fleet, const StageData& s, const double* p);
   void beam_field(const StageData& s, const Fleet& fleet);
+  static void contact_directions(const Fleet& fleet, const VehicleWork& w,
+                                 const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
+                                 RowMatrix& G);
   void vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own);
   static bool tangential_behind(const VehicleWork& w, int row);
   static void solve_vehicle(VehicleWork& w, double shift);

@@ -27,6 +27,7 @@ struct JointGeometry {
   double offset = 0.0;                                   // m, normal . first_arm
   double angle = 0.0;                                    // rad, phi2 - phi1 at t = 0
   double length = 0.0;                                   // m, of a distance joint
+  SlidingFriction friction;
 };
 
 /// Rows of Phi_q of one joint (the first joint_rows of them), columns x1 y1 phi1 x2 y2 phi2.
@@ -50,6 +51,13 @@ void joint_gamma(const JointGeometry& joint, const Frame& first, const Frame& se
 /// d(Phi_q^T lambda)/dq at fixed lambda (joint_rows values); symmetric.
 void joint_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, const double* lambda,
                      JointCurvature& curvature);
+/// The sliding of a prismatic joint or a slot is that of the joint's point on the second body along the axis, as seen
+/// from the first. Its gradient, columns x1 y1 phi1 x2 y2 phi2: times the velocities it is the sliding speed, times a
+/// force along the axis it is the generalized force of that on the second body and its opposite on the first, both at
+/// this point.
+Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& joint, const Frame& first, const Frame& second);
+/// The derivative of slide_gradient; symmetric.
+void slide_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, JointCurvature& curvature);
 /// Force on the second body and moment on it about the joint's point there (for `distance`: about `to`).
 Eigen::Vector3d joint_reaction(const JointGeometry& joint, const Frame& first, const Frame& second,
                                const double* lambda);

@@ -34,6 +34,25 @@ struct ColumnRange {
   int first = 0, last = 0;
 };
 
+/// Friction in the joints that slide with friction, r of them. With f the forces along their axes, A the gradients of
+/// their slidings and H^T r the normal forces that a generalized force r on all bodies causes when the accelerations
+/// are given, they are f_k = -(mu_k |lambda_k| + F_k) tanh(v_k/v0_k), v = A^T q', and
+/// lambda = H^T (g + Q + A f - N q''), which has to be solved for lambda (friction.cpp).
+struct FrictionState {
+  Eigen::MatrixXd A;             // n x r
+  Eigen::MatrixXd H;             // n x r
+  Eigen::VectorXd speed, share;  // r: v (m/s) and tanh(v/v0)
+  Eigen::VectorXd force;         // r: f, N, along the axis on the second body
+  Eigen::VectorXd normal_force;  // r: lambda, N
+  bool jammed = false;           // no lambda, or more than one
+
+  // workspaces
+  Eigen::VectorXd unit, work, start;  // a row of Phi; n; r
+  Eigen::VectorXd by_lambda;          // r: df = -by_lambda d(lambda)
+  Eigen::MatrixXd gain;               // r x r: d(lambda)/df
+  Eigen::MatrixXd system, inverse;    // r x r: 1 + gain by_lambda, and its inverse
+};
+
 /// Everything that changes with time for one mechanism; sized once by Mechanism::make_state.
 struct MechanismState {
   double time = 0.0;
@@ -47,6 +66,8 @@ struct MechanismState {
   Eigen::MatrixXd Phi_q;              // rows of Phi x n, redundant rows included
   Eigen::VectorXd Phi, gamma, Phi_t;  // one a row of Phi
 
+  FrictionState friction;  // as accelerations or recover left it
+
   // workspaces of the implementation
   std::vector<Frame> frames;         // ground first, then the bodies: see Mechanism
   std::vector<ColumnRange> columns;  // of B that a body's rows reach into; one a body
@@ -57,6 +78,7 @@ struct MechanismState {
   bool factored = false;         // dependent_block holds a factorisation of Phi_q near the current q
   bool velocities_set = false;   // dependent_block holds the sensitivity at the last velocities
   bool mass_factored = false;    // reduced_mass belongs to B
+  long corrections = 0;          // Newton steps on positions so far
   Eigen::VectorXd work;          // n
   Eigen::VectorXd reduced;       // f
   Eigen::VectorXd change;        // f
@@ -69,7 +91,7 @@ struct MechanismEnergy {
   double kinetic = 0.0;
   double strain = 0.0;       // springs, torsion springs: 1/2 k e^2, or the integral of a law
   double potential = 0.0;    // gravity
-  double dissipation = 0.0;  // power lost in dampers, >= 0
+  double dissipation = 0.0;  // power lost in dampers and in friction, >= 0
   double work = 0.0;         // power of actuators and of rheonomic constraints (drivers)
 };
 
@@ -122,18 +144,29 @@ class Mechanism {
   /// With positions and velocities set: g.
   void compute_forces(MechanismState& s) const;
 
-  /// p'' from the projected equations with external forces Q (n); also q'' and lambda.
+  /// p'' from the projected equations with external forces Q (n); also q'' and lambda. Throws SolverError where
+  /// friction jams a joint: the bodies' accelerations are then not determined.
   void accelerations(MechanismState& s, const Eigen::VectorXd& Q, double* pdd) const;
 
-  /// q'' from a given p'', and lambda from the dependent rows of the equations of motion.
+  /// q'' from a given p'', and lambda from the dependent rows of the equations of motion. Where friction jams a joint
+  /// s.friction.jammed is set.
   void recover(MechanismState& s, const Eigen::VectorXd& Q, const double* pdd) const;
 
-  /// (by_q dg/dq + by_qd dg/dq' + by_lambda d(Phi_q^T lambda)/dq) B into product (n x f), at fixed lambda.
+  /// Whether joints slide with friction.
+  bool rubs() const { return !rubbing_.empty(); }
+  /// After recover: which matrix takes the place of B in the projection B^T r of a change r of the equations' residual
+  /// at fixed lambda, so that the changes of lambda it causes drop out where friction goes with them (n x f).
+  void friction_projector(const MechanismState& s, Eigen::MatrixXd& projector) const;
+  /// Why s.friction.jammed, in words.
+  std::string jam(const MechanismState& s) const;
+
+  /// (by_q dg/dq + by_qd dg/dq' + by_lambda d(Phi_q^T lambda)/dq) B into product (n x f), at fixed lambda. Here g
+  /// includes friction.
   void multiply_tangent(const MechanismState& s, double by_q, double by_qd, double by_lambda,
                         Eigen::MatrixXd& product) const;
 
-  /// Reaction of joint j on its second body: fx, fy, moment about the joint's point as it moves with that body (for
-  /// `distance`: about `to`). Rows dropped as redundant carry nothing.
+  /// Reaction of joint j on its second body, friction included: fx, fy, moment about the joint's point as it moves with
+  /// that body (for `distance`: about `to`). Rows dropped as redundant carry nothing.
   Eigen::Vector3d joint_reaction(const MechanismState& s, int j) const;
   /// Generalized force that driver k exerts on its coordinate.
   double driver_force(const MechanismState& s, int k) const;
@@ -171,6 +204,16 @@ class Mechanism {
   void predict(MechanismState& s, double t, const double* p) const;
   void velocities_at(MechanismState& s, double t, const double* pd) const;
   bool interpolate_velocities(MechanismState& s, double t, const double* pd) const;
+  void spread(MechanismState& s, const double* pdd) const;
+  void place_friction(MechanismState& s) const;
+  void friction_in_motion(MechanismState& s) const;
+  void friction_in_given_motion(MechanismState& s) const;
+  void add_level(MechanismState& s) const;
+  void add_friction(MechanismState& s) const;
+  void settle(MechanismState& s) const;
+  void force_of_normals(MechanismState& s) const;
+  void respond(MechanismState& s, const Eigen::Ref<const Eigen::VectorXd>& force) const;
+  void multiply_friction_tangent(const MechanismState& s, double by_q, double by_qd, Eigen::MatrixXd& product) const;
 
   struct Choice {
     Partition partition;
@@ -181,6 +224,7 @@ class Mechanism {
   void check_dropped_positions(MechanismState& s) const;
   void check_dropped_rates(MechanismState& s) const;
   void check_dropped_accelerations(MechanismState& s) const;
+  void check_dropped_friction() const;
   void check_dead_point(MechanismState& s) const;
   void fit_velocities(MechanismState& s) const;
   std::vector<int> dropped_rows() const;
@@ -192,6 +236,8 @@ class Mechanism {
   double chosen_quality_ = 1.0;  // of the partition when it was chosen
   Eigen::VectorXd mass_;
   std::vector<JointGeometry> joints_;
+  std::vector<int> rubbing_;  // joints that slide with friction
+  bool presses_ = false;      // and one of them with a coefficient
   std::vector<SpringGeometry> springs_;
   std::vector<TorsionGeometry> torsion_springs_;
   int joint_row_count_ = 0;    // rows of Phi: first the joints', then one a driver

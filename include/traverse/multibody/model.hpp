@@ -33,6 +33,15 @@ enum class JointType {
   distance,   // the distance between `from` (first body) and `to` (second body) is kept: 1 equation
 };
 
+/// Friction along the axis of a joint that slides: (coefficient*|normal force| + force) tanh(sliding speed /
+/// transition_speed), against the sliding.
+struct SlidingFriction {
+  double coefficient = 0.0;        // 1, on the joint's normal force
+  double force = 0.0;              // N, whatever the normal force
+  double transition_speed = 0.01;  // m/s
+  bool acts() const { return coefficient > 0.0 || force > 0.0; }
+};
+
 struct Joint {
   std::string name;
   JointType type = JointType::revolute;
@@ -41,6 +50,7 @@ struct Joint {
   Eigen::Vector2d axis = Eigen::Vector2d::UnitY();
   Eigen::Vector2d from = Eigen::Vector2d::Zero();
   Eigen::Vector2d to = Eigen::Vector2d::Zero();
+  SlidingFriction friction = {};  // prismatic, slot
 };
 
 /// A rheonomic constraint: one coordinate of one body is a given function of time.

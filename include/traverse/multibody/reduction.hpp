@@ -35,6 +35,17 @@ struct Sensitivity {
   void add(const Eigen::VectorXd& change, const std::vector<int>& places, Eigen::VectorXd& q) const;
 };
 
+/// How many floating-point operations (+, -, *, / and square roots count one each) a call takes, from the places that
+/// are computed with.
+struct BlockOperations {
+  long factor = 0, sensitivity = 0;  // compute_sensitivity
+  long solve = 0;                    // or solve_transposed
+  long expand = 0;                   // or project
+};
+struct MassOperations {
+  long factor = 0, solve = 0;
+};
+
 /// LU of Phi_u, the kept rows and dependent columns of Phi_q, and the sensitivity -Phi_u^-1 Phi_p of the dependent
 /// to the independent coordinates. Vectors are given in the numbering of Phi's rows and of q.
 class DependentBlock {
@@ -64,6 +75,7 @@ class DependentBlock {
   /// Whether some scaled pivot of the last factorisation has become so small that rounding shows in accelerations.
   bool nearly_singular() const { return least_pivot_ < small_pivot; }
   void copy_sensitivity(Sensitivity& copy) const;
+  BlockOperations operations() const;
 
   int size() const { return static_cast<int>(row_of_.size()); }
   int freedom() const { return static_cast<int>(independent_.size()); }
@@ -72,7 +84,8 @@ class DependentBlock {
   /// The independent coordinates (0..f-1, ascending) that pivot's coordinate depends on, and how much on each of them.
   const int* sensitivity_begin(int pivot) const { return sensitive_.begin(pivot); }
   const int* sensitivity_end(int pivot) const { return sensitive_.end(pivot); }
-  double sensitivity(int pivot, int k) const { return sensitivity_[pivot * freedom() + k]; }
+  const double* sensitivities(int pivot) const { return sensitivity_.data() + pivot * freedom(); }
+  double sensitivity(int pivot, int k) const { return sensitivities(pivot)[k]; }
   /// Takes the sensitivity from B (n x f).
   void set_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& B);
 
@@ -103,10 +116,12 @@ class ReducedMass {
   /// After compute_sensitivity.
   void factor(const DependentBlock& block, const Eigen::VectorXd& mass);
   void solve(Eigen::VectorXd& x);  // in place
+  MassOperations operations(const DependentBlock& block) const;
 
  private:
   SparseLdl ldl_;
-  std::vector<char> filled_;  // scratch of plan
+  std::vector<int> diagonal_, target_;  // where the products of factor go, in their order
+  std::vector<char> filled_;            // scratch of plan
 };
 
 }  // namespace traverse::multibody

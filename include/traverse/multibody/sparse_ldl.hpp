@@ -27,12 +27,18 @@ class SparseLdl {
   void plan(int size, std::vector<char>& filled);
   void set_zero();
   /// Entry (i, j) of the matrix, to be added to; call it for one of (i, j) and (j, i) only, whichever.
-  double& entry(int i, int j) {
+  double& entry(int i, int j) { return entries_[where(i, j)]; }
+  /// The same in two steps: where it stands, which stays, and what stands there.
+  int where(int i, int j) const {
     const int a = place_[i], b = place_[j];
-    return a < b ? entries_[a * size() + b] : entries_[b * size() + a];
+    return a < b ? a * size() + b : b * size() + a;
   }
+  double* entries() { return entries_.data(); }
   void factor();
   void solve(double* x);  // in place
+
+  long factor_operations() const;
+  long solve_operations() const;
 
   int size() const { return static_cast<int>(order_.size()); }
 

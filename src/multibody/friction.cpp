@@ -1,0 +1,203 @@
+// Dry friction in sliding joints, whose normal forces depend on the accelerations and so on the friction itself.
+//
+// Along the axis of joint k acts f_k = -(mu_k |lambda_k| + F_k) tanh(v_k/v0_k). All else being given, lambda is linear
+// in f: lambda = lambda_0 + G f, in a motion that follows the forces as in one that is given (G differs). With signs
+// assumed for the lambda_k this is a small linear system; the signs that solve it are found by repeating it (Newton on
+// a function of straight pieces: it ends after finitely many). Friction that outgrows what causes it, G_kk mu_k >= 1,
+// jams: then there is no solution or more than one (Painleve's paradox).
+#include <cmath>
+
+#include "pair_times_B.hpp"
+#include "traverse/multibody/mechanism.hpp"
+
+namespace traverse::multibody {
+
+namespace {
+constexpr int most_signs = 30;             // tried
+constexpr double least_determined = 1e-6;  // determinant of what solves for lambda; without friction it is 1
+
+/// Gauss and Jordan with pivots from the column; `matrix` is used up. Returns the determinant. Without memory of its
+/// own.
+double invert(Eigen::MatrixXd& matrix, Eigen::MatrixXd& inverse) {
+  double determinant = 1.0;
+  inverse.setIdentity();
+  for (int k = 0; k < matrix.rows(); ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < matrix.rows(); ++i)
+      if (std::abs(matrix(i, k)) > std::abs(matrix(pivot, k))) pivot = i;
+    if (pivot != k) {
+      matrix.row(k).swap(matrix.row(pivot));
+      inverse.row(k).swap(inverse.row(pivot));
+      determinant = -determinant;
+    }
+    const double size = matrix(k, k);
+    determinant *= size;
+    if (size == 0.0) return 0.0;
+    matrix.row(k) /= size;
+    inverse.row(k) /= size;
+    for (int i = 0; i < matrix.rows(); ++i) {
+      if (i == k) continue;
+      const double factor = matrix(i, k);
+      matrix.row(i) -= factor * matrix.row(k);
+      inverse.row(i) -= factor * inverse.row(k);
+    }
+  }
+  return determinant;
+}
+
+}  // namespace
+
+/// With positions and velocities set: what friction needs of them.
+void Mechanism::place_friction(MechanismState& s) const {
+  FrictionState& r = s.friction;
+  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+    const int k = static_cast<int>(i);
+    const JointGeometry& joint = joints_[rubbing_[i]];
+    const PairForce gradient = slide_gradient(joint, frame(s, joint.first), frame(s, joint.second));
+    if (joint.first != ground) r.A.col(k).segment<3>(3 * joint.first) = gradient.head<3>();
+    if (joint.second != ground) r.A.col(k).segment<3>(3 * joint.second) = gradient.tail<3>();
+    r.speed[k] = r.A.col(k).dot(s.qd);
+    r.share[k] = std::tanh(r.speed[k] / joint.friction.transition_speed);
+    if (joint.friction.coefficient == 0.0) continue;
+    r.unit[joint.row] = 1.0;
+    r.work.setZero();
+    s.dependent_block.solve(r.unit, r.work);
+    r.unit[joint.row] = 0.0;
+    r.H.col(k) = r.work;
+  }
+}
+
+/// The part that does not depend on normal forces: into r.force, and onto s.work.
+void Mechanism::add_level(MechanismState& s) const {
+  FrictionState& r = s.friction;
+  r.jammed = false;
+  for (int k = 0; k < r.force.size(); ++k) r.force[k] = -joints_[rubbing_[k]].friction.force * r.share[k];
+  add_friction(s);
+}
+
+void Mechanism::add_friction(MechanismState& s) const {
+  const FrictionState& r = s.friction;
+  for (int k = 0; k < r.force.size(); ++k) s.work += r.force[k] * r.A.col(k);
+}
+
+/// Solves lambda = start - gain diag(mu share) |lambda|. The signs of the last lambda are tried first.
+void Mechanism::settle(MechanismState& s) const {
+  FrictionState& r = s.friction;
+  const auto count = static_cast<int>(rubbing_.size());
+  const auto slope = [&](int k) { return joints_[rubbing_[k]].friction.coefficient * r.share[k]; };
+  for (int k = 0; k < count; ++k)
+    if (std::abs(r.gain(k, k) * slope(k)) >= 1.0) r.jammed = true;
+  for (int i = 0; i < most_signs; ++i) {
+    for (int k = 0; k < count; ++k) r.by_lambda[k] = std::signbit(r.normal_force[k]) ? -slope(k) : slope(k);
+    for (int k = 0; k < count; ++k) r.system.col(k) = r.by_lambda[k] * r.gain.col(k);
+    r.system.diagonal().array() += 1.0;
+    const double determinant = invert(r.system, r.inverse);
+    bool same = true;
+    for (int k = 0; k < count; ++k) {
+      const double lambda = r.inverse.row(k).dot(r.start);
+      same = same && (slope(k) == 0.0 || lambda == 0.0 || std::signbit(lambda) == std::signbit(r.normal_force[k]));
+      r.normal_force[k] = lambda;
+    }
+    if (!same) continue;
+    if (!(determinant > least_determined)) r.jammed = true;
+    return;
+  }
+  r.jammed = true;
+}
+
+/// With normal forces known: the part of the friction that they cause, into r.force and onto s.work.
+void Mechanism::force_of_normals(MechanismState& s) const {
+  FrictionState& r = s.friction;
+  for (int k = 0; k < r.force.size(); ++k) {
+    const double force = -r.by_lambda[k] * r.normal_force[k];
+    r.force[k] += force;
+    s.work += force * r.A.col(k);
+  }
+}
+
+/// r.work = force - N q'', the motion following from the force alone. With the reduced mass factored.
+void Mechanism::respond(MechanismState& s, const Eigen::Ref<const Eigen::VectorXd>& force) const {
+  FrictionState& r = s.friction;
+  s.dependent_block.project(force, s.reduced);
+  s.reduced_mass.solve(s.reduced);
+  r.work.setZero();
+  s.dependent_block.expand(s.reduced.data(), r.work);
+  r.work = force - mass_.cwiseProduct(r.work);
+}
+
+/// s.work = g + Q - N d: adds friction to it, the accelerations being free.
+void Mechanism::friction_in_motion(MechanismState& s) const {
+  FrictionState& r = s.friction;
+  add_level(s);
+  if (!presses_) return;
+  respond(s, s.work);
+  for (int k = 0; k < r.start.size(); ++k) r.start[k] = r.H.col(k).dot(r.work);
+  for (int k = 0; k < r.start.size(); ++k) {
+    respond(s, r.A.col(k));
+    for (int j = 0; j < r.start.size(); ++j) r.gain(j, k) = r.H.col(j).dot(r.work);
+  }
+  settle(s);
+  force_of_normals(s);
+}
+
+/// s.work = g + Q - N q'': adds friction to it, the accelerations being given.
+void Mechanism::friction_in_given_motion(MechanismState& s) const {
+  FrictionState& r = s.friction;
+  add_level(s);
+  if (!presses_) return;
+  for (int k = 0; k < r.start.size(); ++k) r.start[k] = r.H.col(k).dot(s.work);
+  for (int k = 0; k < r.start.size(); ++k)
+    for (int j = 0; j < r.start.size(); ++j) r.gain(j, k) = r.H.col(j).dot(r.A.col(k));
+  settle(s);
+  force_of_normals(s);
+}
+
+// A change r of the residual at fixed lambda makes lambda change by -(1 + gain by_lambda)^-1 H^T r in the joints with
+// friction, and the friction with it: the projection sees B^T (r - A by_lambda (1 + gain by_lambda)^-1 H^T r).
+void Mechanism::friction_projector(const MechanismState& s, Eigen::MatrixXd& projector) const {
+  const FrictionState& r = s.friction;
+  projector = s.B;
+  if (!presses_) return;
+  for (int k = 0; k < r.start.size(); ++k) {
+    if (r.by_lambda[k] == 0.0) continue;
+    for (int column = 0; column < projector.cols(); ++column) {
+      const double along = r.by_lambda[k] * r.A.col(k).dot(s.B.col(column));
+      for (int j = 0; j < r.start.size(); ++j) projector.col(column) -= along * r.inverse(k, j) * r.H.col(j);
+    }
+  }
+}
+
+std::string Mechanism::jam(const MechanismState& s) const {
+  const FrictionState& r = s.friction;
+  int worst = 0;
+  const auto growth = [&](int k) {
+    return std::abs(r.gain(k, k) * r.share[k]) * joints_[rubbing_[k]].friction.coefficient;
+  };
+  for (int k = 1; k < r.share.size(); ++k)
+    if (growth(k) > growth(worst)) worst = k;
+  return "vehicle '" + model_.name + "': friction jams joint '" + model_.joints[rubbing_[worst]].name +
+         "', it causes more normal force than it needs; take a lower friction coefficient or a shorter arm";
+}
+
+void Mechanism::multiply_friction_tangent(const MechanismState& s, double by_q, double by_qd,
+                                          Eigen::MatrixXd& product) const {
+  const FrictionState& r = s.friction;
+  JointCurvature curvature;
+  for (std::size_t i = 0; i < rubbing_.size(); ++i) {
+    const int k = static_cast<int>(i);
+    const JointGeometry& joint = joints_[rubbing_[i]];
+    const Frame &first = frame(s, joint.first), &second = frame(s, joint.second);
+    const PairForce gradient = slide_gradient(joint, first, second);
+    slide_curvature(joint, first, second, curvature);
+    PairForce rate;
+    rate << first.velocity, first.omega, second.velocity, second.omega;
+    const double level = joint.friction.coefficient * std::abs(r.normal_force[k]) + joint.friction.force;
+    const double damping = level * (1.0 - r.share[k] * r.share[k]) / joint.friction.transition_speed;
+    const PairForce speed_by_q = curvature * rate;
+    const PairMatrix K =
+        by_q * r.force[k] * curvature - damping * gradient * (by_q * speed_by_q + by_qd * gradient).transpose();
+    add_pair_times_B(joint.first, joint.second, K, s, product);
+  }
+}
+
+}  // namespace traverse::multibody
