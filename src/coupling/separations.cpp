@@ -107,8 +107,7 @@ void Separations::accept(const Fleet& fleet, double t) {
     } else if (seen.met && seen.open >= 0) {
       Separation& entry = list_[seen.open];
       const double across = t - time_, left = time_to_touch(i);  // a damper that comes on bends the cubic
-      const double met_at =
-          left < across ? time_ + left : change_between(fleet, i, time_, seen.kinematics, t, c.kinematics);
+      const double met_at = left < across ? time_ + left : change_between(fleet, i, time_, seen.kinematics, t, c.kinematics);
       entry.duration = met_at - entry.start;
       entry.approach_speed = std::max(seen.kinematics.penetration_rate, c.kinematics.penetration_rate);
       entry.impact_force = c.force.normal;
