@@ -279,9 +279,12 @@ std::optional<Change> System::contact_change(double t, double tolerance) const {
 
 // A damper comes on with a jump, which must lie at a step's border; an elastic force grows from nothing.
 double System::change_tolerance(int contact, double tolerance) const {
-  const contact::Law& law = fleet_.contact(contact).law;
-  const double share = !law.hysteresis && law.damping > 0.0 ? 1e-3 : 0.1;
-  return std::min(tolerance, share * impacts_[contact].step);
+  const Contact& c = fleet_.contact(contact);
+  const double step = impacts_[contact].step;
+  if (c.law.hysteresis || c.law.damping == 0.0) return std::min(tolerance, 0.1 * step);
+  // a step of twice as much leads from this side of the damper's ramp beyond it
+  const double ramp = c.approach_speed > 0.0 ? contact::damper_ramp / c.approach_speed : 0.0;
+  return std::min(tolerance, std::max(1e-3 * step, std::min(ramp, 0.1 * step)));
 }
 
 double System::step_limit(double t, double tolerance) const {
