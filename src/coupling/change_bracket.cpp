@@ -63,9 +63,10 @@ void ChangeBracket::tried(double at, const std::optional<Change>& change) {
       change_.time =
           system_.separations().change_between(system_.fleet(), change_.contact, low_, below_, high_, above_);
     } else {
-      const double left = below_.penetration_rate > 0.0 ? -below_.penetration / below_.penetration_rate : high_ - low_;
-      if (left <= wanted_) return end_at(at);
-      if (below_.penetration_rate <= 0.0 && change_.hidden) return end_at(full_);
+      const bool approaches = below_.penetration_rate > 0.0;
+      if (!approaches && change_.hidden && !change_.seen) return end_at(full_);
+      const double left = approaches ? -below_.penetration / below_.penetration_rate : 0.5 * (high_ - low_);
+      if (approaches && left <= wanted_) return end_at(at);
       change_.time = std::min(low_ + left, high_);
     }
   }

@@ -75,15 +75,17 @@ std::optional<Change> Separations::change(const Fleet& fleet, double t,
     const bool gain = !seen.touching;
     std::optional<Change> found;
     if (seen.touching != touches(c)) {
-      found = Change{i, change_between(fleet, i, time_, seen.kinematics, t, c.kinematics), gain, false};
+      found = Change{i, change_between(fleet, i, time_, seen.kinematics, t, c.kinematics), gain, false, gain};
     } else {
       const double sign = seen.touching ? -1.0 : 1.0;
       const Cubic alpha = penetration(seen.kinematics, c.kinematics, h);
       const std::optional<double> s = alpha.extreme(sign);
       if (s && sign * alpha.at(*s) > 0.0) {
-        found = Change{i, time_ + *s * h, gain, true};
+        found = Change{i, time_ + *s * h, gain, true, gain && c.touched};
       } else if (gain && time_to_touch(i) < h) {  // a rebound within the step may have been anything
-        found = Change{i, time_ + time_to_touch(i), gain, true};
+        found = Change{i, time_ + time_to_touch(i), gain, true, c.touched};
+      } else if (gain && c.touched) {  // it went on rising, came down and rebounded
+        found = Change{i, time_ + 0.5 * h, gain, true, true};
       }
     }
     if (found && !(gain && left_out(i)) && (!first || found->time < first->time)) first = found;
@@ -107,7 +109,8 @@ void Separations::accept(const Fleet& fleet, double t) {
     } else if (seen.met && seen.open >= 0) {
       Separation& entry = list_[seen.open];
       const double across = t - time_, left = time_to_touch(i);  // a damper that comes on bends the cubic
-      const double met_at = left < across ? time_ + left : change_between(fleet, i, time_, seen.kinematics, t, c.kinematics);
+      const double met_at =
+          left < across ? time_ + left : change_between(fleet, i, time_, seen.kinematics, t, c.kinematics);
       entry.duration = met_at - entry.start;
       entry.approach_speed = std::max(seen.kinematics.penetration_rate, c.kinematics.penetration_rate);
       entry.impact_force = c.force.normal;

@@ -211,10 +211,20 @@ void System::evaluate_fleet(double t, const double* y) {
                       "soft");
   for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).kinematics = fleet_.contact(i).touch.kinematics;
   fleet_.contact_forces();
+  note_touched();
   fleet_.contact_loads();
   pdd_.resize(fleet_.freedom());
   for (MovingVehicle& vehicle : fleet_.vehicles)
     vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+}
+
+void System::begin_trial() {
+  for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).touched = false;
+}
+
+void System::note_touched() {
+  for (int i = 0; i < fleet_.contacts(); ++i)
+    if (fleet_.contact(i).force.normal > 0.0) fleet_.contact(i).touched = true;
 }
 
 void System::arrive(double t, const double* y) {
@@ -435,6 +445,7 @@ bool System::stage_of_fleet(double t, double shift, const double* v0, const doub
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
   }
   for (int i = 0; i < f; ++i) pdd_[i] = shift * (shift * p_[i] + c_p_[i]) + c_p_[f + i];
+  note_touched();
   fleet_.contact_loads();
   for (MovingVehicle& vehicle : fleet_.vehicles)
     vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);

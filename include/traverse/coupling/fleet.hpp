@@ -42,6 +42,7 @@ struct Contact {
   contact::Kinematics kinematics;
   contact::Force force;
   double approach_speed = 0.0;          // of the impact now going on or to come, m/s
+  bool touched = false;                 // in some stage of the step as it was last taken
   bool released = false;                // its damper let go of a surface not yet back, whose energy is lost
   std::array<int, 2> slots = {-1, -1};  // of the patches' elements in Fleet::elements(); -1: ground
   double sign = 1.0;                    // of its force
@@ -55,9 +56,9 @@ struct PairContact : Contact {
   Eigen::Vector2d point = Eigen::Vector2d::Zero();  // m
 };
 
-/// A wheel on the track. A wheel sharper than the track's valleys may touch at several points (track::TouchingPoints): it
-/// has further entries for the other points, from left to right, and then for what neighbouring points share, with the
-/// sign -1. Where it touches at fewer, the others have no candidates, a negative penetration and no force.
+/// A wheel on the track. A wheel sharper than the track's valleys may touch at several points (track::TouchingPoints):
+/// it has further entries for the other points, from left to right, and then for what neighbouring points share, with
+/// the sign -1. Where it touches at fewer, the others have no candidates, a negative penetration and no force.
 struct WheelContact : Contact {
   int wheel = 0;                 // of its vehicle
   std::array<Patch, 2> patches;  // the surface under the wheel, and the neighbour across a near kink
