@@ -202,7 +202,7 @@ void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
   evaluated_time_ = t;
   if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom()))
-    throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
+    throw SolverError("at t = " + std::to_string(t) + " s " + trouble());
   fleet_.place_wheels();
   gather(y, y + n_);
   if (!fleet_.touch(per_node_, v_.data(), w_.data()))
