@@ -28,10 +28,10 @@ double ChangeBracket::trial() {
   return trial_;
 }
 
-double ChangeBracket::end() const {
-  if (found_) return end_;
-  return change_.gain && low_ > from_ ? low_ : high_;
-}
+double ChangeBracket::end() const { return found_ ? end_ : nearest(); }
+
+// Just before a gain, just behind a loss; but a step has some length.
+double ChangeBracket::nearest() const { return change_.gain && low_ > from_ ? low_ : high_; }
 
 void ChangeBracket::end_at(double end) {
   found_ = true;
@@ -70,7 +70,7 @@ void ChangeBracket::tried(double at, const std::optional<Change>& change) {
       change_.time = std::min(low_ + left, high_);
     }
   }
-  if (high_ - low_ <= 0.1 * wanted_) end_at(change_.gain ? low_ : high_);
+  if (high_ - low_ <= 0.1 * wanted_) end_at(nearest());
 }
 
 }  // namespace traverse::coupling

@@ -22,6 +22,7 @@ class ChangeBracket {
 
  private:
   const contact::Kinematics& now() const;
+  double nearest() const;
   void end_at(double end);
 
   const System& system_;
