@@ -83,7 +83,7 @@ TEST(BadNumbers, NoNumbersAtAll) {
                                  {{"-output_quiet", "perhaps"}, {"perhaps", "true or false"}},
                                  {{"-load_hslm_a", "11"}, {"load_hslm_a = 11", "from 1 to 10"}},
                                  {{"-modes_count", "0"}, {"modes_count = 0", "whole number"}},
-                                 {{"-vehicle_car_wheel_restitution", "2"}, {"= 2", "from 0 to 1"}},
+                                 {{"-vehicle_car_wheel_restitution", "2"}, {"= 2", "above 0, at most 1"}},
                                  {{"-vehicle_car_suspension_gap", "-0.1"}, {"gap = -0.1", "not below 0"}},
                                  {{"-vehicle_car_suspension_side", "up"}, {"side = up", "compression, tension"}},
                                  {{"-vehicle_car_suspension_table", "none.csv"}, {"table = none.csv", "file"}},
