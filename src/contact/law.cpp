@@ -7,8 +7,6 @@
 namespace traverse::contact {
 namespace {
 
-// m: a stage of an implicit method that ends just where the damper comes on would have no solution if it came at once
-constexpr double damper_ramp = 1e-9;
 constexpr double slowest_approach = 1e-3;  // m/s: gentler touches are damped as this one
 
 /// k*alpha^n and its derivative at alpha > 0.

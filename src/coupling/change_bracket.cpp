@@ -7,6 +7,7 @@ namespace traverse::coupling {
 ChangeBracket::ChangeBracket(const System& system, const Change& change, double from, double to, double tolerance)
     : system_(system),
       change_(change),
+      from_(from),
       full_(to),
       low_(from),
       high_(to),
@@ -27,12 +28,18 @@ double ChangeBracket::trial() {
   return trial_;
 }
 
+double ChangeBracket::end() const { return found_ ? end_ : nearest(); }
+
+// Just before a gain, just behind a loss; but a step has some length.
+double ChangeBracket::nearest() const { return change_.gain && low_ > from_ ? low_ : high_; }
+
 void ChangeBracket::end_at(double end) {
   found_ = true;
   end_ = end;
 }
 
 void ChangeBracket::tried(double at, const std::optional<Change>& change) {
+  const double width = high_ - low_;
   if (change) {
     const bool other = change->contact != change_.contact;
     const bool was_hidden = change_.hidden;
@@ -44,7 +51,8 @@ void ChangeBracket::tried(double at, const std::optional<Change>& change) {
     if (other) below_ = system_.separations().kinematics(change_.contact);
     if (!change_.gain && !change_.hidden && at - change_.time <= wanted_) return end_at(at);
     // a gain met in a step that was not short enough: what comes after the impact says little of when it was
-    if (change_.gain && (change_.hidden || was_hidden)) change_.time = 0.5 * (low_ + high_);
+    const bool slow = high_ - low_ > 0.5 * width;
+    if (change_.gain && (slow || change_.hidden || was_hidden)) change_.time = 0.5 * (low_ + high_);
   } else {
     const bool cut = at < trial_ - 0.1 * wanted_;  // it could not be taken that far
     low_ = at;
@@ -55,14 +63,14 @@ void ChangeBracket::tried(double at, const std::optional<Change>& change) {
       change_.time =
           system_.separations().change_between(system_.fleet(), change_.contact, low_, below_, high_, above_);
     } else {
-      const double left = below_.penetration_rate > 0.0 ? -below_.penetration / below_.penetration_rate : high_ - low_;
-      if (left <= wanted_) return end_at(at);
-      if (below_.penetration_rate <= 0.0 && change_.hidden) return end_at(full_);
+      const bool approaches = below_.penetration_rate > 0.0;
+      if (!approaches && change_.hidden && !change_.seen) return end_at(full_);
+      const double left = approaches ? -below_.penetration / below_.penetration_rate : 0.5 * (high_ - low_);
+      if (approaches && left <= wanted_) return end_at(at);
       change_.time = std::min(low_ + left, high_);
     }
   }
-  const bool at_once = low_ == system_.separations().time();  // no step is left before the gain
-  if (high_ - low_ <= 0.1 * wanted_) end_at(change_.gain && !at_once ? low_ : high_);
+  if (high_ - low_ <= 0.1 * wanted_) end_at(nearest());
 }
 
 }  // namespace traverse::coupling

@@ -73,15 +73,17 @@ std::optional<Change> Separations::change(const Fleet& fleet, double t,
     const bool gain = !seen.touching && !(seen.kinematics.penetration > 0.0);
     std::optional<Change> found;
     if (seen.touching != fleet.touches(i)) {
-      found = Change{i, change_between(fleet, i, time_, seen.kinematics, t, now), gain, false};
+      found = Change{i, change_between(fleet, i, time_, seen.kinematics, t, now), gain, false, gain};
     } else {
       const double sign = seen.touching ? -1.0 : 1.0;
       const Cubic alpha = penetration(seen.kinematics, now, h);
       const std::optional<double> s = alpha.extreme(sign);
       if (s && sign * alpha.at(*s) > 0.0) {
-        found = Change{i, time_ + *s * h, gain, true};
+        found = Change{i, time_ + *s * h, gain, true, gain && fleet.contact(i).touched};
       } else if (gain && time_to_touch(i) < h) {  // a rebound within the step may have been anything
-        found = Change{i, time_ + time_to_touch(i), gain, true};
+        found = Change{i, time_ + time_to_touch(i), gain, true, fleet.contact(i).touched};
+      } else if (gain && fleet.contact(i).touched) {  // it went on rising, came down and rebounded
+        found = Change{i, time_ + 0.5 * h, gain, true, true};
       }
     }
     if (found && !(gain && left_out(i)) && (!first || found->time < first->time)) first = found;

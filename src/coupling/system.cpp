@@ -202,7 +202,7 @@ void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
   evaluated_time_ = t;
   if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom()))
-    throw SolverError("a vehicle's joints cannot be assembled at t = " + std::to_string(t) + " s");
+    throw SolverError("at t = " + std::to_string(t) + " s " + trouble());
   fleet_.place_wheels();
   gather(y, y + n_);
   if (!fleet_.touch(per_node_, v_.data(), w_.data()))
@@ -211,10 +211,20 @@ void System::evaluate_fleet(double t, const double* y) {
                       "soft");
   for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).kinematics = fleet_.contact(i).touch.kinematics;
   fleet_.contact_forces();
+  note_touched();
   fleet_.contact_loads();
   pdd_.resize(fleet_.freedom());
   for (MovingVehicle& vehicle : fleet_.vehicles)
     vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+}
+
+void System::begin_trial() {
+  for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).touched = false;
+}
+
+void System::note_touched() {
+  for (int i = 0; i < fleet_.contacts(); ++i)
+    if (fleet_.contact(i).force.normal > 0.0) fleet_.contact(i).touched = true;
 }
 
 void System::arrive(double t, const double* y) {
@@ -280,9 +290,12 @@ std::optional<Change> System::contact_change(double t, double tolerance) const {
 
 // A damper comes on with a jump, which must lie at a step's border; an elastic force grows from nothing.
 double System::change_tolerance(int contact, double tolerance) const {
-  const contact::Law& law = fleet_.contact(contact).law;
-  const double share = !law.hysteresis && law.damping > 0.0 ? 1e-3 : 0.1;
-  return std::min(tolerance, share * impacts_[contact].step);
+  const Contact& c = fleet_.contact(contact);
+  const double step = impacts_[contact].step;
+  if (c.law.hysteresis || c.law.damping == 0.0) return std::min(tolerance, 0.1 * step);
+  // a step of twice as much leads from this side of the damper's ramp beyond it
+  const double ramp = c.approach_speed > 0.0 ? contact::damper_ramp / c.approach_speed : 0.0;
+  return std::min(tolerance, std::max(1e-3 * step, std::min(ramp, 0.1 * step)));
 }
 
 double System::step_limit(double t, double tolerance) const {
@@ -435,6 +448,7 @@ bool System::stage_of_fleet(double t, double shift, const double* v0, const doub
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
   }
   for (int i = 0; i < f; ++i) pdd_[i] = shift * (shift * p_[i] + c_p_[i]) + c_p_[f + i];
+  note_touched();
   fleet_.contact_loads();
   for (MovingVehicle& vehicle : fleet_.vehicles)
     vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);

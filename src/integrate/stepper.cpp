@@ -231,6 +231,7 @@ double Stepper::step_to(double end) {
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
   const double h = end - t;
+  system_.begin_trial();
   check(TSSetTimeStep(ts_, h));
   check(TSStep(ts_));
   TSConvergedReason reason = TS_CONVERGED_ITERATING;

@@ -19,15 +19,22 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 /// The forces and moments that add up on every body at one instant.
 class Balance {
  public:
-  Balance(Results& run, const multibody::MechanismModel& model, std::size_t row) : run_(run), model_(model), row_(row) {
+  /// driven: its first body's x is prescribed by the train's drive.
+  Balance(Results& run, const coupling::Vehicle& vehicle, const std::string& group, double gravity, bool driven,
+          std::size_t row)
+      : run_(run), vehicle_(vehicle), model_(vehicle.mechanism), group_(group), row_(row) {
+    const multibody::MechanismModel& model = model_;
     for (const multibody::Body& body : model.bodies) {
-      position_.push_back(triple("/vehicles/0/" + body.name + "/position"));
-      sum_.emplace_back(0.0, -body.mass * model.gravity, 0.0);
+      position_.push_back(triple(group_ + body.name + "/position"));
+      sum_.emplace_back(0.0, -body.mass * gravity, 0.0);
+      free_.push_back(Vector3d::Ones());
     }
+    if (driven) free_[0].x() = 0.0;
+    for (const multibody::Driver& d : model.drivers) free_[static_cast<std::size_t>(d.body)][d.coordinate] = 0.0;
     for (const multibody::Joint& joint : model.joints) add(joint);
     for (const multibody::Spring& spring : model.springs) add(spring);
     for (const multibody::TorsionSpring& spring : model.torsion_springs) {
-      const double moment = run("/vehicles/0/" + spring.name + "/moment")[row];
+      const double moment = run(group_ + spring.name + "/moment")[row];
       pair(spring.bodies, {}, {}, Vector3d(0.0, 0.0, moment));
     }
     for (const multibody::Actuator& actuator : model.actuators) {
@@ -39,11 +46,14 @@ class Balance {
   }
 
   void compare(Imbalance& worst, Imbalance& scale) {
+    for (const coupling::Wheel& wheel : vehicle_.wheels) add(wheel, worst);
     for (std::size_t b = 0; b < sum_.size(); ++b) {
       const multibody::Body& body = model_.bodies[b];
-      const Vector3d a = triple("/vehicles/0/" + body.name + "/acceleration");
-      worst.force = std::max(worst.force, (sum_[b].head<2>() - body.mass * a.head<2>()).norm());
-      worst.moment = std::max(worst.moment, std::abs(sum_[b].z() - body.inertia * a.z()));
+      const Vector3d a = triple(group_ + body.name + "/acceleration");
+      const Vector3d left =
+          (sum_[b] - Vector3d(body.mass, body.mass, body.inertia).cwiseProduct(a)).cwiseProduct(free_[b]);
+      worst.force = std::max(worst.force, left.head<2>().norm());
+      worst.moment = std::max(worst.moment, std::abs(left.z()));
     }
     scale.force = std::max(scale.force, largest_.force);
     scale.moment = std::max(scale.moment, largest_.moment);
@@ -75,30 +85,52 @@ class Balance {
     force(bodies[1], second, on_second);
   }
 
+  /// The track's force on a wheel is known by its parts along normal and tangent, not by its direction: whatever else
+  /// is missing must be as great. Friction acts at the surface.
+  void add(const coupling::Wheel& wheel, Imbalance& worst) {
+    const auto value = [&](const char* what) { return run_(group_ + wheel.name + what)[row_]; };
+    const std::size_t b = static_cast<std::size_t>(wheel.body);
+    const multibody::Body& body = model_.bodies[b];
+    const double normal = value("/normal_force"), friction = value("/friction_force");
+    const Vector3d a = triple(group_ + body.name + "/acceleration");
+    const Vector2d missing = body.mass * a.head<2>() - sum_[b].head<2>();
+    worst.force = std::max(worst.force, std::abs(missing.norm() - std::hypot(normal, friction)));
+    const double arm = wheel.radius - value("/penetration");
+    force(wheel.body, centre(wheel.body), Vector3d(missing.x(), missing.y(), -friction * arm));
+  }
+
   void add(const multibody::Joint& joint) {
     const bool rod = joint.type == multibody::JointType::distance;
     const Vector2d at = now(joint.bodies[1], rod ? joint.to : joint.point);
-    pair(joint.bodies, at, at, triple("/vehicles/0/" + joint.name + "/reaction"));
+    pair(joint.bodies, at, at, triple(group_ + joint.name + "/reaction"));
   }
   void add(const multibody::Spring& spring) {
     const Vector2d from = now(spring.bodies[0], spring.from), to = now(spring.bodies[1], spring.to);
-    const Vector2d pull = run_("/vehicles/0/" + spring.name + "/force")[row_] * (from - to).normalized();
+    const Vector2d pull = run_(group_ + spring.name + "/force")[row_] * (from - to).normalized();
     pair(spring.bodies, from, to, Vector3d(pull.x(), pull.y(), 0.0));
   }
 
   Results& run_;
+  const coupling::Vehicle& vehicle_;
   const multibody::MechanismModel& model_;
+  std::string group_;
   std::size_t row_;
   std::vector<Vector3d> position_, sum_;
+  std::vector<Vector3d> free_;  // 0 for a coordinate that a driver holds, whose force the results do not tell; else 1
   Imbalance largest_;
 };
 
 }  // namespace
 
-Imbalance newton_imbalance(Results& run) {
-  const multibody::MechanismModel model = app::read_scene().vehicles.at(0).mechanism;
+Imbalance newton_imbalance(Results& run, int vehicle) {
+  const app::Scene scene = app::read_scene();
+  const coupling::Vehicle& type =
+      scene.vehicles.at(static_cast<std::size_t>(scene.train.vehicles.at(static_cast<std::size_t>(vehicle))));
+  const bool driven = !type.wheels.empty() && scene.train.drive == coupling::Drive::constant;
+  const std::string group = "/vehicles/" + std::to_string(vehicle) + "/";
   Imbalance worst, scale;
-  for (std::size_t row = 0; row < run("/time").size(); ++row) Balance(run, model, row).compare(worst, scale);
+  for (std::size_t row = 0; row < run("/time").size(); ++row)
+    Balance(run, type, group, scene.gravity, driven, row).compare(worst, scale);
   if (scale.force > 0.0) worst.force /= scale.force;  // without any force, an acceleration is wrong as it is
   if (scale.moment > 0.0) worst.moment /= scale.moment;
   return worst;

@@ -427,8 +427,10 @@ std::vector<std::string> files_in_options() {
   return files;
 }
 
-INSTANTIATE_TEST_SUITE_P(Options, SceneFile, testing::ValuesIn(files_in_options()),
-                         [](const auto& name) { return std::filesystem::path(name.param).stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Options, SceneFile, testing::ValuesIn(files_in_options()), [](const auto& name) {
+  const std::filesystem::path path(name.param);
+  return path.parent_path().stem().string() + "_" + path.stem().string();
+});
 
 // A coach as its source describes it: ten degrees of freedom besides x, and the axle loads of its masses.
 TEST(Coach, VelaroMasses) {

@@ -8,6 +8,10 @@ namespace traverse::contact {
 
 enum class LawKind { hertz, linear };
 
+/// m of penetration over which a damper comes on: a stage of an implicit method that ends just where it does would have
+/// no solution if it came at once.
+constexpr double damper_ramp = 1e-9;
+
 /// Normal force k*alpha^n + c*alpha_rate, n = 1.5 (hertz) or 1 (linear), never below zero, zero when apart.
 /// With a hysteresis d instead of c: k*alpha^n*(1 + d*rate/approach_speed).
 /// Friction: mu0*tanh(sliding/transition_speed)*normal, against the sliding.

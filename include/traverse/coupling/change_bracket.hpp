@@ -18,15 +18,16 @@ class ChangeBracket {
   /// The step was taken to `at`, where the vehicles are now, with this change in it.
   void tried(double at, const std::optional<Change>& change);
   /// When found, or given up: where the step has to end.
-  double end() const { return end_; }
+  double end() const;
 
  private:
   const contact::Kinematics& now() const;
+  double nearest() const;
   void end_at(double end);
 
   const System& system_;
   Change change_;
-  double full_;                        // the whole step
+  double from_, full_;                 // the whole step, its end
   double low_, high_;                  // no change before, a change before
   contact::Kinematics below_, above_;  // of its contact there
   double tolerance_;

@@ -42,6 +42,7 @@ struct Contact {
   contact::Kinematics kinematics;
   contact::Force force;
   double approach_speed = 0.0;          // of the impact now going on or to come, m/s
+  bool touched = false;                 // in some stage of the step as it was last taken
   bool released = false;                // its damper let go of a surface not yet back, whose energy is lost
   std::array<int, 2> slots = {-1, -1};  // of the patches' elements in Fleet::elements(); -1: ground
   double sign = 1.0;                    // of its force

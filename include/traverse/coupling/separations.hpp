@@ -27,6 +27,7 @@ struct Change {
   double time;  // s, as the cubic has it
   bool gain;    // surfaces meet: not those that a damper grips again before they have parted
   bool hidden;  // parts and meets again, or the other way round, between the two instants
+  bool seen;    // a gain that a stage of the step met
 };
 
 class Separations {

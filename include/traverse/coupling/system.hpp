@@ -91,6 +91,8 @@ class System {
   /// that a force that jumps at an event has its value of either side there. True when that has changed.
   bool begin_step(double from, double to);
 
+  /// A step is about to be taken, or taken again.
+  void begin_trial();
   /// Collective. Sets the vehicles to y at t, the end of a step, unless they are there.
   void arrive(double t, const double* y);
   /// When they are there: the first contact lost or gained in the step, but for gains that were to come within the
@@ -144,6 +146,7 @@ class System {
   void add_point_load(const beam::Line& line, const beam::ElementLoad& load, double* nodal) const;
   void release_held(double* nodal) const;
   void evaluate_fleet(double t, const double* y);
+  void note_touched();
   void powers(const double* w, Part part, double& dissipation, double& work);
   Energy energy(const double* y);
 
