@@ -141,6 +141,9 @@ constexpr Row coupler[] = {
   {"damper_table", file, "", "", any, "", 0, "a file rate,force instead of damping: m/s of elongation, N in tension; straight lines, the end ones continued"},
   {"gap", number, "m", "0", not_negative, "", 0, "play: loose until longer or shorter than free by this; stiffness or table count from there"},
   {"side", choice, "", "both", any, "both compression tension", 0, "compression: never pulls (a bump stop); tension: never pushes (a rope)"},
+  {"friction", number, "1", "0", not_negative, "", 0, "prismatic, slot: coefficient of dry friction along the axis, on the joint's normal force"},
+  {"friction_force", number, "N", "0", not_negative, "", 0, "prismatic, slot: dry friction whatever the normal force, as of clamped plates; on top of friction"},
+  {"transition_speed", number, "m/s", "0.01", positive, "", 0, "sliding speed at which friction is nearly full: times tanh(speed/transition_speed)"},
 };
 // clang-format on
 
