@@ -39,8 +39,8 @@ void Mechanism::velocities_at(MechanismState& s, double t, const double* pd) con
 
 /// B, b, q', d near a singular position, where rounding of q grows by 1/sigma in B and 1/sigma^3 in d, sigma being the
 /// least singular value of Phi_u: all four-bars flat, a parallelogram in its dead points. On a branch of the motion
-/// they are smooth all the same, so they are interpolated from four instants around, a safe way off at the velocities of
-/// the last accepted one. False when one of them cannot be reached.
+/// they are smooth all the same, so they are interpolated from four instants around, a safe way off at the velocities
+/// of the last accepted one. False when one of them cannot be reached.
 bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double* pd) const {
   const int f = freedom();
   if (s.accepted.partition_version != partition_version_) return false;
