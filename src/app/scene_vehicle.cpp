@@ -147,6 +147,9 @@ void declare_couplers(Options& o) {
       if (!o.declare(full, row))
         o.refuse("train_couplers", fmt::format("there would be two options {}; rename one", full));
     }
+    for (const Part part : {Part::spring, Part::joint})  // what a coupler has not of its own
+      for (const options::Row& row : options::part_rows(part))
+        o.declare(fmt::format("train_{}_{}", name, row.name), row);
   }
 }
 

@@ -135,7 +135,7 @@ std::string help_text() {
     out += fmt::format("\nEach {} PART in the list of {} of vehicle NAME\n", part_word(part), part_list(part));
     append_rows(out, part_rows(part), "vehicle_NAME_PART_");
   }
-  out += "\nEach coupler NAME in the list of train_couplers\n";
+  out += "\nEach coupler NAME in the list of train_couplers, besides what a spring or a joint has\n";
   append_rows(out, coupler_rows(), "train_NAME_");
   out +=
       "\nOptions of PETSc and SLEPc pass on to them, -ts_type, -ts_adapt_type, -snes_rtol, -eps_tol, -log_view and so "

@@ -125,6 +125,7 @@ constexpr Row contact[] = {
   {"other_young", number, "N/m2", "(the first's)", positive, "", 0, "modulus of the second body"},
   {"other_poisson", number, "1", "(the first's)", {-0.99, 0.5}, "", 0, "Poisson's ratio of the second body"},
 };
+
 constexpr Row coupler[] = {
   {"type", choice, "", "spring", any, "spring revolute prismatic slot weld distance", 0, "what joins two neighbours"},
   {"bodies", texts, "", "", any, "", 2, "a body of the vehicle in front, one of the vehicle behind"},
@@ -133,17 +134,6 @@ constexpr Row coupler[] = {
   {"axis", numbers, "1", "", any, "", 2, "prismatic, slot: direction, fixed in the front vehicle's body"},
   {"from", numbers, "m", "", any, "", 2, "spring, distance: x, y on the front one's body, from its origin"},
   {"to", numbers, "m", "", any, "", 2, "spring, distance: x, y on the other body, from the rear one's origin"},
-  {"stiffness", number, "N/m", "0", not_negative, "", 0, "stiffness"},
-  {"damping", number, "Ns/m", "0", not_negative, "", 0, "damping"},
-  {"free_length", number, "m", "(the distance at t = 0)", not_negative, "", 0, "length without force"},
-  {"preload", number, "N", "0", any, "", 0, "force at t = 0, tension positive; instead of free_length"},
-  {"table", file, "", "", any, "", 0, "a file elongation,force instead of stiffness: m beyond the free length, N in tension; straight lines, the end ones continued"},
-  {"damper_table", file, "", "", any, "", 0, "a file rate,force instead of damping: m/s of elongation, N in tension; straight lines, the end ones continued"},
-  {"gap", number, "m", "0", not_negative, "", 0, "play: loose until longer or shorter than free by this; stiffness or table count from there"},
-  {"side", choice, "", "both", any, "both compression tension", 0, "compression: never pulls (a bump stop); tension: never pushes (a rope)"},
-  {"friction", number, "1", "0", not_negative, "", 0, "prismatic, slot: coefficient of dry friction along the axis, on the joint's normal force"},
-  {"friction_force", number, "N", "0", not_negative, "", 0, "prismatic, slot: dry friction whatever the normal force, as of clamped plates; on top of friction"},
-  {"transition_speed", number, "m/s", "0.01", positive, "", 0, "sliding speed at which friction is nearly full: times tanh(speed/transition_speed)"},
 };
 // clang-format on
 

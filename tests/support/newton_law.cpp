@@ -1,10 +1,13 @@
 #include "support/newton_law.hpp"
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "support/curve.hpp"
 #include "traverse/app/scene.hpp"
 
 namespace traverse::test {
@@ -134,6 +137,14 @@ Imbalance newton_imbalance(Results& run, int vehicle) {
   if (scale.force > 0.0) worst.force /= scale.force;  // without any force, an acceleration is wrong as it is
   if (scale.moment > 0.0) worst.moment /= scale.moment;
   return worst;
+}
+
+void expect_newton(Results& run) {
+  const Imbalance worst = newton_imbalance(run);
+  testing::Test::RecordProperty("newton_force", text(worst.force));
+  testing::Test::RecordProperty("newton_moment", text(worst.moment));
+  EXPECT_LT(worst.force, 1e-9);
+  EXPECT_LT(worst.moment, 1e-9);
 }
 
 }  // namespace traverse::test

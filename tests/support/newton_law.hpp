@@ -15,4 +15,7 @@ struct Imbalance {
 };
 Imbalance newton_imbalance(Results& run, int vehicle = 0);
 
+/// Records both as properties of the running test and expects them below 1e-9.
+void expect_newton(Results& run);
+
 }  // namespace traverse::test

@@ -126,6 +126,13 @@ double Results::attribute(const std::string& object, const std::string& name) co
   return value;
 }
 
+double energy_error(Results& run) {
+  double scale = 0.0;
+  for (const char* term : {"kinetic", "strain", "potential", "work", "dissipated"})
+    scale = std::max(scale, std::abs(peak(run(std::string("/energy/") + term)).first));
+  return std::abs(peak(run("/energy/residual")).first) / scale;
+}
+
 std::pair<double, std::size_t> peak(const std::vector<double>& values) {
   const auto at =
       std::max_element(values.begin(), values.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });

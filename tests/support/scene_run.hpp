@@ -35,6 +35,9 @@ Results run_scene(const std::string& name, const Values& options = {}, MPI_Comm 
 /// The same for a scene given as YAML text.
 Results run_yaml(const std::string& text, const Values& options = {}, MPI_Comm comm = MPI_COMM_WORLD);
 
+/// What is left in the energy balance over the largest of its terms.
+double energy_error(Results& run);
+
 /// The value of largest magnitude, and its index.
 std::pair<double, std::size_t> peak(const std::vector<double>& values);
 /// Largest |a - b| over largest |b|.

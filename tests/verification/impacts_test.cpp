@@ -51,13 +51,6 @@ vehicle:
          law + "}" + no_gravity;
 }
 
-double energy_error(Results& run) {
-  double scale = 0.0;
-  for (const char* term : {"kinetic", "strain", "potential", "work", "dissipated"})
-    scale = std::max(scale, std::abs(peak(run(std::string("/energy/") + term)).first));
-  return std::abs(peak(run("/energy/residual")).first) / scale;
-}
-
 /// What free flight before and after says of an impact.
 struct Rebound {
   double speed, duration, force, start;  // m/s, s, N, s

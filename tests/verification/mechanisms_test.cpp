@@ -21,22 +21,6 @@ using std::numbers::pi;
 
 constexpr double gravity = 9.81;
 
-void expect_newton(Results& run) {
-  const Imbalance worst = newton_imbalance(run);
-  testing::Test::RecordProperty("newton_force", text(worst.force));
-  testing::Test::RecordProperty("newton_moment", text(worst.moment));
-  EXPECT_LT(worst.force, 1e-9);
-  EXPECT_LT(worst.moment, 1e-9);
-}
-
-/// What is left in the balance over the largest of its terms.
-double energy_error(Results& run) {
-  double scale = 0.0;
-  for (const char* term : {"kinetic", "strain", "potential", "work", "dissipated"})
-    scale = std::max(scale, std::abs(peak(run(std::string("/energy/") + term)).first));
-  return std::abs(peak(run("/energy/residual")).first) / scale;
-}
-
 /// One classical Runge-Kutta step.
 template <int n>
 using State = Eigen::Matrix<double, n, 1>;

@@ -19,23 +19,6 @@ using Eigen::Vector2d;
 
 const Values explicit_method = {{"ts_type", "rk"}, {"ts_rk_type", "5dp"}};
 
-void expect_newton(Results& run) {
-  const Imbalance worst = newton_imbalance(run);
-  testing::Test::RecordProperty("newton_force", text(worst.force));
-  testing::Test::RecordProperty("newton_moment", text(worst.moment));
-  EXPECT_LT(worst.force, 1e-9);
-  EXPECT_LT(worst.moment, 1e-9);
-}
-
-double energy_error(Results& run) {
-  double scale = 0.0;
-  for (const char* term : {"kinetic", "strain", "potential", "work", "dissipated"})
-    scale = std::max(scale, std::abs(peak(run(std::string("/energy/") + term)).first));
-  const double error = std::abs(peak(run("/energy/residual")).first) / scale;
-  testing::Test::RecordProperty("energy", text(error));
-  return error;
-}
-
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 /// options/scenes/slider_crank.yml reduced to the crank's angle, with friction mu on the guide's normal force, which

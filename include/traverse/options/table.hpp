@@ -59,7 +59,7 @@ std::span<const Row> vehicle_rows();
 /// Options vehicle_<name>_<part>_<row>.
 std::span<const Row> part_rows(Part part);
 
-/// Options train_<coupler>_<row>.
+/// Options train_<coupler>_<row>, besides those of springs and joints.
 std::span<const Row> coupler_rows();
 
 const Row* find_row(std::span<const Row> rows, std::string_view name);
