@@ -211,7 +211,6 @@ bool Fleet::touch(PairContact& c) const {
   c.touch.normal_on_other = pair.normal[1];
   c.touch.tangent_on_body = pair.tangent[0];
   c.touch.tangent_on_other = pair.tangent[1];
-  c.point = pair.point;
   return true;
 }
 

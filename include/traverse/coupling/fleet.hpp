@@ -53,7 +53,6 @@ struct Contact {
 /// Two bodies of a vehicle, or a body and the ground.
 struct PairContact : Contact {
   contact::PairGeometry geometry;
-  Eigen::Vector2d point = Eigen::Vector2d::Zero();  // m
 };
 
 /// A wheel on the track. A wheel sharper than the track's valleys may touch at several points (track::TouchingPoints):
