@@ -107,6 +107,16 @@ TEST(Ranks, FreeTrainOnABridgeWithFoundationAndBump) {
 }
 
 // A flat on one wheel, a polygon on the other, over a bump that is sharper than the wheels.
+// Until all of its cars are on the bridge: before, their accelerations are rounding.
+TEST(Ranks, ArticulatedTrain) {
+  expect_same_on_all_ranks("articulated_train",
+                           {{"ts_max_time", "1.9"}, {"ts_dt", "4e-3"}, {"output_interval", "0.05"}}, 60, 1e-8);
+}
+
+TEST(Ranks, ContactLossAndImpacts) {
+  expect_same_on_all_ranks("wheel_over_a_bump", {{"ts_max_time", "0.6"}}, 20, 1e-7);
+}
+
 TEST(Ranks, WheelsOutOfRoundOverASharpBump) {
   expect_same_on_all_ranks("three_span_half_car",
                            {{"train_vehicles", "half_car"},

@@ -296,5 +296,43 @@ ts: {max_time: 3.0, dt: 1.0e-3}
   }
 }
 
+/// Nothing is left to integrate: positions, velocities and accelerations all follow from the driver, through the flat
+/// positions too.
+TEST(Parallelogram, DrivenThroughItsFlatPositions) {
+  Results run = run_yaml(R"(
+vehicle:
+  row:
+    bodies: [a, c, b]
+    joints: [j1, j2, j3, j4]
+    drivers: [motor]
+    a: {mass: 1.0, inertia: 0.0833, position: [0.0, 0.5], velocity: [0.5, 0.0, -1.0]}
+    c: {mass: 1.0, inertia: 0.0833, position: [0.5, 1.0], velocity: [1.0, 0.0, 0.0]}
+    b: {mass: 1.0, inertia: 0.0833, position: [1.0, 0.5], velocity: [0.5, 0.0, -1.0]}
+    j1: {type: revolute, bodies: [ground, a], point: [0.0, 0.0]}
+    j2: {type: revolute, bodies: [a, c], point: [0.0, 1.0]}
+    j3: {type: revolute, bodies: [c, b], point: [1.0, 1.0]}
+    j4: {type: revolute, bodies: [b, ground], point: [1.0, 0.0]}
+    motor: {body: a, coordinate: phi, rate: -1.0}
+train: {vehicles: [row]}
+scene: {start: given}
+ts: {max_time: 10.0, dt: 0.002}
+output: {interval: 0.01}
+)");
+  const std::vector<double> t = run.time(), angle = run.column("/vehicles/0/b/position", 2),
+                            x = run.column("/vehicles/0/c/acceleration", 0),
+                            y = run.column("/vehicles/0/c/acceleration", 1);
+  double worst = 0.0, worst_acceleration = 0.0;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    worst = std::max(worst, std::abs(angle[i] + t[i]));
+    worst_acceleration =
+        std::max({worst_acceleration, std::abs(x[i] + std::sin(t[i])), std::abs(y[i] + std::cos(t[i]))});
+  }
+  RecordProperty("driven_angle", text(worst));
+  RecordProperty("driven_acceleration", text(worst_acceleration));
+  EXPECT_LT(worst, 1e-12);
+  EXPECT_LT(worst_acceleration, 1e-6);
+  EXPECT_LT(energy_error(run), 1e-7);
+}
+
 }  // namespace
 }  // namespace traverse::test
