@@ -1,0 +1,117 @@
+// One vehicle's wheels and contacts between bodies out of the options.
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "vehicle_reader.hpp"
+
+namespace traverse::app {
+
+using Eigen::Vector2d;
+
+double VehicleReader::stiffness(contact::LawKind kind, double radius, const std::string& other) const {
+  const std::string other_young = other + "_young", other_poisson = other + "_poisson";
+  if (has("stiffness")) {
+    for (const std::string& field : {std::string("young"), std::string("poisson"), other_young, other_poisson}) {
+      if (has(field)) o_.refuse(key(field), "give either stiffness or young and poisson");
+    }
+    return number("stiffness");
+  }
+  if (!has("young")) o_.refuse(key("stiffness"), "missing: a contact needs stiffness, or young and poisson (eq. 48)");
+  if (kind == contact::LawKind::linear) o_.refuse(key("young"), "belongs to law hertz; law linear needs stiffness");
+  const double young = number("young"), poisson = number("poisson");
+  return contact::hertz_stiffness(radius, young, poisson, has(other_young) ? number(other_young) : young,
+                                  has(other_poisson) ? number(other_poisson) : poisson);
+}
+
+/// `radius` of eq. 48; `other` stands before the second material's options.
+contact::Law VehicleReader::law(double radius, const std::string& other) const {
+  contact::Law law;
+  law.kind = o_.choice(key("law")) == "linear" ? contact::LawKind::linear : contact::LawKind::hertz;
+  law.stiffness = stiffness(law.kind, radius, other);
+  law.damping = number("damping");
+  if (has("restitution")) {
+    if (has("damping")) o_.refuse(key("restitution"), "give either restitution or damping");
+    const double e = number("restitution");
+    law.hysteresis = o_.choice(key("restitution_law")) == "exact" ? contact::exact_hysteresis(e)
+                                                                  : contact::lankarani_nikravesh_hysteresis(e);
+  } else if (has("restitution_law")) {
+    o_.refuse(key("restitution_law"), "needs " + key("restitution"));
+  }
+  law.friction = number("friction");
+  law.transition_speed = number("transition_speed");
+  return law;
+}
+
+void VehicleReader::body_contact(const std::string& name) {
+  contact::BodyContact c;
+  c.name = name;
+  const bool line = o_.choice(key("type")) == "arc_line";
+  c.type = line ? contact::PairType::arc_line : contact::PairType::arc_arc;
+  c.bodies = two_bodies();
+  if (c.bodies[0] == multibody::ground) std::swap(c.bodies[0], c.bodies[1]);
+  const bool swapped = index_of(key("bodies"), o_.texts(key("bodies"))[0]) == multibody::ground;
+  if (swapped && line)
+    o_.refuse(key("bodies"), "arc_line: the body with the arc comes first, that with the line second");
+  const std::size_t arcs = line ? 1 : 2;
+  std::vector<double> radii = o_.numbers(key("radii"), arcs, line ? "the arc's radius" : "one an arc");
+  std::vector<double> centres =
+      o_.numbers(key("centres"), 2 * arcs, line ? "x, y of the arc's centre" : "x, y of both centres");
+  for (std::size_t i = 0; i < arcs; ++i) {
+    const std::size_t to = swapped ? 1 - i : i;
+    c.radii[to] = radii[i];
+    c.centres[to] = {centres[2 * i], centres[2 * i + 1]};
+  }
+  if (line) {
+    const std::vector<double> ends = o_.numbers(key("line"));
+    c.line = {Vector2d(ends[0], ends[1]), Vector2d(ends[2], ends[3])};
+    if (!((c.line[1] - c.line[0]).norm() > 0.0)) o_.refuse(key("line"), "allowed: x, y of two different points");
+    if (!(c.radii[0] > 0.0)) o_.refuse(key("radii"), "allowed on a line: a radius above 0");
+  } else {
+    if (has("line")) o_.refuse(key("line"), "belongs to type arc_line");
+    const auto [i, j] = c.radii;
+    const bool fits = (i > 0.0 && j > 0.0) || (i * j < 0.0 && i + j < 0.0);
+    if (!fits)
+      o_.refuse(key("radii"),
+                "allowed: two radii above 0, or one below 0 for a hollow arc that is larger than the other");
+  }
+  c.law = law(effective_radius(c), "other");
+  vehicle_.contacts.push_back(c);
+}
+
+track::WheelShape VehicleReader::wheel_shape(double radius) const {
+  track::WheelShape shape;
+  if (has("flat_length")) {
+    shape.flat_length = number("flat_length");
+    if (shape.flat_length > radius) o_.refuse(key("flat_length"), "allowed: up to the wheel's radius");
+  } else if (has("flat_angle")) {
+    o_.refuse(key("flat_angle"), "needs " + key("flat_length"));
+  }
+  shape.flat_angle = has("flat_angle") ? number("flat_angle") : std::numbers::pi;
+  if (has("polygon_order") != has("polygon_amplitude"))
+    o_.refuse(key(has("polygon_order") ? "polygon_amplitude" : "polygon_order"),
+              "missing: a polygonal wheel needs polygon_order and polygon_amplitude");
+  if (!has("polygon_order")) {
+    if (has("polygon_phase")) o_.refuse(key("polygon_phase"), "needs " + key("polygon_order"));
+    return shape;
+  }
+  shape.polygon_order = o_.integer(key("polygon_order"));
+  shape.polygon_amplitude = number("polygon_amplitude");
+  shape.polygon_phase = number("polygon_phase");
+  const double most = radius / (shape.polygon_order * shape.polygon_order);
+  if (shape.polygon_amplitude >= most)
+    o_.refuse(key("polygon_amplitude"), fmt::format("the tread would be hollow; allowed: below {:g} m", most));
+  return shape;
+}
+
+void VehicleReader::wheel(const std::string& name) {
+  Wheel w;
+  w.name = name;
+  w.body = moving_body(key("body"), o_.text(key("body")));
+  w.radius = number("radius");
+  w.law = law(w.radius, "rail");
+  w.shape = wheel_shape(w.radius);
+  vehicle_.wheels.push_back(w);
+}
+
+}  // namespace traverse::app
