@@ -1,5 +1,5 @@
 // Impacts of bodies as scenes: Hertz' and the linear law, dampers, restitution and friction against closed forms, all
-// at a step far longer than the impact; a ball that bounces, and wheels and blocks that slide and roll.
+// at a step far longer than the impact; a ball that bounces.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

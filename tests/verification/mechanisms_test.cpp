@@ -12,6 +12,7 @@
 #include "support/curve.hpp"
 #include "support/jet.hpp"
 #include "support/newton_law.hpp"
+#include "support/runge_kutta.hpp"
 
 namespace traverse::test {
 namespace {
@@ -20,15 +21,6 @@ using Eigen::Vector2d;
 using std::numbers::pi;
 
 constexpr double gravity = 9.81;
-
-/// One classical Runge-Kutta step.
-template <int n>
-using State = Eigen::Matrix<double, n, 1>;
-template <int n, class Rate>
-void runge_kutta(const Rate& rate, double h, State<n>& y) {
-  const State<n> a = rate(y), b = rate(y + 0.5 * h * a), c = rate(y + 0.5 * h * b), d = rate(y + h * c);
-  y += h / 6.0 * (a + 2.0 * b + 2.0 * c + d);
-}
 
 // --- pendulum --------------------------------------------------------------------------------------------------------
 

@@ -11,6 +11,7 @@
 #include "support/jet.hpp"
 #include "support/message.hpp"
 #include "support/newton_law.hpp"
+#include "support/runge_kutta.hpp"
 
 namespace traverse::test {
 namespace {
@@ -71,27 +72,24 @@ TEST(SlidingFriction, SliderCrankAgainstItsReducedEquation) {
   for (const bool implicit : {true, false}) {
     Results run = run_scene("slider_crank", implicit ? friction : friction + explicit_method);
     const std::vector<double> t = run.time();
-    double theta = 0.5 * std::numbers::pi, rate = 0.0, worst = 0.0;
-    const double start = theta;
+    const auto motion = [&](const State<2>& at) { return State<2>(at[1], crank.acceleration(at[0], at[1])); };
+    State<2> y(0.5 * std::numbers::pi, 0.0);
+    const double start = y[0];
+    double worst = 0.0;
     for (std::size_t i = 0; i < t.size(); ++i) {
       const double angle = run("/vehicles/0/crank/position")[3 * i + 2] - run("/vehicles/0/crank/position")[2];
-      worst = std::max(worst, std::abs(angle - (theta - start)));
+      worst = std::max(worst, std::abs(angle - (y[0] - start)));
       const int substeps = 20;
       const double h = 1e-3 / substeps;
       for (int k = 0; k < substeps; ++k) {
-        const double a1 = crank.acceleration(theta, rate);
-        const double r2 = rate + 0.5 * h * a1, a2 = crank.acceleration(theta + 0.5 * h * rate, r2);
-        const double r3 = rate + 0.5 * h * a2, a3 = crank.acceleration(theta + 0.5 * h * r2, r3);
-        const double r4 = rate + h * a3, a4 = crank.acceleration(theta + h * r3, r4);
-        theta += h / 6.0 * (rate + 2.0 * r2 + 2.0 * r3 + r4);
-        rate += h / 6.0 * (a1 + 2.0 * a2 + 2.0 * a3 + a4);
+        runge_kutta<2>(motion, h, y);
       }
     }
     const double turned = smooth("/vehicles/0/crank/position").back() - start;
     RecordProperty(implicit ? "implicit_error" : "explicit_error", text(worst));
-    RecordProperty("turns_with_and_without", text(theta / 6.283) + " " + text(turned / 6.283));
-    EXPECT_LT(theta - start, 0.97 * turned) << "friction slows it";
-    EXPECT_LT(worst, 1e-6 * (theta - start));
+    RecordProperty("turns_with_and_without", text(y[0] / 6.283) + " " + text(turned / 6.283));
+    EXPECT_LT(y[0] - start, 0.97 * turned) << "friction slows it";
+    EXPECT_LT(worst, 1e-6 * (y[0] - start));
     EXPECT_LT(energy_error(run), 1e-6);
     expect_newton(run);
   }
