@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -34,10 +35,12 @@ std::unique_ptr<AnySubstructure> make_substructure(MPI_Comm comm, int block_size
 
 struct SubstructuredCholesky::Impl {
   std::unique_ptr<AnySubstructure> substructure;
+  int block = 0;
+  std::ptrdiff_t nodes = 0;
 };
 
 SubstructuredCholesky::SubstructuredCholesky(MPI_Comm comm, int block_size, int local_nodes)
-    : impl_(std::make_unique<Impl>(Impl{make_substructure(comm, block_size, local_nodes)})) {}
+    : impl_(std::make_unique<Impl>(Impl{make_substructure(comm, block_size, local_nodes), block_size, local_nodes})) {}
 SubstructuredCholesky::~SubstructuredCholesky() = default;
 SubstructuredCholesky::SubstructuredCholesky(SubstructuredCholesky&&) noexcept = default;
 SubstructuredCholesky& SubstructuredCholesky::operator=(SubstructuredCholesky&&) noexcept = default;
@@ -47,6 +50,28 @@ void SubstructuredCholesky::factor(const BlockTridiagonal& A, const std::vector<
 }
 
 void SubstructuredCholesky::solve(double* x, int columns) const { impl_->substructure->solve(x, columns); }
+
+void SubstructuredCholesky::solve(double* x, NodeFiller& filler) const {
+  if (impl_->nodes > 0) filler.fill(0, impl_->nodes);
+  solve(x);
+}
+
+void SubstructuredCholesky::solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past,
+                                         NodeFiller& filler) const {
+  if (past > first) filler.fill(first, past);
+  solve_local(x + first * impl_->block, 1, first, past);
+}
+
+void SubstructuredCholesky::solve_local(double* x, int columns, std::ptrdiff_t first, std::ptrdiff_t past) const {
+  const std::ptrdiff_t window = (past - first) * impl_->block;
+  std::vector<double> whole(static_cast<std::size_t>(impl_->nodes * impl_->block));
+  for (int column = 0; column < columns; ++column) {
+    std::fill(whole.begin(), whole.end(), 0.0);
+    std::copy_n(x + column * window, window, whole.begin() + first * impl_->block);
+    solve(whole.data());
+    std::copy_n(whole.begin() + first * impl_->block, window, x + column * window);
+  }
+}
 
 double SubstructuredCholesky::pivot_ratio() const { return impl_->substructure->pivot_ratio(); }
 

@@ -4,6 +4,7 @@
 #include <mpi.h>
 #include <petscmat.h>
 
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -31,6 +32,15 @@ struct BlockTridiagonal {
                const BlockTridiagonal& C);
 };
 
+/// Writes a right-hand side while it is being eliminated.
+struct NodeFiller {
+  /// Writes the right-hand side of this rank's nodes [first, past), which are about to be eliminated.
+  virtual void fill(std::ptrdiff_t first, std::ptrdiff_t past) = 0;
+
+ protected:
+  ~NodeFiller() = default;
+};
+
 /// Exact factorisation A = block Cholesky (LDL^T) of a symmetric positive definite block tridiagonal matrix
 /// cut over the ranks of `comm` by nodes: each rank eliminates its inner nodes, a small block tridiagonal
 /// system couples the cuts, solved redundantly on every rank. No iteration, no tolerance.
@@ -52,6 +62,19 @@ class SubstructuredCholesky {
   /// out: solutions. No allocation when columns <= the largest number used before.
   /// Uses buffers of this object: one solve at a time. Subnormal numbers (below 2.2e-308) count as zero meanwhile.
   void solve(double* x, int columns = 1) const;
+
+  /// Collective. The same for one column whose right-hand side the filler writes into x, a few hundred nodes at a time,
+  /// each of this rank's nodes once, in an order of the solver's, just before they are eliminated.
+  void solve(double* x, NodeFiller& filler) const;
+
+  /// Collective. As above where the right-hand side is zero outside this rank's nodes [first, past) (none where they are
+  /// equal) and the solution is wanted inside only: the rest of x is neither read nor written. The solution is taken to
+  /// vanish outside: what is wrong by that dies out from the window's ends as responses do, so the caller adds a margin.
+  void solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past, NodeFiller& filler) const;
+
+  /// Collective. Several columns in a window, in a buffer of its nodes alone: node i, component c of a column at
+  /// x[(i - first)*block + c + column*(past - first)*block].
+  void solve_local(double* x, int columns, std::ptrdiff_t first, std::ptrdiff_t past) const;
 
   /// The smallest ratio, over all unknowns of all ranks, of a pivot to the diagonal entry it came from, of the last
   /// factor. A ratio r says that about log10(1/r) digits of the stiffness cancelled; near the rounding unit (1e-16)
