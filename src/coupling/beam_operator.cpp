@@ -95,11 +95,16 @@ BeamOperator::Matrix BeamOperator::with_neighbour(solve::BlockTridiagonal rows) 
 }
 
 void BeamOperator::borders(const double* x, double* left, double* right) const {
-  if (left_rank_ == MPI_PROC_NULL && right_rank_ == MPI_PROC_NULL) return;
   const int b = work_.block;
-  const double* last = x + static_cast<std::ptrdiff_t>(work_.nodes - 1) * b;
-  MPI_Sendrecv(x, b, MPI_DOUBLE, left_rank_, 1, right, b, MPI_DOUBLE, right_rank_, 1, comm_, MPI_STATUS_IGNORE);
-  MPI_Sendrecv(last, b, MPI_DOUBLE, right_rank_, 2, left, b, MPI_DOUBLE, left_rank_, 2, comm_, MPI_STATUS_IGNORE);
+  exchange(x, x + static_cast<std::ptrdiff_t>(work_.nodes - 1) * b, b, left, right);
+}
+
+void BeamOperator::exchange(const double* first, const double* last, int count, double* left, double* right) const {
+  if (left_rank_ == MPI_PROC_NULL && right_rank_ == MPI_PROC_NULL) return;
+  MPI_Sendrecv(first, count, MPI_DOUBLE, left_rank_, 1, right, count, MPI_DOUBLE, right_rank_, 1, comm_,
+               MPI_STATUS_IGNORE);
+  MPI_Sendrecv(last, count, MPI_DOUBLE, right_rank_, 2, left, count, MPI_DOUBLE, left_rank_, 2, comm_,
+               MPI_STATUS_IGNORE);
 }
 
 void BeamOperator::product(const Matrix& A, double sign, const double* x, double* r) const {
@@ -148,7 +153,7 @@ void BeamOperator::solve_mass(double* x) const {
 }
 
 void BeamOperator::solve_static(double* x, const AddedSprings* added) {
-  const solve::SubstructuredCholesky& factor = factored(0.0, added);
+  const solve::SubstructuredCholesky& factor = factored(0.0, 0.0, added);
   load_.assign(x, x + unknowns());
   residual_.resize(unknowns());
   factor.solve(x);
@@ -190,24 +195,26 @@ void BeamOperator::solve_static(double* x, const AddedSprings* added) {
         "elements between supports (beam_elements_per_span)");
 }
 
-const solve::SubstructuredCholesky& BeamOperator::factored(double shift, const AddedSprings* added) {
+const solve::SubstructuredCholesky& BeamOperator::factored(double shift, double shift2, const AddedSprings* added) {
   const long version = added != nullptr ? added->version : 0;
   auto same = [&](const Factor& f) {
-    return f.added == version && std::abs(f.shift - shift) <= 1e-9 * std::abs(shift);
+    return f.added == version && std::abs(f.shift - shift) <= 1e-9 * std::abs(shift) &&
+           std::abs(f.shift2 - shift2) <= 1e-9 * std::abs(shift2);
   };
   auto found = std::find_if(factors_.begin(), factors_.end(), same);
   if (found != factors_.end()) {
     factors_.splice(factors_.begin(), factors_, found);
   } else {
     if (factors_.size() < kept_factors)
-      factors_.push_front({shift, version, 0, solve::SubstructuredCholesky(comm_, work_.block, work_.nodes)});
+      factors_.push_front({shift, shift2, version, 0, solve::SubstructuredCholesky(comm_, work_.block, work_.nodes)});
     else
       factors_.splice(factors_.begin(), factors_, std::prev(factors_.end()));
     Factor& f = factors_.front();
     f.shift = shift;
+    f.shift2 = shift2;
     f.added = version;
     f.stamp = ++factorisations_;
-    work_.combine(shift * shift, mass_.rows, shift, damping_, 1.0, stiffness_);
+    work_.combine(shift2, mass_.rows, shift, damping_, 1.0, stiffness_);
     if (added != nullptr) {
       for (const AddedSprings::Term& t : *added->terms)
         if (t.place >= 0)

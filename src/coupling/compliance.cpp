@@ -17,8 +17,8 @@ Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
       m_(2 * line_.per_node),
       work_(static_cast<std::size_t>(op.unknowns()) * m_) {}
 
-void Compliance::prepare(double shift, const AddedSprings* added, const std::vector<int>& elements) {
-  const solve::SubstructuredCholesky& factor = operator_.factored(shift, added);
+void Compliance::prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements) {
+  const solve::SubstructuredCholesky& factor = operator_.factored(shift, shift2, added);
   const long stamp = operator_.factor_stamp();
   if (stamp == stamp_ && elements == elements_) return;
   stamp_ = stamp;

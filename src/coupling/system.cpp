@@ -15,6 +15,7 @@ constexpr int most_placements = 4;  // of the wheels on elements within one stag
 System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
     : comm_(comm), beam_(beam), input_(std::move(input)) {
   MPI_Comm_rank(comm, &rank_);
+  MPI_Comm_size(comm, &ranks_);
   if (beam_ != nullptr) {
     operator_.emplace(*beam_);
     compliance_.emplace(*beam_, *operator_);
@@ -27,6 +28,7 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
   nodal_.resize(n_);
   work_.resize(n_);
   v_still_.resize(n_);
+  w_still_.resize(n_);
   for (const Vehicle& type : input_.types)
     for (const Wheel& wheel : type.wheels)
       if (track::too_rough(input_.profile, wheel.radius))
@@ -76,6 +78,21 @@ void System::moving_loads(double t) {
     const beam::Station s = line_->mesh.locate(input_.load.positions[i] + input_.load.speed * t);
     loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0});
   }
+}
+
+// The moving forces as forces on this rank's unknowns.
+void System::list_nodal_loads() {
+  nodal_loads_.clear();
+  for (const beam::ElementLoad& load : loads_) {
+    const beam::Hermite psi = beam::hermite(load.xi, line_->mesh.element(load.element).length);
+    const auto unknowns = line_->transverse(load.element);
+    for (int i = 0; i < 4; ++i) {
+      const int local = beam_->local(unknowns[i]);
+      if (local >= 0) nodal_loads_.push_back({local, load.fy * psi.value[i]});
+    }
+  }
+  std::sort(nodal_loads_.begin(), nodal_loads_.end(),
+            [](const NodalLoad& a, const NodalLoad& b) { return a.unknown < b.unknown; });
 }
 
 bool System::begin_step(double from, double to) {
@@ -137,8 +154,29 @@ void System::share_coordinates(const double* y) {
   MPI_Bcast(p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
 }
 
-// Values of two nodal fields at the elements in touch, on all ranks.
-void System::gather(const double* first, const double* second) {
+namespace {
+
+struct NodalFields final : FreeResponse {
+  const double *v, *w;
+  NodalFields(const double* first, const double* second) : v(first), w(second) {}
+  std::pair<double, double> at(int unknown) const override { return {v[unknown], w[unknown]}; }
+};
+
+// v = v~ + z, w = w~ + shift*z.
+struct ResponseToStills final : FreeResponse {
+  const double *v_still, *w_still, *z;
+  double shift;
+  ResponseToStills(const double* v, const double* w, const double* change, double s)
+      : v_still(v), w_still(w), z(change), shift(s) {}
+  std::pair<double, double> at(int unknown) const override {
+    return {v_still[unknown] + z[unknown], w_still[unknown] + shift * z[unknown]};
+  }
+};
+
+}  // namespace
+
+// The beam's v and w at the elements in touch, on all ranks.
+void System::gather(const FreeResponse& response) {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node_);
   const std::size_t count = fleet_.elements().size() * m;
   std::vector<double>& both = element_work_;
@@ -147,12 +185,11 @@ void System::gather(const double* first, const double* second) {
     const auto unknowns = line_->unknowns(fleet_.elements()[a]);
     for (std::size_t i = 0; i < m; ++i) {
       const int local = beam_->local(unknowns[i]);
-      if (local < 0) continue;
-      both[a * m + i] = first[local];
-      both[count + a * m + i] = second[local];
+      if (local >= 0) std::tie(both[a * m + i], both[count + a * m + i]) = response.at(local);
     }
   }
-  if (count > 0) MPI_Allreduce(MPI_IN_PLACE, both.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, comm_);
+  if (count > 0 && ranks_ > 1)
+    MPI_Allreduce(MPI_IN_PLACE, both.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, comm_);
   v_.assign(both.begin(), both.begin() + static_cast<std::ptrdiff_t>(std::max(count, m)));
   w_.assign(both.begin() + static_cast<std::ptrdiff_t>(count), both.end());
 }
@@ -202,7 +239,7 @@ void System::evaluate_fleet(double t, const double* y) {
   if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom()))
     throw SolverError("at t = " + std::to_string(t) + " s " + trouble());
   fleet_.place_wheels();
-  gather(y, y + n_);
+  gather(NodalFields(y, y + n_));
   if (!fleet_.touch(per_node_, v_.data(), w_.data()))
     throw SolverError("a wheel has fallen below the running surface, or a body been driven through another, at t = " +
                       std::to_string(t) +
@@ -221,27 +258,40 @@ void System::evaluate_fleet(double t, const double* y) {
 void System::powers(const double* w, Part part, double& dissipation, double& work) {
   dissipation = work = 0.0;
   if (beam_ != nullptr && part != Part::contact) {
-    if (operator_->damped()) {
-      operator_->multiply(1.0, nullptr, w, nullptr, work_.data());
-      for (int i = 0; i < n_; ++i) dissipation += w[i] * work_[i];
-    }
-    std::fill(work_.begin(), work_.end(), 0.0);
-    for (const beam::ElementLoad& load : loads_) add_point_load(*line_, load, work_.data());
-    if (!loads_.empty())
-      for (int i = 0; i < n_; ++i) work += w[i] * work_[i];
-    if (nonlinear_) dissipation += nonlinear_->dissipation();
+    dissipation = beam_dissipation(w);
+    list_nodal_loads();
+    for (const NodalLoad& load : nodal_loads_) work += load.force * w[load.unknown];
     double sums[2] = {dissipation, work};
     MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
     dissipation = sums[0];
     work = sums[1];
   }
   if (part == Part::beam) return;
+  Motion::Powers fleet;
+  fleet_powers(fleet);
+  dissipation += fleet.dissipation;
+  work += fleet.work;
+}
+
+// Of vehicles and contacts at the state that they were last set to.
+void System::fleet_powers(Motion::Powers& powers) const {
+  powers.dissipation = fleet_.contact_dissipation();
+  powers.work = 0.0;
   for (const MovingVehicle& vehicle : fleet_.vehicles) {
     const multibody::MechanismEnergy e = vehicle.mechanism.energy(vehicle.state);
-    dissipation += e.dissipation;
-    work += e.work;
+    powers.dissipation += e.dissipation;
+    powers.work += e.work;
   }
-  dissipation += fleet_.contact_dissipation();
+}
+
+// Power lost in the beam's damping and its foundation's, this rank's share.
+double System::beam_dissipation(const double* w) {
+  double sum = 0.0;
+  if (operator_->damped()) {
+    operator_->multiply(1.0, nullptr, w, nullptr, work_.data());
+    for (int i = 0; i < n_; ++i) sum += w[i] * work_[i];
+  }
+  return nonlinear_ ? sum + nonlinear_->dissipation() : sum;
 }
 
 // --- implicit stages -----------------------------------------------------------------------------------------------
@@ -253,17 +303,11 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
   const double* c_w = c + n_;
   if (beam_ != nullptr) {
     for (int i = 0; i < n_; ++i) {
-      work_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
-      v_still_[i] = shift > 0.0 ? (work_[i] - c_v[i]) / shift : 0.0;
+      w_still_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
+      v_still_[i] = shift > 0.0 ? (w_still_[i] - c_v[i]) / shift : 0.0;
     }
-    operator_->multiply(-1.0, nullptr, work_.data(), v_still_.data(), nodal_.data());
-    external_load(t, work_.data());
-    for (int i = 0; i < n_; ++i) nodal_[i] += work_[i];
-    release_held(nodal_.data());
-    if (nonlinear_) {
-      for (int i = 0; i < n_; ++i) work_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
-      nonlinear_->begin(shift, v_still_.data(), work_.data(), y + n_);
-    }
+    if (nonlinear_) nonlinear_->begin(shift, v_still_.data(), w_still_.data(), y + n_);
+    load_of_stills(t);
   }
   const int f = fleet_.freedom();
   if (part == Part::all) {
@@ -271,14 +315,22 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
     c_p_.resize(2 * static_cast<std::size_t>(f));
     if (rank_ == 0) std::copy_n(c + 2 * n_, 2 * f, c_p_.begin());
     MPI_Bcast(c_p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
-    // The guess moves on with its velocity, so that wheels are looked for where they will be.
-    if (shift > 0.0)
-      for (int i = 0; i < f; ++i) p_[i] = (p_[f + i] - c_p_[i]) / shift;
+    for (std::vector<double>* still : {&p_still_, &pd_still_, &x_}) still->assign(f, 0.0);
+    for (int i = 0; i < f; ++i) {
+      if (shift > 0.0) {
+        pd_still_[i] = -c_p_[f + i] / shift;
+        p_still_[i] = (pd_still_[i] - c_p_[i]) / shift;
+        // The guess moves on with its velocity, so that wheels are looked for where they will be.
+        x_[i] = (p_[f + i] - pd_still_[i]) / shift;
+      } else {
+        x_[i] = p_[i];
+      }
+    }
   }
-  if (solve_coupled(t, shift, c_v, part, true) != Solution::found) return false;
+  if (solve_coupled({t, shift, shift * shift}, part, true) != Solution::found) return false;
   for (int i = 0; i < n_; ++i) {
     y[i] = v_still_[i] + nodal_[i];
-    y[n_ + i] = shift > 0.0 ? shift * nodal_[i] - c_w[i] / shift : 0.0;
+    y[n_ + i] = w_still_[i] + shift * nodal_[i];
   }
   if (shift == 0.0) {
     if (rank_ == 0) std::copy_n(p_.data(), f, y + 2 * n_);
@@ -290,16 +342,24 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
   double* p = y + 2 * n_;
   for (int i = 0; i < f; ++i) {
     p[i] = part == Part::all ? p_[i] : -c[2 * n_ + i] / shift;
-    p[f + i] = part == Part::all ? shift * p_[i] + c_p_[i] : -c[2 * n_ + f + i] / shift;
+    p[f + i] = part == Part::all ? pd_still_[i] + shift * x_[i] : -c[2 * n_ + f + i] / shift;
   }
   p[2 * f] = (dissipation - c[2 * (n_ + f)]) / shift;
   p[2 * f + 1] = (work - c[2 * (n_ + f) + 1]) / shift;
   return true;
 }
 
+// The beam's load at zero acceleration, into nodal_.
+void System::load_of_stills(double t) {
+  operator_->multiply(-1.0, nullptr, w_still_.data(), v_still_.data(), nodal_.data());
+  external_load(t, work_.data());
+  for (int i = 0; i < n_; ++i) nodal_[i] += work_[i];
+  release_held(nodal_.data());
+}
+
 // From the beam's load in nodal_ to its z there, and the fleet's p: with a foundation that is not linear, as often as
 // it takes until its forces agree.
-System::Solution System::solve_coupled(double t, double shift, const double* c_v, Part part, bool loaded) {
+System::Solution System::solve_coupled(const StageTime& at, Part part, bool loaded) {
   const AddedSprings* added = nullptr;
   if (nonlinear_) std::copy(nodal_.begin(), nodal_.end(), stage_load_.begin());
   for (;;) {
@@ -310,18 +370,17 @@ System::Solution System::solve_coupled(double t, double shift, const double* c_v
       release_held(nodal_.data());
     }
     if (beam_ != nullptr && (loaded || nonlinear_)) {
-      if (shift == 0.0) {
+      if (at.shift == 0.0) {
         operator_->solve_static(nodal_.data(), added);
       } else {
-        operator_->factored(shift, added).solve(nodal_.data());
+        operator_->factored(at.shift, at.shift2, added).solve(nodal_.data());
         ++operator_->solves;
       }
     }
     if (part == Part::all) {
-      for (int i = 0; i < n_; ++i) work_[i] = v_still_[i] + nodal_[i];
-      if (!stage_of_fleet(t, shift, work_.data(), c_v, added)) return Solution::fleet_unsettled;
-      if (beam_ != nullptr && !fleet_.elements().empty())
-        compliance_->add_response(newton_.element_loads(), nodal_.data());
+      const ResponseToStills response(v_still_.data(), w_still_.data(), nodal_.data(), at.shift);
+      if (!stage_of_fleet(at, response, added)) return Solution::fleet_unsettled;
+      add_contact_response(1.0, nodal_.data());
     }
     if (!nonlinear_) return Solution::found;
     const NonlinearFoundation::Verdict verdict = nonlinear_->judge(nodal_.data());
@@ -330,21 +389,46 @@ System::Solution System::solve_coupled(double t, double shift, const double* c_v
   }
 }
 
-bool System::stage_of_fleet(double t, double shift, const double* v0, const double* c_v, const AddedSprings* added) {
+// What the contacts' forces do to the beam, times a factor.
+void System::add_contact_response(double factor, double* z) {
+  if (beam_ == nullptr || fleet_.elements().empty()) return;
+  element_work_ = newton_.element_loads();
+  for (double& load : element_work_) load *= factor;
+  compliance_->add_response(element_work_, z);
+}
+
+// From p_still_, pd_still_ and a guess in x_ to x_.
+bool System::stage_of_fleet(const StageTime& at, const FreeResponse& response, const AddedSprings* added) {
   const int f = fleet_.freedom();
-  evaluated_time_ = t;
+  evaluated_time_ = at.t;
   pdd_.resize(f);
-  for (int i = 0; i < f; ++i) pdd_[i] = shift * p_[i] + c_p_[i];
-  if (!fleet_.set(t, p_.data(), pdd_.data())) return false;
+  p_.resize(2 * static_cast<std::size_t>(f));
+  for (int i = 0; i < f; ++i) {
+    p_[i] = p_still_[i] + x_[i];
+    pdd_[i] = pd_still_[i] + at.shift * x_[i];
+  }
+  if (!fleet_.set(at.t, p_.data(), pdd_.data())) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
-    gather(v0, c_v);
-    if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, added, fleet_.elements());
-    StageData stage{t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, per_node_};
-    if (!newton_.solve(fleet_, stage, p_.data())) return false;
+    gather(response);
+    if (beam_ != nullptr && !fleet_.elements().empty())
+      compliance_->prepare(at.shift, at.shift2, added, fleet_.elements());
+    const StageData stage{at.t,
+                          at.shift,
+                          at.shift2,
+                          p_still_.data(),
+                          pd_still_.data(),
+                          &v_,
+                          &w_,
+                          compliance_ ? &*compliance_ : nullptr,
+                          per_node_};
+    if (!newton_.solve(fleet_, stage, x_.data())) return false;
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
   }
-  for (int i = 0; i < f; ++i) pdd_[i] = shift * (shift * p_[i] + c_p_[i]) + c_p_[f + i];
+  for (int i = 0; i < f; ++i) {
+    p_[i] = p_still_[i] + x_[i];
+    pdd_[i] = at.shift2 * x_[i];
+  }
   note_touched();
   fleet_.contact_loads();
   for (MovingVehicle& vehicle : fleet_.vehicles)

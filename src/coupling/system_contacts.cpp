@@ -24,7 +24,12 @@ void System::note_touched() {
 void System::arrive(double t, const double* y) {
   const int f = fleet_.freedom();
   evaluated_.assign(p_.begin(), p_.begin() + f);
-  share_coordinates(y);
+  if (motion_) {
+    std::copy(motion_->p.begin(), motion_->p.end(), p_.begin());
+    std::copy(motion_->pd.begin(), motion_->pd.end(), p_.begin() + f);
+  } else {
+    share_coordinates(y);
+  }
   double moved = 0.0;
   for (int i = 0; i < f; ++i) moved = std::max(moved, std::abs(p_[i] - evaluated_[i]));
   if (t != evaluated_time_ || moved > same_place) evaluate_fleet(t, y);

@@ -7,6 +7,8 @@
 #include <limits>
 #include <string_view>
 
+#include "traverse/integrate/second_order.hpp"
+
 namespace traverse::integrate {
 namespace {
 
@@ -26,21 +28,44 @@ bool is(TS ts, const char* type) {
   return same == PETSC_TRUE;
 }
 
-// The types that integrate this system rightly; the others fail, some of them without a word.
-void check_type() {
-  constexpr std::array allowed = {TSARKIMEX, TSCN, TSBDF, TSTHETA, TSBEULER, TSRK};
-  std::array<char, 128> type{};
+std::string option(const char* name, const char* otherwise) {
+  std::array<char, 128> text{};
   PetscBool given = PETSC_FALSE;
-  check(PetscOptionsGetString(nullptr, nullptr, "-ts_type", type.data(), type.size(), &given));
-  if (given == PETSC_TRUE && std::find(allowed.begin(), allowed.end(), std::string_view(type.data())) == allowed.end())
-    throw InputError(std::string("ts_type = ") + type.data() +
-                     ": does not integrate this system rightly; allowed: arkimex, cn, bdf, theta, beuler (implicit), "
-                     "rk (explicit, small scenes)");
+  check(PetscOptionsGetString(nullptr, nullptr, name, text.data(), text.size(), &given));
+  return given == PETSC_TRUE ? text.data() : otherwise;
+}
+
+bool is_given(const char* name) {
+  PetscBool given = PETSC_FALSE;
+  check(PetscOptionsHasName(nullptr, nullptr, name, &given));
+  return given == PETSC_TRUE;
+}
+
+// The integrator: as given, or the one that the options given belong to. The types named here integrate this system
+// rightly; others fail, some of them without a word.
+std::string chosen_type() {
+  const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
+  const bool for_arkimex =
+      adapt != TSADAPTNONE || is_given("-ts_arkimex_type") || is_given("-ts_arkimex_fully_implicit");
+  const std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : esdirk4_type);
+  constexpr std::array allowed = {esdirk4_type, genalpha_type, TSARKIMEX, TSCN, TSBDF, TSTHETA, TSBEULER, TSRK};
+  if (std::find(allowed.begin(), allowed.end(), type) == allowed.end())
+    throw InputError("ts_type = " + type +
+                     ": does not integrate this system rightly; allowed: esdirk4, genalpha, arkimex, cn, bdf, theta, "
+                     "beuler (implicit), rk (explicit, small scenes)");
+  if (adapt != TSADAPTNONE && (type == esdirk4_type || type == genalpha_type))
+    throw InputError("ts_adapt_type = " + adapt + ": " + type +
+                     " takes steps of one length; allowed: none, or a ts_type of PETSc's own such as arkimex");
   PetscInt order = 2;
   check(PetscOptionsGetInt(nullptr, nullptr, "-ts_bdf_order", &order, nullptr));
   if (order < 1 || order > 2)
     throw InputError("ts_bdf_order = " + std::to_string(order) +
                      ": orders above 2 are unstable for lightly damped bridges; allowed: 1, 2");
+  PetscReal radius = 1.0;
+  check(PetscOptionsGetReal(nullptr, nullptr, "-ts_genalpha_radius", &radius, nullptr));
+  if (!(radius >= 0.0 && radius <= 1.0))
+    throw InputError("ts_genalpha_radius = " + std::to_string(radius) + ": allowed: 0 to 1");
+  return type;
 }
 
 struct Array {  // writable entries of a Vec for one scope
@@ -77,9 +102,13 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
 
   check(TSCreate(comm, ts_.out()));
   check(TSSetProblemType(ts_, TS_NONLINEAR));
-  check(TSSetType(ts_, TSARKIMEX));
-  check(TSARKIMEXSetType(ts_, TSARKIMEX4));
-  check(TSARKIMEXSetFullyImplicit(ts_, PETSC_TRUE));
+  const std::string type = chosen_type();
+  register_second_order();
+  check(TSSetType(ts_, type.c_str()));
+  if (type == TSARKIMEX) {
+    check(TSARKIMEXSetType(ts_, TSARKIMEX4));
+    check(TSARKIMEXSetFullyImplicit(ts_, PETSC_TRUE));
+  }
   check(TSSetSolution(ts_, y_));
   check(TSSetMaxSteps(ts_, no_limit));
   check(TSSetMaxSNESFailures(ts_, -1));
@@ -88,7 +117,6 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   TSAdapt adapt = nullptr;
   check(TSGetAdapt(ts_, &adapt));
   check(TSAdaptSetType(adapt, TSADAPTNONE));
-  check_type();
   try {
     check(TSSetFromOptions(ts_));
   } catch (const SolverError& error) {
@@ -109,6 +137,11 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
 }
 
 void Stepper::set_up_type() {
+  second_order_ = is_second_order(ts_);
+  if (second_order_) {
+    set_system(ts_, system_);
+    return;
+  }
   implicit_ = !is(ts_, TSRK);
   multistep_ = is(ts_, TSBDF);
   bool imex = false;
@@ -254,6 +287,7 @@ void Stepper::locate_contact_change(double from) {
     return t;
   };
   const auto again = [&](double end) {
+    if (second_order_) system_.take_back_step();
     check(VecCopy(before_, y_));
     check(TSSetTime(ts_, from));
     check(TSRestartStep(ts_));
@@ -276,7 +310,13 @@ void Stepper::locate_contact_change(double from) {
 void Stepper::sample_now(const std::function<void(const Instant&)>& sample) {
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
-  rate(t, y_, rate_, Part::all);
+  if (second_order_ && steps_ > 0) {
+    ReadArray in(y_);
+    Array out(rate_);
+    system_.rate_of_motion(in.data, out.data);
+  } else {
+    rate(t, y_, rate_, Part::all);
+  }
   ReadArray y(y_);
   ReadArray ydot(rate_);
   const int n = system_.local_size();

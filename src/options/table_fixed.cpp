@@ -134,7 +134,7 @@ constexpr std::string_view petsc_names[] = {
   "ts_type", "ts_dt", "ts_max_time", "ts_max_steps", "ts_max_snes_failures", "ts_max_reject", "ts_monitor", "ts_view",
   "ts_exact_final_time", "ts_rtol", "ts_atol", "ts_adapt_type", "ts_adapt_dt_max", "ts_adapt_dt_min",
   "ts_adapt_clip", "ts_adapt_safety", "ts_adapt_monitor", "ts_arkimex_type", "ts_arkimex_fully_implicit",
-  "ts_bdf_order", "ts_rk_type", "ts_rosw_type", "ts_theta_theta", "ts_theta_endpoint", "ts_alpha_radius",
+  "ts_bdf_order", "ts_rk_type", "ts_rosw_type", "ts_theta_theta", "ts_theta_endpoint", "ts_alpha_radius", "ts_genalpha_radius",
   "snes_type", "snes_atol", "snes_rtol", "snes_stol", "snes_max_it", "snes_monitor", "snes_converged_reason",
   "snes_view", "snes_lag_jacobian", "ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it", "ksp_monitor", "pc_type",
   "pc_factor_mat_solver_type", "mat_type", "vec_type", "eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it",

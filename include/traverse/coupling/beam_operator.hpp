@@ -35,6 +35,9 @@ class BeamOperator {
 
   /// Collective. The neighbours' columns at the borders of this rank's; left as they are where there is none.
   void borders(const double* x, double* left, double* right) const;
+  /// Collective. `count` numbers of the first column to the left neighbour and of the last column to the right one,
+  /// against theirs.
+  void exchange(const double* first, const double* last, int count, double* left, double* right) const;
 
   /// Collective. r = sign*(M m + C* c + K* k); a null pointer leaves its term out. Arrays of this rank's unknowns;
   /// the rows of held ones mean nothing.
@@ -51,9 +54,10 @@ class BeamOperator {
   /// The largest relative error that solve_static has left so far, estimated from its last corrections.
   double static_error() const { return static_error_; }
 
-  /// Factorisation of s^2 M + s C* + K*, with springs added where there are some; s = 0 is the static one. Kept for
-  /// the last few shifts, which are compared relatively (time integrators compute the same shift with rounding noise).
-  const solve::SubstructuredCholesky& factored(double shift, const AddedSprings* added = nullptr);
+  /// Factorisation of shift2 M + shift C* + K*, with springs added where there are some; 0, 0 is the static one. Kept
+  /// for the last few shifts, which are compared relatively (time integrators compute the same shift with rounding
+  /// noise).
+  const solve::SubstructuredCholesky& factored(double shift, double shift2, const AddedSprings* added = nullptr);
   /// Changes whenever `factored` hands out another factorisation.
   long factor_stamp() const { return stamp_; }
   bool damped() const { return damped_; }
@@ -61,7 +65,7 @@ class BeamOperator {
 
  private:
   struct Factor {
-    double shift;
+    double shift, shift2;
     long added;  // version of the springs; 0: none
     long stamp;
     solve::SubstructuredCholesky cholesky;

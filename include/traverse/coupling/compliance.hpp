@@ -13,9 +13,9 @@ class Compliance {
  public:
   Compliance(const beam::Beam& beam, BeamOperator& op);
 
-  /// Collective. Prepares the compliance between `elements` for the factorisation of `shift`, with springs added where
-  /// there are some.
-  void prepare(double shift, const AddedSprings* added, const std::vector<int>& elements);
+  /// Collective. Prepares the compliance between `elements` for the factorisation of these shifts, with springs added
+  /// where there are some.
+  void prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements);
 
   /// Displacement of unknown i of elements[a] from a unit load on unknown j of elements[b]; i, j < 2*per_node of the
   /// line that wheels run on.

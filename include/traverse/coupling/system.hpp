@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "traverse/beam/recovery.hpp"
+#include "traverse/coupling/beam_motion.hpp"
 #include "traverse/coupling/beam_operator.hpp"
 #include "traverse/coupling/compliance.hpp"
 #include "traverse/coupling/contact_newton.hpp"
@@ -60,6 +61,14 @@ struct Observation {
   Energy energy;
 };
 
+/// Where the beam would be, without the contacts' forces, at an unknown of this rank's: v and w.
+struct FreeResponse {
+  virtual std::pair<double, double> at(int unknown) const = 0;
+
+ protected:
+  ~FreeResponse() = default;
+};
+
 class System {
  public:
   /// beam may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel
@@ -83,6 +92,19 @@ class System {
 
   /// Collective. y with G(t, y) = shift*y + c; y comes in as a guess. False where no solution is found.
   bool solve_stage(double t, double shift, const double* c, double* y, Part part);
+
+  // In second-order form, without a PETSc stage: what an own integrator takes steps with.
+  // ------------------------------
+  /// The method of the steps to come.
+  void begin_motion(const Method& method);
+  /// Collective. Before the first step from a state, and where it was changed from outside.
+  void restart_motion(double t, const double* y);
+  /// Collective. One step of h from t; y is left as it is, and the result false, where a stage has no solution.
+  bool step_motion(double t, double h, double* y);
+  /// Of the state that the last step led to.
+  void rate_of_motion(const double* y, double* ydot) const;
+  /// Forgets the last step: y is about to be put back to where it began; a restart follows.
+  void take_back_step();
 
   /// Collective. Fills `out` for a state with its rate, and the fleet with accelerations, reactions, wheel forces.
   void observe(double t, const double* y, const double* ydot, Observation& out);
@@ -126,6 +148,30 @@ class System {
   long beam_solves() const { return operator_ ? operator_->solves : 0; }
 
  private:
+  /// A second-order integration under way.
+  struct Motion {
+    Method unit, method;  // for steps of 1, for steps of `length`
+    double length = 0.0;
+    std::optional<BeamMotion> beam;
+    std::array<std::vector<double>, most_accelerations> pdd;  // the vehicles' p'' at the stages
+    std::vector<double> p, pd;                                // at the start of the step
+    struct Powers {  // W; of the beam this rank's share, of vehicles and contacts the whole
+      double beam = 0.0, loads = 0.0, dissipation = 0.0, work = 0.0;
+    };
+    std::array<Powers, most_accelerations> powers;  // at the stages
+    /// This rank's share of D and W; pending: s, times the dissipation at the step's end still to come in D.
+    double dissipated = 0.0, worked = 0.0, pending = 0.0;
+    struct {
+      double dissipated, worked, pending;
+    } before{};
+    bool stepped = false;      // since the last restart
+    std::vector<double> rate;  // of restarts
+  };
+  /// Shifts of a stage: w = shift*v + ..., w' = shift2*v + ...; 0: statics.
+  struct StageTime {
+    double t = 0.0, shift = 0.0, shift2 = 0.0;
+  };
+
   void find_equilibrium(double* v);
   void let_wheels_roll();
   void settle(bool loaded, Part part);
@@ -135,10 +181,15 @@ class System {
   std::vector<double> influence_line(double station);
   double note_contacts(double t);
   void share_coordinates(const double* y);
-  void gather(const double* first, const double* second);
+  void gather(const FreeResponse& response);
   enum class Solution { found, fleet_unsettled, foundation_unsettled };
-  Solution solve_coupled(double t, double shift, const double* c_v, Part part, bool loaded);
-  bool stage_of_fleet(double t, double shift, const double* v0, const double* c_v, const AddedSprings* added);
+  void load_of_stills(double t);
+  Solution solve_coupled(const StageTime& at, Part part, bool loaded);
+  bool stage_of_fleet(const StageTime& at, const FreeResponse& response, const AddedSprings* added);
+  void add_contact_response(double factor, double* z);
+  bool stage_of_motion(double t, const StageRule& rule, const Weights& before, const double* v, const double* w);
+  void finish_step(double* y);
+  void list_nodal_loads();
   void note_foundation();
   void moving_loads(double t);
   void external_load(double t, double* nodal);
@@ -148,10 +199,12 @@ class System {
   void evaluate_fleet(double t, const double* y);
   void note_touched();
   void powers(const double* w, Part part, double& dissipation, double& work);
+  void fleet_powers(Motion::Powers& powers) const;
+  double beam_dissipation(const double* w);
   Energy energy(const double* y);
 
   MPI_Comm comm_;
-  int rank_ = 0;
+  int rank_ = 0, ranks_ = 1;
   const beam::Beam* beam_;
   const beam::Line* line_ = nullptr;  // that wheels and forces run on; null without a beam
   int per_node_ = 2;                  // its unknowns a node
@@ -175,11 +228,14 @@ class System {
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
   double influence_of_weight_ = 0.0;                // deflection of the influence line's station under self-weight, m
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
+  std::vector<double> p_still_, pd_still_, x_;      // p and p' at zero acceleration, and the stage's change of p
   std::vector<double> evaluated_;                   // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
   std::vector<double> v_, w_;  // of the elements in touch, 2*per_node each
   std::vector<double> element_work_;
-  std::vector<double> nodal_, work_, v_still_, stage_load_;  // this rank's unknowns
+  std::vector<double> nodal_, work_, v_still_, w_still_, stage_load_;  // this rank's unknowns
+  std::vector<NodalLoad> nodal_loads_;                                 // of the moving forces, ascending unknowns
+  std::optional<Motion> motion_;
 };
 
 }  // namespace traverse::coupling

@@ -1,4 +1,5 @@
-// Time integration of the combined system by PETSc TS. Implicit types meet the stage problem through a SNESSHELL
+// Time integration of the combined system by PETSc TS: own types in second-order form (second_order.hpp), or PETSc's.
+// Its implicit types meet the stage problem through a SNESSHELL
 // that hands (t, shift, c) to System::solve_stage; explicit ones evaluate System::rate. Steps end exactly at stored
 // samples and where wheels pass kinks of the running surface, since unaligned kinks pull every method down to
 // order two.
@@ -77,7 +78,7 @@ class Stepper {
   base::Handle<Mat> jacobian_;
   Request request_;
   coupling::Part implicit_part_ = coupling::Part::all;
-  bool implicit_ = true, adaptive_ = false, multistep_ = false;
+  bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false;
   double next_step_ = 0.0;  // what the step control wants
   double last_step_ = 0.0;
   long steps_ = 0;

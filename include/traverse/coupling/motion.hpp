@@ -1,0 +1,47 @@
+// One-step methods for second-order equations of motion, written for accelerations: what a stage and a step combine.
+//
+//   stage:  w = w~ + rate*a,  v = v~ + displacement*a,   w~ = w_n + sum_j a_in_w[j] A_j
+//                                                        v~ = v_n + w_in_v w_n + sum_j a_in_v[j] A_j
+//   with a, the new A, from the equations of motion at `time`; beam and vehicles alike.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace traverse::coupling {
+
+inline constexpr int most_accelerations = 6;
+using Weights = std::array<double, most_accelerations>;
+
+struct StageRule {
+  double time = 0.0;  // s, from the start of the step
+  int known = 0;      // accelerations A_0 ... A_{known-1}; the stage's own becomes A_known
+  double w_in_v = 0.0;
+  Weights a_in_v{}, a_in_w{};
+  double rate = 0.0, displacement = 0.0;  // s, s2
+};
+
+/// The end of the step from all its accelerations; the last one belongs to the equations of motion there.
+struct StepRule {
+  int known = 0;
+  double w_in_v = 0.0;
+  Weights a_in_v{}, a_in_w{};
+  Weights a_next{};  // the next step's A_0
+  Weights power{};   // s: integral over the step of a power known at the accelerations' states
+};
+
+struct Method {
+  std::vector<StageRule> stages;
+  StepRule step;
+  /// The same for steps of h, s; this one is for h = 1.
+  Method scaled(double h) const;
+};
+
+/// Additive Runge-Kutta ARK4(3)6L[2]SA's implicit part (Kennedy and Carpenter 2003): order 4, L-stable, five implicit
+/// stages. The same numbers as PETSc's ARKIMEX 4, fully implicit.
+Method esdirk4();
+/// Generalised-alpha with all forces at the end of the step (Wood, Bossak and Zienkiewicz 1981): order 2, one stage;
+/// what oscillates fast within a step shrinks by `radius` (0..1) each step. 1: the trapezoidal rule.
+Method generalised_alpha(double radius);
+
+}  // namespace traverse::coupling

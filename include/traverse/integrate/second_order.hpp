@@ -1,0 +1,23 @@
+// Time integrators in second-order form as PETSc TS types: "esdirk4" and "genalpha". They take the steps of
+// System::step_motion, without SNES and without vectors of stages in PETSc; everything else (time, step, options,
+// monitors) is TS's own. Steps are as long as TSSetTimeStep says; one whose stages have no solution is tried again, a
+// quarter as long.
+#pragma once
+
+#include <petscts.h>
+
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::integrate {
+
+inline constexpr const char* esdirk4_type = "esdirk4";
+inline constexpr const char* genalpha_type = "genalpha";
+
+/// Makes the types known to PETSc; more than once does no harm.
+void register_second_order();
+/// Whether a TS is of one of these types.
+bool is_second_order(TS ts);
+/// What such a TS integrates; before its first step. Its solution is y of the system.
+void set_system(TS ts, coupling::System& system);
+
+}  // namespace traverse::integrate

@@ -1,0 +1,183 @@
+// The system stepped in second-order form (motion.hpp): one beam solve a stage, made while its right-hand side is
+// written, and Newton on vehicles and contacts.
+#include <algorithm>
+
+#include "traverse/beam/shape.hpp"
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+/// Free response of a fused stage, whose vectors v and w are never formed.
+struct FusedResponse final : FreeResponse {
+  const BeamMotion& beam;
+  const StageRule& rule;
+  const double *v, *w;
+  FusedResponse(const BeamMotion& b, const StageRule& r, const double* v_n, const double* w_n)
+      : beam(b), rule(r), v(v_n), w(w_n) {}
+  std::pair<double, double> at(int unknown) const override { return beam.state(rule, v, w, unknown); }
+};
+
+struct NoBeam final : FreeResponse {
+  std::pair<double, double> at(int) const override { return {}; }
+};
+
+double last(const Weights& values, int count) { return values[static_cast<std::size_t>(count) - 1]; }
+
+}  // namespace
+
+void System::begin_motion(const Method& method) {
+  Motion& m = motion_.emplace();
+  m.unit = method;
+  const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
+  for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
+  for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
+  if (beam_ == nullptr) return;
+  m.beam.emplace(*beam_, *operator_, input_.self_weight ? dead_load_.data() : nullptr);
+  m.beam->prepare(method.step.known);
+}
+
+void System::restart_motion(double t, const double* y) {
+  Motion& m = *motion_;
+  m.rate.resize(static_cast<std::size_t>(local_size()));
+  rate(t, y, m.rate.data(), Part::all);
+  if (beam_ != nullptr) std::copy_n(m.rate.data() + n_, n_, m.beam->acceleration(0));
+  const int f = fleet_.freedom();
+  m.p.assign(p_.begin(), p_.begin() + f);
+  m.pd.assign(p_.begin() + f, p_.end());
+  m.pdd[0] = pdd_;
+  m.powers[0] = {};
+  if (beam_ != nullptr && !m.beam->fused()) m.powers[0].beam = beam_dissipation(y + n_);
+  fleet_powers(m.powers[0]);
+  m.stepped = false;
+}
+
+void System::rate_of_motion(const double* y, double* ydot) const {
+  const Motion& m = *motion_;
+  const int f = fleet_.freedom();
+  std::fill_n(ydot, local_size(), 0.0);
+  const bool swapped = !m.stepped || last(m.unit.step.a_next, m.unit.step.known) == 1.0;
+  const int j = m.stepped ? m.unit.step.known - 1 : 0;
+  if (m.beam) {
+    std::copy_n(y + n_, n_, ydot);
+    std::copy_n(m.beam->acceleration(swapped ? 0 : j), n_, ydot + n_);
+  }
+  if (rank_ != 0) return;
+  std::copy(m.pd.begin(), m.pd.end(), ydot + 2 * n_);
+  std::copy(m.pdd[j].begin(), m.pdd[j].end(), ydot + 2 * n_ + f);
+}
+
+void System::take_back_step() {
+  Motion& m = *motion_;
+  m.dissipated = m.before.dissipated;
+  m.worked = m.before.worked;
+  m.pending = m.before.pending;
+}
+
+bool System::step_motion(double t, double h, double* y) {
+  Motion& m = *motion_;
+  if (h != m.length) {
+    m.method = m.unit.scaled(h);
+    m.length = h;
+  }
+  m.before = {m.dissipated, m.worked, m.pending};
+  double* v = y;
+  double* w = y + n_;
+  moving_loads(t);
+  list_nodal_loads();
+  m.powers[0].loads = 0.0;
+  for (const NodalLoad& load : nodal_loads_) m.powers[0].loads += load.force * w[load.unknown];
+  Weights before{};
+  for (const StageRule& rule : m.method.stages) {
+    if (!stage_of_motion(t + rule.time, rule, before, v, w)) return false;
+    before = rule.a_in_w;
+    before[rule.known] = rule.rate;
+  }
+  finish_step(y);
+  return true;
+}
+
+bool System::stage_of_motion(double t, const StageRule& rule, const Weights& before, const double* v, const double* w) {
+  Motion& m = *motion_;
+  const int f = fleet_.freedom();
+  const double shift = rule.rate / rule.displacement, shift2 = 1.0 / rule.displacement;
+  p_still_.resize(f);
+  pd_still_.resize(f);
+  x_.resize(f);
+  for (int i = 0; i < f; ++i) {
+    p_still_[i] = m.p[i] + rule.w_in_v * m.pd[i];
+    pd_still_[i] = m.pd[i];
+    for (int j = 0; j < rule.known; ++j) {
+      p_still_[i] += rule.a_in_v[j] * m.pdd[j][i];
+      pd_still_[i] += rule.a_in_w[j] * m.pdd[j][i];
+    }
+    x_[i] = rule.displacement * m.pdd[rule.known - 1][i];
+  }
+  Motion::Powers& powers = m.powers[rule.known];
+  powers = {};
+  if (beam_ == nullptr) {
+    loads_.clear();
+    nodal_loads_.clear();
+    if (!stage_of_fleet({t, shift, shift2}, NoBeam(), nullptr)) return false;
+  } else if (m.beam->fused()) {
+    moving_loads(t);
+    list_nodal_loads();
+    m.beam->solve(rule, before, v, w, nodal_loads_);
+    m.powers[rule.known - 1].beam = m.beam->dissipation();
+    if (!stage_of_fleet({t, shift, shift2}, FusedResponse(*m.beam, rule, v, w), nullptr)) return false;
+    add_contact_response(shift2, m.beam->acceleration(rule.known));
+  } else {
+    m.beam->still(rule, v, w, v_still_.data(), w_still_.data());
+    if (nonlinear_) nonlinear_->begin(shift, v_still_.data(), w_still_.data(), w);
+    load_of_stills(t);
+    if (solve_coupled({t, shift, shift2}, Part::all, true) != Solution::found) return false;
+    double* a = m.beam->acceleration(rule.known);
+    for (int i = 0; i < n_; ++i) a[i] = shift2 * nodal_[i];
+    for (int i = 0; i < n_; ++i) w_still_[i] += rule.rate * a[i];
+    powers.beam = beam_dissipation(w_still_.data());
+    list_nodal_loads();
+  }
+  for (const NodalLoad& load : nodal_loads_)
+    powers.loads += load.force * m.beam->state(rule, v, w, load.unknown).second;
+  for (int i = 0; i < f; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
+  fleet_powers(powers);
+  return true;
+}
+
+void System::finish_step(double* y) {
+  Motion& m = *motion_;
+  const StepRule& rule = m.method.step;
+  const int f = fleet_.freedom();
+  for (int i = 0; i < f; ++i) {
+    m.p[i] += rule.w_in_v * m.pd[i];
+    for (int j = 0; j < rule.known; ++j) {
+      m.p[i] += rule.a_in_v[j] * m.pdd[j][i];
+      m.pd[i] += rule.a_in_w[j] * m.pdd[j][i];
+    }
+    double next = 0.0;
+    for (int j = 0; j < rule.known; ++j) next += rule.a_next[j] * m.pdd[j][i];
+    m.pdd[0][i] = next;
+  }
+  double dissipation = 0.0, work = 0.0;
+  const bool fused = m.beam && m.beam->fused();
+  m.dissipated += m.pending * m.powers[0].beam;
+  m.pending = fused ? last(rule.power, rule.known) : 0.0;
+  for (int j = 0; j < rule.known; ++j) {
+    const Motion::Powers& powers = m.powers[j];
+    if (!fused || j + 1 < rule.known) m.dissipated += rule.power[j] * powers.beam;
+    m.worked += rule.power[j] * powers.loads;
+    dissipation += rule.power[j] * powers.dissipation;
+    work += rule.power[j] * powers.work;
+  }
+  m.powers[0] = m.powers[rule.known - 1];
+  m.stepped = true;
+  if (beam_ != nullptr) m.beam->finish(rule, y, y + n_);
+  if (rank_ != 0) return;
+  double* p = y + 2 * n_;
+  std::copy(m.p.begin(), m.p.end(), p);
+  std::copy(m.pd.begin(), m.pd.end(), p + f);
+  p[2 * f] += dissipation;
+  p[2 * f + 1] += work;
+}
+
+}  // namespace traverse::coupling
