@@ -1,8 +1,8 @@
 #include "traverse/coupling/contact_newton.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 
 namespace traverse::coupling {
 namespace {
@@ -31,22 +31,6 @@ Eigen::Vector2d force_correction(const Contact& c) {
           c.force.tangential_by_penetration * a + c.force.tangential_by_rate * r + c.force.tangential_by_sliding * s};
 }
 
-// What rounding of p does to the forces of inertia, shift*(shift*p + c) + c', over a weight: much, at very short steps.
-double rounding_of_inertia(const StageData& s, int freedom, const double* p) {
-  double greatest = 0.0;
-  for (int i = 0; i < freedom; ++i) greatest = std::max(greatest, s.shift * std::abs(p[i]) + std::abs(s.c_p[i]));
-  return 8.0 * std::numeric_limits<double>::epsilon() * s.shift * greatest / 9.81;
-}
-
-// What rounding of p'' = shift*(shift*p + c) + c' is worth in p: steps below it change nothing.
-double rounding_of_coordinates(const StageData& s, int freedom, const double* p) {
-  double greatest = 0.0;
-  for (int i = 0; i < freedom; ++i)
-    greatest = std::max(
-        greatest, std::abs(p[i]) + std::abs(s.c_p[i]) / s.shift + std::abs(s.c_p[freedom + i]) / (s.shift * s.shift));
-  return 2.0 * std::numeric_limits<double>::epsilon() * greatest;
-}
-
 template <class Right>
 void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Right& x) {
   x = lu.permutationP() * x;
@@ -56,33 +40,28 @@ void solve_in_place(const Eigen::PartialPivLU<Eigen::MatrixXd>& lu, Right& x) {
 
 }  // namespace
 
-bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
+bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
   work_.resize(fleet.vehicles.size());
+  p_.resize(fleet.freedom());
   pd_.resize(fleet.freedom());
   pdd_.resize(fleet.freedom());
   for (int i = 0; i < most_iterations; ++i) {
     // The vehicles' own part of the Newton matrix hardly changes within a stage: kept after the first iteration,
     // and taken in full, constraint curvature included, where that turns out not to be enough.
     const Tangent own = s.shift == 0.0 || i > 2 ? Tangent::full : i == 0 ? Tangent::fresh : Tangent::kept;
-    if (!evaluate(fleet, s, p)) return false;
+    if (!evaluate(fleet, s, x)) return false;
     for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) vehicle_system(fleet, static_cast<int>(k), s, own);
     for (const MovingVehicle& vehicle : fleet.vehicles)
       if (vehicle.state.friction.jammed) return false;
     couple_beam(fleet, s, own);
     const double before = change_;
-    change_ = update(fleet, s, p);
+    change_ = update(fleet, s, x);
     if (!std::isfinite(change_)) return false;
     // The next change would be smaller by about the ratio of the last two, which is not trusted beyond best_ratio
     // (at the start of a run not at all); where rounding rules it no longer falls.
     const double ratio = std::clamp(change_ / before, s.shift > 0.0 ? best_ratio : 1.0, 1.0);
-    const double floor = std::max(rounding, rounding_of_inertia(s, fleet.freedom(), p));
-    double step = 0.0;
-    for (const VehicleWork& w : work_)
-      if (w.dp.size() > 0) step = std::max(step, w.dp.lpNorm<Eigen::Infinity>());
-    const bool still =
-        s.shift > 0.0 && change_ > 0.1 * before && step <= rounding_of_coordinates(s, fleet.freedom(), p);
-    if (i > 0 && (still || change_ <= tolerance || change_ * ratio <= tolerance ||
-                  (change_ <= floor && change_ > 0.1 * before))) {
+    if (i > 0 &&
+        (change_ <= tolerance || change_ * ratio <= tolerance || (change_ <= rounding && change_ > 0.1 * before))) {
       fleet.contact_forces();
       fleet.element_loads(s.per_node, loads_);
       return true;
@@ -91,13 +70,14 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* p) {
   return false;
 }
 
-// Vehicles at p, contacts from the kinematics held, the beam under these forces, the geometry at all of it.
-bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* p) {
+// Vehicles at p_still + x, contacts from the kinematics held, the beam under these forces, the geometry at all of it.
+bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x) {
   for (int i = 0; i < fleet.freedom(); ++i) {
-    pd_[i] = s.shift * p[i] + s.c_p[i];
-    pdd_[i] = s.shift * pd_[i] + s.c_p[fleet.freedom() + i];
+    p_[i] = s.p_still[i] + x[i];
+    pd_[i] = s.pd_still[i] + s.shift * x[i];
+    pdd_[i] = s.shift2 * x[i];
   }
-  if (!fleet.set(s.t, p, pd_.data())) return false;
+  if (!fleet.set(s.t, p_.data(), pd_.data())) return false;
   fleet.contact_forces();
   fleet.element_loads(s.per_node, loads_);
   beam_field(s, fleet);
@@ -109,17 +89,21 @@ void ContactNewton::beam_field(const StageData& s, const Fleet& fleet) {
   const int count = static_cast<int>(fleet.elements().size());
   v_.assign(static_cast<std::size_t>(std::max(1, count)) * m, 0.0);
   w_.assign(v_.size(), 0.0);
+  std::array<double, most_element_unknowns> z;
   for (int a = 0; a < count; ++a) {
-    double* v = &v_[static_cast<std::size_t>(a) * m];
-    std::copy_n(s.v0->data() + static_cast<std::ptrdiff_t>(a) * m, m, v);
+    z.fill(0.0);
     for (int b = 0; b < count; ++b) {
       const double* f = &loads_[static_cast<std::size_t>(b) * m];
       const double* C = s.compliance->block(a, b);
       for (int j = 0; j < m; ++j)
         if (f[j] != 0.0)
-          for (int i = 0; i < m; ++i) v[i] += C[i + j * m] * f[j];
+          for (int i = 0; i < m; ++i) z[i] += C[i + j * m] * f[j];
     }
-    for (int i = 0; i < m; ++i) w_[static_cast<std::size_t>(a) * m + i] = s.shift * v[i] + (*s.c_v)[a * m + i];
+    for (int i = 0; i < m; ++i) {
+      const std::size_t at = static_cast<std::size_t>(a) * m + i;
+      v_[at] = (*s.v0)[at] + z[i];
+      w_[at] = (*s.w0)[at] + s.shift * z[i];
+    }
   }
 }
 
@@ -207,7 +191,7 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
       const auto [first, last] = state.columns[b];
       const Eigen::Index row = 3 * static_cast<Eigen::Index>(b);
       w.NB.block(row, first, 3, last - first) +=
-          s.shift * s.shift * N.segment<3>(row).asDiagonal() * state.B.block(row, first, 3, last - first);
+          s.shift2 * N.segment<3>(row).asDiagonal() * state.B.block(row, first, 3, last - first);
     }
     w.own.resize(f, f);
     if (rubs) {
@@ -238,7 +222,7 @@ void ContactNewton::vehicle_system(Fleet& fleet, int k, const StageData& s, Tang
     w.NB.col(j + 1) = w.D(i, 1) * G.row(i).transpose();
     if (tangential_behind(w, i)) w.NB.col(j + 1) += w.D(i + 1, 0) * G.row(i + 1).transpose();
   }
-  solve_vehicle(w, s.shift);
+  solve_vehicle(w, s.shift2 == 0.0);
   w.dp = w.NB.col(0);
   w.Z = w.NB.rightCols(on_beam);
   w.f_hat.resize(rows);
@@ -261,10 +245,10 @@ bool ContactNewton::tangential_behind(const VehicleWork& w, int row) {
 }
 
 // J X = NB in place.
-void ContactNewton::solve_vehicle(VehicleWork& w, double shift) {
+void ContactNewton::solve_vehicle(VehicleWork& w, bool singular) {
   const int f = static_cast<int>(w.J.rows());
   if (f == 0) return;
-  if (shift == 0.0) {  // statics may have neutral coordinates
+  if (singular) {  // statics may have neutral coordinates
     w.NB = w.J.completeOrthogonalDecomposition().solve(w.NB).eval();
     return;
   }
@@ -331,9 +315,9 @@ void ContactNewton::couple_beam(const Fleet& fleet, const StageData& s, Tangent 
   solve_in_place(lu_, du_);
 }
 
-// Applies the step to p and to the contact kinematics. Returns the largest residual or change of force over the
+// Applies the step to x and to the contact kinematics. Returns the largest residual or change of force over the
 // train's weight.
-double ContactNewton::update(Fleet& fleet, const StageData& s, double* p) {
+double ContactNewton::update(Fleet& fleet, const StageData& s, double* x) {
   double change = 0.0;
   int row = 0;
   for (std::size_t k = 0; k < work_.size(); ++k) {
@@ -362,7 +346,7 @@ double ContactNewton::update(Fleet& fleet, const StageData& s, double* p) {
         c.kinematics.sliding_speed = c.touch.kinematics.sliding_speed + s.shift * w.correction[i];
       }
     }
-    for (int i = 0; i < w.dp.size(); ++i) p[vehicle.offset + i] += w.dp[i];
+    for (int i = 0; i < w.dp.size(); ++i) x[vehicle.offset + i] += w.dp[i];
   }
   return change;
 }

@@ -271,9 +271,17 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
     c_p_.resize(2 * static_cast<std::size_t>(f));
     if (rank_ == 0) std::copy_n(c + 2 * n_, 2 * f, c_p_.begin());
     MPI_Bcast(c_p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
-    // The guess moves on with its velocity, so that wheels are looked for where they will be.
-    if (shift > 0.0)
-      for (int i = 0; i < f; ++i) p_[i] = (p_[f + i] - c_p_[i]) / shift;
+    for (std::vector<double>* still : {&p_still_, &pd_still_, &x_}) still->assign(f, 0.0);
+    for (int i = 0; i < f; ++i) {
+      if (shift > 0.0) {
+        pd_still_[i] = -c_p_[f + i] / shift;
+        p_still_[i] = (pd_still_[i] - c_p_[i]) / shift;
+        // The guess moves on with its velocity, so that wheels are looked for where they will be.
+        x_[i] = (p_[f + i] - pd_still_[i]) / shift;
+      } else {
+        x_[i] = p_[i];
+      }
+    }
   }
   if (solve_coupled(t, shift, c_v, part, true) != Solution::found) return false;
   for (int i = 0; i < n_; ++i) {
@@ -290,7 +298,7 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
   double* p = y + 2 * n_;
   for (int i = 0; i < f; ++i) {
     p[i] = part == Part::all ? p_[i] : -c[2 * n_ + i] / shift;
-    p[f + i] = part == Part::all ? shift * p_[i] + c_p_[i] : -c[2 * n_ + f + i] / shift;
+    p[f + i] = part == Part::all ? pd_still_[i] + shift * x_[i] : -c[2 * n_ + f + i] / shift;
   }
   p[2 * f] = (dissipation - c[2 * (n_ + f)]) / shift;
   p[2 * f + 1] = (work - c[2 * (n_ + f) + 1]) / shift;
@@ -334,17 +342,32 @@ bool System::stage_of_fleet(double t, double shift, const double* v0, const doub
   const int f = fleet_.freedom();
   evaluated_time_ = t;
   pdd_.resize(f);
-  for (int i = 0; i < f; ++i) pdd_[i] = shift * p_[i] + c_p_[i];
+  for (int i = 0; i < f; ++i) {
+    p_[i] = p_still_[i] + x_[i];
+    pdd_[i] = pd_still_[i] + shift * x_[i];
+  }
   if (!fleet_.set(t, p_.data(), pdd_.data())) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
     gather(v0, c_v);
+    for (std::size_t i = 0; i < w_.size(); ++i) w_[i] += shift * v_[i];
     if (beam_ != nullptr && !fleet_.elements().empty()) compliance_->prepare(shift, added, fleet_.elements());
-    StageData stage{t, shift, c_p_.data(), &v_, &w_, compliance_ ? &*compliance_ : nullptr, per_node_};
-    if (!newton_.solve(fleet_, stage, p_.data())) return false;
+    const StageData stage{t,
+                          shift,
+                          shift * shift,
+                          p_still_.data(),
+                          pd_still_.data(),
+                          &v_,
+                          &w_,
+                          compliance_ ? &*compliance_ : nullptr,
+                          per_node_};
+    if (!newton_.solve(fleet_, stage, x_.data())) return false;
     if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
   }
-  for (int i = 0; i < f; ++i) pdd_[i] = shift * (shift * p_[i] + c_p_[i]) + c_p_[f + i];
+  for (int i = 0; i < f; ++i) {
+    p_[i] = p_still_[i] + x_[i];
+    pdd_[i] = shift * shift * x_[i];
+  }
   note_touched();
   fleet_.contact_loads();
   for (MovingVehicle& vehicle : fleet_.vehicles)

@@ -51,7 +51,7 @@ void System::find_equilibrium(double* v) {
   fleet_.partition(0.0);
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
-  c_p_.assign(2 * static_cast<std::size_t>(f), 0.0);
+  for (std::vector<double>* still : {&p_still_, &pd_still_, &x_}) still->assign(f, 0.0);
 
   if (beam_ != nullptr) {
     external_load(0.0, nodal_.data());
@@ -59,7 +59,7 @@ void System::find_equilibrium(double* v) {
   }
   settle(input_.self_weight || !loads_.empty(), Part::all);
   std::copy(nodal_.begin(), nodal_.end(), v);
-  fleet_.set(0.0, p_.data(), c_p_.data());
+  fleet_.set(0.0, p_.data(), pd_still_.data());
   for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
   for (int i = 0; i < moving.contacts(); ++i) moving.contact(i).kinematics = fleet_.contact(i).kinematics;
   fleet_ = std::move(moving);

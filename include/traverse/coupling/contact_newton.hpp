@@ -14,22 +14,25 @@
 
 namespace traverse::coupling {
 
-/// The stage's data: p' = shift*p + c, p'' = shift*p' + c', element unknowns v = v0 + (compliance) loads,
-/// their rates w = shift*v + c_v. A shift of 0 with zero c is the static problem.
+/// The stage's data. The unknown is the change x of p against p at zero acceleration: p = p_still + x,
+/// p' = pd_still + shift*x, p'' = shift2*x. Being small it keeps the digits that p itself would lose in p''. The
+/// elements' unknowns are v = v0 + z, w = w0 + shift*z with z = (compliance) loads. Shifts of 0: the static problem.
 struct StageData {
   double t = 0.0;
-  double shift = 0.0;
-  const double* c_p = nullptr;              // freedom values, then those of p'
+  double shift = 0.0;   // dp'/dp, 1/s
+  double shift2 = 0.0;  // dp''/dp, 1/s2: shift*shift for Runge-Kutta types
+  const double* p_still = nullptr;
+  const double* pd_still = nullptr;
   const std::vector<double>* v0 = nullptr;  // free response at the elements in touch, 2*per_node each
-  const std::vector<double>* c_v = nullptr;
-  const Compliance* compliance = nullptr;  // null without a beam
+  const std::vector<double>* w0 = nullptr;  // its rate
+  const Compliance* compliance = nullptr;   // null without a beam
   int per_node = 2;
 };
 
 class ContactNewton {
  public:
-  /// p (freedom values): in a guess, out the solution. False when it does not converge.
-  bool solve(Fleet& fleet, const StageData& stage, double* p);
+  /// x (freedom values): in a guess, out the solution. False when it does not converge.
+  bool solve(Fleet& fleet, const StageData& stage, double* x);
   /// Nodal loads on the elements in touch that belong to the solution, 2*per_node each.
   const std::vector<double>& element_loads() const { return loads_; }
   /// Residual and change of force of the last iteration over the train's weight, for messages.
@@ -55,21 +58,21 @@ class ContactNewton {
     bool operator==(const Row&) const = default;
   };
   enum class Tangent { kept, fresh, full };
-  bool evaluate(Fleet& fleet, const StageData& s, const double* p);
+  bool evaluate(Fleet& fleet, const StageData& s, const double* x);
   void beam_field(const StageData& s, const Fleet& fleet);
   static void contact_directions(const Fleet& fleet, const VehicleWork& w,
                                  const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
                                  RowMatrix& G);
   void vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own);
   static bool tangential_behind(const VehicleWork& w, int row);
-  static void solve_vehicle(VehicleWork& w, double shift);
+  static void solve_vehicle(VehicleWork& w, bool singular);
   bool list_rows(const Fleet& fleet);
   void mutual_compliance(const Fleet& fleet, const StageData& s);
   void couple_beam(const Fleet& fleet, const StageData& s, Tangent own);
-  double update(Fleet& fleet, const StageData& s, double* p);
+  double update(Fleet& fleet, const StageData& s, double* x);
 
   std::vector<VehicleWork> work_;
-  std::vector<double> loads_, v_, w_, pd_, pdd_;
+  std::vector<double> loads_, v_, w_, p_, pd_, pdd_;
   Eigen::MatrixXd W_, coupled_;
   Eigen::VectorXd du_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;

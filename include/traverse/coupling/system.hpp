@@ -175,6 +175,7 @@ class System {
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
   double influence_of_weight_ = 0.0;                // deflection of the influence line's station under self-weight, m
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
+  std::vector<double> p_still_, pd_still_, x_;      // p and p' at zero acceleration, and the stage's change of p
   std::vector<double> evaluated_;                   // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
   std::vector<double> v_, w_;  // of the elements in touch, 2*per_node each
