@@ -9,14 +9,30 @@
 namespace traverse::beam {
 namespace {
 
-struct Range {
-  int first = 0, count = 0;
-};
+/// First columns of the parts that do not touch: spans between separate joints. A track joins them all.
+std::vector<int> parts_of(const Line& bridge, bool track, int columns) {
+  std::vector<int> begins = {0};
+  for (int end = 1; end < bridge.mesh.spans() && !track; ++end) {
+    const auto [left, right] = bridge.mesh.nodes_at(end);
+    if (left != right) begins.push_back(bridge.first_column + right);
+  }
+  begins.push_back(columns);
+  return begins;
+}
 
-/// Columns of one rank: contiguous, as even as possible.
-Range columns_of(int rank, int ranks, int columns) {
-  const int each = columns / ranks, more = columns % ranks;
-  return {rank * each + std::min(rank, more), each + (rank < more ? 1 : 0)};
+/// Each rank's first column, and the end: contiguous, as even as possible; between parts where there are enough.
+std::vector<int> cut(const std::vector<int>& parts, int ranks) {
+  const int columns = parts.back();
+  std::vector<int> begins;
+  for (int rank = 0; rank <= ranks; ++rank) {
+    int begin = static_cast<int>(static_cast<long>(columns) * rank / ranks);
+    if (std::ssize(parts) > ranks) {
+      const auto part = std::lower_bound(parts.begin(), parts.end(), begin);
+      begin = part != parts.begin() && *part - begin > begin - part[-1] ? part[-1] : *part;
+    }
+    begins.push_back(begin);
+  }
+  return begins;
 }
 
 BeamModel checked(BeamModel model) {
@@ -75,17 +91,15 @@ Beam::Beam(MPI_Comm comm, BeamModel model)
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm_, &rank);
   MPI_Comm_size(comm_, &ranks);
-  const Range mine = columns_of(rank, ranks, columns());
-  first_ = mine.first;
-  local_ = mine.count;
+  parts_ = parts_of(bridge_, rail_.has_value(), columns());
+  cuts_ = cut(parts_, ranks);
+  first_ = cuts_[index(rank)];
+  local_ = cuts_[index(rank + 1)] - first_;
   assemble(slice());
 }
 
 int Beam::owner(int column) const {
-  int ranks = 1;
-  MPI_Comm_size(comm_, &ranks);
-  const int each = columns() / ranks, more = columns() % ranks, bigger = more * (each + 1);
-  return column < bigger ? column / (each + 1) : more + (column - bigger) / each;
+  return static_cast<int>(std::upper_bound(cuts_.begin(), cuts_.end(), column) - cuts_.begin()) - 1;
 }
 
 Slice Beam::slice() const {

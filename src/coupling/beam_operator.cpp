@@ -48,16 +48,14 @@ void block_product(const solve::BlockTridiagonal& A, double sign, const double* 
 
 BeamOperator::BeamOperator(const beam::Beam& beam)
     : comm_(beam.comm()),
+      block_(beam.block()),
+      nodes_(beam.local_columns()),
       left_rank_(MPI_PROC_NULL),
       right_rank_(MPI_PROC_NULL),
       fixed_(beam.fixed()),
-      damping_(solve::BlockTridiagonal::from(beam.damping(), beam.block())),
-      stiffness_(solve::BlockTridiagonal::from(beam.stiffness(), beam.block())),
-      work_(beam.block(), beam.local_columns()),
       internal_(beam),
       stiffness_damping_(beam.rayleigh().b),
-      halo_(2 * static_cast<std::size_t>(beam.block())),
-      mass_factor_(beam.comm(), beam.block(), beam.local_columns()) {
+      halo_(2 * static_cast<std::size_t>(beam.block())) {
   if (beam.local_columns() > 0) {
     if (beam.first_column() > 0) left_rank_ = beam.owner(beam.first_column() - 1);
     if (beam.first_column() + beam.local_columns() < beam.columns())
@@ -80,7 +78,47 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
   }
   damped_ = drag_ || stiffness_damping_ != 0.0;
   relative_.resize(unknowns());
-  mass_factor_.factor(mass_.rows, fixed_);
+  Shifted all{mass_.rows, read(beam.damping()), read(beam.stiffness()), {}};
+  find_parts(beam, all);
+  if (!parts_) {
+    shifted_.push_back(std::move(all));
+  } else {
+    for (int part : parts_->of_kind) {
+      const solve::Parts::Part& its = parts_->parts[static_cast<std::size_t>(part)];
+      shifted_.push_back(
+          {solve::rows_of(all.mass, its), solve::rows_of(all.damping, its), solve::rows_of(all.stiffness, its), {}});
+    }
+  }
+  for (Shifted& matrices : shifted_) matrices.work = matrices.mass;
+  mass_factor_.emplace(new_factor());
+  if (parts_) {
+    for (std::size_t kind = 0; kind < shifted_.size(); ++kind)
+      mass_factor_->parts().factor(static_cast<int>(kind), shifted_[kind].mass, fixed_);
+  } else {
+    mass_factor_->whole().factor(mass_.rows, fixed_);
+  }
+}
+
+// Parts of this rank alone, whatever springs come later.
+void BeamOperator::find_parts(const beam::Beam& beam, const Shifted& all) {
+  int ranks = 1;
+  MPI_Comm_size(comm_, &ranks);
+  const std::vector<int>& parts = beam.parts();
+  if (static_cast<int>(parts.size()) - 1 < std::max(2, ranks) || beam.model().foundation.nonlinear()) return;
+  std::vector<std::ptrdiff_t> begins;
+  for (int begin : parts)
+    if (begin >= beam.first_column() && begin <= beam.first_column() + nodes_) begins.push_back(begin - beam.first_column());
+  parts_ = solve::Parts::find(begins, {&all.mass, &all.damping, &all.stiffness}, fixed_);
+}
+
+BeamFactor BeamOperator::new_factor() const {
+  if (parts_) return BeamFactor(solve::SeparateParts(block_, *parts_));
+  return BeamFactor(solve::SubstructuredCholesky(comm_, block_, nodes_));
+}
+
+const solve::BlockTridiagonal& BeamOperator::Shifted::at(double shift, double shift2) {
+  work.combine(shift2, mass, shift, damping, 1.0, stiffness);
+  return work;
 }
 
 // The block that couples to the left neighbour's last column is that rank's.
@@ -95,8 +133,8 @@ BeamOperator::Matrix BeamOperator::with_neighbour(solve::BlockTridiagonal rows) 
 }
 
 void BeamOperator::borders(const double* x, double* left, double* right) const {
-  const int b = work_.block;
-  exchange(x, x + static_cast<std::ptrdiff_t>(work_.nodes - 1) * b, b, left, right);
+  const int b = block_;
+  exchange(x, x + static_cast<std::ptrdiff_t>(nodes_ - 1) * b, b, left, right);
 }
 
 void BeamOperator::exchange(const double* first, const double* last, int count, double* left, double* right) const {
@@ -108,8 +146,8 @@ void BeamOperator::exchange(const double* first, const double* last, int count, 
 }
 
 void BeamOperator::product(const Matrix& A, double sign, const double* x, double* r) const {
-  borders(x, halo_.data(), halo_.data() + work_.block);
-  const int b = work_.block;
+  borders(x, halo_.data(), halo_.data() + block_);
+  const int b = block_;
   const double* left = left_rank_ != MPI_PROC_NULL ? halo_.data() : nullptr;
   const double* right = right_rank_ != MPI_PROC_NULL ? halo_.data() + b : nullptr;
   const auto kernel = b == 2   ? block_product<2>
@@ -130,13 +168,13 @@ void BeamOperator::multiply(double sign, const double* m, const double* c, const
   if (k == nullptr && !damps) return;
   if (damps) add_damped_part(c, k);
   const double* x = damps ? relative_.data() : k;
-  borders(x, halo_.data(), halo_.data() + work_.block);
-  internal_.add(sign, x, halo_.data(), halo_.data() + work_.block, r);
+  borders(x, halo_.data(), halo_.data() + block_);
+  internal_.add(sign, x, halo_.data(), halo_.data() + block_, r);
 }
 
 // k + b c; a rail's unknowns have no b.
 void BeamOperator::add_damped_part(const double* c, const double* k) const {
-  const int n = unknowns(), block = work_.block;
+  const int n = unknowns(), block = block_;
   const double b = stiffness_damping_;
   for (int i = 0; i < n; ++i) relative_[i] = b * c[i];
   for (int j = 0; j < block; ++j) {
@@ -149,11 +187,11 @@ void BeamOperator::add_damped_part(const double* c, const double* k) const {
 
 void BeamOperator::solve_mass(double* x) const {
   ++solves;
-  mass_factor_.solve(x);
+  mass_factor_->solve(x);
 }
 
 void BeamOperator::solve_static(double* x, const AddedSprings* added) {
-  const solve::SubstructuredCholesky& factor = factored(0.0, 0.0, added);
+  const BeamFactor& factor = factored(0.0, 0.0, added);
   load_.assign(x, x + unknowns());
   residual_.resize(unknowns());
   factor.solve(x);
@@ -162,8 +200,8 @@ void BeamOperator::solve_static(double* x, const AddedSprings* added) {
   for (int i = 0; i < most_refinements; ++i) {
     residual_ = load_;
     if (springs_) product(*springs_, -1.0, x, residual_.data());
-    borders(x, halo_.data(), halo_.data() + work_.block);
-    internal_.add<long double>(-1.0, x, halo_.data(), halo_.data() + work_.block, residual_.data());
+    borders(x, halo_.data(), halo_.data() + block_);
+    internal_.add<long double>(-1.0, x, halo_.data(), halo_.data() + block_, residual_.data());
     if (added != nullptr) {
       for (const AddedSprings::Term& t : *added->terms)
         residual_[t.row] -=
@@ -195,7 +233,7 @@ void BeamOperator::solve_static(double* x, const AddedSprings* added) {
         "elements between supports (beam_elements_per_span)");
 }
 
-const solve::SubstructuredCholesky& BeamOperator::factored(double shift, double shift2, const AddedSprings* added) {
+const BeamFactor& BeamOperator::factored(double shift, double shift2, const AddedSprings* added) {
   const long version = added != nullptr ? added->version : 0;
   auto same = [&](const Factor& f) {
     return f.added == version && std::abs(f.shift - shift) <= 1e-9 * std::abs(shift) &&
@@ -206,7 +244,7 @@ const solve::SubstructuredCholesky& BeamOperator::factored(double shift, double 
     factors_.splice(factors_.begin(), factors_, found);
   } else {
     if (factors_.size() < kept_factors)
-      factors_.push_front({shift, shift2, version, 0, solve::SubstructuredCholesky(comm_, work_.block, work_.nodes)});
+      factors_.push_front({shift, shift2, version, 0, new_factor()});
     else
       factors_.splice(factors_.begin(), factors_, std::prev(factors_.end()));
     Factor& f = factors_.front();
@@ -214,15 +252,8 @@ const solve::SubstructuredCholesky& BeamOperator::factored(double shift, double 
     f.shift2 = shift2;
     f.added = version;
     f.stamp = ++factorisations_;
-    work_.combine(shift2, mass_.rows, shift, damping_, 1.0, stiffness_);
-    if (added != nullptr) {
-      for (const AddedSprings::Term& t : *added->terms)
-        if (t.place >= 0)
-          (t.upper ? work_.upper : work_.diagonal)[t.place] +=
-              t.shape * (added->k[t.point] + shift * added->c[t.point]);
-    }
     try {
-      f.cholesky.factor(work_, fixed_);
+      factor(f.beam, shift, shift2, added);
     } catch (const SolverError& error) {
       factors_.pop_front();
       if (shift > 0.0) throw;
@@ -233,7 +264,24 @@ const solve::SubstructuredCholesky& BeamOperator::factored(double shift, double 
     }
   }
   stamp_ = factors_.front().stamp;
-  return factors_.front().cholesky;
+  return factors_.front().beam;
+}
+
+void BeamOperator::factor(BeamFactor& to, double shift, double shift2, const AddedSprings* added) {
+  if (parts_) {
+    for (std::size_t kind = 0; kind < shifted_.size(); ++kind)
+      to.parts().factor(static_cast<int>(kind), shifted_[kind].at(shift, shift2), fixed_);
+    return;
+  }
+  Shifted& all = shifted_.front();
+  (void)all.at(shift, shift2);
+  if (added != nullptr) {
+    for (const AddedSprings::Term& t : *added->terms)
+      if (t.place >= 0)
+        (t.upper ? all.work.upper : all.work.diagonal)[t.place] +=
+            t.shape * (added->k[t.point] + shift * added->c[t.point]);
+  }
+  to.whole().factor(all.work, fixed_);
 }
 
 }  // namespace traverse::coupling

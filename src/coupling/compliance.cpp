@@ -18,7 +18,7 @@ Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
       work_(static_cast<std::size_t>(op.unknowns()) * m_) {}
 
 void Compliance::prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements) {
-  const solve::SubstructuredCholesky& factor = operator_.factored(shift, shift2, added);
+  const BeamFactor& factor = operator_.factored(shift, shift2, added);
   const long stamp = operator_.factor_stamp();
   if (stamp == stamp_ && elements == elements_) return;
   stamp_ = stamp;
@@ -40,7 +40,7 @@ void Compliance::prepare(double shift, double shift2, const AddedSprings* added,
   }
 }
 
-Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& factor, double shift,
+Compliance::Column& Compliance::column(const BeamFactor& factor, double shift,
                                        const AddedSprings* added, long stamp, int element) {
   auto found = std::find_if(columns_.begin(), columns_.end(),
                             [&](const Column& c) { return c.stamp == stamp && c.element == element; });

@@ -330,9 +330,9 @@ TEST(BadRuns, NothingToSimulate) {
 TEST(BadRuns, Integrators) {
   const Workplace workplace(small_scene());
   expect_refusals(workplace, {
-                                 {{"-ts_type", "rosw"}, {"ts_type", "rosw", "allowed: arkimex, cn, bdf"}},
-                                 {{"-ts_type", "alpha"}, {"ts_type", "alpha", "allowed: arkimex, cn, bdf"}},
-                                 {{"-ts_type", "alpha2"}, {"ts_type", "alpha2", "allowed: arkimex, cn, bdf"}},
+                                 {{"-ts_type", "rosw"}, {"ts_type", "rosw", "allowed: esdirk4, genalpha, arkimex"}},
+                                 {{"-ts_type", "alpha"}, {"ts_type", "alpha", "allowed: esdirk4, genalpha, arkimex"}},
+                                 {{"-ts_type", "alpha2"}, {"ts_type", "alpha2", "allowed: esdirk4, genalpha, arkimex"}},
                                  {{"-ts_type", "bdf", "-ts_bdf_order", "3"}, {"ts_bdf_order", "3", "allowed: 1, 2"}},
                                  {{"-ts_type", "bfd"}, {"ts_type", "bfd", "allowed"}},
                                  {{"-ts_type", "bdf", "-ts_bdf_order", "9"}, {"ts_bdf_order", "9", "allowed"}},

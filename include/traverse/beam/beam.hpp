@@ -50,6 +50,9 @@ class Beam {
   int first_column() const { return first_; }  // owned by this rank: [first_column, first_column + local_columns)
   int local_columns() const { return local_; }
   int local_unknowns() const { return local_ * block(); }
+  /// First columns of the parts that do not touch each other (between separate joints), and the end. Ranks are cut
+  /// there where there are at least as many parts.
+  const std::vector<int>& parts() const { return parts_; }
   /// Which rank owns a column.
   int owner(int column) const;
   /// The place of a global unknown among this rank's, or -1.
@@ -113,6 +116,7 @@ class Beam {
   Layout layout_;
   Line bridge_;
   std::optional<Line> rail_;
+  std::vector<int> parts_, cuts_;
   int first_ = 0, local_ = 0;  // columns
   std::vector<char> fixed_;
   Rayleigh rayleigh_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "traverse/beam/internal_forces.hpp"
+#include "traverse/coupling/beam_factor.hpp"
 #include "traverse/solve/block_tridiagonal.hpp"
 
 namespace traverse::coupling {
@@ -30,8 +31,10 @@ class BeamOperator {
  public:
   explicit BeamOperator(const beam::Beam& beam);
 
-  int unknowns() const { return work_.nodes * work_.block; }  // on this rank
-  int block() const { return work_.block; }                   // unknowns a column
+  int unknowns() const { return nodes_ * block_; }  // on this rank
+  int block() const { return block_; }              // unknowns a column
+  /// This rank's columns as parts that do not touch, where they are solved so; else null.
+  const solve::Parts* parts() const { return parts_ ? &*parts_ : nullptr; }
 
   /// Collective. The neighbours' columns at the borders of this rank's; left as they are where there is none.
   void borders(const double* x, double* left, double* right) const;
@@ -57,7 +60,7 @@ class BeamOperator {
   /// Factorisation of shift2 M + shift C* + K*, with springs added where there are some; 0, 0 is the static one. Kept
   /// for the last few shifts, which are compared relatively (time integrators compute the same shift with rounding
   /// noise).
-  const solve::SubstructuredCholesky& factored(double shift, double shift2, const AddedSprings* added = nullptr);
+  const BeamFactor& factored(double shift, double shift2, const AddedSprings* added = nullptr);
   /// Changes whenever `factored` hands out another factorisation.
   long factor_stamp() const { return stamp_; }
   bool damped() const { return damped_; }
@@ -68,23 +71,33 @@ class BeamOperator {
     double shift, shift2;
     long added;  // version of the springs; 0: none
     long stamp;
-    solve::SubstructuredCholesky cholesky;
+    BeamFactor beam;
+  };
+  /// The matrices that factorisations are made of: of all this rank's columns, or of one kind of its parts.
+  struct Shifted {
+    solve::BlockTridiagonal mass, damping, stiffness, work;
+    const solve::BlockTridiagonal& at(double shift, double shift2);
   };
   /// A matrix of this rank's rows, with the block that couples them to the rank on the left.
   struct Matrix {
     solve::BlockTridiagonal rows;
     std::vector<double> left;
   };
+  void find_parts(const beam::Beam& beam, const Shifted& all);
+  BeamFactor new_factor() const;
+  void factor(BeamFactor& to, double shift, double shift2, const AddedSprings* added);
   Matrix with_neighbour(solve::BlockTridiagonal rows) const;
   void add_damped_part(const double* c, const double* k) const;
   void product(const Matrix& A, double sign, const double* x, double* r) const;
 
   MPI_Comm comm_;
+  int block_, nodes_;
   int left_rank_, right_rank_;  // neighbours with nodes, or MPI_PROC_NULL
   std::vector<char> fixed_;
   Matrix mass_;
   std::optional<Matrix> springs_, drag_;  // C* = drag + b K_aa; null where there are none
-  solve::BlockTridiagonal damping_, stiffness_, work_;
+  std::optional<solve::Parts> parts_;
+  std::vector<Shifted> shifted_;  // one, or one a kind of part
   beam::InternalForces internal_;
   double stiffness_damping_;         // b of eq. 19, s
   std::vector<double> damped_part_;  // b for the bridge's unknowns, 0 for others of a column
@@ -93,7 +106,7 @@ class BeamOperator {
   double static_error_ = 0.0;
   bool damped_ = false;
   mutable std::vector<double> halo_;  // values of the columns on the left and on the right
-  solve::SubstructuredCholesky mass_factor_;
+  std::optional<BeamFactor> mass_factor_;
   std::list<Factor> factors_;  // most recent first
   long stamp_ = 0;
   long factorisations_ = 0;

@@ -31,7 +31,7 @@ class Compliance {
     int low = 0, high = 0;       // local unknowns that respond above rounding
     std::vector<double> values;  // (high - low) x 2*per_node, column by column
   };
-  Column& column(const solve::SubstructuredCholesky& factor, double shift, const AddedSprings* added, long stamp,
+  Column& column(const BeamFactor& factor, double shift, const AddedSprings* added, long stamp,
                  int element);
   void fill_matrix();
 
