@@ -64,30 +64,40 @@ void ElementRows::append(const Coefficients& c) {
 }
 
 void ElementRows::multiply(int first, int past, NodalPair x, NodalPair y, NodalPair r) const {
+  if (y.v != nullptr)
+    products<true>(first, past, x, y, r);
+  else
+    products<false>(first, past, x, y, r);
+}
+
+template <bool with_mass>
+void ElementRows::products(int first, int past, NodalPair x, NodalPair y, NodalPair r) const {
   const int nodes = past - first;
   const std::size_t offset = static_cast<std::size_t>(first % period_);
-  std::array<double, tile + 1> left_force, left_moment, right_force, right_moment;  // of each element on its ends
-  const auto K = [&](int i) { return K_[static_cast<std::size_t>(i)].data() + offset; };
-  const auto M = [&](int i) { return M_[static_cast<std::size_t>(i)].data() + offset; };
+  const auto K = [&](std::size_t i) { return K_[i].data() + offset; };
+  const auto M = [&](std::size_t i) { return M_[i].data() + offset; };
   const double *h = K(0), *A = K(1), *B = K(2), *C = K(3), *D = K(4);
+  const double *m11 = M(0), *m12 = M(1), *m13 = M(2), *m14 = M(3), *m22 = M(4), *m23 = M(5), *m24 = M(6), *m33 = M(7),
+               *m34 = M(8), *m44 = M(9);
+  // Of each element on its left end, and on its right one.
+  std::array<double, tile + 1> left_force, left_moment, right_force, right_moment;
   for (int j = 0; j <= nodes; ++j) {
     const double turn = x.theta[j + 1] - x.theta[j];
     const double rise = x.v[j + 1] - x.v[j] - h[j] * x.theta[j];
     const double f = A[j] * rise + B[j] * turn;
     const double m = C[j] * rise + D[j] * turn;
-    left_force[j] = f;
-    left_moment[j] = m;
-    right_force[j] = -f;
-    right_moment[j] = f * h[j] - m;
-  }
-  const double *m11 = M(0), *m12 = M(1), *m13 = M(2), *m14 = M(3), *m22 = M(4), *m23 = M(5), *m24 = M(6), *m33 = M(7),
-               *m34 = M(8), *m44 = M(9);
-  for (int j = 0; j <= nodes; ++j) {
-    const double v1 = y.v[j], t1 = y.theta[j], v2 = y.v[j + 1], t2 = y.theta[j + 1];
-    left_force[j] += m11[j] * v1 + m12[j] * t1 + m13[j] * v2 + m14[j] * t2;
-    left_moment[j] += m12[j] * v1 + m22[j] * t1 + m23[j] * v2 + m24[j] * t2;
-    right_force[j] += m13[j] * v1 + m23[j] * t1 + m33[j] * v2 + m34[j] * t2;
-    right_moment[j] += m14[j] * v1 + m24[j] * t1 + m34[j] * v2 + m44[j] * t2;
+    if constexpr (with_mass) {
+      const double v1 = y.v[j], t1 = y.theta[j], v2 = y.v[j + 1], t2 = y.theta[j + 1];
+      left_force[j] = f + m11[j] * v1 + m12[j] * t1 + m13[j] * v2 + m14[j] * t2;
+      left_moment[j] = m + m12[j] * v1 + m22[j] * t1 + m23[j] * v2 + m24[j] * t2;
+      right_force[j] = m13[j] * v1 + m23[j] * t1 + m33[j] * v2 + m34[j] * t2 - f;
+      right_moment[j] = f * h[j] - m + m14[j] * v1 + m24[j] * t1 + m34[j] * v2 + m44[j] * t2;
+    } else {
+      left_force[j] = f;
+      left_moment[j] = m;
+      right_force[j] = -f;
+      right_moment[j] = f * h[j] - m;
+    }
   }
   if (first == 0 && begins_) right_force[0] = right_moment[0] = 0.0;
   if (past == nodes_ && ends_) left_force[nodes] = left_moment[nodes] = 0.0;

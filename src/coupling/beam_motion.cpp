@@ -8,40 +8,33 @@ namespace {
 constexpr int tile = beam::ElementRows::tile;
 constexpr int most_terms = most_accelerations + 2;  // with v and w
 
-struct Terms {  // of a combination: where its vectors begin, and their weights
+/// Vectors and their weights in two sums.
+struct Terms {
   std::array<const double*, most_terms> x{};
-  std::array<double, most_terms> weight{};
+  std::array<double, most_terms> first{}, second{};
   int count = 0;
-  void add(const double* vector, double by) {
-    if (by == 0.0) return;
+  void add(const double* vector, double in_first, double in_second) {
+    if (in_first == 0.0 && in_second == 0.0) return;
     x[count] = vector;
-    weight[count++] = by;
+    first[count] = in_first;
+    second[count++] = in_second;
   }
 };
 
-// (v, theta)[i] = sum over N vectors of node i of each.
+// Two sums of N vectors' entries [from, from + size) at once.
 template <int N>
-void sum_nodes(const Terms& terms, int first, int nodes, double* v, double* theta) {
+void add_up(const Terms& terms, std::ptrdiff_t from, int size, double* first, double* second) {
   std::array<const double*, N> x;
-  for (int j = 0; j < N; ++j) x[j] = terms.x[j] + 2 * static_cast<std::ptrdiff_t>(first);
-  for (int i = 0; i < nodes; ++i) {
-    double sum_v = 0.0, sum_theta = 0.0;
+  for (int j = 0; j < N; ++j) x[j] = terms.x[j] + from;
+#pragma GCC ivdep
+  for (int i = 0; i < size; ++i) {
+    double a = 0.0, b = 0.0;
     for (int j = 0; j < N; ++j) {
-      sum_v += terms.weight[j] * x[j][2 * i];
-      sum_theta += terms.weight[j] * x[j][2 * i + 1];
+      a += terms.first[j] * x[j][i];
+      b += terms.second[j] * x[j][i];
     }
-    v[i] = sum_v;
-    theta[i] = sum_theta;
-  }
-}
-
-// x += sum over N vectors.
-template <int N>
-void add_vectors(const Terms& terms, std::ptrdiff_t first, std::ptrdiff_t past, double* to) {
-  for (std::ptrdiff_t i = first; i < past; ++i) {
-    double sum = 0.0;
-    for (int j = 0; j < N; ++j) sum += terms.weight[j] * terms.x[j][i];
-    to[i] += sum;
+    first[i] = a;
+    second[i] = b;
   }
 }
 
@@ -71,9 +64,22 @@ void with_count(int count, Call call) {
 
 }  // namespace
 
+/// Numbers of the nodes from the one before a tile to the one behind it: (v, theta) one after the other, and apart.
 struct BeamMotion::Tile {
-  std::array<double, tile + 2> v, theta;  // from the node before the tile to the one behind it
-  beam::NodalPair at(int node) { return {v.data() + node, theta.data() + node}; }
+  std::array<double, 2 * (tile + 2)> together;
+  std::array<double, tile + 2> v, theta;
+
+  void separate(int first, int count) {
+    for (int i = 0; i < count; ++i) {
+      v[first + i] = together[2 * i];
+      theta[first + i] = together[2 * i + 1];
+    }
+  }
+  void set(int node, double v_there, double theta_there) {
+    v[node] = v_there;
+    theta[node] = theta_there;
+  }
+  beam::NodalPair nodes() { return {v.data(), theta.data()}; }
 };
 
 BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load)
@@ -87,34 +93,34 @@ void BeamMotion::prepare(int count) {
   for (int j = 0; j < count; ++j) accelerations_[j].assign(n_, 0.0);
 }
 
-void BeamMotion::solve(const StageRule& rule, const Weights& before, const double* v, const double* w,
-                       const std::vector<NodalLoad>& loads) {
+void BeamMotion::solve(const StageRule& rule, const double* v, const double* w, const std::vector<NodalLoad>& loads) {
   v_ = v;
   w_ = w;
   loads_ = &loads;
   const auto [a, b] = beam_.rayleigh();
   elastic_ = {1.0, rule.w_in_v + b, rule.a_in_v, rule.known};
   drag_ = {0.0, a, rule.a_in_w, rule.known};
-  before_ = {0.0, 1.0, before, rule.known};
   for (int j = 0; j < rule.known; ++j) {
     elastic_.a[j] += b * rule.a_in_w[j];
     drag_.a[j] *= a;
   }
+  measuring_ = rule.known == 1 && operator_.damped();
+  dissipation_ = {};
   exchange_borders();
   scale_ = 1.0 / rule.displacement;
   target_ = acceleration(rule.known);
-  dissipation_ = 0.0;
   operator_.factored(rule.rate / rule.displacement, 1.0 / rule.displacement).solve(target_, *this);
   ++operator_.solves;
 }
 
 // The combinations at the columns next to this rank's.
 void BeamMotion::exchange_borders() {
-  if (nodes_ == 0) return;
+  if (nodes_ == 0 || !operator_.shared()) return;
   constexpr int size = 6;
   std::array<double, size> first, last, left{}, right{};
+  const Combination rate{0.0, 1.0, {}, 0};
   int i = 0;
-  for (const Combination* c : {&elastic_, &drag_, &before_}) {
+  for (const Combination* c : {&elastic_, &drag_, &rate}) {
     std::tie(first[i], first[i + 1]) = at_node(*c, 0);
     std::tie(last[i], last[i + 1]) = at_node(*c, nodes_ - 1);
     i += 2;
@@ -133,22 +139,26 @@ std::pair<double, double> BeamMotion::at_node(const Combination& c, int node) co
   return {sum[0], sum[1]};
 }
 
-void BeamMotion::combine(const Combination& c, int first, int past, const std::array<double, 4>& ghosts,
-                         Tile& to) const {
+// Two combinations on a tile and its neighbours, with their values beyond this rank's nodes.
+void BeamMotion::combine(const Combination& a, const Combination& b, int first, int past, const Ghosts& ghosts_a,
+                         const Ghosts& ghosts_b, Tile& to_a, Tile& to_b) const {
   Terms terms;
-  terms.add(v_, c.v);
-  terms.add(w_, c.w);
-  for (int j = 0; j < c.known; ++j) terms.add(accelerations_[j].data(), c.a[j]);
-  const int from = std::max(first - 1, 0), count = std::min(past + 1, nodes_) - from;
-  const beam::NodalPair at = to.at(from - (first - 1));
-  with_count(terms.count, [&](auto N) { sum_nodes<N>(terms, from, count, at.v, at.theta); });
+  terms.add(v_, a.v, b.v);
+  terms.add(w_, a.w, b.w);
+  for (int j = 0; j < std::max(a.known, b.known); ++j) terms.add(accelerations_[j].data(), a.a[j], b.a[j]);
+  const int from = std::max(first - 1, 0), count = std::min(past + 1, nodes_) - from, place = from - (first - 1);
+  with_count(terms.count, [&](auto N) {
+    add_up<N>(terms, 2 * static_cast<std::ptrdiff_t>(from), 2 * count, to_a.together.data(), to_b.together.data());
+  });
+  to_a.separate(place, count);
+  to_b.separate(place, count);
   if (first == 0) {
-    to.v[0] = ghosts[0];
-    to.theta[0] = ghosts[1];
+    to_a.set(0, ghosts_a[0], ghosts_a[1]);
+    to_b.set(0, ghosts_b[0], ghosts_b[1]);
   }
   if (past == nodes_) {
-    to.v[past - first + 1] = ghosts[2];
-    to.theta[past - first + 1] = ghosts[3];
+    to_a.set(past - first + 1, ghosts_a[2], ghosts_a[3]);
+    to_b.set(past - first + 1, ghosts_b[2], ghosts_b[3]);
   }
 }
 
@@ -157,27 +167,37 @@ void BeamMotion::fill(std::ptrdiff_t first, std::ptrdiff_t past) {
     fill_tile(static_cast<int>(node), static_cast<int>(std::min<std::ptrdiff_t>(past, node + tile)));
 }
 
+// w^T C w and a^T C w at the start of the step.
+void BeamMotion::measure_dissipation(int first, int past, Tile& elastic, Tile& drag, Tile& force) {
+  const auto [a, b] = beam_.rayleigh();
+  const auto scaled = [](const Ghosts& g, double by) { return Ghosts{by * g[0], by * g[1], by * g[2], by * g[3]}; };
+  combine({0.0, b, {}, 0}, {0.0, a, {}, 0}, first, past, scaled(ghosts_[2], b), scaled(ghosts_[2], a), elastic, drag);
+  rows_->multiply(first, past, elastic.nodes(), drag.nodes(), force.nodes());
+  const double* w = w_ + 2 * static_cast<std::ptrdiff_t>(first);
+  const double* acceleration = accelerations_[0].data() + 2 * static_cast<std::ptrdiff_t>(first);
+  constexpr int lanes = 8;
+  std::array<double, lanes> by_w{}, by_a{};
+  const auto add = [&](int lane, int i) {
+    by_w[lane] += w[2 * i] * force.v[i] + w[2 * i + 1] * force.theta[i];
+    by_a[lane] += acceleration[2 * i] * force.v[i] + acceleration[2 * i + 1] * force.theta[i];
+  };
+  int i = 0;
+  for (; i + lanes <= past - first; i += lanes)
+    for (int lane = 0; lane < lanes; ++lane) add(lane, i + lane);
+  for (; i < past - first; ++i) add(0, i);
+  for (int lane = 0; lane < lanes; ++lane) {
+    dissipation_.power += by_w[lane];
+    dissipation_.rate += 2.0 * by_a[lane];
+  }
+}
+
 void BeamMotion::fill_tile(int first, int past) {
   const int nodes = past - first;
   Tile elastic, drag, force;
-  const auto [a, b] = beam_.rayleigh();
-  if (a != 0.0 || b != 0.0) {
-    combine(before_, first, past, ghosts_[2], elastic);
-    Tile rates = elastic;
-    for (int i = 0; i < nodes + 2; ++i) {
-      drag.v[i] = a * elastic.v[i];
-      drag.theta[i] = a * elastic.theta[i];
-      elastic.v[i] *= b;
-      elastic.theta[i] *= b;
-    }
-    rows_->multiply(first, past, elastic.at(0), drag.at(0), force.at(0));
-    double sum = 0.0;
-    for (int i = 0; i < nodes; ++i) sum += rates.v[i + 1] * force.v[i] + rates.theta[i + 1] * force.theta[i];
-    dissipation_ += sum;
-  }
-  combine(elastic_, first, past, ghosts_[0], elastic);
-  combine(drag_, first, past, ghosts_[1], drag);
-  rows_->multiply(first, past, elastic.at(0), drag.at(0), force.at(0));
+  if (measuring_) measure_dissipation(first, past, elastic, drag, force);
+  combine(elastic_, drag_, first, past, ghosts_[0], ghosts_[1], elastic, drag);
+  const bool drags = beam_.rayleigh().a != 0.0;
+  rows_->multiply(first, past, elastic.nodes(), drags ? drag.nodes() : beam::NodalPair{}, force.nodes());
   double* to = target_ + 2 * static_cast<std::ptrdiff_t>(first);
   const double minus = -scale_;
   for (int i = 0; i < nodes; ++i) {
@@ -188,8 +208,8 @@ void BeamMotion::fill_tile(int first, int past) {
     const double* dead = dead_load_ + 2 * static_cast<std::ptrdiff_t>(first);
     for (int i = 0; i < 2 * nodes; ++i) to[i] += scale_ * dead[i];
   }
-  const auto begins = [](const NodalLoad& load, int unknown) { return load.unknown < unknown; };
-  for (auto load = std::lower_bound(loads_->begin(), loads_->end(), 2 * first, begins);
+  const auto before = [](const NodalLoad& load, int unknown) { return load.unknown < unknown; };
+  for (auto load = std::lower_bound(loads_->begin(), loads_->end(), 2 * first, before);
        load != loads_->end() && load->unknown < 2 * past; ++load)
     target_[load->unknown] += scale_ * load->force;
   for (auto held = std::lower_bound(held_.begin(), held_.end(), 2 * first); held != held_.end() && *held < 2 * past;
@@ -207,31 +227,36 @@ std::pair<double, double> BeamMotion::state(const StageRule& rule, const double*
   return {vi, wi};
 }
 
+namespace {
+
+// Both sums into v and w in place, a stretch in the cache at a time.
+void replace(const Terms& terms, int n, double* v, double* w) {
+  std::array<double, 4 * tile> new_v, new_w;
+  for (int from = 0; from < n; from += 4 * tile) {
+    const int size = std::min(n - from, 4 * tile);
+    with_count(terms.count, [&](auto N) { add_up<N>(terms, from, size, new_v.data(), new_w.data()); });
+    std::copy_n(new_v.data(), size, v + from);
+    std::copy_n(new_w.data(), size, w + from);
+  }
+}
+
+}  // namespace
+
 void BeamMotion::still(const StageRule& rule, const double* v, const double* w, double* v_still,
                        double* w_still) const {
   Terms terms;
-  terms.add(w, rule.w_in_v);
-  for (int j = 0; j < rule.known; ++j) terms.add(accelerations_[j].data(), rule.a_in_v[j]);
-  std::copy_n(v, n_, v_still);
-  with_count(terms.count, [&](auto N) { add_vectors<N>(terms, 0, n_, v_still); });
-  terms.count = 0;
-  for (int j = 0; j < rule.known; ++j) terms.add(accelerations_[j].data(), rule.a_in_w[j]);
-  std::copy_n(w, n_, w_still);
-  with_count(terms.count, [&](auto N) { add_vectors<N>(terms, 0, n_, w_still); });
+  terms.add(v, 1.0, 0.0);
+  terms.add(w, rule.w_in_v, 1.0);
+  for (int j = 0; j < rule.known; ++j) terms.add(accelerations_[j].data(), rule.a_in_v[j], rule.a_in_w[j]);
+  replace(terms, n_, v_still, w_still);
 }
 
 void BeamMotion::finish(const StepRule& rule, double* v, double* w) {
-  Terms displacement, rate, next;
-  displacement.add(w, rule.w_in_v);
-  for (int j = 0; j < rule.known; ++j) {
-    displacement.add(accelerations_[j].data(), rule.a_in_v[j]);
-    rate.add(accelerations_[j].data(), rule.a_in_w[j]);
-  }
-  for (int from = 0; from < n_; from += 2 * tile) {
-    const int past = std::min(n_, from + 2 * tile);
-    with_count(displacement.count, [&](auto N) { add_vectors<N>(displacement, from, past, v); });
-    with_count(rate.count, [&](auto N) { add_vectors<N>(rate, from, past, w); });
-  }
+  Terms terms;
+  terms.add(v, 1.0, 0.0);
+  terms.add(w, rule.w_in_v, 1.0);
+  for (int j = 0; j < rule.known; ++j) terms.add(accelerations_[j].data(), rule.a_in_v[j], rule.a_in_w[j]);
+  replace(terms, n_, v, w);
   if (rule.a_next[rule.known - 1] == 1.0) {  // it is the last one
     accelerations_[0].swap(accelerations_[rule.known - 1]);
     return;

@@ -56,6 +56,7 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
       internal_(beam),
       stiffness_damping_(beam.rayleigh().b),
       halo_(2 * static_cast<std::size_t>(beam.block())) {
+  MPI_Comm_size(comm_, &ranks_);
   if (beam.local_columns() > 0) {
     if (beam.first_column() > 0) left_rank_ = beam.owner(beam.first_column() - 1);
     if (beam.first_column() + beam.local_columns() < beam.columns())
@@ -101,10 +102,8 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
 
 // Parts of this rank alone, whatever springs come later.
 void BeamOperator::find_parts(const beam::Beam& beam, const Shifted& all) {
-  int ranks = 1;
-  MPI_Comm_size(comm_, &ranks);
   const std::vector<int>& parts = beam.parts();
-  if (static_cast<int>(parts.size()) - 1 < std::max(2, ranks) || beam.model().foundation.nonlinear()) return;
+  if (static_cast<int>(parts.size()) - 1 < std::max(2, ranks_) || beam.model().foundation.nonlinear()) return;
   std::vector<std::ptrdiff_t> begins;
   for (int begin : parts)
     if (begin >= beam.first_column() && begin <= beam.first_column() + nodes_) begins.push_back(begin - beam.first_column());

@@ -39,6 +39,7 @@ void System::begin_motion(const Method& method) {
 
 void System::restart_motion(double t, const double* y) {
   Motion& m = *motion_;
+  if (m.stepped) settle_dissipation(y + n_);
   m.rate.resize(static_cast<std::size_t>(local_size()));
   rate(t, y, m.rate.data(), Part::all);
   if (beam_ != nullptr) std::copy_n(m.rate.data() + n_, n_, m.beam->acceleration(0));
@@ -49,18 +50,41 @@ void System::restart_motion(double t, const double* y) {
   m.powers[0] = {};
   if (beam_ != nullptr && !m.beam->fused()) m.powers[0].beam = beam_dissipation(y + n_);
   fleet_powers(m.powers[0]);
+  if (!m.stepped) settle_dissipation(y + n_);
   m.stepped = false;
+}
+
+// The last step's share of D that waits for the state at its end.
+void System::settle_dissipation(const double* w) {
+  motion_->dissipated += pending_dissipation(w);
+  motion_->pending = {};
+}
+
+double System::pending_dissipation(const double* w) {
+  const Motion& m = *motion_;
+  if (m.pending.power == 0.0 || !operator_->damped()) return 0.0;
+  const double* a = end_acceleration();
+  operator_->multiply(1.0, nullptr, w, nullptr, work_.data());
+  double sum = 0.0;
+  for (int i = 0; i < n_; ++i) sum += (m.pending.power * w[i] + 2.0 * m.pending.rate * a[i]) * work_[i];
+  return sum;
+}
+
+// Of the beam, where the last step led to or a restart began.
+const double* System::end_acceleration() const {
+  const Motion& m = *motion_;
+  const int known = m.unit.step.known;
+  return m.beam->acceleration(m.stepped && last(m.unit.step.a_next, known) != 1.0 ? known - 1 : 0);
 }
 
 void System::rate_of_motion(const double* y, double* ydot) const {
   const Motion& m = *motion_;
   const int f = fleet_.freedom();
   std::fill_n(ydot, local_size(), 0.0);
-  const bool swapped = !m.stepped || last(m.unit.step.a_next, m.unit.step.known) == 1.0;
   const int j = m.stepped ? m.unit.step.known - 1 : 0;
   if (m.beam) {
     std::copy_n(y + n_, n_, ydot);
-    std::copy_n(m.beam->acceleration(swapped ? 0 : j), n_, ydot + n_);
+    std::copy_n(end_acceleration(), n_, ydot + n_);
   }
   if (rank_ != 0) return;
   std::copy(m.pd.begin(), m.pd.end(), ydot + 2 * n_);
@@ -72,6 +96,7 @@ void System::take_back_step() {
   m.dissipated = m.before.dissipated;
   m.worked = m.before.worked;
   m.pending = m.before.pending;
+  m.stepped = false;
 }
 
 bool System::step_motion(double t, double h, double* y) {
@@ -87,12 +112,8 @@ bool System::step_motion(double t, double h, double* y) {
   list_nodal_loads();
   m.powers[0].loads = 0.0;
   for (const NodalLoad& load : nodal_loads_) m.powers[0].loads += load.force * w[load.unknown];
-  Weights before{};
-  for (const StageRule& rule : m.method.stages) {
-    if (!stage_of_motion(t + rule.time, rule, before, v, w)) return false;
-    before = rule.a_in_w;
-    before[rule.known] = rule.rate;
-  }
+  for (const StageRule& rule : m.method.stages)
+    if (!stage_of_motion(t + rule.time, rule, v, w)) return false;
   finish_step(y);
   return true;
 }
@@ -122,8 +143,8 @@ bool System::stage_of_motion(double t, const StageRule& rule, const Weights& bef
   } else if (m.beam->fused()) {
     moving_loads(t);
     list_nodal_loads();
-    m.beam->solve(rule, before, v, w, nodal_loads_);
-    m.powers[rule.known - 1].beam = m.beam->dissipation();
+    m.beam->solve(rule, v, w, nodal_loads_);
+    if (rule.known == 1) m.beam_dissipation = m.beam->dissipation();
     if (!stage_of_fleet({t, shift, shift2}, FusedResponse(*m.beam, rule, v, w), nullptr)) return false;
     add_contact_response(shift2, m.beam->acceleration(rule.known));
   } else {
@@ -159,12 +180,15 @@ void System::finish_step(double* y) {
     m.pdd[0][i] = next;
   }
   double dissipation = 0.0, work = 0.0;
-  const bool fused = m.beam && m.beam->fused();
-  m.dissipated += m.pending * m.powers[0].beam;
-  m.pending = fused ? last(rule.power, rule.known) : 0.0;
+  if (m.beam && m.beam->fused()) {  // the trapezoidal rule with its correction by the rates: order 4
+    const double half = 0.5 * m.length, twelfth = m.length * m.length / 12.0;
+    m.dissipated += (m.pending.power + half) * m.beam_dissipation.power;
+    m.dissipated += (m.pending.rate + twelfth) * m.beam_dissipation.rate;
+    m.pending = {half, -twelfth};
+  }
   for (int j = 0; j < rule.known; ++j) {
     const Motion::Powers& powers = m.powers[j];
-    if (!fused || j + 1 < rule.known) m.dissipated += rule.power[j] * powers.beam;
+    m.dissipated += rule.power[j] * powers.beam;
     m.worked += rule.power[j] * powers.loads;
     dissipation += rule.power[j] * powers.dissipation;
     work += rule.power[j] * powers.work;

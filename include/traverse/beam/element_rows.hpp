@@ -25,13 +25,15 @@ class ElementRows {
   static bool fit(const Beam& beam);
   explicit ElementRows(const Beam& beam);
 
-  /// r = K x + M y for this rank's nodes [first, past), at most `tile`. x and y begin at node first - 1 and end at node
+  /// r = K x + M y (null: without M) for this rank's nodes [first, past), at most `tile`. x and y begin at node first - 1 and end at node
   /// past; what they hold beyond the beam has no effect but has to be finite. `r` begins at node first.
   void multiply(int first, int past, NodalPair x, NodalPair y, NodalPair r) const;
 
  private:
   struct Coefficients;
   void append(const Coefficients& c);
+  template <bool with_mass>
+  void products(int first, int past, NodalPair x, NodalPair y, NodalPair r) const;
 
   // Of an element from (v1, theta1) to (v2, theta2) the entries of K in terms of rise and turn (internal_forces.hpp)
   // and the upper triangle of M, row by row; element j leads from local node j - 1 to j.

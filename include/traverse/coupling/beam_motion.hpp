@@ -33,12 +33,15 @@ class BeamMotion final : private solve::NodeFiller {
   /// still() serves.
   bool fused() const { return rows_.has_value(); }
 
-  /// Collective. A_known of a stage under the dead load and `loads` (ascending unknowns; no contacts); `before`: the
-  /// weights of the accelerations in w of the state before, whose dissipation is computed on the way.
-  void solve(const StageRule& rule, const Weights& before, const double* v, const double* w,
-             const std::vector<NodalLoad>& loads);
-  /// Of the state before the last stage solved, this rank's share, W.
-  double dissipation() const { return dissipation_; }
+  /// Collective. A_known of a stage under the dead load and `loads` (ascending unknowns; no contacts).
+  void solve(const StageRule& rule, const double* v, const double* w, const std::vector<NodalLoad>& loads);
+  /// What is lost in damping, w^T C w, and its rate of change, 2 A_0^T C w: this rank's share at the start of the step
+  /// whose first stage was solved last.
+  struct Dissipation {
+    double power = 0.0;  // W
+    double rate = 0.0;   // W/s
+  };
+  Dissipation dissipation() const { return dissipation_; }
 
   /// v~ and w~ of this rank's unknowns.
   void still(const StageRule& rule, const double* v, const double* w, double* v_still, double* w_still) const;
@@ -58,7 +61,10 @@ class BeamMotion final : private solve::NodeFiller {
 
   void fill(std::ptrdiff_t first, std::ptrdiff_t past) override;
   void fill_tile(int first, int past);
-  void combine(const Combination& c, int first, int past, const std::array<double, 4>& ghosts, Tile& to) const;
+  using Ghosts = std::array<double, 4>;  // (v, theta) of the nodes next to this rank's, left and right
+  void measure_dissipation(int first, int past, Tile& elastic, Tile& drag, Tile& force);
+  void combine(const Combination& a, const Combination& b, int first, int past, const Ghosts& ghosts_a,
+               const Ghosts& ghosts_b, Tile& to_a, Tile& to_b) const;
   std::pair<double, double> at_node(const Combination& c, int node) const;
   void exchange_borders();
 
@@ -73,11 +79,12 @@ class BeamMotion final : private solve::NodeFiller {
   // Of the stage under way
   const double *v_ = nullptr, *w_ = nullptr;
   const std::vector<NodalLoad>* loads_ = nullptr;
-  Combination elastic_, drag_, before_;            // v~ + b w~, a w~, w of the state before
-  std::array<std::array<double, 4>, 3> ghosts_{};  // of these: (v, theta) left of this rank's nodes and right of them
+  Combination elastic_, drag_;        // v~ + b w~, a w~
+  std::array<Ghosts, 3> ghosts_{};    // of these, and of w
+  bool measuring_ = false;
   double scale_ = 0.0;                             // of the right-hand side: 1/displacement
   double* target_ = nullptr;
-  double dissipation_ = 0.0;
+  Dissipation dissipation_;
 };
 
 }  // namespace traverse::coupling

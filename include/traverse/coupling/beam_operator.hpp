@@ -33,6 +33,7 @@ class BeamOperator {
 
   int unknowns() const { return nodes_ * block_; }  // on this rank
   int block() const { return block_; }              // unknowns a column
+  bool shared() const { return ranks_ > 1; }        // by several ranks
   /// This rank's columns as parts that do not touch, where they are solved so; else null.
   const solve::Parts* parts() const { return parts_ ? &*parts_ : nullptr; }
 
@@ -91,7 +92,7 @@ class BeamOperator {
   void product(const Matrix& A, double sign, const double* x, double* r) const;
 
   MPI_Comm comm_;
-  int block_, nodes_;
+  int ranks_ = 1, block_, nodes_;
   int left_rank_, right_rank_;  // neighbours with nodes, or MPI_PROC_NULL
   std::vector<char> fixed_;
   Matrix mass_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <list>
+#include <utility>
 #include <vector>
 
 #include "traverse/coupling/beam_operator.hpp"
@@ -13,38 +14,71 @@ class Compliance {
  public:
   Compliance(const beam::Beam& beam, BeamOperator& op);
 
-  /// Collective. Prepares the compliance between `elements` for the factorisation of these shifts, with springs added
-  /// where there are some.
+  /// Collective. Prepares the compliance between `elements` for the factorisation of these shifts, with springs added where
+  /// there are some.
   void prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements);
 
-  /// Displacement of unknown i of elements[a] from a unit load on unknown j of elements[b]; i, j < 2*per_node of the
-  /// line that wheels run on.
-  const double* block(int a, int b) const { return &matrix_[(static_cast<std::size_t>(a) * count_ + b) * m_ * m_]; }
+  /// The elements of the last prepare that respond to a load on one of them: [first, last) of their list.
+  struct Response {
+    int first = 0, last = 0;
+    std::size_t begin = 0;  // of their blocks
+  };
+  const Response& response(int b) const { return responses_[b]; }
+  /// Displacement of unknown i of elements[a] from a unit load on unknown j of elements[b], at (i, j) of a matrix of
+  /// 2*per_node rows stored by columns; a in the response to b.
+  const double* block(int a, int b) const {
+    const Response& r = responses_[b];
+    return &blocks_[r.begin + static_cast<std::size_t>(a - r.first) * m_ * m_];
+  }
 
   /// v += A^-1 loads, where loads holds 2*per_node nodal values an element of the last prepare. This rank's slice.
   void add_response(const std::vector<double>& loads, double* v) const;
 
  private:
   struct Column {
-    int element = 0;
+    std::size_t slot = 0;
     long stamp = 0;
-    int low = 0, high = 0;       // local unknowns that respond above rounding
+    int low = 0, high = 0;       // unknowns that respond above rounding, counted from the place's
+    int first = 0, last = 0;     // the columns of the beam on all ranks that do: [first, last); without parts
     std::vector<double> values;  // (high - low) x 2*per_node, column by column
   };
-  Column& column(const BeamFactor& factor, double shift, const AddedSprings* added, long stamp,
-                 int element);
-  void fill_matrix();
+  /// Where an element is: equal elements of equal parts of the beam share a slot, and with it a column.
+  struct Place {
+    std::size_t slot = 0;
+    int unknown = 0;  // local, of the part's beginning; 0 where the beam is one part
+  };
+  Place place_of(int element) const;
+  const Column& column(const BeamFactor& factor, double shift, const AddedSprings* added, int element);
+  std::ptrdiff_t solve_part(const BeamFactor& factor, int element);
+  std::ptrdiff_t solve_window(const BeamFactor& factor, int element);
+  std::ptrdiff_t solve_statics(int element, const AddedSprings* added);
+  void load_element(int element, std::ptrdiff_t first, std::ptrdiff_t past);
+  void keep(Column& c, std::ptrdiff_t first, int base_unknown) const;
+  std::pair<int, int> reach(int element, const Column& c) const;
+  void find_responses();
+  void fill_blocks();
 
   const beam::Beam& beam_;
   BeamOperator& operator_;
   const beam::Line& line_;
   int m_;                              // 2*per_node
+  bool short_parts_ = false;           // statics part by part lose no digits
+  std::vector<std::size_t> kind_slot_;  // of the first element of each kind of part
   std::list<Column> columns_;          // most recent first
-  std::vector<const Column*> active_;  // of the elements of the last prepare
+  std::size_t kept_ = 0;               // doubles in them
+  std::vector<std::list<Column>::iterator> of_slot_;  // the column of the last prepare's stamp, or the end
+  struct Active {
+    const Column* column;
+    int unknown;      // its place's
+    int first, last;  // the columns of the beam that respond: [first, last)
+  };
+  std::vector<Active> active_;  // of the elements of the last prepare
   std::vector<int> elements_;
   long stamp_ = -1;
-  std::size_t count_ = 0;
-  std::vector<double> matrix_, work_;  // [a][b] blocks, each m x m, column-major in (i, j)
+  std::ptrdiff_t margin_;  // nodes on either side of an element within which its response dies out, as found last
+  std::vector<Response> responses_;
+  std::vector<double> blocks_;  // by the element loaded, then by the one that responds
+  std::vector<double> work_;    // the columns under way: nodes x block, column by column
 };
 
 }  // namespace traverse::coupling

@@ -159,11 +159,15 @@ class System {
       double beam = 0.0, loads = 0.0, dissipation = 0.0, work = 0.0;
     };
     std::array<Powers, most_accelerations> powers;  // at the stages
-    /// This rank's share of D and W; pending: s, times the dissipation at the step's end still to come in D.
-    double dissipated = 0.0, worked = 0.0, pending = 0.0;
+    BeamMotion::Dissipation beam_dissipation;  // fused, at the start of the step
+    /// This rank's share of D and W; pending: weights of the dissipation at the step's end and of its rate that are
+    /// still to come in D, s and s2.
+    double dissipated = 0.0, worked = 0.0;
+    BeamMotion::Dissipation pending;
     struct {
-      double dissipated, worked, pending;
-    } before{};
+      double dissipated = 0.0, worked = 0.0;
+      BeamMotion::Dissipation pending;
+    } before;
     bool stepped = false;      // since the last restart
     std::vector<double> rate;  // of restarts
   };
@@ -187,7 +191,10 @@ class System {
   Solution solve_coupled(const StageTime& at, Part part, bool loaded);
   bool stage_of_fleet(const StageTime& at, const FreeResponse& response, const AddedSprings* added);
   void add_contact_response(double factor, double* z);
-  bool stage_of_motion(double t, const StageRule& rule, const Weights& before, const double* v, const double* w);
+  bool stage_of_motion(double t, const StageRule& rule, const double* v, const double* w);
+  void settle_dissipation(const double* w);
+  double pending_dissipation(const double* w);
+  const double* end_acceleration() const;
   void finish_step(double* y);
   void list_nodal_loads();
   void note_foundation();
