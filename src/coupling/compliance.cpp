@@ -1,7 +1,9 @@
 #include "traverse/coupling/compliance.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 namespace traverse::coupling {
 
@@ -21,30 +23,32 @@ void Compliance::prepare(double shift, const AddedSprings* added, const std::vec
   const solve::SubstructuredCholesky& factor = operator_.factored(shift, added);
   const long stamp = operator_.factor_stamp();
   if (stamp == stamp_ && elements == elements_) return;
+  if (stamp != stamp_) find_places(stamp);
   stamp_ = stamp;
   elements_ = elements;
-  count_ = elements.size();
   active_.clear();
   for (int e : elements) active_.push_back(&column(factor, shift, added, stamp, e));
-  fill_matrix();
+  find_responses();
+  fill_blocks();
 
   // Forget the oldest columns beyond what is worth keeping.
-  std::size_t values = 0;
-  std::size_t kept = 0;
-  for (auto c = columns_.begin(); c != columns_.end(); ++c, ++kept) {
-    values += c->values.size();
-    if (values > kept_values && kept >= count_) {
-      columns_.erase(c, columns_.end());
-      break;
-    }
+  while (kept_ > kept_values && columns_.size() > elements_.size()) {
+    const Column& oldest = columns_.back();
+    kept_ -= oldest.values.size();
+    if (oldest.stamp == stamp) place_[oldest.element] = columns_.end();
+    columns_.pop_back();
   }
+}
+
+void Compliance::find_places(long stamp) {
+  place_.assign(static_cast<std::size_t>(line_.mesh.elements()), columns_.end());
+  for (auto c = columns_.begin(); c != columns_.end(); ++c)
+    if (c->stamp == stamp) place_[c->element] = c;
 }
 
 Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& factor, double shift,
                                        const AddedSprings* added, long stamp, int element) {
-  auto found = std::find_if(columns_.begin(), columns_.end(),
-                            [&](const Column& c) { return c.stamp == stamp && c.element == element; });
-  if (found != columns_.end()) {
+  if (const auto found = place_[element]; found != columns_.end()) {
     columns_.splice(columns_.begin(), columns_, found);
     return columns_.front();
   }
@@ -63,9 +67,18 @@ Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& facto
   }
 
   columns_.emplace_front();
+  place_[element] = columns_.begin();
   Column& c = columns_.front();
   c.element = element;
   c.stamp = stamp;
+  keep(c);
+  kept_ += c.values.size();
+  return c;
+}
+
+// Takes the solution in work_, where it is above rounding.
+void Compliance::keep(Column& c) const {
+  const int n = operator_.unknowns();
   c.low = n;
   c.high = 0;
   for (int j = 0; j < m_; ++j) {
@@ -86,16 +99,35 @@ Compliance::Column& Compliance::column(const solve::SubstructuredCholesky& facto
     if (size > 0)
       std::copy_n(work_.data() + static_cast<std::ptrdiff_t>(j) * n + c.low, size,
                   c.values.data() + static_cast<std::ptrdiff_t>(j) * size);
-  return c;
+  const int first = beam_.first_column(), block = beam_.block(), none = std::numeric_limits<int>::max();
+  std::array<int, 2> ends = {none, none};  // the least of first and of -last
+  if (size > 0) ends = {first + c.low / block, -(first + (c.high - 1) / block + 1)};
+  MPI_Allreduce(MPI_IN_PLACE, ends.data(), 2, MPI_INT, MPI_MIN, beam_.comm());
+  c.first = ends[0];
+  c.last = -ends[1];
 }
 
-void Compliance::fill_matrix() {
-  matrix_.assign(count_ * count_ * m_ * m_, 0.0);
-  for (std::size_t a = 0; a < count_; ++a) {
-    const auto unknowns = line_.unknowns(elements_[a]);
-    for (std::size_t e = 0; e < count_; ++e) {
-      const Column& c = *active_[e];
-      double* to = &matrix_[(a * count_ + e) * m_ * m_];
+void Compliance::find_responses() {
+  const auto left = [this](int element) { return line_.first_column + line_.mesh.element(element).left; };
+  responses_.resize(elements_.size());
+  std::size_t begin = 0;
+  for (std::size_t b = 0; b < elements_.size(); ++b) {
+    const Column& c = *active_[b];
+    const auto first = std::partition_point(elements_.begin(), elements_.end(),
+                                            [&](int element) { return left(element) + 1 < c.first; });
+    const auto last = std::partition_point(first, elements_.end(), [&](int element) { return left(element) < c.last; });
+    responses_[b] = {static_cast<int>(first - elements_.begin()), static_cast<int>(last - elements_.begin()), begin};
+    begin += static_cast<std::size_t>(last - first) * m_ * m_;
+  }
+  blocks_.assign(begin, 0.0);
+}
+
+void Compliance::fill_blocks() {
+  for (std::size_t b = 0; b < elements_.size(); ++b) {
+    const Column& c = *active_[b];
+    double* to = &blocks_[responses_[b].begin];
+    for (int a = responses_[b].first; a < responses_[b].last; ++a, to += m_ * m_) {
+      const auto unknowns = line_.unknowns(elements_[a]);
       for (int i = 0; i < m_; ++i) {
         const int unknown = beam_.local(unknowns[i]);
         if (unknown < c.low || unknown >= c.high) continue;
@@ -104,11 +136,14 @@ void Compliance::fill_matrix() {
       }
     }
   }
-  MPI_Allreduce(MPI_IN_PLACE, matrix_.data(), static_cast<int>(matrix_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+  int ranks = 1;
+  MPI_Comm_size(beam_.comm(), &ranks);
+  if (ranks > 1)
+    MPI_Allreduce(MPI_IN_PLACE, blocks_.data(), static_cast<int>(blocks_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
 }
 
 void Compliance::add_response(const std::vector<double>& loads, double* v) const {
-  for (std::size_t e = 0; e < count_; ++e) {
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
     const Column& c = *active_[e];
     const int size = c.high - c.low;
     for (int j = 0; j < m_; ++j) {
