@@ -176,13 +176,20 @@ void Fleet::number(double t) {
   }
   position_.resize(home_.size());
   velocity_.resize(home_.size());
+  is_set_ = false;
 }
 
 bool Fleet::set(double t, const double* p, const double* pd) {
+  bool there = is_set_ && t == time_;
   for (int i = 0; i < freedom_; ++i) {
-    position_[i] = home_[i] + cruise_[i] * t + p[i];
-    velocity_[i] = cruise_[i] + pd[i];
+    const double position = home_[i] + cruise_[i] * t + p[i], velocity = cruise_[i] + pd[i];
+    there = there && position == position_[i] && velocity == velocity_[i];
+    position_[i] = position;
+    velocity_[i] = velocity;
   }
+  if (there) return true;
+  time_ = t;
+  is_set_ = false;
   for (MovingVehicle& vehicle : vehicles) {
     if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) {
       stuck_ = static_cast<int>(&vehicle - vehicles.data());
@@ -192,6 +199,7 @@ bool Fleet::set(double t, const double* p, const double* pd) {
     vehicle.mechanism.compute_forces(vehicle.state);
   }
   stuck_ = -1;
+  is_set_ = true;
   return true;
 }
 

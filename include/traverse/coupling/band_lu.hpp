@@ -13,11 +13,18 @@ int half_bandwidth(const Eigen::MatrixXd& A);
 class BandLu {
  public:
   void compute(const Eigen::MatrixXd& A, int half_bandwidth);
+  /// The same in three steps: zeros, the entries (i, j) with |i - j| <= half_bandwidth, the factors.
+  void set_zero(int size, int half_bandwidth);
+  double& entry(int i, int j) { return lu_(2 * band_ + i - j, j); }
+  void factor();
   void solve_in_place(Eigen::MatrixXd& X) const;
+  void solve_in_place(double* x) const;
 
  private:
   int size_ = 0, band_ = 0;
+  int above_ = 0;  // non-zero entries of the upper factor above the diagonal, at most; more where rows were swapped
   Eigen::MatrixXd lu_;  // entry (i, j) at (2 band + i - j, j)
+  std::vector<double> inverse_pivot_;
   std::vector<int> pivot_row_;
 };
 

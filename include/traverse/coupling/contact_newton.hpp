@@ -1,8 +1,14 @@
 // Newton's method for one implicit stage of all vehicles and contacts, the beam condensed onto the elements under
 // the wheels. Unknowns: the independent coordinates p of every vehicle and the contact kinematics of every wheel
 // (penetration, its rate, sliding speed); the contact law enters as a function of these, which keeps the problem
-// convex in flight and under impact. A vehicle's Newton matrix is dense and small, or banded where
-// couplers join many; wheels on the beam are coupled by a dense system of their number.
+// convex in flight and under impact. With the contacts' forces F along their directions G, a vehicle's residual R at
+// the forces held and its own Newton matrix J,
+//
+//   J dx = -R - G^T dF
+//
+// is condensed onto the contacts and solved there (CondensedContacts). J hardly changes: what follows from it is kept
+// over stages and steps, and computed anew where the iteration tells that it no longer serves. In statics, where J may
+// be singular without them, the contacts' tangents are part of it.
 #pragma once
 
 #include <Eigen/Dense>
@@ -10,6 +16,7 @@
 
 #include "traverse/coupling/band_lu.hpp"
 #include "traverse/coupling/compliance.hpp"
+#include "traverse/coupling/condensed_contacts.hpp"
 #include "traverse/coupling/fleet.hpp"
 
 namespace traverse::coupling {
@@ -40,44 +47,57 @@ class ContactNewton {
 
  private:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  /// The inverse of a vehicle's Newton matrix in the form that suits it.
+  class Inverse {
+   public:
+    /// singular: some coordinates may be neutral.
+    void compute(const Eigen::MatrixXd& J, bool singular);
+    void apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
+
+   private:
+    enum class Form { whole, band, factors } form_ = Form::whole;
+    Eigen::MatrixXd whole_;
+    BandLu band_;
+    Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+  };
   struct VehicleWork {
-    Eigen::MatrixXd J, own, Z, T, NB;  // own: J without contacts
-    Eigen::MatrixXd projector;         // in place of B where joints rub
-    RowMatrix G, DG, projected;  // contact directions times B, the law's tangent times G, directions times projector
-    Eigen::Matrix<double, Eigen::Dynamic, 2> D;  // that tangent: by the row before (of a tangential one), by the row
-    Eigen::VectorXd R, dp, f_hat, correction, r;
-    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
-    BandLu band_lu;
-    std::vector<int> contact, component;        // of every row of G: which contact, 0 normal or 1 tangential
+    // kept, with H in VehicleYield
+    Inverse inverse;                            // of J
+    RowMatrix G;                                // contact directions times B
+    Eigen::MatrixXd Y;                          // J^-1 G^T
     std::vector<multibody::ColumnRange> range;  // of every row of G
+    double shift = 0.0, shift2 = 0.0;           // that they were computed for; 0: none
+    int partition_version = 0;
+    bool curved = false;    // with the constraints' curvature
+    double residual = 0.0;  // largest of R over the weight
+
+    Eigen::VectorXd R, dx, r, s;
+    Eigen::MatrixXd J, NB;
+    Eigen::MatrixXd projector;                   // in place of B where joints rub
+    RowMatrix projected;                         // directions times projector
+    Eigen::MatrixXd DG;                          // the law's tangent times G
+    Eigen::Matrix<double, Eigen::Dynamic, 2> D;  // that tangent: by the row before (of a tangential one), by the row
     std::vector<multibody::ColumnRange> everything;
-    std::vector<int> on_beam;  // the rows whose contact is on the beam
   };
-  struct Row {  // of the coupled system: a row of a vehicle's G, its column of T and Z, the element that carries it
-    int vehicle, index, column, slot;
-    bool operator==(const Row&) const = default;
-  };
-  enum class Tangent { kept, fresh, full };
-  bool evaluate(Fleet& fleet, const StageData& s, const double* x);
-  void beam_field(const StageData& s, const Fleet& fleet);
-  static void contact_directions(const Fleet& fleet, const VehicleWork& w,
-                                 const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
-                                 RowMatrix& G);
-  void vehicle_system(Fleet& fleet, int k, const StageData& s, Tangent own);
-  static bool tangential_behind(const VehicleWork& w, int row);
-  static void solve_vehicle(VehicleWork& w, bool singular);
-  bool list_rows(const Fleet& fleet);
-  void mutual_compliance(const Fleet& fleet, const StageData& s);
-  void couple_beam(const Fleet& fleet, const StageData& s, Tangent own);
-  double update(Fleet& fleet, const StageData& s, double* x);
+  bool evaluate(Fleet& fleet, const StageData& s, const double* x, bool loaded);
+  void beam_field(const StageData& s, const Fleet& fleet, bool loaded);
+  template <int m>
+  void add_response(const Compliance& compliance, int elements);
+  static bool serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved);
+  static void condense(VehicleWork& w, VehicleYield& yield);
+  bool settled(bool statics, bool as_before, double before, double left);
+  void find_residual(MovingVehicle& vehicle, VehicleWork& w) const;
+  void contact_directions(int vehicle, const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
+                          RowMatrix& G) const;
+  void renew(MovingVehicle& vehicle, int k, const StageData& s, bool with_curvature);
+  void add_contacts(VehicleWork& w, int k, const RowMatrix& left);
+  double update(Fleet& fleet, double* x);
 
   std::vector<VehicleWork> work_;
+  CondensedContacts contacts_;
   std::vector<double> loads_, v_, w_, p_, pd_, pdd_;
-  Eigen::MatrixXd W_, coupled_;
-  Eigen::VectorXd du_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  std::vector<Row> rows_, previous_rows_;
   double change_ = 0.0;
+  double ratio_ = 1.0;  // of successive changes with the matrices that are kept, as measured last
 };
 
 }  // namespace traverse::coupling

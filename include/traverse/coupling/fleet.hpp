@@ -130,8 +130,8 @@ class Fleet {
   /// take their place: true then, and p has a new meaning.
   bool accept(double t);
 
-  /// Positions, velocities and forces of all vehicles from p and p' (freedom values each). False where a mechanism
-  /// cannot be assembled, which is stuck() then.
+  /// Positions, velocities and forces of all vehicles from p and p' (freedom values each), unless they are there. False
+  /// where a mechanism cannot be assembled, which is stuck() then.
   bool set(double t, const double* p, const double* pd);
   /// The vehicle that could not be assembled when set() failed last; null when it did not.
   const MovingVehicle* stuck() const { return stuck_ < 0 ? nullptr : &vehicles[static_cast<std::size_t>(stuck_)]; }
@@ -201,7 +201,9 @@ class Fleet {
   Crowded crowded_;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p
-  std::vector<double> position_, velocity_;  // of one vehicle
+  std::vector<double> position_, velocity_;  // independent ones of all vehicles, as they were set last
+  double time_ = 0.0;                        // when
+  bool is_set_ = false;
 };
 
 }  // namespace traverse::coupling

@@ -1,0 +1,245 @@
+#include "traverse/coupling/condensed_contacts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace traverse::coupling {
+namespace {
+
+constexpr double settled = 1e-13;    // of the weight: deviation of the law that is left
+constexpr double rough = 1e-6;       // of the weight: deviation above which the tangent is renewed
+constexpr double negligible = 1e-9;  // response at another row over that at their own ones: left to the next evaluation
+
+// What the linearised law gives at the geometry's kinematics, less the force at the kinematics held.
+double force_correction(const Contact& c, bool normal) {
+  const double a = c.touch.kinematics.penetration - c.kinematics.penetration;
+  const double r = c.touch.kinematics.penetration_rate - c.kinematics.penetration_rate;
+  if (normal) return c.force.normal_by_penetration * a + c.force.normal_by_rate * r;
+  const double s = c.touch.kinematics.sliding_speed - c.kinematics.sliding_speed;
+  return c.force.tangential_by_penetration * a + c.force.tangential_by_rate * r + c.force.tangential_by_sliding * s;
+}
+
+double force_of(const CondensedContacts::Row& row) {
+  return row.normal ? row.contact->force.normal : row.contact->force.tangential;
+}
+
+const double* direction_on_beam(const CondensedContacts::Row& row) {
+  return (row.normal ? row.contact->touch.normal_on_beam : row.contact->touch.tangent_on_beam).data();
+}
+
+}  // namespace
+
+Eigen::Matrix2d contact_tangent(const contact::Force& f, double shift) {
+  Eigen::Matrix2d D;
+  D << f.normal_by_penetration + shift * f.normal_by_rate, 0.0,
+      f.tangential_by_penetration + shift * f.tangential_by_rate, shift * f.tangential_by_sliding;
+  return D;
+}
+
+void CondensedContacts::list(Fleet& fleet) {
+  rows_.clear();
+  first_.clear();
+  yield_.resize(fleet.vehicles.size());
+  for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
+    const MovingVehicle& vehicle = fleet.vehicles[k];
+    first_.push_back(size());
+    for (const int i : vehicle.touching) {
+      Contact& c = fleet.contact(i);
+      rows_.push_back({&c, vehicle.scale, static_cast<int>(k), true, c.slot()});
+      if (c.law.friction > 0.0) rows_.push_back({&c, vehicle.scale, static_cast<int>(k), false, c.slot()});
+    }
+  }
+  first_.push_back(size());
+  for (Eigen::VectorXd* v : {&held_, &delta_, &change_, &deviation_, &right_, &beam_}) v->resize(size());
+  D_.resize(size(), 2);
+}
+
+bool CondensedContacts::moved() {
+  bool any = false;
+  for (Row& row : rows_) {
+    any = any || row.slot != row.contact->slot();
+    row.slot = row.contact->slot();
+  }
+  return any;
+}
+
+// W, between all rows on elements that respond to each other.
+template <int m>
+void CondensedContacts::respond(const Compliance& compliance) {
+  using Vector = Eigen::Matrix<double, m, 1>;
+  int slots = 0;
+  for (const Row& row : rows_) slots = std::max(slots, row.slot + 1);
+  slot_begin_.assign(static_cast<std::size_t>(slots) + 1, 0);
+  for (const Row& row : rows_)
+    if (row.slot >= 0) ++slot_begin_[row.slot];
+  for (int s = 0, end = 0; s <= slots; ++s) slot_begin_[s] = end += slot_begin_[s];
+  on_slot_.resize(static_cast<std::size_t>(slot_begin_[slots]));
+  for (int i = size() - 1; i >= 0; --i)
+    if (rows_[i].slot >= 0) on_slot_[--slot_begin_[rows_[i].slot]] = i;
+
+  for (int b = 0; b < size(); ++b) {
+    if (rows_[b].slot < 0) continue;
+    const Compliance::Response& reach = compliance.response(rows_[b].slot);
+    const Eigen::Map<const Vector> from(direction_on_beam(rows_[b]));
+    for (int s = reach.first; s < std::min(reach.last, slots); ++s) {
+      if (slot_begin_[s] == slot_begin_[s + 1]) continue;
+      const Eigen::Map<const Eigen::Matrix<double, m, m>> C(compliance.block(s, rows_[b].slot));
+      const Vector moved = C * from;
+      for (int k = slot_begin_[s]; k < slot_begin_[s + 1]; ++k) {
+        const int a = on_slot_[k];
+        responses_.push_back({a, b, Eigen::Map<const Vector>(direction_on_beam(rows_[a])).dot(moved)});
+      }
+    }
+  }
+}
+
+void CondensedContacts::couple(const Compliance* compliance, int per_node) {
+  responses_.clear();
+  if (compliance != nullptr) per_node == 2 ? respond<4>(*compliance) : respond<6>(*compliance);
+  const bool plain = std::all_of(yield_.begin(), yield_.end(), [](const VehicleYield& y) { return y.P.size() == 0; });
+  find_band(!plain);
+  fill();
+  factored_ = false;
+}
+
+// What couples rows more than negligibly sets the width of the band; other responses are forgotten.
+void CondensedContacts::find_band(bool whole) {
+  band_ = std::max(0, size() - 1);
+  if (whole) return;
+  band_ = 0;
+  right_.setZero();
+  for (std::size_t k = 0; k < yield_.size(); ++k)
+    right_.segment(first_[k], rows(static_cast<int>(k))) = yield_[k].H.diagonal();
+  for (const Response& r : responses_)
+    if (r.a == r.b) right_[r.a] += r.value;
+  const auto matters = [this](int a, int b, double value) {
+    return a == b || value * value > negligible * negligible * std::abs(right_[a] * right_[b]);
+  };
+  for (std::size_t k = 0; k < yield_.size(); ++k)
+    for (int j = 0; j < rows(static_cast<int>(k)); ++j)
+      for (int i = 0; i < rows(static_cast<int>(k)); ++i)
+        if (std::abs(i - j) > band_ && matters(first_[k] + i, first_[k] + j, yield_[k].H(i, j)))
+          band_ = std::abs(i - j);
+  for (const Response& r : responses_)
+    if (std::abs(r.a - r.b) > band_ && matters(r.a, r.b, r.value)) band_ = std::abs(r.a - r.b);
+  // a tangential row's column adds to that of its normal one beside it
+  if (std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return !row.normal; }))
+    band_ = std::min(band_ + 1, size() - 1);
+  std::erase_if(responses_, [this](const Response& r) { return std::abs(r.a - r.b) > band_; });
+}
+
+void CondensedContacts::fill() {
+  A_.setZero(2 * band_ + 1, size());
+  for (std::size_t k = 0; k < yield_.size(); ++k) {
+    const int from = first_[k], count = rows(static_cast<int>(k));
+    for (int j = 0; j < count; ++j)
+      for (int i = std::max(0, j - band_); i <= std::min(count - 1, j + band_); ++i)
+        A(from + i, from + j) = yield_[k].H(i, j);
+  }
+  for (const Response& r : responses_) {
+    const int k = rows_[r.a].vehicle;
+    const Eigen::MatrixXd& P = yield_[k].P;
+    if (P.size() == 0) {
+      A(r.a, r.b) += r.value;
+    } else {
+      for (int i = 0; i < rows(k); ++i) A(first_[k] + i, r.b) += P(i, r.a - first_[k]) * r.value;
+    }
+  }
+}
+
+// P + A D at the forces held in the contacts.
+void CondensedContacts::factor(double shift) {
+  for (int i = 0; i < size(); ++i) {
+    const Eigen::Matrix2d D = contact_tangent(rows_[i].contact->force, shift);
+    D_.row(i) << (rows_[i].normal ? 0.0 : D(1, 0)), (rows_[i].normal ? D(0, 0) : D(1, 1));
+  }
+  lu_.set_zero(size(), band_);
+  for (int j = 0; j < size(); ++j) {
+    for (int i = top(j); i <= bottom(j); ++i) lu_.entry(i, j) = A(i, j) * D_(j, 1);
+    if (j + 1 < size() && !rows_[j + 1].normal)
+      for (int i = std::max(top(j), top(j + 1)); i <= bottom(j); ++i) lu_.entry(i, j) += A(i, j + 1) * D_(j + 1, 0);
+    const VehicleYield& y = yield_[rows_[j].vehicle];
+    if (y.P.size() == 0) {
+      lu_.entry(j, j) += 1.0;
+    } else {
+      const int from = first_[rows_[j].vehicle];
+      for (int i = 0; i < y.P.rows(); ++i) lu_.entry(from + i, j) += y.P(i, j - from);
+    }
+  }
+  lu_.factor();
+  factored_ = true;
+}
+
+void CondensedContacts::subtract_A_times(const Eigen::VectorXd& x, Eigen::VectorXd& y) const {
+  for (int j = 0; j < size(); ++j) {
+    const int from = top(j), count = bottom(j) - from + 1;
+    y.segment(from, count) -= x[j] * A_.col(j).segment(band_ + from - j, count);
+  }
+}
+
+// The contacts' kinematics and forces at delta, and how far these deviate from those that the tangent has given.
+double CondensedContacts::move_contacts(double shift) {
+  double greatest = 0.0;
+  for (int i = 0; i < size(); ++i) {
+    Contact& c = *rows_[i].contact;
+    if (rows_[i].normal) {
+      c.kinematics.penetration = c.touch.kinematics.penetration + delta_[i];
+      c.kinematics.penetration_rate = c.touch.kinematics.penetration_rate + shift * delta_[i];
+      const bool rubs = i + 1 < size() && !rows_[i + 1].normal;
+      c.kinematics.sliding_speed = c.touch.kinematics.sliding_speed + (rubs ? shift * delta_[i + 1] : 0.0);
+      c.force = contact::force(c.law, c.kinematics, c.approach_speed);
+      if (c.sign < 0.0) c.force = -c.force;
+    }
+    deviation_[i] = force_of(rows_[i]) - held_[i] - change_[i];
+    greatest = std::max(greatest, std::abs(deviation_[i]) / rows_[i].scale);
+  }
+  return greatest;
+}
+
+void CondensedContacts::deflect(const Eigen::VectorXd& forces) {
+  beam_.setZero();
+  for (const Response& r : responses_) beam_[r.a] -= r.value * forces[r.b];
+}
+
+double CondensedContacts::solve(double shift, bool loaded, int most_iterations) {
+  if (!factored_) factor(shift);
+  for (int i = 0; i < size(); ++i) {
+    held_[i] = force_of(rows_[i]);
+    change_[i] = force_correction(*rows_[i].contact, rows_[i].normal);
+  }
+  beam_.setZero();
+  if (!loaded) deflect(held_);
+  for (std::size_t k = 0; k < yield_.size(); ++k) {
+    const VehicleYield& y = yield_[k];
+    const auto beam = beam_.segment(first_[k], rows(static_cast<int>(k)));
+    auto right = right_.segment(first_[k], rows(static_cast<int>(k)));
+    right = y.c;
+    if (y.P.size() == 0)
+      right += beam;
+    else
+      right += y.P * beam;
+  }
+  subtract_A_times(change_, right_);
+  delta_.setZero();
+  double left = 0.0;
+  for (int i = 1;; ++i) {
+    lu_.solve_in_place(right_.data());
+    delta_ += right_;
+    for (int j = 0; j < size(); ++j) {
+      change_[j] += D_(j, 1) * right_[j];
+      if (!rows_[j].normal) change_[j] += D_(j, 0) * right_[j - 1];
+    }
+    left = move_contacts(shift);
+    if (i == most_iterations || left <= settled || !std::isfinite(left)) break;
+    if (left > rough) factor(shift);
+    right_.setZero();
+    subtract_A_times(deviation_, right_);
+    change_ += deviation_;
+  }
+  if (!loaded) held_ += change_;
+  deflect(loaded ? change_ : held_);
+  return left;
+}
+
+}  // namespace traverse::coupling
