@@ -120,7 +120,7 @@ void BeamMotion::exchange_borders() {
   std::array<double, size> first, last, left{}, right{};
   const Combination rate{0.0, 1.0, {}, 0};
   int i = 0;
-  for (const Combination* c : {&elastic_, &drag_, &rate}) {
+  for (const Combination* c : std::array<const Combination*, 3>{&elastic_, &drag_, &rate}) {
     std::tie(first[i], first[i + 1]) = at_node(*c, 0);
     std::tie(last[i], last[i + 1]) = at_node(*c, nodes_ - 1);
     i += 2;

@@ -118,7 +118,7 @@ bool System::step_motion(double t, double h, double* y) {
   return true;
 }
 
-bool System::stage_of_motion(double t, const StageRule& rule, const Weights& before, const double* v, const double* w) {
+bool System::stage_of_motion(double t, const StageRule& rule, const double* v, const double* w) {
   Motion& m = *motion_;
   const int f = fleet_.freedom();
   const double shift = rule.rate / rule.displacement, shift2 = 1.0 / rule.displacement;
