@@ -15,11 +15,11 @@ constexpr double negligible = 1e-30;
 /// What a chain carries from one node to the next while factoring.
 template <int B>
 struct Bundle<B>::Front {
-  Block<B> update;             // U^T D^{-1} U: taken from the next node's diagonal block
-  Block<B> fill;               // S: the separator's coupling with the next node
-  Block<B> separator;          // sum of S D^{-1} S^T: taken from the separator's diagonal block
-  Block<B> peak;               // largest sizes of the kept fill's entries
-  std::vector<double> kept;    // S D^{-1}, a block a node
+  Block<B> update;           // U^T D^{-1} U: taken from the next node's diagonal block
+  Block<B> fill;             // S: the separator's coupling with the next node
+  Block<B> separator;        // sum of S D^{-1} S^T: taken from the separator's diagonal block
+  Block<B> peak;             // largest sizes of the kept fill's entries
+  std::vector<double> kept;  // S D^{-1}, a block a node
   bool filling = false;
 };
 
@@ -80,8 +80,8 @@ void Bundle<B>::store_fill(const std::array<Front, lanes>& fronts) {
 }
 
 template <int B>
-TRAVERSE_FLATTEN bool Bundle<B>::eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k,
-                                                Front& front, PivotRecord& record) {
+TRAVERSE_FLATTEN bool Bundle<B>::eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k, Front& front,
+                                                PivotRecord& record) {
   const Chain& here = chain(lane);
   const std::ptrdiff_t node = here.first + k * here.direction;
   Block<B> inverse = slice.diagonal(node);

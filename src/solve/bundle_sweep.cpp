@@ -240,7 +240,7 @@ void Bundle<B>::backward(const Columns& x, Range window, const ChainBorders<B, C
   }
 }
 
-#define TRAVERSE_INSTANTIATE_COLUMNS(B, C)                                                           \
+#define TRAVERSE_INSTANTIATE_COLUMNS(B, C)                                                            \
   template void Bundle<B>::forward<C>(const Columns&, Range, NodeFiller*, ChainBorders<B, C>&) const; \
   template void Bundle<B>::backward<C>(const Columns&, Range, const ChainBorders<B, C>&) const;       \
   template void Bundle<B>::solve_alone<C>(const Columns&) const;

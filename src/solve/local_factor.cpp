@@ -90,8 +90,8 @@ bool LocalFactor<B>::factor_separators(const Slice<B>& slice, PivotRecord& recor
   schur_.next += part_schur(parts_ - 1).next;
   record.smallest_ratio = std::min(record.smallest_ratio, found.smallest_ratio);
   if (!found.failed()) return true;
-  record.bad_unknown = begin(found.bad_unknown / block_.size() + first_separator()) * block_.size() +
-                       found.bad_unknown % block_.size();
+  record.bad_unknown =
+      begin(found.bad_unknown / block_.size() + first_separator()) * block_.size() + found.bad_unknown % block_.size();
   record.bad_pivot = found.bad_pivot;
   record.bad_diagonal = found.bad_diagonal;
   return false;

@@ -27,8 +27,8 @@ struct Columns {
   std::ptrdiff_t stride;
 };
 
-/// Steps k in [from, to) of a chain, each from node k to node k + 1, the middle behind the last. An open run ends before
-/// the middle: node `to` is its last.
+/// Steps k in [from, to) of a chain, each from node k to node k + 1, the middle behind the last. An open run ends
+/// before the middle: node `to` is its last.
 struct Run {
   std::ptrdiff_t from = 0;
   std::ptrdiff_t to = 0;

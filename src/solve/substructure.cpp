@@ -185,7 +185,8 @@ void Substructure<B>::factor_separators() {
 template <int B>
 void Substructure<B>::solve(const Request& request) {
   if (!factored_) throw std::logic_error("solve before a successful factor");
-  if (request.window.first < 0 || request.window.past > partition_.nodes) {
+  const Range window = request.window;
+  if (window.first < 0 || window.first > window.past || window.past > partition_.nodes) {
     throw std::logic_error("a window beyond this rank's nodes");
   }
   const FlushDenormals flush;

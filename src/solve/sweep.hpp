@@ -1,7 +1,7 @@
-// The two sweeps of a solve along several chains at once. A chain's next node waits for the one before, and that latency
-// is the limit of one chain; independent chains fill the wait. The factors of `lanes` chains stand side by side, entry
-// by entry: a single column runs along all of them in the lanes of the processor's vectors (LaneSweep), several columns
-// take the lanes for themselves and run along one or two chains (ColumnSweep).
+// The two sweeps of a solve along several chains at once. A chain's next node waits for the one before, and that
+// latency is the limit of one chain; independent chains fill the wait. The factors of `lanes` chains stand side by
+// side, entry by entry: a single column runs along all of them in the lanes of the processor's vectors (LaneSweep),
+// several columns take the lanes for themselves and run along one or two chains (ColumnSweep).
 #pragma once
 
 #include "panel.hpp"
@@ -68,7 +68,9 @@ struct ColumnSweep {
   std::array<ChainUnknowns, N> x;
   std::ptrdiff_t stride;
 
-  ChainEntries entries(const double* of, std::size_t panel, std::ptrdiff_t at) const { return {of + at * lanes + panel}; }
+  ChainEntries entries(const double* of, std::size_t panel, std::ptrdiff_t at) const {
+    return {of + at * lanes + panel};
+  }
   void load(Unknowns& to, std::size_t panel, std::ptrdiff_t k) const {
     const double* at = x[panel].at + k * x[panel].step;
     Packed ? to.load_packed(block, at) : to.load(block, at, stride);
