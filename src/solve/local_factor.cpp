@@ -1,191 +1,235 @@
 #include "local_factor.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace traverse::solve {
 namespace {
 
-// The fill is dropped from the first node on where every entry is below this part of its largest value so far: far
-// below rounding, so that the solution is the exact one, and far above the range where numbers lose their digits.
-constexpr double negligible = 1e-30;
+// Fewer nodes are one part, two chains: separators would cost more than further chains would gain.
+constexpr std::ptrdiff_t nodes_worth_cutting = 512;
+
+// The factors of a bundle, and what its sweep has just passed of x, stay in the second-level cache until the way back.
+constexpr std::ptrdiff_t nodes_a_bundle = 4096;
+
+std::ptrdiff_t count_parts(std::ptrdiff_t nodes) {
+  if (nodes < nodes_worth_cutting) return 1;
+  return static_cast<std::ptrdiff_t>(parts_a_bundle) * std::max<std::ptrdiff_t>(1, nodes / nodes_a_bundle);
+}
+
+template <int B>
+bool is_zero(const Block<B>& block) {
+  return std::all_of(block.data(), block.data() + std::ptrdiff_t{block.size()} * block.size(),
+                     [](double entry) { return entry == 0.0; });
+}
 
 }  // namespace
 
-/// What a chain carries from one node to the next while factoring.
-template <int B>
-struct LocalFactor<B>::Front {
-  Block<B> update;     // U^T D^{-1} U: taken from the next node's diagonal block
-  Block<B> fill;       // S: the separator's coupling with the next node
-  Block<B> separator;  // sum of S D^{-1} S^T: taken from the separator's diagonal block
-  Block<B> peak;       // largest sizes of the stored fill's entries
-  bool filling = false;
-};
-
 template <int B>
 LocalFactor<B>::LocalFactor(Extent<B> block, std::ptrdiff_t nodes, bool follows, bool followed)
-    : block_(block), inner_(follows ? 1 : 0), follows_(follows), followed_(followed) {
-  const std::ptrdiff_t inner_nodes = nodes - inner_;
-  if (inner_nodes > 0) middle_ = inner_ + inner_nodes / 2;
-  chains_[0] = {.first = inner_, .count = inner_nodes / 2, .direction = 1, .lower = {}, .inverse = {}, .fill = {}};
-  chains_[1] = {
-      .first = nodes - 1, .count = nodes - 1 - middle_, .direction = -1, .lower = {}, .inverse = {}, .fill = {}};
-  if (middle_ < 0) chains_[1].count = 0;
-  for (Chain<B>& chain : chains_) {
-    chain.lower.resize(static_cast<std::size_t>(chain.count * block_.area()));
-    chain.inverse.resize(chain.lower.size());
+    : block_(block),
+      nodes_(nodes),
+      parts_(count_parts(nodes)),
+      follows_(follows),
+      followed_(followed),
+      border_stride_((parts_ + 1) * block.size()) {
+  for (std::ptrdiff_t p = 0; p <= parts_; ++p) begins_.push_back(p * nodes / parts_);
+  for (std::ptrdiff_t bundle = 0; parts_of({bundle, bundle + 1}).first < parts_; ++bundle) {
+    std::array<Part, parts_a_bundle> parts;
+    const Range own = parts_of({bundle, bundle + 1});
+    for (std::ptrdiff_t p = own.first; p < own.past; ++p) {
+      parts[static_cast<std::size_t>(p - own.first)] = Part({begin(p), begin(p + 1)}, bordered(p), bordered(p + 1));
+    }
+    bundles_.emplace_back(block, parts);
   }
+  if (parts_ == 1) return;
+  const std::ptrdiff_t separators = parts_ - first_separator();
+  coarse_ = std::make_unique<LocalFactor<B>>(block, separators, follows, followed);
+  coarse_matrix_ = BlockTridiagonal(block.size(), static_cast<int>(separators));
+  coarse_diagonal_.resize(static_cast<std::size_t>(separators * block.size()));
+  separator_inverse_.resize(static_cast<std::size_t>(separators));
 }
 
 template <int B>
 bool LocalFactor<B>::factor(const Slice<B>& slice, PivotRecord& record) {
-  const Block<B> zero(block_);
-  if (middle_ < 0) {
-    schur_ = {slice.diagonal(0), followed_ ? slice.upper(0) : zero, zero};
-    return true;
+  for (Bundle<B>& bundle : bundles_) {
+    if (!bundle.factor(slice, record)) return false;
   }
-  std::array<Front, 2> fronts;
-  for (Front& front : fronts) front = {zero, zero, zero, zero};
-  if (follows_) fronts[0].fill = slice.upper(0);
-  if (followed_) fronts[1].fill = slice.upper(chains_[1].first).transpose();
-  for (std::size_t side : {0, 1}) {
-    Chain<B>& chain = chains_[side];
-    fronts[side].filling = side == 0 ? follows_ : followed_;
-    chain.fill.clear();
-  }
-  // Both chains in one loop, for the divisions of one to run while the other waits for its own.
-  const std::ptrdiff_t longest = std::max(chains_[0].count, chains_[1].count);
-  for (std::ptrdiff_t k = 0; k < longest; ++k) {
-    for (std::size_t side : {0, 1}) {
-      if (k < chains_[side].count && !eliminate_node(slice, side, k, fronts[side], record)) return false;
+  schur_ = part_schur(0);
+  coupled_ = false;
+  return parts_ == 1 || factor_separators(slice, record);
+}
+
+template <int B>
+bool LocalFactor<B>::factor_separators(const Slice<B>& slice, PivotRecord& record) {
+  const std::ptrdiff_t area = block_.area();
+  for (std::ptrdiff_t p = first_separator(); p < parts_; ++p) {
+    const std::ptrdiff_t i = p - first_separator();
+    Block<B> diagonal = part_schur(p).own;
+    if (p > 0) diagonal += part_schur(p - 1).next;
+    std::copy_n(diagonal.data(), area, coarse_matrix_.diagonal.data() + i * area);
+    std::copy_n(part_schur(p).coupling.data(), area, coarse_matrix_.upper.data() + i * area);
+    for (int e = 0; e < block_.size(); ++e) {
+      coarse_diagonal_[static_cast<std::size_t>(i * block_.size() + e)] = slice.reference(begin(p), e);
     }
   }
-  pad_fill();
-  return eliminate_middle(slice, fronts, record);
+  for (std::ptrdiff_t p = 0; p < parts_; ++p) coupled_ = coupled_ || !is_zero(part_schur(p).coupling);
+  const Slice<B> coarse = {coarse_matrix_, nullptr, 0, coarse_diagonal_.data()};
+  PivotRecord found;
+  if (coupled_) {
+    coarse_->factor(coarse, found);
+    schur_ = coarse_->schur();
+  } else {
+    for (std::ptrdiff_t p = 1; p < parts_ && !found.failed(); ++p) {
+      const std::ptrdiff_t i = p - first_separator();
+      Block<B>& inverse = separator_inverse_[static_cast<std::size_t>(i)];
+      inverse = coarse.diagonal(i);
+      invert(inverse, coarse, i, found);
+    }
+    schur_.next = Block<B>(block_);
+  }
+  schur_.next += part_schur(parts_ - 1).next;
+  record.smallest_ratio = std::min(record.smallest_ratio, found.smallest_ratio);
+  if (!found.failed()) return true;
+  record.bad_unknown =
+      begin(found.bad_unknown / block_.size() + first_separator()) * block_.size() + found.bad_unknown % block_.size();
+  record.bad_pivot = found.bad_pivot;
+  record.bad_diagonal = found.bad_diagonal;
+  return false;
 }
 
 template <int B>
-void LocalFactor<B>::pad_fill() {
-  reach_ = 0;
-  for (const Chain<B>& chain : chains_) {
-    reach_ = std::max(reach_, static_cast<std::ptrdiff_t>(chain.fill.size()) / block_.area());
-  }
-  for (Chain<B>& chain : chains_) {
-    chain.fill.resize(static_cast<std::size_t>(std::min(reach_, chain.count) * block_.area()), 0.0);
-  }
+void LocalFactor<B>::reserve(int columns) {
+  const std::size_t size = static_cast<std::size_t>(border_stride_) * static_cast<std::size_t>(columns);
+  if (borders_.size() < size) borders_.resize(size);
+  if (coarse_) coarse_->reserve(columns);
 }
 
 template <int B>
-TRAVERSE_FLATTEN bool LocalFactor<B>::eliminate_node(const Slice<B>& slice, std::size_t side, std::ptrdiff_t k,
-                                                     Front& front, PivotRecord& record) {
-  Chain<B>& chain = chains_[side];
-  const std::ptrdiff_t node = chain.first + k * chain.direction;
-  Block<B> inverse = slice.diagonal(node);
-  inverse -= front.update;
-  if (!invert(inverse, slice, node, record)) return false;
-  const Block<B> upper = chain.direction > 0 ? slice.upper(node) : slice.upper(node - 1).transpose();
-  const Block<B> lower = upper.transpose() * inverse;
-  std::copy_n(inverse.data(), block_.area(), chain.inverse.data() + k * block_.area());
-  std::copy_n(lower.data(), block_.area(), chain.lower.data() + k * block_.area());
-  front.update = lower * upper;
-  if (front.filling) extend_fill(chain, inverse, upper, front);
-  return true;
-}
-
-template <int B>
-void LocalFactor<B>::extend_fill(Chain<B>& chain, const Block<B>& inverse, const Block<B>& upper, Front& front) {
-  const Block<B> fill = front.fill * inverse;
-  front.filling = false;
-  for (std::ptrdiff_t e = 0; e < block_.area(); ++e) {
-    const double size = std::abs(fill.data()[e]);
-    double& peak = front.peak.data()[e];
-    peak = std::max(peak, size);
-    front.filling = front.filling || !(size <= negligible * peak);  // a NaN goes on, to be found
+typename LocalFactor<B>::Work LocalFactor<B>::meet(const Columns& x, int column, Range window) {
+  Work result = {x,
+                 {borders_.data() + column * border_stride_, 0, border_stride_},
+                 window,
+                 {0, static_cast<std::ptrdiff_t>(bundles_.size())},
+                 {first_separator(), parts_}};
+  if (window.first > 0 || window.past < nodes_) {
+    const auto first_from = [&](std::ptrdiff_t node) {
+      return std::lower_bound(begins_.begin(), begins_.end() - 1, node) - begins_.begin();
+    };
+    constexpr auto most = static_cast<std::ptrdiff_t>(parts_a_bundle);
+    result.bundles = {(first_from(window.first + 1) - 1) / most, (first_from(window.past) - 1) / most + 1};
+    result.separators = {std::max(first_separator(), first_from(window.first)), first_from(window.past)};
   }
-  if (!front.filling) {
-    front.fill = Block<B>(block_);
-    return;
-  }
-  chain.fill.insert(chain.fill.end(), fill.data(), fill.data() + block_.area());
-  front.separator += fill * front.fill.transpose();
-  front.fill = -(fill * upper);
-}
-
-template <int B>
-bool LocalFactor<B>::eliminate_middle(const Slice<B>& slice, std::array<Front, 2>& fronts, PivotRecord& record) {
-  middle_inverse_ = slice.diagonal(middle_);
-  for (const Front& front : fronts) middle_inverse_ -= front.update;
-  if (!invert(middle_inverse_, slice, middle_, record)) return false;
-  for (std::size_t side : {0, 1}) {
-    middle_fill_[side] = fronts[side].fill * middle_inverse_;
-    fronts[side].separator += middle_fill_[side] * fronts[side].fill.transpose();
-  }
-  schur_.own = -fronts[0].separator;
-  if (follows_) schur_.own += slice.diagonal(0);
-  schur_.coupling = -(middle_fill_[0] * fronts[1].fill.transpose());
-  schur_.next = -fronts[1].separator;
-  return true;
-}
-
-template <int B>
-ChainView LocalFactor<B>::view(const Chain<B>& chain, double* x) const {
-  return {chain.lower.data(), chain.inverse.data(), chain.fill.data(), x + chain.first * block_.size(),
-          static_cast<std::ptrdiff_t>(chain.direction) * block_.size()};
+  return result;
 }
 
 template <int B>
 template <int C>
-void LocalFactor<B>::eliminate(double* x, std::ptrdiff_t stride, SeparatorPanels<B, C>& separators) const {
-  Borders<B, C, 2> borders = {};
-  if (follows_) borders[0].load(block_, x, stride);
-  if (middle_ >= 0) {
-    const std::array<ChainView, 2> both = {view(chains_[0], x), view(chains_[1], x)};
-    const std::ptrdiff_t filled = std::min(reach_, chains_[1].count);
-    sweep_forward<true>(block_, both, 0, filled, stride, borders);
-    sweep_forward<false>(block_, both, filled, chains_[1].count, stride, borders);
-    Borders<B, C, 1> first = {borders[0]};
-    const std::ptrdiff_t last_filled = std::clamp(reach_, chains_[1].count, chains_[0].count);
-    sweep_forward<true>(block_, std::array{both[0]}, chains_[1].count, last_filled, stride, first);
-    sweep_forward<false>(block_, std::array{both[0]}, last_filled, chains_[0].count, stride, first);
-    borders[0] = first[0];
-    Panel<B, C> middle;
-    middle.load(block_, x + middle_ * block_.size(), stride);
-    for (std::size_t side : {0, 1}) borders[side].subtract(block_, middle_fill_[side].data(), middle);
-  }
-  separators = {borders[0], borders[1]};
+Panel<B, C> LocalFactor<B>::load(const Columns& x, std::ptrdiff_t node) const {
+  Panel<B, C> result;
+  result.load(block_, x.x + (node - x.origin) * block_.size(), x.stride);
+  return result;
 }
 
 template <int B>
 template <int C>
-void LocalFactor<B>::substitute(double* x, std::ptrdiff_t stride, const SeparatorPanels<B, C>& separators) const {
-  if (follows_) separators.own.store(block_, x, stride);
-  if (middle_ < 0) return;
-  const Borders<B, C, 2> borders = {separators.own, separators.next};
-  double* here = x + middle_ * block_.size();
-  Panel<B, C> reduced, middle;
-  reduced.load(block_, here, stride);
-  middle.multiply(block_, middle_inverse_.data(), reduced);
-  for (std::size_t side : {0, 1}) middle.subtract_transposed(block_, middle_fill_[side].data(), borders[side]);
-  middle.store(block_, here, stride);
-
-  const std::array<ChainView, 2> both = {view(chains_[0], x), view(chains_[1], x)};
-  const Borders<B, C, 1> first = {borders[0]};
-  const std::ptrdiff_t last_filled = std::clamp(reach_, chains_[1].count, chains_[0].count);
-  sweep_backward<false>(block_, std::array{both[0]}, last_filled, chains_[0].count, stride, first);
-  sweep_backward<true>(block_, std::array{both[0]}, chains_[1].count, last_filled, stride, first);
-  const std::ptrdiff_t filled = std::min(reach_, chains_[1].count);
-  sweep_backward<false>(block_, both, filled, chains_[1].count, stride, borders);
-  sweep_backward<true>(block_, both, 0, filled, stride, borders);
+void LocalFactor<B>::store(const Panel<B, C>& panel, const Columns& x, std::ptrdiff_t node) const {
+  panel.store(block_, x.x + (node - x.origin) * block_.size(), x.stride);
 }
 
-#define TRAVERSE_INSTANTIATE_COLUMNS(B, C)                                                           \
-  template void LocalFactor<B>::eliminate<C>(double*, std::ptrdiff_t, SeparatorPanels<B, C>&) const; \
-  template void LocalFactor<B>::substitute<C>(double*, std::ptrdiff_t, const SeparatorPanels<B, C>&) const;
+template <int B>
+template <int C>
+void LocalFactor<B>::eliminate(const Columns& x, int column, Range window, NodeFiller* filler,
+                               SeparatorPanels<B, C>& separators) {
+  separators = {};
+  if (window.empty()) return;
+  const Work work = meet(x, column, window);
+  load_borders<C>(work, filler);
+  for (std::ptrdiff_t bundle = work.bundles.first; bundle < work.bundles.past; ++bundle) {
+    forward<C>(work, filler, bundle);
+    if (coupled_) continue;
+    finish_separators<C>(work, bundle);
+    if (bundle > work.bundles.first && !waits(bundle - 1)) backward<C>(work, bundle - 1);
+  }
+  if (!waits(work.bundles.past - 1)) backward<C>(work, work.bundles.past - 1);
+  if (coupled_) {
+    coarse_->template eliminate<C>(coarse_columns(work), column, coarse_window(work), nullptr, separators);
+  } else if (follows_) {
+    separators.own = load<C>(work.borders, 0);
+  }
+  if (followed_) separators.next.add(block_, load<C>(work.borders, parts_));
+}
+
+template <int B>
+template <int C>
+void LocalFactor<B>::substitute(const Columns& x, int column, Range window, const SeparatorPanels<B, C>& separators) {
+  if (window.empty()) return;
+  const Work work = meet(x, column, window);
+  if (follows_) store<C>(separators.own, work.borders, 0);
+  if (followed_) store<C>(separators.next, work.borders, parts_);
+  if (coupled_) coarse_->template substitute<C>(coarse_columns(work), column, coarse_window(work), separators);
+  const Range late = work.separators.common({0, coupled_ ? parts_ : 1});
+  for (std::ptrdiff_t p = late.first; p < late.past; ++p) store<C>(load<C>(work.borders, p), x, begin(p));
+  for (std::ptrdiff_t bundle = work.bundles.first; bundle < work.bundles.past; ++bundle) {
+    if (waits(bundle)) backward<C>(work, bundle);
+  }
+}
+
+/// The right-hand sides of the separators in the window, zero at the others beside its parts.
+template <int B>
+template <int C>
+void LocalFactor<B>::load_borders(const Work& work, NodeFiller* filler) const {
+  const Range parts = parts_of(work.bundles);
+  for (std::ptrdiff_t p = parts.first; p <= parts.past; ++p) {
+    const bool inside = work.separators.contains(p);
+    if (inside && filler != nullptr) filler->fill(begin(p), begin(p) + 1);
+    store<C>(inside ? load<C>(work.x, begin(p)) : Panel<B, C>{}, work.borders, p);
+  }
+  if (parts.past < parts_) store<C>({}, work.borders, parts_);
+}
+
+template <int B>
+template <int C>
+void LocalFactor<B>::forward(const Work& work, NodeFiller* filler, std::ptrdiff_t bundle) const {
+  ChainBorders<B, C> added = {};
+  bundles_[static_cast<std::size_t>(bundle)].template forward<C>(work.x, work.window, filler, added);
+  for_borders(bundle, [&](std::size_t lane, std::ptrdiff_t p) {
+    if (p == parts_ ? work.window.past < nodes_ : !work.separators.contains(p)) return;
+    added[lane].add(block_, load<C>(work.borders, p));
+    store<C>(added[lane], work.borders, p);
+  });
+}
+
+template <int B>
+template <int C>
+void LocalFactor<B>::backward(const Work& work, std::ptrdiff_t bundle) const {
+  ChainBorders<B, C> borders = {};
+  for_borders(bundle, [&](std::size_t lane, std::ptrdiff_t p) { borders[lane] = load<C>(work.borders, p); });
+  bundles_[static_cast<std::size_t>(bundle)].template backward<C>(work.x, work.window, borders);
+}
+
+/// The solution at the separators before a bundle's parts, where they do not see each other; not this rank's own.
+template <int B>
+template <int C>
+void LocalFactor<B>::finish_separators(const Work& work, std::ptrdiff_t bundle) const {
+  const Range parts = parts_of({bundle, bundle + 1}).common(work.separators);
+  for (std::ptrdiff_t p = std::max<std::ptrdiff_t>(1, parts.first); p < parts.past; ++p) {
+    Panel<B, C> solution;
+    const Block<B>& inverse = separator_inverse_[static_cast<std::size_t>(p - first_separator())];
+    solution.multiply(block_, inverse.data(), load<C>(work.borders, p));
+    store<C>(solution, work.borders, p);
+    store<C>(solution, work.x, begin(p));
+  }
+}
+
+#define TRAVERSE_INSTANTIATE_COLUMNS(B, C)                                                                     \
+  template void LocalFactor<B>::eliminate<C>(const Columns&, int, Range, NodeFiller*, SeparatorPanels<B, C>&); \
+  template void LocalFactor<B>::substitute<C>(const Columns&, int, Range, const SeparatorPanels<B, C>&);
 #define TRAVERSE_INSTANTIATE(B)      \
   template class LocalFactor<B>;     \
   TRAVERSE_INSTANTIATE_COLUMNS(B, 1) \
   TRAVERSE_INSTANTIATE_COLUMNS(B, 2) \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 4)
+  TRAVERSE_INSTANTIATE_COLUMNS(B, 4) \
+  TRAVERSE_INSTANTIATE_COLUMNS(B, 8)
 TRAVERSE_INSTANTIATE(2)
 TRAVERSE_INSTANTIATE(3)
 TRAVERSE_INSTANTIATE(4)

@@ -1,42 +1,12 @@
-// One rank's part of the elimination, A = L D L^T by blocks. The rank's first node, unless it begins the matrix, and
-// the next rank's first node are separators and stay; the nodes between are eliminated from both ends towards the
-// middle one, in two chains that do not depend on each other:
-//
-//   separator | chain 0: 0 1 2 ... -> | middle | <- ... 2 1 0 :chain 1 | separator of the next rank
-//
-// A chain that starts beside a separator drags along a coupling to it, the fill. Under a large mass term the fill dies
-// out within tens of nodes and its tail is dropped; with springs alone it may reach the middle, and is kept whole.
+// One rank's part of the elimination: its bundles of parts, and the small system of the separators between the parts.
 #pragma once
 
-#include <array>
+#include <memory>
 #include <vector>
 
-#include "panel.hpp"
-#include "slice.hpp"
-#include "small_block.hpp"
-#include "sweep.hpp"
+#include "bundle.hpp"
 
 namespace traverse::solve {
-
-/// A chain's factors, a block a node k in the order of elimination. With D_k the pivot block, U_k the coupling to
-/// node k + 1 and S_k the coupling of the separator (rows) to node k (columns):
-template <int B>
-struct Chain {
-  std::ptrdiff_t first = 0;     // the slice's node where the chain starts
-  std::ptrdiff_t count = 0;     // nodes; one more step leads to the middle
-  int direction = 1;            // to the right, or -1: to the left
-  std::vector<double> lower;    // U_k^T D_k^{-1}
-  std::vector<double> inverse;  // D_k^{-1}
-  std::vector<double> fill;     // S_k D_k^{-1}, for the first nodes
-};
-
-/// What the elimination leaves for the reduced system of the separators.
-template <int B>
-struct SchurPart {
-  Block<B> own;       // diagonal block of this rank's separator
-  Block<B> coupling;  // this rank's separator (rows) with the next rank's (columns)
-  Block<B> next;      // added to the diagonal block of the next rank's separator
-};
 
 /// The separators' unknowns in C columns: this rank's and the next rank's.
 template <int B, int C>
@@ -55,33 +25,98 @@ class LocalFactor {
   bool factor(const Slice<B>& slice, PivotRecord& record);
   const SchurPart<B>& schur() const { return schur_; }
 
-  /// First half of a solve in C columns with entries at x + node*block + column*stride: eliminates the inner nodes;
-  /// separators.own, in: its right-hand side, out: reduced; separators.next: what is added to the next rank's.
-  template <int C>
-  void eliminate(double* x, std::ptrdiff_t stride, SeparatorPanels<B, C>& separators) const;
+  /// One part without separators, whose solve_alone is the short way.
+  const Bundle<B>* alone() const { return parts_ == 1 && !follows_ && !followed_ ? &bundles_.front() : nullptr; }
 
-  /// Second half: the inner nodes, from the separators' solutions.
+  /// Room for a solve in so many columns.
+  void reserve(int columns);
+
+  /// First half of a solve within a window, in C columns of which the first is number `column`: eliminates the inner
+  /// nodes, the filler, unless null, writing all nodes of the window before. separators, out: this rank's reduced
+  /// right-hand side and what is added to the next rank's; zero where the window does not reach them.
   template <int C>
-  void substitute(double* x, std::ptrdiff_t stride, const SeparatorPanels<B, C>& separators) const;
+  void eliminate(const Columns& x, int column, Range window, NodeFiller* filler, SeparatorPanels<B, C>& separators);
+
+  /// Second half: all nodes of the window, from the separators' solutions.
+  template <int C>
+  void substitute(const Columns& x, int column, Range window, const SeparatorPanels<B, C>& separators);
 
  private:
-  struct Front;
-  bool eliminate_node(const Slice<B>& slice, std::size_t side, std::ptrdiff_t k, Front& front, PivotRecord& record);
-  void extend_fill(Chain<B>& chain, const Block<B>& inverse, const Block<B>& upper, Front& front);
-  void pad_fill();
-  bool eliminate_middle(const Slice<B>& slice, std::array<Front, 2>& fronts, PivotRecord& record);
-  ChainView view(const Chain<B>& chain, double* x) const;
+  /// A window, its nodes' unknowns and its separators', and what of the rank it meets.
+  struct Work {
+    Columns x;
+    Columns borders;  // node p: the separator before part p, or behind the last
+    Range window;
+    Range bundles;
+    Range separators;  // parts whose own separator is in the window
+  };
+  Work meet(const Columns& x, int column, Range window);
+  Columns coarse_columns(const Work& work) const { return {work.borders.x, -first_separator(), border_stride_}; }
+  Range coarse_window(const Work& work) const {
+    return {work.separators.first - first_separator(), work.separators.past - first_separator()};
+  }
+  bool factor_separators(const Slice<B>& slice, PivotRecord& record);
+
+  bool bordered(std::ptrdiff_t p) const { return (p > 0 || follows_) && (p < parts_ || followed_); }
+  std::ptrdiff_t begin(std::ptrdiff_t p) const { return begins_[static_cast<std::size_t>(p)]; }
+  std::ptrdiff_t first_separator() const { return follows_ ? 0 : 1; }
+  const SchurPart<B>& part_schur(std::ptrdiff_t p) const {
+    const auto at = static_cast<std::size_t>(p);
+    return bundles_[at / parts_a_bundle].schur(at % parts_a_bundle);
+  }
+  /// The parts of some bundles.
+  Range parts_of(Range bundles) const {
+    constexpr auto most = static_cast<std::ptrdiff_t>(parts_a_bundle);
+    return {bundles.first * most, std::min(parts_, bundles.past * most)};
+  }
+  /// Bundles that cannot be finished before other separators, or the ranks beside, have been heard.
+  bool waits(std::ptrdiff_t bundle) const {
+    return coupled_ || (bundle == 0 && follows_) || bundle + 1 == static_cast<std::ptrdiff_t>(bundles_.size());
+  }
+  /// body(chain of the bundle, border it starts at).
+  template <class Body>
+  void for_borders(std::ptrdiff_t bundle, Body body) const {
+    const Range parts = parts_of({bundle, bundle + 1});
+    for (std::ptrdiff_t p = parts.first; p < parts.past; ++p) {
+      const auto lane = static_cast<std::size_t>(2 * (p - parts.first));
+      if (bordered(p)) body(lane, p);
+      if (bordered(p + 1)) body(lane + 1, p + 1);
+    }
+  }
+
+  template <int C>
+  void load_borders(const Work& work, NodeFiller* filler) const;
+  template <int C>
+  void forward(const Work& work, NodeFiller* filler, std::ptrdiff_t bundle) const;
+  template <int C>
+  void backward(const Work& work, std::ptrdiff_t bundle) const;
+  template <int C>
+  void finish_separators(const Work& work, std::ptrdiff_t bundle) const;
+  template <int C>
+  Panel<B, C> load(const Columns& x, std::ptrdiff_t node) const;
+  template <int C>
+  void store(const Panel<B, C>& panel, const Columns& x, std::ptrdiff_t node) const;
 
   Extent<B> block_;
-  std::ptrdiff_t inner_;        // first inner node
-  std::ptrdiff_t middle_ = -1;  // -1: no inner nodes
+  std::ptrdiff_t nodes_;
+  std::ptrdiff_t parts_;
+  std::vector<std::ptrdiff_t> begins_;  // the parts' first nodes, their separators where they are bordered; past all
   bool follows_;
   bool followed_;
-  std::array<Chain<B>, 2> chains_;  // the first is longer by one node or none
-  std::ptrdiff_t reach_ = 0;        // nodes a chain with fill: the longer fill's, the other padded with zeros
-  Block<B> middle_inverse_;
-  std::array<Block<B>, 2> middle_fill_;
+  std::vector<Bundle<B>> bundles_;
   SchurPart<B> schur_;
+
+  // The separators within the rank. Where the fill of none of the parts reaches its middle they do not see each other,
+  // and each is solved as soon as the parts on both its sides are eliminated. Else they are a system of their own, this
+  // rank's first node included if it is a separator.
+  bool coupled_ = false;
+  std::unique_ptr<LocalFactor<B>> coarse_;
+  BlockTridiagonal coarse_matrix_;
+  std::vector<double> coarse_diagonal_;  // their diagonal entries in the matrix given
+  std::vector<Block<B>> separator_inverse_;
+
+  std::ptrdiff_t border_stride_;
+  std::vector<double> borders_;  // the separators' unknowns, column after column
 };
 
 }  // namespace traverse::solve

@@ -17,17 +17,23 @@ enum HeaderEntry { bad_unknown, bad_pivot, bad_diagonal, smallest_ratio, header_
 
 std::ptrdiff_t factor_message_size(int block) { return header_size + block + std::ptrdiff_t{3} * block * block; }
 
-/// body(number of columns as a constant, first column), for batches of 4, 2 and 1.
+/// body(number of columns as a constant, first column), for batches of 8, 4, 2 and 1.
 template <class Body>
 void in_batches(int columns, Body&& body) {
   int column = 0;
-  for (; column + 4 <= columns; column += 4) body(std::integral_constant<int, 4>{}, column);
+  for (; column + 8 <= columns; column += 8) body(std::integral_constant<int, 8>{}, column);
+  if (column + 4 <= columns) {
+    body(std::integral_constant<int, 4>{}, column);
+    column += 4;
+  }
   if (column + 2 <= columns) {
     body(std::integral_constant<int, 2>{}, column);
     column += 2;
   }
   if (column < columns) body(std::integral_constant<int, 1>{}, column);
 }
+
+Columns from(const Columns& x, int column) { return {x.x + column * x.stride, x.origin, x.stride}; }
 
 void grow(std::vector<double>& buffer, std::ptrdiff_t size) {
   if (static_cast<std::ptrdiff_t>(buffer.size()) < size) buffer.resize(static_cast<std::size_t>(size));
@@ -177,37 +183,46 @@ void Substructure<B>::factor_separators() {
 }
 
 template <int B>
-void Substructure<B>::solve(double* x, int columns) {
+void Substructure<B>::solve(const Request& request) {
   if (!factored_) throw std::logic_error("solve before a successful factor");
+  const Range window = request.window;
+  if (window.first < 0 || window.first > window.past || window.past > partition_.nodes) {
+    throw std::logic_error("a window beyond this rank's nodes");
+  }
   const FlushDenormals flush;
-  if (!separators_) {
-    if (local_) in_batches(columns, [&](auto C, int column) { solve_alone<C>(x, column); });
+  const bool whole = request.filler == nullptr && request.window.past - request.window.first == partition_.nodes;
+  if (const Bundle<B>* alone = local_ && whole ? local_->alone() : nullptr; alone != nullptr) {
+    in_batches(request.columns, [&](auto C, int column) { alone->template solve_alone<C>(from(request.x, column)); });
     return;
   }
-  grow(outgoing_, std::ptrdiff_t{2} * block_.size() * columns);
-  if (local_) in_batches(columns, [&](auto C, int column) { reduce<C>(x, column); });
-  solve_separators(columns);
-  if (local_) in_batches(columns, [&](auto C, int column) { expand<C>(x, column); });
+  if (local_) local_->reserve(request.columns);
+  if (!separators_) {
+    if (local_) in_batches(request.columns, [&](auto C, int column) { solve_alone<C>(request, column); });
+    return;
+  }
+  grow(outgoing_, std::ptrdiff_t{2} * block_.size() * request.columns);
+  if (local_) in_batches(request.columns, [&](auto C, int column) { reduce<C>(request, column); });
+  solve_separators(request.columns);
+  if (local_) in_batches(request.columns, [&](auto C, int column) { expand<C>(request, column); });
 }
 
 template <int B>
 template <int C>
-void Substructure<B>::solve_alone(double* x, int column) const {
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(partition_.nodes) * block_.size();
-  SeparatorPanels<B, C> none = {};
-  local_->eliminate(x + column * stride, stride, none);
-  local_->substitute(x + column * stride, stride, none);
+void Substructure<B>::solve_alone(const Request& request, int column) {
+  const Columns x = from(request.x, column);
+  SeparatorPanels<B, C> none;
+  local_->template eliminate<C>(x, column, request.window, request.filler, none);
+  local_->template substitute<C>(x, column, request.window, none);
 }
 
 /// Eliminates the inner nodes and writes this rank's message: for each column its separator's reduced right-hand side
 /// and what it adds to the next one's.
 template <int B>
 template <int C>
-void Substructure<B>::reduce(double* x, int column) {
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(partition_.nodes) * block_.size();
+void Substructure<B>::reduce(const Request& request, int column) {
   const std::ptrdiff_t length = std::ptrdiff_t{2} * block_.size();
   SeparatorPanels<B, C> separators;
-  local_->eliminate(x + column * stride, stride, separators);
+  local_->template eliminate<C>(from(request.x, column), column, request.window, request.filler, separators);
   separators.own.store(block_, outgoing_.data() + column * length, length);
   separators.next.store(block_, outgoing_.data() + column * length + block_.size(), length);
 }
@@ -230,23 +245,25 @@ void Substructure<B>::solve_separators(int columns) {
       for (std::ptrdiff_t e = 0; e < n; ++e) to[e] = own[column * 2 * n + e] + before[column * 2 * n + e];
     }
   }
+  const Range all = {0, partition_.separators()};
+  separators_->reserve(columns);
   in_batches(columns, [&](auto C, int column) {
-    SeparatorPanels<B, C> none = {};
-    separators_->eliminate(reduced_.data() + column * stride, stride, none);
-    separators_->substitute(reduced_.data() + column * stride, stride, none);
+    const Columns x = {reduced_.data() + column * stride, 0, stride};
+    SeparatorPanels<B, C> none;
+    separators_->template eliminate<C>(x, column, all, nullptr, none);
+    separators_->template substitute<C>(x, column, all, none);
   });
 }
 
 template <int B>
 template <int C>
-void Substructure<B>::expand(double* x, int column) const {
-  const std::ptrdiff_t stride = static_cast<std::ptrdiff_t>(partition_.nodes) * block_.size();
+void Substructure<B>::expand(const Request& request, int column) {
   const std::ptrdiff_t reduced_stride = std::ptrdiff_t{block_.size()} * partition_.separators();
   const double* own = reduced_.data() + column * reduced_stride + (partition_.mine - 1) * block_.size();
   SeparatorPanels<B, C> separators = {};
   if (partition_.follows()) separators.own.load(block_, own, reduced_stride);
   if (partition_.followed()) separators.next.load(block_, own + block_.size(), reduced_stride);
-  local_->substitute(x + column * stride, stride, separators);
+  local_->template substitute<C>(from(request.x, column), column, request.window, separators);
 }
 
 template class Substructure<2>;

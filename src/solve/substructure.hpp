@@ -30,12 +30,20 @@ struct Partition {
   int mine = -1;                       // this rank's place among them; -1: no nodes
 };
 
+/// What is asked of a solve.
+struct Request {
+  Columns x;
+  int columns;
+  Range window;        // this rank's nodes
+  NodeFiller* filler;  // null: the right-hand side is there
+};
+
 /// SubstructuredCholesky for one block size.
 class AnySubstructure {
  public:
   virtual ~AnySubstructure() = default;
   virtual void factor(const BlockTridiagonal& A, const std::vector<char>& fixed) = 0;
-  virtual void solve(double* x, int columns) = 0;
+  virtual void solve(const Request& request) = 0;
   virtual double pivot_ratio() const = 0;
 };
 
@@ -44,7 +52,7 @@ class Substructure final : public AnySubstructure {
  public:
   Substructure(MPI_Comm comm, int block_size, int local_nodes);
   void factor(const BlockTridiagonal& A, const std::vector<char>& fixed) override;
-  void solve(double* x, int columns) override;
+  void solve(const Request& request) override;
   double pivot_ratio() const override { return record_.smallest_ratio; }
 
  private:
@@ -58,11 +66,11 @@ class Substructure final : public AnySubstructure {
 
   void solve_separators(int columns);
   template <int C>
-  void reduce(double* x, int column);
+  void reduce(const Request& request, int column);
   template <int C>
-  void expand(double* x, int column) const;
+  void expand(const Request& request, int column);
   template <int C>
-  void solve_alone(double* x, int column) const;
+  void solve_alone(const Request& request, int column);
 
   Extent<B> block_;
   Partition partition_;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -49,28 +48,23 @@ void SubstructuredCholesky::factor(const BlockTridiagonal& A, const std::vector<
   impl_->substructure->factor(A, fixed);
 }
 
-void SubstructuredCholesky::solve(double* x, int columns) const { impl_->substructure->solve(x, columns); }
+void SubstructuredCholesky::solve(double* x, int columns) const {
+  const Range all = {0, impl_->nodes};
+  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, columns, all, nullptr});
+}
 
 void SubstructuredCholesky::solve(double* x, NodeFiller& filler) const {
-  if (impl_->nodes > 0) filler.fill(0, impl_->nodes);
-  solve(x);
+  const Range all = {0, impl_->nodes};
+  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, 1, all, &filler});
 }
 
 void SubstructuredCholesky::solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past,
                                          NodeFiller& filler) const {
-  if (past > first) filler.fill(first, past);
-  solve_local(x + first * impl_->block, 1, first, past);
+  impl_->substructure->solve({{x, 0, impl_->nodes * impl_->block}, 1, {first, past}, &filler});
 }
 
 void SubstructuredCholesky::solve_local(double* x, int columns, std::ptrdiff_t first, std::ptrdiff_t past) const {
-  const std::ptrdiff_t window = (past - first) * impl_->block;
-  std::vector<double> whole(static_cast<std::size_t>(impl_->nodes * impl_->block));
-  for (int column = 0; column < columns; ++column) {
-    std::fill(whole.begin(), whole.end(), 0.0);
-    std::copy_n(x + column * window, window, whole.begin() + first * impl_->block);
-    solve(whole.data());
-    std::copy_n(whole.begin() + first * impl_->block, window, x + column * window);
-  }
+  impl_->substructure->solve({{x, first, (past - first) * impl_->block}, columns, {first, past}, nullptr});
 }
 
 double SubstructuredCholesky::pivot_ratio() const { return impl_->substructure->pivot_ratio(); }

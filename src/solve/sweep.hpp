@@ -1,79 +1,143 @@
-// The two sweeps of a solve along N chains at once. A chain's next node waits for the one before, and that latency
-// is the limit of one chain; independent chains in one loop fill the wait.
+// The two sweeps of a solve along several chains at once. A chain's next node waits for the one before, and that
+// latency is the limit of one chain; independent chains fill the wait. The factors of `lanes` chains stand side by
+// side, entry by entry: a single column runs along all of them in the lanes of the processor's vectors (LaneSweep),
+// several columns take the lanes for themselves and run along one or two chains (ColumnSweep).
 #pragma once
 
 #include "panel.hpp"
 
 namespace traverse::solve {
 
-/// One chain's factors (see local_factor.hpp) and where its unknowns are: node k of the chain at x + k*step.
-struct ChainView {
+/// The chains that share a store of factors: even ones run to the right, odd ones to the left.
+inline constexpr int lanes = 4;
+
+/// The factors from a lane on. Node k, entry e of that lane's chain: [(k*entries + e)*lanes], the entries block*block
+/// or, of the symmetric inverse, those of the lower triangle.
+struct Factors {
   const double* lower;
   const double* inverse;
   const double* fill;
-  double* x;
+};
+
+/// Node k of one chain: at + k*step.
+struct ChainUnknowns {
+  double* at;
   std::ptrdiff_t step;
 };
 
-/// The separator's unknowns, one panel a chain: gathered in the forward sweep, known in the backward sweep.
-template <int B, int C, std::size_t N>
-using Borders = std::array<Panel<B, C>, N>;
+struct LaneEntries {
+  const double* first;
+  Lane<lanes> operator[](std::ptrdiff_t entry) const { return load_lane<lanes>(first + entry * lanes); }
+};
+
+struct ChainEntries {
+  const double* first;
+  double operator[](std::ptrdiff_t entry) const { return first[entry * lanes]; }
+};
+
+/// One column along all chains.
+template <int B>
+struct LaneSweep {
+  using Unknowns = Panel<B, lanes>;
+  static constexpr std::size_t panels = 1;
+  Extent<B> block;
+  Factors factors;
+  std::array<double*, lanes> x;  // of the chains' nodes 0
+
+  LaneEntries entries(const double* of, std::size_t /*panel*/, std::ptrdiff_t at) const { return {of + at * lanes}; }
+  double* address(int lane, std::ptrdiff_t k) const {
+    const std::ptrdiff_t way = k * block.size();
+    return x[static_cast<std::size_t>(lane)] + (lane % 2 == 0 ? way : -way);
+  }
+  void load(Unknowns& to, std::size_t /*panel*/, std::ptrdiff_t k) const {
+    to.gather(block, [&](int lane) { return address(lane, k); });
+  }
+  void store(const Unknowns& from, std::size_t /*panel*/, std::ptrdiff_t k) const {
+    from.scatter(block, [&](int lane) { return address(lane, k); });
+  }
+};
+
+/// C columns along N neighbouring chains. A column's entries lie `stride` behind those of the column before; packed,
+/// each unknown's columns stand together, and its node's unknowns side by side.
+template <int B, int C, std::size_t N, bool Packed = false>
+struct ColumnSweep {
+  using Unknowns = Panel<B, C>;
+  static constexpr std::size_t panels = N;
+  Extent<B> block;
+  Factors factors;
+  std::array<ChainUnknowns, N> x;
+  std::ptrdiff_t stride;
+
+  ChainEntries entries(const double* of, std::size_t panel, std::ptrdiff_t at) const {
+    return {of + at * lanes + panel};
+  }
+  void load(Unknowns& to, std::size_t panel, std::ptrdiff_t k) const {
+    const double* at = x[panel].at + k * x[panel].step;
+    Packed ? to.load_packed(block, at) : to.load(block, at, stride);
+  }
+  void store(const Unknowns& from, std::size_t panel, std::ptrdiff_t k) const {
+    double* at = x[panel].at + k * x[panel].step;
+    Packed ? from.store_packed(block, at) : from.store(block, at, stride);
+  }
+};
+
+/// The separator's unknowns, for each panel: gathered in the forward sweep, known in the backward sweep.
+template <class Sweep>
+using Borders = std::array<typename Sweep::Unknowns, Sweep::panels>;
 
 /// For k in [from, to): y_{k+1} -= L_k y_k, and with Fill border -= F_k y_k.
-template <bool Fill, int B, int C, std::size_t N>
-TRAVERSE_FLATTEN void sweep_forward(Extent<B> block, const std::array<ChainView, N>& chains, std::ptrdiff_t from,
-                                    std::ptrdiff_t to, std::ptrdiff_t stride, Borders<B, C, N>& borders) {
-  if (from >= to) return;
-  std::array<Panel<B, C>, N> y;
-  Borders<B, C, N> border;
+template <bool Fill, class Sweep>
+TRAVERSE_FLATTEN void sweep_forward(const Sweep& sweep, std::ptrdiff_t from, std::ptrdiff_t to,
+                                    Borders<Sweep>& borders) {
+  const auto block = sweep.block;
+  Borders<Sweep> y;
+  Borders<Sweep> border;
   TRAVERSE_UNROLL
-  for (std::size_t j = 0; j < N; ++j) {
-    y[j].load(block, chains[j].x + from * chains[j].step, stride);
+  for (std::size_t j = 0; j < Sweep::panels; ++j) {
+    sweep.load(y[j], j, from);
     if constexpr (Fill) border[j].copy(block, borders[j]);
   }
   for (std::ptrdiff_t k = from; k < to; ++k) {
     TRAVERSE_UNROLL
-    for (std::size_t j = 0; j < N; ++j) {
-      const ChainView& chain = chains[j];
-      if constexpr (Fill) border[j].subtract(block, chain.fill + k * block.area(), y[j]);
-      double* next = chain.x + (k + 1) * chain.step;
-      Panel<B, C> value;
-      value.load(block, next, stride);
-      value.subtract(block, chain.lower + k * block.area(), y[j]);
-      value.store(block, next, stride);
-      y[j].copy(block, value);
+    for (std::size_t j = 0; j < Sweep::panels; ++j) {
+      if constexpr (Fill) border[j].subtract(block, sweep.entries(sweep.factors.fill, j, k * block.area()), y[j]);
+      typename Sweep::Unknowns next;
+      sweep.load(next, j, k + 1);
+      next.subtract(block, sweep.entries(sweep.factors.lower, j, k * block.area()), y[j]);
+      sweep.store(next, j, k + 1);
+      y[j].copy(block, next);
     }
   }
   TRAVERSE_UNROLL
-  for (std::size_t j = 0; j < N; ++j) {
+  for (std::size_t j = 0; j < Sweep::panels; ++j) {
     if constexpr (Fill) borders[j].copy(block, border[j]);
   }
 }
 
 /// For k from to - 1 down to from: x_k = D_k^{-1} y_k - L_k^T x_{k+1}, and with Fill - F_k^T border.
-template <bool Fill, int B, int C, std::size_t N>
-TRAVERSE_FLATTEN void sweep_backward(Extent<B> block, const std::array<ChainView, N>& chains, std::ptrdiff_t from,
-                                     std::ptrdiff_t to, std::ptrdiff_t stride, const Borders<B, C, N>& borders) {
-  if (from >= to) return;
-  std::array<Panel<B, C>, N> x;
-  Borders<B, C, N> border;
+template <bool Fill, class Sweep>
+TRAVERSE_FLATTEN void sweep_backward(const Sweep& sweep, std::ptrdiff_t from, std::ptrdiff_t to,
+                                     const Borders<Sweep>& borders) {
+  const auto block = sweep.block;
+  Borders<Sweep> x;
+  Borders<Sweep> border;
   TRAVERSE_UNROLL
-  for (std::size_t j = 0; j < N; ++j) {
-    x[j].load(block, chains[j].x + to * chains[j].step, stride);
+  for (std::size_t j = 0; j < Sweep::panels; ++j) {
+    sweep.load(x[j], j, to);
     if constexpr (Fill) border[j].copy(block, borders[j]);
   }
   for (std::ptrdiff_t k = to - 1; k >= from; --k) {
     TRAVERSE_UNROLL
-    for (std::size_t j = 0; j < N; ++j) {
-      const ChainView& chain = chains[j];
-      double* here = chain.x + k * chain.step;
-      Panel<B, C> y;
-      Panel<B, C> value;
-      y.load(block, here, stride);
-      value.multiply(block, chain.inverse + k * block.area(), y);
-      if constexpr (Fill) value.subtract_transposed(block, chain.fill + k * block.area(), border[j]);
-      value.subtract_transposed(block, chain.lower + k * block.area(), x[j]);
-      value.store(block, here, stride);
+    for (std::size_t j = 0; j < Sweep::panels; ++j) {
+      typename Sweep::Unknowns y;
+      typename Sweep::Unknowns value;
+      sweep.load(y, j, k);
+      value.multiply_symmetric(block, sweep.entries(sweep.factors.inverse, j, k * block.triangle()), y);
+      if constexpr (Fill) {
+        value.subtract_transposed(block, sweep.entries(sweep.factors.fill, j, k * block.area()), border[j]);
+      }
+      value.subtract_transposed(block, sweep.entries(sweep.factors.lower, j, k * block.area()), x[j]);
+      sweep.store(value, j, k);
       x[j].copy(block, value);
     }
   }

@@ -67,9 +67,10 @@ class SubstructuredCholesky {
   /// each of this rank's nodes once, in an order of the solver's, just before they are eliminated.
   void solve(double* x, NodeFiller& filler) const;
 
-  /// Collective. As above where the right-hand side is zero outside this rank's nodes [first, past) (none where they are
-  /// equal) and the solution is wanted inside only: the rest of x is neither read nor written. The solution is taken to
-  /// vanish outside: what is wrong by that dies out from the window's ends as responses do, so the caller adds a margin.
+  /// Collective. As above where the right-hand side is zero outside this rank's nodes [first, past) (none where they
+  /// are equal) and the solution is wanted inside only: the rest of x is neither read nor written. The solution is
+  /// taken to vanish outside: what is wrong by that dies out from the window's ends as responses do, so the caller adds
+  /// a margin.
   void solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past, NodeFiller& filler) const;
 
   /// Collective. Several columns in a window, in a buffer of its nodes alone: node i, component c of a column at

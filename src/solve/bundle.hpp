@@ -1,0 +1,130 @@
+// Neighbouring parts (see parts.hpp) eliminated side by side, A = L D L^T by blocks, with all their chains in one loop.
+//
+// A chain that starts beside a separator drags along a coupling to it, the fill. Under a large mass term the fill dies
+// out within tens of nodes and its tail is dropped; with springs alone it may reach the middle, and is kept whole.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "panel.hpp"
+#include "parts.hpp"
+#include "slice.hpp"
+#include "small_block.hpp"
+#include "sweep.hpp"
+#include "traverse/solve/block_tridiagonal.hpp"
+
+namespace traverse::solve {
+
+inline constexpr std::size_t parts_a_bundle = lanes / 2;
+
+/// One entry of the factors of each chain.
+struct alignas(lanes * sizeof(double)) LaneEntry {
+  std::array<double, lanes> chain;
+};
+
+/// What the elimination of a part leaves for the reduced system of the separators.
+template <int B>
+struct SchurPart {
+  Block<B> own;       // diagonal block of its own separator
+  Block<B> coupling;  // its own separator (rows) with the next part's (columns)
+  Block<B> next;      // added to the diagonal block of the next part's separator
+};
+
+/// The unknowns of the separators before (even) and behind (odd) a bundle's chains.
+template <int B, int C>
+using ChainBorders = std::array<Panel<B, C>, lanes>;
+
+template <int B>
+class Bundle {
+ public:
+  /// Parts left empty have no nodes at all.
+  Bundle(Extent<B> block, const std::array<Part, parts_a_bundle>& parts);
+
+  const std::array<Part, parts_a_bundle>& parts() const { return parts_; }
+  Range nodes() const { return nodes_; }
+
+  /// False, and noted in the record, when a part is not positive definite.
+  bool factor(const Slice<B>& slice, PivotRecord& record);
+  const SchurPart<B>& schur(std::size_t part) const { return schur_[part]; }
+
+  /// First half of a solve within a window: eliminates the inner nodes, written by the filler, unless null, before.
+  /// borders, out: what is added to the separators' right-hand sides.
+  template <int C>
+  void forward(const Columns& x, Range window, NodeFiller* filler, ChainBorders<B, C>& borders) const;
+
+  /// Second half: the inner nodes, from the separators' solutions.
+  template <int C>
+  void backward(const Columns& x, Range window, const ChainBorders<B, C>& borders) const;
+
+  /// Both halves for a single part without separators, all of it.
+  template <int C>
+  void solve_alone(const Columns& x) const;
+
+ private:
+  struct Front;
+
+  /// Steps [from, to) of the chains whose bits are set, all with fill or all without.
+  struct Stretch {
+    std::ptrdiff_t from;
+    std::ptrdiff_t to;
+    unsigned chains;
+  };
+  struct Plan {
+    std::array<Run, lanes> runs;
+    std::array<Stretch, 2 * lanes + 1> stretches;
+    std::size_t count = 0;
+  };
+  Plan plan(Range window) const;
+  const Plan& plan(Range window, Plan& room) const {
+    if (window.first <= nodes_.first && window.past >= nodes_.past) return whole_;
+    return room = plan(window);
+  }
+
+  const Chain& chain(std::size_t lane) const { return parts_[lane / 2].chains[lane % 2]; }
+  bool eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k, Front& front, PivotRecord& record);
+  void extend_fill(const Block<B>& inverse, const Block<B>& upper, Front& front) const;
+  bool eliminate_middle(const Slice<B>& slice, std::size_t part, Front* fronts, PivotRecord& record);
+  void store_fill(const std::array<Front, lanes>& fronts);
+
+  static const double* first(const std::vector<LaneEntry>& entries, std::size_t lane) {
+    return entries.empty() ? nullptr : entries.data()->chain.data() + lane;
+  }
+  Factors factors(std::size_t lane) const { return {first(lower_, lane), first(inverse_, lane), first(fill_, lane)}; }
+  double* address(const Columns& x, std::ptrdiff_t node) const { return x.x + (node - x.origin) * block_.size(); }
+  LaneSweep<B> lane_sweep(const Columns& x) const;
+  template <int C, std::size_t N>
+  ColumnSweep<B, C, N> column_sweep(const Columns& x, std::size_t lane) const;
+  template <int C, class Body>
+  void along_columns(const Columns& x, const Stretch& steps, Body body) const;
+  template <bool Fill, int C>
+  void forward(const Columns& x, const Stretch& steps, ChainBorders<B, C>& borders) const;
+  template <bool Fill, int C>
+  void backward(const Columns& x, const Stretch& steps, const ChainBorders<B, C>& borders) const;
+  template <int C, bool Packed>
+  void solve_alone(double* x, std::ptrdiff_t stride) const;
+  template <int C>
+  void solve_middle(const Columns& x, std::size_t part, const ChainBorders<B, C>& borders) const;
+  template <int C>
+  void forward_end(const Columns& x, std::size_t lane, std::ptrdiff_t k, Panel<B, C>& border) const;
+  template <int C>
+  void backward_end(const Columns& x, std::size_t lane, std::ptrdiff_t k, const Panel<B, C>& border) const;
+
+  Extent<B> block_;
+  std::array<Part, parts_a_bundle> parts_;
+  Range nodes_;
+  std::ptrdiff_t together_ = 0;  // steps that all chains take, none of them to a middle
+  std::ptrdiff_t reach_ = 0;     // nodes a chain with fill: the longest fill's, the others padded with zeros
+
+  // With D_k the pivot block, U_k the coupling to node k + 1 and S_k the coupling of the separator (rows) to node k
+  // (columns), laid out as Factors says:
+  std::vector<LaneEntry> lower_;    // U_k^T D_k^{-1}
+  std::vector<LaneEntry> inverse_;  // D_k^{-1}
+  std::vector<LaneEntry> fill_;     // S_k D_k^{-1}
+  std::array<Block<B>, parts_a_bundle> middle_inverse_;
+  std::array<Block<B>, lanes> middle_fill_;
+  std::array<SchurPart<B>, parts_a_bundle> schur_;
+  Plan whole_;
+};
+
+}  // namespace traverse::solve

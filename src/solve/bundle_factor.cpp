@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <cmath>
+
+#include "bundle.hpp"
+
+namespace traverse::solve {
+namespace {
+
+// The fill is dropped from the first node on where every entry is below this part of its largest value so far: far
+// below rounding, so that the solution is the exact one, and far above the range where numbers lose their digits.
+constexpr double negligible = 1e-30;
+
+}  // namespace
+
+/// What a chain carries from one node to the next while factoring.
+template <int B>
+struct Bundle<B>::Front {
+  Block<B> update;           // U^T D^{-1} U: taken from the next node's diagonal block
+  Block<B> fill;             // S: the separator's coupling with the next node
+  Block<B> separator;        // sum of S D^{-1} S^T: taken from the separator's diagonal block
+  Block<B> peak;             // largest sizes of the kept fill's entries
+  std::vector<double> kept;  // S D^{-1}, a block a node
+  bool filling = false;
+};
+
+template <int B>
+Bundle<B>::Bundle(Extent<B> block, const std::array<Part, parts_a_bundle>& parts)
+    : block_(block), parts_(parts), nodes_{parts.front().nodes.first, parts.front().nodes.past} {
+  std::ptrdiff_t shortest = chain(0).count;
+  std::ptrdiff_t longest = 0;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    shortest = std::min(shortest, chain(lane).count);
+    longest = std::max(longest, chain(lane).count);
+  }
+  for (const Part& part : parts_) nodes_.past = std::max(nodes_.past, part.nodes.past);
+  together_ = std::max<std::ptrdiff_t>(0, shortest - 1);
+  lower_.resize(static_cast<std::size_t>(longest * block_.area()));
+  inverse_.resize(static_cast<std::size_t>(longest * block_.triangle()));
+}
+
+template <int B>
+bool Bundle<B>::factor(const Slice<B>& slice, PivotRecord& record) {
+  const Block<B> zero(block_);
+  std::array<Front, lanes> fronts;
+  std::ptrdiff_t longest = 0;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const Chain& here = chain(lane);
+    Block<B> fill = zero;
+    if (here.bordered) fill = here.direction > 0 ? slice.upper(here.first - 1) : slice.upper(here.first).transpose();
+    fronts[lane] = {zero, fill, zero, zero, {}, here.bordered};
+    longest = std::max(longest, here.count);
+  }
+  // All chains in one loop, for the divisions of one to run while the others wait for their own.
+  for (std::ptrdiff_t k = 0; k < longest; ++k) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (k < chain(lane).count && !eliminate_node(slice, lane, k, fronts[lane], record)) return false;
+    }
+  }
+  store_fill(fronts);
+  for (std::size_t part = 0; part < parts_a_bundle; ++part) {
+    if (parts_[part].middle >= 0 && !eliminate_middle(slice, part, &fronts[2 * part], record)) return false;
+    if (parts_[part].middle < 0 && !parts_[part].nodes.empty()) {
+      const std::ptrdiff_t separator = parts_[part].nodes.first;
+      schur_[part] = {slice.diagonal(separator), parts_[part].followed ? slice.upper(separator) : zero, zero};
+    }
+  }
+  whole_ = plan(nodes_);
+  return true;
+}
+
+template <int B>
+void Bundle<B>::store_fill(const std::array<Front, lanes>& fronts) {
+  std::size_t entries = 0;
+  for (const Front& front : fronts) entries = std::max(entries, front.kept.size());
+  reach_ = static_cast<std::ptrdiff_t>(entries) / block_.area();
+  fill_.assign(entries, LaneEntry{});
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    for (std::size_t e = 0; e < fronts[lane].kept.size(); ++e) fill_[e].chain[lane] = fronts[lane].kept[e];
+  }
+}
+
+template <int B>
+TRAVERSE_FLATTEN bool Bundle<B>::eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k, Front& front,
+                                                PivotRecord& record) {
+  const Chain& here = chain(lane);
+  const std::ptrdiff_t node = here.first + k * here.direction;
+  Block<B> inverse = slice.diagonal(node);
+  inverse -= front.update;
+  if (!invert(inverse, slice, node, record)) return false;
+  const Block<B> upper = here.direction > 0 ? slice.upper(node) : slice.upper(node - 1).transpose();
+  const Block<B> lower = upper.transpose() * inverse;
+  LaneEntry* stored = lower_.data() + k * block_.area();
+  for (std::ptrdiff_t e = 0; e < block_.area(); ++e) stored[e].chain[lane] = lower.data()[e];
+  stored = inverse_.data() + k * block_.triangle();
+  for (int r = 0; r < block_.size(); ++r) {
+    for (int c = 0; c <= r; ++c) stored[packed(r, c)].chain[lane] = inverse(r, c);
+  }
+  front.update = lower * upper;
+  if (front.filling) extend_fill(inverse, upper, front);
+  return true;
+}
+
+template <int B>
+void Bundle<B>::extend_fill(const Block<B>& inverse, const Block<B>& upper, Front& front) const {
+  const Block<B> fill = front.fill * inverse;
+  front.filling = false;
+  for (std::ptrdiff_t e = 0; e < block_.area(); ++e) {
+    const double size = std::abs(fill.data()[e]);
+    double& peak = front.peak.data()[e];
+    peak = std::max(peak, size);
+    front.filling = front.filling || !(size <= negligible * peak);  // a NaN goes on, to be found
+  }
+  if (!front.filling) {
+    front.fill = Block<B>(block_);
+    return;
+  }
+  front.kept.insert(front.kept.end(), fill.data(), fill.data() + block_.area());
+  front.separator += fill * front.fill.transpose();
+  front.fill = -(fill * upper);
+}
+
+template <int B>
+bool Bundle<B>::eliminate_middle(const Slice<B>& slice, std::size_t part, Front* fronts, PivotRecord& record) {
+  const std::ptrdiff_t middle = parts_[part].middle;
+  Block<B>& inverse = middle_inverse_[part];
+  inverse = slice.diagonal(middle);
+  for (std::size_t side : {0, 1}) inverse -= fronts[side].update;
+  if (!invert(inverse, slice, middle, record)) return false;
+  for (std::size_t side : {0, 1}) {
+    Block<B>& fill = middle_fill_[2 * part + side];
+    fill = fronts[side].fill * inverse;
+    fronts[side].separator += fill * fronts[side].fill.transpose();
+  }
+  SchurPart<B>& schur = schur_[part];
+  schur.own = -fronts[0].separator;
+  if (chain(2 * part).bordered) schur.own += slice.diagonal(parts_[part].nodes.first);
+  schur.coupling = -(middle_fill_[2 * part] * fronts[1].fill.transpose());
+  schur.next = -fronts[1].separator;
+  return true;
+}
+
+/// Which chains step together in a window, cut where one begins or ends and where the fill ends.
+template <int B>
+typename Bundle<B>::Plan Bundle<B>::plan(Range window) const {
+  Plan result;
+  std::array<std::ptrdiff_t, 2 * lanes + 2> cuts = {reach_, together_};
+  std::size_t count = 2;
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const Run run = result.runs[lane] = chain(lane).run(window, parts_[lane / 2].middle);
+    cuts[count++] = run.from;
+    cuts[count++] = run.to;
+  }
+  std::sort(cuts.begin(), cuts.end());
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    Stretch steps = {cuts[i], cuts[i + 1], 0};
+    if (steps.from == steps.to) continue;
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const Run& run = result.runs[lane];
+      if (run.from <= steps.from && steps.to <= run.to) steps.chains |= 1U << lane;
+    }
+    if (steps.chains != 0) result.stretches[result.count++] = steps;
+  }
+  return result;
+}
+
+template class Bundle<2>;
+template class Bundle<3>;
+template class Bundle<4>;
+template class Bundle<5>;
+template class Bundle<6>;
+template class Bundle<7>;
+template class Bundle<any_block>;
+
+}  // namespace traverse::solve

@@ -1,0 +1,260 @@
+#include <algorithm>
+#include <utility>
+
+#include "bundle.hpp"
+
+namespace traverse::solve {
+namespace {
+
+// What is swept at once, so that what a filler has written is still near, and what several sweeps share, too.
+constexpr std::ptrdiff_t tile = 128;
+
+constexpr unsigned all_chains = (1U << lanes) - 1U;
+
+/// Has the filler write the nodes of each chain up to those that its next steps need.
+class Filling {
+ public:
+  Filling(NodeFiller* filler, const std::array<Run, lanes>& runs) : filler_(filler), runs_(runs) {
+    for (std::size_t lane = 0; lane < lanes; ++lane) filled_[lane] = runs[lane].from;
+  }
+
+  void middle(Range window, std::ptrdiff_t node) {
+    if (filler_ != nullptr && window.contains(node)) filler_->fill(node, node + 1);
+  }
+
+  /// Up to the chain's node `past` or the end of its run.
+  void advance(const Chain& chain, std::size_t lane, std::ptrdiff_t past) {
+    if (filler_ == nullptr) return;
+    past = std::min(past, runs_[lane].from + runs_[lane].nodes());
+    if (filled_[lane] >= past) return;
+    const Range nodes = chain.nodes(filled_[lane], past);
+    filler_->fill(nodes.first, nodes.past);
+    filled_[lane] = past;
+  }
+
+ private:
+  NodeFiller* filler_;
+  const std::array<Run, lanes>& runs_;
+  std::array<std::ptrdiff_t, lanes> filled_ = {};
+};
+
+}  // namespace
+
+template <int B>
+LaneSweep<B> Bundle<B>::lane_sweep(const Columns& x) const {
+  LaneSweep<B> result = {block_, factors(0), {}};
+  for (std::size_t lane = 0; lane < lanes; ++lane) result.x[lane] = address(x, chain(lane).first);
+  return result;
+}
+
+template <int B>
+template <int C, std::size_t N>
+ColumnSweep<B, C, N> Bundle<B>::column_sweep(const Columns& x, std::size_t lane) const {
+  ColumnSweep<B, C, N> result = {block_, factors(lane), {}, x.stride};
+  for (std::size_t j = 0; j < N; ++j) {
+    const Chain& here = chain(lane + j);
+    result.x[j] = {address(x, here.first), std::ptrdiff_t{here.direction} * block_.size()};
+  }
+  return result;
+}
+
+/// body(sweep, first lane) for two chains of a part at once where both step, else for one.
+template <int B>
+template <int C, class Body>
+void Bundle<B>::along_columns(const Columns& x, const Stretch& steps, Body body) const {
+  for (std::size_t lane = 0; lane < lanes; lane += 2) {
+    const unsigned chains = (steps.chains >> lane) & 3U;
+    if (chains == 3U) body(column_sweep<C, 2>(x, lane), lane);
+    if (chains == 1U) body(column_sweep<C, 1>(x, lane), lane);
+    if (chains == 2U) body(column_sweep<C, 1>(x, lane + 1), lane + 1);
+  }
+}
+
+template <int B>
+template <bool Fill, int C>
+void Bundle<B>::forward(const Columns& x, const Stretch& steps, ChainBorders<B, C>& borders) const {
+  if constexpr (C == 1) {
+    if (steps.chains == all_chains && steps.to <= together_) {
+      Borders<LaneSweep<B>> border;
+      if constexpr (Fill) border[0].gather(block_, [&](int lane) { return borders[lane].lane.data(); });
+      sweep_forward<Fill>(lane_sweep(x), steps.from, steps.to, border);
+      if constexpr (Fill) border[0].scatter(block_, [&](int lane) { return borders[lane].lane.data(); });
+      return;
+    }
+  }
+  along_columns<C>(x, steps, [&](const auto& sweep, std::size_t lane) {
+    Borders<std::decay_t<decltype(sweep)>> border;
+    for (std::size_t j = 0; j < border.size(); ++j) border[j].copy(block_, borders[lane + j]);
+    sweep_forward<Fill>(sweep, steps.from, steps.to, border);
+    for (std::size_t j = 0; j < border.size(); ++j) borders[lane + j].copy(block_, border[j]);
+  });
+}
+
+template <int B>
+template <bool Fill, int C>
+void Bundle<B>::backward(const Columns& x, const Stretch& steps, const ChainBorders<B, C>& borders) const {
+  if constexpr (C == 1) {
+    if (steps.chains == all_chains && steps.to <= together_) {
+      Borders<LaneSweep<B>> border;
+      border[0].gather(block_, [&](int lane) { return borders[lane].lane.data(); });
+      sweep_backward<Fill>(lane_sweep(x), steps.from, steps.to, border);
+      return;
+    }
+  }
+  along_columns<C>(x, steps, [&](const auto& sweep, std::size_t lane) {
+    Borders<std::decay_t<decltype(sweep)>> border;
+    for (std::size_t j = 0; j < border.size(); ++j) border[j].copy(block_, borders[lane + j]);
+    sweep_backward<Fill>(sweep, steps.from, steps.to, border);
+  });
+}
+
+/// The last node k of an open run: border -= F_k y_k.
+template <int B>
+template <int C>
+void Bundle<B>::forward_end(const Columns& x, std::size_t lane, std::ptrdiff_t k, Panel<B, C>& border) const {
+  if (k >= reach_) return;
+  const ColumnSweep<B, C, 1> sweep = column_sweep<C, 1>(x, lane);
+  Panel<B, C> y;
+  sweep.load(y, 0, k);
+  border.subtract(block_, sweep.entries(sweep.factors.fill, 0, k * block_.area()), y);
+}
+
+/// x_k = D_k^{-1} y_k - F_k^T border: the solution behind it vanishes.
+template <int B>
+template <int C>
+void Bundle<B>::backward_end(const Columns& x, std::size_t lane, std::ptrdiff_t k, const Panel<B, C>& border) const {
+  const ColumnSweep<B, C, 1> sweep = column_sweep<C, 1>(x, lane);
+  Panel<B, C> y, value;
+  sweep.load(y, 0, k);
+  value.multiply_symmetric(block_, sweep.entries(sweep.factors.inverse, 0, k * block_.triangle()), y);
+  if (k < reach_) {
+    value.subtract_transposed(block_, sweep.entries(sweep.factors.fill, 0, k * block_.area()), border);
+  }
+  sweep.store(value, 0, k);
+}
+
+template <int B>
+template <int C>
+void Bundle<B>::solve_middle(const Columns& x, std::size_t part, const ChainBorders<B, C>& borders) const {
+  double* here = address(x, parts_[part].middle);
+  Panel<B, C> reduced, middle;
+  reduced.load(block_, here, x.stride);
+  middle.multiply(block_, middle_inverse_[part].data(), reduced);
+  for (std::size_t lane : {2 * part, 2 * part + 1}) {
+    if (chain(lane).bordered) middle.subtract_transposed(block_, middle_fill_[lane].data(), borders[lane]);
+  }
+  middle.store(block_, here, x.stride);
+}
+
+/// x: of node 0.
+template <int B>
+template <int C, bool Packed>
+TRAVERSE_FLATTEN void Bundle<B>::solve_alone(double* x, std::ptrdiff_t stride) const {
+  const std::ptrdiff_t step = block_.size() * (Packed ? C : 1);
+  const Factors all = factors(0);
+  const std::ptrdiff_t longer = chain(0).count;
+  const std::ptrdiff_t shorter = chain(1).count;
+  const ChainUnknowns right = {x, step};
+  const ColumnSweep<B, C, 2, Packed> both = {block_, all, {right, {x + chain(1).first * step, -step}}, stride};
+  const ColumnSweep<B, C, 1, Packed> first = {block_, all, {right}, stride};
+  Borders<ColumnSweep<B, C, 2>> none;
+  Borders<ColumnSweep<B, C, 1>> none_either;
+  sweep_forward<false>(both, 0, shorter, none);
+  sweep_forward<false>(first, shorter, longer, none_either);
+  Panel<B, C> reduced, middle;
+  first.load(reduced, 0, longer);
+  middle.multiply(block_, middle_inverse_[0].data(), reduced);
+  first.store(middle, 0, longer);
+  sweep_backward<false>(first, shorter, longer, none_either);
+  sweep_backward<false>(both, 0, shorter, none);
+}
+
+template <int B>
+template <int C>
+TRAVERSE_FLATTEN void Bundle<B>::solve_alone(const Columns& x) const {
+  constexpr std::size_t room = 2048;  // numbers: half of a first-level cache
+  const std::ptrdiff_t nodes = nodes_.past;
+  const std::ptrdiff_t node_size = block_.size() * C;
+  if (C == 1 || nodes * node_size > static_cast<std::ptrdiff_t>(room)) return solve_alone<C, false>(x.x, x.stride);
+  alignas(64) std::array<double, room> packed;
+  Panel<B, C> node;
+  for (std::ptrdiff_t i = 0; i < nodes; ++i) {
+    node.load(block_, x.x + i * block_.size(), x.stride);
+    node.store_packed(block_, packed.data() + i * node_size);
+  }
+  solve_alone<C, true>(packed.data(), 0);
+  for (std::ptrdiff_t i = 0; i < nodes; ++i) {
+    node.load_packed(block_, packed.data() + i * node_size);
+    node.store(block_, x.x + i * block_.size(), x.stride);
+  }
+}
+
+template <int B>
+template <int C>
+void Bundle<B>::forward(const Columns& x, Range window, NodeFiller* filler, ChainBorders<B, C>& borders) const {
+  Plan room;
+  const Plan& steps = plan(window, room);
+  Filling filling(filler, steps.runs);
+  for (const Part& part : parts_) filling.middle(window, part.middle);
+  for (std::size_t i = 0; i < steps.count; ++i) {
+    Stretch now = steps.stretches[i];
+    for (std::ptrdiff_t past = now.to; now.from < past; now.from = now.to) {
+      now.to = std::min(now.from + tile, past);
+      for (std::size_t lane = 0; lane < lanes; ++lane) {
+        if ((now.chains >> lane & 1U) != 0) filling.advance(chain(lane), lane, now.to + 1);
+      }
+      now.to <= reach_ ? forward<true>(x, now, borders) : forward<false>(x, now, borders);
+    }
+  }
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    filling.advance(chain(lane), lane, chain(lane).count);
+    if (steps.runs[lane].open) forward_end(x, lane, steps.runs[lane].to, borders[lane]);
+  }
+  for (std::size_t part = 0; part < parts_a_bundle; ++part) {
+    if (!window.contains(parts_[part].middle)) continue;
+    Panel<B, C> middle;
+    middle.load(block_, address(x, parts_[part].middle), x.stride);
+    for (std::size_t lane : {2 * part, 2 * part + 1}) {
+      if (chain(lane).bordered) borders[lane].subtract(block_, middle_fill_[lane].data(), middle);
+    }
+  }
+}
+
+template <int B>
+template <int C>
+void Bundle<B>::backward(const Columns& x, Range window, const ChainBorders<B, C>& borders) const {
+  Plan room;
+  const Plan& steps = plan(window, room);
+  for (std::size_t part = 0; part < parts_a_bundle; ++part) {
+    if (window.contains(parts_[part].middle)) solve_middle<C>(x, part, borders);
+  }
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    if (steps.runs[lane].open) backward_end(x, lane, steps.runs[lane].to, borders[lane]);
+  }
+  for (std::size_t i = steps.count; i-- > 0;) {
+    Stretch now = steps.stretches[i];
+    for (const std::ptrdiff_t from = now.from; now.to > from; now.to = now.from) {
+      now.from = std::max(now.to - tile, from);
+      now.to <= reach_ ? backward<true>(x, now, borders) : backward<false>(x, now, borders);
+    }
+  }
+}
+
+#define TRAVERSE_INSTANTIATE_COLUMNS(B, C)                                                            \
+  template void Bundle<B>::forward<C>(const Columns&, Range, NodeFiller*, ChainBorders<B, C>&) const; \
+  template void Bundle<B>::backward<C>(const Columns&, Range, const ChainBorders<B, C>&) const;       \
+  template void Bundle<B>::solve_alone<C>(const Columns&) const;
+#define TRAVERSE_INSTANTIATE(B)      \
+  TRAVERSE_INSTANTIATE_COLUMNS(B, 1) \
+  TRAVERSE_INSTANTIATE_COLUMNS(B, 2) \
+  TRAVERSE_INSTANTIATE_COLUMNS(B, 4) \
+  TRAVERSE_INSTANTIATE_COLUMNS(B, 8)
+TRAVERSE_INSTANTIATE(2)
+TRAVERSE_INSTANTIATE(3)
+TRAVERSE_INSTANTIATE(4)
+TRAVERSE_INSTANTIATE(5)
+TRAVERSE_INSTANTIATE(6)
+TRAVERSE_INSTANTIATE(7)
+TRAVERSE_INSTANTIATE(any_block)
+
+}  // namespace traverse::solve
