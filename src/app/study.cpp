@@ -106,8 +106,8 @@ void gather(MPI_Comm comm, results::Sweep& sweep) {
 
 std::string name_of(const Case& c, const results::Sweep& sweep) {
   const double speed = sweep.speed[c.speed];
-  const std::string train = sweep.trains.empty() ? "" : fmt::format("train A{} ", sweep.trains[c.train]);
-  return fmt::format("the run of {}at {:g} m/s ({:g} km/h)", train, speed, 3.6 * speed);
+  const std::string train = sweep.trains.empty() ? "" : fmt::format(" of train A{}", sweep.trains[c.train]);
+  return fmt::format("the run{} at {:g} m/s ({:g} km/h)", train, speed, 3.6 * speed);
 }
 
 /// This rank's share of the runs.
@@ -188,9 +188,9 @@ int run_sweep(MPI_Comm comm, const Scene& scene) {
   }
   if (rank == 0) {
     if (done[0] > 0) results::print_sweep(sweep);
-    fmt::print("  {} of {} runs in {:.3g} s, {:.3g} ms each\n  the sweep {}\nresults  {}\n", done[0], cases.size(),
+    fmt::print("  {} of {} runs in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], cases.size(),
                summary.wall_seconds, 1e3 * summary.wall_seconds / static_cast<double>(std::max(done[0], 1L)),
-               summary.ended, scene.output.file.empty() ? "none" : scene.output.file);
+               "the sweep", summary.ended, scene.output.file.empty() ? "none" : scene.output.file);
   }
   if (failure.run != nobody) throw Error(failure.message, failure.status);
   return done[1] == 0 ? 0 : 128 + static_cast<int>(done[1]);
