@@ -11,6 +11,7 @@ namespace {
 
 constexpr double steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
 constexpr double steps_a_wave = 20.0;     // of the track or of a wheel out of round, at that accuracy
+constexpr double samples_a_period = 20.0;  // of a bridge by its modes, where the interval is left open
 constexpr double mechanism_step = 1e-3;   // s, where there is no beam to judge by
 constexpr double least_steps_a_span = 10.0;
 constexpr double most_steps = 1e10;
@@ -89,17 +90,31 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
   return step;
 }
 
+// The motion between samples is known: they are as far apart as a curve needs.
+void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector<std::string>& notes) {
+  plan.interval = plan.time_step = scene.output.interval.value_or(round_down(first_period / samples_a_period));
+  if (!scene.output.interval)
+    notes.push_back(fmt::format("samples every {:g} s: from the first period; output_interval changes it, which "
+                                "changes nothing in the motion",
+                                plan.interval));
+}
+
 }  // namespace
 
 Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
                std::vector<std::string>& notes) {
   Plan plan;
   plan.end_time = end_of(scene, system);
-  plan.time_step = scene.time_step ? *scene.time_step : chosen_step(scene, first_period, notes);
+  if (scene.model_modes == 0)
+    plan.time_step = scene.time_step ? *scene.time_step : chosen_step(scene, first_period, notes);
   if (plan.end_time <= 0.0)
     throw InputError(
         "scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
         "or ts_max_time in s above 0");
+  if (scene.model_modes > 0) {
+    plan_modal(scene, first_period, plan, notes);
+    return plan;
+  }
   check_step(scene, plan);
   if (scene.output.interval) {
     plan.interval = *scene.output.interval;

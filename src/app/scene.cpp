@@ -16,11 +16,8 @@ using options::Options;
 constexpr std::size_t most_default_probes = 200;
 
 void refuse_unfinished(const Options& o) {
-  if (const options::Entry* sweep = o.first_with_prefix("sweep_")) o.refuse(sweep->name, "sweeps are not there yet");
-  for (const char* name : {"model_modes", "model_window"}) {
-    const std::string value = o.text(name);
-    if (value != "auto" && value != "0") o.refuse(name, "not there yet; allowed: auto or 0");
-  }
+  const std::string window = o.text("model_window");
+  if (window != "auto" && window != "0") o.refuse("model_window", "not there yet; allowed: auto or 0");
 }
 
 void read_run(const Options& o, Scene& scene) {
@@ -121,12 +118,14 @@ Scene read_scene(Options o) {
   refuse_unfinished(o);
   read_run(o, scene);
   read_beam(o, scene);
+  read_sweep(o, scene);
   read_train(o, train, scene);
   read_load(o, scene);
   read_track(o, scene);
   read_layers(o, scene);
   decide_axial(o, scene);
   read_output(o, scene);
+  read_modal(o, scene);
   check_scene(o, scene);
   scene.options = o.all();
   return scene;

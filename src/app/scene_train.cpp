@@ -102,17 +102,13 @@ Axles hslm_a(int train) {
   return axles;
 }
 
-void read_hslm(const Options& o, MovingLoad& load) {
-  if (o.has("load_forces")) o.refuse("load_hslm_a", "give either load_forces or load_hslm_a");
-  double first = 0.0;
-  if (o.has("load_positions")) {
-    const std::vector<double> given = o.numbers("load_positions");
-    if (given.size() != 1) o.refuse("load_positions", "with load_hslm_a: one number, x of the first axle at t = 0");
-    first = given.front();
-  }
-  const Axles axles = hslm_a(o.integer("load_hslm_a"));
-  for (const double offset : axles.offsets) load.positions.push_back(first + offset);
-  load.forces.assign(axles.offsets.size(), axles.force);
+/// x of the first axle at t = 0.
+double read_first_axle(const Options& o, const std::string& trains) {
+  if (o.has("load_forces")) o.refuse(trains, "give either load_forces or " + trains);
+  if (!o.has("load_positions")) return 0.0;
+  const std::vector<double> given = o.numbers("load_positions");
+  if (given.size() != 1) o.refuse("load_positions", "with " + trains + ": one number, x of the first axle at t = 0");
+  return given.front();
 }
 
 void read_forces(const Options& o, MovingLoad& load) {
@@ -184,21 +180,38 @@ void read_train(const Options& o, const std::vector<std::string>& names, Scene& 
   const std::string drive = o.has("train_drive") ? o.choice("train_drive") : rolls ? "constant" : "free";
   scene.train.drive = drive == "free" ? Drive::free : Drive::constant;
   const bool needed = rolls && scene.analysis == Analysis::transient;
+  if (scene.sweep && !scene.sweep->speeds.empty()) {
+    scene.train.speed = scene.sweep->speeds.front();
+    return;
+  }
   scene.train.speed = needed || o.has("train_speed") ? o.number("train_speed") : 0.0;
 }
 
+MovingLoad hslm_load(int train, double first) {
+  const Axles axles = hslm_a(train);
+  MovingLoad load;
+  for (const double offset : axles.offsets) load.positions.push_back(first + offset);
+  load.forces.assign(axles.offsets.size(), axles.force);
+  return load;
+}
+
 void read_load(const Options& o, Scene& scene) {
-  if (o.has("load_hslm_a")) {
-    read_hslm(o, scene.load);
-  } else if (o.has("load_forces")) {
+  const bool swept = scene.sweep && !scene.sweep->trains.empty();
+  const std::string option = swept ? "sweep_hslm_a" : o.has("load_hslm_a") ? "load_hslm_a" : "load_forces";
+  if (!o.has(option)) return;
+  if (option == "load_forces") {
     read_forces(o, scene.load);
   } else {
-    return;
+    const double first = read_first_axle(o, option);
+    scene.load = hslm_load(swept ? scene.sweep->trains.front() : o.integer(option), first);
+    if (swept)
+      for (const int train : scene.sweep->trains) scene.sweep->loads.push_back(hslm_load(train, first));
   }
-  if (!scene.beam)
-    o.refuse(o.has("load_hslm_a") ? "load_hslm_a" : "load_forces", "moving forces need a beam (beam_spans)");
+  if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
   const bool needed = scene.analysis == Analysis::transient && !o.has("train_speed");
-  if (o.has("load_speed") || needed) {
+  if (scene.sweep && !scene.sweep->speeds.empty()) {
+    scene.load.speed = scene.sweep->speeds.front();
+  } else if (o.has("load_speed") || needed) {
     scene.load.speed = o.number("load_speed");
   } else if (o.has("train_speed")) {
     scene.load.speed = o.number("train_speed");

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +9,8 @@
 
 namespace traverse::app {
 namespace {
+
+constexpr double unbalanced = 0.1;  // of the largest energy: no answer then, whatever it looks like
 
 std::array<double, 3> triple(const Eigen::VectorXd& x, std::size_t body) {
   const auto i = 3 * static_cast<Eigen::Index>(body);
@@ -18,6 +22,14 @@ void note(results::Extreme& extreme, double value, double time, double place) {
 }
 
 }  // namespace
+
+void check_balance(const results::Summary& summary) {
+  if (summary.energy_residual > unbalanced * summary.energy_scale)
+    throw SolverError(
+        fmt::format("the energy does not balance: {:g} J of {:g} J are missing; the step is too long for "
+                    "this integrator, take a smaller -ts_dt or an implicit -ts_type",
+                    summary.energy_residual, summary.energy_scale));
+}
 
 Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
     : scene_(scene), system_(system), beam_(beam), recorder_(recorder) {
@@ -36,7 +48,9 @@ void Watch::sample(const integrate::Instant& instant) {
   sample_.time = instant.time;
   if (beam_ != nullptr) {
     const bool on_rail = rail_recovery_.has_value();
+    if (instant.drag != nullptr) drag(instant.drag);
     recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
+    for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
     if (on_rail) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
     beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
   }
@@ -50,6 +64,13 @@ void Watch::sample(const integrate::Instant& instant) {
   note_extremes(sample_, v);
   first_ = false;
   recorder_.add(sample_);
+}
+
+// Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
+void Watch::drag(const double* drag) {
+  const std::vector<double> still(observation_.a.size(), 0.0);
+  recovery_->evaluate(still.data(), still.data(), drag, {}, dragged_);
+  for (std::size_t i = 0; i < observation_.a.size(); ++i) observation_.a[i] += drag[i];
 }
 
 void Watch::fill_vehicles(results::Sample& sample) const {

@@ -12,12 +12,12 @@ constexpr int most_placements = 4;  // of the wheels on elements within one stag
 
 }  // namespace
 
-System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input)
+System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input, std::shared_ptr<BeamOperator> shared)
     : comm_(comm), beam_(beam), input_(std::move(input)) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &ranks_);
   if (beam_ != nullptr) {
-    operator_.emplace(*beam_);
+    operator_ = shared ? std::move(shared) : std::make_shared<BeamOperator>(*beam_);
     compliance_.emplace(*beam_, *operator_);
     line_ = &beam_->running();
     per_node_ = line_->per_node;

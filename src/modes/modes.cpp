@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 #include "eigen.hpp"
@@ -48,7 +49,69 @@ std::vector<double> distinct_of(const Segment& s) {
   }
 }
 
+double product(const Band& A, const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> Ax(x.size(), 0.0);
+  add_product(A, 1.0, x.data(), Ax.data());
+  return std::inner_product(y.begin(), y.end(), Ax.begin(), 0.0);
+}
+
+/// phi^T M phi = 1, by Gram and Schmidt: an iteration leaves copies of a frequency a little oblique.
+void orthonormalise(std::vector<Mode>& modes) {
+  for (std::size_t i = 0; i < modes.size(); ++i) {
+    std::vector<double>& shape = modes[i].shape;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (modes[j].segment != modes[i].segment || modes[j].offset != modes[i].offset) continue;
+      const double part = product(modes[i].segment->M, shape, modes[j].shape);
+      for (std::size_t k = 0; k < shape.size(); ++k) shape[k] -= part * modes[j].shape[k];
+    }
+    const double length = std::sqrt(product(modes[i].segment->M, shape, shape));
+    for (double& value : shape) value /= length;
+  }
+}
+
+/// As `lowest`, and the remaining copies of the last frequency.
+std::vector<Mode> lowest_with_copies(const std::vector<Segment>& segments, int count) {
+  for (int more = count + 1;; more *= 2) {
+    std::vector<Mode> modes = lowest(segments, more);
+    if (static_cast<int>(modes.size()) <= count) return modes;
+    const double last = modes[static_cast<std::size_t>(count) - 1].omega * (1.0 + distinct);
+    if (modes.back().omega <= last && static_cast<int>(modes.size()) == more) continue;
+    std::erase_if(modes, [&](const Mode& mode) { return mode.omega > last; });
+    return modes;
+  }
+}
+
 }  // namespace
+
+Basis bending_basis(const beam::Beam& beam, int count) {
+  const auto segments = transverse_segments(beam);
+  std::vector<Mode> modes = lowest_with_copies(segments, count);
+  orthonormalise(modes);
+  Basis basis;
+  for (const Mode& mode : modes) {
+    basis.omega.push_back(mode.omega);
+    auto& shape = basis.shape.emplace_back(static_cast<std::size_t>(beam.columns()) * beam.block(), 0.0);
+    for (std::size_t i = 0; i < mode.shape.size(); ++i)
+      shape[static_cast<std::size_t>(mode.segment->unknowns[i] + mode.offset * beam.block())] = mode.shape[i];
+  }
+  return basis;
+}
+
+Modes at_nodes(const beam::Beam& beam, const Basis& basis) {
+  Modes modes;
+  modes.omega = basis.omega;
+  modes.axial.assign(basis.omega.size(), 0);
+  for (const auto& mode : basis.shape) {
+    auto& shape = modes.shape.emplace_back();
+    for (int node = 0; node < beam.mesh().nodes(); ++node)
+      shape.push_back(mode[static_cast<std::size_t>(beam.bridge().unknown(node, 1))]);
+    double largest = 0.0;
+    for (const double v : shape)
+      if (std::abs(v) > (1.0 + 1e-9) * std::abs(largest)) largest = v;
+    for (double& v : shape) v = largest != 0.0 ? v / largest : 0.0;
+  }
+  return modes;
+}
 
 Modes natural_modes(const beam::Beam& beam, int count, bool shapes) {
   auto segments = transverse_segments(beam);

@@ -171,6 +171,7 @@ class Splitter {
     s.axial = axial_;
     for (int row : rows) {
       s.nodes.push_back(column(row) - beam_.bridge().first_column);
+      s.unknowns.push_back(static_cast<int>(unknowns_[static_cast<std::size_t>(row)]));
       // On the ground a layered track's ballast takes the place of the bridge's deflection.
       const bool bridge = s.nodes.back() >= 0 && s.nodes.back() < beam_.mesh().nodes();
       s.slope.push_back(bridge && kind(row) == (axial_ ? beam::Kind::u : beam::Kind::v) ? 0 : 1);

@@ -107,7 +107,8 @@ constexpr Row rows[] = {
   {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where left open"},
 
   {"model_axial", choice, "", "auto", any, "auto true false", 0, "axial unknowns of the beam; auto: where there is longitudinal action"},
-  {"model_modes", text, "", "auto", any, "", 0, "modes instead of elements; auto or 0 only: not in this version"},
+  {"model_modes", text, "", "auto", any, "", 0, "moving forces only: the bridge by so many natural modes, exact in time; auto or 0: by its elements"},
+  {"model_damping_ratios", numbers, "1", "(Rayleigh damping)", {0.0, 0.999}, "", 0, "of each mode of model_modes, one serves all"},
   {"model_window", text, "", "auto", any, "", 0, "only the spans near the train; auto or 0 only: not in this version"},
 
   {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},
@@ -115,8 +116,8 @@ constexpr Row rows[] = {
   {"output_probes", numbers, "m", "(middle of each span, of 200)", not_negative, "", 0, "stations on the beam where the response is stored"},
   {"output_quiet", flag, "", "false", any, "", 0, "no progress on the terminal"},
 
-  {"sweep_speed", numbers, "m/s", "", positive, "", 3, "from, to, step: not in this version"},
-  {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "HSLM-A trains to run: not in this version"},
+  {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step"},
+  {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "runs the scene with each of these trains of EN 1991-2"},
 
   {"help", text, "", "", any, "", 0, "prints this list; -help petsc: PETSc's options too"},
 };

@@ -389,6 +389,15 @@ void Recorder::separations(const std::vector<Separation>& list) {
   });
 }
 
+void Recorder::datasets(const std::vector<Dataset>& sets) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const Dataset& set : sets)
+      impl_->file.dataset(set.name, {set.shape.begin(), set.shape.end()}, set.values, set.unit);
+    impl_->file.flush();
+  });
+}
+
 void Recorder::finish(const Summary& summary) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {

@@ -152,6 +152,15 @@ Progress::Progress(double start, double end, bool quiet)
       last_(begin_) {}
 
 void Progress::update(double t, long steps) {
+  show(t, [&] { return fmt::format("t = {:.4g} s   step {}", t, steps); });
+}
+
+void Progress::runs(std::size_t done) {
+  show(static_cast<double>(done), [&] { return fmt::format("{} of {:.0f} runs", done, end_); });
+}
+
+template <class Text>
+void Progress::show(double t, Text what) {
   if (quiet_ || !(end_ > start_) || !(t > start_)) return;
   const double part = std::min((t - start_) / (end_ - start_), 1.0);
   if (part >= 1.0) return;
@@ -160,7 +169,7 @@ void Progress::update(double t, long steps) {
   const auto now = Clock::now();
   const double elapsed = seconds(now - begin_);
   if (elapsed < kSilentStart || (terminal_ && seconds(now - last_) < kRedrawEvery)) return;
-  const std::string text = fmt::format("{:3.0f} %   t = {:.4g} s   step {}   {} left", 100.0 * part, t, steps,
+  const std::string text = fmt::format("{:3.0f} %   {}   {} left", 100.0 * part, what(),
                                        duration_text(elapsed * (1.0 - part) / part));
   if (terminal_) {
     fmt::print("\r{}\033[K", text);

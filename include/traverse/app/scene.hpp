@@ -36,6 +36,13 @@ struct Output {
   std::vector<double> probes;      // stations; default: the middle of every span (of the first 200)
 };
 
+/// Runs of one scene at many speeds, with many trains of forces, or both.
+struct Sweep {
+  std::vector<double> speeds;     // m/s; empty: that of the scene
+  std::vector<int> trains;        // HSLM-A, 1 to 10; empty: what the scene holds
+  std::vector<MovingLoad> loads;  // of each of these trains, at the scene's speed
+};
+
 struct Scene {
   std::string name;                     // of the options file, for messages and default file names
   std::optional<beam::BeamModel> beam;  // absent: a mechanism on its own, or on rigid ground
@@ -52,6 +59,9 @@ struct Scene {
   std::optional<double> end_time;   // -ts_max_time
   std::optional<double> time_step;  // -ts_dt
   int mode_count = 10;
+  int model_modes = 0;                // the bridge by so many modes; 0: by its elements
+  std::vector<double> damping_of_modes;  // ratio of each of these modes, the last one of all further; empty: Rayleigh's
+  std::optional<Sweep> sweep;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
   double accuracy = 1e-3;

@@ -24,10 +24,14 @@ class Watch {
   void step(double t);
   /// Collective. The summary so far, and the shape at the worst instant into the recorder.
   results::Summary finish();
+  /// What was seen last.
+  const results::Sample& last() const { return sample_; }
+  const results::Summary& extremes() const { return summary_; }
 
  private:
   void fill_vehicles(results::Sample& sample) const;
   void fill_fields(const double* v, const double* w);
+  void drag(const double* drag);
   void note_separations();
   void note_extremes(const results::Sample& sample, const double* v);
 
@@ -37,7 +41,7 @@ class Watch {
   results::Recorder& recorder_;
   std::optional<beam::Recovery> recovery_, rail_recovery_;
   std::optional<beam::GroundForces> ground_;
-  std::vector<beam::Response> rail_;
+  std::vector<beam::Response> rail_, dragged_;
   coupling::Observation observation_;
   results::Sample sample_;
   results::Summary summary_;
@@ -45,6 +49,9 @@ class Watch {
   double energy_at_start_ = 0.0;
   bool first_ = true;
 };
+
+/// SolverError where so much energy is missing that the answer is none.
+void check_balance(const results::Summary& summary);
 
 /// The recorder's layout for a scene.
 results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam);

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -73,7 +74,8 @@ class System {
  public:
   /// beam may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel
   /// that would touch the profile at more points than are modelled.
-  System(MPI_Comm comm, const beam::Beam* beam, SystemInput input);
+  /// `shared`: the beam's operator where there is one already, with its factorisations.
+  System(MPI_Comm comm, const beam::Beam* beam, SystemInput input, std::shared_ptr<BeamOperator> shared = nullptr);
 
   MPI_Comm comm() const { return comm_; }
   const beam::Beam* beam() const { return beam_; }
@@ -216,7 +218,7 @@ class System {
   const beam::Line* line_ = nullptr;  // that wheels and forces run on; null without a beam
   int per_node_ = 2;                  // its unknowns a node
   SystemInput input_;
-  std::optional<BeamOperator> operator_;
+  std::shared_ptr<BeamOperator> operator_;
   std::optional<Compliance> compliance_;
   std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
   Fleet fleet_;

@@ -28,6 +28,7 @@ struct Instant {
   double time;
   const double* y;
   const double* ydot;
+  const double* drag = nullptr;  // what modal damping forces are over the mass, this rank's beam; null: none
 };
 
 class Stepper {

@@ -25,6 +25,19 @@ struct Modes {
 /// supports: 3e-6 for 1,000, 2 % for 10,000.
 Modes natural_modes(const beam::Beam& beam, int count, bool shapes);
 
+/// Modes of bending as vectors of all unknowns of the beam (all ranks'), with phi^T M phi = 1 kg.
+struct Basis {
+  std::vector<double> omega;               // rad/s, ascending
+  std::vector<std::vector<double>> shape;  // m for 1 m kg^(1/2) of the mode's coordinate
+};
+
+/// Collective; the same on every rank. The `count` lowest modes of bending, and the remaining copies of the last
+/// one's frequency, so that nothing depends on which of equal spans comes first. Not for layered tracks.
+Basis bending_basis(const beam::Beam& beam, int count);
+
+/// A basis as modes are stored: deflections at the nodes, the largest 1.
+Modes at_nodes(const beam::Beam& beam, const Basis& basis);
+
 /// Solutions v = Re(shape exp(lambda t)) of M a + C* w + K* v = 0: of each pair of conjugates the one with Im >= 0.
 struct DampedModes {
   std::vector<std::complex<double>> lambda;              // 1/s, ascending in magnitude

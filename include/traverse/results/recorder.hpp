@@ -119,6 +119,14 @@ class Recorder {
   void shape(const Shape& shape);
   /// /separations/contact ([m,2]: vehicle, name), x, start, duration, approach_speed, impact_force ([m]).
   void separations(const std::vector<Separation>& list);
+  /// What is complete, with its unit.
+  struct Dataset {
+    std::string name;  // its path in the file
+    std::vector<std::size_t> shape;
+    std::vector<double> values;
+    std::string unit;
+  };
+  void datasets(const std::vector<Dataset>& sets);
   /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.
   void finish(const Summary& summary);
 

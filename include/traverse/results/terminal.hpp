@@ -19,9 +19,14 @@ class Progress {
  public:
   Progress(double start, double end, bool quiet);
   void update(double t, long steps);
+  /// Of a sweep, whose end is the number of its runs.
+  void runs(std::size_t done);
   void done();
 
  private:
+  template <class Text>
+  void show(double t, Text what);
+
   double start_, end_;
   bool quiet_, terminal_;
   int shown_ = -1;

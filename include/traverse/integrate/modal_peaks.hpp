@@ -1,0 +1,30 @@
+// A passage of moving forces by modes where only the peaks at the probes are wanted: what a sweep is made of.
+#pragma once
+
+#include <vector>
+
+#include "traverse/integrate/modal_motion.hpp"
+
+namespace traverse::integrate {
+
+/// The largest magnitude of a response, and when.
+struct Peak {
+  double value = 0.0, time = 0.0;
+
+  void note(double candidate, double at) {
+    if (candidate > value) *this = {candidate, at};
+  }
+};
+struct ProbePeaks {
+  Peak deflection, acceleration, moment;  // m, m/s2, N m
+};
+
+/// From t = 0 to end_time, at every probe of the bridge. Looked for at instants a twentieth of the shortest period apart
+/// and wherever a force passes a node or a probe, and between them by parabolas.
+std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistory& history, double speed,
+                                    bool equilibrium, double end_time);
+
+/// m: the largest deflection of each probe while the forces pass at rest.
+std::vector<double> static_peaks(const ModalBridge& bridge, const ForceHistory& history);
+
+}  // namespace traverse::integrate

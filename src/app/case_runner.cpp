@@ -1,0 +1,100 @@
+#include "case_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "session.hpp"
+#include "traverse/app/transient.hpp"
+
+namespace traverse::app {
+
+CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
+    : scene_(scene),
+      speeds_(scene.sweep->speeds),
+      loads_(scene.sweep->loads),
+      structure_(PETSC_COMM_SELF, scene, notes) {
+  if (speeds_.empty()) speeds_ = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
+  if (loads_.empty()) loads_ = {scene.load};
+  structure_.damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
+  structure_.prepare(scene_, notes);
+  if (structure_.modal) structure_.modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
+  std::vector<std::string> ignored;
+  for (std::size_t train = 0; train < trains(); ++train) {
+    for (const double speed : {speeds_.front(), speeds_.back()})
+      const Passage checked(scene_of(train, speed), structure_, train == 0 && speed == speeds_.front() ? notes : ignored);
+  }
+}
+
+const Scene& CaseRunner::scene_of(std::size_t train, double speed) {
+  scene_.load.forces = loads_[train].forces;
+  scene_.load.positions = loads_[train].positions;
+  scene_.load.speed = scene_.load.forces.empty() ? 0.0 : speed;
+  scene_.train.speed = scene_.vehicles.empty() ? 0.0 : speed;
+  return scene_;
+}
+
+double CaseRunner::duration(std::size_t train, double speed) const {
+  if (scene_.end_time) return *scene_.end_time;
+  double last = 0.0;
+  for (const auto* positions : {&loads_[train].positions, &scene_.train.positions})
+    for (const double x : *positions) last = std::min(last, x);
+  return (scene_.beam->length() - last) / speed + scene_.tail.value_or(0.0);
+}
+
+CaseResult CaseRunner::run(std::size_t train, double speed) {
+  return structure_.modal ? run_by_modes(train, speed) : run_by_elements(train, speed);
+}
+
+CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
+  std::vector<std::string> ignored;
+  const Scene& scene = scene_of(train, speed);
+  // Factorisations of other runs would serve shifts that are equal but for rounding: results would depend on which runs
+  // this rank has had.
+  structure_.statics->forget_steps();
+  Passage passage(scene, structure_, ignored);
+  passage.start(ignored);
+  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
+  Watch watch(scene, passage.system(), structure_.bridge(), none);
+  CaseResult result;
+  result.peaks.resize(scene.output.probes.size());
+  const auto sample = [&](const integrate::Instant& instant) {
+    watch.sample(instant);
+    for (std::size_t p = 0; p < result.peaks.size(); ++p) {
+      const beam::Response& r = watch.last().probes[p];
+      result.peaks[p].deflection.note(std::abs(r.deflection), instant.time);
+      result.peaks[p].acceleration.note(std::abs(r.acceleration), instant.time);
+      result.peaks[p].moment.note(std::abs(r.moment), instant.time);
+    }
+  };
+  const auto step = [&](double t, long) {
+    watch.step(t);
+    return caught_signal() == 0;
+  };
+  passage.run(sample, step);
+  result.ended = caught_signal() == 0;
+  if (!result.ended) return result;
+  check_balance(watch.extremes());
+  result.least_wheel_force = watch.extremes().least_wheel_force;
+  std::vector<double>& at_rest = static_deflection_[train];
+  if (at_rest.empty())
+    for (const double x : scene.output.probes) at_rest.push_back(passage.system().static_peak(x));
+  result.static_deflection = at_rest;
+  return result;
+}
+
+CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
+  const integrate::ModalBridge& bridge = *structure_.modal;
+  auto place = histories_.find(train);
+  if (place == histories_.end()) {
+    place = histories_.emplace(train, integrate::ForceHistory(bridge.influence(), scene_of(train, speed).load)).first;
+    static_deflection_[train] = integrate::static_peaks(bridge, place->second);
+  }
+  CaseResult result;
+  result.peaks = integrate::modal_peaks(bridge, place->second, speed, scene_.start == Start::equilibrium,
+                                        duration(train, speed));
+  result.static_deflection = static_deflection_[train];
+  result.ended = true;
+  return result;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,47 @@
+// The runs of a sweep as one rank computes them, each by itself. What does not change from run to run is built once.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "traverse/app/passage.hpp"
+#include "traverse/integrate/modal_peaks.hpp"
+
+namespace traverse::app {
+
+/// What is left of a run.
+struct CaseResult {
+  std::vector<integrate::ProbePeaks> peaks;
+  std::vector<double> static_deflection;  // m, of each probe; 0: unknown
+  double least_wheel_force = 0.0;         // N
+  bool ended = false;                     // false: a signal came first
+};
+
+class CaseRunner {
+ public:
+  /// Builds structure and damping on this rank alone, and checks the runs at the slowest and the fastest speed. What was
+  /// modelled goes into `notes`.
+  CaseRunner(const Scene& scene, std::vector<std::string>& notes);
+
+  const std::vector<double>& speeds() const { return speeds_; }
+  std::size_t trains() const { return loads_.size(); }
+  /// s from the start to the end, by which runs are dealt.
+  double duration(std::size_t train, double speed) const;
+  CaseResult run(std::size_t train, double speed);
+
+ private:
+  /// The scene of one run.
+  const Scene& scene_of(std::size_t train, double speed);
+  CaseResult run_by_elements(std::size_t train, double speed);
+  CaseResult run_by_modes(std::size_t train, double speed);
+
+  Scene scene_;
+  std::vector<double> speeds_;
+  std::vector<MovingLoad> loads_;
+  Structure structure_;
+  std::map<std::size_t, std::vector<double>> static_deflection_;  // of each train
+  std::map<std::size_t, integrate::ForceHistory> histories_;
+};
+
+}  // namespace traverse::app

@@ -1,0 +1,60 @@
+#include "traverse/app/passage.hpp"
+
+#include <fmt/format.h>
+
+namespace traverse::app {
+namespace {
+
+coupling::SystemInput system_input(const Scene& scene, bool still) {
+  coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,        scene.profile,
+                                 scene.gravity,  scene.self_weight, scene.impact_steps};
+  if (still) input.train.speed = input.load.speed = 0.0;
+  return input;
+}
+
+}  // namespace
+
+Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std::string>& notes)
+    : scene_(scene),
+      still_(scene.analysis == Analysis::static_response),
+      input_(system_input(scene, still_)),
+      system_(structure.comm, structure.bridge(), input_, structure.statics) {
+  if (!still_) plan_ = make_plan(scene, system_, structure.first_period(), notes);
+  std::string method;
+  if (structure.modal) {
+    modal_.emplace(system_, *structure.modal, *structure.statics, input_, scene.start == Start::equilibrium,
+                   plan_.end_time, plan_.interval);
+    method = modal_->method();
+  } else {
+    const double tolerance = scene.contact_tolerance.value_or(1e-3 * plan_.time_step);
+    stepper_.emplace(system_, integrate::Settings{plan_.end_time, plan_.time_step, plan_.interval,
+                                                  system_.known_events(plan_.end_time), tolerance});
+    method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
+  }
+  notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
+                              system_.fleet().members.size(), system_.freedom(), scene.load.forces.size()));
+  if (!still_)
+    notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s", method, plan_.end_time, plan_.interval));
+}
+
+void Passage::start(std::vector<std::string>& notes) {
+  if (modal_) {  // the modes have their start; the system notes the weights
+    std::vector<double> y(static_cast<std::size_t>(system_.local_size()));
+    system_.start(scene_.start == Start::equilibrium, y.data());
+    return;
+  }
+  double* y = stepper_->state();
+  for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y)) notes.push_back(line);
+  stepper_->restore_state(&y);
+}
+
+void Passage::run(const std::function<void(const integrate::Instant&)>& sample,
+                  const std::function<bool(double, long)>& step) {
+  if (modal_) {
+    modal_->run(sample, step);
+  } else {
+    stepper_->run(sample, step);
+  }
+}
+
+}  // namespace traverse::app

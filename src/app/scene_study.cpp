@@ -1,0 +1,78 @@
+// sweep and model_modes of a scene: many runs, and the bridge by its modes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene_parts.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+
+constexpr double most_speeds = 1e5;
+constexpr double meets = 1e-3;  // of a step: speeds in m/s are often rounded ones in km/h
+
+/// From, to, step: the last speed is `to` where the step meets it.
+std::vector<double> read_speeds(const Options& o) {
+  const std::vector<double> range = o.numbers("sweep_speed");
+  const double from = range[0], to = range[1], step = range[2];
+  if (to < from) o.refuse("sweep_speed", "from is above to; wanted: from, to, step");
+  const double steps = std::floor((to - from) / step + meets);
+  if (steps > most_speeds) o.refuse("sweep_speed", fmt::format("{:g} speeds; allowed: {:g}", steps, most_speeds));
+  std::vector<double> speeds;
+  for (int i = 0; i <= static_cast<int>(steps); ++i) speeds.push_back(from + i * step);
+  return speeds;
+}
+
+}  // namespace
+
+void read_sweep(const Options& o, Scene& scene) {
+  if (!o.has("sweep_speed") && !o.has("sweep_hslm_a")) return;
+  const char* given = o.has("sweep_speed") ? "sweep_speed" : "sweep_hslm_a";
+  if (scene.analysis != Analysis::transient) o.refuse(given, "a sweep is of transient runs (scene_analysis)");
+  if (!o.has("beam_spans")) o.refuse(given, "a sweep is of a bridge's response: there is no beam (beam_spans)");
+  scene.sweep.emplace();
+  if (o.has("sweep_speed")) scene.sweep->speeds = read_speeds(o);
+  if (!o.has("sweep_hslm_a")) return;
+  if (o.has("load_hslm_a")) o.refuse("load_hslm_a", "give either load_hslm_a or sweep_hslm_a");
+  scene.sweep->trains = o.integers("sweep_hslm_a");
+  std::vector<int> sorted = scene.sweep->trains;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
+    o.refuse("sweep_hslm_a", "allowed: every train once");
+}
+
+void read_modal(const Options& o, Scene& scene) {
+  const std::string value = o.text("model_modes");
+  if (value == "auto" || value == "0") {
+    if (o.has("model_damping_ratios")) o.refuse("model_damping_ratios", "needs model_modes, whose ratios these are");
+    return;
+  }
+  char* end = nullptr;
+  const double modes = std::strtod(value.c_str(), &end);
+  if (*end != 0 || modes < 1.0 || modes > 1e5 || modes != std::floor(modes))
+    o.refuse("model_modes", "allowed: auto, 0 or a number of modes");
+  if (scene.analysis != Analysis::transient) {
+    scene.notes.emplace_back("model_modes has no effect: it is for transient runs");
+    return;
+  }
+  if (!scene.vehicles.empty()) o.refuse("model_modes", "with vehicles: not there yet; allowed: auto or 0");
+  if (scene.load.forces.empty()) o.refuse("model_modes", "needs moving forces (load_forces or load_hslm_a)");
+  if (scene.beam->track) o.refuse("model_modes", "with a layered track: not there yet; allowed: auto or 0");
+  if (scene.beam->foundation.nonlinear())
+    o.refuse("model_modes", "the foundation is one-sided, has a gap or a cubic term; allowed: auto or 0");
+  if (o.has("ts_type"))
+    o.refuse("ts_type", "model_modes needs no integrator: its motion is exact in time; leave one of them out");
+  scene.model_modes = static_cast<int>(modes);
+  if (!o.has("model_damping_ratios")) return;
+  if (scene.damping.rayleigh || scene.damping.ratios)
+    o.refuse("model_damping_ratios", "give either these or Rayleigh damping (beam_damping_ratios, beam_rayleigh)");
+  scene.damping_of_modes = o.numbers("model_damping_ratios");
+  if (scene.damping_of_modes.size() > 1 && static_cast<int>(scene.damping_of_modes.size()) != scene.model_modes)
+    o.refuse("model_damping_ratios", fmt::format("{} ratios for {} modes; wanted: one, or one a mode",
+                                                 scene.damping_of_modes.size(), scene.model_modes));
+}
+
+}  // namespace traverse::app

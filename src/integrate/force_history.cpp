@@ -1,0 +1,57 @@
+#include "traverse/integrate/force_history.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace traverse::integrate {
+namespace {
+
+constexpr double most_numbers = 2e8;  // 1.6 GB
+constexpr double same = 1e-12;        // of the bridge: distances that are one
+
+/// Adds force*influence at x, as a polynomial of a distance that adds to x.
+void add(const PiecewiseCubic& influence, std::size_t piece, double force, double x, double* sum) {
+  const std::size_t n = influence.channels;
+  const double* c = &influence.coefficients[4 * n * piece];
+  const double d = x - influence.breaks[piece];
+  for (std::size_t i = 0; i < n; ++i) {
+    const double c1 = c[n + i], c2 = c[2 * n + i], c3 = c[3 * n + i];
+    sum[i] += force * (c[i] + d * (c1 + d * (c2 + d * c3)));
+    sum[n + i] += force * (c1 + d * (2.0 * c2 + 3.0 * d * c3));
+    sum[2 * n + i] += force * (c2 + 3.0 * d * c3);
+    sum[3 * n + i] += force * c3;
+  }
+}
+
+}  // namespace
+
+ForceHistory::ForceHistory(const PiecewiseCubic& influence, const coupling::MovingLoad& load)
+    : start{0.0}, channels(influence.channels) {
+  const std::vector<double>& breaks = influence.breaks;
+  const double length = breaks.back() - breaks.front();
+  if (static_cast<double>(load.positions.size() * breaks.size()) * 4.0 * static_cast<double>(channels) > most_numbers)
+    throw InputError("model_modes: so many modes, probes, forces and elements do not fit into memory; use fewer of " +
+                     std::to_string(channels) + " modes and probes, or the full model (model_modes: 0)");
+  for (const double x : load.positions) {
+    for (const double at : breaks)
+      if (at > x) start.push_back(at - x);
+  }
+  std::sort(start.begin(), start.end());
+  start.erase(std::unique(start.begin(), start.end(), [&](double a, double b) { return b - a <= same * length; }),
+              start.end());
+  coefficients.assign(4 * channels * start.size(), 0.0);
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    double middle = start[i];
+    if (load.speed > 0.0) middle = i + 1 < start.size() ? 0.5 * (start[i] + start[i + 1]) : start[i] + length;
+    for (std::size_t j = 0; j < load.positions.size(); ++j) {
+      const double x = load.positions[j] + middle;
+      const bool standing_at_end = load.speed == 0.0 && x == breaks.back();
+      if (x < breaks.front() || (x >= breaks.back() && !standing_at_end)) continue;
+      const auto next = std::upper_bound(breaks.begin(), breaks.end() - 1, x);
+      add(influence, static_cast<std::size_t>(next - breaks.begin()) - 1, load.forces[j], load.positions[j] + start[i],
+          &coefficients[4 * channels * i]);
+    }
+  }
+}
+
+}  // namespace traverse::integrate

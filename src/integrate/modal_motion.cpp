@@ -1,0 +1,157 @@
+#include "traverse/integrate/modal_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace traverse::integrate {
+namespace {
+
+/// c[0] + c[1] t + ..., its derivatives.
+double value(const std::array<double, 4>& c, double t) { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
+double first(const std::array<double, 4>& c, double t) { return c[1] + t * (2.0 * c[2] + 3.0 * t * c[3]); }
+double second(const std::array<double, 4>& c, double t) { return 2.0 * c[2] + 6.0 * t * c[3]; }
+
+// Gauss' points and weights on (0, 1), exact to the power 9.
+constexpr std::array<double, 5> points = {0.046910077030668004, 0.23076534494715845, 0.5, 0.76923465505284155,
+                                          0.953089922969332};
+constexpr std::array<double, 5> weights = {0.11846344252809454, 0.23931433524968324, 0.28444444444444444,
+                                           0.23931433524968324, 0.11846344252809454};
+constexpr double counted_phase = 0.5;  // rad of the fastest mode between which energies are integrated
+
+}  // namespace
+
+ModalMotion::ModalMotion(const ModalBridge& bridge, const ForceHistory& history, double speed, bool equilibrium)
+    : bridge_(bridge), history_(history), speed_(speed), modes_(bridge.modes()) {
+  q_.assign(modes_.size(), 0.0);
+  rate_ = acceleration_ = q_;
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    highest_ = std::max(highest_, bridge_.omega()[i]);
+    if (equilibrium) q_[i] = history_.interval(0)[i] / (bridge_.omega()[i] * bridge_.omega()[i]);
+  }
+  enter(0);
+  see();
+}
+
+/// e^(-sigma t) (cos, sin) of the damped frequency, or the hyperbolic functions of an overdamped mode.
+ModalMotion::Propagator ModalMotion::propagator(double omega, double sigma, double dt) {
+  const double square = (omega - sigma) * (omega + sigma);
+  double even = 0.0, odd = 0.0;  // e^(-sigma t) cos, e^(-sigma t) sin over its frequency
+  if (square > 0.0) {
+    const double damped = std::sqrt(square), decay = std::exp(-sigma * dt);
+    even = decay * std::cos(damped * dt);
+    odd = decay * std::sin(damped * dt) / damped;
+  } else {
+    const double kappa = std::sqrt(-square), slow = std::exp(-omega * omega / (sigma + kappa) * dt);
+    const double ratio = std::exp(-2.0 * kappa * dt);
+    even = 0.5 * slow * (1.0 + ratio);
+    odd = kappa * dt > 1e-8 ? -0.5 * slow * std::expm1(-2.0 * kappa * dt) / kappa : slow * dt;
+  }
+  return {even + sigma * odd, odd, -omega * omega * odd, even - sigma * odd};
+}
+
+void ModalMotion::expect(double dt) {
+  expected_dt_ = dt;
+  expected_.clear();
+  for (std::size_t i = 0; i < modes_.size(); ++i)
+    expected_.push_back(propagator(bridge_.omega()[i], bridge_.sigma()[i], dt));
+}
+
+// The polynomial that solves the equation of motion with the interval's force; what is left oscillates freely.
+void ModalMotion::enter(std::size_t interval) {
+  interval_ = interval;
+  const std::size_t n = history_.channels;
+  const double* g = history_.interval(interval);
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    const double square = bridge_.omega()[i] * bridge_.omega()[i], c = 2.0 * bridge_.sigma()[i];
+    auto& p = modes_[i].particular;
+    p[3] = g[3 * n + i] * speed_ * speed_ * speed_ / square;
+    p[2] = (g[2 * n + i] * speed_ * speed_ - 3.0 * c * p[3]) / square;
+    p[1] = (g[n + i] * speed_ - 2.0 * c * p[2] - 6.0 * p[3]) / square;
+    p[0] = (g[i] - c * p[1] - 2.0 * p[2]) / square;
+    modes_[i].u = q_[i] - p[0];
+    modes_[i].w = rate_[i] - p[1];
+  }
+}
+
+double ModalMotion::next_event() const {
+  if (speed_ <= 0.0 || interval_ + 1 >= history_.start.size()) return std::numeric_limits<double>::infinity();
+  return history_.start[interval_ + 1] / speed_;
+}
+
+void ModalMotion::advance(double t) {
+  for (double event = next_event(); event < t; event = next_event()) {
+    move(event - time_);
+    time_ = event;
+    see();
+    pass_event();
+  }
+  move(t - time_);
+  time_ = t;
+  see();
+}
+
+void ModalMotion::pass_event() {
+  if (time_ >= next_event()) enter(interval_ + 1);
+}
+
+void ModalMotion::move(double dt) {
+  if (dt <= 0.0) return;
+  if (counting_) return move_counting(dt);
+  // Instants a constant interval apart differ from it by the rounding of their times.
+  const bool expected = std::abs(dt - expected_dt_) <= 4.0 * std::numeric_limits<double>::epsilon() * (time_ + dt);
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    const Propagator a = expected ? expected_[i] : propagator(bridge_.omega()[i], bridge_.sigma()[i], dt);
+    Mode& mode = modes_[i];
+    const double u = mode.u;
+    mode.u = a.uu * u + a.uw * mode.w;
+    mode.w = a.wu * u + a.ww * mode.w;
+  }
+}
+
+// The powers g q' and 2 sigma q'^2 are integrated by Gauss' formula, on the exact motion.
+void ModalMotion::move_counting(double dt) {
+  const double begin = speed_ > 0.0 ? history_.start[interval_] / speed_ : 0.0;
+  const auto parts = static_cast<int>(std::ceil(highest_ * dt / counted_phase));
+  const double h = dt / parts;
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    const double omega = bridge_.omega()[i], sigma = bridge_.sigma()[i];
+    const auto& p = modes_[i].particular;
+    std::array<Propagator, points.size()> inner{};
+    for (std::size_t k = 0; k < points.size(); ++k) inner[k] = propagator(omega, sigma, points[k] * h);
+    const Propagator step = propagator(omega, sigma, h);
+    for (int part = 0; part < parts; ++part) {
+      const double from = time_ - begin + part * h;
+      const double u = modes_[i].u, w = modes_[i].w;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        const double t = from + points[k] * h;
+        const double rate = first(p, t) + inner[k].wu * u + inner[k].ww * w;
+        const double force = second(p, t) + 2.0 * sigma * first(p, t) + omega * omega * value(p, t);
+        dissipated_ += h * weights[k] * 2.0 * sigma * rate * rate;
+        work_ += h * weights[k] * force * rate;
+      }
+      modes_[i].u = step.uu * u + step.uw * w;
+      modes_[i].w = step.wu * u + step.ww * w;
+    }
+  }
+}
+
+void ModalMotion::see() {
+  const double t = speed_ > 0.0 ? time_ - history_.start[interval_] / speed_ : 0.0;
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    const Mode& mode = modes_[i];
+    const double omega = bridge_.omega()[i], sigma = bridge_.sigma()[i];
+    q_[i] = value(mode.particular, t) + mode.u;
+    rate_[i] = first(mode.particular, t) + mode.w;
+    acceleration_[i] = second(mode.particular, t) - 2.0 * sigma * mode.w - omega * omega * mode.u;
+  }
+}
+
+double ModalMotion::channel(std::size_t i) const {
+  const double* c = history_.interval(interval_) + i;
+  const std::size_t n = history_.channels;
+  const double s = speed_ > 0.0 ? speed_ * time_ - history_.start[interval_] : 0.0;
+  return c[0] + s * (c[n] + s * (c[2 * n] + s * c[3 * n]));
+}
+
+}  // namespace traverse::integrate

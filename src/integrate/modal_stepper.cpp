@@ -1,0 +1,118 @@
+#include "traverse/integrate/modal_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::integrate {
+namespace {
+constexpr double just_before = 1e-12;  // of the run: at a jump the samples show what was there before
+}
+
+ModalStepper::ModalStepper(coupling::System& system, const ModalBridge& bridge, coupling::BeamOperator& statics,
+                           const coupling::SystemInput& input, bool equilibrium, double end_time, double interval)
+    : system_(system),
+      bridge_(bridge),
+      statics_(statics),
+      load_(input.load),
+      history_(bridge.influence(), input.load),
+      motion_(bridge, history_, input.load.speed, equilibrium),
+      end_time_(end_time),
+      interval_(interval) {
+  const auto n = static_cast<std::size_t>(system_.beam_unknowns());
+  sagging_.assign(n, 0.0);
+  if (input.self_weight) {
+    bridge_.beam().add_self_weight(input.gravity, sagging_.data());
+    for (std::size_t k = 0; k < n; ++k)
+      if (bridge_.beam().fixed()[k] != 0) sagging_[k] = 0.0;
+    statics_.solve_static(sagging_.data());
+  }
+  y_.assign(static_cast<std::size_t>(system_.local_size()), 0.0);
+  ydot_.assign(y_.size(), 0.0);
+  force_.assign(n, 0.0);
+  drag_.assign(n, 0.0);
+  dragged_ = *std::max_element(bridge_.own_drag().begin(), bridge_.own_drag().end()) > 0.0;
+  motion_.count_energy();
+}
+
+std::string ModalStepper::method() const { return std::to_string(bridge_.modes()) + " modes, exact in time"; }
+
+double ModalStepper::run(const std::function<void(const Instant&)>& sample,
+                         const std::function<bool(double, long)>& step) {
+  const double slack = 1e-3 * std::min(interval_, end_time_);
+  system_.begin_step(0.0, 0.0);
+  sample_now(sample);
+  for (bool going = true; going && motion_.time() < end_time_ - slack;) {
+    double t = static_cast<double>(steps_ + 1) * interval_;
+    if (t > end_time_ - slack) t = end_time_;
+    motion_.advance(t);
+    system_.begin_step(t - 2.0 * just_before * end_time_, t);
+    ++steps_;
+    sample_now(sample);
+    going = step(t, steps_);
+  }
+  return motion_.time();
+}
+
+// This rank's nodal forces; at a jump those before it.
+void ModalStepper::load_now(double* nodal) const {
+  const beam::Line& line = bridge_.beam().bridge();
+  std::fill_n(nodal, force_.size(), 0.0);
+  for (std::size_t j = 0; j < load_.forces.size(); ++j) {
+    const double t = motion_.time(), before = t > 0.0 ? t - just_before * end_time_ : 0.0;
+    const double x = load_.positions[j] + load_.speed * before;
+    if (x < line.mesh.start() || x > line.mesh.end()) continue;
+    const beam::Station s = line.mesh.locate(load_.positions[j] + load_.speed * t);
+    const beam::Hermite psi = beam::hermite(s.xi, line.mesh.element(s.element).length);
+    const auto unknowns = line.transverse(s.element);
+    for (std::size_t i = 0; i < 4; ++i) {
+      const int local = bridge_.beam().local(unknowns[i]);
+      if (local >= 0 && bridge_.beam().fixed()[local] == 0) nodal[local] -= load_.forces[j] * psi.value[i];
+    }
+  }
+}
+
+void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample) {
+  const std::size_t n = force_.size();
+  double *v = y_.data(), *w = v + n, *a = ydot_.data() + n;
+  load_now(force_.data());
+  // The static correction first: K* v = P, less the modes' share of it.
+  std::vector<double> share(bridge_.modes(), 0.0);
+  for (std::size_t i = 0; i < bridge_.modes(); ++i)
+    for (std::size_t k = 0; k < n; ++k) share[i] += bridge_.shape(i)[k] * force_[k];
+  MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(share.size()), MPI_DOUBLE, MPI_SUM, system_.comm());
+  std::copy(force_.begin(), force_.end(), v);
+  statics_.solve_static(v);
+  double stored = 0.0;  // J
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = 0; i < bridge_.modes(); ++i)
+      v[k] -= bridge_.shape(i)[k] * share[i] / (bridge_.omega()[i] * bridge_.omega()[i]);
+    stored += 0.5 * v[k] * force_[k];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &stored, 1, MPI_DOUBLE, MPI_SUM, system_.comm());
+  if (steps_ == 0) at_start_ = stored;
+
+  std::fill_n(w, n, 0.0);
+  std::fill_n(a, n, 0.0);
+  std::fill(drag_.begin(), drag_.end(), 0.0);
+  for (std::size_t i = 0; i < bridge_.modes(); ++i) {
+    const double* phi = bridge_.shape(i);
+    const double q = motion_.q()[i], rate = motion_.rate()[i], acceleration = motion_.acceleration()[i];
+    for (std::size_t k = 0; k < n; ++k) {
+      v[k] += q * phi[k];
+      w[k] += rate * phi[k];
+      a[k] += acceleration * phi[k];
+      drag_[k] += bridge_.own_drag()[i] * rate * phi[k];
+    }
+  }
+  std::copy_n(w, n, ydot_.data());
+  for (std::size_t k = 0; k < n; ++k) v[k] += sagging_[k];
+  if (y_.size() > 2 * n) {  // the rank that keeps the energies
+    y_[2 * n] = motion_.dissipated();
+    y_[2 * n + 1] = motion_.work() + stored - at_start_;  // what the correction stores, forces have put in
+  }
+  sample({motion_.time(), y_.data(), ydot_.data(), dragged_ ? drag_.data() : nullptr});
+}
+
+}  // namespace traverse::integrate

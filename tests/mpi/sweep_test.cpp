@@ -1,0 +1,45 @@
+// A sweep's results do not depend on how many ranks share its runs: to the last bit.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/curve.hpp"
+
+namespace traverse::test {
+namespace {
+
+void expect_same_bits(const std::string& yaml, const Values& options, const std::vector<std::string>& names) {
+  Results all = run_yaml(yaml, options, MPI_COMM_WORLD);
+  Results one = run_yaml(yaml, options, MPI_COMM_SELF);
+  for (const std::string& name : names) {
+    EXPECT_EQ(all("/sweep/" + name), one("/sweep/" + name)) << name;
+    for (const double value : all("/sweep/" + name)) EXPECT_TRUE(std::isfinite(value)) << name;
+  }
+}
+
+const std::vector<std::string> names = {"speed", "peak_deflection", "peak_acceleration", "peak_moment",
+                                        "peak_moment_time", "amplification"};
+const char* const bridge = R"(
+beam: {spans: [20.0, 25.0], EI: 1.0e10, mass: 1.0e4, damping_ratios: 0.02, elements_per_span: 6}
+support: {types: [pinned, roller, roller]}
+output: {probes: [10.0, 31.0]}
+)";
+
+TEST(Ranks, SweepByModes) {
+  expect_same_bits(bridge, {{"model_modes", "4"}, {"sweep_speed", "30,60,2"}, {"sweep_hslm_a", "1,5,9"}}, names);
+}
+
+TEST(Ranks, SweepByElements) {
+  expect_same_bits(bridge, {{"ts_dt", "5e-3"}, {"sweep_speed", "40,60,5"}, {"sweep_hslm_a", "3,8"}}, names);
+}
+
+TEST(Ranks, SweepOfVehicles) {
+  std::vector<std::string> with_wheels = names;
+  with_wheels.emplace_back("least_wheel_force");
+  expect_same_bits("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n"
+                   "train_vehicles: coach\nscene_tail: 0\n",
+                   {{"ts_dt", "5e-3"}, {"ts_type", "cn"}, {"sweep_speed", "60,80,5"}}, with_wheels);
+}
+
+}  // namespace
+}  // namespace traverse::test
