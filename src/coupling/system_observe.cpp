@@ -43,9 +43,10 @@ Energy System::energy(const double* y) {
       sums[2] -= v[i] * dead_load_[i];
     }
     if (nonlinear_) sums[1] += nonlinear_->energy();
-    if (motion_)
-      sums[3] = motion_->dissipated + (motion_->pending > 0.0 ? motion_->pending * beam_dissipation(w) : 0.0);
-    if (motion_) sums[4] = motion_->worked;
+    if (motion_) {
+      sums[3] = motion_->dissipated + pending_dissipation(w);
+      sums[4] = motion_->worked;
+    }
   }
   if (rank_ == 0) {
     sums[3] += y[2 * (n_ + fleet_.freedom())];
