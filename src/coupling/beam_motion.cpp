@@ -83,7 +83,7 @@ struct BeamMotion::Tile {
 };
 
 BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load)
-    : beam_(beam), operator_(op), dead_load_(dead_load), n_(beam.local_unknowns()), nodes_(beam.local_columns()) {
+    : beam_(beam), operator_(op), dead_load_(dead_load), n_(beam.local_unknowns()), nodes_(beam.local_columns()), past_(nodes_) {
   if (beam::ElementRows::fit(beam) && !beam.model().foundation.nonlinear()) rows_.emplace(beam);
   for (int i = 0; i < n_; ++i)
     if (beam.fixed()[i] != 0) held_.push_back(i);
@@ -109,7 +109,11 @@ void BeamMotion::solve(const StageRule& rule, const double* v, const double* w, 
   exchange_borders();
   scale_ = 1.0 / rule.displacement;
   target_ = acceleration(rule.known);
-  operator_.factored(rule.rate / rule.displacement, 1.0 / rule.displacement).solve(target_, *this);
+  const BeamFactor& factor = operator_.factored(rule.rate / rule.displacement, 1.0 / rule.displacement);
+  if (windowed_)
+    factor.solve_window(target_, first_, past_, *this);
+  else
+    factor.solve(target_, *this);
   ++operator_.solves;
 }
 
@@ -230,10 +234,10 @@ std::pair<double, double> BeamMotion::state(const StageRule& rule, const double*
 namespace {
 
 // Both sums into v and w in place, a stretch in the cache at a time.
-void replace(const Terms& terms, int n, double* v, double* w) {
+void replace(const Terms& terms, int begin, int end, double* v, double* w) {
   std::array<double, 4 * tile> new_v, new_w;
-  for (int from = 0; from < n; from += 4 * tile) {
-    const int size = std::min(n - from, 4 * tile);
+  for (int from = begin; from < end; from += 4 * tile) {
+    const int size = std::min(end - from, 4 * tile);
     with_count(terms.count, [&](auto N) { add_up<N>(terms, from, size, new_v.data(), new_w.data()); });
     std::copy_n(new_v.data(), size, v + from);
     std::copy_n(new_w.data(), size, w + from);
@@ -248,7 +252,7 @@ void BeamMotion::still(const StageRule& rule, const double* v, const double* w, 
   terms.add(v, 1.0, 0.0);
   terms.add(w, rule.w_in_v, 1.0);
   for (int j = 0; j < rule.known; ++j) terms.add(accelerations_[j].data(), rule.a_in_v[j], rule.a_in_w[j]);
-  replace(terms, n_, v_still, w_still);
+  replace(terms, 0, n_, v_still, w_still);
 }
 
 void BeamMotion::finish(const StepRule& rule, double* v, double* w) {
@@ -256,13 +260,52 @@ void BeamMotion::finish(const StepRule& rule, double* v, double* w) {
   terms.add(v, 1.0, 0.0);
   terms.add(w, rule.w_in_v, 1.0);
   for (int j = 0; j < rule.known; ++j) terms.add(accelerations_[j].data(), rule.a_in_v[j], rule.a_in_w[j]);
-  replace(terms, n_, v, w);
+  const int begin = fused() ? 2 * first_ : 0, end = fused() ? 2 * past_ : n_;
+  replace(terms, begin, end, v, w);
   if (rule.a_next[rule.known - 1] == 1.0) {  // it is the last one
     accelerations_[0].swap(accelerations_[rule.known - 1]);
     return;
   }
   const double a0 = rule.a_next[0], a1 = rule.a_next[1];
-  for (int i = 0; i < n_; ++i) accelerations_[0][i] = a0 * accelerations_[0][i] + a1 * accelerations_[1][i];
+  for (int i = begin; i < end; ++i) accelerations_[0][i] = a0 * accelerations_[0][i] + a1 * accelerations_[1][i];
+}
+
+void BeamMotion::set_window(int first, int past) {
+  windowed_ = true;
+  first_ = first;
+  past_ = past;
+}
+
+double BeamMotion::put_to_rest(int first, int past, const double* rest, double* v, double* w) {
+  double energy = 0.0;
+  for (int from = first; from < past; from += tile) {
+    const int to = std::min(past, from + tile), begin = std::max(from - 1, 0), end = std::min(to + 1, nodes_);
+    Tile displacement, rate, force;
+    for (Tile* t : {&displacement, &rate}) t->v = t->theta = {};
+    const auto energy_of = [&](const Tile& t) {
+      double sum = 0.0;
+      for (int i = 0; i < to - from; ++i) sum += t.v[i + 1] * force.v[i] + t.theta[i + 1] * force.theta[i];
+      return 0.5 * sum;
+    };
+    for (int node = begin; node < end; ++node) {
+      const int i = node - (from - 1), k = 2 * node;
+      displacement.set(i, v[k] - (rest != nullptr ? rest[k] : 0.0), v[k + 1] - (rest != nullptr ? rest[k + 1] : 0.0));
+      rate.set(i, w[k], w[k + 1]);
+    }
+    Tile none;
+    none.v = none.theta = {};
+    rows_->multiply(from, to, displacement.nodes(), {}, force.nodes());
+    energy += energy_of(displacement);
+    rows_->multiply(from, to, none.nodes(), rate.nodes(), force.nodes());
+    energy += energy_of(rate);
+  }
+  for (int k = 2 * first; k < 2 * past; ++k) {
+    v[k] = rest != nullptr ? rest[k] : 0.0;
+    w[k] = 0.0;
+    for (std::vector<double>& a : accelerations_)
+      if (!a.empty()) a[k] = 0.0;
+  }
+  return energy;
 }
 
 }  // namespace traverse::coupling

@@ -61,6 +61,14 @@ void Compliance::prepare(double shift, double shift2, const AddedSprings* added,
   }
 }
 
+int Compliance::reach(double shift, double shift2) {
+  if (operator_.parts() != nullptr) return 0;
+  const BeamFactor& factor = operator_.factored(shift, shift2);
+  if (operator_.factor_stamp() != reach_stamp_) (void)solve_window(factor, line_.mesh.elements() / 2);
+  reach_stamp_ = operator_.factor_stamp();
+  return static_cast<int>(std::min<std::ptrdiff_t>(margin_, beam_.columns())) + 2;
+}
+
 Compliance::Place Compliance::place_of(int element) const {
   const solve::Parts* parts = operator_.parts();
   if (parts == nullptr) return {static_cast<std::size_t>(element), 0};

@@ -26,6 +26,13 @@ double last(const Weights& values, int count) { return values[static_cast<std::s
 
 }  // namespace
 
+void System::leave_out_rest(double tolerance, const std::vector<double>& probes) {
+  if (beam_ == nullptr) return;
+  rest_tolerance_ = tolerance;
+  watched_.clear();
+  for (double x : probes) watched_.push_back(beam_->bridge().first_column + beam_->mesh().element(beam_->mesh().locate(x).element).left);
+}
+
 void System::begin_motion(const Method& method) {
   Motion& m = motion_.emplace();
   m.unit = method;
@@ -35,9 +42,37 @@ void System::begin_motion(const Method& method) {
   if (beam_ == nullptr) return;
   m.beam.emplace(*beam_, *operator_, input_.self_weight ? dead_load_.data() : nullptr);
   m.beam->prepare(method.step.known);
+  if (rest_tolerance_ == 0.0 || !m.beam->fused()) return;
+  if (input_.self_weight) {
+    rest_ = dead_load_;
+    release_held(rest_.data());
+    operator_->solve_static(rest_.data());
+  }
+  m.window.emplace(*beam_, *operator_, rest_tolerance_, watched_, rest_.empty() ? nullptr : rest_.data());
 }
 
-void System::restart_motion(double t, const double* y) {
+// The columns of the elements under wheels and forces during a step: [first, past); equal: none.
+std::pair<int, int> System::loaded_columns(double t, double h) const {
+  const beam::Mesh& mesh = line_->mesh;
+  int low = beam_->columns(), high = 0;
+  const auto add = [&](double from, double to) {
+    if (std::max(from, to) < mesh.start() || std::min(from, to) > mesh.end()) return;
+    const int first = mesh.element(mesh.locate(std::min(from, to), true).element).left;
+    const int last = mesh.element(mesh.locate(std::max(from, to)).element).left;
+    low = std::min(low, line_->first_column + std::max(0, first - 1));
+    high = std::max(high, line_->first_column + std::min(mesh.nodes(), last + 3));
+  };
+  for (const WheelContact& c : fleet_.wheels) {
+    if (c.is_further) continue;
+    const double x = fleet_.coordinates(c).x(), reach = fleet_.velocities(c).x() * h;
+    const double width = 0.1 * fleet_.wheel(c).radius;  // a wheel touches beside its centre
+    add(std::min(x, x + 2.0 * reach) - width, std::max(x, x + 2.0 * reach) + width);
+  }
+  for (double x : input_.load.positions) add(x + input_.load.speed * t, x + input_.load.speed * (t + h));
+  return {low, std::max(low, high)};
+}
+
+void System::restart_motion(double t, double* y) {
   Motion& m = *motion_;
   if (m.stepped) settle_dissipation(y + n_);
   m.rate.resize(static_cast<std::size_t>(local_size()));
@@ -52,6 +87,10 @@ void System::restart_motion(double t, const double* y) {
   fleet_powers(m.powers[0]);
   if (!m.stepped) settle_dissipation(y + n_);
   m.stepped = false;
+  if (m.window) {
+    const auto [low, high] = loaded_columns(t, 0.0);
+    m.window->begin(*m.beam, y, y + n_, low, high);
+  }
 }
 
 // The last step's share of D that waits for the state at its end.
@@ -91,12 +130,15 @@ void System::rate_of_motion(const double* y, double* ydot) const {
   std::copy(m.pdd[j].begin(), m.pdd[j].end(), ydot + 2 * n_ + f);
 }
 
-void System::take_back_step() {
+void System::take_back_step(double* y) {
   Motion& m = *motion_;
   m.dissipated = m.before.dissipated;
   m.worked = m.before.worked;
   m.pending = m.before.pending;
   m.stepped = false;
+  std::copy(m.before.v.begin(), m.before.v.end(), y + m.before.first);
+  std::copy(m.before.w.begin(), m.before.w.end(), y + n_ + m.before.first);
+  std::copy(m.before.p.begin(), m.before.p.end(), y + 2 * n_);
 }
 
 bool System::step_motion(double t, double h, double* y) {
@@ -105,7 +147,21 @@ bool System::step_motion(double t, double h, double* y) {
     m.method = m.unit.scaled(h);
     m.length = h;
   }
-  m.before = {m.dissipated, m.worked, m.pending};
+  if (m.window) {
+    const StageRule& rule = m.method.stages.front();
+    const auto [low, high] = loaded_columns(t, h);
+    m.window->open(*m.beam, low, high, compliance_->reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
+  }
+  m.before.dissipated = m.dissipated;
+  m.before.worked = m.worked;
+  m.before.pending = m.pending;
+  if (keep_steps_) {
+    m.before.first = m.window ? operator_->block() * m.beam->first() : 0;
+    m.before.past = m.window ? operator_->block() * m.beam->past() : n_;
+    m.before.v.assign(y + m.before.first, y + m.before.past);
+    m.before.w.assign(y + n_ + m.before.first, y + n_ + m.before.past);
+    m.before.p.assign(y + 2 * n_, y + local_size());
+  }
   double* v = y;
   double* w = y + n_;
   moving_loads(t);
@@ -196,6 +252,7 @@ void System::finish_step(double* y) {
   m.powers[0] = m.powers[rule.known - 1];
   m.stepped = true;
   if (beam_ != nullptr) m.beam->finish(rule, y, y + n_);
+  if (m.window) m.window->close(*m.beam, y, y + n_);
   if (rank_ != 0) return;
   double* p = y + 2 * n_;
   std::copy(m.p.begin(), m.p.end(), p);

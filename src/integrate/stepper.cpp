@@ -245,7 +245,10 @@ void Stepper::take_step(double left) {
     check(TSRestartStep(ts_));
   }
   const bool locating = settings_.contact_tolerance > 0.0 && system_.fleet().contacts() > 0;
-  if (locating) check(VecCopy(y_, before_));
+  if (second_order_)
+    system_.keep_steps(locating);
+  else if (locating)
+    check(VecCopy(y_, before_));
   double t = step_to(from + h);
   PetscReal next = 0.0;
   check(TSGetTimeStep(ts_, &next));
@@ -287,8 +290,12 @@ void Stepper::locate_contact_change(double from) {
     return t;
   };
   const auto again = [&](double end) {
-    if (second_order_) system_.take_back_step();
-    check(VecCopy(before_, y_));
+    if (second_order_) {
+      Array y(y_);
+      system_.take_back_step(y.data);
+    } else {
+      check(VecCopy(before_, y_));
+    }
     check(TSSetTime(ts_, from));
     check(TSRestartStep(ts_));
     known_ = false;

@@ -103,13 +103,14 @@ constexpr Row rows[] = {
   {"ts_dt", number, "s", "(from accuracy)", positive, "", 0, "the step, or the first one"},
   {"modes_count", integer, "", "10", {1, 100000}, "", 0, "frequencies with scene_analysis modes"},
   {"contact_tolerance", number, "s", "(a thousandth of the step)", not_negative, "", 0, "steps end so close behind the loss or gain of a contact; 0: wherever they end"},
+  {"step_kinks", flag, "", "true", any, "", 0, "steps end where wheels pass kinks of their way, such as span ends; needed for orders above 2"},
   {"contact_impact_steps", integer, "", "20", {0, 100000}, "", 0, "steps that an impact after a separation takes at least; 0: as the step is"},
   {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where left open"},
 
   {"model_axial", choice, "", "auto", any, "auto true false", 0, "axial unknowns of the beam; auto: where there is longitudinal action"},
   {"model_modes", text, "", "auto", any, "", 0, "moving forces only: the bridge by so many natural modes, exact in time; auto or 0: by its elements"},
   {"model_damping_ratios", numbers, "1", "(Rayleigh damping)", {0.0, 0.999}, "", 0, "of each mode of model_modes, one serves all"},
-  {"model_window", text, "", "auto", any, "", 0, "only the spans near the train; auto or 0 only: not in this version"},
+  {"model_window", text, "", "auto", any, "", 0, "leave out of the steps what moves less than this part of the largest motion; auto: 1e-9 where spans do not touch; 0: nothing"},
 
   {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},
   {"output_interval", number, "s", "(from the step)", positive, "", 0, "between stored samples"},

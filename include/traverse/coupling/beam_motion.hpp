@@ -51,6 +51,14 @@ class BeamMotion final : private solve::NodeFiller {
   /// v, w and A_0 at the end of the step.
   void finish(const StepRule& rule, double* v, double* w);
 
+  // A window: the nodes outside are at rest, and stages and steps leave them so. Only where fused. --------------------
+  int first() const { return first_; }  // of this rank's nodes: [first, past)
+  int past() const { return past_; }
+  void set_window(int first, int past);
+  /// Puts the nodes [first, past) to rest: v as in `rest` (null: 0), w and all accelerations 0. Returns the energy that
+  /// they had beyond rest, J, this rank's share.
+  double put_to_rest(int first, int past, const double* rest, double* v, double* w);
+
  private:
   struct Combination {  // of w and the accelerations
     double v = 0.0, w = 0.0;
@@ -75,6 +83,8 @@ class BeamMotion final : private solve::NodeFiller {
   std::vector<int> held_;  // local unknowns that stay zero
   std::array<std::vector<double>, most_accelerations> accelerations_;
   int n_ = 0, nodes_ = 0;
+  int first_ = 0, past_ = 0;
+  bool windowed_ = false;
 
   // Of the stage under way
   const double *v_ = nullptr, *w_ = nullptr;

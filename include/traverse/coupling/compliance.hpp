@@ -18,6 +18,10 @@ class Compliance {
   /// there are some.
   void prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements);
 
+  /// Collective. Columns of the beam beyond which nothing is left of a response, for these shifts; 0 where parts of the
+  /// beam do not touch: it ends with the part.
+  int reach(double shift, double shift2);
+
   /// The elements of the last prepare that respond to a load on one of them: [first, last) of their list.
   struct Response {
     int first = 0, last = 0;
@@ -74,7 +78,7 @@ class Compliance {
   };
   std::vector<Active> active_;  // of the elements of the last prepare
   std::vector<int> elements_;
-  long stamp_ = -1;
+  long stamp_ = -1, reach_stamp_ = -1;
   std::ptrdiff_t margin_;  // nodes on either side of an element within which its response dies out, as found last
   std::vector<Response> responses_;
   std::vector<double> blocks_;  // by the element loaded, then by the one that responds

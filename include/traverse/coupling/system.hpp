@@ -26,6 +26,7 @@
 #include "traverse/coupling/contact_newton.hpp"
 #include "traverse/coupling/fleet.hpp"
 #include "traverse/coupling/nonlinear_foundation.hpp"
+#include "traverse/coupling/rest_window.hpp"
 #include "traverse/coupling/separations.hpp"
 
 namespace traverse::coupling {
@@ -97,16 +98,22 @@ class System {
 
   // In second-order form, without a PETSc stage: what an own integrator takes steps with.
   // ------------------------------
-  /// The method of the steps to come.
+  /// Leaves out of the steps what moves less than `tolerance` of the largest motion (rest_window.hpp); before
+  /// begin_motion. Probes' stations rest only when really quiet.
+  void leave_out_rest(double tolerance, const std::vector<double>& probes);
+  /// Null where everything is stepped.
+  const RestWindow* window() const { return motion_ && motion_->window ? &*motion_->window : nullptr; }
+  /// The method of the steps to come; `keep`: so that the last step can be taken back.
   void begin_motion(const Method& method);
+  void keep_steps(bool keep) { keep_steps_ = keep; }
   /// Collective. Before the first step from a state, and where it was changed from outside.
-  void restart_motion(double t, const double* y);
+  void restart_motion(double t, double* y);
   /// Collective. One step of h from t; y is left as it is, and the result false, where a stage has no solution.
   bool step_motion(double t, double h, double* y);
   /// Of the state that the last step led to.
   void rate_of_motion(const double* y, double* ydot) const;
-  /// Forgets the last step: y is about to be put back to where it began; a restart follows.
-  void take_back_step();
+  /// Puts y back to where the last step began; a restart has to follow.
+  void take_back_step(double* y);
 
   /// Collective. Fills `out` for a state with its rate, and the fleet with accelerations, reactions, wheel forces.
   void observe(double t, const double* y, const double* ydot, Observation& out);
@@ -155,6 +162,7 @@ class System {
     Method unit, method;  // for steps of 1, for steps of `length`
     double length = 0.0;
     std::optional<BeamMotion> beam;
+    std::optional<RestWindow> window;
     std::array<std::vector<double>, most_accelerations> pdd;  // the vehicles' p'' at the stages
     std::vector<double> p, pd;                                // at the start of the step
     struct Powers {  // W; of the beam this rank's share, of vehicles and contacts the whole
@@ -169,6 +177,8 @@ class System {
     struct {
       double dissipated = 0.0, worked = 0.0;
       BeamMotion::Dissipation pending;
+      int first = 0, past = 0;      // of the beam's unknowns, [first, past)
+      std::vector<double> v, w, p;  // there, and y behind the beam's
     } before;
     bool stepped = false;      // since the last restart
     std::vector<double> rate;  // of restarts
@@ -194,6 +204,7 @@ class System {
   bool stage_of_fleet(const StageTime& at, const FreeResponse& response, const AddedSprings* added);
   void add_contact_response(double factor, double* z);
   bool stage_of_motion(double t, const StageRule& rule, const double* v, const double* w);
+  std::pair<int, int> loaded_columns(double t, double h) const;
   void settle_dissipation(const double* w);
   double pending_dissipation(const double* w);
   const double* end_acceleration() const;
@@ -245,6 +256,10 @@ class System {
   std::vector<double> nodal_, work_, v_still_, w_still_, stage_load_;  // this rank's unknowns
   std::vector<NodalLoad> nodal_loads_;                                 // of the moving forces, ascending unknowns
   std::optional<Motion> motion_;
+  double rest_tolerance_ = 0.0;  // 0: everything is stepped
+  std::vector<int> watched_;     // columns of probes
+  std::vector<double> rest_;     // deflections under the dead load alone; empty: none
+  bool keep_steps_ = false;
 };
 
 }  // namespace traverse::coupling

@@ -1,0 +1,124 @@
+#include "traverse/coupling/rest_window.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace traverse::coupling {
+namespace {
+constexpr int steps_between_looks = 16;  // at the whole window, for the largest deflection and velocity
+}
+
+RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance,
+                       const std::vector<int>& watched, const double* rest)
+    : beam_(beam),
+      parts_(op.parts() != nullptr),
+      shared_(op.shared()),
+      tolerance_(tolerance),
+      watched_(watched),
+      rest_(rest),
+      past_(beam.columns()) {
+  std::sort(watched_.begin(), watched_.end());
+}
+
+int RestWindow::local(int column) const {
+  return std::clamp(column - beam_.first_column(), 0, beam_.local_columns());
+}
+
+void RestWindow::apply(BeamMotion& motion) const { motion.set_window(local(first_), local(past_)); }
+
+void RestWindow::note_largest(const double* v, const double* w, int first, int past) {
+  for (int i = 2 * first; i < 2 * past; i += 2) {
+    largest_v_ = std::max(largest_v_, std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)));
+    largest_w_ = std::max(largest_w_, std::abs(w[i]));
+  }
+}
+
+// Deflections and velocities below the tolerance; rotations follow them.
+bool RestWindow::rests(int first, int past, const double* v, const double* w) const {
+  const int from = first + beam_.first_column(), to = past + beam_.first_column();
+  const auto watched = std::lower_bound(watched_.begin(), watched_.end(), from);
+  const double limit = watched != watched_.end() && *watched < to ? std::min(quiet, tolerance_) : tolerance_;
+  for (int i = 2 * first; i < 2 * past; i += 2)
+    if (std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)) > limit * largest_v_ ||
+        std::abs(w[i]) > limit * largest_w_)
+      return false;
+  return true;
+}
+
+void RestWindow::begin(BeamMotion& motion, double* v, double* w, int low, int high) {
+  first_ = 0;
+  past_ = beam_.columns();
+  low_ = low;
+  high_ = high;
+  steps_ = 0;
+  close(motion, v, w);
+}
+
+void RestWindow::open(BeamMotion& motion, int low, int high, int reach) {
+  low_ = low;
+  high_ = high;
+  if (parts_) {
+    const std::vector<int>& begins = beam_.parts();
+    if (low < high) {
+      const auto part_of = [&](int column) { return std::upper_bound(begins.begin(), begins.end(), column) - 1; };
+      low_ = *part_of(low);
+      high_ = part_of(high - 1)[1];
+    }
+    reach = 0;
+  }
+  if (low_ < high_) {
+    first_ = first_ < past_ ? std::min(first_, low_) : low_;
+    past_ = std::max(past_, high_);
+  }
+  first_ = std::max(0, first_ - reach);
+  past_ = std::min(beam_.columns(), past_ + reach);
+  apply(motion);
+}
+
+void RestWindow::close(BeamMotion& motion, double* v, double* w) {
+  if (steps_++ % steps_between_looks == 0) {
+    note_largest(v, w, local(first_), local(past_));
+    if (shared_) agree();
+  }
+  // Each end by the rank that has it, a part or a node at a time.
+  int first = local(first_), past = local(past_);
+  const int low = low_ < high_ ? local(low_) : past, high = low_ < high_ ? local(high_) : first;
+  const auto next = [&](int node) {
+    if (!parts_) return node + 1;
+    const auto& begins = beam_.parts();
+    return *std::upper_bound(begins.begin(), begins.end(), node + beam_.first_column()) - beam_.first_column();
+  };
+  const auto previous = [&](int node) {
+    if (!parts_) return node - 1;
+    const auto& begins = beam_.parts();
+    return std::lower_bound(begins.begin(), begins.end(), node + beam_.first_column())[-1] - beam_.first_column();
+  };
+  const bool mine_left = first_ >= beam_.first_column(), mine_right = past_ <= beam_.first_column() + beam_.local_columns();
+  int from = first, to = past;
+  while (mine_left && from < std::min(low, to) && rests(from, std::min(next(from), to), v, w)) from = next(from);
+  while (mine_right && to > std::max(high, from) && rests(std::max(previous(to), from), to, v, w)) to = previous(to);
+  if (from > first) energy_left_ += motion.put_to_rest(first, from, rest_, v, w);
+  if (to < past) energy_left_ += motion.put_to_rest(to, past, rest_, v, w);
+  const int begin = beam_.first_column();
+  std::array<int, 2> ends = {from < to ? begin + from : beam_.columns(), from < to ? -(begin + to) : 0};
+  if (shared_) MPI_Allreduce(MPI_IN_PLACE, ends.data(), 2, MPI_INT, MPI_MIN, beam_.comm());
+  first_ = std::min(ends[0], -ends[1]);
+  past_ = -ends[1];
+  apply(motion);
+}
+
+void RestWindow::agree() {
+  std::array<double, 2> largest = {largest_v_, largest_w_};
+  MPI_Allreduce(MPI_IN_PLACE, largest.data(), 2, MPI_DOUBLE, MPI_MAX, beam_.comm());
+  largest_v_ = largest[0];
+  largest_w_ = largest[1];
+}
+
+double RestWindow::energy_left() const {
+  double energy = energy_left_;
+  if (shared_) MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, beam_.comm());
+  return energy;
+}
+
+}  // namespace traverse::coupling
