@@ -9,14 +9,14 @@
 namespace traverse::test {
 namespace {
 
-const std::string every_metre =
+const std::string stations =
     "1.25,2.5,3.75,5,6.25,7.5,8.75,10,11.25,12.5,13.75,15,16.25,17.5,18.75,20,21.25,22.5,23.75";
 
 // Deflections by 2e-4 and at the same speed. Accelerations by 3e-3 where they are looked for along the whole beam, as
 // there: the largest of A2 is 2.5 % above that of midspan.
 TEST(Sweep, HslmTrainsAgainstAnotherProgram) {
   const auto list = read_table(TRAVERSE_SOURCE_DIR "/tests/data/hslm_peaks.csv");
-  Results run = run_scene("hslm_sweep", {{"output_probes", every_metre}});
+  Results run = run_scene("hslm_sweep", {{"output_probes", stations}});
   const std::vector<double>& speed = run("/sweep/speed");
   ASSERT_EQ(speed.size(), 131u);
   ASSERT_EQ(run("/sweep/peak_deflection").size(), 10u * 131u * 19u);
