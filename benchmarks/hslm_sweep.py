@@ -24,20 +24,21 @@ SCENE = os.path.join(ROOT, "options", "scenes", "hslm_sweep.yml")
 STATIONS = ",".join(f"{1.25 * i:g}" for i in range(1, 20))
 COARSE = "27.7777778,100,5.5555556"  # m/s: every 20 km/h
 
-COACHES = f"""options_file: {ROOT}/options/scenes/hslm_sweep.yml
-sweep: {{speed: [{COARSE}], hslm_a: []}}
-model: {{modes: 0, damping_ratios: []}}
-beam: {{damping_ratios: 0.01}}
-vehicle: {{coach: {{file: {ROOT}/options/vehicles/s300.yml}}}}
+ELEMENTS = f"""beam: {{spans: 25.0, EI: 3.0e10, mass: 1.5e4, damping_ratios: 0.01}}
+support: {{types: [pinned, roller]}}
+sweep: {{speed: [{COARSE}]}}
+scene: {{tail: 1.0}}
+"""
+TRAINS = "sweep_hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n"
+COACHES = f"""vehicle: {{coach: {{file: {ROOT}/options/vehicles/s300.yml}}}}
 train: {{vehicles: coach*8}}
 """
 
-CASES = [
-    ("3 modes", SCENE, []),
-    ("3 modes, 19 stations", SCENE, ["-output_probes", STATIONS]),
-    ("10 elements, every 20 km/h", SCENE,
-     ["-model_modes", "0", "-model_damping_ratios", "", "-beam_damping_ratios", "0.01", "-sweep_speed", COARSE]),
-    ("8 coaches, every 20 km/h", COACHES, []),
+CASES = [  # name, the scene as text or none, words
+    ("3 modes", None, []),
+    ("3 modes, 19 stations", None, ["-output_probes", STATIONS]),
+    ("10 elements, every 20 km/h", ELEMENTS + TRAINS, []),
+    ("8 coaches, every 20 km/h", ELEMENTS + COACHES, []),
 ]
 
 
@@ -88,17 +89,18 @@ def main():
     out = sys.argv[2] if len(sys.argv) > 2 else "results"
     os.makedirs(out, exist_ok=True)
     listed = np.loadtxt(os.path.join(ROOT, "tests", "data", "hslm_peaks.csv"), delimiter=",")
-    coaches = os.path.join(out, "hslm_sweep_coaches.yml")
-    with open(coaches, "w") as file:
-        file.write(COACHES)
+    written = os.path.join(out, "hslm_sweep_case.yml")
     rows = []
     print(f"{'':28}{'ranks':>6}{'passages':>10}{'per second':>12}{'ms each':>10}{'CPU ms':>10}{'deflection':>12}"
           f"{'acceleration':>14}")
-    for name, scene, words in CASES:
+    for name, text, words in CASES:
+        if text:
+            with open(written, "w") as file:
+                file.write(text)
         for ranks in (1, 2):
             file = os.path.join(out, "hslm_sweep.h5")
-            seconds, processor, sweep = run(os.path.join(build, "traverse"), coaches if scene is COACHES else scene,
-                                            words, ranks, file)
+            seconds, processor, sweep = run(os.path.join(build, "traverse"), written if text else SCENE, words, ranks,
+                                            file)
             passages = sweep["peak_deflection"].shape[0] * len(sweep["speed"])
             deflection, acceleration = errors(sweep, listed)
             rows.append([name, ranks, passages, passages / seconds, 1e3 * seconds / passages,
@@ -108,7 +110,7 @@ def main():
                   f"{shown[0]:>12}{shown[1]:>14}", flush=True)
         if "stations" in name:
             picture(sweep, listed, os.path.join(out, "hslm_sweep.png"))
-    os.remove(coaches)
+    os.remove(written)
     with open(os.path.join(out, "hslm_sweep.csv"), "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["case", "ranks", "passages", "passages per second", "ms each", "CPU ms each",

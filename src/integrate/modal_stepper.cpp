@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "ts_modal.hpp"
 #include "traverse/beam/shape.hpp"
+#include "ts_modal.hpp"
 
 namespace traverse::integrate {
 namespace {

@@ -13,7 +13,8 @@ namespace traverse::test {
 namespace {
 
 std::size_t known(const std::vector<double>& values) {
-  return static_cast<std::size_t>(std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }));
+  return static_cast<std::size_t>(
+      std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); }));
 }
 
 // An explicit method with a step far too long. The slowest run is the longest and dealt first.

@@ -81,8 +81,8 @@ TEST(Sweep, ByModes) {
   Results sweep = run_yaml(scene, options + Values{{"sweep_speed", "40,60,20"}, {"load_hslm_a", "5"}});
   std::size_t run = 0;
   for (const char* speed : {"40", "60"}) {
-    Results alone = run_yaml(
-        scene, options + Values{{"load_hslm_a", "5"}, {"load_speed", speed}, {"output_interval", "2e-4"}});
+    Results alone =
+        run_yaml(scene, options + Values{{"load_hslm_a", "5"}, {"load_speed", speed}, {"output_interval", "2e-4"}});
     expect_run(sweep, run, alone, 1e-3);
     const bool first = std::abs(alone.attribute("/summary", "deflection_place") - 10.0) < 1e-9;
     const double amplification = sweep("/sweep/amplification")[2 * run + (first ? 0 : 1)];
@@ -92,8 +92,9 @@ TEST(Sweep, ByModes) {
 }
 
 TEST(Sweep, VehiclesHaveTheirLeastWheelForce) {
-  const std::string coaches = std::string("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n") +
-                              "train_vehicles: coach\nscene_tail: 0\n";
+  const std::string coaches =
+      std::string("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n") +
+      "train_vehicles: coach\nscene_tail: 0\n";
   const Values options = {{"ts_dt", "5e-3"}, {"ts_type", "cn"}};
   Results sweep = run_yaml(coaches, options + Values{{"sweep_speed", "60,80,20"}});
   const auto& least = sweep("/sweep/least_wheel_force");
