@@ -63,8 +63,8 @@ void read_modal(const Options& o, Scene& scene) {
   if (scene.beam->track) o.refuse("model_modes", "with a layered track: not there yet; allowed: auto or 0");
   if (scene.beam->foundation.nonlinear())
     o.refuse("model_modes", "the foundation is one-sided, has a gap or a cubic term; allowed: auto or 0");
-  if (o.has("ts_type"))
-    o.refuse("ts_type", "model_modes needs no integrator: its motion is exact in time; leave one of them out");
+  if (const options::Entry* type = o.entries().find("ts_type"); type != nullptr && type->value != "modal")
+    o.refuse("ts_type", "with model_modes the motion is exact in time; allowed: modal, or left out");
   scene.model_modes = static_cast<int>(modes);
   if (!o.has("model_damping_ratios")) return;
   if (scene.damping.rayleigh || scene.damping.ratios)

@@ -123,21 +123,23 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   const std::vector<double> zero(n, 0.0);
   std::vector<beam::Response> seen;
   beam::Recovery recovery(beam_, stations, 0.0);
-  probes_.assign(stations.size(), {});
+  probes_ = {};
+  probes_.count = stations.size();
   for (std::size_t i = 0; i < modes(); ++i) {
-    const auto forms = [&](const double* v, const double* w, const double* a, auto take) {
-      recovery.evaluate(v, w, a, {}, seen);
-      for (std::size_t p = 0; p < stations.size(); ++p) take(probes_[p], seen[p]);
+    const auto see = [&](const double* v, const double* w, const double* acceleration) -> const auto& {
+      recovery.evaluate(v, w, acceleration, {}, seen);
+      return seen;
     };
-    forms(shape(i), zero.data(), zero.data(), [](ModalProbe& p, const beam::Response& r) {
-      p.deflection.push_back(r.deflection);
-      p.moment.push_back(r.moment);
-    });
-    forms(zero.data(), zero.data(), shape(i),
-          [](ModalProbe& p, const beam::Response& r) { p.moment_by_acceleration.push_back(r.moment); });
-    forms(zero.data(), shape(i), zero.data(), [&](ModalProbe& p, const beam::Response& r) {
-      p.moment_by_rate.push_back(r.moment + own_drag_[i] * p.moment_by_acceleration[i]);
-    });
+    for (const beam::Response& r : see(shape(i), zero.data(), zero.data())) {
+      probes_.deflection.push_back(r.deflection);
+      probes_.moment.push_back(r.moment);
+    }
+    for (const beam::Response& r : see(zero.data(), zero.data(), shape(i)))
+      probes_.moment_by_acceleration.push_back(r.moment);
+    for (const beam::Response& r : see(zero.data(), shape(i), zero.data())) {
+      const std::size_t at = probes_.moment_by_rate.size();
+      probes_.moment_by_rate.push_back(r.moment + own_drag_[i] * probes_.moment_by_acceleration[at]);
+    }
   }
 
   std::vector<double> weight(basis_.shape.front().size(), 0.0);
@@ -146,15 +148,16 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   const std::vector<double> sagging = static_solution(weight);
   beam::Recovery heavy(beam_, stations, gravity);
   heavy.evaluate(sagging.data() + begin, zero.data(), zero.data(), {}, seen);
-  for (std::size_t p = 0; p < stations.size(); ++p) {
-    probes_[p].weight_deflection = seen[p].deflection;
-    probes_[p].weight_moment = seen[p].moment;
+  for (const beam::Response& r : seen) {
+    probes_.weight_deflection.push_back(r.deflection);
+    probes_.weight_moment.push_back(r.moment);
   }
 
   std::vector<Line> lines = lines_of_modes();
   constexpr std::array quantities = {&beam::Response::deflection, &beam::Response::moment};
-  for (std::size_t p = 0; p < stations.size(); ++p) {
-    for (const auto quantity : quantities) {
+  for (const auto quantity : quantities) {
+    const std::vector<double>& form = quantity == &beam::Response::deflection ? probes_.deflection : probes_.moment;
+    for (std::size_t p = 0; p < stations.size(); ++p) {
       // What the nodal values of the probe's element give is a load of the influence line (Maxwell and Betti).
       std::vector<double> load(weight.size(), 0.0);
       for (const int unknown : beam_.bridge().transverse(beam_.mesh().locate(stations[p]).element)) {
@@ -165,9 +168,8 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
       }
       Line line{static_solution(load), p, quantity};
       for (double& value : line.nodal) value = -value;
-      const std::vector<double>& form = quantity == &beam::Response::deflection ? probes_[p].deflection : probes_[p].moment;
       for (std::size_t i = 0; i < modes(); ++i) {
-        const double share = form[i] / (basis_.omega[i] * basis_.omega[i]);
+        const double share = form[i * stations.size() + p] / (basis_.omega[i] * basis_.omega[i]);
         for (std::size_t k = 0; k < line.nodal.size(); ++k) line.nodal[k] += share * basis_.shape[i][k];
       }
       lines.push_back(std::move(line));

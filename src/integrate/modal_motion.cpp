@@ -147,11 +147,11 @@ void ModalMotion::see() {
   }
 }
 
-double ModalMotion::channel(std::size_t i) const {
-  const double* c = history_.interval(interval_) + i;
+void ModalMotion::add_channels(std::size_t first, std::size_t count, double* sum) const {
   const std::size_t n = history_.channels;
+  const double* c = history_.interval(interval_) + first;
   const double s = speed_ > 0.0 ? speed_ * time_ - history_.start[interval_] : 0.0;
-  return c[0] + s * (c[n] + s * (c[2 * n] + s * c[3 * n]));
+  for (std::size_t i = 0; i < count; ++i) sum[i] += c[i] + s * (c[n + i] + s * (c[2 * n + i] + s * c[3 * n + i]));
 }
 
 }  // namespace traverse::integrate

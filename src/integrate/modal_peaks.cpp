@@ -54,29 +54,34 @@ class Curve {
   Peak peak_;
 };
 
+/// The responses of all probes at one instant.
+struct Seen {
+  std::vector<double> deflection, acceleration, moment;
+};
+
+void see(const ModalBridge& bridge, const ModalMotion& motion, Seen& seen) {
+  const ModalProbes& probes = bridge.probes();
+  const std::size_t n = probes.count;
+  seen.deflection = probes.weight_deflection;
+  seen.moment = probes.weight_moment;
+  seen.acceleration.assign(n, 0.0);
+  motion.add_channels(bridge.modes(), n, seen.deflection.data());
+  motion.add_channels(bridge.modes() + n, n, seen.moment.data());
+  for (std::size_t i = 0; i < bridge.modes(); ++i) {
+    const double q = motion.q()[i], rate = motion.rate()[i], acceleration = motion.acceleration()[i];
+    const double *deflection = &probes.deflection[i * n], *moment = &probes.moment[i * n];
+    const double *by_rate = &probes.moment_by_rate[i * n], *by_acceleration = &probes.moment_by_acceleration[i * n];
+    for (std::size_t p = 0; p < n; ++p) {
+      seen.deflection[p] += deflection[p] * q;
+      seen.acceleration[p] += deflection[p] * acceleration;
+      seen.moment[p] += moment[p] * q + by_rate[p] * rate + by_acceleration[p] * acceleration;
+    }
+  }
+}
+
 struct ProbeCurves {
   Curve deflection, acceleration, moment;
 };
-
-void see(const ModalBridge& bridge, const ModalMotion& motion, std::vector<ProbeCurves>& curves) {
-  const std::size_t modes = bridge.modes();
-  const double t = motion.time();
-  for (std::size_t p = 0; p < curves.size(); ++p) {
-    const ModalProbe& probe = bridge.probes()[p];
-    double deflection = probe.weight_deflection + motion.channel(modes + 2 * p);
-    double moment = probe.weight_moment + motion.channel(modes + 2 * p + 1);
-    double acceleration = 0.0;
-    for (std::size_t i = 0; i < modes; ++i) {
-      const double q = motion.q()[i], a = motion.acceleration()[i];
-      deflection += probe.deflection[i] * q;
-      acceleration += probe.deflection[i] * a;
-      moment += probe.moment[i] * q + probe.moment_by_rate[i] * motion.rate()[i] + probe.moment_by_acceleration[i] * a;
-    }
-    curves[p].deflection.add(t, deflection);
-    curves[p].acceleration.add(t, acceleration);
-    curves[p].moment.add(t, moment);
-  }
-}
 
 }  // namespace
 
@@ -86,18 +91,27 @@ std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistor
   const double fastest = *std::max_element(bridge.omega().begin(), bridge.omega().end());
   const double interval = 2.0 * std::numbers::pi / fastest / instants_a_period;
   motion.expect(interval);
-  std::vector<ProbeCurves> curves(bridge.probes().size());
-  see(bridge, motion, curves);
+  std::vector<ProbeCurves> curves(bridge.probes().count);
+  Seen seen;
+  const auto look = [&] {
+    see(bridge, motion, seen);
+    for (std::size_t p = 0; p < curves.size(); ++p) {
+      curves[p].deflection.add(motion.time(), seen.deflection[p]);
+      curves[p].acceleration.add(motion.time(), seen.acceleration[p]);
+      curves[p].moment.add(motion.time(), seen.moment[p]);
+    }
+  };
+  look();
   while (motion.time() < end_time) {
     // Instants count from the last event: steps of the expected length cost least.
     const double event = std::min(motion.next_event(), end_time);
     const double from = motion.time();
     for (int i = 1; from + i * interval < event; ++i) {
       motion.advance(from + i * interval);
-      see(bridge, motion, curves);
+      look();
     }
     motion.advance(event);
-    see(bridge, motion, curves);
+    look();
     motion.pass_event();
     for (ProbeCurves& c : curves) {
       c.deflection.restart();
@@ -112,19 +126,19 @@ std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistor
 
 std::vector<double> static_peaks(const ModalBridge& bridge, const ForceHistory& history) {
   const std::size_t n = history.channels, modes = bridge.modes();
+  const ModalProbes& probes = bridge.probes();
   std::vector<double> peaks;
-  for (std::size_t p = 0; p < bridge.probes().size(); ++p) {
-    const ModalProbe& probe = bridge.probes()[p];
-    double peak = std::abs(probe.weight_deflection);
+  for (std::size_t p = 0; p < probes.count; ++p) {
+    double peak = std::abs(probes.weight_deflection[p]);
     for (std::size_t interval = 0; interval + 1 < history.start.size(); ++interval) {
       std::array<double, 4> c{};  // of the deflection over the distance
       for (std::size_t k = 0; k < 4; ++k) {
         const double* g = history.interval(interval) + k * n;
-        c[k] = g[modes + 2 * p];
+        c[k] = g[modes + p];
         for (std::size_t i = 0; i < modes; ++i)
-          c[k] += probe.deflection[i] * g[i] / (bridge.omega()[i] * bridge.omega()[i]);
+          c[k] += probes.deflection[i * probes.count + p] * g[i] / (bridge.omega()[i] * bridge.omega()[i]);
       }
-      c[0] += probe.weight_deflection;
+      c[0] += probes.weight_deflection[p];
       const double length = history.start[interval + 1] - history.start[interval];
       const auto look = [&](double s) {
         if (s >= 0.0 && s <= length) peak = std::max(peak, std::abs(c[0] + s * (c[1] + s * (c[2] + s * c[3]))));

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "traverse/beam/shape.hpp"
+#include "ts_modal.hpp"
 
 namespace traverse::integrate {
 namespace {
@@ -34,6 +36,9 @@ ModalStepper::ModalStepper(coupling::System& system, const ModalBridge& bridge, 
   drag_.assign(n, 0.0);
   dragged_ = *std::max_element(bridge_.own_drag().begin(), bridge_.own_drag().end()) > 0.0;
   motion_.count_energy();
+  ts_ = make_modal_ts(motion_);
+  base::check(TSGetMaxSteps(ts_, &most_steps_));
+  base::check(TSSetMaxSteps(ts_, std::numeric_limits<PetscInt>::max() - 1));  // counted here
 }
 
 std::string ModalStepper::method() const { return std::to_string(bridge_.modes()) + " modes, exact in time"; }
@@ -46,11 +51,12 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
   for (bool going = true; going && motion_.time() < end_time_ - slack;) {
     double t = static_cast<double>(steps_ + 1) * interval_;
     if (t > end_time_ - slack) t = end_time_;
-    motion_.advance(t);
+    base::check(TSSetTimeStep(ts_, t - motion_.time()));
+    base::check(TSStep(ts_));
     system_.begin_step(t - 2.0 * just_before * end_time_, t);
     ++steps_;
     sample_now(sample);
-    going = step(t, steps_);
+    going = step(t, steps_) && !stopped_at_limit();
   }
   return motion_.time();
 }

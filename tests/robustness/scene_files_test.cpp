@@ -42,7 +42,13 @@ TEST_P(SceneFile, RunsToItsEnd) {
   const Outcome outcome = workplace.run({"-options_file", GetParam(), "-ts_max_time", "0.2", "-output_file", "r.h5"});
   expect_success(outcome);
   EXPECT_NE(outcome.out.find("reached its end"), std::string::npos) << outcome.out;
-  EXPECT_NEAR(Results(workplace.path("r.h5")).time().back(), 0.2, 1e-12);
+  Results results(workplace.path("r.h5"));
+  const bool sweep = outcome.out.find("  the sweep ") != std::string::npos;
+  if (sweep) {
+    EXPECT_GT(results("/sweep/peak_deflection").size(), 0u);
+  } else {
+    EXPECT_NEAR(results.time().back(), 0.2, 1e-12);
+  }
 }
 INSTANTIATE_TEST_SUITE_P(Options, SceneFile, testing::ValuesIn(files_in("scenes")), stem);
 

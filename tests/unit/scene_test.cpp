@@ -391,6 +391,39 @@ TEST(SceneModel, WhatIsNotThereYetIsRefused) {
   EXPECT_NO_THROW(scene_with({{"model_modes", "0"}, {"model_window", "auto"}}));
 }
 
+TEST(SceneSweep, SpeedsAndTrains) {
+  const Scene s = scene_of(beam_yaml + "sweep: {speed: [27.7777778, 100, 0.5555556], hslm_a: [3, 1]}\n");
+  ASSERT_TRUE(s.sweep);
+  EXPECT_EQ(s.sweep->speeds.size(), 131u) << "a step rounded to seven digits still meets the last speed";
+  EXPECT_NEAR(s.sweep->speeds.back(), 100.0, 1e-4);
+  EXPECT_EQ(s.sweep->trains, (std::vector<int>{3, 1}));
+  ASSERT_EQ(s.sweep->loads.size(), 2u);
+  EXPECT_EQ(s.sweep->loads[1].forces.size(), 50u);
+  EXPECT_EQ(scene_with({{"sweep_speed", "10,26,5"}}).sweep->speeds, (std::vector<double>{10, 15, 20, 25}));
+  EXPECT_EQ(scene_of(beam_yaml + "load: {speed: 30}\nsweep: {hslm_a: 4}\n").sweep->trains, (std::vector<int>{4}));
+  EXPECT_PRED2(contains, refused_with("sweep_speed", "20,10,5"), "from is above to");
+  EXPECT_PRED2(contains, refused_with("sweep_speed", "10,20"), "3 numbers");
+  EXPECT_PRED2(contains, refused_with("sweep_hslm_a", "1,1"), "every train once");
+  EXPECT_PRED2(contains, refused_with("sweep_hslm_a", "0"), "from 1 to 10");
+  EXPECT_PRED2(contains, refused(beam_yaml + "load: {hslm_a: 1}\nsweep: {hslm_a: 2, speed: [10, 20, 5]}\n"), "either");
+  EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: 1}\nsweep: {hslm_a: 2, speed: [10, 20, 5]}\n"), "either");
+  EXPECT_PRED2(contains, refused(beam_yaml + "scene_analysis: modes\nsweep: {speed: [10, 20, 5]}\n"), "transient");
+  EXPECT_PRED2(contains, refused(vehicle_yaml + train_yaml + "sweep: {speed: [10, 20, 5]}\n"), "no beam");
+}
+
+TEST(SceneSweep, BridgesByModes) {
+  const std::string moving = beam_yaml + "load: {forces: 1e5, speed: 30}\n";
+  EXPECT_EQ(scene_of(moving + "model_modes: 7\n").model_modes, 7);
+  EXPECT_EQ(scene_of(moving + "model: {modes: 2, damping_ratios: [0.01, 0.02]}\n").damping_of_modes,
+            (std::vector<double>{0.01, 0.02}));
+  EXPECT_PRED2(contains, refused(moving + "model_modes: many\n"), "a number of modes");
+  EXPECT_PRED2(contains, refused(moving + "model: {modes: 3, damping_ratios: [0.01, 0.02]}\n"), "2 ratios for 3 modes");
+  EXPECT_PRED2(contains, refused(moving + "model_damping_ratios: 0.01\n"), "needs model_modes");
+  EXPECT_PRED2(contains, refused(moving + "model_modes: 3\nts_type: cn\n"), "exact in time");
+  EXPECT_PRED2(contains, refused(beam_yaml + "ts_max_time: 1\nmodel_modes: 3\n"), "needs moving forces");
+  EXPECT_PRED2(contains, refused(moving + "model_modes: 3\nfoundation_vertical: {x: 5, k: 1e6, gap: 1e-3}\n"), "gap");
+}
+
 TEST(SceneWhole, SomethingHasToHappenAndToEnd) {
   EXPECT_PRED2(contains, refused(""), "nothing to simulate");
   EXPECT_PRED2(contains, refused("scene: {analysis: modes}\n"), "nothing to simulate");

@@ -9,14 +9,14 @@
 namespace traverse::test {
 namespace {
 
-const std::string every_metre =
+const std::string stations =
     "1.25,2.5,3.75,5,6.25,7.5,8.75,10,11.25,12.5,13.75,15,16.25,17.5,18.75,20,21.25,22.5,23.75";
 
 // Deflections by 2e-4 and at the same speed. Accelerations by 3e-3 where they are looked for along the whole beam, as
 // there: the largest of A2 is 2.5 % above that of midspan.
 TEST(Sweep, HslmTrainsAgainstAnotherProgram) {
   const auto list = read_table(TRAVERSE_SOURCE_DIR "/tests/data/hslm_peaks.csv");
-  Results run = run_scene("hslm_sweep", {{"output_probes", every_metre}});
+  Results run = run_scene("hslm_sweep", {{"output_probes", stations}});
   const std::vector<double>& speed = run("/sweep/speed");
   ASSERT_EQ(speed.size(), 131u);
   ASSERT_EQ(run("/sweep/peak_deflection").size(), 10u * 131u * 19u);
@@ -81,8 +81,8 @@ TEST(Sweep, ByModes) {
   Results sweep = run_yaml(scene, options + Values{{"sweep_speed", "40,60,20"}, {"load_hslm_a", "5"}});
   std::size_t run = 0;
   for (const char* speed : {"40", "60"}) {
-    Results alone = run_yaml(
-        scene, options + Values{{"load_hslm_a", "5"}, {"load_speed", speed}, {"output_interval", "2e-4"}});
+    Results alone =
+        run_yaml(scene, options + Values{{"load_hslm_a", "5"}, {"load_speed", speed}, {"output_interval", "2e-4"}});
     expect_run(sweep, run, alone, 1e-3);
     const bool first = std::abs(alone.attribute("/summary", "deflection_place") - 10.0) < 1e-9;
     const double amplification = sweep("/sweep/amplification")[2 * run + (first ? 0 : 1)];
@@ -92,8 +92,9 @@ TEST(Sweep, ByModes) {
 }
 
 TEST(Sweep, VehiclesHaveTheirLeastWheelForce) {
-  const std::string coaches = std::string("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n") +
-                              "train_vehicles: coach\nscene_tail: 0\n";
+  const std::string coaches =
+      std::string("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n") +
+      "train_vehicles: coach\nscene_tail: 0\n";
   const Values options = {{"ts_dt", "5e-3"}, {"ts_type", "cn"}};
   Results sweep = run_yaml(coaches, options + Values{{"sweep_speed", "60,80,20"}});
   const auto& least = sweep("/sweep/least_wheel_force");

@@ -24,11 +24,12 @@ struct PiecewiseCubic {
   std::size_t pieces() const { return breaks.size() - 1; }
 };
 
-/// The response at a station as linear forms of the modes' coordinates, rates and accelerations.
-struct ModalProbe {
-  std::vector<double> deflection;                                  // per mode, of q; of q'' the acceleration
-  std::vector<double> moment, moment_by_rate, moment_by_acceleration;  // per mode
-  double weight_deflection = 0.0, weight_moment = 0.0;             // m, N m: of the beam's own weight
+/// The response at stations as linear forms of the modes' coordinates, rates and accelerations: [mode][station].
+struct ModalProbes {
+  std::size_t count = 0;
+  std::vector<double> deflection;  // of q; of q'' it is the acceleration
+  std::vector<double> moment, moment_by_rate, moment_by_acceleration;
+  std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: of the beam's own weight
 };
 
 class ModalBridge {
@@ -48,9 +49,9 @@ class ModalBridge {
   const std::vector<double>& sigma() const { return sigma_; }        // 1/s: decay rates
   /// 1/s: damping given by ratio; its forces are those of an acceleration own_drag q'.
   const std::vector<double>& own_drag() const { return own_drag_; }
-  const std::vector<ModalProbe>& probes() const { return probes_; }
-  /// Of a unit downward force at x: the modal forces; then, for each probe, deflection and moment less the modes'
-  /// static share.
+  const ModalProbes& probes() const { return probes_; }
+  /// Of a unit downward force at x: the modal forces; then the deflections of all probes, then their moments,
+  /// less the modes' static share.
   const PiecewiseCubic& influence() const { return influence_; }
   const beam::Beam& beam() const { return beam_; }
   /// phi_i, this rank's unknowns.
@@ -74,7 +75,7 @@ class ModalBridge {
   coupling::BeamOperator& statics_;
   modes::Basis basis_;
   std::vector<double> sigma_, own_drag_;
-  std::vector<ModalProbe> probes_;
+  ModalProbes probes_;
   PiecewiseCubic influence_;
 };
 

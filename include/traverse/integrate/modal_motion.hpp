@@ -33,8 +33,8 @@ class ModalMotion {
   const std::vector<double>& q() const { return q_; }
   const std::vector<double>& rate() const { return rate_; }
   const std::vector<double>& acceleration() const { return acceleration_; }
-  /// The history's channel at this time.
-  double channel(std::size_t i) const;
+  /// Adds `count` of the history's channels at this time, from `first` on.
+  void add_channels(std::size_t first, std::size_t count, double* sum) const;
   double dissipated() const { return dissipated_; }  // J, since t = 0
   double work() const { return work_; }              // J, of the forces on the modes' motion
 

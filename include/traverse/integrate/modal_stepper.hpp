@@ -20,7 +20,7 @@ class ModalStepper {
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
 
   long steps() const { return steps_; }
-  bool stopped_at_limit() const { return false; }
+  bool stopped_at_limit() const { return steps_ >= most_steps_; }  // of -ts_max_steps
   std::string method() const;
 
  private:
@@ -33,6 +33,8 @@ class ModalStepper {
   coupling::MovingLoad load_;
   ForceHistory history_;
   ModalMotion motion_;
+  base::Handle<TS> ts_;  // of type modal, which moves it
+  PetscInt most_steps_ = 0;
   double end_time_, interval_;
   std::vector<double> sagging_;                  // m, of this rank's unknowns: of the beam's own weight
   std::vector<double> y_, ydot_, drag_, force_;  // as Instant has them; nodal forces and what they do at rest

@@ -1,0 +1,72 @@
+#include "ts_modal.hpp"
+
+#include <petsc/private/tsimpl.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace traverse::integrate {
+namespace {
+
+using base::check;
+
+constexpr const char* type_name = "modal";
+
+ModalMotion& motion_of(TS ts) { return *static_cast<ModalMotion*>(ts->data); }
+
+void show(const ModalMotion& motion, Vec y) {
+  double* values = nullptr;
+  check(VecGetArray(y, &values));
+  std::copy(motion.q().begin(), motion.q().end(), values);
+  std::copy(motion.rate().begin(), motion.rate().end(), values + motion.q().size());
+  check(VecRestoreArray(y, &values));
+}
+
+PetscErrorCode step(TS ts) {
+  return base::guard([&] {
+    motion_of(ts).advance(ts->ptime + ts->time_step);
+    ts->ptime += ts->time_step;
+    show(motion_of(ts), ts->vec_sol);
+  });
+}
+
+PetscErrorCode view(TS ts, PetscViewer viewer) {
+  return PetscViewerASCIIPrintf(viewer, "  %d modes, exact in time\n", static_cast<int>(motion_of(ts).q().size()));
+}
+
+PetscErrorCode destroy(TS ts) {  // the motion is its owner's
+  ts->data = nullptr;
+  return 0;
+}
+
+PetscErrorCode create(TS ts) {
+  ts->ops->step = step;
+  ts->ops->view = view;
+  ts->ops->destroy = destroy;
+  ts->usessnes = PETSC_FALSE;
+  ts->default_adapt_type = TSADAPTNONE;
+  return 0;
+}
+
+}  // namespace
+
+base::Handle<TS> make_modal_ts(ModalMotion& motion) {
+  check(TSRegister(type_name, create));
+  base::Handle<TS> ts;
+  base::Handle<Vec> y;
+  const auto size = static_cast<PetscInt>(2 * motion.q().size());
+  check(VecCreateSeq(PETSC_COMM_SELF, size, y.out()));
+  show(motion, y);
+  check(TSCreate(PETSC_COMM_SELF, ts.out()));
+  check(TSSetType(ts, type_name));
+  static_cast<TS>(ts)->data = &motion;
+  check(TSSetSolution(ts, y));
+  check(TSSetTime(ts, motion.time()));
+  check(TSSetMaxSteps(ts, std::numeric_limits<PetscInt>::max() - 1));
+  check(TSSetMaxTime(ts, std::numeric_limits<double>::max()));
+  check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
+  check(TSSetFromOptions(ts));
+  return ts;
+}
+
+}  // namespace traverse::integrate
