@@ -26,15 +26,30 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
                    plan_.end_time, plan_.interval);
     method = modal_->method();
   } else {
+    leave_out_rest(notes);
     const double tolerance = scene.contact_tolerance.value_or(1e-3 * plan_.time_step);
     stepper_.emplace(system_, integrate::Settings{plan_.end_time, plan_.time_step, plan_.interval,
-                                                  system_.known_events(plan_.end_time), tolerance});
+                                                  system_.known_events(plan_.end_time, scene.step_kinks), tolerance});
     method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
   }
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
                               system_.fleet().members.size(), system_.freedom(), scene.load.forces.size()));
   if (!still_)
-    notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s", method, plan_.end_time, plan_.interval));
+    notes.push_back(
+        fmt::format("integrator {} to {:g} s, samples every {:g} s", method, plan_.end_time, plan_.interval));
+}
+
+void Passage::leave_out_rest(std::vector<std::string>& notes) {
+  const beam::Beam* beam = system_.beam();
+  if (still_ || beam == nullptr) return;
+  const bool apart = beam->parts().size() > 2;
+  const double tolerance = scene_.rest_tolerance >= 0.0 ? scene_.rest_tolerance
+                           : apart                      ? coupling::RestWindow::quiet
+                                                        : 0.0;
+  if (tolerance == 0.0) return;
+  system_.leave_out_rest(tolerance, scene_.output.probes);
+  notes.push_back(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",
+                              tolerance, scene_.rest_tolerance >= 0.0 ? "" : "; -model_window 0 steps all"));
 }
 
 void Passage::start(std::vector<std::string>& notes) {

@@ -57,6 +57,11 @@ void store_modes(const Structure& structure, results::Recorder& recorder) {
   recorder.modes(modes, structure.rayleigh.a, structure.rayleigh.b, omega1, omega2);
 }
 
+double total(MPI_Comm comm, double share) {
+  MPI_Allreduce(MPI_IN_PLACE, &share, 1, MPI_DOUBLE, MPI_SUM, comm);
+  return share;
+}
+
 int run_transient(MPI_Comm comm, const Scene& scene, Structure& structure, std::vector<std::string> notes) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
@@ -82,10 +87,12 @@ int run_transient(MPI_Comm comm, const Scene& scene, Structure& structure, std::
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
   auto summarise = [&](const std::string& ended) {
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     results::Summary summary = watch.finish();
     summary.steps = passage.steps();
     summary.solves = system.beam_solves();
-    summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    summary.wall_seconds = wall;
+    if (system.window() != nullptr) summary.energy_left = total(comm, system.window()->energy_left());
     summary.static_error = system.static_error();
     summary.ended = ended;
     recorder.finish(summary);

@@ -15,9 +15,18 @@ using options::Options;
 
 constexpr std::size_t most_default_probes = 200;
 
-void refuse_unfinished(const Options& o) {
-  const std::string window = o.text("model_window");
-  if (window != "auto" && window != "0") o.refuse("model_window", "not there yet; allowed: auto or 0");
+constexpr double most_left_out = 0.1;
+
+// What is left out of the steps: -1 where the run decides.
+double read_window(const Options& o) {
+  const std::string value = o.text("model_window");
+  if (value == "auto") return -1.0;
+  char* end = nullptr;
+  const double part = std::strtod(value.c_str(), &end);
+  if (value.empty() || *end != 0 || !(part >= 0.0 && part <= most_left_out))
+    o.refuse("model_window",
+             fmt::format("allowed: auto, 0, or a part of the largest motion up to {:g}", most_left_out));
+  return part;
 }
 
 void read_run(const Options& o, Scene& scene) {
@@ -34,6 +43,8 @@ void read_run(const Options& o, Scene& scene) {
   scene.mode_count = o.integer("modes_count");
   scene.contact_tolerance = o.optional_number("contact_tolerance");
   scene.impact_steps = o.integer("contact_impact_steps");
+  scene.step_kinks = o.flag("step_kinks");
+  scene.rest_tolerance = read_window(o);
   scene.accuracy = o.number("accuracy");
 }
 
@@ -115,7 +126,6 @@ Scene read_scene(Options o) {
   declare_couplers(o);
   o.check_names();
   o.check_values();
-  refuse_unfinished(o);
   read_run(o, scene);
   read_beam(o, scene);
   read_sweep(o, scene);

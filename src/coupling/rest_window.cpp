@@ -21,52 +21,54 @@ RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double to
   std::sort(watched_.begin(), watched_.end());
 }
 
-int RestWindow::local(int column) const {
-  return std::clamp(column - beam_.first_column(), 0, beam_.local_columns());
-}
+int RestWindow::local(int column) const { return std::clamp(column - beam_.first_column(), 0, beam_.local_columns()); }
 
 void RestWindow::apply(BeamMotion& motion) const { motion.set_window(local(first_), local(past_)); }
 
+// (v, theta) of the nodes [first, past) and their rates: the largest of each kind.
 void RestWindow::note_largest(const double* v, const double* w, int first, int past) {
-  for (int i = 2 * first; i < 2 * past; i += 2) {
-    largest_v_ = std::max(largest_v_, std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)));
-    largest_w_ = std::max(largest_w_, std::abs(w[i]));
+  for (int i = 2 * first; i < 2 * past; ++i) {
+    double* largest = largest_.data() + 2 * (i % 2);
+    largest[0] = std::max(largest[0], std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)));
+    largest[1] = std::max(largest[1], std::abs(w[i]));
   }
 }
 
-// Deflections and velocities below the tolerance; rotations follow them.
 bool RestWindow::rests(int first, int past, const double* v, const double* w) const {
   const int from = first + beam_.first_column(), to = past + beam_.first_column();
   const auto watched = std::lower_bound(watched_.begin(), watched_.end(), from);
   const double limit = watched != watched_.end() && *watched < to ? std::min(quiet, tolerance_) : tolerance_;
-  for (int i = 2 * first; i < 2 * past; i += 2)
-    if (std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)) > limit * largest_v_ ||
-        std::abs(w[i]) > limit * largest_w_)
+  for (int i = 2 * first; i < 2 * past; ++i) {
+    const double* largest = largest_.data() + 2 * (i % 2);
+    if (std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)) > limit * largest[0] ||
+        std::abs(w[i]) > limit * largest[1])
       return false;
+  }
   return true;
+}
+
+// The loads' columns; where parts do not touch, those of their parts.
+void RestWindow::note_loads(int low, int high) {
+  low_ = low;
+  high_ = high;
+  if (!parts_ || low >= high) return;
+  const std::vector<int>& begins = beam_.parts();
+  const auto part_of = [&](int column) { return std::upper_bound(begins.begin(), begins.end(), column) - 1; };
+  low_ = *part_of(low);
+  high_ = part_of(high - 1)[1];
 }
 
 void RestWindow::begin(BeamMotion& motion, double* v, double* w, int low, int high) {
   first_ = 0;
   past_ = beam_.columns();
-  low_ = low;
-  high_ = high;
+  note_loads(low, high);
   steps_ = 0;
   close(motion, v, w);
 }
 
 void RestWindow::open(BeamMotion& motion, int low, int high, int reach) {
-  low_ = low;
-  high_ = high;
-  if (parts_) {
-    const std::vector<int>& begins = beam_.parts();
-    if (low < high) {
-      const auto part_of = [&](int column) { return std::upper_bound(begins.begin(), begins.end(), column) - 1; };
-      low_ = *part_of(low);
-      high_ = part_of(high - 1)[1];
-    }
-    reach = 0;
-  }
+  note_loads(low, high);
+  if (parts_) reach = 0;
   if (low_ < high_) {
     first_ = first_ < past_ ? std::min(first_, low_) : low_;
     past_ = std::max(past_, high_);
@@ -77,10 +79,11 @@ void RestWindow::open(BeamMotion& motion, int low, int high, int reach) {
 }
 
 void RestWindow::close(BeamMotion& motion, double* v, double* w) {
-  if (steps_++ % steps_between_looks == 0) {
+  if (steps_ < steps_between_looks || steps_ % steps_between_looks == 0) {
     note_largest(v, w, local(first_), local(past_));
     if (shared_) agree();
   }
+  ++steps_;
   // Each end by the rank that has it, a part or a node at a time.
   int first = local(first_), past = local(past_);
   const int low = low_ < high_ ? local(low_) : past, high = low_ < high_ ? local(high_) : first;
@@ -94,7 +97,8 @@ void RestWindow::close(BeamMotion& motion, double* v, double* w) {
     const auto& begins = beam_.parts();
     return std::lower_bound(begins.begin(), begins.end(), node + beam_.first_column())[-1] - beam_.first_column();
   };
-  const bool mine_left = first_ >= beam_.first_column(), mine_right = past_ <= beam_.first_column() + beam_.local_columns();
+  const bool mine_left = first_ >= beam_.first_column(),
+             mine_right = past_ <= beam_.first_column() + beam_.local_columns();
   int from = first, to = past;
   while (mine_left && from < std::min(low, to) && rests(from, std::min(next(from), to), v, w)) from = next(from);
   while (mine_right && to > std::max(high, from) && rests(std::max(previous(to), from), to, v, w)) to = previous(to);
@@ -109,16 +113,7 @@ void RestWindow::close(BeamMotion& motion, double* v, double* w) {
 }
 
 void RestWindow::agree() {
-  std::array<double, 2> largest = {largest_v_, largest_w_};
-  MPI_Allreduce(MPI_IN_PLACE, largest.data(), 2, MPI_DOUBLE, MPI_MAX, beam_.comm());
-  largest_v_ = largest[0];
-  largest_w_ = largest[1];
-}
-
-double RestWindow::energy_left() const {
-  double energy = energy_left_;
-  if (shared_) MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, beam_.comm());
-  return energy;
+  MPI_Allreduce(MPI_IN_PLACE, largest_.data(), static_cast<int>(largest_.size()), MPI_DOUBLE, MPI_MAX, beam_.comm());
 }
 
 }  // namespace traverse::coupling

@@ -45,6 +45,7 @@ Energy System::energy(const double* y) {
     if (nonlinear_) sums[1] += nonlinear_->energy();
     if (motion_) {
       sums[3] = motion_->dissipated + pending_dissipation(w);
+      if (motion_->window) sums[3] += motion_->window->energy_left();
       sums[4] = motion_->worked;
     }
   }

@@ -100,9 +100,11 @@ void System::add_flats(const WheelContact& c, double end, std::vector<double>& e
   for (double angle : track::flat_ends(wheel.shape, wheel.radius, turning * end)) events.push_back(angle / turning);
 }
 
-std::vector<double> System::known_events(double end) const {
-  std::vector<double> kinks = input_.profile.kinks();
-  if (beam_ != nullptr) {
+std::vector<double> System::known_events(double end, bool all_kinks) const {
+  std::vector<double> kinks;
+  if (all_kinks) kinks = input_.profile.kinks();
+  if (beam_ != nullptr && !all_kinks) kinks = {line_->mesh.start(), line_->mesh.end()};
+  if (beam_ != nullptr && all_kinks) {
     const std::vector<double>& ends = line_->mesh.kinks();
     kinks.insert(kinks.end(), ends.begin(), ends.end());
   }
@@ -114,7 +116,7 @@ std::vector<double> System::known_events(double end) const {
       if (t > 0.0 && t < end) events.push_back(t);
     }
   };
-  if (input_.train.drive == Drive::constant)
+  if (input_.train.drive == Drive::constant && all_kinks)
     for (const WheelContact& c : fleet_.wheels) {
       if (c.is_further) continue;
       add(fleet_.coordinates(c).x(), input_.train.speed);

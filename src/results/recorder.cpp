@@ -275,6 +275,7 @@ void Recorder::Impl::summarise(const Summary& summary) {
   file.attribute(group, "contact_losses", static_cast<long>(summary.contact_losses));
   file.attribute(group, "longest_loss", summary.longest_loss);
   file.attribute(group, "energy_residual", summary.energy_residual);
+  file.attribute(group, "energy_left", summary.energy_left);
   file.attribute(group, "energy_scale", summary.energy_scale);
   file.attribute(group, "static_error", summary.static_error);
   file.attribute(group, "steps", summary.steps);

@@ -169,8 +169,8 @@ void Progress::show(double t, Text what) {
   const auto now = Clock::now();
   const double elapsed = seconds(now - begin_);
   if (elapsed < kSilentStart || (terminal_ && seconds(now - last_) < kRedrawEvery)) return;
-  const std::string text = fmt::format("{:3.0f} %   {}   {} left", 100.0 * part, what(),
-                                       duration_text(elapsed * (1.0 - part) / part));
+  const std::string text =
+      fmt::format("{:3.0f} %   {}   {} left", 100.0 * part, what(), duration_text(elapsed * (1.0 - part) / part));
   if (terminal_) {
     fmt::print("\r{}\033[K", text);
   } else {
@@ -195,6 +195,9 @@ void print_summary(const Summary& summary, const std::string& file) {
   fmt::print("summary\n");
   print_beam(summary);
   print_wheels(summary);
+  if (summary.energy_left > 0.0)
+    line("energy put to rest", fmt::format("{:.2e} J           {:.1e} of the largest term", summary.energy_left,
+                                           summary.energy_left / summary.energy_scale));
   if (summary.energy_residual != 0.0 || summary.energy_scale > 0.0) line("energy residual", energy_text(summary));
   line("steps", cost_text(summary));
   if (!summary.ended.empty()) line("the run", summary.ended);

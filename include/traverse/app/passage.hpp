@@ -21,8 +21,7 @@ class Passage {
   /// Collective. Sets everything to its start; SolverError where there is no equilibrium.
   void start(std::vector<std::string>& notes);
   /// As Stepper::run.
-  void run(const std::function<void(const integrate::Instant&)>& sample,
-           const std::function<bool(double, long)>& step);
+  void run(const std::function<void(const integrate::Instant&)>& sample, const std::function<bool(double, long)>& step);
 
   coupling::System& system() { return system_; }
   const Plan& plan() const { return plan_; }
@@ -30,6 +29,8 @@ class Passage {
   bool stopped_at_limit() const { return stepper_ && stepper_->stopped_at_limit(); }
 
  private:
+  void leave_out_rest(std::vector<std::string>& notes);
+
   const Scene& scene_;
   bool still_;
   coupling::SystemInput input_;

@@ -59,11 +59,13 @@ struct Scene {
   std::optional<double> end_time;   // -ts_max_time
   std::optional<double> time_step;  // -ts_dt
   int mode_count = 10;
-  int model_modes = 0;                // the bridge by so many modes; 0: by its elements
+  int model_modes = 0;                   // the bridge by so many modes; 0: by its elements
   std::vector<double> damping_of_modes;  // ratio of each of these modes, the last one of all further; empty: Rayleigh's
   std::optional<Sweep> sweep;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
+  bool step_kinks = true;        // steps end where wheels pass kinks
+  double rest_tolerance = -1.0;  // model_window; -1: auto
   double accuracy = 1e-3;
   Output output;
   bool quiet = false;                                        // -output_quiet: no progress

@@ -1,9 +1,10 @@
 // The stretch of the bridge that moves. Ahead of the train nothing has happened yet; behind it vibrations die away.
-// Stages and steps leave out what is at rest: spans that do not touch their neighbours whole, a continuous bridge node by
-// node, where waves are followed until they are below the tolerance. What is put to rest takes its energy with it, which
-// is counted.
+// Stages and steps leave out what is at rest: spans that do not touch their neighbours whole, a continuous bridge node
+// by node, where waves are followed until they are below the tolerance. What is put to rest takes its energy with it,
+// which is counted.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "traverse/coupling/beam_motion.hpp"
@@ -21,14 +22,14 @@ class RestWindow {
 
   /// Collective. From a state: only what moves is in the window, and what lies between `low` and `high` (columns).
   void begin(BeamMotion& motion, double* v, double* w, int low, int high);
-  /// Collective. Wider, for a step with loads between the columns `low` and `high`, whose effect dies out within `reach`
-  /// columns.
+  /// Collective. Wider, for a step with loads between the columns `low` and `high`, whose effect dies out within
+  /// `reach` columns.
   void open(BeamMotion& motion, int low, int high, int reach);
   /// Collective. Narrower at both ends, after the step.
   void close(BeamMotion& motion, double* v, double* w);
 
-  /// Collective. J, put to rest so far.
-  double energy_left() const;
+  /// J, put to rest so far, this rank's share.
+  double energy_left() const { return energy_left_; }
   double tolerance() const { return tolerance_; }
   int columns() const { return past_ - first_; }
 
@@ -36,6 +37,7 @@ class RestWindow {
   void apply(BeamMotion& motion) const;
   void note_largest(const double* v, const double* w, int first, int past);
   bool rests(int first, int past, const double* v, const double* w) const;
+  void note_loads(int low, int high);
   void agree();
   int local(int column) const;
 
@@ -46,7 +48,7 @@ class RestWindow {
   const double* rest_;
   int first_ = 0, past_ = 0;  // columns: [first, past)
   int low_ = 0, high_ = 0;    // with loads in the last step
-  double largest_v_ = 0.0, largest_w_ = 0.0;
+  std::array<double, 4> largest_{};  // deflection and its rate, rotation and its rate
   double energy_left_ = 0.0;  // this rank's share
   int steps_ = 0;
 };

@@ -141,10 +141,10 @@ class System {
   /// Why the last stage could not be solved, and what to do about it.
   std::string trouble() const;
 
-  /// Times in (0, end) at which a wheel or force passes a kink of the running surface or the end of its own
-  /// flat (for a prescribed speed only), or
-  /// an actuator's table has a kink.
-  std::vector<double> known_events(double end) const;
+  /// Times in (0, end) at which a force comes onto the beam or leaves it, or an actuator's table has a kink; with
+  /// `kinks`, for a prescribed speed, also those at which a wheel or force passes a kink of the running surface or the
+  /// end of its own flat.
+  std::vector<double> known_events(double end, bool kinks = true) const;
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
   double leaving_time() const;
   /// Collective. Largest magnitude of the static deflection at a station while the train and the forces pass with
@@ -169,7 +169,7 @@ class System {
       double beam = 0.0, loads = 0.0, dissipation = 0.0, work = 0.0;
     };
     std::array<Powers, most_accelerations> powers;  // at the stages
-    BeamMotion::Dissipation beam_dissipation;  // fused, at the start of the step
+    BeamMotion::Dissipation beam_dissipation;       // fused, at the start of the step
     /// This rank's share of D and W; pending: weights of the dissipation at the step's end and of its rate that are
     /// still to come in D, s and s2.
     double dissipated = 0.0, worked = 0.0;

@@ -95,6 +95,7 @@ struct Summary {
   int contact_losses = 0;
   double longest_loss = 0.0;     // s
   double energy_residual = 0.0;  // largest |residual|, J
+  double energy_left = 0.0;      // put to rest outside the window of what is stepped, J
   double energy_scale = 0.0;     // largest term, J
   double static_error = 0.0;     // relative, of static solutions, by rounding
   long steps = 0;
