@@ -8,8 +8,8 @@ namespace {
 // Fewer nodes are one part, two chains: separators would cost more than further chains would gain.
 constexpr std::ptrdiff_t nodes_worth_cutting = 512;
 
-// The factors of a bundle, and what its sweep has just passed of x, stay in the second-level cache until the way back.
-constexpr std::ptrdiff_t nodes_a_bundle = 4096;
+// The way back through a bundle follows soon upon the way there, while its factors are in a cache.
+constexpr std::ptrdiff_t nodes_a_bundle = 16384;
 
 std::ptrdiff_t count_parts(std::ptrdiff_t nodes) {
   if (nodes < nodes_worth_cutting) return 1;

@@ -51,9 +51,10 @@ double largest(const Eigen::VectorXd& x) { return x.size() == 0 ? 0.0 : x.cwiseA
 
 TEST(SolveOverRanksInParts, IsTheSolutionOfOneRank) {
   for (int block : {1, 2}) {
-    for (int nodes : {40, 700, 9000}) {
+    for (int nodes : {40, 700, 33'000}) {
       for (double shift : {10.0, 0.01}) {
         for (int empty : {-1, 0, 1}) {
+          if (nodes > 700 && (block != 2 || empty == 0)) continue;
           const Problem problem(block, nodes, shift, empty);
           const Eigen::VectorXd expected = problem.expected(0, problem.whole);
           test::CopyingFiller filler(problem.load(0, problem.whole), block);
@@ -72,7 +73,7 @@ TEST(SolveOverRanksInParts, IsTheSolutionOfOneRank) {
 
 // Windows inside a rank, up to and across the cuts, over all, and nowhere on some ranks.
 TEST(SolveOverRanksInAWindow, IsThePlainSolutionInside) {
-  for (int nodes : {300, 9000}) {
+  for (int nodes : {300, 33'000}) {
     for (int empty : {-1, 0, 1}) {
       const Problem problem(2, nodes, 10.0, empty);
       const int cut = nodes;

@@ -42,8 +42,8 @@ struct NodeFiller {
 };
 
 /// Exact factorisation A = block Cholesky (LDL^T) of a symmetric positive definite block tridiagonal matrix
-/// cut over the ranks of `comm` by nodes: each rank eliminates its inner nodes, a small block tridiagonal
-/// system couples the cuts, solved redundantly on every rank. No iteration, no tolerance.
+/// cut over the ranks of `comm` by nodes: each rank eliminates its inner nodes, several chains at once, a small
+/// block tridiagonal system couples the cuts, solved redundantly on every rank. No iteration, no tolerance.
 class SubstructuredCholesky {
  public:
   /// Collective. local_nodes may be 0 on some ranks. Block sizes 2 to 7 are compiled for their size; others, up
