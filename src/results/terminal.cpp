@@ -169,8 +169,8 @@ void Progress::show(double t, Text what) {
   const auto now = Clock::now();
   const double elapsed = seconds(now - begin_);
   if (elapsed < kSilentStart || (terminal_ && seconds(now - last_) < kRedrawEvery)) return;
-  const std::string text = fmt::format("{:3.0f} %   {}   {} left", 100.0 * part, what(),
-                                       duration_text(elapsed * (1.0 - part) / part));
+  const std::string text =
+      fmt::format("{:3.0f} %   {}   {} left", 100.0 * part, what(), duration_text(elapsed * (1.0 - part) / part));
   if (terminal_) {
     fmt::print("\r{}\033[K", text);
   } else {

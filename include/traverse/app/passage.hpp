@@ -21,8 +21,7 @@ class Passage {
   /// Collective. Sets everything to its start; SolverError where there is no equilibrium.
   void start(std::vector<std::string>& notes);
   /// As Stepper::run.
-  void run(const std::function<void(const integrate::Instant&)>& sample,
-           const std::function<bool(double, long)>& step);
+  void run(const std::function<void(const integrate::Instant&)>& sample, const std::function<bool(double, long)>& step);
 
   coupling::System& system() { return system_; }
   const Plan& plan() const { return plan_; }

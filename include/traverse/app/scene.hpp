@@ -59,7 +59,7 @@ struct Scene {
   std::optional<double> end_time;   // -ts_max_time
   std::optional<double> time_step;  // -ts_dt
   int mode_count = 10;
-  int model_modes = 0;                // the bridge by so many modes; 0: by its elements
+  int model_modes = 0;                   // the bridge by so many modes; 0: by its elements
   std::vector<double> damping_of_modes;  // ratio of each of these modes, the last one of all further; empty: Rayleigh's
   std::optional<Sweep> sweep;
   std::optional<double> contact_tolerance;  // s
