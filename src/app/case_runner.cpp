@@ -21,7 +21,8 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
   std::vector<std::string> ignored;
   for (std::size_t train = 0; train < trains(); ++train) {
     for (const double speed : {speeds_.front(), speeds_.back()})
-      const Passage checked(scene_of(train, speed), structure_, train == 0 && speed == speeds_.front() ? notes : ignored);
+      const Passage checked(scene_of(train, speed), structure_,
+                            train == 0 && speed == speeds_.front() ? notes : ignored);
   }
 }
 
@@ -90,8 +91,8 @@ CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
     static_deflection_[train] = integrate::static_peaks(bridge, place->second);
   }
   CaseResult result;
-  result.peaks = integrate::modal_peaks(bridge, place->second, speed, scene_.start == Start::equilibrium,
-                                        duration(train, speed));
+  result.peaks =
+      integrate::modal_peaks(bridge, place->second, speed, scene_.start == Start::equilibrium, duration(train, speed));
   result.static_deflection = static_deflection_[train];
   result.ended = true;
   return result;

@@ -20,8 +20,8 @@ struct CaseResult {
 
 class CaseRunner {
  public:
-  /// Builds structure and damping on this rank alone, and checks the runs at the slowest and the fastest speed. What was
-  /// modelled goes into `notes`.
+  /// Builds structure and damping on this rank alone, and checks the runs at the slowest and the fastest speed. What
+  /// was modelled goes into `notes`.
   CaseRunner(const Scene& scene, std::vector<std::string>& notes);
 
   const std::vector<double>& speeds() const { return speeds_; }

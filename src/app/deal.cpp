@@ -44,8 +44,8 @@ Deal::~Deal() {
 std::optional<std::size_t> Deal::next() {
   const long round = std::atomic_ref<long>(*taken_).fetch_add(1);
   if (round >= stopped) return std::nullopt;
-  const std::size_t piece = static_cast<std::size_t>(round) * static_cast<std::size_t>(computers_) +
-                            static_cast<std::size_t>(computer_);
+  const std::size_t piece =
+      static_cast<std::size_t>(round) * static_cast<std::size_t>(computers_) + static_cast<std::size_t>(computer_);
   if (piece >= pieces_) return std::nullopt;
   return piece;
 }

@@ -9,10 +9,10 @@
 namespace traverse::app {
 namespace {
 
-constexpr double steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
-constexpr double steps_a_wave = 20.0;     // of the track or of a wheel out of round, at that accuracy
+constexpr double steps_a_period = 100.0;   // of the first period or a span's crossing, at an accuracy of 1e-3
+constexpr double steps_a_wave = 20.0;      // of the track or of a wheel out of round, at that accuracy
 constexpr double samples_a_period = 20.0;  // of a bridge by its modes, where the interval is left open
-constexpr double mechanism_step = 1e-3;   // s, where there is no beam to judge by
+constexpr double mechanism_step = 1e-3;    // s, where there is no beam to judge by
 constexpr double least_steps_a_span = 10.0;
 constexpr double most_steps = 1e10;
 constexpr double stored_samples = 2000.0;  // at most, where the interval is left open
@@ -94,9 +94,10 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
 void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector<std::string>& notes) {
   plan.interval = plan.time_step = scene.output.interval.value_or(round_down(first_period / samples_a_period));
   if (!scene.output.interval)
-    notes.push_back(fmt::format("samples every {:g} s: from the first period; output_interval changes it, which "
-                                "changes nothing in the motion",
-                                plan.interval));
+    notes.push_back(
+        fmt::format("samples every {:g} s: from the first period; output_interval changes it, which "
+                    "changes nothing in the motion",
+                    plan.interval));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ void read_load(const options::Options& options, Scene& scene);
 void read_sweep(const options::Options& options, Scene& scene);  // before train and load: it may give their speed
 /// Train A-N of EN 1991-2 with its first axle at `first`.
 MovingLoad hslm_load(int train, double first);
-void read_modal(const options::Options& options, Scene& scene);  // last: it depends on what moves
+void read_modal(const options::Options& options, Scene& scene);    // last: it depends on what moves
 void read_track(const options::Options& options, Scene& scene);    // after train: the roughness begins before it
 void read_layers(const options::Options& options, Scene& scene);   // after train and load: the track is as long
 void decide_axial(const options::Options& options, Scene& scene);  // after beam and train

@@ -56,9 +56,9 @@ void Structure::damp(const Scene& scene, bool frequencies_wanted, std::vector<st
     rayleigh = modes::rayleigh(omega->first, omega->second, damping.ratios->first, damping.ratios->second);
   beam->set_rayleigh(rayleigh);
   if (omega)
-    notes.push_back(fmt::format("first distinct frequencies {:.6g} and {:.6g} Hz; Rayleigh a = {:.6g} 1/s, b = {:.6g} s",
-                                omega->first / (2.0 * std::numbers::pi), omega->second / (2.0 * std::numbers::pi),
-                                rayleigh.a, rayleigh.b));
+    notes.push_back(fmt::format(
+        "first distinct frequencies {:.6g} and {:.6g} Hz; Rayleigh a = {:.6g} 1/s, b = {:.6g} s",
+        omega->first / (2.0 * std::numbers::pi), omega->second / (2.0 * std::numbers::pi), rayleigh.a, rayleigh.b));
 }
 
 void Structure::prepare(const Scene& scene, std::vector<std::string>& notes) {

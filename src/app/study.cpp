@@ -152,7 +152,8 @@ int run_sweep(MPI_Comm comm, const Scene& scene) {
   notes.push_back(fmt::format("sweep of {} runs: {} speed{} from {:g} to {:g} m/s, {} train{}; above for the first one",
                               cases.size(), speeds.size(), speeds.size() == 1 ? "" : "s", speeds.front(), speeds.back(),
                               runner.trains(), runner.trains() == 1 ? "" : "s"));
-  if (ranks > 1) notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
+  if (ranks > 1)
+    notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
   print_notes(comm, notes);
 
   results::Layout layout;

@@ -118,64 +118,71 @@ std::vector<double> ModalBridge::static_solution(const std::vector<double>& load
 }
 
 void ModalBridge::add_probes(const std::vector<double>& stations, double gravity) {
-  const int n = beam_.local_unknowns();
-  const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
-  const std::vector<double> zero(n, 0.0);
-  std::vector<beam::Response> seen;
-  beam::Recovery recovery(beam_, stations, 0.0);
   probes_ = {};
   probes_.count = stations.size();
+  beam::Recovery recovery(beam_, stations, 0.0);
+  note_forms(recovery);
+  beam::Recovery heavy(beam_, stations, gravity);
+  note_weight(heavy, gravity);
+  std::vector<Line> lines = lines_of_modes();
+  for (const auto quantity : {&beam::Response::deflection, &beam::Response::moment})
+    for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
+  set_influence(lines, stations);
+}
+
+void ModalBridge::note_forms(beam::Recovery& recovery) {
+  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> seen;
   for (std::size_t i = 0; i < modes(); ++i) {
-    const auto see = [&](const double* v, const double* w, const double* acceleration) -> const auto& {
-      recovery.evaluate(v, w, acceleration, {}, seen);
-      return seen;
-    };
-    for (const beam::Response& r : see(shape(i), zero.data(), zero.data())) {
+    recovery.evaluate(shape(i), zero.data(), zero.data(), {}, seen);
+    for (const beam::Response& r : seen) {
       probes_.deflection.push_back(r.deflection);
       probes_.moment.push_back(r.moment);
     }
-    for (const beam::Response& r : see(zero.data(), zero.data(), shape(i)))
-      probes_.moment_by_acceleration.push_back(r.moment);
-    for (const beam::Response& r : see(zero.data(), shape(i), zero.data())) {
+    recovery.evaluate(zero.data(), zero.data(), shape(i), {}, seen);
+    for (const beam::Response& r : seen) probes_.moment_by_acceleration.push_back(r.moment);
+    recovery.evaluate(zero.data(), shape(i), zero.data(), {}, seen);
+    for (const beam::Response& r : seen) {
       const std::size_t at = probes_.moment_by_rate.size();
       probes_.moment_by_rate.push_back(r.moment + own_drag_[i] * probes_.moment_by_acceleration[at]);
     }
   }
+}
 
+void ModalBridge::note_weight(beam::Recovery& recovery, double gravity) {
+  const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
   std::vector<double> weight(basis_.shape.front().size(), 0.0);
   beam_.add_self_weight(gravity, weight.data() + begin);
-  MPI_Allreduce(MPI_IN_PLACE, weight.data(), static_cast<int>(weight.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
-  const std::vector<double> sagging = static_solution(weight);
-  beam::Recovery heavy(beam_, stations, gravity);
-  heavy.evaluate(sagging.data() + begin, zero.data(), zero.data(), {}, seen);
+  const std::vector<double> sagging = static_solution(weight), zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> seen;
+  recovery.evaluate(sagging.data() + begin, zero.data(), zero.data(), {}, seen);
   for (const beam::Response& r : seen) {
     probes_.weight_deflection.push_back(r.deflection);
     probes_.weight_moment.push_back(r.moment);
   }
+}
 
-  std::vector<Line> lines = lines_of_modes();
-  constexpr std::array quantities = {&beam::Response::deflection, &beam::Response::moment};
-  for (const auto quantity : quantities) {
-    const std::vector<double>& form = quantity == &beam::Response::deflection ? probes_.deflection : probes_.moment;
-    for (std::size_t p = 0; p < stations.size(); ++p) {
-      // What the nodal values of the probe's element give is a load of the influence line (Maxwell and Betti).
-      std::vector<double> load(weight.size(), 0.0);
-      for (const int unknown : beam_.bridge().transverse(beam_.mesh().locate(stations[p]).element)) {
-        std::vector<double> unit(n, 0.0);
-        if (beam_.local(unknown) >= 0) unit[static_cast<std::size_t>(beam_.local(unknown))] = 1.0;
-        recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, seen);
-        load[static_cast<std::size_t>(unknown)] = seen[p].*quantity;
-      }
-      Line line{static_solution(load), p, quantity};
-      for (double& value : line.nodal) value = -value;
-      for (std::size_t i = 0; i < modes(); ++i) {
-        const double share = form[i * stations.size() + p] / (basis_.omega[i] * basis_.omega[i]);
-        for (std::size_t k = 0; k < line.nodal.size(); ++k) line.nodal[k] += share * basis_.shape[i][k];
-      }
-      lines.push_back(std::move(line));
-    }
+/// The influence line of a response at a probe, less the modes' share. What the nodal values of the probe's element
+/// give is a load on the structure, whose deflections are that line (Maxwell and Betti).
+ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size_t p,
+                                             double beam::Response::*quantity) {
+  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> seen;
+  std::vector<double> load(basis_.shape.front().size(), 0.0);
+  for (const int unknown : beam_.bridge().transverse(beam_.mesh().locate(recovery.stations()[p]).element)) {
+    std::vector<double> unit = zero;
+    if (beam_.local(unknown) >= 0) unit[static_cast<std::size_t>(beam_.local(unknown))] = 1.0;
+    recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, seen);
+    load[static_cast<std::size_t>(unknown)] = seen[p].*quantity;
   }
-  set_influence(lines, stations);
+  Line line{static_solution(load), p, quantity};
+  for (double& value : line.nodal) value = -value;
+  const std::vector<double>& form = quantity == &beam::Response::deflection ? probes_.deflection : probes_.moment;
+  for (std::size_t i = 0; i < modes(); ++i) {
+    const double share = form[i * probes_.count + p] / (basis_.omega[i] * basis_.omega[i]);
+    for (std::size_t k = 0; k < line.nodal.size(); ++k) line.nodal[k] += share * basis_.shape[i][k];
+  }
+  return line;
 }
 
 void ModalBridge::set_influence(const std::vector<Line>& lines, const std::vector<double>& stations) {

@@ -18,70 +18,68 @@ Peak vertex(const std::array<double, 3>& t, const std::array<double, 3>& y) {
   return {y[1] + (at - t[1]) * (before + bend * (at - t[0])), at};
 }
 
-/// A response over time, from instant to instant.
-class Curve {
+/// Responses over time, from instant to instant, and their peaks so far.
+class Curves {
  public:
-  void add(double t, double value) {
-    if (count_ > 2) {
-      t_ = {t_[1], t_[2], t};
-      y_ = {y_[1], y_[2], value};
-    } else {
-      t_[count_] = t;
-      y_[count_] = value;
+  explicit Curves(std::size_t count) : peaks_(count) { rows_.fill(std::vector<double>(count)); }
+
+  /// Where the responses of a new instant go.
+  std::vector<double>& next() {
+    std::rotate(rows_.begin(), rows_.begin() + 1, rows_.end());
+    return rows_[2];
+  }
+  /// When they are there.
+  void add(double t) {
+    t_ = {t_[1], t_[2], t};
+    ++known_;
+    for (std::size_t i = 0; i < peaks_.size(); ++i) {
+      const double value = std::abs(rows_[2][i]), middle = std::abs(rows_[1][i]);
+      if (value > peaks_[i].value) peaks_[i] = {value, t};
+      if (known_ >= 3 && middle > near * peaks_[i].value && middle > value) look_between(i);
     }
-    ++count_;
-    peak_.note(std::abs(value), t);
-    if (count_ < 3) return;
-    const double sign = y_[1] < 0.0 ? -1.0 : 1.0;
-    const std::array<double, 3> y = {sign * y_[0], sign * y_[1], sign * y_[2]};
-    if (y[1] <= peak_.value * near || y[1] < y[0] || y[1] < y[2] || (y[1] == y[0] && y[1] == y[2])) return;
-    const Peak top = vertex(t_, y);
-    peak_.note(top.value, top.time);
   }
   /// What comes has a kink with what was.
-  void restart() {
-    if (count_ == 0) return;
-    t_[0] = t_[std::min<std::size_t>(count_, 3) - 1];
-    y_[0] = y_[std::min<std::size_t>(count_, 3) - 1];
-    count_ = 1;
-  }
-  const Peak& peak() const { return peak_; }
+  void restart() { known_ = 1; }
+  const std::vector<Peak>& peaks() const { return peaks_; }
 
  private:
   static constexpr double near = 0.9;  // of the largest so far: no vertex of less can be larger
-  std::size_t count_ = 0;
-  std::array<double, 3> t_{}, y_{};
-  Peak peak_;
+
+  void look_between(std::size_t i) {
+    const double sign = rows_[1][i] < 0.0 ? -1.0 : 1.0;
+    const std::array<double, 3> y = {sign * rows_[0][i], sign * rows_[1][i], sign * rows_[2][i]};
+    if (y[1] < y[0]) return;
+    const Peak top = vertex(t_, y);
+    peaks_[i].note(top.value, top.time);
+  }
+
+  std::size_t known_ = 0;  // instants without a kink between them
+  std::array<double, 3> t_{};
+  std::array<std::vector<double>, 3> rows_;  // of the last instants
+  std::vector<Peak> peaks_;
 };
 
-/// The responses of all probes at one instant.
-struct Seen {
-  std::vector<double> deflection, acceleration, moment;
-};
-
-void see(const ModalBridge& bridge, const ModalMotion& motion, Seen& seen) {
+/// The deflections of all probes at one instant, their accelerations, their moments.
+void see(const ModalBridge& bridge, const ModalMotion& motion, std::vector<double>& seen) {
   const ModalProbes& probes = bridge.probes();
   const std::size_t n = probes.count;
-  seen.deflection = probes.weight_deflection;
-  seen.moment = probes.weight_moment;
-  seen.acceleration.assign(n, 0.0);
-  motion.add_channels(bridge.modes(), n, seen.deflection.data());
-  motion.add_channels(bridge.modes() + n, n, seen.moment.data());
+  double *deflections = seen.data(), *accelerations = deflections + n, *moments = accelerations + n;
+  std::copy(probes.weight_deflection.begin(), probes.weight_deflection.end(), deflections);
+  std::fill_n(accelerations, n, 0.0);
+  std::copy(probes.weight_moment.begin(), probes.weight_moment.end(), moments);
+  motion.add_channels(bridge.modes(), n, deflections);
+  motion.add_channels(bridge.modes() + n, n, moments);
   for (std::size_t i = 0; i < bridge.modes(); ++i) {
     const double q = motion.q()[i], rate = motion.rate()[i], acceleration = motion.acceleration()[i];
     const double *deflection = &probes.deflection[i * n], *moment = &probes.moment[i * n];
     const double *by_rate = &probes.moment_by_rate[i * n], *by_acceleration = &probes.moment_by_acceleration[i * n];
     for (std::size_t p = 0; p < n; ++p) {
-      seen.deflection[p] += deflection[p] * q;
-      seen.acceleration[p] += deflection[p] * acceleration;
-      seen.moment[p] += moment[p] * q + by_rate[p] * rate + by_acceleration[p] * acceleration;
+      deflections[p] += deflection[p] * q;
+      accelerations[p] += deflection[p] * acceleration;
+      moments[p] += moment[p] * q + by_rate[p] * rate + by_acceleration[p] * acceleration;
     }
   }
 }
-
-struct ProbeCurves {
-  Curve deflection, acceleration, moment;
-};
 
 }  // namespace
 
@@ -91,15 +89,11 @@ std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistor
   const double fastest = *std::max_element(bridge.omega().begin(), bridge.omega().end());
   const double interval = 2.0 * std::numbers::pi / fastest / instants_a_period;
   motion.expect(interval);
-  std::vector<ProbeCurves> curves(bridge.probes().count);
-  Seen seen;
+  const std::size_t n = bridge.probes().count;
+  Curves curves(3 * n);
   const auto look = [&] {
-    see(bridge, motion, seen);
-    for (std::size_t p = 0; p < curves.size(); ++p) {
-      curves[p].deflection.add(motion.time(), seen.deflection[p]);
-      curves[p].acceleration.add(motion.time(), seen.acceleration[p]);
-      curves[p].moment.add(motion.time(), seen.moment[p]);
-    }
+    see(bridge, motion, curves.next());
+    curves.add(motion.time());
   };
   look();
   while (motion.time() < end_time) {
@@ -113,14 +107,11 @@ std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistor
     motion.advance(event);
     look();
     motion.pass_event();
-    for (ProbeCurves& c : curves) {
-      c.deflection.restart();
-      c.acceleration.restart();
-      c.moment.restart();
-    }
+    curves.restart();
   }
   std::vector<ProbePeaks> peaks;
-  for (const ProbeCurves& c : curves) peaks.push_back({c.deflection.peak(), c.acceleration.peak(), c.moment.peak()});
+  for (std::size_t p = 0; p < n; ++p)
+    peaks.push_back({curves.peaks()[p], curves.peaks()[n + p], curves.peaks()[2 * n + p]});
   return peaks;
 }
 

@@ -12,10 +12,10 @@ namespace traverse::modes {
 /// between two nodes that supports hold altogether.
 struct Segment {
   bool axial = false;
-  std::vector<int> nodes;   // of the bridge, of each unknown; counted on under a layered track's approaches
+  std::vector<int> nodes;     // of the bridge, of each unknown; counted on under a layered track's approaches
   std::vector<int> unknowns;  // of each unknown: its global number
-  std::vector<char> slope;  // of each unknown: non-zero for theta, and for what is not the bridge's
-  Band K, M;                // of the same width
+  std::vector<char> slope;    // of each unknown: non-zero for theta, and for what is not the bridge's
+  Band K, M;                  // of the same width
   Band D;  // C* - a M - b K*: what the foundation adds to Rayleigh damping. Empty where it was not asked for
   std::vector<std::vector<double>> rigid;  // its rigid motions, one vector each
   std::vector<int> offsets;                // of the nodes, one for each equal segment; the first is 0

@@ -17,8 +17,8 @@ void expect_same_bits(const std::string& yaml, const Values& options, const std:
   }
 }
 
-const std::vector<std::string> names = {"speed", "peak_deflection", "peak_acceleration", "peak_moment",
-                                        "peak_moment_time", "amplification"};
+const std::vector<std::string> names = {"speed",       "peak_deflection",  "peak_acceleration",
+                                        "peak_moment", "peak_moment_time", "amplification"};
 const char* const bridge = R"(
 beam: {spans: [20.0, 25.0], EI: 1.0e10, mass: 1.0e4, damping_ratios: 0.02, elements_per_span: 6}
 support: {types: [pinned, roller, roller]}
@@ -36,7 +36,8 @@ TEST(Ranks, SweepByElements) {
 TEST(Ranks, SweepOfVehicles) {
   std::vector<std::string> with_wheels = names;
   with_wheels.emplace_back("least_wheel_force");
-  expect_same_bits("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n"
+  expect_same_bits("options_file: " TRAVERSE_SOURCE_DIR
+                   "/options/scenes/three_span_train.yml\n"
                    "train_vehicles: coach\nscene_tail: 0\n",
                    {{"ts_dt", "5e-3"}, {"ts_type", "cn"}, {"sweep_speed", "60,80,5"}}, with_wheels);
 }

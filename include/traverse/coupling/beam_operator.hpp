@@ -63,7 +63,9 @@ class BeamOperator {
   /// noise).
   const BeamFactor& factored(double shift, double shift2, const AddedSprings* added = nullptr);
   /// Drops the factorisations of time steps: what comes does not depend on which there were.
-  void forget_steps() { factors_.remove_if([](const Factor& f) { return f.shift != 0.0; }); }
+  void forget_steps() {
+    factors_.remove_if([](const Factor& f) { return f.shift != 0.0; });
+  }
   /// Changes whenever `factored` hands out another factorisation.
   long factor_stamp() const { return stamp_; }
   bool damped() const { return damped_; }

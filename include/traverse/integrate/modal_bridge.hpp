@@ -67,6 +67,9 @@ class ModalBridge {
   };
   double share_of_mass(Mat matrix, std::size_t mode, const char* what) const;
   void set_damping(const std::vector<double>& ratios);
+  void note_forms(beam::Recovery& recovery);
+  void note_weight(beam::Recovery& recovery, double gravity);
+  Line correction_of(beam::Recovery& recovery, std::size_t probe, double beam::Response::*quantity);
   std::vector<Line> lines_of_modes() const;
   void set_influence(const std::vector<Line>& lines, const std::vector<double>& stations);
   std::vector<double> static_solution(const std::vector<double>& load);

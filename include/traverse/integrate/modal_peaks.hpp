@@ -19,8 +19,8 @@ struct ProbePeaks {
   Peak deflection, acceleration, moment;  // m, m/s2, N m
 };
 
-/// From t = 0 to end_time, at every probe of the bridge. Looked for at instants a twentieth of the shortest period apart
-/// and wherever a force passes a node or a probe, and between them by parabolas.
+/// From t = 0 to end_time, at every probe of the bridge. Looked for at instants a twentieth of the shortest period
+/// apart and wherever a force passes a node or a probe, and between them by parabolas.
 std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistory& history, double speed,
                                     bool equilibrium, double end_time);
 
