@@ -163,11 +163,13 @@ void ContactNewton::follow_loads(const StageData& s, Fleet& fleet) {
   }
 }
 
-// Whether what is kept of a vehicle belongs to this stage.
+// Whether what is kept of a vehicle belongs to this stage. Nothing is kept where bodies touch each other: their
+// contacts turn with them.
 bool ContactNewton::serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved) {
   const auto same = [](double a, double b) { return std::abs(a - b) <= same_shift * b; };
-  return s.shift2 > 0.0 && !vehicle.mechanism.rubs() && w.partition_version == vehicle.state.partition_version &&
-         (w.curved || !curved) && same(w.shift, s.shift) && same(w.shift2, s.shift2);
+  return s.shift2 > 0.0 && !vehicle.mechanism.rubs() && vehicle.contacts.empty() &&
+         w.partition_version == vehicle.state.partition_version && (w.curved || !curved) && same(w.shift, s.shift) &&
+         same(w.shift2, s.shift2);
 }
 
 // Where a vehicle goes by itself, and its contacts with it.
