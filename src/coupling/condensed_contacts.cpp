@@ -7,7 +7,7 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double settled = 1e-13;    // of the weight: deviation of the law that is left
+constexpr double settled = 1e-12;    // of the weight: deviation of the law that is left
 constexpr double rough = 1e-6;       // of the weight: deviation above which the tangent is renewed
 constexpr double negligible = 1e-9;  // response at another row over that at their own ones: left to the next evaluation
 

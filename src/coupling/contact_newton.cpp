@@ -12,18 +12,47 @@ constexpr int most_tangents = 20;    // of the contacts in one iteration
 constexpr int small_vehicle = 24;    // degrees of freedom up to which its Newton matrix is inverted as a whole
 constexpr double tolerance = 1e-10;  // of the weight: what is left in forces after the last step
 constexpr double static_tolerance = 1e-13;
-constexpr double best_ratio = 1e-6;  // of successive changes that is trusted
-constexpr double poor_ratio = 1e-3;  // of successive residuals: what is kept no longer serves
+constexpr double best_ratio = 1e-4;  // of two successive changes that is trusted
+constexpr double poor_ratio = 1e-3;  // of successive residuals or changes: what is kept no longer serves
+constexpr double first_share = 0.1;  // of the ratio of a stage's first changes that the kept matrices account for
 constexpr double growth = 1.1;       // of a ratio that is trusted without having been measured again
 constexpr double measurable = 1e-8;  // of the weight: changes above it tell a ratio
 constexpr double same_shift = 1e-6;  // relative
 constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
 
+// v += the beam's response to loads on the elements.
+template <int m>
+void respond(const Compliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
+  using Vector = Eigen::Matrix<double, m, 1>;
+  const int elements = static_cast<int>(loads.size()) / m;
+  for (int b = 0; b < elements; ++b) {
+    const Eigen::Map<const Vector> f(&loads[static_cast<std::size_t>(b) * m]);
+    if (f.isZero(0.0)) continue;
+    const Compliance::Response& reach = compliance.response(b);
+    for (int a = reach.first; a < reach.last; ++a)
+      Eigen::Map<Vector>(&v[static_cast<std::size_t>(a) * m]) +=
+          Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;
+  }
+}
+
+void respond(const StageData& s, const std::vector<double>& loads, std::vector<double>& v) {
+  s.per_node == 2 ? respond<4>(*s.compliance, loads, v) : respond<6>(*s.compliance, loads, v);
+}
+
 }  // namespace
 
 bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
   work_.resize(fleet.vehicles.size());
-  for (std::vector<double>* v : {&p_, &pd_, &pdd_}) v->resize(static_cast<std::size_t>(fleet.freedom()));
+  for (std::vector<double>* v : {&p_, &pd_, &pdd_, &moved_}) v->resize(static_cast<std::size_t>(fleet.freedom()));
+  const bool found = iterate(fleet, s, x);
+  for (MovingVehicle& vehicle : fleet.vehicles) vehicle.rests = false;
+  if (!found) return false;
+  fleet.element_loads(s.per_node, loads_);
+  if (s.shift2 > 0.0) fleet.shift(moved_.data(), s.shift);
+  return true;
+}
+
+bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
   fleet.contact_forces();
   const bool statics = s.shift2 == 0.0;
   bool kept = true;
@@ -35,9 +64,13 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
       MovingVehicle& vehicle = fleet.vehicles[k];
       VehicleWork& w = work_[k];
       const double before = w.residual;
-      find_residual(vehicle, w);
+      if (vehicle.rests)
+        rest(static_cast<int>(k));
+      else
+        find_residual(vehicle, w);
       if (vehicle.state.friction.jammed) return false;
-      const bool poor = i >= kept_iterations || (i > 1 && w.residual > poor_ratio * before && w.residual > tolerance);
+      const bool poor = i >= kept_iterations || (i > 1 && !vehicle.rests && contraction_ > poor_ratio) ||
+                        (i > 1 && w.residual > poor_ratio * before && w.residual > tolerance);
       if (poor || !serves(vehicle, w, s, i > 0)) {
         renew(vehicle, static_cast<int>(k), s, statics || i > 0);
         couple = true;
@@ -51,26 +84,29 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
     const double before = change_;
     change_ = update(fleet, x);
     if (!std::isfinite(change_)) return false;
-    if (i > 0 && settled(statics, kept && i == 1, before, left)) {
-      fleet.element_loads(s.per_node, loads_);
-      return true;
-    }
+    if (i == 0) continue;
+    if (settled(statics, kept && i == 1, before, left)) return true;
+    for (std::size_t k = 0; k < work_.size(); ++k)
+      fleet.vehicles[k].rests = !statics && work_[k].change * contraction_ <= tolerance;
   }
   return false;
 }
 
-// The next change would be smaller by about the ratio of the last two, not trusted beyond best_ratio and in statics not
-// at all; in the first iterations of a stage by that measured in earlier ones. Where rounding rules it no longer falls.
+// The next change would be smaller by about the ratio of the last two, in statics it is not trusted to be. A stage's
+// first change is a large one, and its ratio to the second tells more of that than of the matrices that are kept: there
+// the ratio measured in earlier stages counts too. Where rounding rules changes no longer fall.
 bool ContactNewton::settled(bool statics, bool as_before, double before, double left) {
   if (change_ == 0.0) return true;
-  const double measured = std::clamp(change_ / before, best_ratio, 1.0);
-  const double ratio = statics ? 1.0 : as_before ? ratio_ : measured;
-  if (as_before)
+  const double measured = change_ / before;
+  contraction_ = std::clamp(measured, best_ratio, 1.0);
+  if (as_before && measured <= poor_ratio) {
+    contraction_ = std::max(ratio_, first_share * measured);
     ratio_ = std::min(growth * ratio_, 1.0);
-  else if (before > measurable)
-    ratio_ = measured;
-  if (change_ <= rounding && change_ > 0.1 * before) return true;
-  return statics ? change_ <= static_tolerance : change_ * ratio <= tolerance && left <= tolerance;
+  } else if (!statics && before > measurable) {
+    ratio_ = std::min(measured, 1.0);
+  }
+  if (change_ <= rounding && measured > 0.1) return true;
+  return statics ? change_ <= static_tolerance : change_ * contraction_ <= tolerance && left <= tolerance;
 }
 
 // Vehicles at p_still + x, the beam under the forces of the kinematics held, the geometry at all of it. At first the
@@ -84,22 +120,8 @@ bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x, 
   if (!fleet.set(s.t, p_.data(), pd_.data())) return false;
   beam_field(s, fleet, loaded);
   if (!fleet.touch(s.per_node, v_.data(), w_.data())) return false;
-  if (!loaded || s.compliance == nullptr) return true;
-  beam_field(s, fleet, loaded);  // once more, the forces now where they act
-  return fleet.touch(s.per_node, v_.data(), w_.data());
-}
-
-template <int m>
-void ContactNewton::add_response(const Compliance& compliance, int elements) {
-  using Vector = Eigen::Matrix<double, m, 1>;
-  for (int b = 0; b < elements; ++b) {
-    const Eigen::Map<const Vector> f(&loads_[static_cast<std::size_t>(b) * m]);
-    if (f.isZero(0.0)) continue;
-    const Compliance::Response& reach = compliance.response(b);
-    for (int a = reach.first; a < reach.last; ++a)
-      Eigen::Map<Vector>(&v_[static_cast<std::size_t>(a) * m]) +=
-          Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;
-  }
+  if (loaded && s.compliance != nullptr) follow_loads(s, fleet);
+  return true;
 }
 
 void ContactNewton::beam_field(const StageData& s, const Fleet& fleet, bool loaded) {
@@ -111,19 +133,43 @@ void ContactNewton::beam_field(const StageData& s, const Fleet& fleet, bool load
   fleet.element_loads(s.per_node, loads_);
   v_.assign(s.v0->size(), 0.0);
   w_.resize(v_.size());
-  const int count = static_cast<int>(fleet.elements().size());
-  s.per_node == 2 ? add_response<4>(*s.compliance, count) : add_response<6>(*s.compliance, count);
+  respond(s, loads_, v_);
   for (std::size_t i = 0; i < v_.size(); ++i) {
     w_[i] = (*s.w0)[i] + s.shift * v_[i];
     v_[i] += (*s.v0)[i];
   }
 }
 
-// Whether what is kept of a vehicle belongs to this stage.
+// The geometry found shows where the forces act, not quite where they did when the beam was put under them: it moves by
+// the difference.
+void ContactNewton::follow_loads(const StageData& s, Fleet& fleet) {
+  const std::size_t m = 2 * static_cast<std::size_t>(s.per_node);
+  before_.swap(loads_);
+  fleet.element_loads(s.per_node, loads_);
+  for (std::size_t i = 0; i < loads_.size(); ++i) before_[i] = loads_[i] - before_[i];
+  v_.assign(v_.size(), 0.0);
+  respond(s, before_, v_);
+  for (WheelContact& c : fleet.wheels) {
+    if (c.slot() < 0 || fleet.vehicles[c.vehicle].rests) continue;
+    const double* z = &v_[m * static_cast<std::size_t>(c.slot())];
+    double normal = 0.0, tangential = 0.0;
+    for (std::size_t i = 0; i < m; ++i) {
+      normal += c.touch.normal_on_beam[i] * z[i];
+      tangential += c.touch.tangent_on_beam[i] * z[i];
+    }
+    c.touch.kinematics.penetration += normal;
+    c.touch.kinematics.penetration_rate += s.shift * normal;
+    c.touch.kinematics.sliding_speed += s.shift * tangential;
+  }
+}
+
+// Whether what is kept of a vehicle belongs to this stage. Nothing is kept where bodies touch each other: their
+// contacts turn with them.
 bool ContactNewton::serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved) {
   const auto same = [](double a, double b) { return std::abs(a - b) <= same_shift * b; };
-  return s.shift2 > 0.0 && !vehicle.mechanism.rubs() && w.partition_version == vehicle.state.partition_version &&
-         (w.curved || !curved) && same(w.shift, s.shift) && same(w.shift2, s.shift2);
+  return s.shift2 > 0.0 && !vehicle.mechanism.rubs() && vehicle.contacts.empty() &&
+         w.partition_version == vehicle.state.partition_version && (w.curved || !curved) && same(w.shift, s.shift) &&
+         same(w.shift2, s.shift2);
 }
 
 // Where a vehicle goes by itself, and its contacts with it.
@@ -133,6 +179,17 @@ void ContactNewton::condense(VehicleWork& w, VehicleYield& yield) {
   for (int i = 0; i < yield.c.size(); ++i) {
     const auto [first, last] = w.range[i];
     yield.c[i] = w.G.row(i).segment(first, last - first).dot(w.dx.segment(first, last - first));
+  }
+}
+
+// An iteration has done with the vehicle: it goes where the last one has put it.
+void ContactNewton::rest(int k) {
+  VehicleWork& w = work_[k];
+  w.R.setZero();
+  w.residual = 0.0;
+  for (int i = contacts_.first(k); i < contacts_.first(k + 1); ++i) {
+    Contact& c = *contacts_.row(i).contact;
+    c.touch.kinematics = c.kinematics;
   }
 }
 
@@ -269,19 +326,23 @@ double ContactNewton::update(Fleet& fleet, double* x) {
   for (std::size_t k = 0; k < work_.size(); ++k) {
     VehicleWork& w = work_[k];
     const MovingVehicle& vehicle = fleet.vehicles[k];
-    change = std::max(change, w.residual);
+    w.change = w.residual;
     const int from = contacts_.first(static_cast<int>(k));
     const bool statics = w.shift2 == 0.0;
     for (int i = 0; i < contacts_.rows(static_cast<int>(k)); ++i) {
       double force = contacts_.change(from + i);
-      change = std::max(change, std::abs(force) / vehicle.scale);
+      w.change = std::max(w.change, std::abs(force) / vehicle.scale);
       if (statics) {
         force -= w.D(i, 1) * contacts_.displacement(from + i);
         if (!contacts_.row(from + i).normal) force -= w.D(i, 0) * contacts_.displacement(from + i - 1);
       }
       w.dx -= force * w.Y.col(i);
     }
-    for (int i = 0; i < w.dx.size(); ++i) x[vehicle.offset + i] += w.dx[i];
+    for (int i = 0; i < w.dx.size(); ++i) {
+      x[vehicle.offset + i] += w.dx[i];
+      moved_[vehicle.offset + i] = w.dx[i] + (vehicle.rests ? moved_[vehicle.offset + i] : 0.0);
+    }
+    change = std::max(change, w.change);
   }
   return change;
 }

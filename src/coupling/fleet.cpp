@@ -190,7 +190,10 @@ bool Fleet::set(double t, const double* p, const double* pd) {
   if (there) return true;
   time_ = t;
   is_set_ = false;
+  bool all = true;
   for (MovingVehicle& vehicle : vehicles) {
+    all = all && !vehicle.rests;
+    if (vehicle.rests) continue;
     if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) {
       stuck_ = static_cast<int>(&vehicle - vehicles.data());
       return false;
@@ -199,8 +202,13 @@ bool Fleet::set(double t, const double* p, const double* pd) {
     vehicle.mechanism.compute_forces(vehicle.state);
   }
   stuck_ = -1;
-  is_set_ = true;
+  is_set_ = all;
   return true;
+}
+
+void Fleet::shift(const double* change, double rate) {
+  for (MovingVehicle& vehicle : vehicles) vehicle.mechanism.shift(vehicle.state, change + vehicle.offset, rate);
+  is_set_ = false;
 }
 
 void Fleet::coordinates_of_state(double t, double* p, double* pd) const {

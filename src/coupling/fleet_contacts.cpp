@@ -161,6 +161,7 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
   const Eigen::Vector3d q = coordinates(c);
   const Eigen::Vector3d qd = velocities(c);
   Touch candidate;
+  candidate.ahead = c.touch.ahead;
   double deepest = -infinite;
   for (int i = 0; i < c.candidates; ++i) {
     const std::ptrdiff_t at = c.slots[i] < 0 ? 0 : m * c.slots[i];
@@ -216,11 +217,12 @@ bool Fleet::touch(PairContact& c) const {
 
 bool Fleet::touch(int per_node, const double* v, const double* w) {
   for (WheelContact& c : wheels) {
-    if (c.is_further) continue;
+    if (c.is_further || vehicles[c.vehicle].rests) continue;
     if (!(c.further > 0 ? touch_points(c, per_node, v, w) : touch_patches(c, per_node, v, w, Find::closest)))
       return false;
   }
-  return std::all_of(pairs.begin(), pairs.end(), [this](PairContact& pair) { return touch(pair); });
+  return std::all_of(pairs.begin(), pairs.end(),
+                     [this](PairContact& pair) { return vehicles[pair.vehicle].rests || touch(pair); });
 }
 
 WheelLoad Fleet::load(const WheelContact& c) const {

@@ -83,6 +83,16 @@ bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double
   return true;
 }
 
+void Mechanism::shift(MechanismState& s, const double* change, double rate) const {
+  s.work.setZero();
+  s.dependent_block.expand(change, s.work);
+  s.q += s.work;
+  s.qd += rate * s.work;
+  place_frames(s);
+  move_frames(s);
+  compute_forces(s);
+}
+
 double Mechanism::effective_mass(MechanismState& s, const Eigen::VectorXd& direction) const {
   if (!s.mass_factored) s.reduced_mass.factor(s.dependent_block, mass_);
   s.mass_factored = true;

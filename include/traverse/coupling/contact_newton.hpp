@@ -38,7 +38,7 @@ struct StageData {
 
 class ContactNewton {
  public:
-  /// x (freedom values): in a guess, out the solution. False when it does not converge.
+  /// x (freedom values): in a guess, out the solution, where the vehicles are moved. False when it does not converge.
   bool solve(Fleet& fleet, const StageData& stage, double* x);
   /// Nodal loads on the elements in touch that belong to the solution, 2*per_node each.
   const std::vector<double>& element_loads() const { return loads_; }
@@ -69,6 +69,7 @@ class ContactNewton {
     double shift = 0.0, shift2 = 0.0;           // that they were computed for; 0: none
     int partition_version = 0;
     bool curved = false;    // with the constraints' curvature
+    double change = 0.0;    // that and the largest change of force
     double residual = 0.0;  // largest of R over the weight
 
     Eigen::VectorXd R, dx, r, s;
@@ -79,13 +80,14 @@ class ContactNewton {
     Eigen::Matrix<double, Eigen::Dynamic, 2> D;  // that tangent: by the row before (of a tangential one), by the row
     std::vector<multibody::ColumnRange> everything;
   };
+  bool iterate(Fleet& fleet, const StageData& s, double* x);
   bool evaluate(Fleet& fleet, const StageData& s, const double* x, bool loaded);
   void beam_field(const StageData& s, const Fleet& fleet, bool loaded);
-  template <int m>
-  void add_response(const Compliance& compliance, int elements);
+  void follow_loads(const StageData& s, Fleet& fleet);
   static bool serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved);
   static void condense(VehicleWork& w, VehicleYield& yield);
   bool settled(bool statics, bool as_before, double before, double left);
+  void rest(int vehicle);
   void find_residual(MovingVehicle& vehicle, VehicleWork& w) const;
   void contact_directions(int vehicle, const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
                           RowMatrix& G) const;
@@ -95,9 +97,11 @@ class ContactNewton {
 
   std::vector<VehicleWork> work_;
   CondensedContacts contacts_;
-  std::vector<double> loads_, v_, w_, p_, pd_, pdd_;
+  std::vector<double> loads_, before_, v_, w_, p_, pd_, pdd_;
+  std::vector<double> moved_;  // of x since the vehicles were set
   double change_ = 0.0;
-  double ratio_ = 1.0;  // of successive changes with the matrices that are kept, as measured last
+  double contraction_ = 1.0;  // of the changes to come
+  double ratio_ = 1.0;        // of successive changes with the matrices that are kept, as measured last
 };
 
 }  // namespace traverse::coupling

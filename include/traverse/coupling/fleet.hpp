@@ -30,6 +30,7 @@ struct MovingVehicle {
   int first_pair = 0;         // in Fleet::pairs
   std::vector<int> touching;  // its wheels and pairs, numbered as Fleet::contact does
   Eigen::VectorXd Q;          // generalized forces of the wheels, n
+  bool rests = false;         // left as it is by Fleet::set and touch: an iteration has done with it
 };
 
 /// A contact at the state last evaluated.
@@ -133,6 +134,8 @@ class Fleet {
   /// Positions, velocities and forces of all vehicles from p and p' (freedom values each), unless they are there. False
   /// where a mechanism cannot be assembled, which is stuck() then.
   bool set(double t, const double* p, const double* pd);
+  /// Moves all vehicles on by a small change of p (freedom values), and rate times it of p'.
+  void shift(const double* change, double rate);
   /// The vehicle that could not be assembled when set() failed last; null when it did not.
   const MovingVehicle* stuck() const { return stuck_ < 0 ? nullptr : &vehicles[static_cast<std::size_t>(stuck_)]; }
   /// p and p' (freedom values each) of the vehicles' q and q' at t.

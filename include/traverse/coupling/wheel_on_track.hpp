@@ -35,9 +35,10 @@ struct Touch {
   std::array<double, most_element_unknowns> tangent_on_beam{};  // d beta' / d(their rates)
   double xi = 0.0;                                              // of the contact point in the element
   double station = 0.0;                                         // x of the contact point on the undeformed track, m
+  double ahead = 0.0;  // of it before the wheel's centre, m; where the next search for the closest point begins
 };
 
-/// Which point of a patch is meant: the one closest to the wheel's centre, looked for from below it; where there may be
+/// Which point of a patch is meant: the one closest to the wheel's centre, of which there is one; where there may be
 /// several such points, the one next to the patch's start (or its end, towards which the distance falls on), or the
 /// farthest one between two of them.
 enum class Find { closest, closest_within, farthest_within };

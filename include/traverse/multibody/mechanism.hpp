@@ -144,6 +144,10 @@ class Mechanism {
   /// With positions and velocities set: g.
   void compute_forces(MechanismState& s) const;
 
+  /// With all of that set: moves on by a small change of p, and rate times it of p'. Positions and velocities follow to
+  /// first order, g with them; B, b and d stay.
+  void shift(MechanismState& s, const double* change, double rate) const;
+
   /// p'' from the projected equations with external forces Q (n); also q'' and lambda. Throws SolverError where
   /// friction jams a joint: the bodies' accelerations are then not determined.
   void accelerations(MechanismState& s, const Eigen::VectorXd& Q, double* pdd) const;
