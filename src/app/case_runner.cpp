@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "session.hpp"
+#include "process.hpp"
 #include "traverse/app/transient.hpp"
 
 namespace traverse::app {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "session.hpp"
+#include "process.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/app/study.hpp"
 #include "traverse/app/transient.hpp"

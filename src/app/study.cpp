@@ -9,7 +9,7 @@
 
 #include "case_runner.hpp"
 #include "deal.hpp"
-#include "session.hpp"
+#include "process.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/results/sweep.hpp"
 #include "traverse/results/terminal.hpp"

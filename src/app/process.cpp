@@ -1,4 +1,4 @@
-#include "session.hpp"
+#include "process.hpp"
 
 #include <fmt/format.h>
 #include <petscversion.h>
