@@ -62,6 +62,27 @@ void with_count(int count, Call call) {
   }
 }
 
+// Both sums into v and w in place, a stretch in the cache at a time.
+void replace(const Terms& terms, int begin, int end, double* v, double* w) {
+  std::array<double, 4 * tile> new_v, new_w;
+  for (int from = begin; from < end; from += 4 * tile) {
+    const int size = std::min(end - from, 4 * tile);
+    with_count(terms.count, [&](auto N) { add_up<N>(terms, from, size, new_v.data(), new_w.data()); });
+    std::copy_n(new_v.data(), size, v + from);
+    std::copy_n(new_w.data(), size, w + from);
+  }
+}
+
+// v and w at the end of the step.
+void end_step(const StepRule& rule, const std::array<const double*, most_accelerations>& a, int begin, int end,
+              double* v, double* w) {
+  Terms terms;
+  terms.add(v, 1.0, 0.0);
+  terms.add(w, rule.w_in_v, 1.0);
+  for (int j = 0; j < rule.known; ++j) terms.add(a[j], rule.a_in_v[j], rule.a_in_w[j]);
+  replace(terms, begin, end, v, w);
+}
+
 }  // namespace
 
 /// Numbers of the nodes from the one before a tile to the one behind it: (v, theta) one after the other, and apart.
@@ -83,7 +104,12 @@ struct BeamMotion::Tile {
 };
 
 BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load)
-    : beam_(beam), operator_(op), dead_load_(dead_load), n_(beam.local_unknowns()), nodes_(beam.local_columns()), past_(nodes_) {
+    : beam_(beam),
+      operator_(op),
+      dead_load_(dead_load),
+      n_(beam.local_unknowns()),
+      nodes_(beam.local_columns()),
+      past_(nodes_) {
   if (beam::ElementRows::fit(beam) && !beam.model().foundation.nonlinear()) rows_.emplace(beam);
   for (int i = 0; i < n_; ++i)
     if (beam.fixed()[i] != 0) held_.push_back(i);
@@ -93,21 +119,26 @@ void BeamMotion::prepare(int count) {
   for (int j = 0; j < count; ++j) accelerations_[j].assign(n_, 0.0);
 }
 
-void BeamMotion::solve(const StageRule& rule, const double* v, const double* w, const std::vector<NodalLoad>& loads) {
-  v_ = v;
-  w_ = w;
-  loads_ = &loads;
+BeamMotion::Setup BeamMotion::set_up(const StageRule& rule) const {
   const auto [a, b] = beam_.rayleigh();
-  elastic_ = {1.0, rule.w_in_v + b, rule.a_in_v, rule.known};
-  drag_ = {0.0, a, rule.a_in_w, rule.known};
+  Setup setup{{1.0, rule.w_in_v + b, rule.a_in_v, rule.known},
+              {0.0, a, rule.a_in_w, rule.known},
+              1.0 / rule.displacement,
+              rule.known == 1 && operator_.damped()};
   for (int j = 0; j < rule.known; ++j) {
-    elastic_.a[j] += b * rule.a_in_w[j];
-    drag_.a[j] *= a;
+    setup.elastic.a[j] += b * rule.a_in_w[j];
+    setup.drag.a[j] *= a;
   }
-  measuring_ = rule.known == 1 && operator_.damped();
-  dissipation_ = {};
+  return setup;
+}
+
+void BeamMotion::solve(const StageRule& rule, const double* v, const double* w, const std::vector<NodalLoad>& loads) {
+  view_ = {v, w, {}, 0, nodes_};
+  for (int j = 0; j < rule.known; ++j) view_.a[j] = acceleration(j);
+  loads_ = &loads;
+  setup_ = set_up(rule);
+  if (setup_.measuring) dissipation_ = {};
   exchange_borders();
-  scale_ = 1.0 / rule.displacement;
   target_ = acceleration(rule.known);
   const BeamFactor& factor = operator_.factored(rule.rate / rule.displacement, 1.0 / rule.displacement);
   if (windowed_)
@@ -117,6 +148,48 @@ void BeamMotion::solve(const StageRule& rule, const double* v, const double* w, 
   ++operator_.solves;
 }
 
+void BeamMotion::step_free(const Method& method, int first, int past, double* v, double* w, Dissipation& dissipation) {
+  if (first >= past) return;
+  static const std::vector<NodalLoad> none;
+  loads_ = &none;
+  ghosts_ = {};
+  dissipation_ = {};
+  setups_.clear();
+  for (const StageRule& rule : method.stages) setups_.push_back(set_up(rule));
+  const StageRule& any = method.stages.front();
+  const BeamFactor& factor = operator_.factored(any.rate / any.displacement, 1.0 / any.displacement);
+  const int known = method.step.known;
+  const solve::Parts& layout = *operator_.parts();
+  const solve::Parts::Part* part = &layout.at(first);
+  const solve::Parts::Part* const end = layout.parts.data() + layout.parts.size();
+  while (part != end && part->first < past) {
+    const solve::Parts::Part* const next = layout.together(part, past);
+    const int from = static_cast<int>(part->first), to = static_cast<int>(next[-1].past), size = 2 * (to - from);
+    double* const a0 = acceleration(0) + 2 * static_cast<std::ptrdiff_t>(from);
+    double* const v_here = v + 2 * static_cast<std::ptrdiff_t>(from);
+    double* const w_here = w + 2 * static_cast<std::ptrdiff_t>(from);
+    view_ = {v_here, w_here, {a0}, from, to};
+    for (int j = 1; j < known; ++j) {
+      scratch_[j].resize(std::max(scratch_[j].size(), static_cast<std::size_t>(size)));
+      view_.a[j] = scratch_[j].data();
+    }
+    for (int stage = 0; stage + 1 < known; ++stage) {
+      setup_ = setups_[static_cast<std::size_t>(stage)];
+      target_ = scratch_[stage + 1].data();
+      fill(from, to);
+      factor.parts().solve_together(*part, target_, static_cast<int>(next - part));
+    }
+    end_step(method.step, view_.a, 0, size, v_here, w_here);
+    const double a_first = method.step.a_next[0], a_last = method.step.a_next[known - 1];
+    for (int i = 0; i < size; ++i) a0[i] = a_first * a0[i] + a_last * view_.a[known - 1][i];
+    if (a_last != 1.0)
+      std::copy_n(view_.a[known - 1], size, acceleration(known - 1) + 2 * static_cast<std::ptrdiff_t>(from));
+    part = next;
+  }
+  dissipation.power += dissipation_.power;
+  dissipation.rate += dissipation_.rate;
+}
+
 // The combinations at the columns next to this rank's.
 void BeamMotion::exchange_borders() {
   if (nodes_ == 0 || !operator_.shared()) return;
@@ -124,7 +197,7 @@ void BeamMotion::exchange_borders() {
   std::array<double, size> first, last, left{}, right{};
   const Combination rate{0.0, 1.0, {}, 0};
   int i = 0;
-  for (const Combination* c : std::array<const Combination*, 3>{&elastic_, &drag_, &rate}) {
+  for (const Combination* c : std::array<const Combination*, 3>{&setup_.elastic, &setup_.drag, &rate}) {
     std::tie(first[i], first[i + 1]) = at_node(*c, 0);
     std::tie(last[i], last[i + 1]) = at_node(*c, nodes_ - 1);
     i += 2;
@@ -137,8 +210,8 @@ std::pair<double, double> BeamMotion::at_node(const Combination& c, int node) co
   std::array<double, 2> sum{};
   for (int i = 0; i < 2; ++i) {
     const int k = 2 * node + i;
-    sum[i] = c.v * v_[k] + c.w * w_[k];
-    for (int j = 0; j < c.known; ++j) sum[i] += c.a[j] * accelerations_[j][k];
+    sum[i] = c.v * view_.v[k] + c.w * view_.w[k];
+    for (int j = 0; j < c.known; ++j) sum[i] += c.a[j] * view_.a[j][k];
   }
   return {sum[0], sum[1]};
 }
@@ -146,21 +219,22 @@ std::pair<double, double> BeamMotion::at_node(const Combination& c, int node) co
 // Two combinations on a tile and its neighbours, with their values beyond this rank's nodes.
 void BeamMotion::combine(const Combination& a, const Combination& b, int first, int past, const Ghosts& ghosts_a,
                          const Ghosts& ghosts_b, Tile& to_a, Tile& to_b) const {
+  const int from = std::max(first - 1, view_.first), count = std::min(past + 1, view_.past) - from;
+  const int place = from - (first - 1);
+  const std::ptrdiff_t offset = 2 * static_cast<std::ptrdiff_t>(from - view_.first);
   Terms terms;
-  terms.add(v_, a.v, b.v);
-  terms.add(w_, a.w, b.w);
-  for (int j = 0; j < std::max(a.known, b.known); ++j) terms.add(accelerations_[j].data(), a.a[j], b.a[j]);
-  const int from = std::max(first - 1, 0), count = std::min(past + 1, nodes_) - from, place = from - (first - 1);
-  with_count(terms.count, [&](auto N) {
-    add_up<N>(terms, 2 * static_cast<std::ptrdiff_t>(from), 2 * count, to_a.together.data(), to_b.together.data());
-  });
+  terms.add(view_.v, a.v, b.v);
+  terms.add(view_.w, a.w, b.w);
+  for (int j = 0; j < std::max(a.known, b.known); ++j) terms.add(view_.a[j], a.a[j], b.a[j]);
+  with_count(terms.count,
+             [&](auto N) { add_up<N>(terms, offset, 2 * count, to_a.together.data(), to_b.together.data()); });
   to_a.separate(place, count);
   to_b.separate(place, count);
-  if (first == 0) {
+  if (first == view_.first) {
     to_a.set(0, ghosts_a[0], ghosts_a[1]);
     to_b.set(0, ghosts_b[0], ghosts_b[1]);
   }
-  if (past == nodes_) {
+  if (past == view_.past) {
     to_a.set(past - first + 1, ghosts_a[2], ghosts_a[3]);
     to_b.set(past - first + 1, ghosts_b[2], ghosts_b[3]);
   }
@@ -177,13 +251,14 @@ void BeamMotion::measure_dissipation(int first, int past, Tile& elastic, Tile& d
   const auto scaled = [](const Ghosts& g, double by) { return Ghosts{by * g[0], by * g[1], by * g[2], by * g[3]}; };
   combine({0.0, b, {}, 0}, {0.0, a, {}, 0}, first, past, scaled(ghosts_[2], b), scaled(ghosts_[2], a), elastic, drag);
   rows_->multiply(first, past, elastic.nodes(), drag.nodes(), force.nodes());
-  const double* w = w_ + 2 * static_cast<std::ptrdiff_t>(first);
-  const double* acceleration = accelerations_[0].data() + 2 * static_cast<std::ptrdiff_t>(first);
+  const std::ptrdiff_t offset = 2 * static_cast<std::ptrdiff_t>(first - view_.first);
+  const double* const w = view_.w + offset;
+  const double* const a0 = view_.a[0] + offset;
   constexpr int lanes = 8;
   std::array<double, lanes> by_w{}, by_a{};
   const auto add = [&](int lane, int i) {
     by_w[lane] += w[2 * i] * force.v[i] + w[2 * i + 1] * force.theta[i];
-    by_a[lane] += acceleration[2 * i] * force.v[i] + acceleration[2 * i + 1] * force.theta[i];
+    by_a[lane] += a0[2 * i] * force.v[i] + a0[2 * i + 1] * force.theta[i];
   };
   int i = 0;
   for (; i + lanes <= past - first; i += lanes)
@@ -198,27 +273,25 @@ void BeamMotion::measure_dissipation(int first, int past, Tile& elastic, Tile& d
 void BeamMotion::fill_tile(int first, int past) {
   const int nodes = past - first;
   Tile elastic, drag, force;
-  if (measuring_) measure_dissipation(first, past, elastic, drag, force);
-  combine(elastic_, drag_, first, past, ghosts_[0], ghosts_[1], elastic, drag);
+  if (setup_.measuring) measure_dissipation(first, past, elastic, drag, force);
+  combine(setup_.elastic, setup_.drag, first, past, ghosts_[0], ghosts_[1], elastic, drag);
   const bool drags = beam_.rayleigh().a != 0.0;
   rows_->multiply(first, past, elastic.nodes(), drags ? drag.nodes() : beam::NodalPair{}, force.nodes());
-  double* to = target_ + 2 * static_cast<std::ptrdiff_t>(first);
-  const double minus = -scale_;
+  double* const to = target_ + 2 * static_cast<std::ptrdiff_t>(first - view_.first);
+  const double scale = setup_.scale;
   for (int i = 0; i < nodes; ++i) {
-    to[2 * i] = minus * force.v[i];
-    to[2 * i + 1] = minus * force.theta[i];
+    to[2 * i] = -scale * force.v[i];
+    to[2 * i + 1] = -scale * force.theta[i];
   }
-  if (dead_load_ != nullptr) {
-    const double* dead = dead_load_ + 2 * static_cast<std::ptrdiff_t>(first);
-    for (int i = 0; i < 2 * nodes; ++i) to[i] += scale_ * dead[i];
-  }
+  const int begin = 2 * first, end = 2 * past;
+  if (dead_load_ != nullptr)
+    for (int i = begin; i < end; ++i) to[i - begin] += scale * dead_load_[i];
   const auto before = [](const NodalLoad& load, int unknown) { return load.unknown < unknown; };
-  for (auto load = std::lower_bound(loads_->begin(), loads_->end(), 2 * first, before);
-       load != loads_->end() && load->unknown < 2 * past; ++load)
-    target_[load->unknown] += scale_ * load->force;
-  for (auto held = std::lower_bound(held_.begin(), held_.end(), 2 * first); held != held_.end() && *held < 2 * past;
-       ++held)
-    target_[*held] = 0.0;
+  for (auto load = std::lower_bound(loads_->begin(), loads_->end(), begin, before);
+       load != loads_->end() && load->unknown < end; ++load)
+    to[load->unknown - begin] += scale * load->force;
+  for (auto held = std::lower_bound(held_.begin(), held_.end(), begin); held != held_.end() && *held < end; ++held)
+    to[*held - begin] = 0.0;
 }
 
 std::pair<double, double> BeamMotion::state(const StageRule& rule, const double* v, const double* w, int i) const {
@@ -231,21 +304,6 @@ std::pair<double, double> BeamMotion::state(const StageRule& rule, const double*
   return {vi, wi};
 }
 
-namespace {
-
-// Both sums into v and w in place, a stretch in the cache at a time.
-void replace(const Terms& terms, int begin, int end, double* v, double* w) {
-  std::array<double, 4 * tile> new_v, new_w;
-  for (int from = begin; from < end; from += 4 * tile) {
-    const int size = std::min(end - from, 4 * tile);
-    with_count(terms.count, [&](auto N) { add_up<N>(terms, from, size, new_v.data(), new_w.data()); });
-    std::copy_n(new_v.data(), size, v + from);
-    std::copy_n(new_w.data(), size, w + from);
-  }
-}
-
-}  // namespace
-
 void BeamMotion::still(const StageRule& rule, const double* v, const double* w, double* v_still,
                        double* w_still) const {
   Terms terms;
@@ -256,21 +314,17 @@ void BeamMotion::still(const StageRule& rule, const double* v, const double* w, 
 }
 
 void BeamMotion::finish(const StepRule& rule, double* v, double* w) {
-  Terms terms;
-  terms.add(v, 1.0, 0.0);
-  terms.add(w, rule.w_in_v, 1.0);
-  for (int j = 0; j < rule.known; ++j) terms.add(accelerations_[j].data(), rule.a_in_v[j], rule.a_in_w[j]);
+  std::array<const double*, most_accelerations> a{};
+  for (int j = 0; j < rule.known; ++j) a[j] = acceleration(j);
   const int begin = fused() ? 2 * first_ : 0, end = fused() ? 2 * past_ : n_;
-  replace(terms, begin, end, v, w);
-  if (rule.a_next[rule.known - 1] == 1.0) {  // it is the last one
-    accelerations_[0].swap(accelerations_[rule.known - 1]);
-    return;
-  }
-  const double a0 = rule.a_next[0], a1 = rule.a_next[1];
-  for (int i = begin; i < end; ++i) accelerations_[0][i] = a0 * accelerations_[0][i] + a1 * accelerations_[1][i];
+  end_step(rule, a, begin, end, v, w);
+  const double a_first = rule.a_next[0], a_last = rule.a_next[rule.known - 1];
+  double* const first = acceleration(0);
+  const double* const last = acceleration(rule.known - 1);
+  for (int i = begin; i < end; ++i) first[i] = a_first * first[i] + a_last * last[i];
 }
 
-void BeamMotion::set_window(int first, int past) {
+void BeamMotion::set_range(int first, int past) {
   windowed_ = true;
   first_ = first;
   past_ = past;

@@ -23,8 +23,6 @@ RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double to
 
 int RestWindow::local(int column) const { return std::clamp(column - beam_.first_column(), 0, beam_.local_columns()); }
 
-void RestWindow::apply(BeamMotion& motion) const { motion.set_window(local(first_), local(past_)); }
-
 // (v, theta) of the nodes [first, past) and their rates: the largest of each kind.
 void RestWindow::note_largest(const double* v, const double* w, int first, int past) {
   for (int i = 2 * first; i < 2 * past; ++i) {
@@ -47,35 +45,24 @@ bool RestWindow::rests(int first, int past, const double* v, const double* w) co
   return true;
 }
 
-// The loads' columns; where parts do not touch, those of their parts.
-void RestWindow::note_loads(int low, int high) {
-  low_ = low;
-  high_ = high;
-  if (!parts_ || low >= high) return;
-  const std::vector<int>& begins = beam_.parts();
-  const auto part_of = [&](int column) { return std::upper_bound(begins.begin(), begins.end(), column) - 1; };
-  low_ = *part_of(low);
-  high_ = part_of(high - 1)[1];
-}
-
 void RestWindow::begin(BeamMotion& motion, double* v, double* w, int low, int high) {
   first_ = 0;
   past_ = beam_.columns();
-  note_loads(low, high);
+  low_ = low;
+  high_ = high;
   steps_ = 0;
   close(motion, v, w);
 }
 
-void RestWindow::open(BeamMotion& motion, int low, int high, int reach) {
-  note_loads(low, high);
-  if (parts_) reach = 0;
+void RestWindow::open(int low, int high, int reach) {
+  low_ = low;
+  high_ = high;
   if (low_ < high_) {
     first_ = first_ < past_ ? std::min(first_, low_) : low_;
     past_ = std::max(past_, high_);
   }
   first_ = std::max(0, first_ - reach);
   past_ = std::min(beam_.columns(), past_ + reach);
-  apply(motion);
 }
 
 void RestWindow::close(BeamMotion& motion, double* v, double* w) {
@@ -109,7 +96,6 @@ void RestWindow::close(BeamMotion& motion, double* v, double* w) {
   if (shared_) MPI_Allreduce(MPI_IN_PLACE, ends.data(), 2, MPI_INT, MPI_MIN, beam_.comm());
   first_ = std::min(ends[0], -ends[1]);
   past_ = -ends[1];
-  apply(motion);
 }
 
 void RestWindow::agree() {

@@ -30,7 +30,8 @@ void System::leave_out_rest(double tolerance, const std::vector<double>& probes)
   if (beam_ == nullptr) return;
   rest_tolerance_ = tolerance;
   watched_.clear();
-  for (double x : probes) watched_.push_back(beam_->bridge().first_column + beam_->mesh().element(beam_->mesh().locate(x).element).left);
+  for (double x : probes)
+    watched_.push_back(beam_->bridge().first_column + beam_->mesh().element(beam_->mesh().locate(x).element).left);
 }
 
 void System::begin_motion(const Method& method) {
@@ -69,7 +70,51 @@ std::pair<int, int> System::loaded_columns(double t, double h) const {
     add(std::min(x, x + 2.0 * reach) - width, std::max(x, x + 2.0 * reach) + width);
   }
   for (double x : input_.load.positions) add(x + input_.load.speed * t, x + input_.load.speed * (t + h));
-  return {low, std::max(low, high)};
+  if (low >= high) return {0, 0};
+  if (operator_->parts() != nullptr) {
+    const std::vector<int>& parts = beam_->parts();
+    const auto part_of = [&](int column) { return std::upper_bound(parts.begin(), parts.end(), column) - 1; };
+    low = *part_of(low);
+    high = part_of(high - 1)[1];
+  }
+  return {low, high};
+}
+
+// What the stages of the coming step are solved for, and what moves freely during it.
+void System::set_ranges(double t, double h) {
+  Motion& m = *motion_;
+  const auto [low, high] = loaded_columns(t, h);
+  const auto local = [&](int column) { return std::clamp(column - beam_->first_column(), 0, beam_->local_columns()); };
+  const bool parts = operator_->parts() != nullptr;
+  int first = 0, past = beam_->columns();
+  if (m.window) {
+    const StageRule& rule = m.method.stages.front();
+    m.window->open(low, high, compliance_->reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
+    first = m.window->first();
+    past = m.window->past();
+  }
+  m.free = {};
+  if (parts) {
+    m.free = {{{local(first), local(low < high ? low : past)}, {local(low < high ? high : past), local(past)}}};
+    m.beam->set_range(local(low), local(high));
+  } else if (m.window) {
+    m.beam->set_range(local(first), local(past));
+  }
+}
+
+void System::complete_step(double* y) {
+  Motion& m = *motion_;
+  if (!m.incomplete) return;
+  m.incomplete = false;
+  if (!m.beam || !m.beam->fused()) return;
+  BeamMotion::Dissipation dissipation = m.beam_dissipation;
+  for (const auto& [first, past] : m.free) m.beam->step_free(m.method, first, past, y, y + n_, dissipation);
+  // The trapezoidal rule with its correction by the rates: order 4.
+  const double half = 0.5 * m.length, twelfth = m.length * m.length / 12.0;
+  m.dissipated += (m.pending.power + half) * dissipation.power;
+  m.dissipated += (m.pending.rate + twelfth) * dissipation.rate;
+  m.pending = {half, -twelfth};
+  if (m.window) m.window->close(*m.beam, y, y + n_);
 }
 
 void System::restart_motion(double t, double* y) {
@@ -135,7 +180,7 @@ void System::take_back_step(double* y) {
   m.dissipated = m.before.dissipated;
   m.worked = m.before.worked;
   m.pending = m.before.pending;
-  m.stepped = false;
+  m.stepped = m.incomplete = false;
   std::copy(m.before.v.begin(), m.before.v.end(), y + m.before.first);
   std::copy(m.before.w.begin(), m.before.w.end(), y + n_ + m.before.first);
   std::copy(m.before.p.begin(), m.before.p.end(), y + 2 * n_);
@@ -147,17 +192,14 @@ bool System::step_motion(double t, double h, double* y) {
     m.method = m.unit.scaled(h);
     m.length = h;
   }
-  if (m.window) {
-    const StageRule& rule = m.method.stages.front();
-    const auto [low, high] = loaded_columns(t, h);
-    m.window->open(*m.beam, low, high, compliance_->reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
-  }
+  if (m.beam && m.beam->fused()) set_ranges(t, h);
   m.before.dissipated = m.dissipated;
   m.before.worked = m.worked;
   m.before.pending = m.pending;
   if (keep_steps_) {
-    m.before.first = m.window ? operator_->block() * m.beam->first() : 0;
-    m.before.past = m.window ? operator_->block() * m.beam->past() : n_;
+    const bool range = m.beam && m.beam->fused();
+    m.before.first = range ? 2 * m.beam->first() : 0;
+    m.before.past = range ? 2 * m.beam->past() : n_;
     m.before.v.assign(y + m.before.first, y + m.before.past);
     m.before.w.assign(y + n_ + m.before.first, y + n_ + m.before.past);
     m.before.p.assign(y + 2 * n_, y + local_size());
@@ -236,12 +278,6 @@ void System::finish_step(double* y) {
     m.pdd[0][i] = next;
   }
   double dissipation = 0.0, work = 0.0;
-  if (m.beam && m.beam->fused()) {  // the trapezoidal rule with its correction by the rates: order 4
-    const double half = 0.5 * m.length, twelfth = m.length * m.length / 12.0;
-    m.dissipated += (m.pending.power + half) * m.beam_dissipation.power;
-    m.dissipated += (m.pending.rate + twelfth) * m.beam_dissipation.rate;
-    m.pending = {half, -twelfth};
-  }
   for (int j = 0; j < rule.known; ++j) {
     const Motion::Powers& powers = m.powers[j];
     m.dissipated += rule.power[j] * powers.beam;
@@ -250,9 +286,8 @@ void System::finish_step(double* y) {
     work += rule.power[j] * powers.work;
   }
   m.powers[0] = m.powers[rule.known - 1];
-  m.stepped = true;
+  m.stepped = m.incomplete = true;
   if (beam_ != nullptr) m.beam->finish(rule, y, y + n_);
-  if (m.window) m.window->close(*m.beam, y, y + n_);
   if (rank_ != 0) return;
   double* p = y + 2 * n_;
   std::copy(m.p.begin(), m.p.end(), p);

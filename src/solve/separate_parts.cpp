@@ -5,7 +5,7 @@
 namespace traverse::solve {
 namespace {
 
-constexpr std::size_t side_by_side = 8;  // parts in one sweep
+constexpr std::ptrdiff_t side_by_side = 8;  // parts in one sweep
 
 bool same(const std::vector<double>& values, std::ptrdiff_t a, std::ptrdiff_t b, std::ptrdiff_t count) {
   return std::equal(values.begin() + a, values.begin() + a + count, values.begin() + b);
@@ -16,6 +16,13 @@ bool same(const std::vector<double>& values, std::ptrdiff_t a, std::ptrdiff_t b,
 const Parts::Part& Parts::at(std::ptrdiff_t node) const {
   const auto behind = [](std::ptrdiff_t n, const Part& part) { return n < part.first; };
   return *(std::upper_bound(parts.begin(), parts.end(), node, behind) - 1);
+}
+
+const Parts::Part* Parts::together(const Part* part, std::ptrdiff_t past) const {
+  const Part* const end = parts.data() + parts.size();
+  const Part* next = part + 1;
+  while (next != end && next->first < past && next->kind == part->kind && next - part < side_by_side) ++next;
+  return next;
 }
 
 Parts Parts::find(const std::vector<std::ptrdiff_t>& begins, const std::vector<const BlockTridiagonal*>& matrices,
@@ -31,8 +38,7 @@ Parts Parts::find(const std::vector<std::ptrdiff_t>& begins, const std::vector<c
         return false;
     }
     const std::ptrdiff_t block = matrices.front()->block;
-    return std::equal(fixed.begin() + a.first * block, fixed.begin() + a.past * block,
-                      fixed.begin() + b.first * block);
+    return std::equal(fixed.begin() + a.first * block, fixed.begin() + a.past * block, fixed.begin() + b.first * block);
   };
   for (std::size_t i = 0; i + 1 < begins.size(); ++i) {
     Part part{begins[i], begins[i + 1], 0};
@@ -90,9 +96,7 @@ void SeparateParts::solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t
   const Parts::Part* part = &layout_.at(first);
   const Parts::Part* end = layout_.parts.data() + layout_.parts.size();
   while (part != end && part->first < past) {
-    const Parts::Part* next = part + 1;
-    while (next != end && next->first < past && next->kind == part->kind && next - part < std::ptrdiff_t{side_by_side})
-      ++next;
+    const Parts::Part* next = layout_.together(part, past);
     filler.fill(part->first, next[-1].past);
     factor_of(*part).solve(x + part->first * block_, static_cast<int>(next - part));
     part = next;

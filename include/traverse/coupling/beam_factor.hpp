@@ -16,11 +16,10 @@ class BeamFactor {
 
   solve::SubstructuredCholesky& whole() { return *whole_; }
   solve::SeparateParts& parts() { return *parts_; }
+  const solve::SeparateParts& parts() const { return *parts_; }
 
   /// Collective; see SubstructuredCholesky.
-  void solve(double* x, int columns = 1) const {
-    parts_ ? parts_->solve(x, columns) : whole_->solve(x, columns);
-  }
+  void solve(double* x, int columns = 1) const { parts_ ? parts_->solve(x, columns) : whole_->solve(x, columns); }
   void solve(double* x, solve::NodeFiller& filler) const {
     parts_ ? parts_->solve(x, filler) : whole_->solve(x, filler);
   }

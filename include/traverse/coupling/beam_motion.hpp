@@ -51,10 +51,16 @@ class BeamMotion final : private solve::NodeFiller {
   /// v, w and A_0 at the end of the step.
   void finish(const StepRule& rule, double* v, double* w);
 
-  // A window: the nodes outside are at rest, and stages and steps leave them so. Only where fused. --------------------
-  int first() const { return first_; }  // of this rank's nodes: [first, past)
+  /// Where parts of the beam do not touch: a whole step of those among the nodes [first, past) on which nothing but the
+  /// dead load acts, a few parts at a time through all stages while their numbers are in the cache. Adds to
+  /// `dissipation`, of the start of the step.
+  void step_free(const Method& method, int first, int past, double* v, double* w, Dissipation& dissipation);
+
+  /// Stages and the ends of steps are for these nodes of this rank alone, beyond which nothing of them is felt. Only
+  /// where fused.
+  void set_range(int first, int past);
+  int first() const { return first_; }
   int past() const { return past_; }
-  void set_window(int first, int past);
   /// Puts the nodes [first, past) to rest: v as in `rest` (null: 0), w and all accelerations 0. Returns the energy that
   /// they had beyond rest, J, this rank's share.
   double put_to_rest(int first, int past, const double* rest, double* v, double* w);
@@ -65,6 +71,16 @@ class BeamMotion final : private solve::NodeFiller {
     Weights a{};
     int known = 0;
   };
+  struct Setup {                // of a stage
+    Combination elastic, drag;  // v~ + b w~, a w~
+    double scale = 0.0;         // of the right-hand side: 1/displacement
+    bool measuring = false;     // the dissipation at the start of the step
+  };
+  struct View {  // the vectors of the nodes [first, past)
+    const double *v = nullptr, *w = nullptr;
+    std::array<const double*, most_accelerations> a{};
+    int first = 0, past = 0;
+  };
   struct Tile;  // deflections and rotations of the nodes of a tile and their neighbours
 
   void fill(std::ptrdiff_t first, std::ptrdiff_t past) override;
@@ -74,6 +90,7 @@ class BeamMotion final : private solve::NodeFiller {
   void combine(const Combination& a, const Combination& b, int first, int past, const Ghosts& ghosts_a,
                const Ghosts& ghosts_b, Tile& to_a, Tile& to_b) const;
   std::pair<double, double> at_node(const Combination& c, int node) const;
+  Setup set_up(const StageRule& rule) const;
   void exchange_borders();
 
   const beam::Beam& beam_;
@@ -87,14 +104,15 @@ class BeamMotion final : private solve::NodeFiller {
   bool windowed_ = false;
 
   // Of the stage under way
-  const double *v_ = nullptr, *w_ = nullptr;
+  View view_;
+  Setup setup_;
   const std::vector<NodalLoad>* loads_ = nullptr;
-  Combination elastic_, drag_;        // v~ + b w~, a w~
-  std::array<Ghosts, 3> ghosts_{};    // of these, and of w
-  bool measuring_ = false;
-  double scale_ = 0.0;                             // of the right-hand side: 1/displacement
-  double* target_ = nullptr;
+  std::array<Ghosts, 3> ghosts_{};  // of its combinations, and of w
+  double* target_ = nullptr;        // where the view begins
   Dissipation dissipation_;
+
+  std::vector<Setup> setups_;  // of step_free
+  std::array<std::vector<double>, most_accelerations> scratch_;
 };
 
 }  // namespace traverse::coupling

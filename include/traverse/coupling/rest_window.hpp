@@ -20,24 +20,25 @@ class RestWindow {
 
   static constexpr double quiet = 1e-9;
 
-  /// Collective. From a state: only what moves is in the window, and what lies between `low` and `high` (columns).
+  /// Collective. From a state: only what moves is in the window, and what lies between `low` and `high` (columns; where
+  /// parts of the beam do not touch, borders of parts).
   void begin(BeamMotion& motion, double* v, double* w, int low, int high);
   /// Collective. Wider, for a step with loads between the columns `low` and `high`, whose effect dies out within
   /// `reach` columns.
-  void open(BeamMotion& motion, int low, int high, int reach);
+  void open(int low, int high, int reach);
   /// Collective. Narrower at both ends, after the step.
   void close(BeamMotion& motion, double* v, double* w);
 
   /// J, put to rest so far, this rank's share.
   double energy_left() const { return energy_left_; }
   double tolerance() const { return tolerance_; }
-  int columns() const { return past_ - first_; }
+  /// Columns: [first, past).
+  int first() const { return first_; }
+  int past() const { return past_; }
 
  private:
-  void apply(BeamMotion& motion) const;
   void note_largest(const double* v, const double* w, int first, int past);
   bool rests(int first, int past, const double* v, const double* w) const;
-  void note_loads(int low, int high);
   void agree();
   int local(int column) const;
 
@@ -46,10 +47,10 @@ class RestWindow {
   double tolerance_;
   std::vector<int> watched_;  // ascending
   const double* rest_;
-  int first_ = 0, past_ = 0;  // columns: [first, past)
-  int low_ = 0, high_ = 0;    // with loads in the last step
+  int first_ = 0, past_ = 0;         // columns: [first, past)
+  int low_ = 0, high_ = 0;           // with loads in the last step
   std::array<double, 4> largest_{};  // deflection and its rate, rotation and its rate
-  double energy_left_ = 0.0;  // this rank's share
+  double energy_left_ = 0.0;         // this rank's share
   int steps_ = 0;
 };
 

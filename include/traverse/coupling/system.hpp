@@ -108,7 +108,8 @@ class System {
   void keep_steps(bool keep) { keep_steps_ = keep; }
   /// Collective. Before the first step from a state, and where it was changed from outside.
   void restart_motion(double t, double* y);
-  /// Collective. One step of h from t; y is left as it is, and the result false, where a stage has no solution.
+  /// Collective. One step of h from t; y is left as it is, and the result false, where a stage has no solution. Spans
+  /// that do not touch those under the loads follow in accept().
   bool step_motion(double t, double h, double* y);
   /// Of the state that the last step led to.
   void rate_of_motion(const double* y, double* ydot) const;
@@ -180,8 +181,10 @@ class System {
       int first = 0, past = 0;      // of the beam's unknowns, [first, past)
       std::vector<double> v, w, p;  // there, and y behind the beam's
     } before;
-    bool stepped = false;      // since the last restart
-    std::vector<double> rate;  // of restarts
+    std::array<std::pair<int, int>, 2> free{};  // nodes of parts that nothing loads during the step: [first, past)
+    bool stepped = false;                       // since the last restart
+    bool incomplete = false;                    // these are still at the start of the last step
+    std::vector<double> rate;                   // of restarts
   };
   /// Shifts of a stage: w = shift*v + ..., w' = shift2*v + ...; 0: statics.
   struct StageTime {
@@ -205,6 +208,8 @@ class System {
   void add_contact_response(double factor, double* z);
   bool stage_of_motion(double t, const StageRule& rule, const double* v, const double* w);
   std::pair<int, int> loaded_columns(double t, double h) const;
+  void set_ranges(double t, double h);
+  void complete_step(double* y);
   void settle_dissipation(const double* w);
   double pending_dissipation(const double* w);
   const double* end_acceleration() const;

@@ -15,14 +15,16 @@ struct Parts {
     std::ptrdiff_t first = 0, past = 0;  // nodes
     int kind = 0;
   };
-  std::vector<Part> parts;       // from left to right, covering all nodes
-  std::vector<int> of_kind;      // a part of each kind
+  std::vector<Part> parts;   // from left to right, covering all nodes
+  std::vector<int> of_kind;  // a part of each kind
   std::ptrdiff_t nodes(int kind) const {
     const Part& p = parts[static_cast<std::size_t>(of_kind[static_cast<std::size_t>(kind)])];
     return p.past - p.first;
   }
   /// The part that a node belongs to.
   const Part& at(std::ptrdiff_t node) const;
+  /// The end of the run of parts of one kind from `part` on that are solved side by side and begin before node `past`.
+  const Part* together(const Part* part, std::ptrdiff_t past) const;
 
   /// begins: the first node of each part, and one past the last. Parts are of one kind when their rows of all matrices
   /// and their fixed unknowns are the same to the last bit.
@@ -46,6 +48,8 @@ class SeparateParts {
   void solve(double* x, NodeFiller& filler) const;
   void solve_window(double* x, std::ptrdiff_t first, std::ptrdiff_t past, NodeFiller& filler) const;
   void solve_local(double* x, int columns, std::ptrdiff_t first, std::ptrdiff_t past) const;
+  /// Parts like this one, side by side: x holds their nodes alone.
+  void solve_together(const Parts::Part& part, double* x, int count) const { factor_of(part).solve(x, count); }
   double pivot_ratio() const;
 
  private:
