@@ -1,42 +1,13 @@
 #include "traverse/coupling/beam_motion.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace traverse::coupling {
 namespace {
 
 constexpr int tile = beam::ElementRows::tile;
 constexpr int most_terms = most_accelerations + 2;  // with v and w
-
-/// Vectors and their weights in two sums.
-struct Terms {
-  std::array<const double*, most_terms> x{};
-  std::array<double, most_terms> first{}, second{};
-  int count = 0;
-  void add(const double* vector, double in_first, double in_second) {
-    if (in_first == 0.0 && in_second == 0.0) return;
-    x[count] = vector;
-    first[count] = in_first;
-    second[count++] = in_second;
-  }
-};
-
-// Two sums of N vectors' entries [from, from + size) at once.
-template <int N>
-void add_up(const Terms& terms, std::ptrdiff_t from, int size, double* first, double* second) {
-  std::array<const double*, N> x;
-  for (int j = 0; j < N; ++j) x[j] = terms.x[j] + from;
-#pragma GCC ivdep
-  for (int i = 0; i < size; ++i) {
-    double a = 0.0, b = 0.0;
-    for (int j = 0; j < N; ++j) {
-      a += terms.first[j] * x[j][i];
-      b += terms.second[j] * x[j][i];
-    }
-    first[i] = a;
-    second[i] = b;
-  }
-}
 
 template <class Call>
 void with_count(int count, Call call) {
@@ -62,28 +33,40 @@ void with_count(int count, Call call) {
   }
 }
 
-// Both sums into v and w in place, a stretch in the cache at a time.
-void replace(const Terms& terms, int begin, int end, double* v, double* w) {
-  std::array<double, 4 * tile> new_v, new_w;
-  for (int from = begin; from < end; from += 4 * tile) {
-    const int size = std::min(end - from, 4 * tile);
-    with_count(terms.count, [&](auto N) { add_up<N>(terms, from, size, new_v.data(), new_w.data()); });
-    std::copy_n(new_v.data(), size, v + from);
-    std::copy_n(new_w.data(), size, w + from);
+// `outputs` sums of N vectors' entries [from, from + size) at once.
+template <int N, int outputs>
+void add_up(const std::array<const double*, most_terms>& vectors,
+            const std::array<std::array<double, outputs>, most_terms>& weight, std::ptrdiff_t from, int size,
+            const std::array<double*, outputs>& to) {
+  std::array<const double*, N> x;
+  for (int j = 0; j < N; ++j) x[j] = vectors[j] + from;
+#pragma GCC ivdep
+  for (int i = 0; i < size; ++i) {
+    std::array<double, outputs> sum{};
+    for (int j = 0; j < N; ++j)
+      for (int k = 0; k < outputs; ++k) sum[k] += weight[j][k] * x[j][i];
+    for (int k = 0; k < outputs; ++k) to[k][i] = sum[k];
   }
 }
 
-// v and w at the end of the step.
-void end_step(const StepRule& rule, const std::array<const double*, most_accelerations>& a, int begin, int end,
-              double* v, double* w) {
-  Terms terms;
-  terms.add(v, 1.0, 0.0);
-  terms.add(w, rule.w_in_v, 1.0);
-  for (int j = 0; j < rule.known; ++j) terms.add(a[j], rule.a_in_v[j], rule.a_in_w[j]);
-  replace(terms, begin, end, v, w);
-}
-
 }  // namespace
+
+/// Vectors and their weights in so many sums.
+template <int outputs>
+struct BeamMotion::Terms {
+  std::array<const double*, most_terms> x{};
+  std::array<std::array<double, outputs>, most_terms> weight{};
+  int count = 0;
+
+  void add(const double* vector, const std::array<double, outputs>& weights) {
+    if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0.0; })) return;
+    x[count] = vector;
+    weight[count++] = weights;
+  }
+  void evaluate(std::ptrdiff_t from, int size, const std::array<double*, outputs>& to) const {
+    with_count(count, [&](auto N) { add_up<N, outputs>(x, weight, from, size, to); });
+  }
+};
 
 /// Numbers of the nodes from the one before a tile to the one behind it: (v, theta) one after the other, and apart.
 struct BeamMotion::Tile {
@@ -103,6 +86,12 @@ struct BeamMotion::Tile {
   beam::NodalPair nodes() { return {v.data(), theta.data()}; }
 };
 
+void BeamMotion::Sum::add(double by, const Sum& other) {
+  v += by * other.v;
+  w += by * other.w;
+  for (std::size_t j = 0; j < kept.size(); ++j) kept[j] += by * other.kept[j];
+}
+
 BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load)
     : beam_(beam),
       operator_(op),
@@ -115,75 +104,107 @@ BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* d
     if (beam.fixed()[i] != 0) held_.push_back(i);
 }
 
-void BeamMotion::prepare(int count) {
-  for (int j = 0; j < count; ++j) accelerations_[j].assign(n_, 0.0);
-}
-
-BeamMotion::Setup BeamMotion::set_up(const StageRule& rule) const {
-  const auto [a, b] = beam_.rayleigh();
-  Setup setup{{1.0, rule.w_in_v + b, rule.a_in_v, rule.known},
-              {0.0, a, rule.a_in_w, rule.known},
-              1.0 / rule.displacement,
-              rule.known == 1 && operator_.damped()};
-  for (int j = 0; j < rule.known; ++j) {
-    setup.elastic.a[j] += b * rule.a_in_w[j];
-    setup.drag.a[j] *= a;
+void BeamMotion::begin(const Method& method) {
+  const auto [a, b] = fused() ? beam_.rayleigh() : beam::Rayleigh{};
+  std::array<Sum, most_accelerations> accelerations{};  // A_j
+  accelerations[0].kept[0] = 1.0;
+  const auto v_and_w = [&](double w_in_v, const Weights& a_in_v, const Weights& a_in_w, Sum& v, Sum& w) {
+    v = {1.0, w_in_v, {}};
+    w = {0.0, 1.0, {}};
+    for (std::size_t j = 0; j < accelerations.size(); ++j) {
+      v.add(a_in_v[j], accelerations[j]);
+      w.add(a_in_w[j], accelerations[j]);
+    }
+  };
+  stages_.clear();
+  for (const StageRule& rule : method.stages) {
+    Stage stage;
+    stage.rate = rule.rate;
+    stage.displacement = rule.displacement;
+    v_and_w(rule.w_in_v, rule.a_in_v, rule.a_in_w, stage.v_still, stage.w_still);
+    const double c = a / (1.0 + a * rule.rate);
+    stage.a.kept[stages_.size() + 1] = 1.0;
+    stage.a.add(-c, stage.w_still);
+    stage.e = stage.v_still;
+    stage.e.add(b - c * (b * rule.rate + rule.displacement), stage.w_still);
+    stages_.push_back(stage);
+    accelerations[stages_.size()] = stage.a;
   }
-  return setup;
+  v_and_w(method.step.w_in_v, method.step.a_in_v, method.step.a_in_w, v_end_, w_end_);
+  a_end_ = {};
+  for (std::size_t j = 0; j < accelerations.size(); ++j) a_end_.add(method.step.a_next[j], accelerations[j]);
+  for (std::size_t j = 0; j <= stages_.size(); ++j) kept_[j].resize(static_cast<std::size_t>(n_), 0.0);
 }
 
-void BeamMotion::solve(const StageRule& rule, const double* v, const double* w, const std::vector<NodalLoad>& loads) {
-  view_ = {v, w, {}, 0, nodes_};
-  for (int j = 0; j < rule.known; ++j) view_.a[j] = acceleration(j);
+template <int outputs>
+BeamMotion::Terms<outputs> BeamMotion::terms_of(const std::array<const Sum*, outputs>& sums, const View& view) const {
+  Terms<outputs> terms;
+  const auto add = [&](const double* vector, auto weight_of) {
+    std::array<double, outputs> weights;
+    for (int k = 0; k < outputs; ++k) weights[k] = weight_of(*sums[k]);
+    terms.add(vector, weights);
+  };
+  add(view.v, [](const Sum& s) { return s.v; });
+  add(view.w, [](const Sum& s) { return s.w; });
+  for (std::size_t j = 0; j <= stages_.size(); ++j) add(view.kept[j], [j](const Sum& s) { return s.kept[j]; });
+  return terms;
+}
+
+double BeamMotion::at(const Sum& sum, const View& view, int i) const {
+  double x = sum.v * view.v[i] + sum.w * view.w[i];
+  for (std::size_t j = 0; j <= stages_.size(); ++j)
+    if (sum.kept[j] != 0.0) x += sum.kept[j] * view.kept[j][i];
+  return x;
+}
+
+BeamMotion::View BeamMotion::view_of(const double* v, const double* w) const {
+  View view{v, w, {}, 0, nodes_};
+  for (std::size_t j = 0; j <= stages_.size(); ++j) view.kept[j] = kept_[j].data();
+  return view;
+}
+
+void BeamMotion::solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads) {
+  view_ = view_of(v, w);
+  stage_ = &stages_[stage];
   loads_ = &loads;
-  setup_ = set_up(rule);
-  if (setup_.measuring) dissipation_ = {};
+  measuring_ = stage == 0 && operator_.damped();
+  if (stage == 0) dissipation_ = {};
   exchange_borders();
-  target_ = acceleration(rule.known);
-  const BeamFactor& factor = operator_.factored(rule.rate / rule.displacement, 1.0 / rule.displacement);
-  if (windowed_)
+  target_ = kept(stage);
+  const BeamFactor& factor = operator_.factored(stage_->rate / stage_->displacement, 1.0 / stage_->displacement);
+  if (ranged_)
     factor.solve_window(target_, first_, past_, *this);
   else
     factor.solve(target_, *this);
   ++operator_.solves;
 }
 
-void BeamMotion::step_free(const Method& method, int first, int past, double* v, double* w, Dissipation& dissipation) {
+void BeamMotion::step_free(int first, int past, double* v, double* w, Dissipation& dissipation) {
   if (first >= past) return;
   static const std::vector<NodalLoad> none;
   loads_ = &none;
   ghosts_ = {};
   dissipation_ = {};
-  setups_.clear();
-  for (const StageRule& rule : method.stages) setups_.push_back(set_up(rule));
-  const StageRule& any = method.stages.front();
+  const Stage& any = stages_.front();
   const BeamFactor& factor = operator_.factored(any.rate / any.displacement, 1.0 / any.displacement);
-  const int known = method.step.known;
   const solve::Parts& layout = *operator_.parts();
   const solve::Parts::Part* part = &layout.at(first);
   const solve::Parts::Part* const end = layout.parts.data() + layout.parts.size();
   while (part != end && part->first < past) {
     const solve::Parts::Part* const next = layout.together(part, past);
     const int from = static_cast<int>(part->first), to = static_cast<int>(next[-1].past), size = 2 * (to - from);
-    double* const a0 = acceleration(0) + 2 * static_cast<std::ptrdiff_t>(from);
-    double* const v_here = v + 2 * static_cast<std::ptrdiff_t>(from);
-    double* const w_here = w + 2 * static_cast<std::ptrdiff_t>(from);
-    view_ = {v_here, w_here, {a0}, from, to};
-    for (int j = 1; j < known; ++j) {
-      scratch_[j].resize(std::max(scratch_[j].size(), static_cast<std::size_t>(size)));
-      view_.a[j] = scratch_[j].data();
-    }
-    for (int stage = 0; stage + 1 < known; ++stage) {
-      setup_ = setups_[static_cast<std::size_t>(stage)];
-      target_ = scratch_[stage + 1].data();
+    const std::ptrdiff_t offset = 2 * static_cast<std::ptrdiff_t>(from);
+    view_ = {v + offset, w + offset, {start_acceleration() + offset}, from, to};
+    for (std::size_t stage = 0; stage < stages_.size(); ++stage) {
+      std::vector<double>& z = scratch_[stage];
+      if (z.size() < static_cast<std::size_t>(size)) z.resize(static_cast<std::size_t>(size));
+      view_.kept[stage + 1] = target_ = z.data();
+      stage_ = &stages_[stage];
+      measuring_ = stage == 0 && operator_.damped();
       fill(from, to);
       factor.parts().solve_together(*part, target_, static_cast<int>(next - part));
     }
-    end_step(method.step, view_.a, 0, size, v_here, w_here);
-    const double a_first = method.step.a_next[0], a_last = method.step.a_next[known - 1];
-    for (int i = 0; i < size; ++i) a0[i] = a_first * a0[i] + a_last * view_.a[known - 1][i];
-    if (a_last != 1.0)
-      std::copy_n(view_.a[known - 1], size, acceleration(known - 1) + 2 * static_cast<std::ptrdiff_t>(from));
+    end_step(view_, 0, size, v + offset, w + offset, start_acceleration() + offset);
     part = next;
   }
   dissipation.power += dissipation_.power;
@@ -193,51 +214,27 @@ void BeamMotion::step_free(const Method& method, int first, int past, double* v,
 // The combinations at the columns next to this rank's.
 void BeamMotion::exchange_borders() {
   if (nodes_ == 0 || !operator_.shared()) return;
-  constexpr int size = 6;
+  constexpr int size = 4;
   std::array<double, size> first, last, left{}, right{};
-  const Combination rate{0.0, 1.0, {}, 0};
-  int i = 0;
-  for (const Combination* c : std::array<const Combination*, 3>{&setup_.elastic, &setup_.drag, &rate}) {
-    std::tie(first[i], first[i + 1]) = at_node(*c, 0);
-    std::tie(last[i], last[i + 1]) = at_node(*c, nodes_ - 1);
-    i += 2;
+  for (int i = 0; i < 2; ++i) {
+    const int end = 2 * (nodes_ - 1) + i;
+    first[i] = at(stage_->e, view_, i);
+    last[i] = at(stage_->e, view_, end);
+    first[2 + i] = view_.w[i];
+    last[2 + i] = view_.w[end];
   }
   operator_.exchange(first.data(), last.data(), size, left.data(), right.data());
-  for (int c = 0; c < 3; ++c) ghosts_[c] = {left[2 * c], left[2 * c + 1], right[2 * c], right[2 * c + 1]};
+  for (int c = 0; c < 2; ++c) ghosts_[c] = {left[2 * c], left[2 * c + 1], right[2 * c], right[2 * c + 1]};
 }
 
-std::pair<double, double> BeamMotion::at_node(const Combination& c, int node) const {
-  std::array<double, 2> sum{};
-  for (int i = 0; i < 2; ++i) {
-    const int k = 2 * node + i;
-    sum[i] = c.v * view_.v[k] + c.w * view_.w[k];
-    for (int j = 0; j < c.known; ++j) sum[i] += c.a[j] * view_.a[j][k];
-  }
-  return {sum[0], sum[1]};
-}
-
-// Two combinations on a tile and its neighbours, with their values beyond this rank's nodes.
-void BeamMotion::combine(const Combination& a, const Combination& b, int first, int past, const Ghosts& ghosts_a,
-                         const Ghosts& ghosts_b, Tile& to_a, Tile& to_b) const {
+// A sum on a tile and its neighbours, with its values beyond the view's nodes.
+void BeamMotion::combine(const Sum& sum, int first, int past, const Ghosts& ghosts, Tile& to) const {
   const int from = std::max(first - 1, view_.first), count = std::min(past + 1, view_.past) - from;
-  const int place = from - (first - 1);
-  const std::ptrdiff_t offset = 2 * static_cast<std::ptrdiff_t>(from - view_.first);
-  Terms terms;
-  terms.add(view_.v, a.v, b.v);
-  terms.add(view_.w, a.w, b.w);
-  for (int j = 0; j < std::max(a.known, b.known); ++j) terms.add(view_.a[j], a.a[j], b.a[j]);
-  with_count(terms.count,
-             [&](auto N) { add_up<N>(terms, offset, 2 * count, to_a.together.data(), to_b.together.data()); });
-  to_a.separate(place, count);
-  to_b.separate(place, count);
-  if (first == view_.first) {
-    to_a.set(0, ghosts_a[0], ghosts_a[1]);
-    to_b.set(0, ghosts_b[0], ghosts_b[1]);
-  }
-  if (past == view_.past) {
-    to_a.set(past - first + 1, ghosts_a[2], ghosts_a[3]);
-    to_b.set(past - first + 1, ghosts_b[2], ghosts_b[3]);
-  }
+  terms_of<1>({&sum}, view_)
+      .evaluate(2 * static_cast<std::ptrdiff_t>(from - view_.first), 2 * count, {to.together.data()});
+  to.separate(from - (first - 1), count);
+  if (first == view_.first) to.set(0, ghosts[0], ghosts[1]);
+  if (past == view_.past) to.set(past - first + 1, ghosts[2], ghosts[3]);
 }
 
 void BeamMotion::fill(std::ptrdiff_t first, std::ptrdiff_t past) {
@@ -245,15 +242,21 @@ void BeamMotion::fill(std::ptrdiff_t first, std::ptrdiff_t past) {
     fill_tile(static_cast<int>(node), static_cast<int>(std::min<std::ptrdiff_t>(past, node + tile)));
 }
 
-// w^T C w and a^T C w at the start of the step.
-void BeamMotion::measure_dissipation(int first, int past, Tile& elastic, Tile& drag, Tile& force) {
+// w^T C w and 2 A_0^T C w.
+void BeamMotion::measure_dissipation(int first, int past, Tile& rate, Tile& force) {
   const auto [a, b] = beam_.rayleigh();
-  const auto scaled = [](const Ghosts& g, double by) { return Ghosts{by * g[0], by * g[1], by * g[2], by * g[3]}; };
-  combine({0.0, b, {}, 0}, {0.0, a, {}, 0}, first, past, scaled(ghosts_[2], b), scaled(ghosts_[2], a), elastic, drag);
-  rows_->multiply(first, past, elastic.nodes(), drag.nodes(), force.nodes());
+  combine({0.0, 1.0, {}}, first, past, ghosts_[1], rate);
+  Tile drag;
+  for (int i = 0; i < past - first + 2; ++i) {
+    drag.v[i] = a * rate.v[i];
+    drag.theta[i] = a * rate.theta[i];
+    rate.v[i] *= b;
+    rate.theta[i] *= b;
+  }
+  rows_->multiply(first, past, rate.nodes(), drag.nodes(), force.nodes());
   const std::ptrdiff_t offset = 2 * static_cast<std::ptrdiff_t>(first - view_.first);
   const double* const w = view_.w + offset;
-  const double* const a0 = view_.a[0] + offset;
+  const double* const a0 = view_.kept[0] + offset;
   constexpr int lanes = 8;
   std::array<double, lanes> by_w{}, by_a{};
   const auto add = [&](int lane, int i) {
@@ -272,13 +275,12 @@ void BeamMotion::measure_dissipation(int first, int past, Tile& elastic, Tile& d
 
 void BeamMotion::fill_tile(int first, int past) {
   const int nodes = past - first;
-  Tile elastic, drag, force;
-  if (setup_.measuring) measure_dissipation(first, past, elastic, drag, force);
-  combine(setup_.elastic, setup_.drag, first, past, ghosts_[0], ghosts_[1], elastic, drag);
-  const bool drags = beam_.rayleigh().a != 0.0;
-  rows_->multiply(first, past, elastic.nodes(), drags ? drag.nodes() : beam::NodalPair{}, force.nodes());
+  Tile elastic, force;
+  if (measuring_) measure_dissipation(first, past, elastic, force);
+  combine(stage_->e, first, past, ghosts_[0], elastic);
+  rows_->multiply(first, past, elastic.nodes(), {}, force.nodes());
   double* const to = target_ + 2 * static_cast<std::ptrdiff_t>(first - view_.first);
-  const double scale = setup_.scale;
+  const double scale = 1.0 / stage_->displacement;
   for (int i = 0; i < nodes; ++i) {
     to[2 * i] = -scale * force.v[i];
     to[2 * i + 1] = -scale * force.theta[i];
@@ -294,38 +296,38 @@ void BeamMotion::fill_tile(int first, int past) {
     to[*held - begin] = 0.0;
 }
 
-std::pair<double, double> BeamMotion::state(const StageRule& rule, const double* v, const double* w, int i) const {
-  const double a = accelerations_[rule.known][i];
-  double vi = v[i] + rule.w_in_v * w[i] + rule.displacement * a, wi = w[i] + rule.rate * a;
-  for (int j = 0; j < rule.known; ++j) {
-    vi += rule.a_in_v[j] * accelerations_[j][i];
-    wi += rule.a_in_w[j] * accelerations_[j][i];
+std::pair<double, double> BeamMotion::state(std::size_t stage, const double* v, const double* w, int i) const {
+  const Stage& s = stages_[stage];
+  const View view = view_of(v, w);
+  const double a = at(s.a, view, i);
+  return {at(s.v_still, view, i) + s.displacement * a, at(s.w_still, view, i) + s.rate * a};
+}
+
+void BeamMotion::still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const {
+  const Stage& s = stages_[stage];
+  terms_of<2>({&s.v_still, &s.w_still}, view_of(v, w)).evaluate(0, n_, {v_still, w_still});
+}
+
+// In place, a stretch in the cache at a time.
+void BeamMotion::end_step(const View& view, int begin, int end, double* v, double* w, double* a) const {
+  const Terms<3> terms = terms_of<3>({&v_end_, &w_end_, &a_end_}, view);
+  std::array<double, 4 * tile> new_v, new_w, new_a;
+  for (int from = begin; from < end; from += 4 * tile) {
+    const int size = std::min(end - from, 4 * tile);
+    terms.evaluate(from, size, {new_v.data(), new_w.data(), new_a.data()});
+    std::copy_n(new_v.data(), size, v + from);
+    std::copy_n(new_w.data(), size, w + from);
+    std::copy_n(new_a.data(), size, a + from);
   }
-  return {vi, wi};
 }
 
-void BeamMotion::still(const StageRule& rule, const double* v, const double* w, double* v_still,
-                       double* w_still) const {
-  Terms terms;
-  terms.add(v, 1.0, 0.0);
-  terms.add(w, rule.w_in_v, 1.0);
-  for (int j = 0; j < rule.known; ++j) terms.add(accelerations_[j].data(), rule.a_in_v[j], rule.a_in_w[j]);
-  replace(terms, 0, n_, v_still, w_still);
-}
-
-void BeamMotion::finish(const StepRule& rule, double* v, double* w) {
-  std::array<const double*, most_accelerations> a{};
-  for (int j = 0; j < rule.known; ++j) a[j] = acceleration(j);
+void BeamMotion::finish(double* v, double* w) {
   const int begin = fused() ? 2 * first_ : 0, end = fused() ? 2 * past_ : n_;
-  end_step(rule, a, begin, end, v, w);
-  const double a_first = rule.a_next[0], a_last = rule.a_next[rule.known - 1];
-  double* const first = acceleration(0);
-  const double* const last = acceleration(rule.known - 1);
-  for (int i = begin; i < end; ++i) first[i] = a_first * first[i] + a_last * last[i];
+  end_step(view_of(v, w), begin, end, v, w, start_acceleration());
 }
 
 void BeamMotion::set_range(int first, int past) {
-  windowed_ = true;
+  ranged_ = true;
   first_ = first;
   past_ = past;
 }
@@ -356,7 +358,7 @@ double BeamMotion::put_to_rest(int first, int past, const double* rest, double* 
   for (int k = 2 * first; k < 2 * past; ++k) {
     v[k] = rest != nullptr ? rest[k] : 0.0;
     w[k] = 0.0;
-    for (std::vector<double>& a : accelerations_)
+    for (std::vector<double>& a : kept_)
       if (!a.empty()) a[k] = 0.0;
   }
   return energy;

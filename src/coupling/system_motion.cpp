@@ -11,18 +11,16 @@ namespace {
 /// Free response of a fused stage, whose vectors v and w are never formed.
 struct FusedResponse final : FreeResponse {
   const BeamMotion& beam;
-  const StageRule& rule;
+  std::size_t stage;
   const double *v, *w;
-  FusedResponse(const BeamMotion& b, const StageRule& r, const double* v_n, const double* w_n)
-      : beam(b), rule(r), v(v_n), w(w_n) {}
-  std::pair<double, double> at(int unknown) const override { return beam.state(rule, v, w, unknown); }
+  FusedResponse(const BeamMotion& b, std::size_t s, const double* v_n, const double* w_n)
+      : beam(b), stage(s), v(v_n), w(w_n) {}
+  std::pair<double, double> at(int unknown) const override { return beam.state(stage, v, w, unknown); }
 };
 
 struct NoBeam final : FreeResponse {
   std::pair<double, double> at(int) const override { return {}; }
 };
-
-double last(const Weights& values, int count) { return values[static_cast<std::size_t>(count) - 1]; }
 
 }  // namespace
 
@@ -42,7 +40,7 @@ void System::begin_motion(const Method& method) {
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
   if (beam_ == nullptr) return;
   m.beam.emplace(*beam_, *operator_, input_.self_weight ? dead_load_.data() : nullptr);
-  m.beam->prepare(method.step.known);
+  m.beam->begin(method);
   if (rest_tolerance_ == 0.0 || !m.beam->fused()) return;
   if (input_.self_weight) {
     rest_ = dead_load_;
@@ -108,7 +106,7 @@ void System::complete_step(double* y) {
   m.incomplete = false;
   if (!m.beam || !m.beam->fused()) return;
   BeamMotion::Dissipation dissipation = m.beam_dissipation;
-  for (const auto& [first, past] : m.free) m.beam->step_free(m.method, first, past, y, y + n_, dissipation);
+  for (const auto& [first, past] : m.free) m.beam->step_free(first, past, y, y + n_, dissipation);
   // The trapezoidal rule with its correction by the rates: order 4.
   const double half = 0.5 * m.length, twelfth = m.length * m.length / 12.0;
   m.dissipated += (m.pending.power + half) * dissipation.power;
@@ -122,7 +120,7 @@ void System::restart_motion(double t, double* y) {
   if (m.stepped) settle_dissipation(y + n_);
   m.rate.resize(static_cast<std::size_t>(local_size()));
   rate(t, y, m.rate.data(), Part::all);
-  if (beam_ != nullptr) std::copy_n(m.rate.data() + n_, n_, m.beam->acceleration(0));
+  if (beam_ != nullptr) std::copy_n(m.rate.data() + n_, n_, m.beam->start_acceleration());
   const int f = fleet_.freedom();
   m.p.assign(p_.begin(), p_.begin() + f);
   m.pd.assign(p_.begin() + f, p_.end());
@@ -147,18 +145,11 @@ void System::settle_dissipation(const double* w) {
 double System::pending_dissipation(const double* w) {
   const Motion& m = *motion_;
   if (m.pending.power == 0.0 || !operator_->damped()) return 0.0;
-  const double* a = end_acceleration();
+  const double* a = m.beam->start_acceleration();
   operator_->multiply(1.0, nullptr, w, nullptr, work_.data());
   double sum = 0.0;
   for (int i = 0; i < n_; ++i) sum += (m.pending.power * w[i] + 2.0 * m.pending.rate * a[i]) * work_[i];
   return sum;
-}
-
-// Of the beam, where the last step led to or a restart began.
-const double* System::end_acceleration() const {
-  const Motion& m = *motion_;
-  const int known = m.unit.step.known;
-  return m.beam->acceleration(m.stepped && last(m.unit.step.a_next, known) != 1.0 ? known - 1 : 0);
 }
 
 void System::rate_of_motion(const double* y, double* ydot) const {
@@ -168,7 +159,7 @@ void System::rate_of_motion(const double* y, double* ydot) const {
   const int j = m.stepped ? m.unit.step.known - 1 : 0;
   if (m.beam) {
     std::copy_n(y + n_, n_, ydot);
-    std::copy_n(end_acceleration(), n_, ydot + n_);
+    std::copy_n(m.beam->start_acceleration(), n_, ydot + n_);
   }
   if (rank_ != 0) return;
   std::copy(m.pd.begin(), m.pd.end(), ydot + 2 * n_);
@@ -191,6 +182,7 @@ bool System::step_motion(double t, double h, double* y) {
   if (h != m.length) {
     m.method = m.unit.scaled(h);
     m.length = h;
+    if (m.beam) m.beam->begin(m.method);
   }
   if (m.beam && m.beam->fused()) set_ranges(t, h);
   m.before.dissipated = m.dissipated;
@@ -234,6 +226,7 @@ bool System::stage_of_motion(double t, const StageRule& rule, const double* v, c
   }
   Motion::Powers& powers = m.powers[rule.known];
   powers = {};
+  const std::size_t stage = static_cast<std::size_t>(rule.known) - 1;
   if (beam_ == nullptr) {
     loads_.clear();
     nodal_loads_.clear();
@@ -241,23 +234,23 @@ bool System::stage_of_motion(double t, const StageRule& rule, const double* v, c
   } else if (m.beam->fused()) {
     moving_loads(t);
     list_nodal_loads();
-    m.beam->solve(rule, v, w, nodal_loads_);
+    m.beam->solve(stage, v, w, nodal_loads_);
     if (rule.known == 1) m.beam_dissipation = m.beam->dissipation();
-    if (!stage_of_fleet({t, shift, shift2}, FusedResponse(*m.beam, rule, v, w), nullptr)) return false;
-    add_contact_response(shift2, m.beam->acceleration(rule.known));
+    if (!stage_of_fleet({t, shift, shift2}, FusedResponse(*m.beam, stage, v, w), nullptr)) return false;
+    add_contact_response(shift2, m.beam->kept(stage));
   } else {
-    m.beam->still(rule, v, w, v_still_.data(), w_still_.data());
+    m.beam->still(stage, v, w, v_still_.data(), w_still_.data());
     if (nonlinear_) nonlinear_->begin(shift, v_still_.data(), w_still_.data(), w);
     load_of_stills(t);
     if (solve_coupled({t, shift, shift2}, Part::all, true) != Solution::found) return false;
-    double* a = m.beam->acceleration(rule.known);
+    double* a = m.beam->kept(stage);
     for (int i = 0; i < n_; ++i) a[i] = shift2 * nodal_[i];
     for (int i = 0; i < n_; ++i) w_still_[i] += rule.rate * a[i];
     powers.beam = beam_dissipation(w_still_.data());
     list_nodal_loads();
   }
   for (const NodalLoad& load : nodal_loads_)
-    powers.loads += load.force * m.beam->state(rule, v, w, load.unknown).second;
+    powers.loads += load.force * m.beam->state(stage, v, w, load.unknown).second;
   for (int i = 0; i < f; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
   fleet_powers(powers);
   return true;
@@ -287,7 +280,7 @@ void System::finish_step(double* y) {
   }
   m.powers[0] = m.powers[rule.known - 1];
   m.stepped = m.incomplete = true;
-  if (beam_ != nullptr) m.beam->finish(rule, y, y + n_);
+  if (beam_ != nullptr) m.beam->finish(y, y + n_);
   if (rank_ != 0) return;
   double* p = y + 2 * n_;
   std::copy(m.p.begin(), m.p.end(), p);

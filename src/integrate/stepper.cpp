@@ -317,7 +317,7 @@ void Stepper::locate_contact_change(double from) {
 void Stepper::sample_now(const std::function<void(const Instant&)>& sample) {
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
-  if (second_order_ && steps_ > 0) {
+  if (second_order_ && steps_ > 0 && system_.knows_rate()) {
     ReadArray in(y_);
     Array out(rate_);
     system_.rate_of_motion(in.data, out.data);

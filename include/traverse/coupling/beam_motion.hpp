@@ -1,9 +1,18 @@
-// The beam's part of a stage in second-order form: the right-hand side P - C* w~ - K* v~ made tile by tile while the
-// solver's sweep comes by, so that a stage reads each vector once. A tile's numbers stay in the cache from the
-// combination of the accelerations until the elimination.
+// The beam's part of a stage in second-order form: the right-hand side made tile by tile while the solver's sweep comes
+// by, so that a stage reads each vector once. A tile's numbers stay in the cache from the combination of the vectors
+// until the elimination.
+//
+// With Rayleigh's damping C = a M + b K the equation M A + C (w~ + k1 A) + K (v~ + k2 A) = P of a stage is, for
+// Z = A + c w~ and c = a/(1 + a k1),
+//
+//   ((1 + a k1) M + (b k1 + k2) K) Z = P - K e,   e = v~ + (b - c (b k1 + k2)) w~
+//
+// without a product with M. So Z is kept of each stage in place of A; what is combined of accelerations is rewritten in
+// terms of w_n and these.
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "traverse/beam/element_rows.hpp"
@@ -23,18 +32,21 @@ class BeamMotion final : private solve::NodeFiller {
   /// dead_load: of this rank's unknowns; null: none. It and both references are kept.
   BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load);
 
-  /// Room for so many accelerations.
-  void prepare(int count);
-  /// Nodal accelerations A_j, this rank's unknowns.
-  double* acceleration(int j) { return accelerations_[static_cast<std::size_t>(j)].data(); }
-  const double* acceleration(int j) const { return accelerations_[static_cast<std::size_t>(j)].data(); }
+  /// The method of the steps to come, for their length; the acceleration at the start stays.
+  void begin(const Method& method);
+
+  /// Nodal accelerations at the start of the step, this rank's unknowns.
+  double* start_acceleration() { return kept_[0].data(); }
+  const double* start_acceleration() const { return kept_[0].data(); }
+  /// What is kept of stage i, counted from 0: Z where fused, else A.
+  double* kept(std::size_t stage) { return kept_[stage + 1].data(); }
 
   /// Whether stages are solved by solve(); where not, the beam has more than bending and Rayleigh's damping, and
   /// still() serves.
   bool fused() const { return rows_.has_value(); }
 
-  /// Collective. A_known of a stage under the dead load and `loads` (ascending unknowns; no contacts).
-  void solve(const StageRule& rule, const double* v, const double* w, const std::vector<NodalLoad>& loads);
+  /// Collective. Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
+  void solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads);
   /// What is lost in damping, w^T C w, and its rate of change, 2 A_0^T C w: this rank's share at the start of the step
   /// whose first stage was solved last.
   struct Dissipation {
@@ -44,17 +56,17 @@ class BeamMotion final : private solve::NodeFiller {
   Dissipation dissipation() const { return dissipation_; }
 
   /// v~ and w~ of this rank's unknowns.
-  void still(const StageRule& rule, const double* v, const double* w, double* v_still, double* w_still) const;
-  /// v and w of a stage at one unknown, whose acceleration is in A_known.
-  std::pair<double, double> state(const StageRule& rule, const double* v, const double* w, int unknown) const;
+  void still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const;
+  /// v and w of a solved stage at one unknown.
+  std::pair<double, double> state(std::size_t stage, const double* v, const double* w, int unknown) const;
 
-  /// v, w and A_0 at the end of the step.
-  void finish(const StepRule& rule, double* v, double* w);
+  /// v, w and the acceleration at the end of the step, which is the next one's start.
+  void finish(double* v, double* w);
 
   /// Where parts of the beam do not touch: a whole step of those among the nodes [first, past) on which nothing but the
   /// dead load acts, a few parts at a time through all stages while their numbers are in the cache. Adds to
   /// `dissipation`, of the start of the step.
-  void step_free(const Method& method, int first, int past, double* v, double* w, Dissipation& dissipation);
+  void step_free(int first, int past, double* v, double* w, Dissipation& dissipation);
 
   /// Stages and the ends of steps are for these nodes of this rank alone, beyond which nothing of them is felt. Only
   /// where fused.
@@ -66,53 +78,57 @@ class BeamMotion final : private solve::NodeFiller {
   double put_to_rest(int first, int past, const double* rest, double* v, double* w);
 
  private:
-  struct Combination {  // of w and the accelerations
+  struct Sum {  // of v_n, w_n and what is kept
     double v = 0.0, w = 0.0;
-    Weights a{};
-    int known = 0;
+    Weights kept{};
+    void add(double by, const Sum& other);
   };
-  struct Setup {                // of a stage
-    Combination elastic, drag;  // v~ + b w~, a w~
-    double scale = 0.0;         // of the right-hand side: 1/displacement
-    bool measuring = false;     // the dissipation at the start of the step
+  struct Stage {
+    Sum v_still, w_still, a, e;
+    double rate = 0.0, displacement = 0.0;  // k1, k2
   };
   struct View {  // the vectors of the nodes [first, past)
     const double *v = nullptr, *w = nullptr;
-    std::array<const double*, most_accelerations> a{};
+    std::array<const double*, most_accelerations> kept{};
     int first = 0, past = 0;
   };
   struct Tile;  // deflections and rotations of the nodes of a tile and their neighbours
+  template <int outputs>
+  struct Terms;
 
   void fill(std::ptrdiff_t first, std::ptrdiff_t past) override;
   void fill_tile(int first, int past);
   using Ghosts = std::array<double, 4>;  // (v, theta) of the nodes next to this rank's, left and right
-  void measure_dissipation(int first, int past, Tile& elastic, Tile& drag, Tile& force);
-  void combine(const Combination& a, const Combination& b, int first, int past, const Ghosts& ghosts_a,
-               const Ghosts& ghosts_b, Tile& to_a, Tile& to_b) const;
-  std::pair<double, double> at_node(const Combination& c, int node) const;
-  Setup set_up(const StageRule& rule) const;
+  void measure_dissipation(int first, int past, Tile& elastic, Tile& force);
+  template <int outputs>
+  Terms<outputs> terms_of(const std::array<const Sum*, outputs>& sums, const View& view) const;
+  void combine(const Sum& sum, int first, int past, const Ghosts& ghosts, Tile& to) const;
+  double at(const Sum& sum, const View& view, int unknown) const;
+  View view_of(const double* v, const double* w) const;
+  void end_step(const View& view, int begin, int end, double* v, double* w, double* a) const;
   void exchange_borders();
 
   const beam::Beam& beam_;
   BeamOperator& operator_;
   const double* dead_load_;
   std::optional<beam::ElementRows> rows_;
-  std::vector<int> held_;  // local unknowns that stay zero
-  std::array<std::vector<double>, most_accelerations> accelerations_;
+  std::vector<int> held_;                                     // local unknowns that stay zero
+  std::array<std::vector<double>, most_accelerations> kept_;  // A_0, then one a stage
   int n_ = 0, nodes_ = 0;
   int first_ = 0, past_ = 0;
-  bool windowed_ = false;
+  bool ranged_ = false;
+  std::vector<Stage> stages_;
+  Sum v_end_, w_end_, a_end_;
 
   // Of the stage under way
   View view_;
-  Setup setup_;
+  const Stage* stage_ = nullptr;
+  bool measuring_ = false;  // the dissipation at the start of the step
   const std::vector<NodalLoad>* loads_ = nullptr;
-  std::array<Ghosts, 3> ghosts_{};  // of its combinations, and of w
+  std::array<Ghosts, 2> ghosts_{};  // of e, and of w
   double* target_ = nullptr;        // where the view begins
   Dissipation dissipation_;
-
-  std::vector<Setup> setups_;  // of step_free
-  std::array<std::vector<double>, most_accelerations> scratch_;
+  std::array<std::vector<double>, most_accelerations> scratch_;  // of step_free
 };
 
 }  // namespace traverse::coupling

@@ -111,7 +111,10 @@ class System {
   /// Collective. One step of h from t; y is left as it is, and the result false, where a stage has no solution. Spans
   /// that do not touch those under the loads follow in accept().
   bool step_motion(double t, double h, double* y);
-  /// Of the state that the last step led to.
+  /// Of the state that the last step led to; false where the method's own acceleration is not that of the state.
+  bool knows_rate() const {
+    return motion_ && motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
+  }
   void rate_of_motion(const double* y, double* ydot) const;
   /// Puts y back to where the last step began; a restart has to follow.
   void take_back_step(double* y);
@@ -212,7 +215,6 @@ class System {
   void complete_step(double* y);
   void settle_dissipation(const double* w);
   double pending_dissipation(const double* w);
-  const double* end_acceleration() const;
   void finish_step(double* y);
   void list_nodal_loads();
   void note_foundation();
