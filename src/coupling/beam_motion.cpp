@@ -167,7 +167,7 @@ void BeamMotion::solve(std::size_t stage, const double* v, const double* w, cons
   view_ = view_of(v, w);
   stage_ = &stages_[stage];
   loads_ = &loads;
-  measuring_ = stage == 0 && operator_.damped();
+  measuring_ = stage == 0 && measure_;
   if (stage == 0) dissipation_ = {};
   exchange_borders();
   target_ = kept(stage);
@@ -200,7 +200,7 @@ void BeamMotion::step_free(int first, int past, double* v, double* w, Dissipatio
       if (z.size() < static_cast<std::size_t>(size)) z.resize(static_cast<std::size_t>(size));
       view_.kept[stage + 1] = target_ = z.data();
       stage_ = &stages_[stage];
-      measuring_ = stage == 0 && operator_.damped();
+      measuring_ = stage == 0 && measure_;
       fill(from, to);
       factor.parts().solve_together(*part, target_, static_cast<int>(next - part));
     }

@@ -18,6 +18,8 @@ struct FusedResponse final : FreeResponse {
   std::pair<double, double> at(int unknown) const override { return beam.state(stage, v, w, unknown); }
 };
 
+constexpr double measured_steps = 4.0;  // of one stage, from one look at the beam's dissipation to the next
+
 struct NoBeam final : FreeResponse {
   std::pair<double, double> at(int) const override { return {}; }
 };
@@ -105,19 +107,45 @@ void System::complete_step(double* y) {
   if (!m.incomplete) return;
   m.incomplete = false;
   if (!m.beam || !m.beam->fused()) return;
-  BeamMotion::Dissipation dissipation = m.beam_dissipation;
+  BeamMotion::Dissipation dissipation = m.beam->dissipation();
   for (const auto& [first, past] : m.free) m.beam->step_free(first, past, y, y + n_, dissipation);
-  // The trapezoidal rule with its correction by the rates: order 4.
-  const double half = 0.5 * m.length, twelfth = m.length * m.length / 12.0;
-  m.dissipated += (m.pending.power + half) * dissipation.power;
-  m.dissipated += (m.pending.rate + twelfth) * dissipation.rate;
-  m.pending = {half, -twelfth};
+  if (m.measuring) {
+    add_dissipation(dissipation);
+    m.measuring = m.to_measure = false;
+  }
+  m.unmeasured += m.length;
   if (m.window) m.window->close(*m.beam, y, y + n_);
+}
+
+// D until a state whose dissipation is known: the trapezoidal rule with its correction by the rates, of order 4.
+double System::dissipated_until(const BeamMotion::Dissipation& now) const {
+  const Motion& m = *motion_;
+  return m.dissipated + 0.5 * m.unmeasured * (m.measured.power + now.power) +
+         m.unmeasured * m.unmeasured / 12.0 * (m.measured.rate - now.rate);
+}
+
+void System::add_dissipation(const BeamMotion::Dissipation& now) {
+  motion_->dissipated = dissipated_until(now);
+  motion_->measured = now;
+  motion_->unmeasured = 0.0;
+}
+
+BeamMotion::Dissipation System::measure_dissipation(const double* w) {
+  BeamMotion::Dissipation d;
+  if (!operator_->damped()) return d;
+  operator_->multiply(1.0, nullptr, w, nullptr, work_.data());
+  const double* a = motion_->beam->start_acceleration();
+  for (int i = 0; i < n_; ++i) {
+    d.power += w[i] * work_[i];
+    d.rate += 2.0 * a[i] * work_[i];
+  }
+  return d;
 }
 
 void System::restart_motion(double t, double* y) {
   Motion& m = *motion_;
-  if (m.stepped) settle_dissipation(y + n_);
+  const bool fused = m.beam && m.beam->fused();
+  if (fused && m.stepped) add_dissipation(measure_dissipation(y + n_));
   m.rate.resize(static_cast<std::size_t>(local_size()));
   rate(t, y, m.rate.data(), Part::all);
   if (beam_ != nullptr) std::copy_n(m.rate.data() + n_, n_, m.beam->start_acceleration());
@@ -128,28 +156,13 @@ void System::restart_motion(double t, double* y) {
   m.powers[0] = {};
   if (beam_ != nullptr && !m.beam->fused()) m.powers[0].beam = beam_dissipation(y + n_);
   fleet_powers(m.powers[0]);
-  if (!m.stepped) settle_dissipation(y + n_);
+  if (fused && m.unmeasured > 0.0) add_dissipation(measure_dissipation(y + n_));
+  m.to_measure = true;
   m.stepped = false;
   if (m.window) {
     const auto [low, high] = loaded_columns(t, 0.0);
     m.window->begin(*m.beam, y, y + n_, low, high);
   }
-}
-
-// The last step's share of D that waits for the state at its end.
-void System::settle_dissipation(const double* w) {
-  motion_->dissipated += pending_dissipation(w);
-  motion_->pending = {};
-}
-
-double System::pending_dissipation(const double* w) {
-  const Motion& m = *motion_;
-  if (m.pending.power == 0.0 || !operator_->damped()) return 0.0;
-  const double* a = m.beam->start_acceleration();
-  operator_->multiply(1.0, nullptr, w, nullptr, work_.data());
-  double sum = 0.0;
-  for (int i = 0; i < n_; ++i) sum += (m.pending.power * w[i] + 2.0 * m.pending.rate * a[i]) * work_[i];
-  return sum;
 }
 
 void System::rate_of_motion(const double* y, double* ydot) const {
@@ -168,9 +181,7 @@ void System::rate_of_motion(const double* y, double* ydot) const {
 
 void System::take_back_step(double* y) {
   Motion& m = *motion_;
-  m.dissipated = m.before.dissipated;
   m.worked = m.before.worked;
-  m.pending = m.before.pending;
   m.stepped = m.incomplete = false;
   std::copy(m.before.v.begin(), m.before.v.end(), y + m.before.first);
   std::copy(m.before.w.begin(), m.before.w.end(), y + n_ + m.before.first);
@@ -184,10 +195,13 @@ bool System::step_motion(double t, double h, double* y) {
     m.length = h;
     if (m.beam) m.beam->begin(m.method);
   }
-  if (m.beam && m.beam->fused()) set_ranges(t, h);
-  m.before.dissipated = m.dissipated;
+  if (m.beam && m.beam->fused()) {
+    set_ranges(t, h);
+    const double interval = m.method.stages.size() == 1 ? measured_steps * h : h;
+    m.measuring = operator_->damped() && (m.to_measure || m.unmeasured > 0.999 * interval);
+    m.beam->measure(m.measuring);
+  }
   m.before.worked = m.worked;
-  m.before.pending = m.pending;
   if (keep_steps_) {
     const bool range = m.beam && m.beam->fused();
     m.before.first = range ? 2 * m.beam->first() : 0;
@@ -235,7 +249,6 @@ bool System::stage_of_motion(double t, const StageRule& rule, const double* v, c
     moving_loads(t);
     list_nodal_loads();
     m.beam->solve(stage, v, w, nodal_loads_);
-    if (rule.known == 1) m.beam_dissipation = m.beam->dissipation();
     if (!stage_of_fleet({t, shift, shift2}, FusedResponse(*m.beam, stage, v, w), nullptr)) return false;
     add_contact_response(shift2, m.beam->kept(stage));
   } else {

@@ -44,7 +44,8 @@ Energy System::energy(const double* y) {
     }
     if (nonlinear_) sums[1] += nonlinear_->energy();
     if (motion_) {
-      sums[3] = motion_->dissipated + pending_dissipation(w);
+      const bool fused = motion_->beam && motion_->beam->fused();
+      sums[3] = fused ? dissipated_until(measure_dissipation(w)) : motion_->dissipated;
       if (motion_->window) sums[3] += motion_->window->energy_left();
       sums[4] = motion_->worked;
     }

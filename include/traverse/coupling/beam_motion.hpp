@@ -47,8 +47,10 @@ class BeamMotion final : private solve::NodeFiller {
 
   /// Collective. Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
   void solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads);
-  /// What is lost in damping, w^T C w, and its rate of change, 2 A_0^T C w: this rank's share at the start of the step
-  /// whose first stage was solved last.
+  /// Whether the first stages of steps look at what is lost in damping.
+  void measure(bool on) { measure_ = on; }
+  /// That, w^T C w, and its rate of change, 2 A_0^T C w: this rank's share at the start of the step whose first stage
+  /// was solved last.
   struct Dissipation {
     double power = 0.0;  // W
     double rate = 0.0;   // W/s
@@ -123,7 +125,8 @@ class BeamMotion final : private solve::NodeFiller {
   // Of the stage under way
   View view_;
   const Stage* stage_ = nullptr;
-  bool measuring_ = false;  // the dissipation at the start of the step
+  bool measure_ = false;    // the dissipation at the start of the step
+  bool measuring_ = false;  // in this stage
   const std::vector<NodalLoad>* loads_ = nullptr;
   std::array<Ghosts, 2> ghosts_{};  // of e, and of w
   double* target_ = nullptr;        // where the view begins

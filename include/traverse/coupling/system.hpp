@@ -173,14 +173,13 @@ class System {
       double beam = 0.0, loads = 0.0, dissipation = 0.0, work = 0.0;
     };
     std::array<Powers, most_accelerations> powers;  // at the stages
-    BeamMotion::Dissipation beam_dissipation;       // fused, at the start of the step
-    /// This rank's share of D and W; pending: weights of the dissipation at the step's end and of its rate that are
-    /// still to come in D, s and s2.
-    double dissipated = 0.0, worked = 0.0;
-    BeamMotion::Dissipation pending;
+    /// This rank's share of D and W. Of the fused beam D is known up to `unmeasured` s ago, when its dissipation was
+    /// `measured`.
+    double dissipated = 0.0, worked = 0.0, unmeasured = 0.0;
+    BeamMotion::Dissipation measured;
+    bool measuring = false, to_measure = true;
     struct {
-      double dissipated = 0.0, worked = 0.0;
-      BeamMotion::Dissipation pending;
+      double worked = 0.0;
       int first = 0, past = 0;      // of the beam's unknowns, [first, past)
       std::vector<double> v, w, p;  // there, and y behind the beam's
     } before;
@@ -213,8 +212,9 @@ class System {
   std::pair<int, int> loaded_columns(double t, double h) const;
   void set_ranges(double t, double h);
   void complete_step(double* y);
-  void settle_dissipation(const double* w);
-  double pending_dissipation(const double* w);
+  double dissipated_until(const BeamMotion::Dissipation& now) const;
+  void add_dissipation(const BeamMotion::Dissipation& now);
+  BeamMotion::Dissipation measure_dissipation(const double* w);
   void finish_step(double* y);
   void list_nodal_loads();
   void note_foundation();
