@@ -59,6 +59,7 @@ void Watch::sample(const integrate::Instant& instant) {
   const coupling::Energy& e = observation_.energy;
   const double stored = e.kinetic + e.strain + e.potential;
   if (first_) energy_at_start_ = stored;
+  summary_.structure_energy = std::max(summary_.structure_energy, e.structure);
   sample_.energy = {e.kinetic,    e.strain, e.potential,
                     e.dissipated, e.work,   stored - energy_at_start_ + e.dissipated - e.work};
   note_extremes(sample_, v);

@@ -18,7 +18,7 @@ struct FusedResponse final : FreeResponse {
   std::pair<double, double> at(int unknown) const override { return beam.state(stage, v, w, unknown); }
 };
 
-constexpr double measured_steps = 4.0;  // of one stage, from one look at the beam's dissipation to the next
+constexpr double measured_steps = 2.0;  // of one stage, from one look at the beam's dissipation to the next
 
 struct NoBeam final : FreeResponse {
   std::pair<double, double> at(int) const override { return {}; }
@@ -197,7 +197,7 @@ bool System::step_motion(double t, double h, double* y) {
   }
   if (m.beam && m.beam->fused()) {
     set_ranges(t, h);
-    const double interval = m.method.stages.size() == 1 ? measured_steps * h : h;
+    const double interval = m.method.stages.size() == 1 ? measured_steps * h : 0.0;
     m.measuring = operator_->damped() && (m.to_measure || m.unmeasured > 0.999 * interval);
     m.beam->measure(m.measuring);
   }

@@ -55,7 +55,7 @@ Energy System::energy(const double* y) {
     sums[4] += y[2 * (n_ + fleet_.freedom()) + 1];
   }
   MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, comm_);
-  Energy e{sums[0], sums[1], sums[2], sums[3], sums[4]};
+  Energy e{sums[0], sums[1], sums[2], sums[3], sums[4], sums[0] + sums[1]};
   for (const MovingVehicle& vehicle : fleet_.vehicles) {
     const multibody::MechanismEnergy m = vehicle.mechanism.energy(vehicle.state);
     e.kinetic += m.kinetic;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numbers>
 #include <numeric>
 #include <stdexcept>
@@ -276,6 +277,7 @@ void Recorder::Impl::summarise(const Summary& summary) {
   file.attribute(group, "longest_loss", summary.longest_loss);
   file.attribute(group, "energy_residual", summary.energy_residual);
   file.attribute(group, "energy_left", summary.energy_left);
+  file.attribute(group, "rest_error", summary.rest_error());
   file.attribute(group, "energy_scale", summary.energy_scale);
   file.attribute(group, "static_error", summary.static_error);
   file.attribute(group, "steps", summary.steps);
@@ -397,6 +399,10 @@ void Recorder::datasets(const std::vector<Dataset>& sets) {
       impl_->file.dataset(set.name, {set.shape.begin(), set.shape.end()}, set.values, set.unit);
     impl_->file.flush();
   });
+}
+
+double Summary::rest_error() const {
+  return structure_energy > 0.0 ? std::sqrt(std::abs(energy_left) / structure_energy) : 0.0;
 }
 
 void Recorder::finish(const Summary& summary) {

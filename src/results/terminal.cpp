@@ -195,9 +195,9 @@ void print_summary(const Summary& summary, const std::string& file) {
   fmt::print("summary\n");
   print_beam(summary);
   print_wheels(summary);
-  if (summary.energy_left > 0.0)
-    line("energy put to rest", fmt::format("{:.2e} J           {:.1e} of the largest term", summary.energy_left,
-                                           summary.energy_left / summary.energy_scale));
+  if (summary.energy_left != 0.0)
+    line("put to rest", fmt::format("{:<18}about {:.1e} of the structure's motion",
+                                    fmt::format("{:.2e} J", summary.energy_left), summary.rest_error()));
   if (summary.energy_residual != 0.0 || summary.energy_scale > 0.0) line("energy residual", energy_text(summary));
   line("steps", cost_text(summary));
   if (!summary.ended.empty()) line("the run", summary.ended);

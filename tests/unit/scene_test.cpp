@@ -387,8 +387,15 @@ TEST(SceneModel, AxialOnlyWhereItMatters) {
 
 TEST(SceneModel, WhatIsNotThereYetIsRefused) {
   EXPECT_PRED2(contains, refused_with("model_modes", "5"), "with vehicles: not there yet");
-  EXPECT_PRED2(contains, refused_with("model_window", "2"), "allowed: auto or 0");
-  EXPECT_NO_THROW(scene_with({{"model_modes", "0"}, {"model_window", "auto"}}));
+  EXPECT_NO_THROW(scene_with({{"model_modes", "0"}}));
+}
+
+TEST(SceneModel, Window) {
+  EXPECT_EQ(scene_with({}).rest_tolerance, -1.0);
+  EXPECT_EQ(scene_with({{"model_window", "0"}}).rest_tolerance, 0.0);
+  EXPECT_EQ(scene_with({{"model_window", "1e-4"}}).rest_tolerance, 1e-4);
+  for (const char* wrong : {"2", "-1e-3", "near", "1e-4x"})
+    EXPECT_PRED2(contains, refused_with("model_window", wrong), "allowed: auto, 0, or a part of the largest motion");
 }
 
 TEST(SceneSweep, SpeedsAndTrains) {

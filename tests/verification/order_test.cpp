@@ -93,6 +93,8 @@ INSTANTIATE_TEST_SUITE_P(
         Method{"arkimex_4", {{"ts_type", "arkimex"}, {"ts_arkimex_type", "4"}}, 4.0, 2e-3},
         Method{"arkimex_3_explicit_contact", explicit_contact + Values{{"ts_arkimex_type", "3"}}, 3.0, 1e-3},
         Method{"arkimex_4_explicit_contact", explicit_contact + Values{{"ts_arkimex_type", "4"}}, 4.0, 2e-3},
+        Method{"esdirk4", {{"ts_type", "esdirk4"}}, 4.0, 2e-3},
+        Method{"genalpha", {{"ts_type", "genalpha"}, {"ts_genalpha_radius", "0.8"}}, 2.0, 1e-3},
         Method{"rk_4", {{"ts_type", "rk"}, {"ts_rk_type", "4"}}, 4.0, 1e-3}),
     [](const auto& which) { return which.param.name; });
 

@@ -49,6 +49,7 @@ enum class Part { all, beam, contact };
 /// Stored energies and the integrals of the powers, J.
 struct Energy {
   double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0;
+  double structure = 0.0;  // kinetic and strain energy of the structure alone
 };
 
 /// An accepted instant; complete on every rank except the nodal slices.

@@ -93,11 +93,14 @@ struct Summary {
   double least_wheel_force_time = 0.0;
   std::string least_wheel;  // e.g. "vehicle 3, rear_wheel"
   int contact_losses = 0;
-  double longest_loss = 0.0;     // s
-  double energy_residual = 0.0;  // largest |residual|, J
-  double energy_left = 0.0;      // put to rest outside the window of what is stepped, J
-  double energy_scale = 0.0;     // largest term, J
-  double static_error = 0.0;     // relative, of static solutions, by rounding
+  double longest_loss = 0.0;      // s
+  double energy_residual = 0.0;   // largest |residual|, J
+  double structure_energy = 0.0;  // largest, kinetic and strain, J
+  double energy_left = 0.0;       // put to rest outside the window of what is stepped, J
+  /// What that is of the structure's motion: the root of its part in the energy.
+  double rest_error() const;
+  double energy_scale = 0.0;  // largest term, J
+  double static_error = 0.0;  // relative, of static solutions, by rounding
   long steps = 0;
   long solves = 0;            // beam solves
   double wall_seconds = 0.0;  // of the time loop
