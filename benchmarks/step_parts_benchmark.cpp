@@ -7,6 +7,8 @@
 // and stiffness with combinations of the step's vectors) while it solves. Steps with a train: one coach below 1,000
 // unknowns, eight above, from the bridge's beginning on; what they take beyond the step without is the vehicles'.
 
+#include <malloc.h>
+
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -65,6 +67,7 @@ struct Steps {
       : scene(unknowns, continuous, coaches), start(static_cast<std::size_t>(scene.system->local_size())) {
     scene.system->start(true, start.data());
     scene.system->begin_motion(method);
+    scene.beam->release_matrices();
     restart();
   }
   void restart() {
@@ -129,9 +132,10 @@ double resident() {
 
 /// Eight coaches and esdirk4, everything that a run holds but the recorder.
 void measure_memory(int size, bool continuous, std::ofstream& table) {
+  malloc_trim(0);  // what was freed before would serve again, unseen
   const double before = resident();
   Steps steps(size, continuous, 8, coupling::esdirk4());
-  const double unknowns = steps.scene.unknowns();
+  const int unknowns = steps.scene.unknowns();
   const double built = resident();
   (void)steps.time(100);
   const double after_100 = resident();
@@ -139,8 +143,8 @@ void measure_memory(int size, bool continuous, std::ofstream& table) {
   const double after_1000 = resident();
   if (rank() != 0) return;
   const char* kind = continuous ? "continuous" : "simply supported";
-  const double own = unknowns / ranks();
-  std::printf("%9.0f  %-17s resident bytes per unknown: %.0f built, %.0f after 100 steps, %.0f after 1,000\n", unknowns,
+  const double own = static_cast<double>(unknowns) / ranks();
+  std::printf("%9d  %-17s resident bytes per unknown: %.0f built, %.0f after 100 steps, %.0f after 1,000\n", unknowns,
               kind, (built - before) / own, (after_100 - before) / own, (after_1000 - before) / own);
   for (const auto& [when, bytes] : {std::pair{"built", built}, {"100 steps", after_100}, {"1000 steps", after_1000}})
     table << unknowns << ',' << kind << ',' << ranks() << ",8,bytes " << when << ",," << (bytes - before) / own
@@ -148,11 +152,12 @@ void measure_memory(int size, bool continuous, std::ofstream& table) {
 }
 
 void run(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   std::ofstream table;
   if (argc > 1 && rank() == 0) table.open(argv[1]);
   const int largest = argc > 2 ? std::atoi(argv[2]) : 1'000'000, smallest = argc > 3 ? std::atoi(argv[3]) : 10;
   table << "unknowns,bridge,ranks,coaches,part,seconds,per_unknown,of_bare_solve\n";
-  for (bool continuous : {true, false})  // the memory first: what was freed before would serve again
+  for (bool continuous : {true, false})
     for (int size : {100'000, 1'000'000})
       if (size <= largest && size >= smallest) measure_memory(size, continuous, table);
   if (rank() == 0) std::printf("%9s  %-17s %-32s %10s %10s %8s\n", "unknowns", "", "", "us", "ns/unknown", "of solve");

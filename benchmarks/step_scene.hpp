@@ -4,10 +4,8 @@
 
 #include <mpi.h>
 #include <slepceps.h>
-#include <time.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -56,20 +54,12 @@ struct StepScene {
   int unknowns() const { return beam->columns() * beam->block(); }  // on all ranks
 };
 
-/// Seconds so far: of this thread's processor, which leaves out what else the machine does; by the clock where ranks
-/// wait for each other.
-inline double now() {
-  if (ranks() > 1) return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-  timespec time = {};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
+/// By the clock.
 inline double seconds(int times, const std::function<void()>& work) {
   MPI_Barrier(PETSC_COMM_WORLD);
-  const double start = now();
+  const double start = MPI_Wtime();
   for (int i = 0; i < times; ++i) work();
-  return (now() - start) / times;
+  return (MPI_Wtime() - start) / times;
 }
 
 inline double median(std::vector<double> values) {
