@@ -83,6 +83,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, Structure& structure, std::
   results::Recorder recorder(comm, scene.output.file, layout_of(scene, system, beam), attributes(comm, scene),
                              scene.options);
   store_modes(structure, recorder);
+  if (structure.beam) structure.beam->release_matrices();
   Watch watch(scene, system, beam, recorder);
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();

@@ -1,5 +1,7 @@
 #include "traverse/beam/beam.hpp"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -182,6 +184,12 @@ void Beam::set_rayleigh(Rayleigh ab) {
   for (ReactionTerm& t : reaction_terms_) {
     t.damping = ab.a * t.beam_mass + ab.b * t.beam_stiffness + t.foundation_damping;
   }
+}
+
+void Beam::release_matrices() {
+  for (base::Handle<Mat>* matrix : {&mass_, &beam_mass_, &beam_stiffness_, &stiffness_, &damping_})
+    *matrix = base::Handle<Mat>();
+  malloc_trim(0);
 }
 
 void Beam::add_self_weight(double gravity, double* P) const {

@@ -79,7 +79,7 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
   }
   damped_ = drag_ || stiffness_damping_ != 0.0;
   relative_.resize(unknowns());
-  Shifted all{mass_.rows, read(beam.damping()), read(beam.stiffness()), {}};
+  Shifted all{{}, read(beam.damping()), read(beam.stiffness())};
   find_parts(beam, all);
   if (!parts_) {
     shifted_.push_back(std::move(all));
@@ -87,10 +87,9 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
     for (int part : parts_->of_kind) {
       const solve::Parts::Part& its = parts_->parts[static_cast<std::size_t>(part)];
       shifted_.push_back(
-          {solve::rows_of(all.mass, its), solve::rows_of(all.damping, its), solve::rows_of(all.stiffness, its), {}});
+          {solve::rows_of(mass_.rows, its), solve::rows_of(all.damping, its), solve::rows_of(all.stiffness, its)});
     }
   }
-  for (Shifted& matrices : shifted_) matrices.work = matrices.mass;
   mass_factor_.emplace(new_factor());
   if (parts_) {
     for (std::size_t kind = 0; kind < shifted_.size(); ++kind)
@@ -106,8 +105,9 @@ void BeamOperator::find_parts(const beam::Beam& beam, const Shifted& all) {
   if (static_cast<int>(parts.size()) - 1 < std::max(2, ranks_) || beam.model().foundation.nonlinear()) return;
   std::vector<std::ptrdiff_t> begins;
   for (int begin : parts)
-    if (begin >= beam.first_column() && begin <= beam.first_column() + nodes_) begins.push_back(begin - beam.first_column());
-  parts_ = solve::Parts::find(begins, {&all.mass, &all.damping, &all.stiffness}, fixed_);
+    if (begin >= beam.first_column() && begin <= beam.first_column() + nodes_)
+      begins.push_back(begin - beam.first_column());
+  parts_ = solve::Parts::find(begins, {&mass_.rows, &all.damping, &all.stiffness}, fixed_);
 }
 
 BeamFactor BeamOperator::new_factor() const {
@@ -115,9 +115,11 @@ BeamFactor BeamOperator::new_factor() const {
   return BeamFactor(solve::SubstructuredCholesky(comm_, block_, nodes_));
 }
 
-const solve::BlockTridiagonal& BeamOperator::Shifted::at(double shift, double shift2) {
-  work.combine(shift2, mass, shift, damping, 1.0, stiffness);
-  return work;
+solve::BlockTridiagonal BeamOperator::shifted(std::size_t kind, double shift, double shift2) const {
+  const Shifted& m = shifted_[kind];
+  solve::BlockTridiagonal sum(block_, m.stiffness.nodes);
+  sum.combine(shift2, parts_ ? m.mass : mass_.rows, shift, m.damping, 1.0, m.stiffness);
+  return sum;
 }
 
 // The block that couples to the left neighbour's last column is that rank's.
@@ -269,18 +271,16 @@ const BeamFactor& BeamOperator::factored(double shift, double shift2, const Adde
 void BeamOperator::factor(BeamFactor& to, double shift, double shift2, const AddedSprings* added) {
   if (parts_) {
     for (std::size_t kind = 0; kind < shifted_.size(); ++kind)
-      to.parts().factor(static_cast<int>(kind), shifted_[kind].at(shift, shift2), fixed_);
+      to.parts().factor(static_cast<int>(kind), shifted(kind, shift, shift2), fixed_);
     return;
   }
-  Shifted& all = shifted_.front();
-  (void)all.at(shift, shift2);
+  solve::BlockTridiagonal all = shifted(0, shift, shift2);
   if (added != nullptr) {
     for (const AddedSprings::Term& t : *added->terms)
       if (t.place >= 0)
-        (t.upper ? all.work.upper : all.work.diagonal)[t.place] +=
-            t.shape * (added->k[t.point] + shift * added->c[t.point]);
+        (t.upper ? all.upper : all.diagonal)[t.place] += t.shape * (added->k[t.point] + shift * added->c[t.point]);
   }
-  to.whole().factor(all.work, fixed_);
+  to.whole().factor(all, fixed_);
 }
 
 }  // namespace traverse::coupling

@@ -92,13 +92,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   const MPI_Comm comm = system.comm();
   const int n = system.local_size();
   check(VecCreateMPI(comm, n, PETSC_DETERMINE, y_.out()));
-  check(VecDuplicate(y_, residual_.out()));
   check(VecDuplicate(y_, rate_.out()));
-  check(VecDuplicate(y_, before_.out()));
-  check(VecSet(residual_, 0.0));
-  stage_c_.resize(n);
-  known_y_.resize(n);
-  known_rate_.resize(n);
 
   check(TSCreate(comm, ts_.out()));
   check(TSSetProblemType(ts_, TS_NONLINEAR));
@@ -142,6 +136,7 @@ void Stepper::set_up_type() {
     set_system(ts_, system_);
     return;
   }
+  check(VecDuplicate(y_, before_.out()));
   implicit_ = !is(ts_, TSRK);
   multistep_ = is(ts_, TSBDF);
   bool imex = false;
@@ -153,7 +148,10 @@ void Stepper::set_up_type() {
   if (!implicit_ || imex) check(TSSetRHSFunction(ts_, nullptr, rhs_function, this));
   if (!implicit_) return;
   implicit_part_ = imex ? Part::beam : Part::all;
+  check(VecDuplicate(y_, residual_.out()));
+  check(VecSet(residual_, 0.0));
   const PetscInt n = system_.local_size();
+  for (std::vector<double>* x : {&stage_c_, &known_y_, &known_rate_}) x->resize(static_cast<std::size_t>(n));
   check(MatCreateShell(system_.comm(), n, n, PETSC_DETERMINE, PETSC_DETERMINE, this, jacobian_.out()));
   check(TSSetIFunction(ts_, nullptr, ifunction, this));
   check(TSSetIJacobian(ts_, jacobian_, jacobian_, ijacobian, this));

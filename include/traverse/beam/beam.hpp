@@ -67,6 +67,9 @@ class Beam {
   void set_rayleigh(Rayleigh ab);
   Rayleigh rayleigh() const { return rayleigh_; }
 
+  /// Frees M, K and C, which are most of what a long beam takes, once a BeamOperator has read them: null from then on.
+  /// What the foundation and the track add is kept. Memory that is free goes back to the operating system.
+  void release_matrices();
   Mat mass() const { return mass_; }                      // M_aa, with that of a layered track
   Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
   Mat springs() const { return springs_; }                // K* less all beams': foundation, track layers; or null

@@ -78,10 +78,10 @@ class BeamOperator {
     long stamp;
     BeamFactor beam;
   };
-  /// The matrices that factorisations are made of: of all this rank's columns, or of one kind of its parts.
+  /// The matrices that factorisations are made of: of all this rank's columns, whose mass is kept apart, or of one kind
+  /// of its parts.
   struct Shifted {
-    solve::BlockTridiagonal mass, damping, stiffness, work;
-    const solve::BlockTridiagonal& at(double shift, double shift2);
+    solve::BlockTridiagonal mass, damping, stiffness;
   };
   /// A matrix of this rank's rows, with the block that couples them to the rank on the left.
   struct Matrix {
@@ -90,6 +90,7 @@ class BeamOperator {
   };
   void find_parts(const beam::Beam& beam, const Shifted& all);
   BeamFactor new_factor() const;
+  solve::BlockTridiagonal shifted(std::size_t kind, double shift, double shift2) const;
   void factor(BeamFactor& to, double shift, double shift2, const AddedSprings* added);
   Matrix with_neighbour(solve::BlockTridiagonal rows) const;
   void add_damped_part(const double* c, const double* k) const;

@@ -75,7 +75,8 @@ class Stepper {
   coupling::System& system_;
   Settings settings_;
   base::Handle<TS> ts_;
-  base::Handle<Vec> y_, residual_, rate_, before_;  // before_: y at the start of the step
+  base::Handle<Vec> y_, rate_;
+  base::Handle<Vec> before_, residual_;  // y at the start of the step, F; of PETSc's types alone
   base::Handle<Mat> jacobian_;
   Request request_;
   coupling::Part implicit_part_ = coupling::Part::all;

@@ -1,0 +1,170 @@
+#!/usr/bin/python3
+"""Prints wall times against those of VBI-2D, TTB-2D and ROSE, same size and steps, then at equal error: factors, errors.
+/usr/bin/python3 benchmarks/peers.py [BUILD_FOLDER] [OUT_FOLDER] [ROUNDS]; writes peers.csv and peers.png to OUT_FOLDER.
+
+The peers' seconds were measured once on one core of another machine of this kind, and are not repeated here; ours are
+medians of ROUNDS (7) runs, all cases of a kind in turn, of the time loop with all results stored at every step.
+"""
+
+import itertools
+import os
+import sys
+from dataclasses import dataclass
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import runs  # noqa: E402
+
+INTEGRATORS = {
+    "esdirk4": {"ts_type": "esdirk4"},
+    "genalpha": {"ts_type": "genalpha"},
+}
+OPTIONS = os.path.join(runs.ROOT, "options")
+# Without rail and sleepers: their mass, and the ballast's, ride on the beam. 121.28 + (251 + 531.4)/0.6 kg/m.
+ON_THE_BRIDGE = {
+    "options_file": os.path.join(OPTIONS, "bridges", "xia_fifty_metres.yml"),
+    "vehicle_coach_file": os.path.join(OPTIONS, "vehicles", "manchester.yml"),
+    "beam_mass": 69000.0 + 121.28 + (251.0 + 531.4) / 0.6,
+}
+
+
+@dataclass
+class Case:
+    name: str
+    program: str
+    seconds: float       # the peer's
+    error: float         # the peer's, of the peak deflection; what equal error means
+    references: list     # m, converged peak at every probe
+    same: dict           # the peer's mesh and steps
+    models: dict         # what equal error is looked for with: name, options
+    grid: dict           # and their values, all combined
+    interval: float      # s, the peer's step
+
+
+def grid_of(option, values, steps):
+    return {option: values, "ts_dt": steps}
+
+
+SPRUNG_MASS = {"sprung mass": {"options_file": runs.scene("r3_sprung_mass")}}
+SPRUNG_MASS_GRID = grid_of("beam_elements_per_span", [2, 3, 4, 6, 8], [0.1, 0.05, 0.04, 0.025, 0.0125])
+TWO_MASSES = {"options_file": runs.scene("r7_two_masses")}
+R8 = {"options_file": runs.scene("r8_ballasted_bridge"), "track_approach": 57.6}
+COACHES = {"options_file": runs.scene("four_coaches_ballasted_bridge")}
+
+CASES = [
+    Case("R3, 60 elements", "VBI-2D", 0.89, 2e-4, [-4.18626809e-4],
+         SPRUNG_MASS["sprung mass"] | {"beam_elements_per_span": 60}, SPRUNG_MASS, SPRUNG_MASS_GRID, 1e-3),
+    Case("R3, 960 elements", "VBI-2D", 16.9, 2e-4, [-4.18626809e-4],
+         SPRUNG_MASS["sprung mass"] | {"beam_elements_per_span": 960}, SPRUNG_MASS, SPRUNG_MASS_GRID, 1e-3),
+    # The peer rounds the span to 50.1 m: 5.5e-3 of the peak. (At that span its own error is 1.8e-4.)
+    Case("R8, ballasted bridge", "TTB-2D", 17.1, 5e-3, [-5.38333e-4],
+         R8 | {"ts_max_time": 3.961},
+         {"track": R8 | {"track_elements_per_bay": 1},
+          "track, the coach starts 5 m before the bridge": R8 | {"track_elements_per_bay": 1, "train_positions": -15.8,
+                                                                "track_approach": 28.8}},
+         {"ts_dt": [0.005, 0.01, 0.015, 0.02, 0.03, 0.05]}, 1e-3),
+    Case("four coaches, 4 x 50 m", "TTB-2D", 95.0, 5e-3, [-1.31188e-3, -1.30910e-3, -1.31006e-3, -1.31081e-3],
+         COACHES | {"ts_max_time": 4.285},
+         {"track": COACHES | {"track_elements_per_bay": 1}},
+         {"ts_dt": [0.003, 0.005, 0.01, 0.015, 0.02]}, 1e-3),
+    # The reference is the refined run of the scene; the peer's two integrators are 1e-3 away from it.
+    Case("R7, 100 elements", "ROSE", 0.27, 1e-3, [-3.263210e-2],
+         TWO_MASSES | {"beam_elements_per_span": 100}, {"two masses": TWO_MASSES},
+         grid_of("beam_elements_per_span", [2, 3, 4, 6, 8], [0.1, 0.05, 0.025, 0.0125]), 0.9e-3),
+]
+COACH_OFF_TRACK = ON_THE_BRIDGE | {"train_vehicles": "coach", "train_positions": -15.8, "train_speed": 100 / 3,
+                                   "output_probes": "25.0"}
+COACHES_OFF_TRACK = ON_THE_BRIDGE | {"train_vehicles": "coach*4", "train_positions": -15.8, "train_speed": 250 / 3,
+                                     "beam_spans": "50.0*4", "beam_continuity": "simply_supported",
+                                     "support_types": "pinned", "output_probes": "25.0,75.0,125.0,175.0"}
+OFF_TRACK = "no track, its mass on the bridge"
+OFF_TRACK_GRID = grid_of("beam_elements_per_span", [2, 3, 4], [0.01, 0.015, 0.02, 0.03, 0.05])
+
+
+def error(case, run):
+    """The largest over the probes, of the largest peak."""
+    off = [abs(runs.peak(run.file, i) - value) for i, value in enumerate(case.references)]
+    return max(off) / max(abs(value) for value in case.references)
+
+
+def same_size(build, out, rounds, case):
+    options = case.same | {"ts_dt": case.interval, "output_interval": case.interval}
+    measured = runs.in_turn(build, {name: options | kind for name, kind in INTEGRATORS.items()}, rounds, out)
+    for name, (seconds, run) in measured.items():
+        off = error(case, runs.Run(build, options | INTEGRATORS[name], run.file))
+        yield row(case, "same size and steps", name, seconds, run, off)
+
+
+def equal_error(build, out, rounds, case, model, options, grid):
+    """The cheapest of the grid, on either integrator, whose error is no larger than the peer's."""
+    found = {}
+    for values in itertools.product(*grid.values()):
+        chosen = dict(zip(grid, values))
+        for name, kind in INTEGRATORS.items():
+            these = options | chosen | kind | {"output_interval": chosen["ts_dt"]}
+            run = runs.Run(build, these, os.path.join(out, "benchmark_run.h5"))
+            off = error(case, run)
+            if off <= case.error:
+                found[f"{model}: {name}, " + ", ".join(f"{k} {v:g}" for k, v in chosen.items())] = (run.seconds, off, these)
+    cheapest = sorted(found, key=lambda name: found[name][0])[:4]
+    measured = runs.in_turn(build, {name: found[name][2] for name in cheapest}, rounds, out)
+    if measured:
+        name = min(measured, key=lambda key: measured[key][0])
+        yield row(case, "equal error", name, *measured[name], found[name][1])
+    else:
+        print(f"{case.name}, {model}: none of the grid is right to {case.error:g}")
+
+
+def row(case, kind, how, seconds, run, off):
+    print(f"{case.name:24}{kind:21}{run.unknowns:7}{run.steps:7}{1e3 * seconds:10.3g}{case.seconds / seconds:9.4g}"
+          f"{off:10.1e}  {how}", flush=True)
+    return [case.name, case.program, case.seconds, case.error, kind, how, run.unknowns, run.steps, seconds,
+            case.seconds / seconds, off, run.process_seconds]
+
+
+def picture(rows, file):
+    names = list(dict.fromkeys(r[0] for r in rows))
+    kinds = {"esdirk4": "same size and steps, esdirk4", "genalpha": "same size and steps, genalpha"}
+    figure, axes = plt.subplots(figsize=(9, 4.5), layout="constrained")
+    series = {label: [next(r[9] for r in rows if r[0] == n and r[5] == how) for n in names]
+              for how, label in kinds.items()}
+    series["equal error, the same model"] = [
+        max((r[9] for r in rows if r[0] == n and r[4] == "equal error" and not r[5].startswith(OFF_TRACK)), default=0)
+        for n in names]
+    series["equal error, " + OFF_TRACK] = [
+        max((r[9] for r in rows if r[0] == n and r[5].startswith(OFF_TRACK)), default=0) for n in names]
+    for i, (label, factors) in enumerate(series.items()):
+        places = [x + 0.2 * (i - 1.5) for x, factor in enumerate(factors) if factor]
+        bars = axes.bar(places, [factor for factor in factors if factor], 0.19, label=label)
+        axes.bar_label(bars, fmt="%.0f", fontsize=7)
+    axes.set(yscale="log", ylabel="the peer's wall time (another machine) over ours")
+    axes.set_xticks(range(len(names)), names, fontsize=8)
+    axes.grid(True, axis="y", alpha=0.4)
+    axes.legend(fontsize=8, loc="upper right")
+    figure.savefig(file, dpi=120)
+    print(file)
+
+
+def main():
+    build, out = runs.folders(sys.argv[1:3])
+    rounds = int(sys.argv[3]) if len(sys.argv) > 3 else 7
+    print(f"{'':45}{'size':>7}{'steps':>7}{'ms':>10}{'factor':>9}{'error':>10}  (the peers' seconds: another machine)")
+    rows = []
+    for case in CASES:
+        rows += same_size(build, out, rounds, case)
+    for case in CASES:
+        for model, options in case.models.items():
+            rows += equal_error(build, out, rounds, case, model, options, case.grid)
+    for case, options in ((CASES[2], COACH_OFF_TRACK), (CASES[3], COACHES_OFF_TRACK)):
+        rows += equal_error(build, out, rounds, case, OFF_TRACK, options, OFF_TRACK_GRID)
+    os.remove(os.path.join(out, "benchmark_run.h5"))
+    runs.write_table(os.path.join(out, "peers.csv"),
+                     ["case", "peer", "peer's seconds", "peer's error", "kind", "how", "unknowns", "steps", "seconds",
+                      "factor", "error", "seconds of the process"], rows)
+    picture(rows, os.path.join(out, "peers.png"))
+
+
+if __name__ == "__main__":
+    main()

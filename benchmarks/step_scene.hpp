@@ -1,0 +1,71 @@
+// The scene of the step's benchmarks: a bridge of 32 m spans, 10 elements each, and S300 coaches on Hertz wheels; and
+// how its parts are timed.
+#pragma once
+
+#include <mpi.h>
+#include <slepceps.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "traverse/app/scene.hpp"
+#include "traverse/coupling/system.hpp"
+#include "traverse/options/options.hpp"
+
+namespace traverse::benchmarks {
+
+inline int rank() {
+  int result = 0;
+  MPI_Comm_rank(PETSC_COMM_WORLD, &result);
+  return result;
+}
+
+inline int ranks() {
+  int result = 1;
+  MPI_Comm_size(PETSC_COMM_WORLD, &result);
+  return result;
+}
+
+/// A bridge of about so many unknowns under so many coaches, the foremost wheel at its beginning.
+struct StepScene {
+  std::unique_ptr<beam::Beam> beam;
+  std::unique_ptr<coupling::System> system;
+
+  StepScene(int unknowns, bool continuous, int coaches) {
+    constexpr int elements = 10;
+    const int spans = std::max(1, unknowns / (continuous ? 2 * elements : 2 * elements + 2));
+    std::string text = "beam: {spans: 32.0*" + std::to_string(spans) +
+                       ", elements_per_span: " + std::to_string(std::min(elements, unknowns / 2 - 1)) +
+                       ", EI: 3.795e11, mass: 3.0e4, continuity: " + (continuous ? "continuous" : "simply_supported") +
+                       "}\nsupport: {types: " + (continuous ? "roller" : "pinned") + "}\nts: {max_time: 1.0}\n";
+    if (coaches > 0)
+      text += "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/s300.yml}}\ntrain: {vehicles: coach*" +
+              std::to_string(coaches) + ", speed: 83.333}\n";
+    const app::Scene scene = app::read_scene(options::Options::from_yaml(text));
+    beam = std::make_unique<beam::Beam>(PETSC_COMM_WORLD, *scene.beam);
+    beam->set_rayleigh({0.5, 5e-4});
+    system = std::make_unique<coupling::System>(
+        PETSC_COMM_WORLD, beam.get(),
+        coupling::SystemInput{scene.vehicles, scene.train, scene.load, scene.profile, scene.gravity, false});
+  }
+  int unknowns() const { return beam->columns() * beam->block(); }  // on all ranks
+};
+
+/// By the clock.
+inline double seconds(int times, const std::function<void()>& work) {
+  MPI_Barrier(PETSC_COMM_WORLD);
+  const double start = MPI_Wtime();
+  for (int i = 0; i < times; ++i) work();
+  return (MPI_Wtime() - start) / times;
+}
+
+inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace traverse::benchmarks
