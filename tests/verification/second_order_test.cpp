@@ -15,8 +15,7 @@ struct Case {
   const char* name;
   const char* scene;
   Values options;
-  /// Of each curve's peak; of energy dissipated, whose quadrature differs (stages there, ends of steps here), 1e-3.
-  double bound = 1e-8;
+  double bound = 1e-8;  // of each curve's peak
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
@@ -30,7 +29,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"layered_track",
              "r8_ballasted_bridge",
              {{"ts_dt", "2e-3"}, {"ts_max_time", "1"}, {"track_elements_per_bay", "1"}, {"output_interval", "0.02"}},
-             2e-7},
+             2e-8},
         Case{"one_sided_foundation", "prop_with_gap", {{"ts_dt", "2e-3"}}},
         Case{"forces_and_own_weight",
              "r6_three_spans",
@@ -52,7 +51,9 @@ TEST_P(SameAsArkimex, ToRounding) {
                             "/supports/reaction", "/energy/strain", "/energy/dissipated", "/energy/work"}) {
     const double difference = relative_difference(own(curve), stock(curve));
     RecordProperty(curve + 1, text(difference));
-    EXPECT_LE(difference, curve == std::string("/energy/dissipated") ? 1e-3 : c.bound) << curve;
+    // Of energies the quadrature differs: stages there, ends of steps here; the drivers' work is small and noisy.
+    const bool integral = curve == std::string("/energy/dissipated") || curve == std::string("/energy/work");
+    EXPECT_LE(difference, integral ? 1e-3 : c.bound) << curve;
   }
 }
 
