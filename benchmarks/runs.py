@@ -5,7 +5,6 @@ import os
 import re
 import statistics
 import subprocess
-import sys
 import time
 
 import h5py
@@ -101,7 +100,3 @@ def write_table(file, header, rows):
         writer.writerow(header)
         writer.writerows(rows)
     print(file)
-
-
-def fail(text):
-    sys.exit(text)

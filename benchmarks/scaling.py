@@ -20,6 +20,9 @@ RANKS = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1000]
 NETWORK_LATENCY = 1.5e-6    # s, assumed: 1 to 2 us of today's networks
 NETWORK_BANDWIDTH = 1.0e10  # B/s, assumed
 STAGES = 5                  # of esdirk4
+BYTES = 650.0               # moved an unknown and step, doc/scaling.md
+KEPT = 110.0                # bytes of an unknown that a step comes back to: its vectors and the factor
+CACHE, SHARERS = 3.2e7, 8   # B of the last cache, and the cores that share it: of an EPYC
 SPAN_UNKNOWNS = 22          # of an isolated span of ten elements
 FREEDOM = 10                # of a coach
 ELEMENTS_A_COACH = 4        # under its wheels; 4 unknowns each, v and w of them are summed over the ranks
@@ -54,9 +57,9 @@ class Model:
 
     def __init__(self, parts, machine, network=None):
         self.parts = parts
-        alone, together = machine
+        together = machine[1]
         self.latency, self.bandwidth = network or (together["message of 8 B"], together["bandwidth of 8 MB messages"])
-        self.memory = alone["memory of each rank"] / together["memory of each rank"]  # slower where all ranks read
+        self.memory = together["memory of each rank"]  # B/s, where all ranks read
         at_10000 = {r["part"]: r for r in parts if r["bridge"] == "continuous" and r["seconds"]
                     and abs(int(r["unknowns"]) - 10_000) < 100}
         steps = [float(at_10000[name]["seconds"]) for name in ("esdirk4 step", "esdirk4 step without vehicles")]
@@ -77,8 +80,8 @@ class Model:
         if bridge != "continuous":  # a rank has whole spans
             own = math.ceil(unknowns / SPAN_UNKNOWNS / ranks) * SPAN_UNKNOWNS
         beam = self.curve("esdirk4 step without vehicles", bridge, own)
-        if ranks > 1 and own > 20_000:  # beyond what a core's own cache holds, as all ranks of a machine read at once
-            beam *= self.memory
+        if ranks > 1 and KEPT * own > CACHE / min(ranks, SHARERS):
+            beam = max(beam, BYTES * own / self.memory)
         vehicles = self.coach * coaches
         if ranks == 1:
             return {"beam": beam, "separators": 0.0, "vehicles": vehicles, "messages": 0.0}

@@ -135,19 +135,19 @@ void measure_memory(int size, bool continuous, std::ofstream& table) {
   malloc_trim(0);  // what was freed before would serve again, unseen
   const double before = resident();
   Steps steps(size, continuous, 8, coupling::esdirk4());
-  const int unknowns = steps.scene.unknowns();
-  const double built = resident();
-  (void)steps.time(100);
-  const double after_100 = resident();
-  for (int i = 0; i < 9; ++i) (void)steps.time(100);
-  const double after_1000 = resident();
+  const int unknowns = steps.scene.unknowns(), few = size <= 100'000 ? 100 : 10;
+  const auto bytes = [&] { return (resident() - before) * ranks() / unknowns; };
+  const double built = bytes();
+  (void)steps.time(few);
+  const double after_few = bytes();
+  for (int i = 0; i < 9; ++i) (void)steps.time(few);
+  const double after_many = bytes();
   if (rank() != 0) return;
   const char* kind = continuous ? "continuous" : "simply supported";
-  const double own = static_cast<double>(unknowns) / ranks();
-  std::printf("%9d  %-17s resident bytes per unknown: %.0f built, %.0f after 100 steps, %.0f after 1,000\n", unknowns,
-              kind, (built - before) / own, (after_100 - before) / own, (after_1000 - before) / own);
-  for (const auto& [when, bytes] : {std::pair{"built", built}, {"100 steps", after_100}, {"1000 steps", after_1000}})
-    table << unknowns << ',' << kind << ',' << ranks() << ",8,bytes " << when << ",," << (bytes - before) / own
+  std::printf("%9d  %-17s resident bytes per unknown: %.0f built, %.0f after %d steps, %.0f after %d\n", unknowns, kind,
+              built, after_few, few, after_many, 10 * few);
+  for (const auto& [steps_taken, value] : {std::pair{0, built}, {few, after_few}, {10 * few, after_many}})
+    table << unknowns << ',' << kind << ',' << ranks() << ",8,bytes after " << steps_taken << " steps,," << value
           << ",\n";
 }
 
