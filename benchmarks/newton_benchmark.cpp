@@ -141,7 +141,7 @@ class Ride {
     operator_->multiply(-1.0, nullptr, b.rate.data(), b.value.data(), z_.data());
     for (std::size_t i = 0; i < z_.size(); ++i)
       if (beam_->fixed()[i] != 0) z_[i] = 0.0;
-    operator_->factored(shift).solve(z_.data());
+    operator_->factored(shift, shift * shift).solve(z_.data());
     for (std::size_t i = 0; i < x_.size(); ++i) {
       x_[i] = p.acceleration[i] / (shift * shift);
       p_[i] = p.value[i] + x_[i];
@@ -150,7 +150,7 @@ class Ride {
     const double begin = processor_time();
     if (!fleet_.set(t_, p_.data(), pd_.data())) return false;
     fleet_.place_wheels();
-    compliance_->prepare(shift, nullptr, fleet_.elements());
+    compliance_->prepare(shift, shift * shift, nullptr, fleet_.elements());
     const double placed = processor_time();
     gather(shift);
     const coupling::StageData stage{t_,   shift, shift * shift,     p.value.data(), p.rate.data(),

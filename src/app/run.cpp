@@ -101,14 +101,15 @@ int run_transient(MPI_Comm comm, const Scene& scene, Structure& structure, std::
     if (rank == 0) results::print_summary(summary, scene.output.file);
     return summary;
   };
-  int stopped = 0;
+  int stopped = 0, ranks = 1;
+  MPI_Comm_size(comm, &ranks);
   try {
     passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
                 [&](double t, long steps) {
                   watch.step(t);
                   progress.update(t, steps);
                   int signal = caught_signal();
-                  MPI_Allreduce(MPI_IN_PLACE, &signal, 1, MPI_INT, MPI_MAX, comm);
+                  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &signal, 1, MPI_INT, MPI_MAX, comm);
                   stopped = signal;
                   return signal == 0;
                 });

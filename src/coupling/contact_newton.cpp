@@ -17,6 +17,9 @@ constexpr double poor_ratio = 1e-3;  // of successive residuals or changes: what
 constexpr double first_share = 0.1;  // of the ratio of a stage's first changes that the kept matrices account for
 constexpr double growth = 1.1;       // of a ratio that is trusted without having been measured again
 constexpr double measurable = 1e-8;  // of the weight: changes above it tell a ratio
+constexpr double caution = 0.1;      // of the tolerance: a second change that is foreseen and left out
+constexpr double forgetting = 0.1;   // of the ratio that foresees it, once it has been found smaller
+constexpr int not_alike = -1;
 constexpr double same_shift = 1e-6;  // relative
 constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
 
@@ -84,7 +87,11 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
     const double before = change_;
     change_ = update(fleet, x);
     if (!std::isfinite(change_)) return false;
-    if (i == 0) continue;
+    if (i == 0) {
+      if (kept && !statics && left <= tolerance && second_.negligible(carrying(fleet), change_)) return true;
+      continue;
+    }
+    if (i == 1) second_.note(kept ? carrying(fleet) : not_alike, before, change_);
     if (settled(statics, kept && i == 1, before, left)) return true;
     for (std::size_t k = 0; k < work_.size(); ++k)
       fleet.vehicles[k].rests = !statics && work_[k].change * contraction_ <= tolerance;
@@ -107,6 +114,31 @@ bool ContactNewton::settled(bool statics, bool as_before, double before, double 
   }
   if (change_ <= rounding && measured > 0.1) return true;
   return statics ? change_ <= static_tolerance : change_ * contraction_ <= tolerance && left <= tolerance;
+}
+
+// The ratio grows with the first change, at most as this does.
+bool ContactNewton::SecondChange::negligible(int contacts, double change) {
+  const double curved = std::max(1.0, change / first);
+  if (contacts < 0 || contacts != carrying || change * ratio * curved > caution * tolerance) return false;
+  ratio *= growth;
+  return true;
+}
+
+void ContactNewton::SecondChange::note(int contacts, double change, double next) {
+  carrying = contacts;
+  if (!(change > 0.0)) return;
+  first = change;
+  ratio = std::max(next / change, forgetting * ratio);
+}
+
+// The contacts that carry force; no number where a wheel near a kink may touch on either side of it.
+int ContactNewton::carrying(const Fleet& fleet) {
+  int count = 0;
+  for (const WheelContact& c : fleet.wheels) {
+    if (c.candidates > 1 || c.further > 0) return not_alike;
+    if (c.force.normal != 0.0) ++count;
+  }
+  return count;
 }
 
 // Vehicles at p_still + x, the beam under the forces of the kinematics held, the geometry at all of it. At first the

@@ -311,7 +311,8 @@ double Fleet::contact_dissipation() const {
   double power = 0.0;
   for (int i = 0; i < contacts(); ++i) {
     const Contact& c = contact(i);
-    if (c.released && c.force.normal == 0.0) continue;
+    const bool elastic_alone = c.law.damping == 0.0 && !c.law.hysteresis && c.law.friction == 0.0;
+    if (elastic_alone || (c.released && c.force.normal == 0.0)) continue;
     contact::Law elastic = c.law;
     elastic.damping = 0.0;
     elastic.hysteresis.reset();

@@ -278,7 +278,7 @@ void System::fleet_powers(Motion::Powers& powers) const {
   powers.dissipation = fleet_.contact_dissipation();
   powers.work = 0.0;
   for (const MovingVehicle& vehicle : fleet_.vehicles) {
-    const multibody::MechanismEnergy e = vehicle.mechanism.energy(vehicle.state);
+    const multibody::MechanismPowers e = vehicle.mechanism.powers(vehicle.state);
     powers.dissipation += e.dissipation;
     powers.work += e.work;
   }

@@ -43,8 +43,14 @@ void Mechanism::compute_Phi(MechanismState& s) const {
   }
 }
 
+/// And notes where it has changed: a mechanism that does not turn keeps its factors.
 void Mechanism::compute_Phi_q(MechanismState& s) const {
   JointJacobian rows;
+  bool same = true;
+  const auto set = [&](int row, int column, double value) {
+    same = same && s.Phi_q(row, column) == value;
+    s.Phi_q(row, column) = value;
+  };
   for (const JointGeometry& joint : joints_) {
     joint_jacobian(joint, frame(s, joint.first), frame(s, joint.second), rows);
     const int count = joint_rows(joint.type);
@@ -52,13 +58,14 @@ void Mechanism::compute_Phi_q(MechanismState& s) const {
       const int body = end == 0 ? joint.first : joint.second;
       if (body == ground) continue;
       for (int c = 0; c < 3; ++c)
-        for (int r = 0; r < count; ++r) s.Phi_q(joint.row + r, 3 * body + c) = rows(r, 3 * end + c);
+        for (int r = 0; r < count; ++r) set(joint.row + r, 3 * body + c, rows(r, 3 * end + c));
     }
   }
   for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
     const Driver& driver = model_.drivers[k];
-    s.Phi_q(driver_row(static_cast<int>(k)), 3 * driver.body + driver.coordinate) = 1.0;
+    set(driver_row(static_cast<int>(k)), 3 * driver.body + driver.coordinate, 1.0);
   }
+  if (!same) s.factors_belong = s.sensitivity_belongs = false;
 }
 
 void Mechanism::compute_gamma(MechanismState& s) const {
@@ -108,6 +115,7 @@ void Mechanism::fit(MechanismState& s) const {
   s.factored = false;
   s.velocities_set = false;
   s.mass_factored = false;
+  s.factors_belong = s.sensitivity_belongs = false;
 }
 
 void Mechanism::find_columns(MechanismState& s) const {
@@ -127,6 +135,8 @@ void Mechanism::find_columns(MechanismState& s) const {
 /// Factors the dependent block at the current frames, in a new order when the old one has worn out.
 void Mechanism::factor(MechanismState& s) const {
   compute_Phi_q(s);
+  if (s.factors_belong) return;
+  s.sensitivity_belongs = false;
   if (!s.dependent_block.factor(s.Phi_q)) {
     s.velocities_set = false;
     s.dependent_block.plan(s.Phi_q, pattern_, partition_, scaling_);
@@ -135,7 +145,7 @@ void Mechanism::factor(MechanismState& s) const {
     s.B.setZero();
     for (int k = 0; k < freedom(); ++k) s.B(partition_.independent[k], k) = 1.0;
   }
-  s.factored = true;
+  s.factored = s.factors_belong = true;
 }
 
 /// The largest kept equation's error, m.

@@ -21,10 +21,13 @@ void Mechanism::set_velocities(MechanismState& s, double t, const double* pd) co
 
 /// With Phi_q factored: B, b, q', d.
 void Mechanism::velocities_at(MechanismState& s, double t, const double* pd) const {
-  s.mass_factored = false;
-  s.dependent_block.compute_sensitivity();
+  if (!s.sensitivity_belongs) {
+    s.mass_factored = false;
+    s.dependent_block.compute_sensitivity();
+    s.dependent_block.scatter(s.B);
+    s.sensitivity_belongs = true;
+  }
   s.velocities_set = true;
-  s.dependent_block.scatter(s.B);
   for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
     s.Phi_t[driver_row(static_cast<int>(k))] = -model_.drivers[k].value.rate(t);
   }
@@ -70,6 +73,7 @@ bool Mechanism::interpolate_velocities(MechanismState& s, double t, const double
   compute_Phi(s);
   factor(s);
   if (!reached) return false;
+  s.factors_belong = s.sensitivity_belongs = false;
   s.dependent_block.set_sensitivity(s.interpolated.leftCols(f));
   s.dependent_block.scatter(s.B);
   s.mass_factored = false;

@@ -21,13 +21,14 @@ struct Line {
   double force_per_length;  // N/m: tension / length, its limit for a zero-length spring
   double stiffness;         // N/m: tangents of the tension
   double damping;           // N s/m
+  double dissipation;       // W, in the damper
   Line(const SpringGeometry& s, const Frame& first, const Frame& second)
       : a1(first.to_global(s.first_arm)),
         a2(second.to_global(s.second_arm)),
         d((second.origin - first.origin) + (a2 - a1)),
         rate(second.velocity_at(a2) - first.velocity_at(a1)),
         length(d.norm()),
-        u(length > shortest ? Vector2d(d / length) : Vector2d::Zero()),
+        u(length > shortest ? Vector2d(d * (1.0 / length)) : Vector2d::Zero()),
         elastic(s.preload + s.stiffness * (length - s.reference_length)),
         stiffness(s.stiffness),
         damping(s.damping) {
@@ -36,8 +37,10 @@ struct Line {
       return;
     }
     const bool zero_length_spring = s.preload == 0.0 && s.reference_length <= shortest;
+    const double elongation_rate = u.dot(rate);
+    dissipation = s.damping * elongation_rate * elongation_rate;
     if (length > shortest) {
-      force_per_length = (elastic + s.damping * u.dot(rate)) / length;
+      force_per_length = (elastic + s.damping * elongation_rate) / length;
     } else {
       force_per_length = zero_length_spring ? s.stiffness : 0.0;
     }
@@ -47,6 +50,7 @@ struct Line {
     const Tension t = tension(*s.law, length - s.reference_length, u.dot(rate));
     stiffness = t.by_elongation;
     damping = t.by_rate;
+    dissipation = t.dissipation;
     if (length > shortest) {
       force_per_length = t.tension / length;
     } else {
@@ -98,7 +102,13 @@ TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first
 }
 
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second) {
+  double dissipation = 0.0;
+  return spring_force(spring, first, second, dissipation);
+}
+
+PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second, double& dissipation) {
   const Line line(spring, first, second);
+  dissipation += line.dissipation;
   const Vector2d f = line.force();  // on the first body; the second is pulled the other way
   PairForce g;
   g << f, quarter_turn(line.a1).dot(f), -f, -quarter_turn(line.a2).dot(f);
@@ -143,10 +153,7 @@ double spring_strain_energy(const SpringGeometry& spring, const Frame& first, co
 }
 
 double spring_dissipation(const SpringGeometry& spring, const Frame& first, const Frame& second) {
-  const Line line(spring, first, second);
-  const double rate = line.u.dot(line.rate);
-  if (spring.law != nullptr) return tension(*spring.law, line.length - spring.reference_length, rate).dissipation;
-  return spring.damping * rate * rate;
+  return Line(spring, first, second).dissipation;
 }
 
 double torsion_moment(const TorsionGeometry& s, const Frame& first, const Frame& second) {

@@ -6,14 +6,17 @@ namespace traverse::multibody {
 
 void Mechanism::compute_forces(MechanismState& s) const {
   s.g.setZero();
+  s.dissipation = 0.0;
   for (int i = 1; i < s.g.size(); i += 3) s.g[i] = -mass_[i] * model_.gravity;
   for (const SpringGeometry& spring : springs_) {
-    const PairForce force = multibody::spring_force(spring, frame(s, spring.first), frame(s, spring.second));
+    const PairForce force =
+        multibody::spring_force(spring, frame(s, spring.first), frame(s, spring.second), s.dissipation);
     if (spring.first != ground) s.g.segment<3>(3 * spring.first) += force.head<3>();
     if (spring.second != ground) s.g.segment<3>(3 * spring.second) += force.tail<3>();
   }
   for (const TorsionGeometry& spring : torsion_springs_) {
     const double moment = torsion_moment(spring, frame(s, spring.first), frame(s, spring.second));
+    s.dissipation += torsion_dissipation(spring, frame(s, spring.first), frame(s, spring.second));
     if (spring.first != ground) s.g[3 * spring.first + 2] -= moment;
     if (spring.second != ground) s.g[3 * spring.second + 2] += moment;
   }
@@ -78,17 +81,20 @@ double Mechanism::torsion_spring_moment(const MechanismState& s, int k) const {
 }
 
 MechanismEnergy Mechanism::energy(const MechanismState& s) const {
-  MechanismEnergy e;
+  MechanismEnergy e{powers(s)};
   for (int i = 0; i < s.q.size(); ++i) e.kinetic += 0.5 * mass_[i] * s.qd[i] * s.qd[i];
   for (int i = 1; i < s.q.size(); i += 3) e.potential += mass_[i] * model_.gravity * s.q[i];
   for (const SpringGeometry& spring : springs_) {
     e.strain += spring_strain_energy(spring, frame(s, spring.first), frame(s, spring.second));
-    e.dissipation += spring_dissipation(spring, frame(s, spring.first), frame(s, spring.second));
   }
   for (const TorsionGeometry& spring : torsion_springs_) {
     e.strain += torsion_strain_energy(spring, frame(s, spring.first), frame(s, spring.second));
-    e.dissipation += torsion_dissipation(spring, frame(s, spring.first), frame(s, spring.second));
   }
+  return e;
+}
+
+MechanismPowers Mechanism::powers(const MechanismState& s) const {
+  MechanismPowers e{s.dissipation};
   for (int k = 0; k < s.friction.force.size(); ++k) e.dissipation -= s.friction.force[k] * s.friction.speed[k];
   for (const Actuator& actuator : model_.actuators) {
     for (int c = 0; c < 3; ++c) {

@@ -140,7 +140,7 @@ void Mechanism::assemble(MechanismState& s, double t) {
     partition_ = pivot(s).partition;
     ++partition_version_;
     fit(s);
-    s.factored = false;
+    s.factored = s.factors_belong = false;
     const Eigen::VectorXd start = s.q;
     if (!solve_dependent(s, t)) {
       throw InputError("vehicle '" + model_.name + "' cannot be put together at t = " + number(t) +

@@ -87,6 +87,7 @@ class ContactNewton {
   static bool serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved);
   static void condense(VehicleWork& w, VehicleYield& yield);
   bool settled(bool statics, bool as_before, double before, double left);
+  static int carrying(const Fleet& fleet);
   void rest(int vehicle);
   void find_residual(MovingVehicle& vehicle, VehicleWork& w) const;
   void contact_directions(int vehicle, const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
@@ -101,7 +102,16 @@ class ContactNewton {
   std::vector<double> moved_;  // of x since the vehicles were set
   double change_ = 0.0;
   double contraction_ = 1.0;  // of the changes to come
-  double ratio_ = 1.0;        // of successive changes with the matrices that are kept, as measured last
+  /// A stage's second change by its ratio to the first one, as measured last in a stage with kept matrices: where it
+  /// would be too small to matter the stage is left with one evaluation.
+  struct SecondChange {
+    double ratio = 1.0, first = 1.0;  // to the first change, and this
+    int carrying = -1;                // contacts with force then; -1: none like it
+    bool negligible(int contacts, double change);
+    void note(int contacts, double change, double next);
+  };
+  SecondChange second_;
+  double ratio_ = 1.0;  // of successive changes with the matrices that are kept, as measured last
 };
 
 }  // namespace traverse::coupling

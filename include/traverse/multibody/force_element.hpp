@@ -43,6 +43,8 @@ TorsionGeometry torsion_geometry(const TorsionSpring& spring, const Frame& first
 /// Generalized force on both bodies. A spring shrunk to a point has no direction: it then only pulls with
 /// stiffness times displacement when it is a zero-length spring, and not at all otherwise.
 PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second);
+/// The same, with the power lost in the damper added to `dissipation`, W.
+PairForce spring_force(const SpringGeometry& spring, const Frame& first, const Frame& second, double& dissipation);
 /// Tension along the spring, N, damper included.
 double spring_tension(const SpringGeometry& spring, const Frame& first, const Frame& second);
 /// Derivatives of spring_force with respect to the coordinates and to the velocities.

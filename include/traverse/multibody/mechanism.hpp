@@ -61,6 +61,7 @@ struct MechanismState {
   Eigen::VectorXd b;                  // n: q' = B p' + b
   Eigen::VectorXd d;                  // n: q'' = B p'' + d
   Eigen::VectorXd g;                  // n: gravity, springs, actuators
+  double dissipation = 0.0;           // W: lost in springs' dampers
   Eigen::VectorXd qdd;                // n
   Eigen::VectorXd lambda;             // one a row of Phi; 0 for dropped rows
   Eigen::MatrixXd Phi_q;              // rows of Phi x n, redundant rows included
@@ -73,26 +74,31 @@ struct MechanismState {
   std::vector<ColumnRange> columns;  // of B that a body's rows reach into; one a body
   DependentBlock dependent_block;
   ReducedMass reduced_mass;
-  Instant accepted;              // the last accepted instant
-  int partition_version = 0;     // which partition the workspaces belong to
-  bool factored = false;         // dependent_block holds a factorisation of Phi_q near the current q
-  bool velocities_set = false;   // dependent_block holds the sensitivity at the last velocities
-  bool mass_factored = false;    // reduced_mass belongs to B
-  long corrections = 0;          // Newton steps on positions so far
-  Eigen::VectorXd work;          // n
-  Eigen::VectorXd reduced;       // f
-  Eigen::VectorXd change;        // f
-  Eigen::VectorXd centre;        // n: q of a nearly singular position
-  Eigen::MatrixXd interpolated;  // n x (f + 2): B, b, d there
+  Instant accepted;                  // the last accepted instant
+  int partition_version = 0;         // which partition the workspaces belong to
+  bool factored = false;             // dependent_block holds a factorisation of Phi_q near the current q
+  bool factors_belong = false;       // that factorisation is of Phi_q as it is
+  bool sensitivity_belongs = false;  // and the sensitivity and B with it
+  bool velocities_set = false;       // dependent_block holds the sensitivity at the last velocities
+  bool mass_factored = false;        // reduced_mass belongs to B
+  long corrections = 0;              // Newton steps on positions so far
+  Eigen::VectorXd work;              // n
+  Eigen::VectorXd reduced;           // f
+  Eigen::VectorXd change;            // f
+  Eigen::VectorXd centre;            // n: q of a nearly singular position
+  Eigen::MatrixXd interpolated;      // n x (f + 2): B, b, d there
 };
 
-/// Powers and stored energies of a mechanism in a state, J and W.
-struct MechanismEnergy {
+/// Powers of a mechanism in a state, W.
+struct MechanismPowers {
+  double dissipation = 0.0;  // lost in dampers and in friction, >= 0
+  double work = 0.0;         // of actuators and of rheonomic constraints (drivers)
+};
+/// And its stored energies, J.
+struct MechanismEnergy : MechanismPowers {
   double kinetic = 0.0;
-  double strain = 0.0;       // springs, torsion springs: 1/2 k e^2, or the integral of a law
-  double potential = 0.0;    // gravity
-  double dissipation = 0.0;  // power lost in dampers and in friction, >= 0
-  double work = 0.0;         // power of actuators and of rheonomic constraints (drivers)
+  double strain = 0.0;     // springs, torsion springs: 1/2 k e^2, or the integral of a law
+  double potential = 0.0;  // gravity
 };
 
 class Mechanism {
@@ -141,7 +147,7 @@ class Mechanism {
   /// With positions set: q' from p', and B, b, d.
   void set_velocities(MechanismState& s, double t, const double* pd) const;
 
-  /// With positions and velocities set: g.
+  /// With positions and velocities set: g, and what dampers lose.
   void compute_forces(MechanismState& s) const;
 
   /// With all of that set: moves on by a small change of p, and rate times it of p'. Positions and velocities follow to
@@ -179,6 +185,8 @@ class Mechanism {
   /// Moment of torsion spring k on its second body, N m.
   double torsion_spring_moment(const MechanismState& s, int k) const;
 
+  /// With forces computed; where drivers move or joints rub also after accelerations or recover.
+  MechanismPowers powers(const MechanismState& s) const;
   MechanismEnergy energy(const MechanismState& s) const;
 
   /// The mass (kg) that a generalized force along `direction` (n) meets when it sets the mechanism in motion: the force
