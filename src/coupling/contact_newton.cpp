@@ -7,10 +7,11 @@ namespace traverse::coupling {
 namespace {
 
 constexpr int most_iterations = 40;
-constexpr int kept_iterations = 4;   // of a stage with matrices that are kept
-constexpr int most_tangents = 20;    // of the contacts in one iteration
-constexpr int small_vehicle = 24;    // degrees of freedom up to which its Newton matrix is inverted as a whole
-constexpr double tolerance = 1e-10;  // of the weight: what is left in forces after the last step
+constexpr int kept_iterations = 4;           // of a stage with matrices that are kept
+constexpr int most_tangents = 20;            // of the contacts in one iteration
+constexpr int small_vehicle = 24;            // degrees of freedom up to which its Newton matrix is inverted as a whole
+constexpr double smooth_tolerance = 1e-10;   // of the weight: what is left in forces after the last step
+constexpr double rubbing_tolerance = 1e-12;  // the same with friction, whose slope is steep near sticking
 constexpr double static_tolerance = 1e-13;
 constexpr double best_ratio = 1e-4;  // of two successive changes that is trusted
 constexpr double poor_ratio = 1e-3;  // of successive residuals or changes: what is kept no longer serves
@@ -47,6 +48,9 @@ void respond(const StageData& s, const std::vector<double>& loads, std::vector<d
 bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
   work_.resize(fleet.vehicles.size());
   for (std::vector<double>* v : {&p_, &pd_, &pdd_, &moved_}) v->resize(static_cast<std::size_t>(fleet.freedom()));
+  tolerance_ = smooth_tolerance;
+  for (int i = 0; i < fleet.contacts(); ++i)
+    if (fleet.contact(i).law.friction > 0.0) tolerance_ = rubbing_tolerance;
   const bool found = iterate(fleet, s, x);
   for (MovingVehicle& vehicle : fleet.vehicles) vehicle.rests = false;
   if (!found) return false;
@@ -73,7 +77,7 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
         find_residual(vehicle, w);
       if (vehicle.state.friction.jammed) return false;
       const bool poor = i >= kept_iterations || (i > 1 && !vehicle.rests && contraction_ > poor_ratio) ||
-                        (i > 1 && w.residual > poor_ratio * before && w.residual > tolerance);
+                        (i > 1 && w.residual > poor_ratio * before && w.residual > tolerance_);
       if (poor || !serves(vehicle, w, s, i > 0)) {
         renew(vehicle, static_cast<int>(k), s, statics || i > 0);
         couple = true;
@@ -88,13 +92,14 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
     change_ = update(fleet, x);
     if (!std::isfinite(change_)) return false;
     if (i == 0) {
-      if (kept && !statics && left <= tolerance && second_.negligible(carrying(fleet), change_)) return true;
+      if (kept && !statics && left <= tolerance_ && second_.negligible(carrying(fleet), change_, caution * tolerance_))
+        return true;
       continue;
     }
     if (i == 1) second_.note(kept ? carrying(fleet) : not_alike, before, change_);
     if (settled(statics, kept && i == 1, before, left)) return true;
     for (std::size_t k = 0; k < work_.size(); ++k)
-      fleet.vehicles[k].rests = !statics && work_[k].change * contraction_ <= tolerance;
+      fleet.vehicles[k].rests = !statics && work_[k].change * contraction_ <= tolerance_;
   }
   return false;
 }
@@ -113,13 +118,13 @@ bool ContactNewton::settled(bool statics, bool as_before, double before, double 
     ratio_ = std::min(measured, 1.0);
   }
   if (change_ <= rounding && measured > 0.1) return true;
-  return statics ? change_ <= static_tolerance : change_ * contraction_ <= tolerance && left <= tolerance;
+  return statics ? change_ <= static_tolerance : change_ * contraction_ <= tolerance_ && left <= tolerance_;
 }
 
 // The ratio grows with the first change, at most as this does.
-bool ContactNewton::SecondChange::negligible(int contacts, double change) {
+bool ContactNewton::SecondChange::negligible(int contacts, double change, double limit) {
   const double curved = std::max(1.0, change / first);
-  if (contacts < 0 || contacts != carrying || change * ratio * curved > caution * tolerance) return false;
+  if (contacts < 0 || contacts != carrying || change * ratio * curved > limit) return false;
   ratio *= growth;
   return true;
 }

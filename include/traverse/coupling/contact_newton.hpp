@@ -100,6 +100,7 @@ class ContactNewton {
   CondensedContacts contacts_;
   std::vector<double> loads_, before_, v_, w_, p_, pd_, pdd_;
   std::vector<double> moved_;  // of x since the vehicles were set
+  double tolerance_ = 0.0;     // of the weight
   double change_ = 0.0;
   double contraction_ = 1.0;  // of the changes to come
   /// A stage's second change by its ratio to the first one, as measured last in a stage with kept matrices: where it
@@ -107,7 +108,7 @@ class ContactNewton {
   struct SecondChange {
     double ratio = 1.0, first = 1.0;  // to the first change, and this
     int carrying = -1;                // contacts with force then; -1: none like it
-    bool negligible(int contacts, double change);
+    bool negligible(int contacts, double change, double limit);
     void note(int contacts, double change, double next);
   };
   SecondChange second_;
