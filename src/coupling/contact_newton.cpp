@@ -50,8 +50,12 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
   const bool found = iterate(fleet, s, x);
   for (MovingVehicle& vehicle : fleet.vehicles) vehicle.rests = false;
   if (!found) return false;
-  fleet.element_loads(s.per_node, loads_);
   if (s.shift2 > 0.0) fleet.shift(moved_.data(), s.shift);
+  if (once_) {  // the forces are known, and now where they act
+    beam_field(s, fleet, true);
+    if (!fleet.touch(s.per_node, v_.data(), w_.data())) return false;
+  }
+  fleet.element_loads(s.per_node, loads_);
   return true;
 }
 
@@ -88,7 +92,8 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
     change_ = update(fleet, x);
     if (!std::isfinite(change_)) return false;
     if (i == 0) {
-      if (kept && !statics && left <= tolerance && second_.negligible(carrying(fleet), change_)) return true;
+      once_ = kept && !statics && left <= tolerance && second_.negligible(carrying(fleet), change_);
+      if (once_) return true;
       continue;
     }
     if (i == 1) second_.note(kept ? carrying(fleet) : not_alike, before, change_);
