@@ -318,8 +318,8 @@ void ContactNewton::renew(MovingVehicle& vehicle, int k, const StageData& s, boo
   w.inverse.compute(w.J, statics);
   w.Y.resize(f, rows);
   for (int i = 0; i < rows; ++i) {
-    w.r = left.row(i).transpose();
-    w.inverse.apply(w.r, w.dx);
+    w.s = left.row(i).transpose();
+    w.inverse.apply(w.s, w.dx);
     w.Y.col(i) = w.dx;
   }
   VehicleYield& yield = contacts_.yield(k);
@@ -393,7 +393,9 @@ void ContactNewton::Inverse::compute(const Eigen::MatrixXd& J, bool singular) {
     whole_ = J.completeOrthogonalDecomposition().pseudoInverse();
   } else if (f <= small_vehicle) {
     factors_.compute(J);
-    whole_ = factors_.inverse();
+    whole_ = factors_.permutationP();
+    factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(whole_);
+    factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(whole_);
   } else if (const int band = half_bandwidth(J); 3 * band < f) {
     form_ = Form::band;
     band_.compute(J, band);
