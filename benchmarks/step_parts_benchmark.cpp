@@ -49,12 +49,12 @@ struct Stages {
 
   Stages(const beam::Beam& beam, coupling::BeamOperator& op, const coupling::Method& unit)
       : motion(beam, op, nullptr), method(unit.scaled(step)), v(static_cast<std::size_t>(op.unknowns()), 1e-3), w(v) {
-    motion.prepare(method.step.known);
+    motion.begin(method);
   }
   void solve() {
-    for (const coupling::StageRule& rule : method.stages) motion.solve(rule, v.data(), w.data(), {});
+    for (std::size_t stage = 0; stage < method.stages.size(); ++stage) motion.solve(stage, v.data(), w.data(), {});
   }
-  void finish() { motion.finish(method.step, v.data(), w.data()); }
+  void finish() { motion.finish(v.data(), w.data()); }
 };
 
 /// Steps of a system, again from the start where the train is about to leave.

@@ -73,8 +73,7 @@ Compliance::Place Compliance::place_of(int element) const {
   const solve::Parts* parts = operator_.parts();
   if (parts == nullptr) return {static_cast<std::size_t>(element), 0};
   const int node = line_.first_column + line_.mesh.element(element).left - beam_.first_column();
-  if (node < 0 || node >= beam_.local_columns())
-    return {of_slot_.size() - 1, 0};
+  if (node < 0 || node >= beam_.local_columns()) return {of_slot_.size() - 1, 0};
   const solve::Parts::Part& part = parts->at(node);
   return {kind_slot_[static_cast<std::size_t>(part.kind)] + static_cast<std::size_t>(node - part.first),
           static_cast<int>(part.first) * beam_.block()};
@@ -162,8 +161,7 @@ std::ptrdiff_t Compliance::solve_window(const BeamFactor& factor, int element) {
           end = std::max(end, std::abs(x[size - 1 - i]));
       }
     }
-    if (operator_.shared())
-      MPI_Allreduce(MPI_IN_PLACE, sizes.data(), 2 * m_, MPI_DOUBLE, MPI_MAX, beam_.comm());
+    if (operator_.shared()) MPI_Allreduce(MPI_IN_PLACE, sizes.data(), 2 * m_, MPI_DOUBLE, MPI_MAX, beam_.comm());
     bool died = true;
     for (int j = 0; j < m_; ++j) died = died && sizes[2 * j + 1] <= negligible * sizes[2 * j];
     if (died || margin_ > beam_.columns()) return first;

@@ -54,8 +54,12 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
   const bool found = iterate(fleet, s, x);
   for (MovingVehicle& vehicle : fleet.vehicles) vehicle.rests = false;
   if (!found) return false;
-  fleet.element_loads(s.per_node, loads_);
   if (s.shift2 > 0.0) fleet.shift(moved_.data(), s.shift);
+  if (once_) {  // the forces are known, and now where they act
+    beam_field(s, fleet, true);
+    if (!fleet.touch(s.per_node, v_.data(), w_.data())) return false;
+  }
+  fleet.element_loads(s.per_node, loads_);
   return true;
 }
 
@@ -92,8 +96,9 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
     change_ = update(fleet, x);
     if (!std::isfinite(change_)) return false;
     if (i == 0) {
-      if (kept && !statics && left <= tolerance_ && second_.negligible(carrying(fleet), change_, caution * tolerance_))
-        return true;
+      once_ =
+          kept && !statics && left <= tolerance_ && second_.negligible(carrying(fleet), change_, caution * tolerance_);
+      if (once_) return true;
       continue;
     }
     if (i == 1) second_.note(kept ? carrying(fleet) : not_alike, before, change_);
@@ -318,8 +323,8 @@ void ContactNewton::renew(MovingVehicle& vehicle, int k, const StageData& s, boo
   w.inverse.compute(w.J, statics);
   w.Y.resize(f, rows);
   for (int i = 0; i < rows; ++i) {
-    w.r = left.row(i).transpose();
-    w.inverse.apply(w.r, w.dx);
+    w.s = left.row(i).transpose();
+    w.inverse.apply(w.s, w.dx);
     w.Y.col(i) = w.dx;
   }
   VehicleYield& yield = contacts_.yield(k);
@@ -393,7 +398,9 @@ void ContactNewton::Inverse::compute(const Eigen::MatrixXd& J, bool singular) {
     whole_ = J.completeOrthogonalDecomposition().pseudoInverse();
   } else if (f <= small_vehicle) {
     factors_.compute(J);
-    whole_ = factors_.inverse();
+    whole_ = factors_.permutationP();
+    factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(whole_);
+    factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(whole_);
   } else if (const int band = half_bandwidth(J); 3 * band < f) {
     form_ = Form::band;
     band_.compute(J, band);

@@ -9,9 +9,8 @@ void scale(Weights& weights, double by) {
 
 }  // namespace
 
-Method Method::scaled(double h) const {
-  Method m = *this;
-  for (StageRule& s : m.stages) {
+void Method::scale_to(double h) {
+  for (StageRule& s : stages) {
     s.time *= h;
     s.w_in_v *= h;
     scale(s.a_in_v, h * h);
@@ -19,11 +18,10 @@ Method Method::scaled(double h) const {
     s.rate *= h;
     s.displacement *= h * h;
   }
-  m.step.w_in_v *= h;
-  scale(m.step.a_in_v, h * h);
-  scale(m.step.a_in_w, h);
-  scale(m.step.power, h);
-  return m;
+  step.w_in_v *= h;
+  scale(step.a_in_v, h * h);
+  scale(step.a_in_w, h);
+  scale(step.power, h);
 }
 
 Method esdirk4() {

@@ -191,7 +191,8 @@ void System::take_back_step(double* y) {
 bool System::step_motion(double t, double h, double* y) {
   Motion& m = *motion_;
   if (h != m.length) {
-    m.method = m.unit.scaled(h);
+    m.method = m.unit;
+    m.method.scale_to(h);
     m.length = h;
     if (m.beam) m.beam->begin(m.method);
   }

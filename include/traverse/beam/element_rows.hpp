@@ -25,8 +25,9 @@ class ElementRows {
   static bool fit(const Beam& beam);
   explicit ElementRows(const Beam& beam);
 
-  /// r = K x + M y (null: without M) for this rank's nodes [first, past), at most `tile`. x and y begin at node first - 1 and end at node
-  /// past; what they hold beyond the beam has no effect but has to be finite. `r` begins at node first.
+  /// r = K x + M y (null: without M) for this rank's nodes [first, past), at most `tile`. x and y begin at node first -
+  /// 1 and end at node past; what they hold beyond the beam has no effect but has to be finite. `r` begins at node
+  /// first.
   void multiply(int first, int past, NodalPair x, NodalPair y, NodalPair r) const;
 
  private:

@@ -14,8 +14,8 @@ class Compliance {
  public:
   Compliance(const beam::Beam& beam, BeamOperator& op);
 
-  /// Collective. Prepares the compliance between `elements` for the factorisation of these shifts, with springs added where
-  /// there are some.
+  /// Collective. Prepares the compliance between `elements` for the factorisation of these shifts, with springs added
+  /// where there are some.
   void prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements);
 
   /// Collective. Columns of the beam beyond which nothing is left of a response, for these shifts; 0 where parts of the
@@ -65,11 +65,11 @@ class Compliance {
   const beam::Beam& beam_;
   BeamOperator& operator_;
   const beam::Line& line_;
-  int m_;                              // 2*per_node
-  bool short_parts_ = false;           // statics part by part lose no digits
-  std::vector<std::size_t> kind_slot_;  // of the first element of each kind of part
-  std::list<Column> columns_;          // most recent first
-  std::size_t kept_ = 0;               // doubles in them
+  int m_;                                             // 2*per_node
+  bool short_parts_ = false;                          // statics part by part lose no digits
+  std::vector<std::size_t> kind_slot_;                // of the first element of each kind of part
+  std::list<Column> columns_;                         // most recent first
+  std::size_t kept_ = 0;                              // doubles in them
   std::vector<std::list<Column>::iterator> of_slot_;  // the column of the last prepare's stamp, or the end
   struct Active {
     const Column* column;

@@ -112,6 +112,7 @@ class ContactNewton {
     void note(int contacts, double change, double next);
   };
   SecondChange second_;
+  bool once_ = false;   // left the stage so
   double ratio_ = 1.0;  // of successive changes with the matrices that are kept, as measured last
 };
 

@@ -33,8 +33,8 @@ struct StepRule {
 struct Method {
   std::vector<StageRule> stages;
   StepRule step;
-  /// The same for steps of h, s; this one is for h = 1.
-  Method scaled(double h) const;
+  /// From steps of 1 to steps of h, s.
+  void scale_to(double h);
 };
 
 /// Additive Runge-Kutta ARK4(3)6L[2]SA's implicit part (Kennedy and Carpenter 2003): order 4, L-stable, five implicit

@@ -1,0 +1,112 @@
+// Once a run is under way its steps take no memory from the heap, as long as no wheel enters another element.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "traverse/app/scene.hpp"
+#include "traverse/base/petsc.hpp"
+#include "traverse/integrate/stepper.hpp"
+#include "traverse/options/input.hpp"
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+
+namespace {
+std::atomic<long> allocations = 0;
+}
+
+extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's own name
+extern "C" void* malloc(std::size_t size) {        // NOLINT: counts for this test program
+  ++allocations;
+  return __libc_malloc(size);
+}
+
+namespace traverse::integrate {
+namespace {
+
+using Words = std::vector<std::string>;
+
+const std::string folder = TRAVERSE_SOURCE_DIR "/options/";
+
+Words quarter_car_on_a_span() {
+  return {"-options_file",
+          folder + "scenes/r4_hertz_wheel.yml",
+          "-beam_elements_per_span",
+          "10",
+          "-train_positions",
+          "11.0",
+          "-train_speed",
+          "2.0"};
+}
+
+Words coaches_on_a_continuous_bridge() {
+  return {"-beam_spans",
+          "32.0*4",
+          "-beam_elements_per_span",
+          "10",
+          "-beam_EI",
+          "3.795e11",
+          "-beam_mass",
+          "3.0e4",
+          "-support_types",
+          "roller",
+          "-vehicle_coach_file",
+          folder + "vehicles/s300.yml",
+          "-train_vehicles",
+          "coach*4",
+          "-train_positions",
+          "100.3",
+          "-train_spacing",
+          "25.0",
+          "-train_speed",
+          "2.0"};
+}
+
+/// What 50 steps of 1 ms allocate after 20 that warm up.
+long allocations_of_steps(const Words& scene_words, const std::string& type) {
+  Words words = {"traverse", "-ts_max_time", "0.1", "-ts_type", type};
+  words.insert(words.end(), scene_words.begin(), scene_words.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  base::check(PetscOptionsClear(nullptr));
+  options::Input input = options::read_input(static_cast<int>(argv.size()), argv.data());
+  options::put_into_petsc(input);
+  for (std::size_t i = 1; i + 1 < input.petsc_words.size(); i += 2)
+    base::check(PetscOptionsSetValue(nullptr, input.petsc_words[i].c_str(), input.petsc_words[i + 1].c_str()));
+  const app::Scene scene = app::read_scene();
+  beam::Beam beam(PETSC_COMM_SELF, *scene.beam);
+  beam.set_rayleigh({0.5, 5e-4});
+  coupling::System system(PETSC_COMM_SELF, &beam,
+                          {scene.vehicles, scene.train, scene.load, scene.profile, scene.gravity, false});
+  Stepper stepper(system, {0.1, 1e-3, 0.1, {}, 1e-6});
+  double* y = stepper.state();
+  (void)system.start(true, y);
+  stepper.restore_state(&y);
+  long before = 0, after = 0;
+  stepper.run([](const Instant&) {},
+              [&](double, long steps) {
+                if (steps == 20) before = allocations;
+                if (steps == 70) after = allocations;
+                return steps < 70;
+              });
+  EXPECT_GT(before, 0);  // the counting works
+  return after - before;
+}
+
+TEST(Steps, OfAQuarterCarTakeNoMemory) {
+  for (const char* type : {"esdirk4", "genalpha"})
+    EXPECT_EQ(allocations_of_steps(quarter_car_on_a_span(), type), 0) << type;
+}
+
+TEST(Steps, OfATrainTakeNoMemory) {
+  for (const char* type : {"esdirk4", "genalpha"})
+    EXPECT_EQ(allocations_of_steps(coaches_on_a_continuous_bridge(), type), 0) << type;
+}
+
+}  // namespace
+}  // namespace traverse::integrate
+
+#endif
