@@ -48,7 +48,8 @@ struct Stages {
   std::vector<double> v, w;
 
   Stages(const beam::Beam& beam, coupling::BeamOperator& op, const coupling::Method& unit)
-      : motion(beam, op, nullptr), method(unit.scaled(step)), v(static_cast<std::size_t>(op.unknowns()), 1e-3), w(v) {
+      : motion(beam, op, nullptr), method(unit), v(static_cast<std::size_t>(op.unknowns()), 1e-3), w(v) {
+    method.scale_to(step);
     motion.begin(method);
   }
   void solve() {
