@@ -141,11 +141,11 @@ void ContactNewton::SecondChange::note(int contacts, double change, double next)
   ratio = std::max(next / change, forgetting * ratio);
 }
 
-// The contacts that carry force; no number where a wheel near a kink may touch on either side of it.
+// The contacts that carry force; no number where a wheel near a kink may touch on either side of it, or one rubs.
 int ContactNewton::carrying(const Fleet& fleet) {
   int count = 0;
   for (const WheelContact& c : fleet.wheels) {
-    if (c.candidates > 1 || c.further > 0) return not_alike;
+    if (c.candidates > 1 || c.further > 0 || c.law.friction > 0.0) return not_alike;
     if (c.force.normal != 0.0) ++count;
   }
   return count;

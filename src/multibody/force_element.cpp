@@ -28,7 +28,7 @@ struct Line {
         d((second.origin - first.origin) + (a2 - a1)),
         rate(second.velocity_at(a2) - first.velocity_at(a1)),
         length(d.norm()),
-        u(length > shortest ? Vector2d(d * (1.0 / length)) : Vector2d::Zero()),
+        u(length > shortest ? Vector2d(d / length) : Vector2d::Zero()),
         elastic(s.preload + s.stiffness * (length - s.reference_length)),
         stiffness(s.stiffness),
         damping(s.damping) {
