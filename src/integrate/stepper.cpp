@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "integrator_choice.hpp"
 #include "traverse/integrate/second_order.hpp"
 
 namespace traverse::integrate {
@@ -26,46 +27,6 @@ bool is(TS ts, const char* type) {
   PetscBool same = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<TS>(ts)), type, &same));
   return same == PETSC_TRUE;
-}
-
-std::string option(const char* name, const char* otherwise) {
-  std::array<char, 128> text{};
-  PetscBool given = PETSC_FALSE;
-  check(PetscOptionsGetString(nullptr, nullptr, name, text.data(), text.size(), &given));
-  return given == PETSC_TRUE ? text.data() : otherwise;
-}
-
-bool is_given(const char* name) {
-  PetscBool given = PETSC_FALSE;
-  check(PetscOptionsHasName(nullptr, nullptr, name, &given));
-  return given == PETSC_TRUE;
-}
-
-// The integrator: as given, or the one that the options given belong to. The types named here integrate this system
-// rightly; others fail, some of them without a word.
-std::string chosen_type() {
-  const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
-  const bool for_arkimex =
-      adapt != TSADAPTNONE || is_given("-ts_arkimex_type") || is_given("-ts_arkimex_fully_implicit");
-  const std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : esdirk4_type);
-  constexpr std::array allowed = {esdirk4_type, genalpha_type, TSARKIMEX, TSCN, TSBDF, TSTHETA, TSBEULER, TSRK};
-  if (std::find(allowed.begin(), allowed.end(), type) == allowed.end())
-    throw InputError("ts_type = " + type +
-                     ": does not integrate this system rightly; allowed: esdirk4, genalpha, arkimex, cn, bdf, theta, "
-                     "beuler (implicit), rk (explicit, small scenes)");
-  if (adapt != TSADAPTNONE && (type == esdirk4_type || type == genalpha_type))
-    throw InputError("ts_adapt_type = " + adapt + ": " + type +
-                     " takes steps of one length; allowed: none, or a ts_type of PETSc's own such as arkimex");
-  PetscInt order = 2;
-  check(PetscOptionsGetInt(nullptr, nullptr, "-ts_bdf_order", &order, nullptr));
-  if (order < 1 || order > 2)
-    throw InputError("ts_bdf_order = " + std::to_string(order) +
-                     ": orders above 2 are unstable for lightly damped bridges; allowed: 1, 2");
-  PetscReal radius = 1.0;
-  check(PetscOptionsGetReal(nullptr, nullptr, "-ts_genalpha_radius", &radius, nullptr));
-  if (!(radius >= 0.0 && radius <= 1.0))
-    throw InputError("ts_genalpha_radius = " + std::to_string(radius) + ": allowed: 0 to 1");
-  return type;
 }
 
 struct Array {  // writable entries of a Vec for one scope

@@ -1,0 +1,12 @@
+// Which of the integrators that work here the options ask for.
+#pragma once
+
+#include <string>
+
+namespace traverse::integrate {
+
+/// The type: as given, or the one that the options given belong to. Others than those named in its message fail on this
+/// system, some of them without a word. InputError for these, and for options that do not go with the type.
+std::string chosen_type();
+
+}  // namespace traverse::integrate
