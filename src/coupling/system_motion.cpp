@@ -181,6 +181,7 @@ void System::rate_of_motion(const double* y, double* ydot) const {
 
 void System::take_back_step(double* y) {
   Motion& m = *motion_;
+  m.dissipated = m.before.dissipated;
   m.worked = m.before.worked;
   m.stepped = m.incomplete = false;
   std::copy(m.before.v.begin(), m.before.v.end(), y + m.before.first);
@@ -202,6 +203,7 @@ bool System::step_motion(double t, double h, double* y) {
     m.measuring = operator_->damped() && (m.to_measure || m.unmeasured > 0.999 * interval);
     m.beam->measure(m.measuring);
   }
+  m.before.dissipated = m.dissipated;
   m.before.worked = m.worked;
   if (keep_steps_) {
     const bool range = m.beam && m.beam->fused();

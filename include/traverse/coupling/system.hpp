@@ -180,7 +180,7 @@ class System {
     BeamMotion::Dissipation measured;
     bool measuring = false, to_measure = true;
     struct {
-      double worked = 0.0;
+      double dissipated = 0.0, worked = 0.0;
       int first = 0, past = 0;      // of the beam's unknowns, [first, past)
       std::vector<double> v, w, p;  // there, and y behind the beam's
     } before;
