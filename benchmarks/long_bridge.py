@@ -18,6 +18,7 @@ COACHES = {
     "support_types": "roller", "beam_EI": 3.795e11, "beam_mass": 3.0e4, "beam_damping_ratios": 0.02,
     "beam_elements_per_span": 10}
 METHODS = {
+    "esdirk4, 38 ms": {"ts_dt": 0.038, "step_kinks": "false"},
     "esdirk4, 20 ms": {"ts_dt": 0.02, "step_kinks": "false"},
     "genalpha, 4 ms": {"ts_type": "genalpha", "ts_dt": 4e-3, "step_kinks": "false"},
     "genalpha, 1 ms": {"ts_type": "genalpha", "ts_dt": 1e-3, "step_kinks": "false"}}
