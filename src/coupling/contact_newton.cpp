@@ -9,7 +9,6 @@ namespace {
 constexpr int most_iterations = 40;
 constexpr int kept_iterations = 4;           // of a stage with matrices that are kept
 constexpr int most_tangents = 20;            // of the contacts in one iteration
-constexpr int small_vehicle = 24;            // degrees of freedom up to which its Newton matrix is inverted as a whole
 constexpr double smooth_tolerance = 1e-10;   // of the weight: what is left in forces after the last step
 constexpr double rubbing_tolerance = 1e-12;  // the same with friction, whose slope is steep near sticking
 constexpr double static_tolerance = 1e-13;
@@ -387,44 +386,6 @@ double ContactNewton::update(Fleet& fleet, double* x) {
     change = std::max(change, w.change);
   }
   return change;
-}
-
-void ContactNewton::Inverse::compute(const Eigen::MatrixXd& J, bool singular) {
-  const int f = static_cast<int>(J.rows());
-  form_ = Form::whole;
-  if (f == 0) {
-    whole_.resize(0, 0);
-  } else if (singular) {
-    whole_ = J.completeOrthogonalDecomposition().pseudoInverse();
-  } else if (f <= small_vehicle) {
-    factors_.compute(J);
-    whole_ = factors_.permutationP();
-    factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(whole_);
-    factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(whole_);
-  } else if (const int band = half_bandwidth(J); 3 * band < f) {
-    form_ = Form::band;
-    band_.compute(J, band);
-  } else {
-    form_ = Form::factors;
-    factors_.compute(J);
-  }
-}
-
-void ContactNewton::Inverse::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
-  switch (form_) {
-    case Form::whole:
-      x.noalias() = whole_ * b;
-      break;
-    case Form::band:
-      x = b;
-      band_.solve_in_place(x.data());
-      break;
-    case Form::factors:
-      x = factors_.permutationP() * b;
-      factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(x);
-      factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(x);
-      break;
-  }
 }
 
 }  // namespace traverse::coupling

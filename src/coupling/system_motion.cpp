@@ -8,6 +8,8 @@
 namespace traverse::coupling {
 namespace {
 
+constexpr double measured_steps = 2.0;  // of one stage, from one look at the beam's dissipation to the next
+
 /// Free response of a fused stage, whose vectors v and w are never formed.
 struct FusedResponse final : FreeResponse {
   const BeamMotion& beam;
@@ -17,8 +19,6 @@ struct FusedResponse final : FreeResponse {
       : beam(b), stage(s), v(v_n), w(w_n) {}
   std::pair<double, double> at(int unknown) const override { return beam.state(stage, v, w, unknown); }
 };
-
-constexpr double measured_steps = 2.0;  // of one stage, from one look at the beam's dissipation to the next
 
 struct NoBeam final : FreeResponse {
   std::pair<double, double> at(int) const override { return {}; }

@@ -1,22 +1,10 @@
 // Once a state is made and its partition chosen, an evaluation takes no memory from the heap.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-
+#include "support/counted_memory.hpp"
 #include "unit/mechanism_helpers.hpp"
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
-namespace {
-std::atomic<long> allocations = 0;
-}
-
-extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's own name
-extern "C" void* malloc(std::size_t size) {        // NOLINT: counts for this test program
-  ++allocations;
-  return __libc_malloc(size);
-}
+#ifdef TRAVERSE_COUNTS_MEMORY
 
 namespace traverse::multibody::testing {
 namespace {

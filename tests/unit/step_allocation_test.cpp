@@ -1,28 +1,17 @@
 // Once a run is under way its steps take no memory from the heap, as long as no wheel enters another element.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "support/counted_memory.hpp"
 #include "traverse/app/scene.hpp"
 #include "traverse/base/petsc.hpp"
 #include "traverse/integrate/stepper.hpp"
 #include "traverse/options/input.hpp"
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-
-namespace {
-std::atomic<long> allocations = 0;
-}
-
-extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's own name
-extern "C" void* malloc(std::size_t size) {        // NOLINT: counts for this test program
-  ++allocations;
-  return __libc_malloc(size);
-}
+#ifdef TRAVERSE_COUNTS_MEMORY
 
 namespace traverse::integrate {
 namespace {

@@ -98,24 +98,26 @@ class System {
   bool solve_stage(double t, double shift, const double* c, double* y, Part part);
 
   // In second-order form, without a PETSc stage: what an own integrator takes steps with.
-  // ------------------------------
+
   /// Leaves out of the steps what moves less than `tolerance` of the largest motion (rest_window.hpp); before
   /// begin_motion. Probes' stations rest only when really quiet.
   void leave_out_rest(double tolerance, const std::vector<double>& probes);
   /// Null where everything is stepped.
   const RestWindow* window() const { return motion_ && motion_->window ? &*motion_->window : nullptr; }
-  /// The method of the steps to come; `keep`: so that the last step can be taken back.
+  /// Collective. The method of the steps to come, for steps of 1 s.
   void begin_motion(const Method& method);
+  /// Whether the last step can be taken back.
   void keep_steps(bool keep) { keep_steps_ = keep; }
   /// Collective. Before the first step from a state, and where it was changed from outside.
   void restart_motion(double t, double* y);
   /// Collective. One step of h from t; y is left as it is, and the result false, where a stage has no solution. Spans
   /// that do not touch those under the loads follow in accept().
   bool step_motion(double t, double h, double* y);
-  /// Of the state that the last step led to; false where the method's own acceleration is not that of the state.
+  /// Whether rate_of_motion serves: not where a method's own acceleration is another one than the state's.
   bool knows_rate() const {
     return motion_ && motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
   }
+  /// y' of the state that the last step led to, as `rate` gives it, but for D' and W', which are left 0.
   void rate_of_motion(const double* y, double* ydot) const;
   /// Puts y back to where the last step began; a restart has to follow.
   void take_back_step(double* y);

@@ -1,0 +1,50 @@
+// The inverse of a vehicle's Newton matrix, in the form that suits its size.
+
+#include "traverse/coupling/contact_newton.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+constexpr int small_vehicle = 24;  // degrees of freedom up to which its Newton matrix is inverted as a whole
+
+}  // namespace
+
+void ContactNewton::Inverse::compute(const Eigen::MatrixXd& J, bool singular) {
+  const int f = static_cast<int>(J.rows());
+  form_ = Form::whole;
+  if (f == 0) {
+    whole_.resize(0, 0);
+  } else if (singular) {
+    whole_ = J.completeOrthogonalDecomposition().pseudoInverse();
+  } else if (f <= small_vehicle) {
+    factors_.compute(J);
+    whole_ = factors_.permutationP();
+    factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(whole_);
+    factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(whole_);
+  } else if (const int band = half_bandwidth(J); 3 * band < f) {
+    form_ = Form::band;
+    band_.compute(J, band);
+  } else {
+    form_ = Form::factors;
+    factors_.compute(J);
+  }
+}
+
+void ContactNewton::Inverse::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
+  switch (form_) {
+    case Form::whole:
+      x.noalias() = whole_ * b;
+      break;
+    case Form::band:
+      x = b;
+      band_.solve_in_place(x.data());
+      break;
+    case Form::factors:
+      x = factors_.permutationP() * b;
+      factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(x);
+      factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(x);
+      break;
+  }
+}
+
+}  // namespace traverse::coupling

@@ -1,0 +1,20 @@
+// Counts what a test program takes from the heap. In one source file of a program.
+#pragma once
+
+#include <atomic>
+#include <cstdlib>
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define TRAVERSE_COUNTS_MEMORY
+
+namespace {
+std::atomic<long> allocations = 0;
+}
+
+extern "C" void* __libc_malloc(std::size_t size);  // NOLINT: the C library's own name
+extern "C" void* malloc(std::size_t size) {        // NOLINT: counts for this test program
+  ++allocations;
+  return __libc_malloc(size);
+}
+
+#endif
