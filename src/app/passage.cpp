@@ -36,7 +36,8 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
                               system_.fleet().members.size(), system_.freedom(), scene.load.forces.size()));
   if (!still_)
     notes.push_back(
-        fmt::format("integrator {} to {:g} s, samples every {:g} s", method, plan_.end_time, plan_.interval));
+        fmt::format("integrator {} to {:g} s, samples every {:g} s", method, plan_.end_time,
+                                plan_.interval * plan_.stored));
 }
 
 void Passage::leave_out_rest(std::vector<std::string>& notes) {

@@ -52,21 +52,9 @@ void check_step(const Scene& scene, const Plan& plan) {
                                  plan.time_step, crossing, crossing / least_steps_a_span));
 }
 
-// The shortest time in which the train's wheels run over a wave of the track, or over one of their own.
-double shortest_excitation(const Scene& scene) {
-  double wave = scene.profile.shortest_wave();
-  for (const int index : scene.train.vehicles)
-    for (const Wheel& wheel : scene.vehicles[static_cast<std::size_t>(index)].wheels) {
-      if (wheel.shape.flat_length > 0.0) wave = std::min(wave, wheel.shape.flat_length);
-      if (wheel.shape.polygon_amplitude > 0.0)
-        wave = std::min(wave, 2.0 * std::numbers::pi * wheel.radius / wheel.shape.polygon_order);
-    }
-  return wave / scene.train.speed;
-}
-
 double chosen_step(const Scene& scene, double first_period, std::vector<std::string>& notes) {
   const double finer = std::pow(scene.accuracy / 1e-3, 0.25);
-  const double wave_step = round_down(std::min(shortest_excitation(scene), 1e6) / steps_a_wave * finer);
+  const double wave_step = round_down(std::min(shortest_wave(scene) / scene.train.speed, 1e6) / steps_a_wave * finer);
   const auto by_waves = [&] {
     notes.push_back(
         fmt::format("time step {:g} s: from accuracy {:g} and the shortest wave of track and wheels; -ts_dt changes it",
@@ -102,6 +90,17 @@ void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector
 
 }  // namespace
 
+double shortest_wave(const Scene& scene) {
+  double wave = scene.profile.shortest_wave();
+  for (const int index : scene.train.vehicles)
+    for (const Wheel& wheel : scene.vehicles[static_cast<std::size_t>(index)].wheels) {
+      if (wheel.shape.flat_length > 0.0) wave = std::min(wave, wheel.shape.flat_length);
+      if (wheel.shape.polygon_amplitude > 0.0)
+        wave = std::min(wave, 2.0 * std::numbers::pi * wheel.radius / wheel.shape.polygon_order);
+    }
+  return wave;
+}
+
 Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
                std::vector<std::string>& notes) {
   Plan plan;
@@ -119,11 +118,16 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   check_step(scene, plan);
   if (scene.output.interval) {
     plan.interval = *scene.output.interval;
-    if (plan.interval < plan.time_step)
+    if (scene.peaks_at_steps) {
+      plan.stored = static_cast<int>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
+      plan.interval /= plan.stored;
+    }
+    if (plan.interval * plan.stored < plan.time_step)
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
-    plan.interval = plan.time_step * std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples));
+    plan.interval = plan.time_step;
+    plan.stored = static_cast<int>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples)));
   }
   return plan;
 }

@@ -25,6 +25,13 @@ void catch_signals() {
 
 int caught_signal() { return caught; }
 
+int signal_on_any(MPI_Comm comm) {
+  int ranks = 1, signal = caught_signal();
+  MPI_Comm_size(comm, &ranks);
+  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &signal, 1, MPI_INT, MPI_MAX, comm);
+  return signal;
+}
+
 std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);

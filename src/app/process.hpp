@@ -16,6 +16,8 @@ namespace traverse::app {
 void catch_signals();
 /// The signal that asks the run to end, or 0.
 int caught_signal();
+/// Collective. The signal of any rank of comm.
+int signal_on_any(MPI_Comm comm);
 
 std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene);
 /// Rank 0 of comm says what was modelled.

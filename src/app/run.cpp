@@ -7,6 +7,8 @@
 #include <numbers>
 
 #include "process.hpp"
+#include "traverse/app/accuracy.hpp"
+#include "trials.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/app/study.hpp"
 #include "traverse/app/transient.hpp"
@@ -62,12 +64,39 @@ double total(MPI_Comm comm, double share) {
   return share;
 }
 
-int run_transient(MPI_Comm comm, const Scene& scene, Structure& structure, std::vector<std::string> notes) {
+/// The promise against what a refined run gives. False where it is broken.
+bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const Peaks& peaks) {
+  const Scene fine = refined(scene);
+  const Peaks truth = peaks_of(comm, fine);
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  bool all_kept = true;
+  if (rank == 0)
+    fmt::print("accuracy, against half the step and elements half as long\n  {:<22}{:>12}{:>12}{:>12}\n", "peak of",
+               "wanted", "expected", "true");
+  for (std::size_t i = 0; i < quantities; ++i) {
+    const Promise& promise = accuracy.promises[i];
+    const auto q = static_cast<Quantity>(i);
+    if (truth.largest(q).value == 0.0) continue;
+    const double error = peak_difference(peaks, truth, q);
+    const bool broken = promise.kept && error > scene.accuracy;
+    all_kept = all_kept && !broken;
+    if (rank != 0) continue;
+    fmt::print("  {:<22}{:>12}{:>12}{:>12.1e}{}\n", quantity_names[i],
+               promise.kept ? fmt::format("{:.1e}", scene.accuracy) : "-",
+               promise.kept ? fmt::format("{:.1e}", promise.expected) : "-", error,
+               broken ? "  broken" : promise.kept ? "  kept" : "  not promised");
+  }
+  return all_kept;
+}
+
+int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, Structure& structure,
+                  std::vector<std::string> notes) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const bool still = scene.analysis == Analysis::static_response;
   const beam::Beam* beam = structure.bridge();
-  if (beam != nullptr) structure.damp(scene, !still && (!scene.time_step || scene.model_modes > 0), notes);
+  if (beam != nullptr) structure.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0), notes);
   structure.prepare(scene, notes);
   Passage passage(scene, structure, notes);  // everything is checked before anything is computed
   coupling::System& system = passage.system();
@@ -84,7 +113,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, Structure& structure, std::
                              scene.options);
   store_modes(structure, recorder);
   if (structure.beam) structure.beam->release_matrices();
-  Watch watch(scene, system, beam, recorder);
+  Watch watch(scene, system, beam, recorder, passage.plan().stored);
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
   auto summarise = [&](const std::string& ended) {
@@ -101,17 +130,14 @@ int run_transient(MPI_Comm comm, const Scene& scene, Structure& structure, std::
     if (rank == 0) results::print_summary(summary, scene.output.file);
     return summary;
   };
-  int stopped = 0, ranks = 1;
-  MPI_Comm_size(comm, &ranks);
+  int stopped = 0;
   try {
     passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
                 [&](double t, long steps) {
                   watch.step(t);
                   progress.update(t, steps);
-                  int signal = caught_signal();
-                  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &signal, 1, MPI_INT, MPI_MAX, comm);
-                  stopped = signal;
-                  return signal == 0;
+                  stopped = signal_on_any(comm);
+                  return stopped == 0;
                 });
   } catch (const FileError& error) {
     leave_together(comm, error);
@@ -135,19 +161,26 @@ int run_transient(MPI_Comm comm, const Scene& scene, Structure& structure, std::
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
   check_balance(summary);
+  if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
+      !report(comm, scene, accuracy, watch.finished_peaks()))
+    throw SolverError(fmt::format(
+        "the accuracy of {:g} was not kept (above); take a smaller -accuracy, and please report the scene",
+        scene.accuracy));
   return stopped == 0 ? 0 : 128 + stopped;
 }
 
 }  // namespace
 
-int run(MPI_Comm comm, const Scene& scene) {
+int run(MPI_Comm comm, const Scene& given) {
   catch_signals();
-  if (scene.sweep) return run_sweep(comm, scene);
+  if (given.sweep) return run_sweep(comm, given);
+  Scene scene = given;
   std::vector<std::string> notes;
+  const Accuracy accuracy = choose(comm, scene, notes);
   Structure structure(comm, scene, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   if (scene.analysis == Analysis::modes) return run_modes(comm, scene, structure, std::move(notes));
-  return run_transient(comm, scene, structure, std::move(notes));
+  return run_transient(comm, scene, accuracy, structure, std::move(notes));
 }
 
 }  // namespace traverse::app

@@ -46,6 +46,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.step_kinks = o.flag("step_kinks");
   scene.rest_tolerance = read_window(o);
   scene.accuracy = o.number("accuracy");
+  scene.accuracy_report = o.flag("accuracy_report");
 }
 
 void read_probes(const Options& o, Scene& scene) {

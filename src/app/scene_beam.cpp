@@ -30,8 +30,7 @@ void read_mesh(const Options& o, Scene& scene) {
   } else {
     const int chosen = elements_from_accuracy(scene.accuracy);
     beam.elements.assign(spans, chosen);
-    if (!o.has("track_rail_EI"))
-      scene.notes.push_back(fmt::format("{} elements a span, for an accuracy of {:g}", chosen, scene.accuracy));
+    scene.mesh_open = true;
   }
   if (std::accumulate(beam.elements.begin(), beam.elements.end(), 0.0) > most_elements) {
     o.refuse(o.has("beam_elements_per_span") ? "beam_elements_per_span" : "beam_spans",

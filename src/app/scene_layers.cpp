@@ -64,6 +64,7 @@ void read_layers(const Options& o, Scene& scene) {
   track.spacing = o.number("track_spacing");
   track.offset = std::fmod(o.number("track_offset"), track.spacing);
   track.elements_per_bay = o.integer("track_elements_per_bay");
+  scene.mesh_open = !o.has("track_elements_per_bay");
   track.pad = {o.number("track_pad_k"), o.number("track_pad_c")};
   track.sleeper_mass = o.number("track_sleeper_mass");
   track.ballast = read_optional_layer(o, "ballast");

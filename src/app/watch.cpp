@@ -17,10 +17,6 @@ std::array<double, 3> triple(const Eigen::VectorXd& x, std::size_t body) {
   return {x[i], x[i + 1], x[i + 2]};
 }
 
-void note(results::Extreme& extreme, double value, double time, double place) {
-  if (std::abs(value) > std::abs(extreme.value)) extreme = {value, time, place};
-}
-
 }  // namespace
 
 void check_balance(const results::Summary& summary) {
@@ -31,13 +27,16 @@ void check_balance(const results::Summary& summary) {
                     summary.energy_residual, summary.energy_scale));
 }
 
-Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
-    : scene_(scene), system_(system), beam_(beam), recorder_(recorder) {
+Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
+             int stored)
+    : scene_(scene), system_(system), beam_(beam), recorder_(recorder), stored_(stored) {
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     ground_.emplace(*beam);
     if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
   }
+  for (const coupling::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
+  peaks_ = Peaks(passages_of(scene), wheel_count_);
   summary_.least_wheel_force = std::numeric_limits<double>::infinity();
 }
 
@@ -64,7 +63,7 @@ void Watch::sample(const integrate::Instant& instant) {
                     e.dissipated, e.work,   stored - energy_at_start_ + e.dissipated - e.work};
   note_extremes(sample_, v);
   first_ = false;
-  recorder_.add(sample_);
+  if (samples_++ % stored_ == 0) recorder_.add(sample_);
 }
 
 // Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
@@ -125,14 +124,18 @@ void Watch::fill_fields(const double* v, const double* w) {
 }
 
 void Watch::note_extremes(const results::Sample& sample, const double* v) {
-  const double before = std::abs(summary_.deflection.value);
-  for (std::size_t i = 0; i < sample.probes.size(); ++i) {
-    const double x = scene_.output.probes[i];
-    note(summary_.deflection, sample.probes[i].deflection, sample.time, x);
-    note(summary_.acceleration, sample.probes[i].acceleration, sample.time, x);
-    note(summary_.moment, sample.probes[i].moment, sample.time, x);
+  wheel_forces_.clear();
+  for (std::size_t k = 0; k < sample.vehicles.size(); ++k)
+    for (std::size_t i = 0; i < system_.fleet().members[k].type->wheels.size(); ++i)
+      wheel_forces_.push_back(sample.vehicles[k].wheels[i].normal_force);
+  peaks_.add(sample.time, sample.probes, wheel_forces_);
+  double deflected = 0.0;
+  for (const beam::Response& probe : sample.probes) deflected = std::max(deflected, std::abs(probe.deflection));
+  if (deflected > most_deflected_) {
+    most_deflected_ = deflected;
+    most_deflected_time_ = sample.time;
+    worst_shape_.assign(v, v + system_.beam_unknowns());
   }
-  if (std::abs(summary_.deflection.value) > before) worst_shape_.assign(v, v + system_.beam_unknowns());
   const results::Sample::Energy& e = sample.energy;
   summary_.energy_residual = std::max(summary_.energy_residual, std::abs(e.residual));
   for (double term : {e.kinetic, e.strain, e.potential, e.dissipated, e.work})
@@ -169,7 +172,25 @@ void Watch::note_separations() {
   recorder_.separations(list);
 }
 
+const Peaks& Watch::finished_peaks() {
+  if (!finished_) peaks_.finish();
+  finished_ = true;
+  return peaks_;
+}
+
 results::Summary Watch::finish() {
+  if (samples_ > 0 && (samples_ - 1) % stored_ != 0) recorder_.add(sample_);
+  const Peaks& peaks = finished_peaks();
+  const auto extreme = [&](Quantity q) {
+    const Peak& peak = peaks.largest(q);
+    return results::Extreme{peak.value, peak.time, scene_.output.probes[static_cast<std::size_t>(peak.place)]};
+  };
+  if (!scene_.output.probes.empty()) {
+    summary_.deflection = extreme(deflection);
+    summary_.acceleration = extreme(acceleration);
+    summary_.moment = extreme(moment);
+  }
+  summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, peaks.largest(wheel_force).value);
   note_separations();
   if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
   if (beam_ == nullptr) return summary_;
@@ -180,7 +201,7 @@ results::Summary Watch::finish() {
     summary_.static_deflection = system_.static_peak(summary_.deflection.place);
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
-  results::Shape shape{summary_.deflection.time, std::vector<double>(beam_->mesh().nodes(), 0.0)};
+  results::Shape shape{most_deflected_time_, std::vector<double>(beam_->mesh().nodes(), 0.0)};
   for (int node = 0; node < beam_->mesh().nodes(); ++node) {
     const int local = beam_->local(beam_->bridge().unknown(node, 1));
     if (local >= 0) shape.deflection[node] = worst_shape_[local];

@@ -106,6 +106,7 @@ constexpr Row rows[] = {
   {"step_kinks", flag, "", "true", any, "", 0, "steps end where wheels pass kinks of their way, such as span ends; needed for orders above 2"},
   {"contact_impact_steps", integer, "", "20", {0, 100000}, "", 0, "steps that an impact after a separation takes at least; 0: as the step is"},
   {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where left open"},
+  {"accuracy_report", flag, "", "false", any, "", 0, "runs the scene again, refined, and shows promised and true errors"},
 
   {"model_axial", choice, "", "auto", any, "auto true false", 0, "axial unknowns of the beam; auto: where there is longitudinal action"},
   {"model_modes", text, "", "auto", any, "", 0, "moving forces only: the bridge by so many natural modes, exact in time; auto or 0: by its elements"},

@@ -12,11 +12,15 @@ namespace traverse::app {
 struct Plan {
   double end_time = 0.0;   // s
   double time_step = 0.0;  // s
-  double interval = 0.0;   // s between stored samples
+  double interval = 0.0;   // s between samples
+  int stored = 1;          // every so many samples one is stored
 };
 
 /// Fills in what the user left open and says so in `notes`. first_period: of the beam (s), 0 where not known.
 /// InputError when the scene has no end.
+/// m: the shortest wave of the track or of a wheel out of round; infinite where all is smooth.
+double shortest_wave(const Scene& scene);
+
 Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
                std::vector<std::string>& notes);
 

@@ -67,6 +67,9 @@ struct Scene {
   bool step_kinks = true;        // steps end where wheels pass kinks
   double rest_tolerance = -1.0;  // model_window; -1: auto
   double accuracy = 1e-3;
+  bool mesh_open = false;        // its elements are chosen from the accuracy
+  bool peaks_at_steps = false;   // peaks are looked for at every step, between stored samples too
+  bool accuracy_report = false;  // a refined run at the end shows the true errors
   Output output;
   bool quiet = false;                                        // -output_quiet: no progress
   std::vector<std::string> notes;                            // what was chosen and why, one line each

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "traverse/app/peaks.hpp"
 #include "traverse/app/plan.hpp"
 #include "traverse/app/scene.hpp"
 #include "traverse/beam/ground_forces.hpp"
@@ -18,7 +19,9 @@ namespace traverse::app {
 /// Watches stored instants and steps: samples for the recorder, extremes for the summary.
 class Watch {
  public:
-  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder);
+  /// Of the samples that come, every `stored`-th goes into the recorder.
+  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
+        int stored = 1);
 
   void sample(const integrate::Instant& instant);
   void step(double t);
@@ -27,6 +30,8 @@ class Watch {
   /// What was seen last.
   const results::Sample& last() const { return sample_; }
   const results::Summary& extremes() const { return summary_; }
+  /// The extremes so far, after the last sample.
+  const Peaks& finished_peaks();
 
  private:
   void fill_vehicles(results::Sample& sample) const;
@@ -42,9 +47,16 @@ class Watch {
   std::optional<beam::Recovery> recovery_, rail_recovery_;
   std::optional<beam::GroundForces> ground_;
   std::vector<beam::Response> rail_, dragged_;
+  Peaks peaks_;
+  std::vector<double> wheel_forces_;
+  int stored_;
+  long samples_ = 0;
+  std::size_t wheel_count_ = 0;
+  bool finished_ = false;
   coupling::Observation observation_;
   results::Sample sample_;
   results::Summary summary_;
+  double most_deflected_ = 0.0, most_deflected_time_ = 0.0;  // m, s
   std::vector<double> worst_shape_;  // nodal unknowns of this rank at the largest deflection
   double energy_at_start_ = 0.0;
   bool first_ = true;

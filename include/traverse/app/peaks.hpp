@@ -1,0 +1,91 @@
+// Extremes of sampled curves, of whose errors `accuracy` speaks. Between samples they are those of parabolas; where a
+// wheel passes a probe the moment has a kink, where the parabolas of either side meet.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "traverse/app/scene.hpp"
+#include "traverse/beam/recovery.hpp"
+
+namespace traverse::app {
+
+enum Quantity : std::size_t { deflection, acceleration, moment, wheel_force, quantities };
+inline constexpr std::array<const char*, quantities> quantity_names = {"deflection", "acceleration", "moment",
+                                                                       "wheel force"};
+
+struct Peak {
+  double value = 0.0;  // signed
+  double time = 0.0;   // s
+  int place = 0;       // probe or wheel
+};
+
+/// Where a curve may have kinks: ascending times (s), each known up to `uncertain` s.
+struct Kinks {
+  std::vector<double> times;
+  double uncertain = 0.0;
+};
+
+/// The extremes of one curve, as samples come.
+class Curve {
+ public:
+  /// Calls note(value, time) for every extreme that is known with this sample.
+  template <class Note>
+  void add(double t, double value, const Kinks& kinks, Note&& note);
+  /// After the last sample: its value counts too.
+  template <class Note>
+  void finish(Note&& note) const {
+    if (count_ > 0) note(value_[last], time_[last]);
+  }
+
+ private:
+  static constexpr std::size_t width = 8, last = width - 1;
+  struct Point {
+    double value, slope;
+  };
+  Point parabola(std::size_t first, double t) const;
+  Peak where_sides_meet(double at, double uncertain) const;
+  template <class Note>
+  void at_kinks(const Kinks& kinks, Note&& note);
+
+  std::array<double, width> time_{}, value_{};  // the latest samples, the last one at the end
+  std::size_t count_ = 0, kink_ = 0;
+};
+
+/// The extremes of a run: those above half of the largest so far.
+class Peaks {
+ public:
+  Peaks() = default;
+  /// passages: of each probe, when something passes it.
+  Peaks(std::vector<Kinks> passages, std::size_t wheels);
+
+  void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
+  void finish();
+
+  const std::vector<Peak>& of(Quantity q) const { return found_[q]; }
+  const Peak& largest(Quantity q) const { return largest_[q]; }
+
+ private:
+  void note(Quantity q, std::size_t place, double value, double time);
+
+  std::vector<Kinks> passages_;
+  std::vector<std::array<Curve, wheel_force>> probes_;
+  std::vector<Curve> wheels_;
+  std::array<std::vector<Peak>, quantities> found_;
+  std::array<Peak, quantities> largest_{};
+};
+
+/// What the largest extremes of two runs differ by, relative to them: or what those near them (above 0.9) that lie in
+/// both within `reach` s of each other let expect, where the largest ones agree by chance. 0 where there are none.
+double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reach);
+
+/// What the largest ones alone differ by.
+double peak_difference(const Peaks& rough, const Peaks& fine, Quantity q);
+
+/// When wheels and forces pass each probe of the scene, where their x is known beforehand and the beam carries them
+/// itself; else none.
+std::vector<Kinks> passages_of(const Scene& scene);
+
+}  // namespace traverse::app

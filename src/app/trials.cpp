@@ -1,0 +1,133 @@
+#include "trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "process.hpp"
+#include "traverse/app/passage.hpp"
+#include "traverse/app/transient.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
+constexpr std::size_t few_spans = 24;    // are all kept
+constexpr int least_elements = 4;
+constexpr double behind = 1.1;           // spans, until what the last wheel does as it leaves is seen
+
+/// x of the foremost and the rearmost wheel of a vehicle of the train at t = 0.
+std::pair<double, double> wheels_of(const Scene& scene, std::size_t i) {
+  const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])];
+  std::pair<double, double> ends = {-1e300, 1e300};
+  for (const Wheel& wheel : vehicle.wheels) {
+    const double x =
+        scene.train.positions[i] + vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].position.x();
+    ends = {std::max(ends.first, x), std::min(ends.second, x)};
+  }
+  return ends;
+}
+
+void leave_out_vehicles(Scene& scene, double end) {
+  Train& train = scene.train;
+  if (train.drive != coupling::Drive::constant || !train.couplers.empty()) return;
+  std::size_t count = 1;
+  for (std::size_t i = 1; i < train.vehicles.size(); ++i)
+    if (wheels_of(scene, i).first + train.speed * end > 0.0) count = i + 1;
+  count = std::min(count, train.vehicles.size());
+  train.vehicles.resize(count);
+  train.positions.resize(count);
+}
+
+void leave_out_spans(Scene& scene, double end) {
+  beam::BeamModel& beam = *scene.beam;
+  const beam::Foundation& f = beam.foundation;
+  const bool founded = f.vertical_bed || f.longitudinal_bed || !f.vertical.empty() || !f.longitudinal.empty() ||
+                       !f.rotational.empty();
+  const bool plain = !founded && !beam.track && beam.hinges.empty();
+  if (!plain || beam.spans.size() <= few_spans || scene.train.drive != coupling::Drive::constant) return;
+  double front = scene.output.probes.empty() ? 0.0 : scene.output.probes.front();
+  if (!scene.train.vehicles.empty()) front = std::max(front, wheels_of(scene, 0).first + scene.train.speed * end);
+  for (const double x : scene.load.positions) front = std::max(front, x + scene.load.speed * end);
+  std::size_t count = 0;
+  for (double x = 0.0; count < beam.spans.size() && x < front; ++count) x += beam.spans[count];
+  count = std::min(beam.spans.size(), count + margin_spans);
+  beam.spans.resize(count);
+  beam.elements.resize(count);
+  beam.supports.resize(count + 1);
+  if (beam.joints.size() > 1) beam.joints.resize(count - 1);
+  std::erase_if(scene.output.probes, [&](double x) { return x > beam.length(); });
+}
+
+}  // namespace
+
+void set_mesh(Scene& scene, int elements) {
+  beam::BeamModel& beam = *scene.beam;
+  if (beam.track) {
+    beam.track->elements_per_bay = elements;
+    return;
+  }
+  const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
+  for (std::size_t i = 0; i < beam.spans.size(); ++i)
+    beam.elements[i] =
+        std::max(std::min(elements, least_elements),
+                 2 * static_cast<int>(std::ceil(0.5 * elements * beam.spans[i] / longest * (1.0 - 1e-9))));
+}
+
+int mesh_of(const Scene& scene) {
+  return scene.beam->track ? scene.beam->track->elements_per_bay
+                           : *std::max_element(scene.beam->elements.begin(), scene.beam->elements.end());
+}
+
+double beginning(const Scene& scene, double end) {
+  const std::vector<double>& spans = scene.beam->spans;
+  const double reach = behind * (spans[0] + (spans.size() == 2 ? spans[1] : 0.0));
+  const auto crossing = [&](double rear, double speed) { return speed > 0.0 ? (reach - rear) / speed : end; };
+  double until = 0.0;
+  if (!scene.train.vehicles.empty())
+    until = scene.train.drive == coupling::Drive::constant
+                ? crossing(wheels_of(scene, 0).second, scene.train.speed)
+                : end;
+  if (!scene.load.forces.empty()) {
+    std::vector<double> positions = scene.load.positions;
+    std::sort(positions.begin(), positions.end(), std::greater<>());
+    until = std::max(until, crossing(positions[std::min<std::size_t>(3, positions.size() - 1)], scene.load.speed));
+  }
+  return until > 0.0 && until < end ? until : end;
+}
+
+Scene shortened(const Scene& scene, double end) {
+  Scene part = scene;
+  part.end_time = end;
+  part.quiet = true;
+  leave_out_vehicles(part, end);
+  leave_out_spans(part, end);
+  return part;
+}
+
+Peaks peaks_of(MPI_Comm comm, const Scene& scene) {
+  std::vector<std::string> ignored;
+  Structure structure(comm, scene, ignored);
+  structure.damp(scene, false, ignored);
+  structure.prepare(scene, ignored);
+  Passage passage(scene, structure, ignored);
+  passage.start(ignored);
+  structure.beam->release_matrices();
+  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
+  Watch watch(scene, passage.system(), structure.bridge(), none);
+  passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
+              [&](double t, long) {
+                watch.step(t);
+                return signal_on_any(comm) == 0;
+              });
+  return watch.finished_peaks();
+}
+
+const Peaks& Trials::run(int elements, double step) {
+  if (const auto known = kept_.find({elements, step}); known != kept_.end()) return known->second;
+  Scene scene = scene_;
+  set_mesh(scene, elements);
+  scene.time_step = scene.output.interval = step;
+  return kept_.emplace(std::pair{elements, step}, peaks_of(comm_, scene)).first->second;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,43 @@
+// Runs of the beginning of a scene with several meshes and steps, to see what these change.
+#pragma once
+
+#include <mpi.h>
+
+#include <map>
+#include <utility>
+
+#include "traverse/app/peaks.hpp"
+#include "traverse/app/scene.hpp"
+
+namespace traverse::app {
+
+/// Elements of the longest span, the others in proportion and even; with a layered track elements of the rail a bay.
+void set_mesh(Scene& scene, int elements);
+int mesh_of(const Scene& scene);
+
+/// When the first vehicle, or the first forces, have crossed two spans (one where there is only one), s; at most `end`.
+double beginning(const Scene& scene, double end);
+
+/// The part of the scene that moves until then: vehicles that come onto the beam later and spans that nothing reaches
+/// are left out.
+Scene shortened(const Scene& scene, double end);
+
+/// Collective. The peaks of a run of the scene, whose step is given, sampled at every step.
+Peaks peaks_of(MPI_Comm comm, const Scene& scene);
+
+class Trials {
+ public:
+  Trials(MPI_Comm comm, Scene scene) : comm_(comm), scene_(std::move(scene)) {}
+
+  /// Collective. The peaks of a run; kept.
+  const Peaks& run(int elements, double step);
+  bool has(int elements, double step) const { return kept_.contains({elements, step}); }
+  std::size_t count() const { return kept_.size(); }
+
+ private:
+  MPI_Comm comm_;
+  Scene scene_;
+  std::map<std::pair<int, double>, Peaks> kept_;
+};
+
+}  // namespace traverse::app
