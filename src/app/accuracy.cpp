@@ -26,7 +26,7 @@ constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 
 constexpr double a_contact = 1.0;        // of the first step times the frequency of contacts, rad
 constexpr double finest_start = 64.0;    // times what the rest of the scene needs
 constexpr double waves_a_period = 12.0, waves_a_crossing = 24.0, waves_a_bump = 8.0;  // steps of the first trial
-constexpr double finest = 128.0;       // times the first step
+constexpr double finest = 32.0;        // times the first step
 
 /// The largest number of two digits that does not exceed x.
 double two_digits(double x) {
@@ -140,7 +140,7 @@ class Search {
     const int mesh = open_mesh_ ? chosen_mesh(fewer) : mesh_;
     set_mesh(scene, mesh);
     scene.time_step = step;
-    scene.peaks_at_steps = true;
+    scene.step_probes = true;
     for (std::size_t q = 0; q < quantities; ++q) {
       Promise& promise = result.promises[q] = promises_[q];
       const double rate = coarser_ && step > step_ && time_[q].value > 0.0
@@ -223,8 +223,11 @@ class Search {
     for (std::size_t q = 0; q < quantities; ++q) {
       const Error &t = time_[q], &s = space_[q];
       const bool slow = s.known && s.order < unsettled && 4 * mesh_ > most_elements_;
+      crawls_[q] = t.known && t.order < 1.0 - 0.5 * unsettled && 4.0 * step_ <= first_step_ ? crawls_[q] + 1 : 0;
       if (open_step_ && room_of(t) < 1.0 && step_ <= first_step_ / finest)
-        refuse(q, fmt::format("steps of {:g} s still leave an error of {:.1g}", step_, t.value));
+        refuse(q, fmt::format("steps of {:.2g} s still leave an error of {:.1g}", step_, t.value));
+      else if (open_step_ && room_of(t) < 1.0 && crawls_[q] > 1)
+        refuse(q, fmt::format("it does not settle as steps are halved ({:.1g} with {:.2g} s)", t.value, step_));
       else if (open_mesh_ && room_of(s) < 1.0 && slow)
         refuse(q, fmt::format("it does not settle as elements are halved ({:.1g} with {} a span)", s.value, mesh_));
       else if (open_mesh_ && room_of(s) < 1.0 / farthest && 2 * mesh_ > most_elements_)
@@ -294,6 +297,7 @@ class Search {
   double omega_ = 0.0, longest_step_ = 1e300, coarsest_step_ = 0.0, first_step_ = 0.0, step_ = 0.0;
   double growth_ = 1.0;  // of errors in time until what was free has died away, for runs longer than the trials
   std::array<Promise, quantities> promises_{};
+  std::array<int, quantities> crawls_{};  // halvings in a row that have changed little
   Errors time_{}, space_{};
   std::optional<Errors> coarser_;  // of twice the step
 };

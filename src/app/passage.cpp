@@ -2,14 +2,31 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "traverse/app/peaks.hpp"
+
 namespace traverse::app {
 namespace {
+
+constexpr double rare = 5.0;  // steps for each
 
 coupling::SystemInput system_input(const Scene& scene, bool still) {
   coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,        scene.profile,
                                  scene.gravity,  scene.self_weight, scene.impact_steps};
   if (still) input.train.speed = input.load.speed = 0.0;
   return input;
+}
+
+/// When something passes a probe, as long as that is rare among the steps.
+std::vector<double> passages(const Scene& scene, const Plan& plan) {
+  std::vector<double> times;
+  for (const std::vector<double>& one : passages_of(scene)) times.insert(times.end(), one.begin(), one.end());
+  std::erase_if(times, [&](double t) { return t >= plan.end_time; });
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  if (static_cast<double>(times.size()) * rare > plan.end_time / plan.time_step) times.clear();
+  return times;
 }
 
 }  // namespace
@@ -27,9 +44,11 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
     method = modal_->method();
   } else {
     leave_out_rest(notes);
-    const double tolerance = scene.contact_tolerance.value_or(1e-3 * plan_.time_step);
-    stepper_.emplace(system_, integrate::Settings{plan_.end_time, plan_.time_step, plan_.interval,
-                                                  system_.known_events(plan_.end_time, scene.step_kinks), tolerance});
+    integrate::Settings settings{plan_.end_time, plan_.time_step, plan_.interval, plan_.stored,
+                                 system_.known_events(plan_.end_time, scene.step_kinks)};
+    if (scene.step_probes) settings.passages = passages(scene, plan_);
+    settings.contact_tolerance = scene.contact_tolerance.value_or(1e-3 * plan_.time_step);
+    stepper_.emplace(system_, std::move(settings));
     method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
   }
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",

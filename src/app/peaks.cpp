@@ -9,7 +9,6 @@ namespace {
 constexpr double kept = 0.5;           // of the largest extreme so far
 constexpr double compared = 0.9;       // of the largest one
 constexpr double likely = 1.5;         // times the root mean square: what an extreme's error hardly exceeds
-constexpr double off_centre = 2e-3;    // m: a wheel on a slope touches the beam so far from its centre, at most
 constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
 
 bool between(const std::vector<double>& times, double from, double to) {
@@ -19,58 +18,21 @@ bool between(const std::vector<double>& times, double from, double to) {
 
 }  // namespace
 
-// Through three samples from `first` on.
-Curve::Point Curve::parabola(std::size_t first, double t) const {
-  const double *x = &time_[first], *y = &value_[first];
-  const double slope = (y[1] - y[0]) / (x[1] - x[0]);
-  const double bend = ((y[2] - y[1]) / (x[2] - x[1]) - slope) / (x[2] - x[0]);
-  return {y[0] + (t - x[0]) * (slope + bend * (t - x[1])), slope + bend * (2.0 * t - x[0] - x[1])};
-}
-
-// Of a kink between the middle two of the samples; a sample so near it that it may lie on the other side is not used.
-Peak Curve::where_sides_meet(double at, double uncertain) const {
-  const Point left = parabola(at - time_[3] > uncertain ? 1 : 0, at);
-  const Point right = parabola(time_[4] - at > uncertain ? 4 : 5, at);
-  const double bend = left.slope - right.slope, gap = right.value - left.value;
-  const double shift = std::abs(gap) < std::abs(bend) * uncertain ? gap / bend : 0.0;
-  return {0.5 * (left.value + right.value + shift * (left.slope + right.slope)), at + shift};
-}
-
 template <class Note>
-void Curve::at_kinks(const Kinks& kinks, Note&& note) {
-  const std::vector<double>& times = kinks.times;
-  while (kink_ < times.size() && times[kink_] <= time_[3]) ++kink_;
-  for (; kink_ < times.size() && times[kink_] <= time_[4]; ++kink_) {
-    const bool others = (kink_ > 0 && times[kink_ - 1] >= time_[0]) ||
-                        (kink_ + 1 < times.size() && times[kink_ + 1] <= time_[last]);
-    const std::size_t larger = std::abs(value_[3]) > std::abs(value_[4]) ? 3 : 4;
-    const Peak peak =
-        others ? Peak{value_[larger], time_[larger]} : where_sides_meet(times[kink_], kinks.uncertain);
-    note(peak.value, peak.time);
-  }
-}
-
-template <class Note>
-void Curve::add(double t, double value, const Kinks& kinks, Note&& note) {
-  std::copy(time_.begin() + 1, time_.end(), time_.begin());
-  std::copy(value_.begin() + 1, value_.end(), value_.begin());
-  time_[last] = t;
-  value_[last] = value;
+void Curve::add(double t, double value, const std::vector<double>& kinks, Note&& note) {
+  time_ = {time_[1], time_[2], t};
+  value_ = {value_[1], value_[2], value};
   if (++count_ == 1) return note(value, t);
-  if (count_ < 3) return;
-  const double before = value_[last - 2], middle = value_[last - 1];
-  const bool highest = std::abs(middle) >= std::abs(before) && std::abs(middle) > std::abs(value);
-  if (highest && (count_ < width || !between(kinks.times, time_[last - 2], t))) {
-    const double dt1 = time_[last - 1] - time_[last - 2], dt2 = t - time_[last - 1];
-    const double slope = ((middle - before) / dt1 * dt2 + (value - middle) / dt2 * dt1) / (dt1 + dt2);
-    const double bend = ((value - middle) / dt2 - (middle - before) / dt1) / (dt1 + dt2);
-    const double shift = before * value > 0.0 ? -slope / (2.0 * bend) : 0.0;
-    note(middle + 0.5 * slope * shift, time_[last - 1] + shift);
-  }
-  if (count_ >= width) at_kinks(kinks, note);
+  if (count_ < 3 || std::abs(value_[1]) < std::abs(value_[0]) || std::abs(value_[1]) <= std::abs(value_[2])) return;
+  if (between(kinks, time_[0], time_[2])) return note(value_[1], time_[1]);
+  const double before = time_[1] - time_[0], after = time_[2] - time_[1];
+  const double rise = (value_[1] - value_[0]) / before, fall = (value_[2] - value_[1]) / after;
+  const double slope = (rise * after + fall * before) / (before + after), bend = (fall - rise) / (before + after);
+  const double shift = value_[0] * value_[2] > 0.0 ? -0.5 * slope / bend : 0.0;
+  note(value_[1] + 0.5 * slope * shift, time_[1] + shift);
 }
 
-Peaks::Peaks(std::vector<Kinks> passages, std::size_t wheels)
+Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels)
     : passages_(std::move(passages)), probes_(passages_.size()), wheels_(wheels) {}
 
 void Peaks::note(Quantity q, std::size_t place, double value, double time) {
@@ -85,7 +47,7 @@ void Peaks::note(Quantity q, std::size_t place, double value, double time) {
 }
 
 void Peaks::add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces) {
-  static const Kinks smooth;
+  static const std::vector<double> smooth;
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].moment};
     for (std::size_t q = 0; q < values.size(); ++q)
@@ -138,8 +100,8 @@ double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reac
   return std::max(peak_difference(rough, fine, q), likely * spread);
 }
 
-std::vector<Kinks> passages_of(const Scene& scene) {
-  std::vector<Kinks> passages(scene.output.probes.size());
+std::vector<std::vector<double>> passages_of(const Scene& scene) {
+  std::vector<std::vector<double>> passages(scene.output.probes.size());
   if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return passages;
   std::vector<std::pair<double, double>> starts;  // x at t = 0 and speed
   if (scene.train.drive == coupling::Drive::constant && scene.train.speed > 0.0)
@@ -155,10 +117,9 @@ std::vector<Kinks> passages_of(const Scene& scene) {
   for (std::size_t p = 0; p < passages.size(); ++p) {
     for (const auto& [x, speed] : starts) {
       const double t = (scene.output.probes[p] - x) / speed;
-      if (t > 0.0) passages[p].times.push_back(t);
-      passages[p].uncertain = std::max(passages[p].uncertain, off_centre / speed);
+      if (t > 0.0) passages[p].push_back(t);
     }
-    std::sort(passages[p].times.begin(), passages[p].times.end());
+    std::sort(passages[p].begin(), passages[p].end());
   }
   return passages;
 }

@@ -118,7 +118,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   check_step(scene, plan);
   if (scene.output.interval) {
     plan.interval = *scene.output.interval;
-    if (scene.peaks_at_steps) {
+    if (scene.step_probes) {
       plan.stored = static_cast<int>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
       plan.interval /= plan.stored;
     }

@@ -113,7 +113,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
                              scene.options);
   store_modes(structure, recorder);
   if (structure.beam) structure.beam->release_matrices();
-  Watch watch(scene, system, beam, recorder, passage.plan().stored);
+  Watch watch(scene, system, beam, recorder);
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
   auto summarise = [&](const std::string& ended) {

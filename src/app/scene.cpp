@@ -44,6 +44,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.contact_tolerance = o.optional_number("contact_tolerance");
   scene.impact_steps = o.integer("contact_impact_steps");
   scene.step_kinks = o.flag("step_kinks");
+  scene.step_probes = o.flag("step_probes");
   scene.rest_tolerance = read_window(o);
   scene.accuracy = o.number("accuracy");
   scene.accuracy_report = o.flag("accuracy_report");

@@ -99,6 +99,7 @@ Scene shortened(const Scene& scene, double end) {
   Scene part = scene;
   part.end_time = end;
   part.quiet = true;
+  part.step_probes = true;
   leave_out_vehicles(part, end);
   leave_out_spans(part, end);
   return part;

@@ -27,9 +27,8 @@ void check_balance(const results::Summary& summary) {
                     summary.energy_residual, summary.energy_scale));
 }
 
-Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
-             int stored)
-    : scene_(scene), system_(system), beam_(beam), recorder_(recorder), stored_(stored) {
+Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
+    : scene_(scene), system_(system), beam_(beam), recorder_(recorder) {
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     ground_.emplace(*beam);
@@ -63,7 +62,7 @@ void Watch::sample(const integrate::Instant& instant) {
                     e.dissipated, e.work,   stored - energy_at_start_ + e.dissipated - e.work};
   note_extremes(sample_, v);
   first_ = false;
-  if (samples_++ % stored_ == 0) recorder_.add(sample_);
+  if (instant.stored) recorder_.add(sample_);
 }
 
 // Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
@@ -179,7 +178,6 @@ const Peaks& Watch::finished_peaks() {
 }
 
 results::Summary Watch::finish() {
-  if (samples_ > 0 && (samples_ - 1) % stored_ != 0) recorder_.add(sample_);
   const Peaks& peaks = finished_peaks();
   const auto extreme = [&](Quantity q) {
     const Peak& peak = peaks.largest(q);

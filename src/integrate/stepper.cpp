@@ -152,22 +152,25 @@ void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array));
 double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step) {
   const double slack = near_event * std::min(settings_.time_step, settings_.end_time);
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::max(settings_.end_time, 1.0);
-  std::size_t event = 0;
-  long stored = 0;
+  std::size_t event = 0, passage = 0;
+  long samples = 0;
   double t = 0.0;
   bool going = true;
-  sample_now(sample);
+  sample_now(sample, true);
   {
     Array y(y_);
     system_.accept(t, y.data);
   }
   while (going && t < settings_.end_time - slack) {
-    double next_sample = static_cast<double>(stored + 1) * settings_.interval;
+    double next_sample = static_cast<double>(samples + 1) * settings_.interval;
     if (next_sample > settings_.end_time - slack) next_sample = settings_.end_time;
-    while (event < settings_.events.size() && settings_.events[event] <= t + slack) ++event;
     double target = next_sample;
-    if (event < settings_.events.size() && settings_.events[event] < next_sample - slack)
-      target = settings_.events[event];
+    const auto stop_at = [&](const std::vector<double>& times, std::size_t& next) {
+      while (next < times.size() && times[next] <= t + slack) ++next;
+      if (next < times.size() && times[next] < target - slack) target = times[next];
+    };
+    stop_at(settings_.events, event);
+    stop_at(settings_.passages, passage);
     while (going && t < target) {
       take_step(target - t);
       PetscReal now = 0.0;
@@ -182,10 +185,10 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       if (rewritten) check(TSRestartStep(ts_));
       going = step(t, steps_) && !stopped_at_limit();
     }
-    if (t == next_sample) {
-      ++stored;
-      sample_now(sample);
-    }
+    if (t == next_sample)
+      sample_now(sample, ++samples % settings_.stored == 0 || t == settings_.end_time);
+    else if (passage < settings_.passages.size() && t == settings_.passages[passage])
+      sample_now(sample, false);
   }
   return t;
 }
@@ -273,7 +276,7 @@ void Stepper::locate_contact_change(double from) {
   if (at != bracket.end()) again(bracket.end());
 }
 
-void Stepper::sample_now(const std::function<void(const Instant&)>& sample) {
+void Stepper::sample_now(const std::function<void(const Instant&)>& sample, bool stored) {
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
   if (second_order_ && steps_ > 0 && system_.knows_rate()) {
@@ -298,7 +301,7 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample) {
   if (!std::isfinite(bounds[0]) || off)
     throw SolverError("the motion has grown beyond all bounds by t = " + std::to_string(t) +
                       " s: the step is too long for this integrator; take a smaller -ts_dt or an implicit -ts_type");
-  sample({t, y.data, ydot.data});
+  sample({t, y.data, ydot.data, nullptr, stored});
 }
 
 // --- what TS calls -------------------------------------------------------------------------------------------------

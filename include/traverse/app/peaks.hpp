@@ -1,5 +1,5 @@
-// Extremes of sampled curves, of whose errors `accuracy` speaks. Between samples they are those of parabolas; where a
-// wheel passes a probe the moment has a kink, where the parabolas of either side meet.
+// Extremes of sampled curves, of whose errors `accuracy` speaks. Between samples they are those of parabolas; not where
+// a wheel passes a probe, since the moment has a kink there, at a sample of its own (option step_probes).
 #pragma once
 
 #include <array>
@@ -22,44 +22,30 @@ struct Peak {
   int place = 0;       // probe or wheel
 };
 
-/// Where a curve may have kinks: ascending times (s), each known up to `uncertain` s.
-struct Kinks {
-  std::vector<double> times;
-  double uncertain = 0.0;
-};
-
 /// The extremes of one curve, as samples come.
 class Curve {
  public:
-  /// Calls note(value, time) for every extreme that is known with this sample.
+  /// Calls note(value, time) for the extreme that is known with this sample. kinks: ascending times at which the curve
+  /// may have one.
   template <class Note>
-  void add(double t, double value, const Kinks& kinks, Note&& note);
+  void add(double t, double value, const std::vector<double>& kinks, Note&& note);
   /// After the last sample: its value counts too.
   template <class Note>
   void finish(Note&& note) const {
-    if (count_ > 0) note(value_[last], time_[last]);
+    if (count_ > 0) note(value_[2], time_[2]);
   }
 
  private:
-  static constexpr std::size_t width = 8, last = width - 1;
-  struct Point {
-    double value, slope;
-  };
-  Point parabola(std::size_t first, double t) const;
-  Peak where_sides_meet(double at, double uncertain) const;
-  template <class Note>
-  void at_kinks(const Kinks& kinks, Note&& note);
-
-  std::array<double, width> time_{}, value_{};  // the latest samples, the last one at the end
-  std::size_t count_ = 0, kink_ = 0;
+  std::array<double, 3> time_{}, value_{};  // the latest samples, the last one at the end
+  std::size_t count_ = 0;
 };
 
 /// The extremes of a run: those above half of the largest so far.
 class Peaks {
  public:
   Peaks() = default;
-  /// passages: of each probe, when something passes it.
-  Peaks(std::vector<Kinks> passages, std::size_t wheels);
+  /// passages: of each probe, the times at which something passes it.
+  Peaks(std::vector<std::vector<double>> passages, std::size_t wheels);
 
   void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
   void finish();
@@ -70,7 +56,7 @@ class Peaks {
  private:
   void note(Quantity q, std::size_t place, double value, double time);
 
-  std::vector<Kinks> passages_;
+  std::vector<std::vector<double>> passages_;
   std::vector<std::array<Curve, wheel_force>> probes_;
   std::vector<Curve> wheels_;
   std::array<std::vector<Peak>, quantities> found_;
@@ -86,6 +72,6 @@ double peak_difference(const Peaks& rough, const Peaks& fine, Quantity q);
 
 /// When wheels and forces pass each probe of the scene, where their x is known beforehand and the beam carries them
 /// itself; else none.
-std::vector<Kinks> passages_of(const Scene& scene);
+std::vector<std::vector<double>> passages_of(const Scene& scene);
 
 }  // namespace traverse::app

@@ -65,10 +65,10 @@ struct Scene {
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
   bool step_kinks = true;        // steps end where wheels pass kinks
+  bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
   double rest_tolerance = -1.0;  // model_window; -1: auto
   double accuracy = 1e-3;
   bool mesh_open = false;        // its elements are chosen from the accuracy
-  bool peaks_at_steps = false;   // peaks are looked for at every step, between stored samples too
   bool accuracy_report = false;  // a refined run at the end shows the true errors
   Output output;
   bool quiet = false;                                        // -output_quiet: no progress

@@ -19,9 +19,7 @@ namespace traverse::app {
 /// Watches stored instants and steps: samples for the recorder, extremes for the summary.
 class Watch {
  public:
-  /// Of the samples that come, every `stored`-th goes into the recorder.
-  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
-        int stored = 1);
+  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder);
 
   void sample(const integrate::Instant& instant);
   void step(double t);
@@ -49,8 +47,6 @@ class Watch {
   std::vector<beam::Response> rail_, dragged_;
   Peaks peaks_;
   std::vector<double> wheel_forces_;
-  int stored_;
-  long samples_ = 0;
   std::size_t wheel_count_ = 0;
   bool finished_ = false;
   coupling::Observation observation_;

@@ -19,7 +19,9 @@ struct Settings {
   double end_time = 0.0;           // s
   double time_step = 0.0;          // s, the longest
   double interval = 0.0;           // s between samples
+  int stored = 1;                  // every so many of them is one to store
   std::vector<double> events;      // ascending times at which a step has to end
+  std::vector<double> passages;    // ascending times at which a step has to end and a sample is due that is not stored
   double contact_tolerance = 0.0;  // s: steps end so close behind the loss or gain of a contact; 0: wherever
 };
 
@@ -29,6 +31,7 @@ struct Instant {
   const double* y;
   const double* ydot;
   const double* drag = nullptr;  // what modal damping forces are over the mass, this rank's beam; null: none
+  bool stored = true;            // else only to look at
 };
 
 class Stepper {
@@ -40,8 +43,8 @@ class Stepper {
   double* state();  // this rank's entries, before run()
   void restore_state(double** array);
 
-  /// Collective. Runs to the end. `sample` is called at t = 0 and at every multiple of the interval (and at the
-  /// end), `step` after every step; when it returns false the run stops early. Throws SolverError with what to
+  /// Collective. Runs to the end. `sample` is called at t = 0 and at every multiple of the interval, at passages
+  /// and at the end, `step` after every step; when it returns false the run stops early. Throws SolverError with what to
   /// change when a step cannot be taken. Returns the time reached.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
 
@@ -61,7 +64,7 @@ class Stepper {
   void take_step(double longest);
   double step_to(double end);
   void locate_contact_change(double from);
-  void sample_now(const std::function<void(const Instant&)>& sample);
+  void sample_now(const std::function<void(const Instant&)>& sample, bool stored);
   void rate(double t, Vec y, Vec ydot, coupling::Part part);
   bool remembered(double t, const double* y) const;
   void implicit_residual(double t, Vec y, Vec ydot, Vec residual);
