@@ -145,7 +145,7 @@ void Fleet::place_wheels() {
 bool Fleet::wheels_in_place() const {
   if (mesh_ == nullptr) return true;
   return std::all_of(wheels.begin(), wheels.end(), [&](const WheelContact& c) {
-    if (c.further > 0 || c.is_further) return true;
+    if (c.further > 0 || c.is_further || !owns(c)) return true;
     const double x = coordinates(c).x();
     const Patch& p = c.patches[0];
     const double slack = 1e-3 * (p.element < 0 ? wheel(c).radius : p.length);
@@ -217,7 +217,7 @@ bool Fleet::touch(PairContact& c) const {
 
 bool Fleet::touch(int per_node, const double* v, const double* w) {
   for (WheelContact& c : wheels) {
-    if (c.is_further || vehicles[c.vehicle].rests) continue;
+    if (c.is_further || !owns(c) || vehicles[c.vehicle].rests) continue;
     if (!(c.further > 0 ? touch_points(c, per_node, v, w) : touch_patches(c, per_node, v, w, Find::closest)))
       return false;
   }
@@ -258,10 +258,10 @@ void Fleet::contact_forces() {
 }
 
 void Fleet::contact_loads() {
-  for (MovingVehicle& vehicle : vehicles) vehicle.Q.setZero();
-  for (int i = 0; i < contacts(); ++i) {
-    const Contact& c = contact(i);
-    add_load(c, c.force.normal, c.force.tangential, vehicles[c.vehicle].Q);
+  for (MovingVehicle& vehicle : own()) {
+    vehicle.Q.setZero();
+    for (const int i : vehicle.touching)
+      add_load(contact(i), contact(i).force.normal, contact(i).force.tangential, vehicle.Q);
   }
 }
 
@@ -311,6 +311,7 @@ double Fleet::contact_dissipation() const {
   double power = 0.0;
   for (int i = 0; i < contacts(); ++i) {
     const Contact& c = contact(i);
+    if (!owns(c)) continue;
     const bool elastic_alone = c.law.damping == 0.0 && !c.law.hysteresis && c.law.friction == 0.0;
     if (elastic_alone || (c.released && c.force.normal == 0.0)) continue;
     contact::Law elastic = c.law;
