@@ -56,7 +56,7 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
   if (s.shift2 > 0.0) fleet.shift(moved_.data(), s.shift);
   bool touched = true;
   if (once_) {  // the forces are known, and now where they act
-    beam_field(s, fleet, true);
+    beam_field(s, fleet, Loads::found);
     touched = fleet.touch(s.per_node, v_.data(), w_.data());
   }
   const unsigned signs = share_contacts(
@@ -72,7 +72,8 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
   const bool statics = s.shift2 == 0.0;
   bool kept = true;
   for (int i = 0; i < most_iterations; ++i) {
-    const bool reached = evaluate(fleet, s, x, i > 0);
+    const Loads loads = i > 0 ? Loads::found : statics ? Loads::none : Loads::expected;
+    const bool reached = evaluate(fleet, s, x, loads);
     if (i == 0) contacts_.list(fleet);
     const unsigned signs =
         share_contacts(s, fleet, reached ? condense_own(fleet, s, i) : unsigned{VehicleShare::failed});
@@ -80,11 +81,11 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
     const bool renewed = (signs & VehicleShare::renewed) != 0;
     if (renewed) share_matrices(s);
     kept = kept && !renewed;
-    if (i > 0 && s.compliance != nullptr) follow_loads(s, fleet);
+    if (loads != Loads::none && s.compliance != nullptr) follow_loads(s, fleet);
     if (contacts_.moved() || i == 0 || renewed)
       contacts_.couple(fleet.elements().empty() ? nullptr : s.compliance, s.per_node);
     // In statics the vehicles' matrices hold the tangent of the contacts, which is taken anew with them.
-    const double left = contacts_.solve(s.shift, i > 0, statics ? 1 : most_tangents);
+    const double left = contacts_.solve(s.shift, loads != Loads::none, statics ? 1 : most_tangents);
     const double before = change_;
     change_ = update(fleet, x);
     if (!std::isfinite(change_)) return false;
@@ -167,9 +168,9 @@ int ContactNewton::carrying(const Fleet& fleet) {
   return count;
 }
 
-// Vehicles at p_still + x, the beam under the forces of the kinematics held, the geometry at all of it. At first the
-// beam is taken without these forces: where they act is only known then.
-bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x, bool loaded) {
+// Vehicles at p_still + x, the beam under the forces of the kinematics held, the geometry at all of it. At first where
+// these forces act is not known quite; but without them the beam's slope would turn the forces on the vehicles by 1e-6.
+bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x, Loads loads) {
   const auto [first, past] = fleet.own_coordinates();
   for (int i = first; i < past; ++i) {
     p_[i] = s.p_still[i] + x[i];
@@ -177,17 +178,20 @@ bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x, 
     pdd_[i] = s.shift2 * x[i];
   }
   if (!fleet.set(s.t, p_.data(), pd_.data())) return false;
-  beam_field(s, fleet, loaded);
+  beam_field(s, fleet, loads);
   return fleet.touch(s.per_node, v_.data(), w_.data());
 }
 
-void ContactNewton::beam_field(const StageData& s, const Fleet& fleet, bool loaded) {
-  if (!loaded || s.compliance == nullptr) {
+void ContactNewton::beam_field(const StageData& s, const Fleet& fleet, Loads loads) {
+  if (loads == Loads::none || s.compliance == nullptr || fleet.elements().empty()) {
     v_ = *s.v0;
     w_ = *s.w0;
     return;
   }
-  fleet.element_loads(s.per_node, loads_);
+  if (loads == Loads::expected)
+    fleet.expected_loads(s.per_node, loads_);
+  else
+    fleet.element_loads(s.per_node, loads_);
   v_.assign(s.v0->size(), 0.0);
   w_.resize(v_.size());
   respond(s, loads_, v_);

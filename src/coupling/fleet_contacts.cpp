@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "traverse/beam/shape.hpp"
 #include "traverse/coupling/fleet.hpp"
 
 namespace traverse::coupling {
@@ -273,6 +274,22 @@ void Fleet::element_loads(int per_node, std::vector<double>& loads) const {
     double* f = &loads[static_cast<std::size_t>(c.slot()) * m];
     for (int i = 0; i < m; ++i)
       f[i] -= c.force.normal * c.touch.normal_on_beam[i] + c.force.tangential * c.touch.tangent_on_beam[i];
+  }
+}
+
+void Fleet::expected_loads(int per_node, std::vector<double>& loads) const {
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node);
+  loads.assign(elements_.size() * m, 0.0);
+  for (const WheelContact& c : wheels) {
+    if (c.force.normal == 0.0 || c.candidates == 0 || c.slots[0] < 0) continue;
+    const Patch& patch = c.patches[0];
+    const double xi = std::clamp((coordinates(c).x() - patch.x) / patch.length, 0.0, 1.0);
+    const beam::Hermite psi = beam::hermite(xi, patch.length);
+    double* f = &loads[static_cast<std::size_t>(c.slots[0]) * m] + per_node - 2;
+    for (int i = 0; i < 2; ++i) {
+      f[i] -= c.force.normal * psi.value[i];
+      f[per_node + i] -= c.force.normal * psi.value[2 + i];
+    }
   }
 }
 

@@ -87,11 +87,14 @@ class ContactNewton {
     std::vector<multibody::ColumnRange> everything;
   };
   bool iterate(Fleet& fleet, const StageData& s, double* x);
-  bool evaluate(Fleet& fleet, const StageData& s, const double* x, bool loaded);
+  /// The contacts' forces that the beam is taken under: where the wheels' places let them be expected, or where the
+  /// geometry has found them.
+  enum class Loads { none, expected, found };
+  bool evaluate(Fleet& fleet, const StageData& s, const double* x, Loads loads);
   unsigned condense_own(Fleet& fleet, const StageData& s, int iteration);
   unsigned share_contacts(const StageData& s, Fleet& fleet, unsigned signs);
   void share_matrices(const StageData& s);
-  void beam_field(const StageData& s, const Fleet& fleet, bool loaded);
+  void beam_field(const StageData& s, const Fleet& fleet, Loads loads);
   void follow_loads(const StageData& s, Fleet& fleet);
   static bool serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved);
   static void condense(VehicleWork& w, VehicleYield& yield);

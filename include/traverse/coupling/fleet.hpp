@@ -174,6 +174,8 @@ class Fleet {
   static void add_load(const Contact& contact, double normal, double tangential, Eigen::VectorXd& Q);
   /// Contact forces as nodal values of the elements in touch, 2*per_node each, on the beam.
   void element_loads(int per_node, std::vector<double>& loads) const;
+  /// The same from the wheels' normal forces and x alone, before the geometry is known: straight down.
+  void expected_loads(int per_node, std::vector<double>& loads) const;
   /// Whether a contact carries force, and its penetration; of a wheel with several points all of them and the deepest.
   /// The further points of a wheel count with their first.
   bool touches(int contact) const;
