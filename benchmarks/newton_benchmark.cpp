@@ -163,7 +163,7 @@ class Ride {
     compliance_->add_response(newton_.element_loads(), z_.data());
     move(beam_motion_, z_);
     move(train_motion_, x_);
-    fleet_.accept(t_);
+    (void)fleet_.accept();
     return true;
   }
 

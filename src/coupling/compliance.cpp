@@ -36,7 +36,9 @@ void Compliance::prepare(double shift, double shift2, const AddedSprings* added,
   const BeamFactor& factor = operator_.factored(shift, shift2, added);
   const long stamp = operator_.factor_stamp();
   if (stamp == stamp_ && elements == elements_) return;
-  if (stamp != stamp_) {
+  const bool same_factor = stamp == stamp_;
+  std::swap(before_.elements, elements_);
+  if (!same_factor) {
     of_slot_.assign(of_slot_.size(), columns_.end());
     for (auto c = columns_.begin(); c != columns_.end(); ++c)
       if (c->stamp == stamp) of_slot_[c->slot] = c;
@@ -49,8 +51,10 @@ void Compliance::prepare(double shift, double shift2, const AddedSprings* added,
     const auto [first, last] = reach(e, c);
     active_.push_back({&c, place_of(e).unknown, first, last});
   }
+  std::swap(before_.responses, responses_);
+  std::swap(before_.blocks, blocks_);
   find_responses();
-  fill_blocks();
+  fill_blocks(same_factor);
 
   // Forget the oldest columns beyond what is worth keeping.
   while (kept_ > kept_values && columns_.size() > elements_.size()) {
@@ -222,25 +226,50 @@ void Compliance::find_responses() {
     responses_[b] = {static_cast<int>(first - elements_.begin()), static_cast<int>(last - elements_.begin()), begin};
     begin += static_cast<std::size_t>(last - first) * m_ * m_;
   }
-  blocks_.assign(begin, 0.0);
+  blocks_.resize(begin);
 }
 
-void Compliance::fill_blocks() {
-  for (std::size_t b = 0; b < elements_.size(); ++b) {
-    const Column& c = *active_[b].column;
-    double* to = &blocks_[responses_[b].begin];
-    for (int a = responses_[b].first; a < responses_[b].last; ++a, to += m_ * m_) {
-      const auto unknowns = line_.unknowns(elements_[a]);
-      for (int i = 0; i < m_; ++i) {
-        const int local = beam_.local(unknowns[i]), unknown = local - active_[b].unknown;
-        if (local < 0 || unknown < c.low || unknown >= c.high) continue;
-        for (int j = 0; j < m_; ++j)
-          to[i + j * m_] = c.values[static_cast<std::size_t>(j) * (c.high - c.low) + (unknown - c.low)];
+// What was known before is taken over: a wheel that enters an element changes few blocks.
+void Compliance::fill_blocks(bool same_factor) {
+  const std::size_t size = static_cast<std::size_t>(m_) * m_;
+  known_as_.assign(elements_.size(), -1);
+  for (std::size_t e = 0, old = 0; same_factor && e < elements_.size(); ++e) {
+    while (old < before_.elements.size() && before_.elements[old] < elements_[e]) ++old;
+    if (old < before_.elements.size() && before_.elements[old] == elements_[e]) known_as_[e] = static_cast<int>(old);
+  }
+  new_blocks_.clear();
+  new_begin_.clear();
+  for (int b = 0; b < static_cast<int>(elements_.size()); ++b) {
+    std::size_t to = responses_[b].begin;
+    for (int a = responses_[b].first; a < responses_[b].last; ++a, to += size) {
+      if (known_as_[a] >= 0 && known_as_[b] >= 0) {
+        const Response& old = before_.responses[known_as_[b]];
+        const double* from = &before_.blocks[old.begin + static_cast<std::size_t>(known_as_[a] - old.first) * size];
+        std::copy_n(from, size, &blocks_[to]);
+        continue;
       }
+      new_begin_.push_back(to);
+      new_blocks_.resize(new_blocks_.size() + size, 0.0);
+      fill_block(a, b, &new_blocks_[new_blocks_.size() - size]);
     }
   }
-  if (operator_.shared())
-    MPI_Allreduce(MPI_IN_PLACE, blocks_.data(), static_cast<int>(blocks_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+  if (operator_.shared() && !new_blocks_.empty())
+    MPI_Allreduce(MPI_IN_PLACE, new_blocks_.data(), static_cast<int>(new_blocks_.size()), MPI_DOUBLE, MPI_SUM,
+                  beam_.comm());
+  for (std::size_t i = 0; i < new_begin_.size(); ++i)
+    std::copy_n(&new_blocks_[i * size], size, &blocks_[new_begin_[i]]);
+}
+
+// This rank's rows of it; the others stay.
+void Compliance::fill_block(int a, int b, double* to) const {
+  const Column& c = *active_[b].column;
+  const auto unknowns = line_.unknowns(elements_[a]);
+  for (int i = 0; i < m_; ++i) {
+    const int local = beam_.local(unknowns[i]), unknown = local - active_[b].unknown;
+    if (local < 0 || unknown < c.low || unknown >= c.high) continue;
+    for (int j = 0; j < m_; ++j)
+      to[i + j * m_] = c.values[static_cast<std::size_t>(j) * (c.high - c.low) + (unknown - c.low)];
+  }
 }
 
 void Compliance::add_response(const std::vector<double>& loads, double* v) const {

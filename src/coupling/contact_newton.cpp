@@ -23,25 +23,6 @@ constexpr int not_alike = -1;
 constexpr double same_shift = 1e-6;  // relative
 constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
 
-// v += the beam's response to loads on the elements.
-template <int m>
-void respond(const Compliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
-  using Vector = Eigen::Matrix<double, m, 1>;
-  const int elements = static_cast<int>(loads.size()) / m;
-  for (int b = 0; b < elements; ++b) {
-    const Eigen::Map<const Vector> f(&loads[static_cast<std::size_t>(b) * m]);
-    if (f.isZero(0.0)) continue;
-    const Compliance::Response& reach = compliance.response(b);
-    for (int a = reach.first; a < reach.last; ++a)
-      Eigen::Map<Vector>(&v[static_cast<std::size_t>(a) * m]) +=
-          Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;
-  }
-}
-
-void respond(const StageData& s, const std::vector<double>& loads, std::vector<double>& v) {
-  s.per_node == 2 ? respond<4>(*s.compliance, loads, v) : respond<6>(*s.compliance, loads, v);
-}
-
 }  // namespace
 
 bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
@@ -54,10 +35,15 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
   for (MovingVehicle& vehicle : fleet.vehicles) vehicle.rests = false;
   if (!found) return false;
   if (s.shift2 > 0.0) fleet.shift(moved_.data(), s.shift);
+  bool touched = true;
   if (once_) {  // the forces are known, and now where they act
-    beam_field(s, fleet, true);
-    if (!fleet.touch(s.per_node, v_.data(), w_.data())) return false;
+    beam_field(s, fleet, Loads::found);
+    touched = fleet.touch(s.per_node, v_.data(), w_.data());
   }
+  const unsigned signs = share_contacts(
+      s, fleet, (touched ? 0U : VehicleShare::failed) | (fleet.wheels_in_place() ? 0U : VehicleShare::misplaced));
+  if ((signs & VehicleShare::failed) != 0) return false;
+  in_place_ = (signs & VehicleShare::misplaced) == 0;
   fleet.element_loads(s.per_node, loads_);
   return true;
 }
@@ -67,30 +53,20 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
   const bool statics = s.shift2 == 0.0;
   bool kept = true;
   for (int i = 0; i < most_iterations; ++i) {
-    if (!evaluate(fleet, s, x, i > 0)) return false;
+    const Loads loads = i > 0 ? Loads::found : statics ? Loads::none : Loads::expected;
+    const bool reached = evaluate(fleet, s, x, loads);
     if (i == 0) contacts_.list(fleet);
-    bool couple = contacts_.moved() || i == 0;
-    for (std::size_t k = 0; k < work_.size(); ++k) {
-      MovingVehicle& vehicle = fleet.vehicles[k];
-      VehicleWork& w = work_[k];
-      const double before = w.residual;
-      if (vehicle.rests)
-        rest(static_cast<int>(k));
-      else
-        find_residual(vehicle, w);
-      if (vehicle.state.friction.jammed) return false;
-      const bool poor = i >= kept_iterations || (i > 1 && !vehicle.rests && contraction_ > poor_ratio) ||
-                        (i > 1 && w.residual > poor_ratio * before && w.residual > tolerance_);
-      if (poor || !serves(vehicle, w, s, i > 0)) {
-        renew(vehicle, static_cast<int>(k), s, statics || i > 0);
-        couple = true;
-        kept = false;
-      }
-      condense(w, contacts_.yield(static_cast<int>(k)));
-    }
-    if (couple) contacts_.couple(fleet.elements().empty() ? nullptr : s.compliance, s.per_node);
+    const unsigned signs =
+        share_contacts(s, fleet, reached ? condense_own(fleet, s, i) : unsigned{VehicleShare::failed});
+    if ((signs & VehicleShare::failed) != 0) return false;
+    const bool renewed = (signs & VehicleShare::renewed) != 0;
+    if (renewed) share_matrices(s);
+    kept = kept && !renewed;
+    if (loads != Loads::none && s.compliance != nullptr) follow_loads(s, fleet);
+    if (contacts_.moved() || i == 0 || renewed)
+      contacts_.couple(fleet.elements().empty() ? nullptr : s.compliance, s.per_node);
     // In statics the vehicles' matrices hold the tangent of the contacts, which is taken anew with them.
-    const double left = contacts_.solve(s.shift, i > 0, statics ? 1 : most_tangents);
+    const double left = contacts_.solve(s.shift, loads != Loads::none, statics ? 1 : most_tangents);
     const double before = change_;
     change_ = update(fleet, x);
     if (!std::isfinite(change_)) return false;
@@ -106,6 +82,29 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
       fleet.vehicles[k].rests = !statics && work_[k].change * contraction_ <= tolerance_;
   }
   return false;
+}
+
+// What this rank's vehicles have at their contacts.
+unsigned ContactNewton::condense_own(Fleet& fleet, const StageData& s, int i) {
+  unsigned signs = 0;
+  for (int k = fleet.first_own(); k < fleet.past_own(); ++k) {
+    MovingVehicle& vehicle = fleet.vehicles[k];
+    VehicleWork& w = work_[k];
+    const double before = w.residual;
+    if (vehicle.rests)
+      rest(k);
+    else
+      find_residual(vehicle, w);
+    if (vehicle.state.friction.jammed) return VehicleShare::failed;
+    const bool poor = i >= kept_iterations || (i > 1 && !vehicle.rests && contraction_ > poor_ratio) ||
+                      (i > 1 && w.residual > poor_ratio * before && w.residual > tolerance_);
+    if (poor || !serves(vehicle, w, s, i > 0)) {
+      renew(vehicle, k, s, s.shift2 == 0.0 || i > 0);
+      signs |= VehicleShare::renewed;
+    }
+    condense(w, contacts_.yield(k));
+  }
+  return signs;
 }
 
 // The next change would be smaller by about the ratio of the last two, in statics it is not trusted to be. A stage's
@@ -150,58 +149,18 @@ int ContactNewton::carrying(const Fleet& fleet) {
   return count;
 }
 
-// Vehicles at p_still + x, the beam under the forces of the kinematics held, the geometry at all of it. At first the
-// beam is taken without these forces: where they act is only known then.
-bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x, bool loaded) {
-  for (int i = 0; i < fleet.freedom(); ++i) {
+// Vehicles at p_still + x, the beam under the forces of the kinematics held, the geometry at all of it. At first where
+// these forces act is not known quite; but without them the beam's slope would turn the forces on the vehicles by 1e-6.
+bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x, Loads loads) {
+  const auto [first, past] = fleet.own_coordinates();
+  for (int i = first; i < past; ++i) {
     p_[i] = s.p_still[i] + x[i];
     pd_[i] = s.pd_still[i] + s.shift * x[i];
     pdd_[i] = s.shift2 * x[i];
   }
   if (!fleet.set(s.t, p_.data(), pd_.data())) return false;
-  beam_field(s, fleet, loaded);
-  if (!fleet.touch(s.per_node, v_.data(), w_.data())) return false;
-  if (loaded && s.compliance != nullptr) follow_loads(s, fleet);
-  return true;
-}
-
-void ContactNewton::beam_field(const StageData& s, const Fleet& fleet, bool loaded) {
-  if (!loaded || s.compliance == nullptr) {
-    v_ = *s.v0;
-    w_ = *s.w0;
-    return;
-  }
-  fleet.element_loads(s.per_node, loads_);
-  v_.assign(s.v0->size(), 0.0);
-  w_.resize(v_.size());
-  respond(s, loads_, v_);
-  for (std::size_t i = 0; i < v_.size(); ++i) {
-    w_[i] = (*s.w0)[i] + s.shift * v_[i];
-    v_[i] += (*s.v0)[i];
-  }
-}
-
-// The geometry found shows where the forces act, not quite where they did when the beam was put under them: it moves by
-// the difference.
-void ContactNewton::follow_loads(const StageData& s, Fleet& fleet) {
-  const std::size_t m = 2 * static_cast<std::size_t>(s.per_node);
-  before_.swap(loads_);
-  fleet.element_loads(s.per_node, loads_);
-  for (std::size_t i = 0; i < loads_.size(); ++i) before_[i] = loads_[i] - before_[i];
-  v_.assign(v_.size(), 0.0);
-  respond(s, before_, v_);
-  for (WheelContact& c : fleet.wheels) {
-    if (c.slot() < 0 || fleet.vehicles[c.vehicle].rests) continue;
-    const double* z = &v_[m * static_cast<std::size_t>(c.slot())];
-    double normal = 0.0, tangential = 0.0;
-    for (std::size_t i = 0; i < m; ++i) {
-      normal += c.touch.normal_on_beam[i] * z[i];
-      tangential += c.touch.tangent_on_beam[i] * z[i];
-    }
-    c.touch.kinematics.penetration += normal;
-    c.touch.kinematics.penetration_rate += s.shift * normal;
-    c.touch.kinematics.sliding_speed += s.shift * tangential;
-  }
+  beam_field(s, fleet, loads);
+  return fleet.touch(s.per_node, v_.data(), w_.data());
 }
 
 // Whether what is kept of a vehicle belongs to this stage. Nothing is kept where bodies touch each other: their
@@ -364,15 +323,20 @@ void ContactNewton::add_contacts(VehicleWork& w, int k, const RowMatrix& left) {
 // Applies the step to x. Returns the largest residual or change of force over the vehicle's weight.
 double ContactNewton::update(Fleet& fleet, double* x) {
   double change = 0.0;
-  for (std::size_t k = 0; k < work_.size(); ++k) {
+  for (int k = 0; k < static_cast<int>(work_.size()); ++k) {
+    VehicleWork& w = work_[k];
+    w.change = w.residual;
+    for (int i = contacts_.first(k); i < contacts_.first(k + 1); ++i)
+      w.change = std::max(w.change, std::abs(contacts_.change(i)) / fleet.vehicles[k].scale);
+    change = std::max(change, w.change);
+  }
+  for (int k = fleet.first_own(); k < fleet.past_own(); ++k) {
     VehicleWork& w = work_[k];
     const MovingVehicle& vehicle = fleet.vehicles[k];
-    w.change = w.residual;
-    const int from = contacts_.first(static_cast<int>(k));
+    const int from = contacts_.first(k);
     const bool statics = w.shift2 == 0.0;
-    for (int i = 0; i < contacts_.rows(static_cast<int>(k)); ++i) {
+    for (int i = 0; i < contacts_.rows(k); ++i) {
       double force = contacts_.change(from + i);
-      w.change = std::max(w.change, std::abs(force) / vehicle.scale);
       if (statics) {
         force -= w.D(i, 1) * contacts_.displacement(from + i);
         if (!contacts_.row(from + i).normal) force -= w.D(i, 0) * contacts_.displacement(from + i - 1);
@@ -383,7 +347,6 @@ double ContactNewton::update(Fleet& fleet, double* x) {
       x[vehicle.offset + i] += w.dx[i];
       moved_[vehicle.offset + i] = w.dx[i] + (vehicle.rests ? moved_[vehicle.offset + i] : 0.0);
     }
-    change = std::max(change, w.change);
   }
   return change;
 }

@@ -66,7 +66,19 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
     for (int i = 0; i < contacts(); ++i)
       if (contact(i).vehicle == static_cast<int>(k)) vehicle.touching.push_back(i);
   }
+  take(0, static_cast<int>(vehicles.size()));
   start_rolling();
+}
+
+void Fleet::take(int first, int past) {
+  first_own_ = first;
+  past_own_ = past;
+  is_set_ = false;
+}
+
+std::pair<int, int> Fleet::own_coordinates() const {
+  const auto offset = [this](int k) { return k < static_cast<int>(vehicles.size()) ? vehicles[k].offset : freedom_; };
+  return {offset(first_own_), offset(past_own_)};
 }
 
 void Fleet::add_pairs(int k) {
@@ -147,17 +159,17 @@ std::vector<std::string> Fleet::partition(double t) {
 }
 
 bool Fleet::worn() const {
-  return std::any_of(vehicles.begin(), vehicles.end(),
+  const auto vehicles_here = own();
+  return std::any_of(vehicles_here.begin(), vehicles_here.end(),
                      [](const MovingVehicle& v) { return v.mechanism.worn(v.state); });
 }
 
-bool Fleet::accept(double t) {
+bool Fleet::accept() {
   bool renewed = false;
-  for (MovingVehicle& vehicle : vehicles) {
+  for (MovingVehicle& vehicle : own()) {
     renewed = vehicle.mechanism.renew_partition(vehicle.state) || renewed;
     vehicle.mechanism.accept(vehicle.state);
   }
-  if (renewed) number(t);
   return renewed;
 }
 
@@ -181,7 +193,8 @@ void Fleet::number(double t) {
 
 bool Fleet::set(double t, const double* p, const double* pd) {
   bool there = is_set_ && t == time_;
-  for (int i = 0; i < freedom_; ++i) {
+  const auto [first, past] = own_coordinates();
+  for (int i = first; i < past; ++i) {
     const double position = home_[i] + cruise_[i] * t + p[i], velocity = cruise_[i] + pd[i];
     there = there && position == position_[i] && velocity == velocity_[i];
     position_[i] = position;
@@ -191,7 +204,7 @@ bool Fleet::set(double t, const double* p, const double* pd) {
   time_ = t;
   is_set_ = false;
   bool all = true;
-  for (MovingVehicle& vehicle : vehicles) {
+  for (MovingVehicle& vehicle : own()) {
     all = all && !vehicle.rests;
     if (vehicle.rests) continue;
     if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) {
@@ -207,7 +220,7 @@ bool Fleet::set(double t, const double* p, const double* pd) {
 }
 
 void Fleet::shift(const double* change, double rate) {
-  for (MovingVehicle& vehicle : vehicles) vehicle.mechanism.shift(vehicle.state, change + vehicle.offset, rate);
+  for (MovingVehicle& vehicle : own()) vehicle.mechanism.shift(vehicle.state, change + vehicle.offset, rate);
   is_set_ = false;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "traverse/beam/shape.hpp"
 #include "traverse/coupling/fleet.hpp"
 
 namespace traverse::coupling {
@@ -145,7 +146,7 @@ void Fleet::place_wheels() {
 bool Fleet::wheels_in_place() const {
   if (mesh_ == nullptr) return true;
   return std::all_of(wheels.begin(), wheels.end(), [&](const WheelContact& c) {
-    if (c.further > 0 || c.is_further) return true;
+    if (c.further > 0 || c.is_further || !owns(c)) return true;
     const double x = coordinates(c).x();
     const Patch& p = c.patches[0];
     const double slack = 1e-3 * (p.element < 0 ? wheel(c).radius : p.length);
@@ -217,7 +218,7 @@ bool Fleet::touch(PairContact& c) const {
 
 bool Fleet::touch(int per_node, const double* v, const double* w) {
   for (WheelContact& c : wheels) {
-    if (c.is_further || vehicles[c.vehicle].rests) continue;
+    if (c.is_further || !owns(c) || vehicles[c.vehicle].rests) continue;
     if (!(c.further > 0 ? touch_points(c, per_node, v, w) : touch_patches(c, per_node, v, w, Find::closest)))
       return false;
   }
@@ -258,10 +259,10 @@ void Fleet::contact_forces() {
 }
 
 void Fleet::contact_loads() {
-  for (MovingVehicle& vehicle : vehicles) vehicle.Q.setZero();
-  for (int i = 0; i < contacts(); ++i) {
-    const Contact& c = contact(i);
-    add_load(c, c.force.normal, c.force.tangential, vehicles[c.vehicle].Q);
+  for (MovingVehicle& vehicle : own()) {
+    vehicle.Q.setZero();
+    for (const int i : vehicle.touching)
+      add_load(contact(i), contact(i).force.normal, contact(i).force.tangential, vehicle.Q);
   }
 }
 
@@ -273,6 +274,22 @@ void Fleet::element_loads(int per_node, std::vector<double>& loads) const {
     double* f = &loads[static_cast<std::size_t>(c.slot()) * m];
     for (int i = 0; i < m; ++i)
       f[i] -= c.force.normal * c.touch.normal_on_beam[i] + c.force.tangential * c.touch.tangent_on_beam[i];
+  }
+}
+
+void Fleet::expected_loads(int per_node, std::vector<double>& loads) const {
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node);
+  loads.assign(elements_.size() * m, 0.0);
+  for (const WheelContact& c : wheels) {
+    if (c.force.normal == 0.0 || c.candidates == 0 || c.slots[0] < 0) continue;
+    const Patch& patch = c.patches[0];
+    const double xi = std::clamp((coordinates(c).x() - patch.x) / patch.length, 0.0, 1.0);
+    const beam::Hermite psi = beam::hermite(xi, patch.length);
+    double* f = &loads[static_cast<std::size_t>(c.slots[0]) * m] + per_node - 2;
+    for (int i = 0; i < 2; ++i) {
+      f[i] -= c.force.normal * psi.value[i];
+      f[per_node + i] -= c.force.normal * psi.value[2 + i];
+    }
   }
 }
 
@@ -311,6 +328,7 @@ double Fleet::contact_dissipation() const {
   double power = 0.0;
   for (int i = 0; i < contacts(); ++i) {
     const Contact& c = contact(i);
+    if (!owns(c)) continue;
     const bool elastic_alone = c.law.damping == 0.0 && !c.law.hysteresis && c.law.friction == 0.0;
     if (elastic_alone || (c.released && c.force.normal == 0.0)) continue;
     contact::Law elastic = c.law;

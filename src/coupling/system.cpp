@@ -157,22 +157,33 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
 void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
   evaluated_time_ = t;
-  if (!fleet_.set(t, p_.data(), p_.data() + fleet_.freedom()))
+  const bool set = fleet_.set(t, p_.data(), p_.data() + fleet_.freedom());
+  if ((share_.places(fleet_, set ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0)
     throw SolverError("at t = " + std::to_string(t) + " s " + trouble());
   fleet_.place_wheels();
   gather(NodalFields(y, y + n_));
-  if (!fleet_.touch(per_node_, v_.data(), w_.data()))
+  const bool touched = fleet_.touch(per_node_, v_.data(), w_.data());
+  if ((share_.exchange(touched ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0)
     throw SolverError("a wheel has fallen below the running surface, or a body been driven through another, at t = " +
                       std::to_string(t) +
                       " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too "
                       "soft");
   for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).kinematics = fleet_.contact(i).touch.kinematics;
   fleet_.contact_forces();
-  note_touched();
   fleet_.contact_loads();
   pdd_.resize(fleet_.freedom());
-  for (MovingVehicle& vehicle : fleet_.vehicles)
-    vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+  signs_ = fleet_.worn() ? VehicleShare::worn : 0U;
+  try {
+    for (MovingVehicle& vehicle : fleet_.own())
+      vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+  } catch (const SolverError&) {  // a joint is jammed, which all have to know
+    signs_ |= VehicleShare::failed;
+  }
+  signs_ = share_.exchange(signs_);
+  if ((signs_ & VehicleShare::failed) != 0) throw SolverError(trouble() + " (at t = " + std::to_string(t) + " s)");
+  share_.states(fleet_);
+  share_.coordinates(fleet_, pdd_);
+  note_touched();
 }
 
 // Rates of D and W for the state that fleet, moving loads and foundation were last set to.
@@ -190,15 +201,17 @@ void System::powers(const double* w, Part part, double& dissipation, double& wor
   if (part == Part::beam) return;
   Motion::Powers fleet;
   fleet_powers(fleet);
-  dissipation += fleet.dissipation;
-  work += fleet.work;
+  double sums[2] = {fleet.dissipation, fleet.work};
+  if (share_.dealt()) MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+  dissipation += sums[0];
+  work += sums[1];
 }
 
-// Of vehicles and contacts at the state that they were last set to.
+// Of this rank's vehicles and contacts at the state that they were last set to.
 void System::fleet_powers(Motion::Powers& powers) const {
   powers.dissipation = fleet_.contact_dissipation();
   powers.work = 0.0;
-  for (const MovingVehicle& vehicle : fleet_.vehicles) {
+  for (const MovingVehicle& vehicle : fleet_.own()) {
     const multibody::MechanismPowers e = vehicle.mechanism.powers(vehicle.state);
     powers.dissipation += e.dissipation;
     powers.work += e.work;
@@ -320,15 +333,17 @@ void System::add_contact_response(double factor, double* z) {
 
 // From p_still_, pd_still_ and a guess in x_ to x_.
 bool System::stage_of_fleet(const StageTime& at, const FreeResponse& response, const AddedSprings* added) {
-  const int f = fleet_.freedom();
+  const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
+  const auto [first, past] = fleet_.own_coordinates();
   evaluated_time_ = at.t;
   pdd_.resize(f);
-  p_.resize(2 * static_cast<std::size_t>(f));
-  for (int i = 0; i < f; ++i) {
+  p_.resize(2 * f);
+  for (int i = first; i < past; ++i) {
     p_[i] = p_still_[i] + x_[i];
     pdd_[i] = pd_still_[i] + at.shift * x_[i];
   }
-  if (!fleet_.set(at.t, p_.data(), pdd_.data())) return false;
+  const bool set = fleet_.set(at.t, p_.data(), pdd_.data());
+  if ((share_.places(fleet_, set ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
     gather(response);
@@ -342,17 +357,18 @@ bool System::stage_of_fleet(const StageTime& at, const FreeResponse& response, c
                           &v_,
                           &w_,
                           compliance_ ? &*compliance_ : nullptr,
-                          per_node_};
+                          per_node_,
+                          &share_};
     if (!newton_.solve(fleet_, stage, x_.data())) return false;
-    if (fleet_.wheels_in_place()) break;  // else a wheel has left its element: once more from there
+    if (newton_.in_place()) break;  // else a wheel has left its element: once more from there
   }
-  for (int i = 0; i < f; ++i) {
+  for (int i = first; i < past; ++i) {
     p_[i] = p_still_[i] + x_[i];
     pdd_[i] = at.shift2 * x_[i];
   }
   note_touched();
   fleet_.contact_loads();
-  for (MovingVehicle& vehicle : fleet_.vehicles)
+  for (MovingVehicle& vehicle : fleet_.own())
     vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
   return true;
 }

@@ -1,5 +1,6 @@
 // Accepted steps and the contacts lost and gained in them.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -8,7 +9,7 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double same_place = 1e-9;  // m or rad: a step's last stage is its end
+constexpr double same_place = 1e-9;  // m or rad
 
 }  // namespace
 
@@ -23,16 +24,13 @@ void System::note_touched() {
 
 void System::arrive(double t, const double* y) {
   const int f = fleet_.freedom();
-  evaluated_.assign(p_.begin(), p_.begin() + f);
-  if (motion_) {
-    std::copy(motion_->p.begin(), motion_->p.end(), p_.begin());
-    std::copy(motion_->pd.begin(), motion_->pd.end(), p_.begin() + f);
-  } else {
+  bool moved = (signs_ & VehicleShare::moved) != 0;
+  if (!motion_) {
+    evaluated_.assign(p_.begin(), p_.begin() + f);
     share_coordinates(y);
+    for (int i = 0; i < f; ++i) moved = moved || std::abs(p_[i] - evaluated_[i]) > same_place;
   }
-  double moved = 0.0;
-  for (int i = 0; i < f; ++i) moved = std::max(moved, std::abs(p_[i] - evaluated_[i]));
-  if (t != evaluated_time_ || moved > same_place) evaluate_fleet(t, y);
+  if (t != evaluated_time_ || moved) evaluate_fleet(t, y);
 }
 
 bool System::accept(double t, double* y) {
@@ -40,8 +38,14 @@ bool System::accept(double t, double* y) {
   if (fleet_.vehicles.empty()) return false;
   arrive(t, y);
   const double lost = note_contacts(t);
-  if (fleet_.worn()) evaluate_fleet(t, y);
-  const bool renewed = fleet_.accept(t);
+  const bool worn = share_.dealt() ? (signs_ & VehicleShare::worn) != 0 : fleet_.worn();
+  if (worn) evaluate_fleet(t, y);
+  bool renewed = fleet_.accept();
+  if (worn && share_.dealt()) {
+    renewed = share_.exchange(renewed ? VehicleShare::renewed : 0U) != 0;
+    if (renewed) share_.partitions(fleet_);
+  }
+  if (renewed) fleet_.number(t);
   if (rank_ == 0) y[2 * (n_ + fleet_.freedom())] += lost;
   if (!renewed) return lost != 0.0;
   if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
@@ -67,20 +71,31 @@ double System::note_contacts(double t) {
   }
   separations_.accept(fleet_, t);
   fleet_.note_sides();
+  note_impacts(t);
+  return lost;
+}
+
+void System::note_impacts(double t) {
   impacts_.resize(static_cast<std::size_t>(fleet_.contacts()));
+  impact_durations_.assign(impacts_.size(), 0.0);
+  bool any = false;
   for (int i = 0; i < fleet_.contacts(); ++i) {
     Contact& c = fleet_.contact(i);
-    Impact& impact = impacts_[i];
-    const bool touching = separations_.touching(i);
-    if (touching && !separations_.met(i)) continue;
+    if (separations_.touching(i) && !separations_.met(i)) continue;
     c.approach_speed = std::max(c.kinematics.penetration_rate, 0.0);
-    impact = {};
+    impacts_[i] = {};
     if (input_.impact_steps == 0 || c.approach_speed == 0.0) continue;
-    const double duration = fleet_.impact_duration(i);
-    impact.step = duration / input_.impact_steps;
-    if (touching) impact.end = t + 2.0 * duration;
+    any = true;
+    if (fleet_.owns(c)) impact_durations_[i] = fleet_.impact_duration(i);
   }
-  return lost;
+  if (!any) return;
+  if (share_.dealt())
+    MPI_Allreduce(MPI_IN_PLACE, impact_durations_.data(), fleet_.contacts(), MPI_DOUBLE, MPI_MAX, comm_);
+  for (std::size_t i = 0; i < impacts_.size(); ++i) {
+    if (impact_durations_[i] == 0.0) continue;
+    impacts_[i].step = impact_durations_[i] / input_.impact_steps;
+    if (separations_.touching(static_cast<int>(i))) impacts_[i].end = t + 2.0 * impact_durations_[i];
+  }
 }
 
 std::optional<Change> System::contact_change(double t, double tolerance) const {
@@ -110,12 +125,28 @@ double System::step_limit(double t, double tolerance) const {
 }
 
 std::string System::trouble() const {
-  for (const MovingVehicle& vehicle : fleet_.vehicles)
+  std::string text = trouble_of_own();
+  if (share_.dealt()) {  // the first rank that has some tells the others
+    std::array<int, 2> teller = {text.empty() ? ranks_ : rank_, 0};
+    MPI_Allreduce(MPI_IN_PLACE, teller.data(), 1, MPI_INT, MPI_MIN, comm_);
+    if (teller[0] < ranks_) {
+      teller[1] = static_cast<int>(text.size());
+      MPI_Bcast(&teller[1], 1, MPI_INT, teller[0], comm_);
+      text.resize(static_cast<std::size_t>(teller[1]));
+      MPI_Bcast(text.data(), teller[1], MPI_CHAR, teller[0], comm_);
+    }
+  }
+  if (!text.empty()) return text;
+  return "the contact iteration does not converge: try a smaller -ts_dt, softer contacts, or look at the state just "
+         "before";
+}
+
+// Of this rank's vehicles; empty: none.
+std::string System::trouble_of_own() const {
+  for (const MovingVehicle& vehicle : fleet_.own())
     if (vehicle.state.friction.jammed) return vehicle.mechanism.jam(vehicle.state);
   const MovingVehicle* stuck = fleet_.stuck();
-  if (stuck == nullptr)
-    return "the contact iteration does not converge: try a smaller -ts_dt, softer contacts, or look at the state just "
-           "before";
+  if (stuck == nullptr) return {};
   const multibody::Mechanism& mechanism = stuck->mechanism;
   return "vehicle '" + mechanism.model().name + "' is locked: " + mechanism.worst_row(stuck->state) +
          ", wherever else its bodies go; a driver pulls it beyond its reach or through a dead point";

@@ -1,6 +1,7 @@
 // The system stepped in second-order form (motion.hpp): one beam solve a stage, made while its right-hand side is
 // written, and Newton on vehicles and contacts.
 #include <algorithm>
+#include <cmath>
 
 #include "traverse/beam/shape.hpp"
 #include "traverse/coupling/system.hpp"
@@ -8,6 +9,7 @@
 namespace traverse::coupling {
 namespace {
 
+constexpr double same_place = 1e-9;     // m or rad: a step's last stage is its end
 constexpr double measured_steps = 2.0;  // of one stage, from one look at the beam's dissipation to the next
 
 /// Free response of a fused stage, whose vectors v and w are never formed.
@@ -40,6 +42,7 @@ void System::begin_motion(const Method& method) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
+  share_.deal(comm_, fleet_);
   if (beam_ == nullptr) return;
   m.beam.emplace(*beam_, *operator_, input_.self_weight ? dead_load_.data() : nullptr);
   m.beam->begin(method);
@@ -167,16 +170,14 @@ void System::restart_motion(double t, double* y) {
 
 void System::rate_of_motion(const double* y, double* ydot) const {
   const Motion& m = *motion_;
-  const int f = fleet_.freedom();
   std::fill_n(ydot, local_size(), 0.0);
-  const int j = m.stepped ? m.unit.step.known - 1 : 0;
   if (m.beam) {
     std::copy_n(y + n_, n_, ydot);
     std::copy_n(m.beam->start_acceleration(), n_, ydot + n_);
   }
   if (rank_ != 0) return;
-  std::copy(m.pd.begin(), m.pd.end(), ydot + 2 * n_);
-  std::copy(m.pdd[j].begin(), m.pdd[j].end(), ydot + 2 * n_ + f);
+  double* pdd = std::copy(m.pd.begin(), m.pd.end(), ydot + 2 * n_);
+  std::copy(m.pdd[0].begin(), m.pdd[0].end(), pdd);
 }
 
 void System::take_back_step(double* y) {
@@ -227,12 +228,10 @@ bool System::step_motion(double t, double h, double* y) {
 
 bool System::stage_of_motion(double t, const StageRule& rule, const double* v, const double* w) {
   Motion& m = *motion_;
-  const int f = fleet_.freedom();
   const double shift = rule.rate / rule.displacement, shift2 = 1.0 / rule.displacement;
-  p_still_.resize(f);
-  pd_still_.resize(f);
-  x_.resize(f);
-  for (int i = 0; i < f; ++i) {
+  for (std::vector<double>* x : {&p_still_, &pd_still_, &x_}) x->resize(m.p.size());
+  const auto [first, past] = fleet_.own_coordinates();
+  for (int i = first; i < past; ++i) {
     p_still_[i] = m.p[i] + rule.w_in_v * m.pd[i];
     pd_still_[i] = m.pd[i];
     for (int j = 0; j < rule.known; ++j) {
@@ -267,7 +266,7 @@ bool System::stage_of_motion(double t, const StageRule& rule, const double* v, c
   }
   for (const NodalLoad& load : nodal_loads_)
     powers.loads += load.force * m.beam->state(stage, v, w, load.unknown).second;
-  for (int i = 0; i < f; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
+  for (int i = first; i < past; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
   fleet_powers(powers);
   return true;
 }
@@ -275,8 +274,9 @@ bool System::stage_of_motion(double t, const StageRule& rule, const double* v, c
 void System::finish_step(double* y) {
   Motion& m = *motion_;
   const StepRule& rule = m.method.step;
-  const int f = fleet_.freedom();
-  for (int i = 0; i < f; ++i) {
+  const auto [first, past] = fleet_.own_coordinates();
+  signs_ = fleet_.worn() ? VehicleShare::worn : 0U;
+  for (int i = first; i < past; ++i) {
     m.p[i] += rule.w_in_v * m.pd[i];
     for (int j = 0; j < rule.known; ++j) {
       m.p[i] += rule.a_in_v[j] * m.pdd[j][i];
@@ -285,24 +285,41 @@ void System::finish_step(double* y) {
     double next = 0.0;
     for (int j = 0; j < rule.known; ++j) next += rule.a_next[j] * m.pdd[j][i];
     m.pdd[0][i] = next;
+    if (std::abs(m.p[i] - p_[i]) > same_place) signs_ |= VehicleShare::moved;
   }
-  double dissipation = 0.0, work = 0.0;
+  const bool counts = share_.dealt() || rank_ == 0;  // of vehicles and contacts
   for (int j = 0; j < rule.known; ++j) {
     const Motion::Powers& powers = m.powers[j];
-    m.dissipated += rule.power[j] * powers.beam;
-    m.worked += rule.power[j] * powers.loads;
-    dissipation += rule.power[j] * powers.dissipation;
-    work += rule.power[j] * powers.work;
+    m.dissipated += rule.power[j] * (powers.beam + (counts ? powers.dissipation : 0.0));
+    m.worked += rule.power[j] * (powers.loads + (counts ? powers.work : 0.0));
   }
   m.powers[0] = m.powers[rule.known - 1];
   m.stepped = m.incomplete = true;
   if (beam_ != nullptr) m.beam->finish(y, y + n_);
+  share_step();
   if (rank_ != 0) return;
   double* p = y + 2 * n_;
   std::copy(m.p.begin(), m.p.end(), p);
-  std::copy(m.pd.begin(), m.pd.end(), p + f);
-  p[2 * f] += dissipation;
-  p[2 * f + 1] += work;
+  std::copy(m.pd.begin(), m.pd.end(), p + m.p.size());
+}
+
+// p, p' and p'' at the end of the step, of all vehicles.
+void System::share_step() {
+  Motion& m = *motion_;
+  const auto freedom = [this](int k) { return fleet_.vehicles[k].mechanism.freedom(); };
+  const std::array<std::vector<double>*, 3> all = {&m.p, &m.pd, &m.pdd[0]};
+  signs_ = share_.exchange(
+      signs_, [&](int k) { return 3 * freedom(k); },
+      [&](int k, double* to) {
+        for (const std::vector<double>* x : all)
+          to = std::copy_n(x->begin() + fleet_.vehicles[k].offset, freedom(k), to);
+      },
+      [&](int k, const double* from) {
+        for (std::vector<double>* x : all) {
+          std::copy_n(from, freedom(k), x->begin() + fleet_.vehicles[k].offset);
+          from += freedom(k);
+        }
+      });
 }
 
 }  // namespace traverse::coupling

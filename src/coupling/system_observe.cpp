@@ -43,12 +43,12 @@ Energy System::energy(const double* y) {
       sums[2] -= v[i] * dead_load_[i];
     }
     if (nonlinear_) sums[1] += nonlinear_->energy();
-    if (motion_) {
-      const bool fused = motion_->beam && motion_->beam->fused();
-      sums[3] = fused ? dissipated_until(measure_dissipation(w)) : motion_->dissipated;
-      if (motion_->window) sums[3] += motion_->window->energy_left();
-      sums[4] = motion_->worked;
-    }
+  }
+  if (motion_) {
+    const bool fused = motion_->beam && motion_->beam->fused();
+    sums[3] = fused ? dissipated_until(measure_dissipation(w)) : motion_->dissipated;
+    if (motion_->window) sums[3] += motion_->window->energy_left();
+    sums[4] = motion_->worked;
   }
   if (rank_ == 0) {
     sums[3] += y[2 * (n_ + fleet_.freedom())];

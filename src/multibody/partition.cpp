@@ -122,14 +122,19 @@ bool Mechanism::renew_partition(MechanismState& s) {
   const Choice choice = pivot(s);
   const bool singular = choice.partition.rows.size() < partition_.rows.size() || choice.least_pivot < nearly_singular;
   if (singular || choice.partition.independent == partition_.independent) return false;
-  partition_ = choice.partition;
+  adopt_partition(s, choice.partition);
+  return true;
+}
+
+void Mechanism::adopt_partition(MechanismState& s, const Partition& partition) {
+  if (partition.independent == partition_.independent) return;
+  partition_ = partition;
   ++partition_version_;
   fit(s);
   Eigen::VectorXd pd(freedom());
   for (int k = 0; k < freedom(); ++k) pd[k] = s.qd[partition_.independent[k]];
   set_velocities(s, s.time, pd.data());
   chosen_quality_ = partition_quality(s);
-  return true;
 }
 
 /// Chooses the partition and solves the constraints; again when the bodies moved far in doing so.

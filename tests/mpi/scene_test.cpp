@@ -146,6 +146,61 @@ TEST(Ranks, TrainOverIsolatedSpans) {
                            40);
 }
 
+// Vehicles are shared: a wheel of one rubs, and they come onto the bridge one after the other.
+const Values five_half_cars = {{"train_vehicles", "half_car*5"},
+                               {"train_positions", "5"},
+                               {"train_spacing", "9.5"},
+                               {"ts_dt", "2e-3"},
+                               {"ts_max_time", "1.0"},
+                               {"output_interval", "0.02"},
+                               {"vehicle_half_car_rear_wheel_friction", "0.2"},
+                               {"vehicle_half_car_front_wheel_damping", "1e4"}};
+
+Values with(Values options, const Values& more) {
+  options.insert(options.end(), more.begin(), more.end());
+  return options;
+}
+
+TEST(Ranks, SharedVehiclesWithFriction) { expect_same_on_all_ranks("three_span_half_car", five_half_cars, 100); }
+
+TEST(Ranks, SharedVehiclesInSteppingOfOneStage) {
+  expect_same_on_all_ranks("three_span_half_car", with(five_half_cars, {{"ts_type", "genalpha"}}), 100);
+}
+
+TEST(Ranks, MoreRanksThanVehicles) {
+  expect_same_on_all_ranks("three_span_half_car", with(five_half_cars, {{"train_vehicles", "half_car*2"}}), 50);
+}
+
+// Friction and a free drive: they drift apart, and wheels turn.
+TEST(Ranks, SharedVehiclesThatRollFreely) {
+  expect_same_on_all_ranks("three_span_half_car", with(five_half_cars, {{"train_drive", "free"}}), 100);
+}
+
+// Wheels jump: all ranks have to find the same instants.
+TEST(Ranks, SharedVehiclesThatLoseContact) {
+  expect_same_on_all_ranks("three_span_half_car",
+                           with(five_half_cars, {{"vehicle_half_car_rear_wheel_friction", "0"},
+                                                 {"ts_dt", "1e-3"},
+                                                 {"track_profile", "bump"},
+                                                 {"track_bump_start", "20"},
+                                                 {"track_bump_length", "1.0"},
+                                                 {"track_bump_height", "0.02"}}),
+                           100, 1e-7);
+}
+
+// Units of several vehicles that couplers join, beside some that stand alone.
+TEST(Ranks, SharedVehiclesPartlyCoupled) {
+  expect_same_on_all_ranks("three_span_half_car",
+                           with(five_half_cars, {{"train_couplers", "bar"},
+                                                 {"train_bar_bodies", "car,car"},
+                                                 {"train_bar_after", "0,3"},
+                                                 {"train_bar_from", "-4.0,1.5"},
+                                                 {"train_bar_to", "4.0,1.5"},
+                                                 {"train_bar_stiffness", "1e6"},
+                                                 {"train_bar_damping", "1e4"}}),
+                           100);
+}
+
 TEST(Ranks, MovingForces) {
   expect_same_on_all_ranks("r6_three_spans",
                            {{"load_forces", "1e4,2e4,-5e3"},

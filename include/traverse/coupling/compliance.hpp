@@ -60,7 +60,8 @@ class Compliance {
   void keep(Column& c, std::ptrdiff_t first, int base_unknown) const;
   std::pair<int, int> reach(int element, const Column& c) const;
   void find_responses();
-  void fill_blocks();
+  void fill_blocks(bool same_factor);
+  void fill_block(int a, int b, double* to) const;
 
   const beam::Beam& beam_;
   BeamOperator& operator_;
@@ -82,7 +83,15 @@ class Compliance {
   std::ptrdiff_t margin_;  // nodes on either side of an element within which its response dies out, as found last
   std::vector<Response> responses_;
   std::vector<double> blocks_;  // by the element loaded, then by the one that responds
-  std::vector<double> work_;    // the columns under way: nodes x block, column by column
+  struct {                      // the same of the prepare before
+    std::vector<int> elements;
+    std::vector<Response> responses;
+    std::vector<double> blocks;
+  } before_;
+  std::vector<int> known_as_;           // of every element, its number in the list before; -1: it was not there
+  std::vector<double> new_blocks_;      // those that were not known
+  std::vector<std::size_t> new_begin_;  // where they go
+  std::vector<double> work_;            // the columns under way: nodes x block, column by column
 };
 
 }  // namespace traverse::coupling

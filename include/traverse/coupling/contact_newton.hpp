@@ -8,7 +8,8 @@
 //
 // is condensed onto the contacts and solved there (CondensedContacts). J hardly changes: what follows from it is kept
 // over stages and steps, and computed anew where the iteration tells that it no longer serves. In statics, where J may
-// be singular without them, the contacts' tangents are part of it.
+// be singular without them, the contacts' tangents are part of it. Where ranks share the vehicles each one evaluates
+// and condenses its own, and all solve for the contacts.
 #pragma once
 
 #include <Eigen/Dense>
@@ -18,6 +19,7 @@
 #include "traverse/coupling/compliance.hpp"
 #include "traverse/coupling/condensed_contacts.hpp"
 #include "traverse/coupling/fleet.hpp"
+#include "traverse/coupling/vehicle_share.hpp"
 
 namespace traverse::coupling {
 
@@ -34,12 +36,16 @@ struct StageData {
   const std::vector<double>* w0 = nullptr;  // its rate
   const Compliance* compliance = nullptr;   // null without a beam
   int per_node = 2;
+  VehicleShare* share = nullptr;  // null: this rank has all vehicles
 };
 
 class ContactNewton {
  public:
-  /// x (freedom values): in a guess, out the solution, where the vehicles are moved. False when it does not converge.
+  /// Collective where vehicles are shared. x (freedom values): in a guess, out the solution, where the vehicles are
+  /// moved; of this rank's. False when it does not converge.
   bool solve(Fleet& fleet, const StageData& stage, double* x);
+  /// Whether all wheels are still on their patches then.
+  bool in_place() const { return in_place_; }
   /// Nodal loads on the elements in touch that belong to the solution, 2*per_node each.
   const std::vector<double>& element_loads() const { return loads_; }
   /// Residual and change of force of the last iteration over the train's weight, for messages.
@@ -81,8 +87,14 @@ class ContactNewton {
     std::vector<multibody::ColumnRange> everything;
   };
   bool iterate(Fleet& fleet, const StageData& s, double* x);
-  bool evaluate(Fleet& fleet, const StageData& s, const double* x, bool loaded);
-  void beam_field(const StageData& s, const Fleet& fleet, bool loaded);
+  /// The contacts' forces that the beam is taken under: where the wheels' places let them be expected, or where the
+  /// geometry has found them.
+  enum class Loads { none, expected, found };
+  bool evaluate(Fleet& fleet, const StageData& s, const double* x, Loads loads);
+  unsigned condense_own(Fleet& fleet, const StageData& s, int iteration);
+  unsigned share_contacts(const StageData& s, Fleet& fleet, unsigned signs);
+  void share_matrices(const StageData& s);
+  void beam_field(const StageData& s, const Fleet& fleet, Loads loads);
   void follow_loads(const StageData& s, Fleet& fleet);
   static bool serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved);
   static void condense(VehicleWork& w, VehicleYield& yield);
@@ -112,7 +124,8 @@ class ContactNewton {
     void note(int contacts, double change, double next);
   };
   SecondChange second_;
-  bool once_ = false;   // left the stage so
+  bool once_ = false;  // left the stage so
+  bool in_place_ = true;
   double ratio_ = 1.0;  // of successive changes with the matrices that are kept, as measured last
 };
 

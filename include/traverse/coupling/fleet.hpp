@@ -1,9 +1,10 @@
-// All vehicles of a train with their wheels, the same on every rank: where they are, which piece of running surface
-// each wheel is on, and the contact forces.
+// All vehicles of a train with their wheels, on every rank: where they are, which piece of running surface each wheel
+// is on, and the contact forces. A rank moves and evaluates its own vehicles, which are all unless ranks share them.
 #pragma once
 
 #include <Eigen/Dense>
 #include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,16 @@ class Fleet {
   /// The number of its vehicle in the train.
   int member(int contact) const;
 
+  /// Makes the vehicles [first, past) this rank's own.
+  void take(int first, int past);
+  int first_own() const { return first_own_; }
+  int past_own() const { return past_own_; }
+  bool owns(const Contact& c) const { return c.vehicle >= first_own_ && c.vehicle < past_own_; }
+  std::span<MovingVehicle> own() { return std::span(vehicles).subspan(first_own_, past_own_ - first_own_); }
+  std::span<const MovingVehicle> own() const { return std::span(vehicles).subspan(first_own_, past_own_ - first_own_); }
+  /// Of p: [first, past).
+  std::pair<int, int> own_coordinates() const;
+
   int freedom() const { return freedom_; }
   const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
   Eigen::Vector3d coordinates(const Contact& c) const;
@@ -125,16 +136,18 @@ class Fleet {
   /// p keep their digits. Returns lines on redundant joints.
   std::vector<std::string> partition(double t);
 
-  /// Whether some vehicle's independent coordinates may have worn out.
+  /// Whether the independent coordinates of a vehicle of this rank may have worn out.
   bool worn() const;
-  /// Notes the vehicles' states, just evaluated, as accepted at t. Where independent coordinates have worn out others
-  /// take their place: true then, and p has a new meaning.
-  bool accept(double t);
+  /// Notes the states of this rank's vehicles, just evaluated, as accepted. Where independent coordinates have worn out
+  /// others take their place: true then, and number() has to follow.
+  bool accept();
+  /// Numbers the vehicles' independent coordinates, as they are at t: see partition().
+  void number(double t);
 
-  /// Positions, velocities and forces of all vehicles from p and p' (freedom values each), unless they are there. False
-  /// where a mechanism cannot be assembled, which is stuck() then.
+  /// Positions, velocities and forces of this rank's vehicles from p and p' (freedom values each), unless they are
+  /// there. False where a mechanism cannot be assembled, which is stuck() then.
   bool set(double t, const double* p, const double* pd);
-  /// Moves all vehicles on by a small change of p (freedom values), and rate times it of p'.
+  /// Moves this rank's vehicles on by a small change of p (freedom values), and rate times it of p'.
   void shift(const double* change, double rate);
   /// The vehicle that could not be assembled when set() failed last; null when it did not.
   const MovingVehicle* stuck() const { return stuck_ < 0 ? nullptr : &vehicles[static_cast<std::size_t>(stuck_)]; }
@@ -146,20 +159,23 @@ class Fleet {
 
   /// Finds the patches under the wheels and the list of beam elements in touch.
   void place_wheels();
+  /// Whether the wheels of this rank's vehicles are still on these patches.
   bool wheels_in_place() const;
   const std::vector<int>& elements() const { return elements_; }
 
-  /// Contact geometry from the elements' unknowns v and rates w (2*per_node an element of elements()). False where a
-  /// contact is driven through.
+  /// Contact geometry of this rank's vehicles from the elements' unknowns v and rates w (2*per_node an element of
+  /// elements()). False where a contact is driven through.
   bool touch(int per_node, const double* v, const double* w);
   /// Forces from the kinematics held in the contacts.
   void contact_forces();
-  /// The vehicles' Q from the contact forces.
+  /// Q of this rank's vehicles from the contact forces.
   void contact_loads();
   /// Adds a contact's forces to its vehicle's Q.
   static void add_load(const Contact& contact, double normal, double tangential, Eigen::VectorXd& Q);
   /// Contact forces as nodal values of the elements in touch, 2*per_node each, on the beam.
   void element_loads(int per_node, std::vector<double>& loads) const;
+  /// The same from the wheels' normal forces and x alone, before the geometry is known: straight down.
+  void expected_loads(int per_node, std::vector<double>& loads) const;
   /// Whether a contact carries force, and its penetration; of a wheel with several points all of them and the deepest.
   /// The further points of a wheel count with their first.
   bool touches(int contact) const;
@@ -168,13 +184,12 @@ class Fleet {
   bool has_points(int contact) const;
   /// How long the impact lasts that a contact now begins, the bodies of its vehicle alone taking part, s.
   double impact_duration(int contact);
-  /// Power lost in contact damping and friction, W.
+  /// Power lost in contact damping and friction at this rank's vehicles, W.
   double contact_dissipation() const;
   /// Energy stored in the contacts, J.
   double contact_potential() const;
 
  private:
-  void number(double t);
   void add_patch(WheelContact& c, int element, double start, double low, double high);
   void find_patches(WheelContact& c, double x, double from, double to, double low, double high);
   void find_points(WheelContact& c);
@@ -197,6 +212,7 @@ class Fleet {
   const beam::Mesh* mesh_ = nullptr;
   const track::Profile* profile_ = nullptr;
   int freedom_ = 0;
+  int first_own_ = 0, past_own_ = 0;
   double speed_ = 0.0;
   bool frozen_ = false;
   int stuck_ = -1;

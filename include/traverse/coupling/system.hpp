@@ -5,7 +5,8 @@
 //   p'' from B^T (N (B p'' + d) - g - Q) = 0              the vehicles' independent coordinates, on rank 0
 //   D' = power lost in dampers and contacts, W' = power of loads, actuators and drivers
 //
-// Every rank holds all vehicles; a contact's beam values come from the rank that owns them by one reduction.
+// A contact's beam values come from the rank that owns them by one reduction. Every rank holds all vehicles; in steps
+// in second-order form it moves and evaluates its share of them (VehicleShare), and only what is observed is complete.
 //
 // Implicit time integrators ask for y with G(t, y) = s y + c. `solve_stage` eliminates the beam: one solve with
 // A = s^2 M + s C* + K* gives its free response, the columns of A^-1 at the elements under the wheels its
@@ -28,6 +29,7 @@
 #include "traverse/coupling/nonlinear_foundation.hpp"
 #include "traverse/coupling/rest_window.hpp"
 #include "traverse/coupling/separations.hpp"
+#include "traverse/coupling/vehicle_share.hpp"
 
 namespace traverse::coupling {
 
@@ -145,7 +147,7 @@ class System {
   /// Of a contact's change: s.
   double change_tolerance(int contact, double tolerance) const;
 
-  /// Why the last stage could not be solved, and what to do about it.
+  /// Collective. Why the last stage could not be solved, and what to do about it.
   std::string trouble() const;
 
   /// Times in (0, end) at which a force comes onto the beam or leaves it, or an actuator's table has a kink; with
@@ -172,7 +174,7 @@ class System {
     std::optional<RestWindow> window;
     std::array<std::vector<double>, most_accelerations> pdd;  // the vehicles' p'' at the stages
     std::vector<double> p, pd;                                // at the start of the step
-    struct Powers {  // W; of the beam this rank's share, of vehicles and contacts the whole
+    struct Powers {                                           // W; this rank's share
       double beam = 0.0, loads = 0.0, dissipation = 0.0, work = 0.0;
     };
     std::array<Powers, most_accelerations> powers;  // at the stages
@@ -227,6 +229,9 @@ class System {
   void add_point_load(const beam::Line& line, const beam::ElementLoad& load, double* nodal) const;
   void release_held(double* nodal) const;
   void evaluate_fleet(double t, const double* y);
+  void share_step();
+  std::string trouble_of_own() const;
+  void note_impacts(double t);
   void note_touched();
   void powers(const double* w, Part part, double& dissipation, double& work);
   void fleet_powers(Motion::Powers& powers) const;
@@ -243,12 +248,14 @@ class System {
   std::optional<Compliance> compliance_;
   std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
   Fleet fleet_;
+  VehicleShare share_;
   Separations separations_;
   struct Impact {
     double end = 0.0;                                       // s; past: none
     double step = std::numeric_limits<double>::infinity();  // s, the longest while it goes on
   };
   std::vector<Impact> impacts_;  // of every contact
+  std::vector<double> impact_durations_;
   ContactNewton newton_;
   int n_ = 0;  // beam unknowns on this rank
 
@@ -261,6 +268,7 @@ class System {
   std::vector<double> p_still_, pd_still_, x_;      // p and p' at zero acceleration, and the stage's change of p
   std::vector<double> evaluated_;                   // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
+  unsigned signs_ = 0;         // VehicleShare's of that state or, after a step, of its end
   std::vector<double> v_, w_;  // of the elements in touch, 2*per_node each
   std::vector<double> element_work_;
   std::vector<double> nodal_, work_, v_still_, w_still_, stage_load_;  // this rank's unknowns

@@ -132,6 +132,8 @@ class Mechanism {
   /// Chooses the partition anew at the consistent state s where it is worn and another choice serves better. A position
   /// in which all choices are singular is passed with the old one. False when the old one stays.
   bool renew_partition(MechanismState& s);
+  /// Takes a partition that was chosen elsewhere at the same q and q', which s holds, unless it is the one there.
+  void adopt_partition(MechanismState& s, const Partition& partition);
 
   /// A number in (0, 1]: 1 when no dependent coordinate moves more than an independent one that moves it, q for 1/q
   /// times as much (angles at a typical arm); it tends to 0 where the partition wears out. With velocities set.
@@ -188,6 +190,12 @@ class Mechanism {
   /// With forces computed; where drivers move or joints rub also after accelerations or recover.
   MechanismPowers powers(const MechanismState& s) const;
   MechanismEnergy energy(const MechanismState& s) const;
+
+  /// What a state shows, observed or asked for its powers and energies: seen_numbers() numbers. One that has read them
+  /// moves on only after another start.
+  int seen_numbers() const;
+  void write_seen(const MechanismState& s, double* to) const;
+  void read_seen(MechanismState& s, const double* from) const;
 
   /// The mass (kg) that a generalized force along `direction` (n) meets when it sets the mechanism in motion: the force
   /// over the acceleration along it. Infinite where it moves nothing. With velocities set.

@@ -1,0 +1,70 @@
+// The beam under the contacts' forces within a stage, at the elements in touch.
+#include "traverse/coupling/contact_newton.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+// v += the beam's response to loads on the elements.
+template <int m>
+void respond(const Compliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
+  using Vector = Eigen::Matrix<double, m, 1>;
+  const int elements = static_cast<int>(loads.size()) / m;
+  for (int b = 0; b < elements; ++b) {
+    const Eigen::Map<const Vector> f(&loads[static_cast<std::size_t>(b) * m]);
+    if (f.isZero(0.0)) continue;
+    const Compliance::Response& reach = compliance.response(b);
+    for (int a = reach.first; a < reach.last; ++a)
+      Eigen::Map<Vector>(&v[static_cast<std::size_t>(a) * m]) +=
+          Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;
+  }
+}
+
+void respond(const StageData& s, const std::vector<double>& loads, std::vector<double>& v) {
+  s.per_node == 2 ? respond<4>(*s.compliance, loads, v) : respond<6>(*s.compliance, loads, v);
+}
+
+}  // namespace
+
+void ContactNewton::beam_field(const StageData& s, const Fleet& fleet, Loads loads) {
+  if (loads == Loads::none || s.compliance == nullptr || fleet.elements().empty()) {
+    v_ = *s.v0;
+    w_ = *s.w0;
+    return;
+  }
+  if (loads == Loads::expected)
+    fleet.expected_loads(s.per_node, loads_);
+  else
+    fleet.element_loads(s.per_node, loads_);
+  v_.assign(s.v0->size(), 0.0);
+  w_.resize(v_.size());
+  respond(s, loads_, v_);
+  for (std::size_t i = 0; i < v_.size(); ++i) {
+    w_[i] = (*s.w0)[i] + s.shift * v_[i];
+    v_[i] += (*s.v0)[i];
+  }
+}
+
+// The geometry found shows where the forces act, not quite where they did when the beam was put under them: it moves by
+// the difference.
+void ContactNewton::follow_loads(const StageData& s, Fleet& fleet) {
+  const std::size_t m = 2 * static_cast<std::size_t>(s.per_node);
+  before_.swap(loads_);
+  fleet.element_loads(s.per_node, loads_);
+  for (std::size_t i = 0; i < loads_.size(); ++i) before_[i] = loads_[i] - before_[i];
+  v_.assign(v_.size(), 0.0);
+  respond(s, before_, v_);
+  for (WheelContact& c : fleet.wheels) {
+    if (c.slot() < 0 || fleet.vehicles[c.vehicle].rests) continue;
+    const double* z = &v_[m * static_cast<std::size_t>(c.slot())];
+    double normal = 0.0, tangential = 0.0;
+    for (std::size_t i = 0; i < m; ++i) {
+      normal += c.touch.normal_on_beam[i] * z[i];
+      tangential += c.touch.tangent_on_beam[i] * z[i];
+    }
+    c.touch.kinematics.penetration += normal;
+    c.touch.kinematics.penetration_rate += s.shift * normal;
+    c.touch.kinematics.sliding_speed += s.shift * tangential;
+  }
+}
+
+}  // namespace traverse::coupling

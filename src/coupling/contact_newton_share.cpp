@@ -1,0 +1,55 @@
+// What ranks that share the vehicles tell each other in every iteration.
+#include <algorithm>
+
+#include "traverse/coupling/contact_newton.hpp"
+
+namespace traverse::coupling {
+
+// Residuals, the contacts' geometry, and where the vehicles go by themselves.
+unsigned ContactNewton::share_contacts(const StageData& s, Fleet& fleet, unsigned signs) {
+  if (s.share == nullptr) return signs;
+  const int m = s.compliance != nullptr ? 2 * s.per_node : 0;
+  const auto numbers = [m](const Contact& c) { return 6 + (c.law.friction > 0.0 ? 2 * m : m); };
+  const auto each = [&](int k, auto number) {
+    VehicleWork& w = work_[k];
+    number(w.residual);
+    Eigen::VectorXd& own = contacts_.yield(k).c;
+    own.resize(contacts_.rows(k));
+    for (int i = 0; i < own.size(); ++i) number(own[i]);
+    for (const int i : fleet.vehicles[k].touching) {
+      Contact& c = fleet.contact(i);
+      auto& [penetration, rate, sliding] = c.touch.kinematics;
+      for (double* value : {&penetration, &rate, &sliding}) number(*value);
+      multibody::MechanismState& state = fleet.vehicles[k].state;
+      number(state.q[3 * c.body]);
+      number(state.qd[3 * c.body]);
+      number(c.active);
+      for (int j = 0; j < m; ++j) number(c.touch.normal_on_beam[j]);
+      for (int j = 0; c.law.friction > 0.0 && j < m; ++j) number(c.touch.tangent_on_beam[j]);
+    }
+  };
+  const auto size = [&](int k) {
+    int sum = 1 + contacts_.rows(k);
+    for (const int i : fleet.vehicles[k].touching) sum += numbers(fleet.contact(i));
+    return sum;
+  };
+  return s.share->exchange(
+      signs, size, [&](int k, double* to) { each(k, [&to](auto& value) { *to++ = value; }); },
+      [&](int k, const double* from) {
+        each(k, [&from](auto& value) { value = static_cast<std::remove_reference_t<decltype(value)>>(*from++); });
+      });
+}
+
+void ContactNewton::share_matrices(const StageData& s) {
+  if (s.share == nullptr) return;
+  const auto rows = [this](int k) { return contacts_.rows(k); };
+  (void)s.share->exchange(
+      0, [&](int k) { return rows(k) * rows(k); },
+      [&](int k, double* to) { std::copy_n(contacts_.yield(k).H.data(), rows(k) * rows(k), to); },
+      [&](int k, const double* from) {
+        contacts_.yield(k).H = Eigen::Map<const Eigen::MatrixXd>(from, rows(k), rows(k));
+        contacts_.yield(k).P.resize(0, 0);
+      });
+}
+
+}  // namespace traverse::coupling

@@ -1,0 +1,36 @@
+// What observers see of a state, as numbers in a row.
+#include <algorithm>
+
+#include "traverse/multibody/mechanism.hpp"
+
+namespace traverse::multibody {
+namespace {
+
+template <class State, class Visit>
+void visit_seen(State& s, Visit visit) {
+  visit(&s.time, 1);
+  visit(&s.dissipation, 1);
+  for (auto* x : {&s.q, &s.qd, &s.qdd, &s.lambda, &s.friction.force, &s.friction.speed})
+    visit(x->data(), static_cast<int>(x->size()));
+}
+
+}  // namespace
+
+int Mechanism::seen_numbers() const {
+  return 2 + 3 * coordinates() + constraints() + 2 * static_cast<int>(rubbing_.size());
+}
+
+void Mechanism::write_seen(const MechanismState& s, double* to) const {
+  visit_seen(s, [&to](const double* x, int size) { to = std::copy_n(x, size, to); });
+}
+
+void Mechanism::read_seen(MechanismState& s, const double* from) const {
+  visit_seen(s, [&from](double* x, int size) {
+    std::copy_n(from, size, x);
+    from += size;
+  });
+  place_frames(s);
+  move_frames(s);
+}
+
+}  // namespace traverse::multibody
