@@ -44,10 +44,11 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
     method = modal_->method();
   } else {
     leave_out_rest(notes);
-    integrate::Settings settings{plan_.end_time, plan_.time_step, plan_.interval, plan_.stored,
-                                 system_.known_events(plan_.end_time, scene.step_kinks)};
+    integrate::Settings settings{plan_.end_time, plan_.time_step, plan_.interval,
+                                 system_.known_events(plan_.end_time, scene.step_kinks),
+                                 scene.contact_tolerance.value_or(1e-3 * plan_.time_step)};
     if (scene.step_probes) settings.passages = passages(scene, plan_);
-    settings.contact_tolerance = scene.contact_tolerance.value_or(1e-3 * plan_.time_step);
+    settings.stored = plan_.stored;
     stepper_.emplace(system_, std::move(settings));
     method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
   }
