@@ -17,13 +17,18 @@ namespace traverse::app {
 namespace {
 
 constexpr double share = 0.45;         // of the wanted error, for the step and for the mesh each
-constexpr double farthest = 2.2;       // times a measured step or mesh that an error is extrapolated to
+// Times a measured step or mesh that an error is extrapolated to: by a measured order, by a supposed one, and where
+// measuring would cost more than it is worth.
+constexpr double farthest = 2.2, supposed = 1.5, at_most = 4.0;
+constexpr double refining_order = 3.0;  // an error is not supposed to fall faster than that
 constexpr double highest_order = 4.0;
 constexpr double unsettled = 0.5;      // order below which an error does not fall
 constexpr int most_rounds = 14;
 constexpr int first_bay = 2;
 constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 EI/k)^(1/4), at first
 constexpr double a_contact = 1.0;        // of the first step times the frequency of contacts, rad
+constexpr double hardly_anything = 1.0;  // s of trial runs, estimated
+constexpr double part_of_run = 0.5;
 constexpr double finest_start = 64.0;    // times what the rest of the scene needs
 constexpr double waves_a_period = 12.0, waves_a_crossing = 24.0, waves_a_bump = 8.0;  // steps of the first trial
 constexpr double finest = 32.0;        // times the first step
@@ -98,6 +103,7 @@ class Search {
   Search(MPI_Comm comm, const Scene& scene, const Structure& structure, double end)
       : comm_(comm),
         scene_(scene),
+        end_(end),
         horizon_(beginning(scene, end)),
         trials_(comm, shortened(scene, horizon_)),
         open_mesh_(scene.mesh_open),
@@ -118,6 +124,10 @@ class Search {
       drop();
       const bool finer = open_step_ && !within_reach(time_), denser = open_mesh_ && !within_reach(space_);
       if (!finer && !denser) break;
+      if (!worth_it(finer ? 0.5 * step_ : step_, denser ? 2 * mesh_ : mesh_)) {
+        drop_unmeasured();
+        break;
+      }
       if (finer) step_ *= 0.5;
       if (denser) mesh_ *= 2;
     }
@@ -135,7 +145,7 @@ class Search {
 
   void apply(Scene& scene, Accuracy& result) {
     drop_fixed();
-    const double fewer = open_mesh_ ? std::clamp(room(space_), 1.0 / farthest, 2.0) : 1.0;
+    const double fewer = open_mesh_ ? std::clamp(room(space_), 1.0 / at_most, 2.0) : 1.0;
     const double step = open_step_ ? two_digits(step_ * factor_of_step()) : step_;
     const int mesh = open_mesh_ ? chosen_mesh(fewer) : mesh_;
     set_mesh(scene, mesh);
@@ -145,9 +155,9 @@ class Search {
       Promise& promise = result.promises[q] = promises_[q];
       const double rate = coarser_ && step > step_ && time_[q].value > 0.0
                               ? std::log2((*coarser_)[q].value / time_[q].value)
-                              : time_[q].power();
+                              : std::min(time_[q].power(), refining_order);
       const double in_time = time_[q].value * std::pow(step / step_, rate);
-      const double in_space = space_[q].value * std::pow(double(mesh_) / mesh, space_[q].power());
+      const double in_space = space_[q].value * std::pow(double(mesh_) / mesh, mesh > mesh_ ? std::min(space_[q].power(), refining_order) : space_[q].power());
       promise.expected = in_time + in_space;
     }
   }
@@ -235,6 +245,25 @@ class Search {
     }
   }
 
+  // Errors farther off than can be told from what was measured.
+  void drop_unmeasured() {
+    for (std::size_t q = 0; q < quantities; ++q) {
+      const auto far = [&](const Error& e) { return (e.known && e.order < 1.0 && room_of(e) < 1.0) || room_of(e) < 1.0 / at_most; };
+      if (open_step_ && far(time_[q]))
+        refuse(q, fmt::format("steps of {:.2g} s leave an error of {:.1g}, and shorter ones to see more would cost more "
+                              "than the run", step_, time_[q].value));
+      else if (open_mesh_ && far(space_[q]))
+        refuse(q, fmt::format("{} elements a {} leave an error of {:.1g}, and more to see more would cost more than the "
+                              "run", mesh_, unit_of_mesh(), space_[q].value));
+    }
+  }
+
+  // Whether trial runs with these cost no more than a part of the whole run, or hardly anything.
+  bool worth_it(double step, int mesh) const {
+    const double trial = trials_.seconds(mesh, step);
+    return trials_.seconds() + 2.0 * trial < std::max(hardly_anything, part_of_run * trial * end_ / horizon_);
+  }
+
   // What the user has fixed may be too coarse.
   void drop_fixed() {
     for (std::size_t q = 0; q < quantities; ++q) {
@@ -256,7 +285,9 @@ class Search {
 
   /// Times the step (or the element) that would use the share up.
   double room_of(const Error& error) const {
-    return error.value > 0.0 ? std::pow(share * scene_.accuracy / error.value, 1.0 / error.power()) : 1e3;
+    if (error.value <= 0.0) return 1e3;
+    const double room = share * scene_.accuracy / error.value;
+    return std::pow(room, 1.0 / (room < 1.0 ? std::min(error.power(), refining_order) : error.power()));
   }
   double room(const Errors& errors) const {
     double least = 1e3;
@@ -266,14 +297,15 @@ class Search {
   }
   bool within_reach(const Errors& errors) const {
     for (std::size_t q = 0; q < quantities; ++q) {
-      if (!promises_[q].present || !promises_[q].kept || room_of(errors[q]) >= 1.0) continue;
-      if (!errors[q].known || errors[q].order < 1.0 || room_of(errors[q]) < 1.0 / farthest) return false;
+      const Error& e = errors[q];
+      if (!promises_[q].present || !promises_[q].kept || room_of(e) >= 1.0) continue;
+      if ((e.known && e.order < 1.0) || room_of(e) < 1.0 / (e.known ? farthest : supposed)) return false;
     }
     return true;
   }
   // Longer steps only as far as twice the step has been measured.
   double factor_of_step() const {
-    const double factor = std::clamp(room(time_), 1.0 / farthest, 1.0);
+    const double factor = std::clamp(room(time_), 1.0 / at_most, 1.0);
     if (factor < 1.0 || !coarser_) return factor;
     double least = 2.0;
     for (std::size_t q = 0; q < quantities; ++q) {
@@ -290,7 +322,7 @@ class Search {
 
   MPI_Comm comm_;
   const Scene& scene_;
-  double horizon_;  // s
+  double end_, horizon_;  // s, of the run and of trials
   Trials trials_;
   bool open_mesh_, open_step_;
   int mesh_, most_elements_ = 0;

@@ -123,6 +123,24 @@ Peaks peaks_of(MPI_Comm comm, const Scene& scene) {
   return watch.finished_peaks();
 }
 
+double Trials::seconds(int elements, double step) const {
+  const beam::BeamModel& beam = *scene_.beam;
+  const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
+  double bodies = 0.0;
+  for (const int type : scene_.train.vehicles)
+    bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
+  const double along = beam.track ? (beam.length() + 2.0 * beam.track->approach) / beam.track->spacing * elements
+                                  : beam.length() / longest * elements;
+  const double a_step = 5e-6 + 5e-6 * bodies + along * (beam.track ? 1e-6 : 1e-7);
+  return *scene_.end_time / step * a_step;
+}
+
+double Trials::seconds() const {
+  double sum = 0.0;
+  for (const auto& [mesh_and_step, peaks] : kept_) sum += seconds(mesh_and_step.first, mesh_and_step.second);
+  return sum;
+}
+
 const Peaks& Trials::run(int elements, double step) {
   if (const auto known = kept_.find({elements, step}); known != kept_.end()) return known->second;
   Scene scene = scene_;
