@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "traverse/app/resolution.hpp"
+
 namespace traverse::app {
 namespace {
 
@@ -19,6 +21,7 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
       still_(scene.analysis == Analysis::static_response),
       input_(system_input(scene, still_)),
       system_(structure.comm, structure.bridge(), input_, structure.statics) {
+  check_mesh(scene, notes);
   if (!still_) plan_ = make_plan(scene, system_, structure.first_period(), notes);
   std::string method;
   if (structure.modal) {
@@ -30,6 +33,9 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
     const double tolerance = scene.contact_tolerance.value_or(1e-3 * plan_.time_step);
     stepper_.emplace(system_, integrate::Settings{plan_.end_time, plan_.time_step, plan_.interval,
                                                   system_.known_events(plan_.end_time, scene.step_kinks), tolerance});
+    if (!still_) check_times(plan_);
+    if (!still_ && stepper_->hides_long_steps())
+      check_steps(scene, plan_, structure.first_period(), stepper_->high_order(), notes);
     method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
   }
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
@@ -60,6 +66,7 @@ void Passage::start(std::vector<std::string>& notes) {
   }
   double* y = stepper_->state();
   for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y)) notes.push_back(line);
+  if (!still_) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);
 }
 
