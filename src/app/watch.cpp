@@ -148,7 +148,9 @@ void Watch::note_extremes(const results::Sample& sample, const double* v) {
   summary_.energy_residual = std::max(summary_.energy_residual, std::abs(e.residual));
   for (double term : {e.kinetic, e.strain, e.potential})
     summary_.largest_energy = std::max(summary_.largest_energy, std::abs(term));
-  const double forward = scene_.train.drive == Drive::constant ? start.kinetic : 0.0;
+  // Where steps do not end at kinks the drive's work is not known so well that it could be judged without.
+  const bool apart = scene_.train.drive == Drive::constant && scene_.step_kinks;
+  const double forward = apart ? start.kinetic : 0.0;
   for (double change :
        {e.kinetic - forward, e.strain - start.strain, e.potential - start.potential, e.dissipated, e.work})
     summary_.energy_scale = std::max(summary_.energy_scale, std::abs(change));
