@@ -111,8 +111,8 @@ TEST(Step, LongForTheFirstPeriodIsNoted) {
   expect_refusal(workplace, workplace.run({"-ts_dt", "0.03"}), {"ts_dt = 0.03", "first period", "at most"});
 }
 
-// Sixteen coaches on many spans with steps that end anywhere: what the drive does where wheels pass from span to span is
-// known to a step only, and no reason to refuse the run.
+// Sixteen coaches on many spans with steps that end anywhere: what the drive does where wheels pass from span to span
+// is known to a step only, and no reason to refuse the run.
 TEST(Step, EndsAnywhereWithoutFalseAlarm) {
   EXPECT_EQ(refusal([] { run_scene("danyang_kunshan", {{"ts_max_time", "20"}}); }), "");
 }
