@@ -30,7 +30,7 @@ constexpr double a_contact = 1.0;        // of the first step times the frequenc
 constexpr double hardly_anything = 1.0;  // s of trial runs, estimated
 constexpr double part_of_run = 0.5;
 constexpr double finest_start = 64.0;    // times what the rest of the scene needs
-constexpr double waves_a_period = 12.0, waves_a_crossing = 24.0, waves_a_bump = 8.0;  // steps of the first trial
+constexpr double waves_a_period = 12.0, waves_a_crossing = 24.0, waves_a_bump = 20.0;  // steps of the first trial
 constexpr double finest = 32.0;        // times the first step
 
 /// The largest number of two digits that does not exceed x.

@@ -74,7 +74,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
   passage.run(sample, step);
   result.ended = caught_signal() == 0;
   if (!result.ended) return result;
-  check_balance(watch.extremes());
+  check_balance(scene, watch.extremes());
   result.least_wheel_force = watch.extremes().least_wheel_force;
   std::vector<double>& at_rest = static_deflection_[train];
   if (at_rest.empty())

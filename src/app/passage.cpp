@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "traverse/app/peaks.hpp"
+#include "traverse/app/resolution.hpp"
 
 namespace traverse::app {
 namespace {
@@ -36,6 +37,7 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
       still_(scene.analysis == Analysis::static_response),
       input_(system_input(scene, still_)),
       system_(structure.comm, structure.bridge(), input_, structure.statics) {
+  check_mesh(scene, notes);
   if (!still_) plan_ = make_plan(scene, system_, structure.first_period(), notes);
   std::string method;
   if (structure.modal) {
@@ -50,6 +52,9 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
     if (scene.step_probes) settings.passages = passages(scene, plan_);
     settings.stored = plan_.stored;
     stepper_.emplace(system_, std::move(settings));
+    if (!still_) check_times(plan_);
+    if (!still_ && stepper_->hides_long_steps())
+      check_steps(scene, plan_, structure.first_period(), stepper_->high_order(), notes);
     method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
   }
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
@@ -81,6 +86,7 @@ void Passage::start(std::vector<std::string>& notes) {
   }
   double* y = stepper_->state();
   for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y)) notes.push_back(line);
+  if (!still_) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -17,6 +18,8 @@
 
 namespace traverse::app {
 namespace {
+
+constexpr int nodes_for_a_check = 1000;  // of a given step by the first period: up to here frequencies take no time
 
 int run_modes(MPI_Comm comm, const Scene& scene, Structure& structure, std::vector<std::string> notes) {
   structure.damp(scene, true, notes);
@@ -96,7 +99,12 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
   MPI_Comm_rank(comm, &rank);
   const bool still = scene.analysis == Analysis::static_response;
   const beam::Beam* beam = structure.bridge();
-  if (beam != nullptr) structure.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0), notes);
+  if (beam != nullptr) {
+    const std::vector<int>& elements = beam->model().elements;  // of which one may have no two frequencies
+    const bool cheap =
+        beam->mesh().nodes() <= nodes_for_a_check && *std::min_element(elements.begin(), elements.end()) > 1;
+    structure.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
+  }
   structure.prepare(scene, notes);
   Passage passage(scene, structure, notes);  // everything is checked before anything is computed
   coupling::System& system = passage.system();
@@ -160,7 +168,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
         "deepest carried\n",
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
-  check_balance(summary);
+  check_balance(scene, summary);
   if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
       !report(comm, scene, accuracy, watch.finished_peaks()))
     throw SolverError(fmt::format(

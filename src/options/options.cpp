@@ -16,6 +16,8 @@ namespace traverse::options {
 namespace {
 
 constexpr std::size_t longest_list = 10'000'000;
+constexpr double least_number = 1e-50,
+                 greatest_number = 1e50;  // products and powers of SI units stay far from overflow
 
 std::string trim(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
@@ -213,6 +215,9 @@ double Options::to_number(std::string_view name, const std::string& word) const 
     refuse(name, fmt::format("'{}' is no finite number; allowed: {}", word, allowed(known)));
   }
   if (!inside(known.range, value)) refuse(name, "allowed: " + allowed(known));
+  if (value != 0.0 && (std::abs(value) < least_number || std::abs(value) > greatest_number))
+    refuse(name, fmt::format("'{}' is beyond any quantity in SI units; allowed: 0, or {:g} to {:g} in magnitude", word,
+                             least_number, greatest_number));
   return value;
 }
 

@@ -17,6 +17,8 @@ constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double least_fade = 20.0;    // m
 constexpr double least_corner = 5e-3;  // of slope: below it a wheel of 0.5 m bridges the corner by a micrometre
 constexpr double stations_a_wave = 16.0;
+constexpr int stations_between_lines = 8;
+constexpr double most_overshoot = 0.3;  // of a table's range of heights: three lines a wave make a tenth
 constexpr int waves_in_all = 240;
 
 /// Second derivatives of the natural cubic spline at its knots (Thomas algorithm).
@@ -80,8 +82,24 @@ Profile Profile::table(std::vector<double> x, std::vector<double> h, const std::
   p.kinks_ = {x.front(), x.back()};
   p.x_ = std::move(x);
   p.h_ = std::move(h);
+  p.check_swing(name);
   p.bound_table();
   return p;
+}
+
+// A spline swings out beside a jump, the farther the longer the lines are apart there.
+void Profile::check_swing(const std::string& name) const {
+  const auto [low, high] = std::minmax_element(h_.begin(), h_.end());
+  for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
+    const double a = std::min(h_[i], h_[i + 1]), b = std::max(h_[i], h_[i + 1]);
+    for (int part = 1; part < stations_between_lines; ++part) {
+      const double x = x_[i] + part * (x_[i + 1] - x_[i]) / stations_between_lines, h = at(x).value;
+      if (std::max(a - h, h - b) > most_overshoot * (*high - *low))
+        throw InputError(name + ": the smooth curve through the lines leaves them by " +
+                         std::to_string(std::max(a - h, h - b)) + " m at x = " + std::to_string(x) +
+                         ", beside a jump of height; give lines as close together around the jump as in it");
+    }
+  }
 }
 
 // Slopes are parabolas between the lines of a table: greatest at an end or where the curvature vanishes.

@@ -54,12 +54,12 @@ class Watch {
   results::Summary summary_;
   double most_deflected_ = 0.0, most_deflected_time_ = 0.0;  // m, s
   std::vector<double> worst_shape_;  // nodal unknowns of this rank at the largest deflection
-  double energy_at_start_ = 0.0;
+  coupling::Energy energy_at_start_;
   bool first_ = true;
 };
 
 /// SolverError where so much energy is missing that the answer is none.
-void check_balance(const results::Summary& summary);
+void check_balance(const Scene& scene, const results::Summary& summary);
 
 /// The recorder's layout for a scene.
 results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam);

@@ -51,6 +51,9 @@ class Stepper {
   long steps() const { return steps_; }
   bool stopped_at_limit() const { return steps_ >= most_steps_; }  // of -ts_max_steps
   std::string method() const;                                      // e.g. "ARKIMEX 4, implicit"
+  /// Implicit, with steps of one length: nothing shows by itself that they are too long.
+  bool hides_long_steps() const { return implicit_ && !adaptive_; }
+  bool high_order() const;  // above 2
 
  private:
   struct Request {  // what TS asks of a stage
@@ -65,6 +68,7 @@ class Stepper {
   double step_to(double end);
   void locate_contact_change(double from);
   void sample_now(const std::function<void(const Instant&)>& sample, bool stored);
+  void check_bounds(double t, const double* y, const double* ydot) const;
   void rate(double t, Vec y, Vec ydot, coupling::Part part);
   bool remembered(double t, const double* y) const;
   void implicit_residual(double t, Vec y, Vec ydot, Vec residual);

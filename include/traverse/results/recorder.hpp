@@ -99,8 +99,9 @@ struct Summary {
   double energy_left = 0.0;       // put to rest outside the window of what is stepped, J
   /// What that is of the structure's motion: the root of its part in the energy.
   double rest_error() const;
-  double energy_scale = 0.0;  // largest term, J
-  double static_error = 0.0;  // relative, of static solutions, by rounding
+  double energy_scale = 0.0;    // largest term, J, less what was stored and a driven train's going forward at the start
+  double largest_energy = 0.0;  // largest term that is stored, J
+  double static_error = 0.0;    // relative, of static solutions, by rounding
   long steps = 0;
   long solves = 0;            // beam solves
   double wall_seconds = 0.0;  // of the time loop

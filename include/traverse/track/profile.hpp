@@ -21,7 +21,8 @@ class Profile {
   Profile() = default;  // level
   /// height/2*(1 - cos(2 pi (x - start)/length)) inside [start, start + length].
   static Profile bump(double start, double length, double height);
-  /// Natural cubic spline through a table, level with its end values outside.
+  /// Natural cubic spline through a table, level with its end values outside. InputError where it swings far out beside
+  /// a jump of the table.
   static Profile table(std::vector<double> x, std::vector<double> h, const std::string& name);
   /// Roughness of a spectrum: a sum of 240 cosines with random phases from a seed, wavelengths from `shortest` to
   /// `longest` (m) in log spacing, each with the power of its band; faded in from `start` over 20 m, or a fifth of the
@@ -50,6 +51,7 @@ class Profile {
 
  private:
   enum class Kind { level, bump, table, waves };
+  void check_swing(const std::string& name) const;
   void bound_table();
 
   Kind kind_ = Kind::level;
