@@ -172,12 +172,12 @@ class Search {
     omega_ = structure.omega ? structure.omega->first : 0.0;
     double step = 1e-2 * horizon_;
     if (omega_ > 0.0) step = std::min(step, 2.0 * std::numbers::pi / omega_ / waves_a_period);
-    const double speed = std::max(scene_.train.vehicles.empty() ? 0.0 : scene_.train.speed,
+    speed_ = std::max(scene_.train.vehicles.empty() ? 0.0 : scene_.train.speed,
                                   scene_.load.forces.empty() ? 0.0 : scene_.load.speed);
-    if (speed > 0.0) {
+    if (speed_ > 0.0) {
       const double span = *std::min_element(scene_.beam->spans.begin(), scene_.beam->spans.end());
-      longest_step_ = span / speed / waves_a_crossing;
-      step = std::min({step, longest_step_, shortest_wave(scene_) / speed / waves_a_bump});
+      longest_step_ = span / speed_ / waves_a_crossing;
+      step = std::min({step, longest_step_, shortest_wave(scene_) / speed_ / waves_a_bump});
     }
     if (scene_.output.interval) step = std::min(step, *scene_.output.interval);
     coarsest_step_ = step;
@@ -222,9 +222,11 @@ class Search {
     return error_from(growth_ * change, step_, time_[q]);
   }
 
-  // With twice the step, at half the cost: runs that the error in time asks for too.
+  // With twice the step, at half the cost: runs that the error in time asks for too. Steps over more than an element
+  // would hide what elements do.
   Error error_in_space(Quantity q) {
-    const double step = open_step_ ? 2.0 * step_ : step_;
+    const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
+    const double step = open_step_ && 2.0 * step_ * speed_ < element ? 2.0 * step_ : step_;
     const double change = difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
     return error_from(change, 1.0 / mesh_, space_[q]);
   }
@@ -326,7 +328,7 @@ class Search {
   Trials trials_;
   bool open_mesh_, open_step_;
   int mesh_, most_elements_ = 0;
-  double omega_ = 0.0, longest_step_ = 1e300, coarsest_step_ = 0.0, first_step_ = 0.0, step_ = 0.0;
+  double speed_ = 0.0, omega_ = 0.0, longest_step_ = 1e300, coarsest_step_ = 0.0, first_step_ = 0.0, step_ = 0.0;
   double growth_ = 1.0;  // of errors in time until what was free has died away, for runs longer than the trials
   std::array<Promise, quantities> promises_{};
   std::array<int, quantities> crawls_{};  // halvings in a row that have changed little
@@ -349,6 +351,17 @@ bool is_asked_for(const char* prefix) {
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, double>> Accuracy::expected() const {
+  std::vector<std::pair<std::string, double>> list;
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (!measured || !promises[q].present || !promises[q].kept) continue;
+    std::string name = quantity_names[q];
+    std::replace(name.begin(), name.end(), ' ', '_');
+    list.emplace_back(name, promises[q].expected);
+  }
+  return list;
+}
 
 Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   Accuracy result;

@@ -58,15 +58,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
   Watch watch(scene, passage.system(), structure_.bridge(), none);
   CaseResult result;
   result.peaks.resize(scene.output.probes.size());
-  const auto sample = [&](const integrate::Instant& instant) {
-    watch.sample(instant);
-    for (std::size_t p = 0; p < result.peaks.size(); ++p) {
-      const beam::Response& r = watch.last().probes[p];
-      result.peaks[p].deflection.note(std::abs(r.deflection), instant.time);
-      result.peaks[p].acceleration.note(std::abs(r.acceleration), instant.time);
-      result.peaks[p].moment.note(std::abs(r.moment), instant.time);
-    }
-  };
+  const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
   const auto step = [&](double t, long) {
     watch.step(t);
     return caught_signal() == 0;
@@ -75,6 +67,14 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
   result.ended = caught_signal() == 0;
   if (!result.ended) return result;
   check_balance(scene, watch.extremes());
+  const Peaks& peaks = watch.finished_peaks();
+  for (std::size_t p = 0; p < result.peaks.size(); ++p) {
+    const auto peak = [&](Quantity q) {
+      const Peak& found = peaks.largest_of_each(q)[p];
+      return integrate::Peak{std::abs(found.value), found.time};
+    };
+    result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
+  }
   result.least_wheel_force = watch.extremes().least_wheel_force;
   std::vector<double>& at_rest = static_deflection_[train];
   if (at_rest.empty())

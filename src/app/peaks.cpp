@@ -33,10 +33,13 @@ void Curve::add(double t, double value, const std::vector<double>& kinks, Note&&
 }
 
 Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels)
-    : passages_(std::move(passages)), probes_(passages_.size()), wheels_(wheels) {}
+    : passages_(std::move(passages)), probes_(passages_.size()), wheels_(wheels) {
+  for (std::size_t q = 0; q < quantities; ++q) each_[q].resize(q == wheel_force ? wheels : passages_.size());
+}
 
 void Peaks::note(Quantity q, std::size_t place, double value, double time) {
   const Peak peak{value, time, static_cast<int>(place)};
+  if (std::abs(value) > std::abs(each_[q][place].value)) each_[q][place] = peak;
   if (std::abs(value) > std::abs(largest_[q].value)) largest_[q] = peak;
   if (std::abs(value) < kept * std::abs(largest_[q].value) || value == 0.0) return;
   std::vector<Peak>& found = found_[q];

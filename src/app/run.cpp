@@ -132,6 +132,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
     summary.wall_seconds = wall;
     if (system.window() != nullptr) summary.energy_left = total(comm, system.window()->energy_left());
     summary.static_error = system.static_error();
+    summary.expected_errors = accuracy.expected();
     summary.ended = ended;
     recorder.finish(summary);
     progress.done();

@@ -10,6 +10,7 @@
 #include "case_runner.hpp"
 #include "deal.hpp"
 #include "process.hpp"
+#include "traverse/app/accuracy.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/results/sweep.hpp"
 #include "traverse/results/terminal.hpp"
@@ -137,13 +138,30 @@ Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal
   return failure;
 }
 
+/// With mesh and step for the fastest run; the same on every rank.
+Scene chosen(Scene scene, std::vector<std::string>& notes) {
+  Scene fastest = scene;
+  if (!scene.sweep->speeds.empty()) {
+    const double speed = *std::max_element(scene.sweep->speeds.begin(), scene.sweep->speeds.end());
+    if (!scene.sweep->loads.empty()) fastest.load = scene.sweep->loads.front();
+    fastest.train.speed = scene.vehicles.empty() ? 0.0 : speed;
+    fastest.load.speed = fastest.load.forces.empty() ? 0.0 : speed;
+  }
+  if (!choose(PETSC_COMM_SELF, fastest, notes).measured) return scene;
+  scene.beam = fastest.beam;
+  scene.time_step = fastest.time_step;
+  scene.step_probes = fastest.step_probes;
+  return scene;
+}
+
 }  // namespace
 
-int run_sweep(MPI_Comm comm, const Scene& scene) {
+int run_sweep(MPI_Comm comm, const Scene& given) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
   std::vector<std::string> notes;
+  const Scene scene = chosen(given, notes);
   CaseRunner runner(scene, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);

@@ -69,8 +69,9 @@ void set_mesh(Scene& scene, int elements) {
   const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
   for (std::size_t i = 0; i < beam.spans.size(); ++i)
     beam.elements[i] =
-        std::max(std::min(elements, least_elements),
-                 2 * static_cast<int>(std::ceil(0.5 * elements * beam.spans[i] / longest * (1.0 - 1e-9))));
+        elements == 1 ? 1
+                      : std::max(std::min(elements, least_elements),
+                                 2 * static_cast<int>(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
 }
 
 int mesh_of(const Scene& scene) {

@@ -284,6 +284,8 @@ void Recorder::Impl::summarise(const Summary& summary) {
   file.attribute(group, "solves", summary.solves);
   file.attribute(group, "wall_seconds", summary.wall_seconds);
   file.attribute(group, "ended", summary.ended);
+  for (const auto& [quantity, error] : summary.expected_errors)
+    file.attribute(group, "expected_error_" + quantity, error);
 }
 
 Recorder::Recorder(MPI_Comm comm, const std::string& file, const Layout& layout, const Pairs& attributes,

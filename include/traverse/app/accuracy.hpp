@@ -7,6 +7,7 @@
 
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "traverse/app/peaks.hpp"
@@ -25,6 +26,8 @@ struct Promise {
 struct Accuracy {
   bool measured = false;  // false: nothing was open, or there is nothing to measure
   std::array<Promise, quantities> promises;
+  /// Of what is promised: name in the results file and expected error.
+  std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took
 };
 

@@ -52,6 +52,8 @@ class Peaks {
 
   const std::vector<Peak>& of(Quantity q) const { return found_[q]; }
   const Peak& largest(Quantity q) const { return largest_[q]; }
+  /// Of each probe or wheel.
+  const std::vector<Peak>& largest_of_each(Quantity q) const { return each_[q]; }
 
  private:
   void note(Quantity q, std::size_t place, double value, double time);
@@ -61,6 +63,7 @@ class Peaks {
   std::vector<Curve> wheels_;
   std::array<std::vector<Peak>, quantities> found_;
   std::array<Peak, quantities> largest_{};
+  std::array<std::vector<Peak>, quantities> each_;
 };
 
 /// What the largest extremes of two runs differ by, relative to them: or what those near them (above 0.9) that lie in

@@ -19,9 +19,9 @@ struct Settings {
   double end_time = 0.0;           // s
   double time_step = 0.0;          // s, the longest
   double interval = 0.0;           // s between samples
-  std::vector<double> events;      // ascending times at which a step has to end
+  std::vector<double> events{};    // ascending times at which a step has to end
   double contact_tolerance = 0.0;  // s: steps end so close behind the loss or gain of a contact; 0: wherever
-  std::vector<double> passages;    // ascending times at which a step has to end and a sample is due, not to be stored
+  std::vector<double> passages{};  // ascending times at which a step has to end and a sample is due, not to be stored
   int stored = 1;                  // every so many of the other samples is to be stored
 };
 

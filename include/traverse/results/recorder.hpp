@@ -106,6 +106,8 @@ struct Summary {
   long solves = 0;            // beam solves
   double wall_seconds = 0.0;  // of the time loop
   std::string ended;          // "reached its end", or why it stopped
+  /// Relative, of the peaks whose accuracy is promised: name of the quantity and what is expected.
+  std::vector<std::pair<std::string, double>> expected_errors;
 };
 
 /// The writer. Only rank 0 opens and writes the file; on the other ranks every call does nothing.

@@ -1,0 +1,70 @@
+// Extremes of sampled curves.
+#include "traverse/app/peaks.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace traverse::app {
+namespace {
+
+/// The extremes of one probe's curve f, all quantities the same, sampled every dt until 1 s and at `extra`.
+template <class Curve>
+Peaks peaks_of_curve(Curve f, double dt, const std::vector<double>& passages = {}) {
+  Peaks peaks({passages}, 1);
+  std::vector<double> times = passages;
+  for (int i = 0; i * dt <= 1.0; ++i) times.push_back(i * dt);
+  std::sort(times.begin(), times.end());
+  for (const double t : times) {
+    beam::Response response;
+    response.deflection = response.acceleration = response.moment = f(t);
+    peaks.add(t, {&response, 1}, {{f(t)}});
+  }
+  peaks.finish();
+  return peaks;
+}
+
+// The error of the parabola's vertex falls with the fourth power of the interval.
+TEST(Peaks, LieBetweenSamples) {
+  const auto wave = [](double t) { return -std::sin(7.0 * t + 0.1); };
+  double before = 0.0;
+  for (const double dt : {0.04, 0.02, 0.01}) {
+    const Peaks peaks = peaks_of_curve(wave, dt);
+    const double error = std::abs(std::abs(peaks.largest(deflection).value) - 1.0);
+    EXPECT_LT(error, std::pow(7.0 * dt, 4) / 64.0);
+    if (before > 0.0) {
+      EXPECT_LT(error, before / 4.0);
+    }
+    before = error;
+  }
+}
+
+// At a kink that has a sample no parabola rounds it off or overshoots.
+TEST(Peaks, AtAKinkThatHasASample) {
+  const double kink = 0.4321;
+  const auto roof = [&](double t) { return 1.0 - std::abs(t - kink); };
+  const Peaks peaks = peaks_of_curve(roof, 0.03, {kink});
+  EXPECT_DOUBLE_EQ(peaks.largest(moment).value, 1.0);
+  EXPECT_DOUBLE_EQ(peaks.largest(moment).time, kink);
+}
+
+TEST(Peaks, TheFirstAndTheLastValueCount) {
+  EXPECT_DOUBLE_EQ(peaks_of_curve([](double t) { return 2.0 - t; }, 0.1).largest(acceleration).value, 2.0);
+  EXPECT_NEAR(peaks_of_curve([](double t) { return -1.0 - t; }, 0.1).largest(wheel_force).value, -2.0, 1e-12);
+}
+
+// Where the largest extremes agree by chance, their neighbours tell that the curves differ.
+TEST(Peaks, DifferenceSeesNeighbours) {
+  const auto curve = [](double second) {
+    return [=](double t) { return std::sin(M_PI * 8.0 * t) * (t > 0.25 && t < 0.5 ? second : 1.0); };
+  };
+  const Peaks a = peaks_of_curve(curve(0.97), 1e-3), b = peaks_of_curve(curve(0.95), 1e-3);
+  EXPECT_NEAR(peak_difference(a, b, deflection), 0.0, 1e-9);
+  EXPECT_GT(difference(a, b, deflection, 0.01), 0.01);
+  EXPECT_LT(difference(a, b, deflection, 0.01), 0.03);
+  EXPECT_EQ(difference(a, a, deflection, 0.01), 0.0);
+}
+
+}  // namespace
+}  // namespace traverse::app

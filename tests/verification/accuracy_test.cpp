@@ -1,0 +1,121 @@
+// The promise of `accuracy`: the errors of peaks stay below what the user wants, against runs that are refined far
+// beyond, or the quantity is named as not promised.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "support/curve.hpp"
+#include "support/scene_run.hpp"
+
+namespace traverse::test {
+namespace {
+
+constexpr std::array quantities = {"deflection", "acceleration", "moment", "wheel_force"};
+
+double peak_of(const Results& run, const std::string& quantity) {
+  return std::abs(run.attribute("/summary", quantity == "wheel_force" ? "greatest_wheel_force" : quantity));
+}
+
+/// What the run says it expects; none where it does not promise the quantity.
+std::optional<double> expected(const Results& run, const std::string& quantity) {
+  const double error = run.attribute("/summary", "expected_error_" + quantity);
+  return std::isnan(error) ? std::nullopt : std::optional(error);
+}
+
+const std::string quarter_car = R"(
+vehicle:
+  car:
+    bodies:  [body, axle]
+    joints:  [guide]
+    springs: [suspension]
+    wheels:  [wheel]
+    drivers: [level]
+    body:    {mass: 18000.0, inertia: 1.0, position: [0.0, 2.0]}
+    axle:    {mass: 1200.0, inertia: 1.0, position: [0.0, 0.46]}
+    guide:   {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}
+    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 1.8e6, damping: 2.0e4}
+    level:   {body: body, coordinate: phi}
+)";
+
+struct Case {
+  const char* name;
+  std::string scene;
+  bool acceleration = true;  // is promised
+};
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+const std::string one_span = "beam: {spans: 30.0, EI: 1.2e10, mass: 9000.0, damping_ratios: 0.03}\n"
+                             "support: {types: [pinned, roller]}\n";
+const std::string on_tyre = "    wheel: {body: axle, radius: 0.46, law: linear, stiffness: 4.0e6}\n"
+                            "train: {vehicles: car, positions: 0.0, speed: 25.0}\n";
+const std::string on_steel = "    wheel: {body: axle, radius: 0.46, law: hertz, stiffness: 3.6e10}\n"
+                             "train: {vehicles: car, positions: -1.0, speed: 60.0}\n";
+const std::string forces = "load: {forces: 2.0e5*4, positions: [0.0, -3.0, -11.0, -14.0], speed: 60.0}\n";
+
+class Promise : public testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(
+    Accuracy, Promise,
+    testing::Values(Case{"tyre", one_span + quarter_car + on_tyre}, Case{"steel_wheel", one_span + quarter_car + on_steel},
+                    Case{"three_spans_and_forces",
+                         "beam: {spans: [30.0, 36.0, 30.0], EI: 2.0e10, mass: 1.0e4, damping_ratios: 0.02}\n"
+                         "support: {types: [pinned, roller, roller, roller]}\nscene: {tail: 0.5}\n" + forces},
+                    Case{"undamped",
+                         "beam: {spans: [25.0, 25.0], EI: 1.0e10, mass: 3000.0}\n"
+                         "support: {types: [pinned, roller, roller]}\n" + quarter_car + on_tyre,
+                         false},
+                    Case{"bump", one_span + quarter_car + on_tyre +
+                                     "track: {profile: bump, bump: {start: 10.0, length: 1.5, height: 0.01}}\n"}),
+    [](const auto& which) { return which.param.name; });
+
+TEST_P(Promise, IsKeptAtEveryAccuracy) {
+  const Case& c = GetParam();
+  const Results truth =
+      run_yaml(c.scene, {{"ts_dt", "1e-4"}, {"beam_elements_per_span", "160"}, {"step_probes", "true"}});
+  double work_before = 0.0;
+  std::size_t promised_before = 0;
+  for (const char* accuracy : {"1e-2", "1e-3", "1e-4"}) {
+    const Results run = run_yaml(c.scene, {{"accuracy", accuracy}});
+    const double wanted = std::stod(accuracy);
+    std::size_t promised = 0;
+    for (const std::string quantity : quantities) {
+      if (peak_of(truth, quantity) == 0.0) continue;
+      const auto expectation = expected(run, quantity);
+      const double error = std::abs(peak_of(run, quantity) / peak_of(truth, quantity) - 1.0);
+      RecordProperty(quantity + "_" + accuracy, text(error));
+      if (quantity != "moment" || wanted > 5e-4) {  // where a bump lies on the way it settles late
+        EXPECT_EQ(expectation.has_value(), quantity != "acceleration" || c.acceleration) << quantity << " " << accuracy;
+      }
+      if (!expectation) continue;
+      ++promised;
+      EXPECT_LE(error, wanted) << quantity;
+      EXPECT_LE(*expectation, wanted) << quantity;
+    }
+    const double work = run.attribute("/summary", "solves");
+    if (promised >= promised_before) {
+      EXPECT_GT(work, work_before) << accuracy;
+    }
+    work_before = work;
+    promised_before = promised;
+  }
+}
+
+// What the user has fixed stays, and says so where it is too coarse.
+TEST(Accuracy, FixedMeshIsNotPromised) {
+  const std::string scene = one_span + quarter_car + on_tyre;
+  const Results coarse = run_yaml(scene, {{"accuracy", "1e-3"}, {"beam_elements_per_span", "2"}});
+  EXPECT_FALSE(expected(coarse, "acceleration"));
+  const Results fine = run_yaml(scene, {{"accuracy", "1e-3"}, {"beam_elements_per_span", "40"}});
+  EXPECT_TRUE(expected(fine, "acceleration"));
+}
+
+// With mesh and step given there is nothing to choose, and nothing is promised.
+TEST(Accuracy, NothingOpenNothingPromised) {
+  const Results run =
+      run_yaml(one_span + quarter_car + on_tyre, {{"ts_dt", "1e-3"}, {"beam_elements_per_span", "10"}});
+  for (const char* quantity : quantities) EXPECT_FALSE(expected(run, quantity)) << quantity;
+}
+
+}  // namespace
+}  // namespace traverse::test
