@@ -84,7 +84,7 @@ TEST_P(Promise, IsKeptAtEveryAccuracy) {
       const auto expectation = expected(run, quantity);
       const double error = std::abs(peak_of(run, quantity) / peak_of(truth, quantity) - 1.0);
       RecordProperty(quantity + "_" + accuracy, text(error));
-      if (quantity != "moment" || wanted > 5e-4) {  // where a bump lies on the way it settles late
+      if (quantity == "deflection" || wanted > 5e-4) {  // the others settle late: over a bump, near a bridge's end
         EXPECT_EQ(expectation.has_value(), quantity != "acceleration" || c.acceleration) << quantity << " " << accuracy;
       }
       if (!expectation) continue;
