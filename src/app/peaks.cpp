@@ -37,6 +37,12 @@ Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels)
   for (std::size_t q = 0; q < quantities; ++q) each_[q].resize(q == wheel_force ? wheels : passages_.size());
 }
 
+Peaks Peaks::of_failure() {
+  Peaks none;
+  none.failed_ = true;
+  return none;
+}
+
 void Peaks::note(Quantity q, std::size_t place, double value, double time) {
   const Peak peak{value, time, static_cast<int>(place)};
   if (std::abs(value) > std::abs(each_[q][place].value)) each_[q][place] = peak;
@@ -54,9 +60,8 @@ void Peaks::add(double t, std::span<const beam::Response> probes, std::span<cons
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].moment};
     for (std::size_t q = 0; q < values.size(); ++q)
-      probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth, [&](double value, double at) {
-        note(static_cast<Quantity>(q), i, value, at);
-      });
+      probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth,
+                        [&](double value, double at) { note(static_cast<Quantity>(q), i, value, at); });
   }
   for (std::size_t i = 0; i < wheel_forces.size(); ++i)
     wheels_[i].add(t, wheel_forces[i], smooth, [&](double value, double at) { note(wheel_force, i, value, at); });
@@ -77,6 +82,7 @@ double peak_difference(const Peaks& rough, const Peaks& fine, Quantity q) {
 
 double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reach) {
   const double largest = std::abs(fine.largest(q).value);
+  if (rough.failed() || fine.failed()) return 1.0;
   if (largest == 0.0) return 0.0;
   double squares = 0.0;
   int count = 0;

@@ -9,12 +9,12 @@
 
 #include "process.hpp"
 #include "traverse/app/accuracy.hpp"
-#include "trials.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/app/study.hpp"
 #include "traverse/app/transient.hpp"
 #include "traverse/modes/modes.hpp"
 #include "traverse/options/input.hpp"
+#include "trials.hpp"
 
 namespace traverse::app {
 namespace {
@@ -88,7 +88,9 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
     fmt::print("  {:<22}{:>12}{:>12}{:>12.1e}{}\n", quantity_names[i],
                promise.kept ? fmt::format("{:.1e}", scene.accuracy) : "-",
                promise.kept ? fmt::format("{:.1e}", promise.expected) : "-", error,
-               broken ? "  broken" : promise.kept ? "  kept" : "  not promised");
+               broken         ? "  broken"
+               : promise.kept ? "  kept"
+                              : "  not promised");
   }
   return all_kept;
 }
@@ -172,9 +174,9 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
   check_balance(scene, summary);
   if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
       !report(comm, scene, accuracy, watch.finished_peaks()))
-    throw SolverError(fmt::format(
-        "the accuracy of {:g} was not kept (above); take a smaller -accuracy, and please report the scene",
-        scene.accuracy));
+    throw SolverError(
+        fmt::format("the accuracy of {:g} was not kept (above); take a smaller -accuracy, and please report the scene",
+                    scene.accuracy));
   return stopped == 0 ? 0 : 128 + stopped;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
 constexpr std::size_t few_spans = 24;    // are all kept
 constexpr int least_elements = 4;
-constexpr double behind = 1.1;           // spans, until what the last wheel does as it leaves is seen
+constexpr double behind = 1.1;  // spans, until what the last wheel does as it leaves is seen
 
 /// x of the foremost and the rearmost wheel of a vehicle of the train at t = 0.
 std::pair<double, double> wheels_of(const Scene& scene, std::size_t i) {
@@ -25,6 +25,12 @@ std::pair<double, double> wheels_of(const Scene& scene, std::size_t i) {
     ends = {std::max(ends.first, x), std::min(ends.second, x)};
   }
   return ends;
+}
+
+/// x at t = 0 of what of the first vehicle has to have crossed: its last wheel, in a train its middle.
+double last_to_watch(const Scene& scene) {
+  const auto [front, rear] = wheels_of(scene, 0);
+  return scene.train.vehicles.size() < 3 ? rear : 0.5 * (front + rear);
 }
 
 void leave_out_vehicles(Scene& scene, double end) {
@@ -41,8 +47,8 @@ void leave_out_vehicles(Scene& scene, double end) {
 void leave_out_spans(Scene& scene, double end) {
   beam::BeamModel& beam = *scene.beam;
   const beam::Foundation& f = beam.foundation;
-  const bool founded = f.vertical_bed || f.longitudinal_bed || !f.vertical.empty() || !f.longitudinal.empty() ||
-                       !f.rotational.empty();
+  const bool founded =
+      f.vertical_bed || f.longitudinal_bed || !f.vertical.empty() || !f.longitudinal.empty() || !f.rotational.empty();
   const bool plain = !founded && !beam.track && beam.hinges.empty();
   if (!plain || beam.spans.size() <= few_spans || scene.train.drive != coupling::Drive::constant) return;
   double front = scene.output.probes.empty() ? 0.0 : scene.output.probes.front();
@@ -68,10 +74,10 @@ void set_mesh(Scene& scene, int elements) {
   }
   const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
   for (std::size_t i = 0; i < beam.spans.size(); ++i)
-    beam.elements[i] =
-        elements == 1 ? 1
-                      : std::max(std::min(elements, least_elements),
-                                 2 * static_cast<int>(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
+    beam.elements[i] = elements == 1
+                           ? 1
+                           : std::max(std::min(elements, least_elements),
+                                      2 * static_cast<int>(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
 }
 
 int mesh_of(const Scene& scene) {
@@ -85,9 +91,7 @@ double beginning(const Scene& scene, double end) {
   const auto crossing = [&](double rear, double speed) { return speed > 0.0 ? (reach - rear) / speed : end; };
   double until = 0.0;
   if (!scene.train.vehicles.empty())
-    until = scene.train.drive == coupling::Drive::constant
-                ? crossing(wheels_of(scene, 0).second, scene.train.speed)
-                : end;
+    until = scene.train.drive == coupling::Drive::constant ? crossing(last_to_watch(scene), scene.train.speed) : end;
   if (!scene.load.forces.empty()) {
     std::vector<double> positions = scene.load.positions;
     std::sort(positions.begin(), positions.end(), std::greater<>());
@@ -147,7 +151,14 @@ const Peaks& Trials::run(int elements, double step) {
   Scene scene = scene_;
   set_mesh(scene, elements);
   scene.time_step = scene.output.interval = step;
-  return kept_.emplace(std::pair{elements, step}, peaks_of(comm_, scene)).first->second;
+  const auto peaks = [&] {
+    try {
+      return peaks_of(comm_, scene);
+    } catch (const SolverError&) {
+      return Peaks::of_failure();  // too long a step, most likely
+    }
+  };
+  return kept_.emplace(std::pair{elements, step}, peaks()).first->second;
 }
 
 }  // namespace traverse::app

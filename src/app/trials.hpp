@@ -33,8 +33,8 @@ class Trials {
   const Peaks& run(int elements, double step);
   bool has(int elements, double step) const { return kept_.contains({elements, step}); }
   std::size_t count() const { return kept_.size(); }
-  /// An estimate of what a run takes, or of what all took so far, s: by counting, since decisions must not depend on the
-  /// clock.
+  /// An estimate of what a run takes, or of what all took so far, s: by counting, since decisions must not depend on
+  /// the clock.
   double seconds(int elements, double step) const;
   double seconds() const;
 

@@ -46,24 +46,30 @@ struct Case {
 };
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
-const std::string one_span = "beam: {spans: 30.0, EI: 1.2e10, mass: 9000.0, damping_ratios: 0.03}\n"
-                             "support: {types: [pinned, roller]}\n";
-const std::string on_tyre = "    wheel: {body: axle, radius: 0.46, law: linear, stiffness: 4.0e6}\n"
-                            "train: {vehicles: car, positions: 0.0, speed: 25.0}\n";
-const std::string on_steel = "    wheel: {body: axle, radius: 0.46, law: hertz, stiffness: 3.6e10}\n"
-                             "train: {vehicles: car, positions: -1.0, speed: 60.0}\n";
+const std::string one_span =
+    "beam: {spans: 30.0, EI: 1.2e10, mass: 9000.0, damping_ratios: 0.03}\n"
+    "support: {types: [pinned, roller]}\n";
+const std::string on_tyre =
+    "    wheel: {body: axle, radius: 0.46, law: linear, stiffness: 4.0e6}\n"
+    "train: {vehicles: car, positions: 0.0, speed: 25.0}\n";
+const std::string on_steel =
+    "    wheel: {body: axle, radius: 0.46, law: hertz, stiffness: 3.6e10}\n"
+    "train: {vehicles: car, positions: -1.0, speed: 60.0}\n";
 const std::string forces = "load: {forces: 2.0e5*4, positions: [0.0, -3.0, -11.0, -14.0], speed: 60.0}\n";
 
 class Promise : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     Accuracy, Promise,
-    testing::Values(Case{"tyre", one_span + quarter_car + on_tyre}, Case{"steel_wheel", one_span + quarter_car + on_steel},
+    testing::Values(Case{"tyre", one_span + quarter_car + on_tyre},
+                    Case{"steel_wheel", one_span + quarter_car + on_steel},
                     Case{"three_spans_and_forces",
                          "beam: {spans: [30.0, 36.0, 30.0], EI: 2.0e10, mass: 1.0e4, damping_ratios: 0.02}\n"
-                         "support: {types: [pinned, roller, roller, roller]}\nscene: {tail: 0.5}\n" + forces},
+                         "support: {types: [pinned, roller, roller, roller]}\nscene: {tail: 0.5}\n" +
+                             forces},
                     Case{"undamped",
                          "beam: {spans: [25.0, 25.0], EI: 1.0e10, mass: 3000.0}\n"
-                         "support: {types: [pinned, roller, roller]}\n" + quarter_car + on_tyre,
+                         "support: {types: [pinned, roller, roller]}\n" +
+                             quarter_car + on_tyre,
                          false},
                     Case{"bump", one_span + quarter_car + on_tyre +
                                      "track: {profile: bump, bump: {start: 10.0, length: 1.5, height: 0.01}}\n"}),
@@ -112,8 +118,7 @@ TEST(Accuracy, FixedMeshIsNotPromised) {
 
 // With mesh and step given there is nothing to choose, and nothing is promised.
 TEST(Accuracy, NothingOpenNothingPromised) {
-  const Results run =
-      run_yaml(one_span + quarter_car + on_tyre, {{"ts_dt", "1e-3"}, {"beam_elements_per_span", "10"}});
+  const Results run = run_yaml(one_span + quarter_car + on_tyre, {{"ts_dt", "1e-3"}, {"beam_elements_per_span", "10"}});
   for (const char* quantity : quantities) EXPECT_FALSE(expected(run, quantity)) << quantity;
 }
 

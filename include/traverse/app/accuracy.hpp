@@ -17,10 +17,10 @@ namespace traverse::app {
 
 /// What is said of one quantity's peak.
 struct Promise {
-  bool present = false;  // in this scene
-  bool kept = false;     // promised: the expected error is not above the wanted one
-  double expected = 0.0; // relative to the peak
-  std::string why_not;   // where it is not promised
+  bool present = false;   // in this scene
+  bool kept = false;      // promised: the expected error is not above the wanted one
+  double expected = 0.0;  // relative to the peak
+  std::string why_not;    // where it is not promised
 };
 
 struct Accuracy {

@@ -49,6 +49,9 @@ class Peaks {
 
   void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
   void finish();
+  /// There are none: the run failed.
+  static Peaks of_failure();
+  bool failed() const { return failed_; }
 
   const std::vector<Peak>& of(Quantity q) const { return found_[q]; }
   const Peak& largest(Quantity q) const { return largest_[q]; }
@@ -63,11 +66,13 @@ class Peaks {
   std::vector<Curve> wheels_;
   std::array<std::vector<Peak>, quantities> found_;
   std::array<Peak, quantities> largest_{};
+  bool failed_ = false;
   std::array<std::vector<Peak>, quantities> each_;
 };
 
 /// What the largest extremes of two runs differ by, relative to them: or what those near them (above 0.9) that lie in
-/// both within `reach` s of each other let expect, where the largest ones agree by chance. 0 where there are none.
+/// both within `reach` s of each other let expect, where the largest ones agree by chance. 0 where there are none, 1
+/// where a run failed.
 double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reach);
 
 /// What the largest ones alone differ by.

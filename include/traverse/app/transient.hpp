@@ -53,7 +53,7 @@ class Watch {
   results::Sample sample_;
   results::Summary summary_;
   double most_deflected_ = 0.0, most_deflected_time_ = 0.0;  // m, s
-  std::vector<double> worst_shape_;  // nodal unknowns of this rank at the largest deflection
+  std::vector<double> worst_shape_;                          // nodal unknowns of this rank at the largest deflection
   coupling::Energy energy_at_start_;
   bool first_ = true;
 };

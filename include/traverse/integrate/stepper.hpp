@@ -44,8 +44,8 @@ class Stepper {
   void restore_state(double** array);
 
   /// Collective. Runs to the end. `sample` is called at t = 0 and at every multiple of the interval, at passages
-  /// and at the end, `step` after every step; when it returns false the run stops early. Throws SolverError with what to
-  /// change when a step cannot be taken. Returns the time reached.
+  /// and at the end, `step` after every step; when it returns false the run stops early. Throws SolverError with what
+  /// to change when a step cannot be taken. Returns the time reached.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
 
   long steps() const { return steps_; }

@@ -1,0 +1,38 @@
+#include "error_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traverse::app {
+namespace {
+
+constexpr double highest_order = 4.0, refining_order = 3.0;
+constexpr double no_limit = 1e3;
+
+}  // namespace
+
+double Error::power() const { return std::clamp(order, 1.0, highest_order); }
+
+double Error::power_refining() const { return std::min(power(), refining_order); }
+
+double Error::room(double wanted) const {
+  if (value <= 0.0) return no_limit;
+  const double times = wanted / value;
+  return std::pow(times, 1.0 / (times < 1.0 ? power_refining() : power()));
+}
+
+double Error::at(double times) const { return value * std::pow(times, times < 1.0 ? power_refining() : power()); }
+
+Error error_from(double change, double size, const Error& before) {
+  Error error{change, before.order, before.known, change, size};
+  if (before.size > 1.5 * size) {
+    const double halvings = std::log2(before.size / size);
+    error.known = true;
+    error.order = change > 0.0 ? std::log2(before.change / change) / halvings : highest_order;
+    change = std::max(change, before.change / std::exp2((highest_order + 1.0) * halvings));
+  }
+  error.value = change / (std::exp2(error.power()) - 1.0);
+  return error;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,78 @@
+#include "first_guess.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "traverse/app/plan.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr int first_bay = 2;
+constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 EI/k)^(1/4)
+constexpr double steps_a_period = 12.0, steps_a_crossing = 24.0, steps_a_wave = 20.0;
+constexpr double part_of_run = 1e-2;
+// Step times frequency of the contacts, rad, at an accuracy of 1e-2 and at the finest; it falls as accuracy^0.22, which
+// is what coaches on Hertz wheels were found to need.
+constexpr double contact_angle = 1.0, least_contact_angle = 0.15, contact_power = 0.22;
+constexpr double finest = 64.0;  // times what all the rest needs
+
+double contact_angle_of(double accuracy) {
+  return contact_angle * std::clamp(std::pow(accuracy / 1e-2, contact_power), least_contact_angle, 1.0);
+}
+
+}  // namespace
+
+int first_mesh(const Scene& scene) {
+  const beam::BeamModel& beam = *scene.beam;
+  if (beam.track) return first_bay;
+  double bed = beam.foundation.vertical_bed ? beam.foundation.vertical_bed->k.maximum() : 0.0;
+  for (const beam::PointFoundation& point : beam.foundation.vertical) bed += point.k / beam.length();
+  const int wanted = scene.accuracy >= 3e-3 ? 8 : scene.accuracy >= 3e-4 ? 16 : 32;
+  if (bed == 0.0) return wanted;
+  const double wave = std::pow(4.0 * beam.EI.minimum() / bed, 0.25);
+  const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
+  return std::max(wanted, 4 * static_cast<int>(std::ceil(0.25 * elements_a_wave * longest / wave)));
+}
+
+double contact_frequency(const Scene& scene) {
+  double highest = 0.0;
+  for (const int index : scene.train.vehicles) {
+    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(index)];
+    double mass = 0.0;
+    for (const multibody::Body& body : vehicle.mechanism.bodies) mass += body.mass;
+    for (const Wheel& wheel : vehicle.wheels) {
+      const double weight = mass * scene.gravity / static_cast<double>(vehicle.wheels.size());
+      const double stiffness = wheel.law.kind == contact::LawKind::hertz
+                                   ? 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2))
+                                   : wheel.law.stiffness;
+      highest = std::max(highest, stiffness / vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].mass);
+    }
+  }
+  return std::sqrt(highest);
+}
+
+double greatest_speed(const Scene& scene) {
+  return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
+                  scene.load.forces.empty() ? 0.0 : scene.load.speed);
+}
+
+FirstSteps first_steps(const Scene& scene, double omega, double duration) {
+  double step = part_of_run * duration;
+  if (omega > 0.0) step = std::min(step, 2.0 * std::numbers::pi / omega / steps_a_period);
+  if (const double speed = greatest_speed(scene); speed > 0.0) {
+    const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
+    step = std::min({step, span / speed / steps_a_crossing, shortest_wave(scene) / speed / steps_a_wave});
+  }
+  if (scene.output.interval) step = std::min(step, *scene.output.interval);
+  const double contact = contact_frequency(scene);
+  if (contact == 0.0) return {step, step};
+  return {std::min(step, std::max(contact_angle_of(scene.accuracy) / contact, step / finest)), step};
+}
+
+bool follows_contacts(const Scene& scene, double step) {
+  return contact_frequency(scene) * step <= 2.0 * contact_angle;
+}
+
+}  // namespace traverse::app
