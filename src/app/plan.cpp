@@ -122,7 +122,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
       plan.stored = static_cast<int>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
       plan.interval /= plan.stored;
     }
-    if (plan.interval * plan.stored < plan.time_step)
+    if (plan.interval * plan.stored < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
