@@ -143,7 +143,7 @@ Error ErrorSearch::error_in_space(Quantity q) {
   const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
   const double step = open_step_ && 2.0 * step_ * greatest_speed(scene_) < element ? 2.0 * step_ : step_;
   const double change = difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
-  return error_from(change, 1.0 / mesh_, space_[q]);
+  return error_from(growth_ * change, 1.0 / mesh_, space_[q]);
 }
 
 /// Times the step (or the element) at which all that is promised keeps its share.

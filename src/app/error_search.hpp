@@ -55,7 +55,7 @@ class ErrorSearch {
   double wanted_;  // error of the step, and of the mesh
   int mesh_, most_elements_;
   double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s
-  double growth_ = 1.0;  // of errors in time until what is free has died away, for runs longer than the trials
+  double growth_ = 1.0;  // of errors in free oscillations until these have died away, for runs longer than the trials
   std::array<Promise, quantities> promises_{};
   std::array<bool, quantities> tried_{};  // refused by the search, with an error as small as it could be made
   std::array<int, quantities> crawls_{};  // halvings of the step in a row that have changed little

@@ -13,6 +13,7 @@ namespace {
 constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
 constexpr std::size_t few_spans = 24;    // are all kept
 constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
+constexpr double roughness = 5.0;        // times the work on vehicles on a rough track
 constexpr int least_elements = 4;
 constexpr double behind = 1.1;  // spans, until what the last wheel does as it leaves is seen
 
@@ -135,6 +136,7 @@ double Trials::seconds(int elements, double step) const {
   double bodies = 0.0;
   for (const int type : scene_.train.vehicles)
     bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
+  if (std::isfinite(scene_.profile.shortest_wave())) bodies *= roughness;
   const double along = beam.track ? (beam.length() + 2.0 * beam.track->approach) / beam.track->spacing * elements
                                   : beam.length() / longest * elements;
   const double a_step = 5e-6 + 5e-6 * bodies + along * (beam.track ? 1e-6 : 1e-7);
