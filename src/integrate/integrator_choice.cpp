@@ -44,6 +44,10 @@ std::string chosen_type() {
   if (adapt != TSADAPTNONE && adapt != ladder_adapt && (type == esdirk4_type || type == genalpha_type))
     throw InputError("ts_adapt_type = " + adapt + ": does not fit " + type +
                      "; allowed: none, ladder (with esdirk4), or a ts_type of PETSc's own such as arkimex");
+  PetscReal tolerance = 1.0;
+  check(PetscOptionsGetReal(nullptr, nullptr, "-ts_rtol", &tolerance, nullptr));
+  if (adapt == ladder_adapt && !(tolerance > 0.0))
+    throw InputError("ts_rtol = " + std::to_string(tolerance) + ": allowed: above 0");
   PetscInt order = 2;
   check(PetscOptionsGetInt(nullptr, nullptr, "-ts_bdf_order", &order, nullptr));
   if (order < 1 || order > 2)
