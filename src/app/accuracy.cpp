@@ -14,8 +14,8 @@ namespace traverse::app {
 namespace {
 
 constexpr double some_step = 1e-6;            // s, to look at a scene before it has a step
-constexpr std::size_t continuous_spans = 40;  // from which on what rests is left out, where spans touch
-constexpr double part_for_rest = 0.02;        // of the wanted error; accelerations lose ten times of it
+constexpr std::size_t continuous_spans = 200; // from which on what rests is left out, where spans touch
+constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
 
 bool is_asked_for(const char* prefix) {
   return std::any_of(options::in_force().begin(), options::in_force().end(),

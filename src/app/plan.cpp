@@ -122,12 +122,13 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
       plan.stored = static_cast<int>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
       plan.interval /= plan.stored;
     }
-    if (plan.interval * plan.stored < plan.time_step)
+    if (plan.interval * plan.stored < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
-    plan.interval = plan.time_step;
-    plan.stored = static_cast<int>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples)));
+    const double steps = std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples));
+    plan.stored = scene.step_probes ? static_cast<int>(steps) : 1;
+    plan.interval = plan.time_step * (scene.step_probes ? 1.0 : steps);
   }
   return plan;
 }

@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
 constexpr std::size_t few_spans = 24;    // are all kept
+constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
 constexpr int least_elements = 4;
 constexpr double behind = 1.1;  // spans, until what the last wheel does as it leaves is seen
 
@@ -150,7 +151,8 @@ const Peaks& Trials::run(int elements, double step) {
   if (const auto known = kept_.find({elements, step}); known != kept_.end()) return known->second;
   Scene scene = scene_;
   set_mesh(scene, elements);
-  scene.time_step = scene.output.interval = step;
+  scene.time_step = step;
+  scene.output.interval = steps_a_check * step;
   const auto peaks = [&] {
     try {
       return peaks_of(comm_, scene);

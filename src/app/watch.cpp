@@ -50,29 +50,28 @@ void Watch::sample(const integrate::Instant& instant) {
   const double* w = instant.y + system_.beam_unknowns();
   sample_.time = instant.time;
   if (beam_ != nullptr) {
-    const bool on_rail = rail_recovery_.has_value();
     if (instant.drag != nullptr) drag(instant.drag);
     recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
     for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
-    if (on_rail) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
+  }
+  fill_vehicles(sample_);
+  note_peaks(v);
+  if (instant.stored) store(v, w);
+}
+
+void Watch::store(const double* v, const double* w) {
+  if (beam_ != nullptr) {
+    if (rail_recovery_) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
     beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
   }
   fill_fields(v, w);
-  fill_vehicles(sample_);
-  const coupling::Energy& e = observation_.energy;
-  if (first_) energy_at_start_ = e;
-  const coupling::Energy& start = energy_at_start_;
-  const double stored = (e.kinetic - start.kinetic) + (e.strain - start.strain) + (e.potential - start.potential);
-  summary_.structure_energy = std::max(summary_.structure_energy, e.structure);
-  sample_.energy = {e.kinetic, e.strain, e.potential, e.dissipated, e.work, stored + e.dissipated - e.work};
-  note_extremes(sample_, v);
-  first_ = false;
-  if (instant.stored) recorder_.add(sample_);
+  note_energy();
+  recorder_.add(sample_);
   if (summary_.energy_residual > diverged * summary_.energy_scale + rounding * summary_.largest_energy)
     throw SolverError(
         fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
                     "integrator, take a smaller -ts_dt or an implicit -ts_type",
-                    sample_.energy.residual, instant.time));
+                    sample_.energy.residual, sample_.time));
 }
 
 // Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
@@ -132,22 +131,30 @@ void Watch::fill_fields(const double* v, const double* w) {
   if (rail_recovery_) fill_rail(rail_, fields);
 }
 
-void Watch::note_extremes(const results::Sample& sample, const double* v) {
+void Watch::note_peaks(const double* v) {
   wheel_forces_.clear();
-  for (std::size_t k = 0; k < sample.vehicles.size(); ++k)
+  for (std::size_t k = 0; k < sample_.vehicles.size(); ++k)
     for (std::size_t i = 0; i < system_.fleet().members[k].type->wheels.size(); ++i)
-      wheel_forces_.push_back(sample.vehicles[k].wheels[i].normal_force);
-  peaks_.add(sample.time, sample.probes, wheel_forces_);
+      wheel_forces_.push_back(sample_.vehicles[k].wheels[i].normal_force);
+  peaks_.add(sample_.time, sample_.probes, wheel_forces_);
   double deflected = 0.0;
-  for (const beam::Response& probe : sample.probes) deflected = std::max(deflected, std::abs(probe.deflection));
+  for (const beam::Response& probe : sample_.probes) deflected = std::max(deflected, std::abs(probe.deflection));
   if (deflected > most_deflected_) {
     most_deflected_ = deflected;
-    most_deflected_time_ = sample.time;
+    most_deflected_time_ = sample_.time;
     worst_shape_.assign(v, v + system_.beam_unknowns());
   }
-  const results::Sample::Energy& e = sample.energy;
+}
+
+void Watch::note_energy() {
+  const coupling::Energy& e = observation_.energy;
+  if (first_) energy_at_start_ = e;
+  first_ = false;
   const coupling::Energy& start = energy_at_start_;
-  summary_.energy_residual = std::max(summary_.energy_residual, std::abs(e.residual));
+  const double stored = (e.kinetic - start.kinetic) + (e.strain - start.strain) + (e.potential - start.potential);
+  sample_.energy = {e.kinetic, e.strain, e.potential, e.dissipated, e.work, stored + e.dissipated - e.work};
+  summary_.structure_energy = std::max(summary_.structure_energy, e.structure);
+  summary_.energy_residual = std::max(summary_.energy_residual, std::abs(sample_.energy.residual));
   for (double term : {e.kinetic, e.strain, e.potential})
     summary_.largest_energy = std::max(summary_.largest_energy, std::abs(term));
   // Where steps do not end at kinks the drive's work is not known so well that it could be judged without.

@@ -36,7 +36,9 @@ class Watch {
   void fill_fields(const double* v, const double* w);
   void drag(const double* drag);
   void note_separations();
-  void note_extremes(const results::Sample& sample, const double* v);
+  void store(const double* v, const double* w);
+  void note_peaks(const double* v);
+  void note_energy();
 
   const Scene& scene_;
   coupling::System& system_;

@@ -1,0 +1,60 @@
+// What a user sees of `accuracy`: what was chosen, what is promised, what is not, and the check.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "support/program.hpp"
+
+namespace traverse::test {
+namespace {
+
+const std::string damped_span =
+    "beam: {spans: 30.0, EI: 1.2e10, mass: 9000.0, damping_ratios: 0.03}\n"
+    "support: {types: [pinned, roller]}\n"
+    "load: {forces: 2.0e5, speed: 40.0}\n";
+
+bool says(const Outcome& outcome, const std::string& text) { return outcome.out.find(text) != std::string::npos; }
+
+TEST(AccuracyOption, ReportShowsThePromiseKept) {
+  const Workplace workplace(damped_span);
+  const Outcome outcome = workplace.run({"-accuracy", "1e-3", "-accuracy_report"});
+  expect_success(outcome);
+  for (const char* text :
+       {"accuracy 0.001: ", "trial runs", "expected errors of the peaks: deflection", "wanted", "kept"})
+    EXPECT_TRUE(says(outcome, text)) << text << "\n" << outcome.out;
+  EXPECT_FALSE(says(outcome, "broken")) << outcome.out;
+}
+
+TEST(AccuracyOption, NamesWhatItCannotPromise) {
+  const Workplace workplace(damped_span);
+  const Outcome undamped = workplace.run({"-beam_damping_ratios", "0"});
+  expect_success(undamped);
+  EXPECT_TRUE(says(undamped, "not promised: acceleration: without damping")) << undamped.out;
+  const Outcome coarse = workplace.run({"-beam_elements_per_span", "2"});
+  expect_success(coarse);
+  EXPECT_TRUE(says(coarse, "the 2 elements a span, which are given, leave an error")) << coarse.out;
+}
+
+// A trial run that fails is no failure of the run: its step was too long.
+TEST(AccuracyOption, ChoosesForExplicitMethodsToo) {
+  const Workplace workplace(damped_span);
+  const Outcome outcome = workplace.run({"-ts_type", "rk", "-accuracy", "1e-2", "-beam_elements_per_span", "4"});
+  expect_success(outcome);
+  EXPECT_TRUE(says(outcome, "reached its end")) << outcome.out;
+}
+
+// The same choice on any number of ranks.
+TEST(AccuracyOption, DoesNotDependOnRanks) {
+  const Workplace workplace(damped_span);
+  const auto choice = [](const Outcome& outcome) {
+    for (const std::string& line : lines_of(outcome.out))
+      if (line.find("accuracy 0.001: ") != std::string::npos) return line.substr(0, line.find(" took"));
+    return std::string("none");
+  };
+  const std::string alone = choice(workplace.run());
+  EXPECT_NE(alone, "none");
+  EXPECT_EQ(choice(workplace.run({}, 2)), alone);
+}
+
+}  // namespace
+}  // namespace traverse::test
