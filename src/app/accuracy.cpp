@@ -23,12 +23,12 @@ bool is_asked_for(const char* prefix) {
 }
 
 /// Whether there is something to choose, and something moves that it can be chosen by. What PETSc is asked to show or
-/// to stop at is meant for the run alone.
+/// to stop at is meant for the run alone; a step control has its own measure.
 bool chooses(const Scene& scene) {
   const bool open = scene.mesh_open || !scene.time_step;
   const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
   return open && moves && scene.beam && scene.analysis == Analysis::transient && scene.model_modes == 0 &&
-         !is_asked_for("ts_max_steps") && !is_asked_for("ts_monitor");
+         !is_asked_for("ts_max_steps") && !is_asked_for("ts_monitor") && !is_asked_for("ts_adapt_type");
 }
 
 void leave_out_rest(Scene& scene) {

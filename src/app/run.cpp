@@ -130,7 +130,9 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     results::Summary summary = watch.finish();
     summary.steps = passage.steps();
+    summary.rejected_steps = passage.rejected();
     summary.solves = system.beam_solves();
+    summary.factorisations = system.factorisations();
     summary.wall_seconds = wall;
     if (system.window() != nullptr) summary.energy_left = total(comm, system.window()->energy_left());
     summary.static_error = system.static_error();

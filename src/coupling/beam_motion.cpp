@@ -131,8 +131,12 @@ void BeamMotion::begin(const Method& method) {
     accelerations[stages_.size()] = stage.a;
   }
   v_and_w(method.step.w_in_v, method.step.a_in_v, method.step.a_in_w, v_end_, w_end_);
-  a_end_ = {};
-  for (std::size_t j = 0; j < accelerations.size(); ++j) a_end_.add(method.step.a_next[j], accelerations[j]);
+  a_end_ = v_error_ = w_error_ = {};
+  for (std::size_t j = 0; j < accelerations.size(); ++j) {
+    a_end_.add(method.step.a_next[j], accelerations[j]);
+    v_error_.add(method.step.error_in_v[j], accelerations[j]);
+    w_error_.add(method.step.error_in_w[j], accelerations[j]);
+  }
   for (std::size_t j = 0; j <= stages_.size(); ++j) kept_[j].resize(static_cast<std::size_t>(n_), 0.0);
 }
 
@@ -169,7 +173,7 @@ void BeamMotion::solve(std::size_t stage, const double* v, const double* w, cons
   loads_ = &loads;
   measuring_ = stage == 0 && measure_;
   if (stage == 0) dissipation_ = {};
-  exchange_borders();
+  exchange_borders(stage_->e, {0.0, 1.0, {}});
   target_ = kept(stage);
   const BeamFactor& factor = operator_.factored(stage_->rate / stage_->displacement, 1.0 / stage_->displacement);
   if (ranged_)
@@ -211,17 +215,17 @@ void BeamMotion::step_free(int first, int past, double* v, double* w, Dissipatio
   dissipation.rate += dissipation_.rate;
 }
 
-// The combinations at the columns next to this rank's.
-void BeamMotion::exchange_borders() {
+// Two sums at the columns next to this rank's.
+void BeamMotion::exchange_borders(const Sum& first_sum, const Sum& second_sum) {
   if (nodes_ == 0 || !operator_.shared()) return;
   constexpr int size = 4;
   std::array<double, size> first, last, left{}, right{};
   for (int i = 0; i < 2; ++i) {
     const int end = 2 * (nodes_ - 1) + i;
-    first[i] = at(stage_->e, view_, i);
-    last[i] = at(stage_->e, view_, end);
-    first[2 + i] = view_.w[i];
-    last[2 + i] = view_.w[end];
+    first[i] = at(first_sum, view_, i);
+    last[i] = at(first_sum, view_, end);
+    first[2 + i] = at(second_sum, view_, i);
+    last[2 + i] = at(second_sum, view_, end);
   }
   operator_.exchange(first.data(), last.data(), size, left.data(), right.data());
   for (int c = 0; c < 2; ++c) ghosts_[c] = {left[2 * c], left[2 * c + 1], right[2 * c], right[2 * c + 1]};
@@ -306,6 +310,31 @@ std::pair<double, double> BeamMotion::state(std::size_t stage, const double* v, 
 void BeamMotion::still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const {
   const Stage& s = stages_[stage];
   terms_of<2>({&s.v_still, &s.w_still}, view_of(v, w)).evaluate(0, n_, {v_still, w_still});
+}
+
+double BeamMotion::error_energy() {
+  exchange_borders(v_error_, w_error_);
+  Tile displacement, rate, force;
+  Tile none;
+  none.v = none.theta = {};
+  double twice = 0.0;
+  const auto add = [&](const Tile& x, int nodes) {
+    for (int i = 0; i < nodes; ++i) twice += x.v[i + 1] * force.v[i] + x.theta[i + 1] * force.theta[i];
+  };
+  for (int first = first_; first < past_; first += tile) {
+    const int past = std::min(past_, first + tile);
+    combine(v_error_, first, past, ghosts_[0], displacement);
+    combine(w_error_, first, past, ghosts_[1], rate);
+    rows_->multiply(first, past, displacement.nodes(), {}, force.nodes());
+    add(displacement, past - first);
+    rows_->multiply(first, past, none.nodes(), rate.nodes(), force.nodes());
+    add(rate, past - first);
+  }
+  return 0.5 * twice;
+}
+
+void BeamMotion::error(const double* v, const double* w, double* error_of_v, double* error_of_w) const {
+  terms_of<2>({&v_error_, &w_error_}, view_of(v, w)).evaluate(0, n_, {error_of_v, error_of_w});
 }
 
 // In place, a stretch in the cache at a time.

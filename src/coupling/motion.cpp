@@ -22,6 +22,8 @@ void Method::scale_to(double h) {
   scale(step.a_in_v, h * h);
   scale(step.a_in_w, h);
   scale(step.power, h);
+  scale(step.error_in_v, h * h);
+  scale(step.error_in_w, h);
 }
 
 Method esdirk4() {
@@ -55,6 +57,14 @@ Method esdirk4() {
   m.step.a_in_v[s - 1] = last.displacement;
   m.step.a_in_w[s - 1] = m.step.power[s - 1] = last.rate;
   m.step.a_next[s - 1] = 1.0;
+  constexpr double embedded[s] = {4586570599.0 / 29645900160.0, 0.0,
+                                  178811875.0 / 945068544.0,    814220225.0 / 1159782912.0,
+                                  -3700637.0 / 11593932.0,      61727.0 / 225920.0};
+  for (int k = 0; k < s; ++k) {
+    const double difference = a[s - 1][k] - embedded[k];
+    m.step.error_in_a[k] = m.step.error_in_w[k] = difference;
+    for (int j = 0; j <= k; ++j) m.step.error_in_v[j] += difference * a[k][j];
+  }
   return m;
 }
 

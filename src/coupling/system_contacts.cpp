@@ -113,15 +113,19 @@ double System::change_tolerance(int contact, double tolerance) const {
   return std::min(tolerance, std::max(1e-3 * step, std::min(ramp, 0.1 * step)));
 }
 
-double System::step_limit(double t, double tolerance) const {
+double System::step_limit(double t) const {
   double limit = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
-    const double across = 2.0 * change_tolerance(i, tolerance);
-    const double to_touch = separations_.time_to_touch(i);
-    if (t < impacts_[i].end) limit = std::min(limit, impacts_[i].step);
-    if (tolerance > 0.0) limit = std::min(limit, std::max(to_touch, across));
-  }
+  for (const Impact& impact : impacts_)
+    if (t < impact.end) limit = std::min(limit, impact.step);
   return limit;
+}
+
+double System::time_to_impact(double tolerance) const {
+  double time = std::numeric_limits<double>::infinity();
+  if (tolerance == 0.0) return time;
+  for (int i = 0; i < static_cast<int>(impacts_.size()); ++i)
+    time = std::min(time, std::max(separations_.time_to_touch(i), 2.0 * change_tolerance(i, tolerance)));
+  return time;
 }
 
 std::string System::trouble() const {

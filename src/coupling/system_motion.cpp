@@ -97,7 +97,9 @@ void System::set_ranges(double t, double h) {
     past = m.window->past();
   }
   m.free = {};
-  if (parts) {
+  if (parts && m.measures_errors) {  // a step is judged by all that moves
+    m.beam->set_range(local(first), local(past));
+  } else if (parts) {
     m.free = {{{local(first), local(low < high ? low : past)}, {local(low < high ? high : past), local(past)}}};
     m.beam->set_range(local(low), local(high));
   } else if (m.window) {
@@ -190,7 +192,7 @@ void System::take_back_step(double* y) {
   std::copy(m.before.p.begin(), m.before.p.end(), y + 2 * n_);
 }
 
-bool System::step_motion(double t, double h, double* y) {
+bool System::step_motion(double t, double h, double* y, const std::function<bool()>& good_enough) {
   Motion& m = *motion_;
   if (h != m.length) {
     m.method = m.unit;
@@ -222,6 +224,7 @@ bool System::step_motion(double t, double h, double* y) {
   for (const NodalLoad& load : nodal_loads_) m.powers[0].loads += load.force * w[load.unknown];
   for (const StageRule& rule : m.method.stages)
     if (!stage_of_motion(t + rule.time, rule, v, w)) return false;
+  if (good_enough && !good_enough()) return false;
   finish_step(y);
   return true;
 }

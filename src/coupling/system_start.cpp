@@ -167,20 +167,40 @@ std::vector<double> System::influence_line(double station) {
   return line;
 }
 
-double System::static_peak(double station) {
-  if (beam_ == nullptr || weights_.empty() || nonlinear_) return 0.0;  // without superposition there is none
-  const bool apart = input_.train.speed != input_.load.speed;          // train and forces pass each other
-  if (apart && !fleet_.wheels.empty() && !input_.load.forces.empty()) return 0.0;
-  const std::vector<double> line = influence_line(station);
+double System::ordinate(const std::vector<double>& line, double x) const {
   const beam::Mesh& mesh = line_->mesh;
-  auto ordinate = [&](double x) {
-    if (x < mesh.start() || x > mesh.end()) return 0.0;
-    const beam::Station s = mesh.locate(x);
-    const beam::Hermite psi = beam::hermite(s.xi, mesh.element(s.element).length);
-    double sum = 0.0;
-    for (int i = 0; i < 4; ++i) sum += psi.value[i] * line[4 * static_cast<std::size_t>(s.element) + i];
-    return sum;
-  };
+  if (x < mesh.start() || x > mesh.end()) return 0.0;
+  const beam::Station s = mesh.locate(x);
+  const beam::Hermite psi = beam::hermite(s.xi, mesh.element(s.element).length);
+  double sum = 0.0;
+  for (int i = 0; i < 4; ++i) sum += psi.value[i] * line[4 * static_cast<std::size_t>(s.element) + i];
+  return sum;
+}
+
+// Whether one influence line serves for all weights at once.
+bool System::passes_together() const {
+  if (beam_ == nullptr || weights_.empty() || nonlinear_) return false;  // without superposition there is none
+  const bool apart = input_.train.speed != input_.load.speed;            // train and forces pass each other
+  return !apart || fleet_.wheels.empty() || input_.load.forces.empty();
+}
+
+double System::static_peak(double station) {
+  if (!passes_together()) return 0.0;
+  const std::vector<double> line = influence_line(station);
+  return peak_of_weights(line, station, influence_of_weight_);
+}
+
+// What a single load does that deflects the station at most as the passing weights do, J; 0: there is none.
+double System::static_energy(double station) {
+  if (!passes_together()) return 0.0;
+  const std::vector<double> line = influence_line(station);
+  const double deflection = peak_of_weights(line, station, 0.0), compliance = std::abs(ordinate(line, station));
+  return compliance > 0.0 ? 0.5 * deflection * deflection / compliance : 0.0;
+}
+
+// Of the station, the constant added.
+double System::peak_of_weights(const std::vector<double>& line, double station, double constant) const {
+  const beam::Mesh& mesh = line_->mesh;
   double front = -infinite, rear = infinite;
   for (const auto& [x, force] : weights_) {
     front = std::max(front, x);
@@ -189,8 +209,8 @@ double System::static_peak(double station) {
   // Every weight over the station in turn (where the line peaks), and evenly along the whole way.
   double peak = 0.0;
   auto try_shift = [&](double shift) {
-    double sum = influence_of_weight_;
-    for (const auto& [x, force] : weights_) sum += force * ordinate(x + shift);
+    double sum = constant;
+    for (const auto& [x, force] : weights_) sum += force * ordinate(line, x + shift);
     peak = std::max(peak, std::abs(sum));
   };
   for (const auto& [x, force] : weights_) try_shift(station - x);

@@ -31,17 +31,23 @@ bool is_given(const char* name) {
 
 std::string chosen_type() {
   const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
-  const bool for_arkimex =
-      adapt != TSADAPTNONE || is_given("-ts_arkimex_type") || is_given("-ts_arkimex_fully_implicit");
+  const bool for_arkimex = (adapt != TSADAPTNONE && adapt != ladder_adapt) || is_given("-ts_arkimex_type") ||
+                           is_given("-ts_arkimex_fully_implicit");
   const std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : esdirk4_type);
   constexpr std::array allowed = {esdirk4_type, genalpha_type, TSARKIMEX, TSCN, TSBDF, TSTHETA, TSBEULER, TSRK};
   if (std::find(allowed.begin(), allowed.end(), type) == allowed.end())
     throw InputError("ts_type = " + type +
                      ": does not integrate this system rightly; allowed: esdirk4, genalpha, arkimex, cn, bdf, theta, "
                      "beuler (implicit), rk (explicit, small scenes)");
-  if (adapt != TSADAPTNONE && (type == esdirk4_type || type == genalpha_type))
-    throw InputError("ts_adapt_type = " + adapt + ": " + type +
-                     " takes steps of one length; allowed: none, or a ts_type of PETSc's own such as arkimex");
+  if (adapt == ladder_adapt && type != esdirk4_type)
+    throw InputError("ts_adapt_type = ladder: estimates the errors of esdirk4 alone; ts_type is " + type);
+  if (adapt != TSADAPTNONE && adapt != ladder_adapt && (type == esdirk4_type || type == genalpha_type))
+    throw InputError("ts_adapt_type = " + adapt + ": does not fit " + type +
+                     "; allowed: none, ladder (with esdirk4), or a ts_type of PETSc's own such as arkimex");
+  PetscReal tolerance = 1.0;
+  check(PetscOptionsGetReal(nullptr, nullptr, "-ts_rtol", &tolerance, nullptr));
+  if (adapt == ladder_adapt && !(tolerance > 0.0))
+    throw InputError("ts_rtol = " + std::to_string(tolerance) + ": allowed: above 0");
   PetscInt order = 2;
   check(PetscOptionsGetInt(nullptr, nullptr, "-ts_bdf_order", &order, nullptr));
   if (order < 1 || order > 2)

@@ -2,6 +2,8 @@
 
 #include <petsc/private/tsimpl.h>
 
+#include <algorithm>
+#include <limits>
 #include <string_view>
 
 #include "traverse/base/petsc.hpp"
@@ -29,25 +31,61 @@ bool is(TS ts, std::string_view type) {
   return own != nullptr && own == type;
 }
 
+bool is_ladder(TSAdapt adapt) {
+  TSAdaptType type = nullptr;
+  check(TSAdaptGetType(adapt, &type));
+  return type != nullptr && std::string_view(type) == ladder_adapt;
+}
+
 PetscErrorCode set_up(TS ts) {
   return guard([&] {
     Data& data = data_of(ts);
     data.system->begin_motion(is(ts, esdirk4_type) ? coupling::esdirk4() : coupling::generalised_alpha(data.radius));
+    if (is_ladder(ts->adapt)) data.system->measure_errors();
+    check(TSAdaptCandidatesClear(ts->adapt));
+    check(TSAdaptCandidateAdd(ts->adapt, nullptr, is(ts, esdirk4_type) ? 4 : 2, 1, 1.0, 1.0, PETSC_TRUE));
   });
+}
+
+/// What the step control says of a step.
+struct Verdict {
+  TS ts;
+  PetscReal next = 0.0;
+  PetscBool accepted = PETSC_FALSE;
+  bool ask() {
+    PetscInt scheme = 0;
+    check(TSAdaptChoose(ts->adapt, ts, ts->time_step, &scheme, &next, &accepted));
+    return accepted == PETSC_TRUE;
+  }
+};
+
+// Of a step that could not be taken.
+double shorter_step(TS ts, const Verdict& verdict) {
+  if (verdict.next > 0.0) return verdict.next;
+  const double next = shorter * ts->time_step;
+  if (!is_ladder(ts->adapt)) return next;
+  StepLadder& ladder = *static_cast<StepLadder*>(ts->adapt->data);
+  ladder.judge(ts->time_step, std::numeric_limits<double>::infinity());
+  return std::min(next, ladder.wanted());
 }
 
 void take_step(TS ts, Data& data, double* y) {
   if (!data.started || ts->steprestart == PETSC_TRUE) data.system->restart_motion(ts->ptime, y);
   data.started = true;
-  for (int rejections = 0; !data.system->step_motion(ts->ptime, ts->time_step, y); ++rejections) {
+  for (int rejections = 0;; ++rejections) {
+    Verdict verdict{ts};
+    if (data.system->step_motion(ts->ptime, ts->time_step, y, [&verdict] { return verdict.ask(); })) {
+      ts->ptime += ts->time_step;
+      ts->time_step = verdict.next;
+      return;
+    }
     if (rejections >= ts->max_reject) {
       ts->reason = TS_DIVERGED_STEP_REJECTED;
       return;
     }
     ++ts->reject;
-    ts->time_step *= shorter;
+    ts->time_step = shorter_step(ts, verdict);
   }
-  ts->ptime += ts->time_step;
 }
 
 PetscErrorCode step(TS ts) {
@@ -79,19 +117,50 @@ PetscErrorCode destroy(TS ts) {
   return 0;
 }
 
+// The local error over the tolerance.
+PetscErrorCode error_of_step(TS ts, NormType, PetscInt* order, PetscReal* error) {
+  return guard([&] {
+    const double* y = nullptr;
+    check(VecGetArrayRead(ts->vec_sol, &y));
+    *order = 4;
+    *error = data_of(ts).system->step_error(y) / ts->rtol;
+    check(VecRestoreArrayRead(ts->vec_sol, &y));
+  });
+}
+
 PetscErrorCode create(TS ts) {
   ts->ops->setup = set_up;
   ts->ops->step = step;
   ts->ops->setfromoptions = read_options;
   ts->ops->reset = reset;
   ts->ops->destroy = destroy;
+  ts->ops->evaluatewlte = error_of_step;
   ts->data = new Data;
+  return 0;
+}
+
+PetscErrorCode choose(TSAdapt adapt, TS ts, PetscReal h, PetscInt* scheme, PetscReal* next, PetscBool* accept,
+                      PetscReal* error, PetscReal* absolute, PetscReal* relative) {
+  return guard([&] {
+    PetscInt order = PETSC_DECIDE;
+    check(TSEvaluateWLTE(ts, adapt->wnormtype, &order, error));
+    StepLadder& ladder = *static_cast<StepLadder*>(adapt->data);
+    *scheme = 0;
+    *absolute = *relative = -1.0;  // not told apart
+    *accept = ladder.judge(h, *error) ? PETSC_TRUE : PETSC_FALSE;
+    *next = ladder.wanted();
+  });
+}
+
+PetscErrorCode create_ladder(TSAdapt adapt) {
+  adapt->ops->choose = choose;
   return 0;
 }
 
 }  // namespace
 
 void register_second_order() {
+  check(TSAdaptRegister(ladder_adapt, create_ladder));
   check(TSRegister(esdirk4_type, create));
   check(TSRegister(genalpha_type, create));
 }
@@ -99,5 +168,7 @@ void register_second_order() {
 bool is_second_order(TS ts) { return is(ts, esdirk4_type) || is(ts, genalpha_type); }
 
 void set_system(TS ts, coupling::System& system) { data_of(ts).system = &system; }
+
+void set_ladder(TS ts, StepLadder& ladder) { ts->adapt->data = &ladder; }
 
 }  // namespace traverse::integrate

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string_view>
 
+#include "arrays.hpp"
 #include "integrator_choice.hpp"
 #include "traverse/integrate/second_order.hpp"
 
@@ -29,24 +30,6 @@ bool is(TS ts, const char* type) {
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<TS>(ts)), type, &same));
   return same == PETSC_TRUE;
 }
-
-struct Array {  // writable entries of a Vec for one scope
-  explicit Array(Vec v) : vec(v) { check(VecGetArray(v, &data)); }
-  ~Array() { (void)VecRestoreArray(vec, &data); }
-  Array(const Array&) = delete;
-  Array& operator=(const Array&) = delete;
-  Vec vec;
-  double* data = nullptr;
-};
-
-struct ReadArray {
-  explicit ReadArray(Vec v) : vec(v) { check(VecGetArrayRead(v, &data)); }
-  ~ReadArray() { (void)VecRestoreArrayRead(vec, &data); }
-  ReadArray(const ReadArray&) = delete;
-  ReadArray& operator=(const ReadArray&) = delete;
-  Vec vec;
-  const double* data = nullptr;
-};
 
 }  // namespace
 
@@ -88,6 +71,8 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   TSAdaptType adapt_type = nullptr;
   check(TSAdaptGetType(adapt, &adapt_type));
   adaptive_ = std::string_view(adapt_type) != TSADAPTNONE;
+  if (std::string_view(adapt_type) == ladder_adapt)
+    set_ladder(ts_, ladder_.emplace(shared_evenly(settings_.interval, settings_.time_step)));
   next_step_ = settings_.time_step;
   set_up_type();
 }
@@ -122,6 +107,12 @@ void Stepper::set_up_type() {
   check(SNESSetType(snes, SNESSHELL));
   check(SNESShellSetContext(snes, this));
   check(SNESShellSetSolve(snes, shell_solve));
+}
+
+long Stepper::rejected() const {
+  PetscInt rejected = 0;
+  check(TSGetStepRejections(ts_, &rejected));
+  return rejected;
 }
 
 std::string Stepper::method() const {
@@ -197,14 +188,20 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
   return t;
 }
 
-// One step no longer than what is left to the next target, shared evenly among the steps that it takes.
+// What comes next on the way to a target `left` s away: a rung of the ladder, or what is left shared evenly among the
+// steps that it takes.
+double Stepper::next_step(double from, double left) const {
+  const double limit = system_.step_limit(from), impact = system_.time_to_impact(settings_.contact_tolerance);
+  if (ladder_) return std::min(ladder_->towards(left, limit), impact);
+  const double wanted = std::min({adaptive_ ? next_step_ : settings_.time_step, limit, impact});
+  return shared_evenly(left, wanted);
+}
+
+// One step no longer than what is left to the next target.
 void Stepper::take_step(double left) {
   PetscReal from = 0.0;
   check(TSGetTime(ts_, &from));
-  const double wanted =
-      std::min(adaptive_ ? next_step_ : settings_.time_step, system_.step_limit(from, settings_.contact_tolerance));
-  const double count = std::max(1.0, std::ceil(left / wanted * (1.0 - 1e-9)));
-  const double h = left / count;
+  const double h = next_step(from, left);
   if (multistep_ && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
   if (system_.begin_step(from, from + h)) {  // a jump: what is known of the rate belongs to its other side
     known_ = false;
@@ -223,7 +220,7 @@ void Stepper::take_step(double left) {
     check(TSGetTime(ts_, &t));
   }
   last_step_ = t - from;
-  if (adaptive_) next_step_ = count > 1.0 || next < next_step_ ? next : std::max(next_step_, next);
+  if (adaptive_) next_step_ = h < left || next < next_step_ ? next : std::max(next_step_, next);
   next_step_ = std::min(next_step_, settings_.time_step);
   ++steps_;
 }

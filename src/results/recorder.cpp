@@ -281,7 +281,9 @@ void Recorder::Impl::summarise(const Summary& summary) {
   file.attribute(group, "energy_scale", summary.energy_scale);
   file.attribute(group, "static_error", summary.static_error);
   file.attribute(group, "steps", summary.steps);
+  file.attribute(group, "rejected_steps", summary.rejected_steps);
   file.attribute(group, "solves", summary.solves);
+  file.attribute(group, "factorisations", summary.factorisations);
   file.attribute(group, "wall_seconds", summary.wall_seconds);
   file.attribute(group, "ended", summary.ended);
   for (const auto& [quantity, error] : summary.expected_errors)

@@ -78,6 +78,7 @@ std::string energy_text(const Summary& summary) {
 
 std::string cost_text(const Summary& summary) {
   std::string text = fmt::format("{:<18}", summary.steps);
+  if (summary.rejected_steps > 0) text += fmt::format("{} taken again, ", summary.rejected_steps);
   if (summary.solves > 0) text += fmt::format("{} beam solves, ", summary.solves);
   text += duration_text(summary.wall_seconds);
   if (summary.steps > 0)

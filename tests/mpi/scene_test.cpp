@@ -117,6 +117,19 @@ TEST(Ranks, ContactLossAndImpacts) {
   expect_same_on_all_ranks("wheel_over_a_bump", {{"ts_max_time", "0.6"}}, 20, 1e-7);
 }
 
+// All ranks judge the steps alike.
+TEST(Ranks, StepsChosenByTheirErrors) {
+  const Values ladder = {{"ts_adapt_type", "ladder"}, {"ts_dt", "8e-3"}};
+  expect_same_on_all_ranks("wheel_over_a_bump", ladder + Values{{"ts_max_time", "0.6"}, {"output_interval", "8e-3"}},
+                           20, 1e-7);
+  expect_same_on_all_ranks("three_span_train",
+                           ladder + Values{{"train_vehicles", "coach*2"},
+                                           {"ts_max_time", "1"},
+                                           {"beam_elements_per_span", "10"},
+                                           {"output_interval", "0.02"}},
+                           35, 1e-7);
+}
+
 TEST(Ranks, WheelsOutOfRoundOverASharpBump) {
   expect_same_on_all_ranks("three_span_half_car",
                            {{"train_vehicles", "half_car"},

@@ -55,8 +55,8 @@ Words coaches_on_a_continuous_bridge() {
 }
 
 /// What 50 steps of 1 ms allocate after 20 that warm up.
-long allocations_of_steps(const Words& scene_words, const std::string& type) {
-  Words words = {"traverse", "-ts_max_time", "0.1", "-ts_type", type};
+long allocations_of_steps(const Words& scene_words, const std::string& type, const std::string& adapt = "none") {
+  Words words = {"traverse", "-ts_max_time", "0.1", "-ts_type", type, "-ts_adapt_type", adapt};
   words.insert(words.end(), scene_words.begin(), scene_words.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -88,6 +88,11 @@ long allocations_of_steps(const Words& scene_words, const std::string& type) {
 TEST(Steps, OfAQuarterCarTakeNoMemory) {
   for (const char* type : {"esdirk4", "genalpha"})
     EXPECT_EQ(allocations_of_steps(quarter_car_on_a_span(), type), 0) << type;
+}
+
+TEST(Steps, JudgedByTheirErrorsTakeNoMemory) {
+  EXPECT_EQ(allocations_of_steps(quarter_car_on_a_span(), "esdirk4", "ladder"), 0);
+  EXPECT_EQ(allocations_of_steps(coaches_on_a_continuous_bridge(), "esdirk4", "ladder"), 0);
 }
 
 TEST(Steps, OfATrainTakeNoMemory) {

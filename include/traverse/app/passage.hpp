@@ -25,6 +25,7 @@ class Passage {
 
   coupling::System& system() { return system_; }
   const Plan& plan() const { return plan_; }
+  long rejected() const { return stepper_ ? stepper_->rejected() : 0; }
   long steps() const { return stepper_ ? stepper_->steps() : modal_->steps(); }
   bool stopped_at_limit() const { return stepper_ && stepper_->stopped_at_limit(); }
 

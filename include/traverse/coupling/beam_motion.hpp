@@ -62,6 +62,10 @@ class BeamMotion final : private solve::NodeFiller {
   /// v and w of a solved stage at one unknown.
   std::pair<double, double> state(std::size_t stage, const double* v, const double* w, int unknown) const;
 
+  /// Energy of the step's error as StepRule's embedded method estimates it, J: this rank's share. Once all stages are
+  /// solved. Only where fused; elsewhere error() serves, of v and w of this rank's unknowns.
+  double error_energy();
+  void error(const double* v, const double* w, double* error_of_v, double* error_of_w) const;
   /// v, w and the acceleration at the end of the step, which is the next one's start.
   void finish(double* v, double* w);
 
@@ -108,7 +112,7 @@ class BeamMotion final : private solve::NodeFiller {
   double at(const Sum& sum, const View& view, int unknown) const;
   View view_of(const double* v, const double* w) const;
   void end_step(const View& view, int begin, int end, double* v, double* w, double* a) const;
-  void exchange_borders();
+  void exchange_borders(const Sum& first_sum, const Sum& second_sum);
 
   const beam::Beam& beam_;
   BeamOperator& operator_;
@@ -120,7 +124,7 @@ class BeamMotion final : private solve::NodeFiller {
   int first_ = 0, past_ = 0;
   bool ranged_ = false;
   std::vector<Stage> stages_;
-  Sum v_end_, w_end_, a_end_;
+  Sum v_end_, w_end_, a_end_, v_error_, w_error_;
 
   // Of the stage under way
   View view_;
@@ -128,7 +132,7 @@ class BeamMotion final : private solve::NodeFiller {
   bool measure_ = false;    // the dissipation at the start of the step
   bool measuring_ = false;  // in this stage
   const std::vector<NodalLoad>* loads_ = nullptr;
-  std::array<Ghosts, 2> ghosts_{};  // of e, and of w
+  std::array<Ghosts, 2> ghosts_{};  // of e and of w, or of the errors of v and w
   double* target_ = nullptr;        // where the view begins
   Dissipation dissipation_;
   std::array<std::vector<double>, most_accelerations> scratch_;  // of step_free

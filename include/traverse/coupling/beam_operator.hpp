@@ -68,6 +68,7 @@ class BeamOperator {
   }
   /// Changes whenever `factored` hands out another factorisation.
   long factor_stamp() const { return stamp_; }
+  long factorisations() const { return factorisations_; }  // so far
   bool damped() const { return damped_; }
   mutable long solves = 0;  // beam solves so far, for the summary
 

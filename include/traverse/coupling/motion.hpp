@@ -28,6 +28,9 @@ struct StepRule {
   Weights a_in_v{}, a_in_w{};
   Weights a_next{};  // the next step's A_0
   Weights power{};   // s: integral over the step of a power known at the accelerations' states
+  /// By how much the end of an embedded method of one order less is elsewhere: the estimate of the step's error; all 0
+  /// where there is no such method. error_in_a is that of w over the length of the step.
+  Weights error_in_v{}, error_in_w{}, error_in_a{};
 };
 
 struct Method {

@@ -14,6 +14,7 @@
 // Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -113,8 +114,17 @@ class System {
   /// Collective. Before the first step from a state, and where it was changed from outside.
   void restart_motion(double t, double* y);
   /// Collective. One step of h from t; y is left as it is, and the result false, where a stage has no solution. Spans
-  /// that do not touch those under the loads follow in accept().
-  bool step_motion(double t, double h, double* y);
+  /// that do not touch those under the loads follow in accept(). `good_enough` is asked once all stages are solved;
+  /// where it says no, it is as if they were not.
+  bool step_motion(double t, double h, double* y, const std::function<bool()>& good_enough = {});
+  /// Collective. Before the first step: steps are to be asked for their errors. InputError where there is no scale for
+  /// those.
+  void measure_errors();
+  /// Collective. Of the step from y whose stages are solved, as its embedded method estimates it, without dimension: the
+  /// larger of the structure's, whose energy's root is measured by that of the deflection under the weights at rest,
+  /// and of the worst vehicle's, as a root of the mean of its masses' accelerations, measured by gravity and what they
+  /// are.
+  double step_error(const double* y);
   /// Whether rate_of_motion serves: not where a method's own acceleration is another one than the state's.
   bool knows_rate() const {
     return motion_ && motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
@@ -142,8 +152,10 @@ class System {
   /// Collective. Notes y as accepted at t and chooses new independent coordinates where the old ones have worn out.
   /// True when y was rewritten for that.
   bool accept(double t, double* y);
-  /// Steps may be no longer than this while an impact goes on or is to come within the tolerance, s.
-  double step_limit(double t, double tolerance) const;
+  /// Steps may be no longer than this while an impact goes on, s.
+  double step_limit(double t) const;
+  /// And none may lead further beyond the next impact than within the tolerance, s.
+  double time_to_impact(double tolerance) const;
   /// Of a contact's change: s.
   double change_tolerance(int contact, double tolerance) const;
 
@@ -164,6 +176,7 @@ class System {
   /// Estimated relative error of static solutions so far, from rounding.
   double static_error() const { return operator_ ? operator_->static_error() : 0.0; }
   long beam_solves() const { return operator_ ? operator_->solves : 0; }
+  long factorisations() const { return operator_ ? operator_->factorisations() : 0; }
 
  private:
   /// A second-order integration under way.
@@ -191,7 +204,9 @@ class System {
     std::array<std::pair<int, int>, 2> free{};  // nodes of parts that nothing loads during the step: [first, past)
     bool stepped = false;                       // since the last restart
     bool incomplete = false;                    // these are still at the start of the last step
-    std::vector<double> rate;                   // of restarts
+    bool measures_errors = false;
+    double energy_scale = 0.0;  // J, of the structure's errors
+    std::vector<double> rate;   // of restarts
   };
   /// Shifts of a stage: w = shift*v + ..., w' = shift2*v + ...; 0: statics.
   struct StageTime {
@@ -205,6 +220,10 @@ class System {
   double surface_height() const;
   void note_weights();
   std::vector<double> influence_line(double station);
+  double ordinate(const std::vector<double>& influence_line, double x) const;
+  double peak_of_weights(const std::vector<double>& influence_line, double station, double constant) const;
+  bool passes_together() const;
+  double static_energy(double station);
   double note_contacts(double t);
   void share_coordinates(const double* y);
   void gather(const FreeResponse& response);
@@ -221,6 +240,7 @@ class System {
   void add_dissipation(const BeamMotion::Dissipation& now);
   BeamMotion::Dissipation measure_dissipation(const double* w);
   void finish_step(double* y);
+  double structure_error(const double* y);
   void list_nodal_loads();
   void note_foundation();
   void moving_loads(double t);

@@ -6,12 +6,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "traverse/base/petsc.hpp"
 #include "traverse/coupling/change_bracket.hpp"
 #include "traverse/coupling/system.hpp"
+#include "traverse/integrate/step_ladder.hpp"
 
 namespace traverse::integrate {
 
@@ -49,6 +51,7 @@ class Stepper {
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
 
   long steps() const { return steps_; }
+  long rejected() const;                                           // steps tried in vain
   bool stopped_at_limit() const { return steps_ >= most_steps_; }  // of -ts_max_steps
   std::string method() const;                                      // e.g. "ARKIMEX 4, implicit"
   /// Implicit, with steps of one length: nothing shows by itself that they are too long.
@@ -64,7 +67,8 @@ class Stepper {
 
   void set_up_type();
   void advance(double target);
-  void take_step(double longest);
+  double next_step(double from, double left) const;
+  void take_step(double left);
   double step_to(double end);
   void locate_contact_change(double from);
   void sample_now(const std::function<void(const Instant&)>& sample, bool stored);
@@ -88,7 +92,8 @@ class Stepper {
   Request request_;
   coupling::Part implicit_part_ = coupling::Part::all;
   bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false;
-  double next_step_ = 0.0;  // what the step control wants
+  std::optional<StepLadder> ladder_;  // of adaptive steps of an own type
+  double next_step_ = 0.0;            // what the step control wants
   double last_step_ = 0.0;
   long steps_ = 0;
   PetscInt most_steps_ = 0;

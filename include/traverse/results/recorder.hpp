@@ -103,7 +103,9 @@ struct Summary {
   double largest_energy = 0.0;  // largest term that is stored, J
   double static_error = 0.0;    // relative, of static solutions, by rounding
   long steps = 0;
+  long rejected_steps = 0;    // tried and taken again, shorter
   long solves = 0;            // beam solves
+  long factorisations = 0;    // of the beam's matrices
   double wall_seconds = 0.0;  // of the time loop
   std::string ended;          // "reached its end", or why it stopped
   /// Relative, of the peaks whose accuracy is promised: name of the quantity and what is expected.

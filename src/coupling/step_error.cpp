@@ -1,0 +1,88 @@
+// Errors of steps in second-order form, as the difference to an embedded method shows them, made dimensionless by what
+// the structure and the vehicles do at rest under their weights.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "traverse/base/error.hpp"
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+/// From p'' at the end of the step and its error, one a coordinate.
+double vehicle_error(const MovingVehicle& vehicle, const double* off, const double* pdd) {
+  const Eigen::MatrixXd& B = vehicle.state.B;
+  const Eigen::VectorXd& mass = vehicle.mechanism.mass_diagonal();
+  double error = 0.0, motion = 0.0, total = 0.0;  // sums of masses times squares of accelerations; kg
+  for (Eigen::Index i = 0; i < mass.size(); ++i) {
+    double a_off = 0.0, a = 0.0;
+    for (Eigen::Index k = 0; k < B.cols(); ++k) {
+      a_off += B(i, k) * off[k];
+      a += B(i, k) * pdd[k];
+    }
+    error += mass[i] * a_off * a_off;
+    motion += mass[i] * a * a;
+    if (i % 3 == 0) total += mass[i];
+  }
+  return std::sqrt(error * total) / (vehicle.scale + std::sqrt(motion * total));
+}
+
+}  // namespace
+
+void System::measure_errors() {
+  Motion& m = *motion_;
+  m.measures_errors = true;
+  if (beam_ == nullptr) return;
+  const beam::Mesh& mesh = beam_->mesh();
+  const std::vector<double>& ends = mesh.span_ends();
+  double station = 0.0, longest = 0.0;
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    if (ends[i] - ends[i - 1] > longest * (1.0 + 1e-9)) {
+      longest = ends[i] - ends[i - 1];
+      station = 0.5 * (ends[i] + ends[i - 1]);
+    }
+  m.energy_scale = static_energy(station);
+  if (m.energy_scale == 0.0)
+    throw InputError(
+        "ts_adapt_type = ladder: the structure's errors are measured by its deflection at rest under the weights, and "
+        "there is none (no weights, a foundation that is not linear, train and forces of different speeds); allowed: "
+        "none, or a ts_type of PETSc's own such as arkimex");
+}
+
+double System::step_error(const double* y) {
+  const Motion& m = *motion_;
+  const StepRule& rule = m.method.step;
+  const auto [first, past] = fleet_.own_coordinates();
+  for (int i = first; i < past; ++i) {
+    x_[i] = 0.0;
+    for (int j = 0; j < rule.known; ++j) x_[i] += rule.error_in_a[j] * m.pdd[j][i];
+  }
+  double worst = 0.0;
+  for (const MovingVehicle& vehicle : fleet_.own())
+    worst = std::max(worst, vehicle_error(vehicle, &x_[vehicle.offset], &m.pdd[rule.known - 1][vehicle.offset]));
+  if (beam_ != nullptr) worst = std::max(worst, structure_error(y));
+  if (!std::isfinite(worst)) worst = std::numeric_limits<double>::max();
+  if (ranks_ > 1) MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, comm_);
+  return worst;
+}
+
+double System::structure_error(const double* y) {
+  Motion& m = *motion_;
+  double energy = 0.0;
+  if (m.beam->fused()) {
+    energy = m.beam->error_energy();
+  } else {
+    double* const v = v_still_.data();
+    double* const w = w_still_.data();
+    m.beam->error(y, y + n_, v, w);
+    operator_->multiply(1.0, nullptr, nullptr, v, work_.data());
+    for (int i = 0; i < n_; ++i) energy += 0.5 * v[i] * work_[i];
+    operator_->multiply(1.0, w, nullptr, nullptr, work_.data());
+    for (int i = 0; i < n_; ++i) energy += 0.5 * w[i] * work_[i];
+  }
+  if (ranks_ > 1) MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, comm_);
+  return std::sqrt(energy / m.energy_scale);
+}
+
+}  // namespace traverse::coupling

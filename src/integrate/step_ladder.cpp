@@ -1,0 +1,61 @@
+#include "traverse/integrate/step_ladder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traverse::integrate {
+namespace {
+
+constexpr int lowest = 16;         // rung that errors lead to
+constexpr int most_fallen = 4;     // rungs at once
+constexpr double growth = 16.0;    // of the error from a rung to the next: local errors of order 4
+constexpr double aim = 0.5;        // of the tolerance, on another rung
+constexpr int calm_steps = 2;      // before a longer one
+constexpr double same = 1e-6;      // of a step: lengths that differ by rounding
+constexpr double rounding = 1e-9;  // of a step
+
+}  // namespace
+
+double shared_evenly(double whole, double most) {
+  return whole / std::max(1.0, std::ceil(whole / most * (1.0 - rounding)));
+}
+
+double StepLadder::length(int rung) const { return std::ldexp(longest_, -rung); }
+
+// The first rung that is not longer.
+int StepLadder::rung_within(double most) const {
+  return std::isfinite(most) ? std::max(0, static_cast<int>(std::ceil(std::log2(longest_ / most * (1.0 - rounding)))))
+                             : 0;
+}
+
+bool StepLadder::judge(double h, double error) {
+  if (!(error <= 1.0) && h > length(lowest) * (1.0 + same)) {
+    int rung = rung_within(h * (1.0 - same));
+    const int last = std::min(lowest, rung + most_fallen - 1);
+    while (rung < last && !(error * std::pow(length(rung) / h, std::log2(growth)) <= aim)) ++rung;
+    rung_ = std::max(rung, rung_);
+    calm_ = 0;
+    return false;
+  }
+  if (h < wanted() * (1.0 - same)) return true;  // it says little of longer ones
+  calm_ = error * growth <= aim ? calm_ + 1 : 0;
+  if (rung_ > 0 && calm_ >= calm_steps) {
+    --rung_;
+    calm_ = 0;
+  }
+  return true;
+}
+
+double StepLadder::towards(double left, double most) const {
+  const int first = std::max(rung_, rung_within(most));
+  for (int rung = first; rung <= std::max(first, lowest); ++rung) {
+    const double count = std::round(left / length(rung));
+    if (count >= 1.0 && std::abs(left - count * length(rung)) <= same * length(rung))
+      return count == 1.0 ? left : length(rung);
+  }
+  const double h = length(first);
+  if (left <= h) return left;
+  return left < 2.0 * h ? 0.5 * left : h;
+}
+
+}  // namespace traverse::integrate
