@@ -130,7 +130,7 @@ TEST(SharpTrack, AtRestInAValley) {
                                  {"train_positions", "0"},
                                  {"train_speed", "0"},
                                  {"vehicle_axle_wheel_stiffness", "1e11"},
-                                 {"ts_max_time", "0.01"},
+                                 {"ts_max_time", "0.002"},
                                  {"ts_dt", "1e-3"},
                                  {"output_interval", "1e-3"}});
   double low = 0.01, high = std::atan(s);  // h' = tan(angle) at x = R sin(angle)
