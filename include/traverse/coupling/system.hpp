@@ -120,10 +120,10 @@ class System {
   /// Collective. Before the first step: steps are to be asked for their errors. InputError where there is no scale for
   /// those.
   void measure_errors();
-  /// Collective. Of the step from y whose stages are solved, as its embedded method estimates it, without dimension: the
-  /// larger of the structure's, whose energy's root is measured by that of the deflection under the weights at rest,
-  /// and of the worst vehicle's, as a root of the mean of its masses' accelerations, measured by gravity and what they
-  /// are.
+  /// Collective. Of the step from y whose stages are solved, as its embedded method estimates it, without dimension:
+  /// the larger of the structure's, whose energy's root is measured by that of the deflection under the weights at
+  /// rest, and of the worst vehicle's, as a root of the mean of its masses' accelerations, measured by gravity and what
+  /// they are.
   double step_error(const double* y);
   /// Whether rate_of_motion serves: not where a method's own acceleration is another one than the state's.
   bool knows_rate() const {
