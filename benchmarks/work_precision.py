@@ -6,11 +6,11 @@ Writes work_precision.csv (all runs), work_precision_accuracy.csv (the table) an
 
 An error is that of the worst of the greatest deflection, acceleration, moment and wheel force, each relative to its own
 peak, of those that -accuracy promises; against a run of esdirk4 with a quarter of the finest element (R8, rail on pads:
-half) and a quarter of the finest step below. What doubling its step and elements changes is printed; errors below ten times
-that are written and drawn as that, and where it is more than a quarter of the accuracy of something that is promised,
-that is not judged ("unsettled") and nothing is compared. So that no setting wins by chance, where errors of two signs
-cancel, a fixed run's error is the largest among the runs with its mesh and its step or a shorter one. Seconds are
-minima over rounds in turn.
+half) and a quarter of the finest step below. What doubling its step and elements changes is printed; errors below ten
+times that are written and drawn as that, and where it is more than a quarter of the accuracy of something that is
+promised, that is not judged ("unsettled") and nothing is compared. So that no setting wins by chance, where errors of
+two signs cancel, a fixed run's error is the largest among the runs with its mesh and its step or a shorter one. Seconds
+are minima over rounds in turn.
 """
 
 import os
@@ -257,7 +257,8 @@ def show(row):
         ratios = f"{row['ms over its']:7.2f}{row['process over its']:7.2f}"
     left_out = ", ".join(dict.fromkeys(re.findall(r"(?:^|; )([a-z ]+)", row["not promised"])))
     print(f"{row['scene']:36}{row['accuracy']:8.0e}{row['elements']:5}{row['step']:9.2g}"
-          f"{row['error over accuracy']:7.2f} {row['worst']:13}{row['ms']:8.3g}{row['process ms']:7.4g}{ratios}  {best:44}{left_out}"
+          f"{row['error over accuracy']:7.2f} {row['worst']:13}{row['ms']:8.3g}{row['process ms']:7.4g}{ratios}"
+          f"  {best:44}{left_out}"
           + (f" (unsettled: {row['unsettled']})" if row["unsettled"] else ""), flush=True)
 
 

@@ -58,8 +58,9 @@ class Fidelity(InAFolder):
 
     def test_limits(self):
         errors = {("forces", "none", r, 60.0): {"deflection": e} for r, e in ((0.1, -0.01), (0.2, 0.06), (0.4, 0.0))}
-        self.assertEqual(fidelity.limit(errors, "forces", "none", "deflection", [0.1, 0.2, 0.4], [60.0]), 0.1)
-        self.assertIsNone(fidelity.limit(errors, "forces", "none", "deflection", [0.2, 0.4], [60.0]))
+        of = ["forces", "none", ["deflection"], 0.05]
+        self.assertEqual(fidelity.limit(errors, *of, [0.1, 0.2, 0.4], [60.0]), 0.1)
+        self.assertIsNone(fidelity.limit(errors, *of, [0.2, 0.4], [60.0]))
 
 
 if __name__ == "__main__":
