@@ -210,8 +210,8 @@ def show_limits(errors, ratios, speeds):
     header = ["model", "track"]
     header += [f"{' and '.join(names)} within {100 * good:g} %" for names, good in LIMITS]
     header += [f"at most too small by, mass ratio up to {LOW:g}: deflection and moment", "acceleration"]
-    print(f"good up to which mass ratio (of {ratios[0]:g} to {ratios[-1]:g}) at all speeds; in brackets: at speeds below "
-          "0.8 of the resonant one")
+    print(f"good up to which mass ratio (of {ratios[0]:g} to {ratios[-1]:g}) at all speeds; in brackets: at speeds "
+          "below 0.8 of the resonant one")
     print("| " + " | ".join(header) + " |\n|" + " --- |" * len(header))
     rows = []
     for model in ("forces", "masses", "sprung masses"):

@@ -83,8 +83,8 @@ SCENES = [
     Scene("R5, a mass on a stiff linear wheel", "r5_moving_mass", 0.02, 8, FINEST),
     Scene("R6, a force on three spans", "r6_three_spans", 0.025, 8, FINE),
     Scene("R7, two masses", "r7_two_masses", 0.04, 8, FINEST),
-    Scene("R8, a coach on a ballasted bridge", "r8_ballasted_bridge", 0.01, 4, [1, 2, 4], "track_elements_per_bay",
-          denser=2, wanted=WANTED[:3],
+    Scene("R8, a coach on a ballasted bridge", "r8_ballasted_bridge", 0.01, 4, [1, 2], "track_elements_per_bay",
+          denser=2, wanted=WANTED[:2],
           options={"train_positions": -15.8, "track_approach": 28.8, "scene_tail": 0.0}),
     Scene("two coaches on three spans", "three_span_train", 0.02, 7, COARSE,
           options=TWO_COACHES),
@@ -318,8 +318,8 @@ def main():
             case.time_again()
             case.taken = time.monotonic() - begin
             doubt = ", ".join(f"{q} {d:.0e}" for q, d in case.doubt.items())
-            print(f"{scene.name}: {case.taken:.0f} s; reference {case.finest[0]} elements, {case.finest[1]:.2g} s, where "
-                  f"doubling both changes {doubt}")
+            mesh, step = case.finest
+            print(f"{scene.name}: {case.taken:.0f} s; reference {mesh} elements, {step:.2g} s: doubling both changes {doubt}")
             rows += list(case.rows())
             for row in rows[-len(scene.wanted):]:
                 show(row)
@@ -341,8 +341,8 @@ def summarise(rows):
         row = max((r for r in rows if r[key] is not None), key=lambda r: r[key], default=None)
         return f"{row[key]:.2f} ({row['scene']}, {row['accuracy']:g})" if row else "none"
 
-    print(f"worst error over the accuracy: {worst('error over accuracy')}\nworst cost over the cheapest fixed run: time "
-          f"loop {worst('ms over its')}, process {worst('process over its')}")
+    print(f"worst error over the accuracy: {worst('error over accuracy')}")
+    print(f"worst cost over the cheapest fixed run: time loop {worst('ms over its')}, process {worst('process over its')}")
 
 
 if __name__ == "__main__":
