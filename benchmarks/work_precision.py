@@ -281,7 +281,7 @@ def picture(cases, file):
     for axis in axes.ravel()[len(cases):]:
         axis.axis("off")
     for axis, case in zip(axes.ravel(), cases):
-        promised = case.promised(WANTED[2]) or ["deflection"]
+        promised = case.promised(case.scene.wanted[min(2, len(case.scene.wanted) - 1)]) or ["deflection"]
         for i, integrator in enumerate(INTEGRATORS):
             own = front([p for p in case.points if p[0] == integrator], promised, case.shown)
             if own:
