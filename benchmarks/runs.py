@@ -10,6 +10,8 @@ import time
 import h5py
 import numpy as np
 
+PEAKS = {"deflection": "deflection", "acceleration": "acceleration", "moment": "moment",
+         "wheel force": "greatest_wheel_force"}
 ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
@@ -40,6 +42,7 @@ class Run:
         self.process_seconds = time.monotonic() - begin
         if done.returncode != 0:
             raise RuntimeError(f"{' '.join(command)}\n{done.stdout}")
+        self.text = done.stdout
         self.unknowns = unknowns(done.stdout)
         self.file = file
         with h5py.File(file) as results:
@@ -78,6 +81,14 @@ def peak(file, probe=None):
                + at * (1 - at) * h * ((1 - at) * w[:-1] - at * w[1:]))
     values = np.concatenate([v, between.ravel()])
     return float(values[np.abs(values).argmax()])
+
+
+def peaks(file):
+    """What the run says were its greatest deflection, acceleration, moment and wheel force, without signs."""
+    with h5py.File(file) as results:
+        summary = results["summary"].attrs
+        found = {name: abs(float(summary.get(key, 0.0))) for name, key in PEAKS.items()}
+    return {name: value for name, value in found.items() if value > 0.0}
 
 
 def in_turn(build, cases, rounds, out, ranks=1):

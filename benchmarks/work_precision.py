@@ -1,0 +1,351 @@
+#!/usr/bin/python3
+"""Errors of peaks over seconds: every integrator at many steps and meshes, and where -accuracy lands among them.
+/usr/bin/python3 benchmarks/work_precision.py [BUILD_FOLDER] [OUT_FOLDER] [--quick] [SCENE...]
+
+Writes work_precision.csv (all runs), work_precision_accuracy.csv (the table) and work_precision.png to OUT_FOLDER.
+
+An error is that of the worst of the greatest deflection, acceleration, moment and wheel force, each relative to its own
+peak, of those that -accuracy promises; against a run of esdirk4 with a quarter of the finest element (R8, rail on pads:
+half) and a quarter of the finest step below. What doubling its step and elements changes is printed; errors below ten
+times that are written and drawn as that, and where it is more than a quarter of the accuracy of something that is
+promised, that is not judged ("unsettled") and nothing is compared. So that no setting wins by chance, where errors of
+two signs cancel, a fixed run's error is the largest among the runs with its mesh and its step or a shorter one. Seconds
+are minima over rounds in turn.
+"""
+
+import os
+import re
+import shutil
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import runs  # noqa: E402
+
+INTEGRATORS = {
+    "esdirk4": {},
+    "genalpha": {"ts_type": "genalpha"},
+    "arkimex 3": {"ts_type": "arkimex", "ts_arkimex_type": "3"},
+    "arkimex 4": {"ts_type": "arkimex", "ts_arkimex_type": "4"},
+    "arkimex 3, contacts explicit": {"ts_type": "arkimex", "ts_arkimex_type": "3", "ts_arkimex_fully_implicit": "0"},
+    "arkimex 4, contacts explicit": {"ts_type": "arkimex", "ts_arkimex_type": "4", "ts_arkimex_fully_implicit": "0"},
+    "cn": {"ts_type": "cn"},
+    "bdf": {"ts_type": "bdf"},
+}
+WANTED = [1e-2, 1e-3, 1e-4, 1e-5]
+SETTLED = 10.0  # times what doubling the reference's step and elements changes: errors below are shown as that
+JUDGED = 0.25   # of an accuracy may be in doubt
+LEAST_ROUNDS, MOST_ROUNDS = 3, 20
+SECONDS = 8.0   # of a scene's rounds, where that allows more than the least
+LONG = 10.0     # s of a process that is timed once
+
+
+@dataclass
+class Scene:
+    name: str
+    file: str                  # in options/scenes, without what it says of mesh, step, samples and accuracy
+    step: float                # s, the longest one tried
+    halvings: int              # of it
+    meshes: list
+    mesh: str = "beam_elements_per_span"
+    denser: int = 4            # the reference's elements over the finest of these
+    wanted: list = field(default_factory=lambda: WANTED)
+    options: dict = field(default_factory=dict)
+
+
+MOVING_MASS = """beam: {spans: 25.0, EI: 8.323e9, mass: 2303.0, damping_ratios: 0.01}
+support: {types: [pinned, roller]}
+vehicle:
+  moving_mass:
+    bodies:  [body]
+    wheels:  [contact]
+    drivers: [level]
+    body:    {mass: 14394.0, inertia: 1.0, position: [0.0, 0.1]}
+    contact: {body: body, radius: 0.1, law: linear, stiffness: 1.0e9}
+    level:   {body: body, coordinate: phi}
+train: {vehicles: moving_mass, positions: 0.0, speed: 59.7}
+"""
+WRITTEN = {"r5_moving_mass": MOVING_MASS}
+LINEAR = {f"vehicle_coach_wheel_{i}_{key}": value
+          for i in range(1, 5) for key, value in (("law", "linear"), ("stiffness", 1.2e9))}
+TWO_COACHES = {"train_vehicles": "coach*2", "scene_tail": 0.2}
+COARSE, FINE, FINEST = [4, 8, 16, 32], [8, 16, 32, 64], [8, 16, 32, 64, 128]
+SCENES = [
+    Scene("R1, a force", "r1_moving_force", 0.0125, 8, FINEST),
+    Scene("R2, a sprung mass, linear wheel", "r2_sprung_mass", 0.04, 8, FINE),
+    Scene("R3, another one", "r3_sprung_mass", 0.04, 8, FINE),
+    Scene("R4, a Hertz wheel", "r4_hertz_wheel", 0.04, 8, FINE),
+    Scene("R5, a mass on a stiff linear wheel", "r5_moving_mass", 0.02, 8, FINEST),
+    Scene("R6, a force on three spans", "r6_three_spans", 0.025, 8, FINE),
+    Scene("R7, two masses", "r7_two_masses", 0.04, 8, FINEST),
+    Scene("R8, a coach on a ballasted bridge", "r8_ballasted_bridge", 0.01, 4, [1, 2], "track_elements_per_bay",
+          denser=2, wanted=WANTED[:2],
+          options={"train_positions": -15.8, "track_approach": 28.8, "scene_tail": 0.0}),
+    Scene("two coaches on three spans", "three_span_train", 0.02, 7, COARSE,
+          options=TWO_COACHES),
+    Scene("the same on linear wheels", "three_span_train", 0.02, 7, COARSE,
+          options=TWO_COACHES | LINEAR),
+    Scene("a wheel hops over a bump", "wheel_over_a_bump", 4e-3, 8, FINE, options={"beam_damping_ratios": 0.02}),
+    Scene("a coach on a rail on 100 pads", "rail_on_pads", 4e-3, 5, [200, 400, 800], denser=2, wanted=WANTED[:2],
+          options={"beam_spans": 60.0, "beam_rayleigh": "0,2e-5", "foundation_vertical_x": "0.3,59.7",
+                   "train_positions": 18.0, "ts_max_time": 0.25, "output_probes": "30.0,30.3"}),
+]
+
+
+def opened(name, folder):
+    """A copy of the scene's file that leaves mesh, step, samples and accuracy open."""
+    if name in WRITTEN:
+        text = WRITTEN[name]
+    else:
+        with open(runs.scene(name)) as file:
+            text = file.read()
+    text = text.replace("../", os.path.join(runs.ROOT, "options", ""))
+    text = re.sub(r"^( +(interval|dt|elements_per_span)|accuracy):.*\n", "", text, flags=re.M)
+    text = re.sub(r"^(output|ts):.*\n(?!\s)", "", text, flags=re.M)
+    path = os.path.join(folder, name + ".yml")
+    with open(path, "w") as file:
+        file.write(text)
+    return path
+
+
+class Point:
+    """A setting: its run's peaks, and the least seconds of its time loop and process so far."""
+
+    def __init__(self, build, folder, options):
+        self.build, self.folder, self.options = build, folder, options
+        self.seconds = self.process_seconds = float("inf")
+        self.run()
+
+    def run(self):
+        handle, file = tempfile.mkstemp(suffix=".h5", dir=self.folder)
+        os.close(handle)
+        try:
+            run = runs.Run(self.build, self.options, file)
+            self.peaks = runs.peaks(file)
+        finally:
+            os.remove(file)
+        self.steps, self.unknowns, self.text = run.steps, run.unknowns, run.text
+        self.seconds = min(self.seconds, run.seconds)
+        self.process_seconds = min(self.process_seconds, run.process_seconds)
+        return self
+
+
+class Case:
+    """A scene with its reference and all its runs."""
+
+    def __init__(self, build, folder, scene, quick):
+        self.build, self.folder, self.scene = build, folder, scene
+        self.longest = 0.3 if quick else 1.0  # s of a fixed run's time loop
+        self.halvings = min(scene.halvings, 4) if quick else scene.halvings
+        self.meshes = scene.meshes[:2] if quick else scene.meshes
+        self.options = scene.options | {"options_file": opened(scene.file, folder)}
+
+    def fixed(self, mesh, step, integrator):
+        return self.options | INTEGRATORS[integrator] | {self.scene.mesh: mesh, "ts_dt": step, "step_probes": "true"}
+
+    def find_reference(self):
+        """Peaks, and how far each of them may be off: what doubling step and elements changes."""
+        mesh, step = self.scene.denser * self.scene.meshes[-1], self.scene.step / 2 ** (self.scene.halvings + 2)
+        settings = [(mesh, step), (mesh, 2 * step), (mesh // 2, step)]
+        with ThreadPoolExecutor(2) as pool:
+            fine, longer, coarser = pool.map(
+                lambda s: Point(self.build, self.folder, self.fixed(*s, "esdirk4")), settings)
+        self.finest = (mesh, step)
+        self.reference = fine.peaks
+        self.doubt = {q: (abs(longer.peaks[q] - p) + abs(coarser.peaks[q] - p)) / p for q, p in fine.peaks.items()}
+
+    def errors(self, point):
+        return {q: abs(point.peaks[q] / p - 1.0) for q, p in self.reference.items()}
+
+    def shown(self, errors):
+        return {q: max(e, SETTLED * self.doubt[q]) for q, e in errors.items()}
+
+    def sequence(self, integrator, mesh):
+        """From the longest step on, until runs take too long or nothing but the mesh's error is left."""
+        points, before = {}, None
+        for k in range(self.halvings + 1):
+            step = self.scene.step / 2**k
+            try:
+                point = Point(self.build, self.folder, self.fixed(mesh, step, integrator))
+            except RuntimeError:
+                continue  # too long a step for this integrator: the program says so and stops
+            points[step] = point
+            errors = self.shown(self.errors(point))
+            same = before and all(abs(errors[q] - before[q]) <= 0.03 * errors[q] for q in errors)
+            if same or 2.0 * point.seconds > self.longest:
+                break
+            before = errors
+        worst = dict.fromkeys(self.reference, 0.0)
+        for step in sorted(points):
+            worst = {q: max(worst[q], e) for q, e in self.errors(points[step]).items()}
+            points[step].error = worst
+        return [(integrator, mesh, step, point) for step, point in points.items()]
+
+    def try_all(self):
+        jobs = [(integrator, mesh) for integrator in INTEGRATORS for mesh in self.meshes
+                if "explicit" not in integrator or "wheel force" in self.reference]
+        with ThreadPoolExecutor(2) as pool:
+            self.points = [p for some in pool.map(lambda job: self.sequence(*job), jobs) for p in some]
+        self.chosen = {wanted: Point(self.build, self.folder, self.options | {"accuracy": wanted})
+                       for wanted in self.scene.wanted}
+
+    def refused(self, wanted):
+        return re.findall(r"not promised: (.*?): (.*)", self.chosen[wanted].text)
+
+    def promised(self, wanted):
+        refused = [q for q, _ in self.refused(wanted)]
+        return [q for q in self.reference if q not in refused]
+
+    def unsettled(self, wanted):
+        return [q for q in self.promised(wanted) if self.doubt[q] > JUDGED * wanted]
+
+    def candidates(self, wanted):
+        """Fixed runs that keep what is promised, the cheapest first; none where that cannot be judged."""
+        promised = self.promised(wanted)
+        if not promised or self.unsettled(wanted):
+            return []
+        kept = [p for p in self.points if all(p[3].error[q] <= wanted for q in promised)]
+        return sorted(kept, key=lambda p: p[3].seconds)
+
+    def time_again(self):
+        begin = time.monotonic()
+        again = {id(p[3]): p[3] for wanted in self.scene.wanted for p in self.candidates(wanted)[:3]}
+        for i in range(MOST_ROUNDS):
+            if i >= LEAST_ROUNDS and time.monotonic() - begin > SECONDS:
+                break
+            for point in list(again.values()) + list(self.chosen.values()):
+                if point.process_seconds < LONG:
+                    point.run()
+
+    def rows(self):
+        for wanted, point in self.chosen.items():
+            promised = [q for q in self.promised(wanted) if q not in self.unsettled(wanted)]
+            true = {q: abs(point.peaks[q] / self.reference[q] - 1.0) for q in promised}
+            worst = max(true, key=true.get, default="")
+            best = self.candidates(wanted)[:3]
+            cheapest = min(best, key=lambda p: p[3].seconds, default=None)
+            process = min((p[3].process_seconds for p in best), default=None)
+            mesh, step = re.search(r"accuracy \S+: (\d+) elements .*steps of (\S+) s;", point.text).groups()
+            row = dict.fromkeys(HEADER) | {
+                "scene": self.scene.name, "accuracy": wanted, "elements": int(mesh), "step": float(step),
+                "error over accuracy": true.get(worst, 0.0) / wanted, "worst": worst,
+                "ms": 1e3 * point.seconds, "process ms": 1e3 * point.process_seconds,
+                "not promised": "; ".join(f"{q}: {why}" for q, why in self.refused(wanted)),
+                "unsettled": "; ".join(self.unsettled(wanted))}
+            if cheapest:
+                row |= {"cheapest": cheapest[0], "its elements": cheapest[1], "its step": cheapest[2],
+                        "its ms": 1e3 * cheapest[3].seconds, "its process ms": 1e3 * process,
+                        "ms over its": point.seconds / cheapest[3].seconds,
+                        "process over its": point.process_seconds / process}
+            yield row
+
+
+HEADER = ["scene", "accuracy", "elements", "step", "error over accuracy", "worst", "ms", "process ms", "cheapest",
+          "its elements", "its step", "its ms", "its process ms", "ms over its", "process over its", "not promised",
+          "unsettled"]
+
+
+def show(row):
+    best, ratios = "none of them", f"{'':14}"
+    if row["cheapest"]:
+        best = f"{row['cheapest']}, {row['its elements']}, {row['its step']:.2g} s"
+        ratios = f"{row['ms over its']:7.2f}{row['process over its']:7.2f}"
+    left_out = ", ".join(dict.fromkeys(re.findall(r"(?:^|; )([a-z ]+)", row["not promised"])))
+    print(f"{row['scene']:36}{row['accuracy']:8.0e}{row['elements']:5}{row['step']:9.2g}"
+          f"{row['error over accuracy']:7.2f} {row['worst']:13}{row['ms']:8.3g}{row['process ms']:7.4g}{ratios}"
+          f"  {best:44}{left_out}"
+          + (f" (unsettled: {row['unsettled']})" if row["unsettled"] else ""), flush=True)
+
+
+def front(points, promised, shown):
+    """Pareto front: (seconds, error), each with no run that is both cheaper and more accurate."""
+    least, found = float("inf"), []
+    for seconds, error in sorted((p[3].seconds, max(shown(p[3].error)[q] for q in promised)) for p in points):
+        if error < least:
+            found.append((seconds, error))
+            least = error
+    return found
+
+
+def picture(cases, file):
+    columns = min(len(cases), 3)
+    lines = -(-len(cases) // columns)
+    figure, axes = plt.subplots(lines, columns, figsize=(5.0 * columns, 3.7 * lines), layout="constrained",
+                                squeeze=False)
+    for axis in axes.ravel()[len(cases):]:
+        axis.axis("off")
+    for axis, case in zip(axes.ravel(), cases):
+        promised = case.promised(case.scene.wanted[min(2, len(case.scene.wanted) - 1)]) or ["deflection"]
+        for i, integrator in enumerate(INTEGRATORS):
+            own = front([p for p in case.points if p[0] == integrator], promised, case.shown)
+            if own:
+                axis.loglog(*zip(*own), "o-", color=f"C{i}", ms=3, lw=1, label=integrator)
+        axis.loglog(*zip(*front(case.points, promised, case.shown)), color="#BBBBBB", lw=5, zorder=0,
+                    label="Pareto front")
+        for wanted, point in case.chosen.items():
+            kept = [q for q in case.promised(wanted) if q in promised] or promised
+            axis.plot(point.seconds, max(case.shown(case.errors(point))[q] for q in kept), "*", color="black", ms=10,
+                      label="-accuracy 1e-2 to 1e-5" if wanted == WANTED[0] else None)
+            axis.axhline(wanted, color="grey", lw=0.4, ls=":")
+        axis.set_title(f"{case.scene.name}: {', '.join(promised)}", fontsize=8)
+        axis.set(xlabel="seconds of the time loop", ylabel="error")
+        axis.grid(True, alpha=0.3)
+    axes[0, 0].legend(fontsize=6)
+    figure.savefig(file, dpi=110)
+    print(file)
+
+
+def main():
+    words = [w for w in sys.argv[1:] if w != "--quick"]
+    quick = "--quick" in sys.argv
+    build, out = runs.folders(words[:2])
+    scenes = [s for s in SCENES if not words[2:] or s.file in words[2:]]
+    folder = tempfile.mkdtemp()
+    print(f"{'':36}{'E':>8}{'el.':>5}{'step':>9}{'error/E':>21}{'ms':>8}{'process':>7}{'cost ratios':>14}"
+          f"  {'over the cheapest fixed run':44}not promised")
+    cases, rows, every = [], [], []
+    try:
+        for scene in scenes:
+            begin = time.monotonic()
+            case = Case(build, folder, scene, quick)
+            case.find_reference()
+            case.try_all()
+            case.time_again()
+            case.taken = time.monotonic() - begin
+            doubt = ", ".join(f"{q} {d:.0e}" for q, d in case.doubt.items())
+            mesh, step = case.finest
+            print(f"{scene.name}: {case.taken:.0f} s; reference {mesh} elements, {step:.2g} s; doubling both: {doubt}")
+            rows += list(case.rows())
+            for row in rows[-len(scene.wanted):]:
+                show(row)
+            every += [[scene.name, p[0], p[1], p[2], p[3].unknowns, p[3].steps, p[3].seconds, p[3].process_seconds,
+                       *(case.shown(p[3].error).get(q) for q in runs.PEAKS)] for p in case.points]
+            cases.append(case)
+    finally:
+        shutil.rmtree(folder)
+    summarise(rows)
+    runs.write_table(os.path.join(out, "work_precision.csv"),
+                     ["scene", "integrator", "elements", "step", "unknowns", "steps", "seconds", "process seconds",
+                      *("error of " + q for q in runs.PEAKS)], every)
+    runs.write_table(os.path.join(out, "work_precision_accuracy.csv"), HEADER, [list(r.values()) for r in rows])
+    picture(cases, os.path.join(out, "work_precision.png"))
+
+
+def summarise(rows):
+    def worst(key):
+        row = max((r for r in rows if r[key] is not None), key=lambda r: r[key], default=None)
+        return f"{row[key]:.2f} ({row['scene']}, {row['accuracy']:g})" if row else "none"
+
+    print(f"worst error over the accuracy: {worst('error over accuracy')}")
+    print(f"worst cost over the cheapest fixed run: time loop {worst('ms over its')}")
+    print(f"of the whole process: {worst('process over its')}")
+
+
+if __name__ == "__main__":
+    main()
