@@ -28,7 +28,8 @@ bool chooses(const Scene& scene) {
   const bool open = scene.mesh_open || !scene.time_step;
   const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
   return open && moves && scene.beam && scene.analysis == Analysis::transient && scene.model_modes == 0 &&
-         !is_asked_for("ts_max_steps") && !is_asked_for("ts_monitor") && !is_asked_for("ts_adapt_type");
+         !is_asked_for("ts_max_steps") && !is_asked_for("ts_monitor") && !is_asked_for("ts_adapt_type") &&
+         !is_asked_for("ts_arkimex_fully_implicit");
 }
 
 void leave_out_rest(Scene& scene) {
@@ -71,7 +72,8 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   if (!chooses(scene)) return result;
   const auto begin = std::chrono::steady_clock::now();
   std::vector<std::string> ignored;
-  if (scene.mesh_open) set_mesh(scene, first_mesh(scene));
+  if (scene.mesh_open)
+    set_mesh(scene, scene.beam->track ? first_mesh(scene) : 2 * aligned_mesh(scene, first_mesh(scene) / 2));
   Structure structure(comm, scene, ignored);
   structure.damp(scene, true, ignored);
   structure.prepare(scene, ignored);

@@ -7,6 +7,7 @@ namespace traverse::app {
 namespace {
 
 constexpr double highest_order = 4.0, refining_order = 3.0;
+constexpr double unsettled = 0.5, supposed_order = 2.0;  // after the one, not more than the other is believed
 constexpr double no_limit = 1e3;
 
 }  // namespace
@@ -29,6 +30,7 @@ Error error_from(double change, double size, const Error& before) {
     const double halvings = std::log2(before.size / size);
     error.known = true;
     error.order = change > 0.0 ? std::log2(before.change / change) / halvings : highest_order;
+    if (before.known && before.order < unsettled) error.order = std::min(error.order, supposed_order);
     change = std::max(change, before.change / std::exp2((highest_order + 1.0) * halvings));
   }
   error.value = change / (std::exp2(error.power()) - 1.0);

@@ -13,18 +13,19 @@ namespace traverse::app {
 namespace {
 
 // Of the wanted error, for the step and for the mesh each; less where errors fall too slowly to be told well.
-constexpr double share = 0.45, small_share = 0.25, small_error = 3e-5;
+constexpr double share = 0.4, small_share = 0.25, small_error = 3e-5;
 // Times a measured size that an error is extrapolated to: by a measured order, by a supposed one, and where measuring
 // would cost more than it is worth.
 constexpr double farthest = 2.2, supposed = 1.5, at_most = 4.0;
 constexpr double best_effort = 10.0;            // times the wanted error, of what is refused
 constexpr double unsettled = 0.5, slow = 0.75;  // orders below which an error does not fall
 constexpr int most_rounds = 14;
-constexpr double finest = 32.0;           // times the first step
-constexpr double hardly_anything = 1.0;   // s of trial runs, estimated
-constexpr double part_of_run = 0.5;       // for trial runs
-constexpr double farthest_guess = 8.0;    // of the run's mesh and step, for that
-constexpr double worth_coarsening = 1.2;  // times the step
+constexpr double finest = 32.0;          // times the first step
+constexpr double hardly_anything = 1.0;  // s of trial runs, estimated
+constexpr double part_of_run = 0.5;      // for trial runs
+constexpr double farthest_guess = 8.0;   // of the run's mesh and step, for that
+constexpr double passed_over = 2.0;      // times the wanted error, on the way to longer steps
+constexpr double between = 0.5;          // of the wanted error, where it is only known for shorter and longer steps
 constexpr double most_growth = 4.0;
 constexpr int most_elements_a_bay = 8, most_elements_in_all = 1200;
 
@@ -85,19 +86,37 @@ void ErrorSearch::refine() {
   }
 }
 
+// Longer steps against the finest one. What is only a little too large between may be passed over: where the contacts'
+// vibration is half resolved errors are larger than where it is not at all.
 void ErrorSearch::coarsen() {
-  while (open_step_ && 2.0 * step_ <= longest_step_ && room_to_coarsen(time_) > worth_coarsening &&
-         signal_on_any(comm_) == 0) {
-    const Errors time = time_, space = space_;
-    step_ *= 2.0;
-    measure();
-    if (room_to_coarsen(time_) >= 1.0 && room(space_) >= 1.0 / farthest) continue;
-    coarser_ = time_;
-    time_ = time;
-    space_ = space;
-    step_ *= 0.5;
-    return;
+  if (!open_step_) return;
+  const double fine = step_;
+  const Errors errors = time_;
+  for (double step = 2.0 * fine; step <= longest_step_ && signal_on_any(comm_) == 0; step *= 2.0) {
+    Errors longer = errors;
+    for (std::size_t q = 0; q < quantities; ++q)
+      longer[q].value += growth_ * difference(trials_.run(mesh_, step), trials_.run(mesh_, fine),
+                                              static_cast<Quantity>(q), 3.0 * step);
+    if (excess(longer) <= 1.0) {
+      step_ = step;
+      time_ = longer;
+      coarser_.reset();
+    } else if (step == 2.0 * step_) {
+      coarser_ = longer;
+    }
+    if (excess(longer) > passed_over) return;
   }
+}
+
+/// What the errors are of those wanted, at most.
+double ErrorSearch::excess(const Errors& errors) const {
+  double most = 0.0;
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (promised(q)) most = std::max(most, errors[q].value / wanted_);
+    if (promises_[q].present && tried_[q])
+      most = std::max(most, errors[q].value / std::max(best_effort * wanted_, time_[q].value));
+  }
+  return most;
 }
 
 void ErrorSearch::apply(Scene& scene, Accuracy& result) {
@@ -105,7 +124,8 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
   const double step = open_step_ ? two_digits(step_ * longer) : step_;
   int mesh = mesh_;
   if (open_mesh_ && scene.beam->track) mesh = static_cast<int>(std::ceil(mesh_ / fewer));
-  if (open_mesh_ && !scene.beam->track) mesh = std::max(4, 2 * static_cast<int>(std::ceil(0.5 * mesh_ / fewer)));
+  if (open_mesh_ && !scene.beam->track)
+    mesh = aligned_mesh(scene_, std::max(4, 2 * static_cast<int>(std::ceil(0.5 * mesh_ / fewer))));
   set_mesh(scene, mesh);
   scene.time_step = step;
   scene.step_probes = true;
@@ -143,7 +163,7 @@ Error ErrorSearch::error_in_space(Quantity q) {
   const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
   const double step = open_step_ && 2.0 * step_ * greatest_speed(scene_) < element ? 2.0 * step_ : step_;
   const double change = difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
-  return error_from(growth_ * change, 1.0 / mesh_, space_[q]);
+  return error_from(std::pow(growth_, 0.75) * change, 1.0 / mesh_, space_[q]);
 }
 
 /// Times the step (or the element) at which all that is promised keeps its share.
@@ -172,17 +192,17 @@ bool ErrorSearch::within_reach(const Errors& errors) const {
   return true;
 }
 
-// Longer steps only as far as twice the step has been measured.
+// Longer steps only between two that are measured.
 double ErrorSearch::factor_of_step() const {
   const double factor = std::clamp(room(time_), 1.0 / at_most, 1.0);
   if (factor < 1.0 || !coarser_) return factor;
   double least = std::min(2.0, room_to_coarsen(time_));
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!promised(q) || time_[q].value == 0.0) continue;
-    const double growth = (*coarser_)[q].value / time_[q].value, allowed = wanted_ / time_[q].value;
+    const double growth = (*coarser_)[q].value / time_[q].value, allowed = between * wanted_ / time_[q].value;
     if (growth > allowed) least = std::min(least, std::exp2(std::log(allowed) / std::log(growth)));
   }
-  return least;
+  return std::max(least, 1.0);
 }
 
 double ErrorSearch::factor_of_elements() const {

@@ -32,6 +32,7 @@ class ErrorSearch {
   void refine();
   void coarsen();
   void measure();
+  double excess(const Errors& errors) const;
   Error error_in_time(Quantity q);
   Error error_in_space(Quantity q);
   void refuse(std::size_t q, std::string why);

@@ -16,6 +16,7 @@ constexpr double part_of_run = 1e-2;
 // Step times frequency of the contacts, rad, at an accuracy of 1e-2 and at the finest; it falls as accuracy^0.22, which
 // is what coaches on Hertz wheels were found to need.
 constexpr double contact_angle = 1.0, least_contact_angle = 0.15, contact_power = 0.22;
+constexpr double coarse = 5e-3;  // from which on the vibration on a track hardly counts
 constexpr double finest = 64.0;  // times what all the rest needs
 
 double contact_angle_of(double accuracy) {
@@ -67,12 +68,13 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
   }
   if (scene.output.interval) step = std::min(step, *scene.output.interval);
   const double contact = contact_frequency(scene);
-  if (contact == 0.0) return {step, step};
+  // On a track the rail goes on over the bridge's ends: nothing stirs the contacts there.
+  if (contact == 0.0 || (scene.beam->track && scene.accuracy >= coarse)) return {step, step};
   return {std::min(step, std::max(contact_angle_of(scene.accuracy) / contact, step / finest)), step};
 }
 
 bool follows_contacts(const Scene& scene, double step) {
-  return contact_frequency(scene) * step <= 2.0 * contact_angle;
+  return contact_frequency(scene) * step <= 2.0 * contact_angle || (scene.beam->track && scene.accuracy >= coarse);
 }
 
 }  // namespace traverse::app

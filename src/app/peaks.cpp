@@ -84,6 +84,9 @@ double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reac
   const double largest = std::abs(fine.largest(q).value);
   if (rough.failed() || fine.failed()) return 1.0;
   if (largest == 0.0) return 0.0;
+  // Wheel forces vary about the weight: what is near the largest one is seen by that.
+  const double rest = q == wheel_force && !fine.of(q).empty() ? std::abs(fine.of(q).front().value) : 0.0;
+  const double least = rest < largest ? rest + compared * (largest - rest) : compared * largest;
   double squares = 0.0;
   int count = 0;
   const auto earlier = [](const Peak& a, const Peak& b) {
@@ -92,7 +95,7 @@ double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reac
   std::vector<Peak> others = rough.of(q);
   std::sort(others.begin(), others.end(), earlier);
   for (const Peak& peak : fine.of(q)) {
-    if (std::abs(peak.value) < compared * largest) continue;
+    if (std::abs(peak.value) < least) continue;
     double nearest = reach, off = -1.0;
     for (auto other = std::lower_bound(others.begin(), others.end(), Peak{0.0, peak.time - reach, peak.place}, earlier);
          other != others.end() && other->place == peak.place && other->time <= peak.time + reach; ++other) {

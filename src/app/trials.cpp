@@ -14,8 +14,20 @@ constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: 
 constexpr std::size_t few_spans = 24;    // are all kept
 constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
 constexpr double roughness = 5.0;        // times the work on vehicles on a rough track
+constexpr double rounding = 1e-9;
+constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;
 constexpr double behind = 1.1;  // spans, until what the last wheel does as it leaves is seen
+
+bool is_node(const beam::BeamModel& beam, double x) {
+  double left = 0.0;
+  for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
+    const double node = (x - left) / beam.spans[i] * beam.elements[i];
+    if (x <= left + beam.spans[i] * (1.0 + rounding))
+      return std::abs(node - std::round(node)) < rounding * beam.elements[i];
+  }
+  return false;
+}
 
 /// x of the foremost and the rearmost wheel of a vehicle of the train at t = 0.
 std::pair<double, double> wheels_of(const Scene& scene, std::size_t i) {
@@ -80,6 +92,21 @@ void set_mesh(Scene& scene, int elements) {
                            ? 1
                            : std::max(std::min(elements, least_elements),
                                       2 * static_cast<int>(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
+}
+
+int aligned_mesh(const Scene& scene, int elements) {
+  if (scene.beam->track) return elements;
+  std::vector<double> stations = scene.output.probes;
+  for (const auto* points :
+       {&scene.beam->foundation.vertical, &scene.beam->foundation.longitudinal, &scene.beam->foundation.rotational})
+    for (const beam::PointFoundation& point : *points) stations.push_back(point.x);
+  if (stations.size() > few_stations) return elements;
+  Scene tried = scene;
+  for (int count = elements; 2 * count <= 3 * elements; count += 2) {
+    set_mesh(tried, count);
+    if (std::all_of(stations.begin(), stations.end(), [&](double x) { return is_node(*tried.beam, x); })) return count;
+  }
+  return elements;
 }
 
 int mesh_of(const Scene& scene) {

@@ -14,6 +14,9 @@ namespace traverse::app {
 /// Elements of the longest span, the others in proportion and even; with a layered track elements of the rail a bay.
 void set_mesh(Scene& scene, int elements);
 int mesh_of(const Scene& scene);
+/// So many elements or up to half as many again: where that lets nodes meet probes and the foundation's springs, inside
+/// of whose elements errors fall slowly.
+int aligned_mesh(const Scene& scene, int elements);
 
 /// When the first vehicle, or the first forces, have crossed two spans (one where there is only one), s; at most `end`.
 double beginning(const Scene& scene, double end);

@@ -70,9 +70,9 @@ class Peaks {
   std::array<std::vector<Peak>, quantities> each_;
 };
 
-/// What the largest extremes of two runs differ by, relative to them: or what those near them (above 0.9) that lie in
-/// both within `reach` s of each other let expect, where the largest ones agree by chance. 0 where there are none, 1
-/// where a run failed.
+/// What the largest extremes of two runs differ by, relative to them: or what those near them (above 0.9; of wheel
+/// forces, of what they vary by) that lie in both within `reach` s of each other let expect, where the largest ones
+/// agree by chance. 0 where there are none, 1 where a run failed.
 double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reach);
 
 /// What the largest ones alone differ by.
