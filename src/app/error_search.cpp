@@ -16,7 +16,7 @@ namespace {
 constexpr double share = 0.4, small_share = 0.25, small_error = 3e-5;
 // Times a measured size that an error is extrapolated to: by a measured order, by a supposed one, and where measuring
 // would cost more than it is worth.
-constexpr double farthest = 2.2, supposed = 1.5, at_most = 4.0;
+constexpr double farthest = 2.2, supposed = 1.5, at_most = 2.5;
 constexpr double best_effort = 10.0;            // times the wanted error, of what is refused
 constexpr double unsettled = 0.5, slow = 0.75;  // orders below which an error does not fall
 constexpr int most_rounds = 14;
@@ -242,11 +242,11 @@ void ErrorSearch::refuse_what_is_far() {
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!promised(q)) continue;
     if (open_step_ && far(time_[q]))
-      refuse(q,
-             fmt::format("steps of {:.2g} s leave an error of {:.1g}; trying shorter ones would cost more than the run",
-                         step_, time_[q].value));
+      refuse(q, fmt::format(
+                    "steps of {:.2g} s leave an error of {:.1g} and trying shorter ones would cost more than the run",
+                    step_, time_[q].value));
     else if (open_mesh_ && far(space_[q]))
-      refuse(q, fmt::format("{} elements a {} leave an error of {:.1g}; trying more would cost more than the run",
+      refuse(q, fmt::format("{} elements a {} leave an error of {:.1g} and trying more would cost more than the run",
                             mesh_, unit_of_mesh(), space_[q].value));
     tried_[q] = !promises_[q].kept;
   }
