@@ -1,4 +1,4 @@
-"""benchmarks/work_precision.py and benchmarks/fidelity.py on few, coarse runs."""
+"""benchmarks/work_precision.py, fidelity.py and promises.py on few, coarse runs."""
 
 import os
 import pathlib
@@ -10,6 +10,7 @@ SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file_
 BUILD = pathlib.Path(os.environ["TRAVERSE_BINARY"]).parent
 sys.path.insert(0, str(SOURCE / "benchmarks"))
 import fidelity  # noqa: E402
+import promises  # noqa: E402
 import work_precision  # noqa: E402
 
 
@@ -44,6 +45,14 @@ class WorkPrecision(InAFolder):
         self.assertEqual(list(seconds), sorted(seconds))
         self.assertEqual(list(errors), sorted(errors, reverse=True))
         self.assertLess(errors[-1], 1e-3)
+
+
+class Promises(InAFolder):
+    def test_a_scene(self):
+        row, = promises.judge(str(BUILD), "truck", [1e-2], self.folder)
+        self.assertLessEqual(row["worst"], 1.0)
+        self.assertEqual(row["not promised"], [])
+        self.assertGreater(row["trials"], 0.0)
 
 
 class Fidelity(InAFolder):
