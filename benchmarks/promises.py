@@ -90,7 +90,7 @@ SCENES = {
     "eight coaches": beam([30.0, 30.0], 2e11, 2.5e4, "[pinned, roller, roller]", 0.015) + coaches("velaro", 8, 90.0),
     "stiff contact": beam(25.0, 8.3e9, 2303.0, SIMPLE, 0.02) + car("linear", 1.6e9, 5750.0, 1e3, 1.6e6, 1e4, 27.8),
 }
-FINER = {"bed": (1200, 5e-5), "hinge": (100, 1e-4)}
+FINER = {"bed": (1200, 5e-5), "hinge": (100, 1e-4), "own weight": (128, 2e-5), "stiff contact": (400, 2e-5)}
 
 
 def peaks(run):
