@@ -8,6 +8,7 @@
 
 #include "first_guess.hpp"
 #include "process.hpp"
+#include "traverse/app/plan.hpp"
 
 namespace traverse::app {
 namespace {

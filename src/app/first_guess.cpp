@@ -54,11 +54,6 @@ double contact_frequency(const Scene& scene) {
   return std::sqrt(highest);
 }
 
-double greatest_speed(const Scene& scene) {
-  return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
-                  scene.load.forces.empty() ? 0.0 : scene.load.speed);
-}
-
 FirstSteps first_steps(const Scene& scene, double omega, double duration) {
   double step = part_of_run * duration;
   if (omega > 0.0) step = std::min(step, 2.0 * std::numbers::pi / omega / steps_a_period);

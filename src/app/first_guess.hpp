@@ -12,9 +12,6 @@ int first_mesh(const Scene& scene);
 /// without wheels.
 double contact_frequency(const Scene& scene);
 
-/// m/s, of the train or the forces.
-double greatest_speed(const Scene& scene);
-
 /// s.
 struct FirstSteps {
   double first = 0.0;    // where the contacts' vibration is resolved as far as the accuracy wants

@@ -34,11 +34,6 @@ double end_of(const Scene& scene, const coupling::System& system) {
   return leaving + scene.tail.value_or(0.0);
 }
 
-double greatest_speed(const Scene& scene) {
-  return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
-                  scene.load.forces.empty() ? 0.0 : scene.load.speed);
-}
-
 // A step that the scene cannot be resolved with gives a wrong answer without any other sign.
 void check_step(const Scene& scene, const Plan& plan) {
   if (!(plan.end_time / plan.time_step < most_steps))
@@ -89,6 +84,11 @@ void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector
 }
 
 }  // namespace
+
+double greatest_speed(const Scene& scene) {
+  return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
+                  scene.load.forces.empty() ? 0.0 : scene.load.speed);
+}
 
 double shortest_wave(const Scene& scene) {
   double wave = scene.profile.shortest_wave();

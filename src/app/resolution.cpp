@@ -33,11 +33,6 @@ constexpr double shortest_run = 1e-12;  // s
 
 bool loaded(const Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
 
-double greatest_speed(const Scene& scene) {
-  return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
-                  scene.load.forces.empty() ? 0.0 : scene.load.speed);
-}
-
 void check_waves(const Scene& scene, double step, std::vector<std::string>& notes) {
   const double wave = scene.profile.shortest_wave();
   if (scene.train.vehicles.empty() || scene.train.speed <= 0.0 || !std::isfinite(wave)) return;

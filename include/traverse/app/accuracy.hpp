@@ -35,7 +35,7 @@ struct Accuracy {
 /// InputError as the scene's own run would throw it.
 Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
 
-/// The scene with elements half as long, or as many as that takes in its spans, and with half the step.
+/// The scene with twice the elements in every span (or sleeper bay) and half the step.
 Scene refined(const Scene& scene);
 
 }  // namespace traverse::app

@@ -18,6 +18,9 @@ struct Plan {
 
 /// Fills in what the user left open and says so in `notes`. first_period: of the beam (s), 0 where not known.
 /// InputError when the scene has no end.
+/// m/s, of the train or the forces; 0 where there are none.
+double greatest_speed(const Scene& scene);
+
 /// m: the shortest wave of the track or of a wheel out of round; infinite where all is smooth.
 double shortest_wave(const Scene& scene);
 
