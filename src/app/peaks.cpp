@@ -6,9 +6,10 @@
 namespace traverse::app {
 namespace {
 
-constexpr double kept = 0.5;           // of the largest extreme so far
-constexpr double compared = 0.9;       // of the largest one
-constexpr double likely = 1.5;         // times the root mean square: what an extreme's error hardly exceeds
+constexpr double kept = 0.5;      // of the largest extreme so far
+constexpr double compared = 0.9;  // of the largest one
+constexpr double likely = 1.5;    // times the root mean square: what an extreme's error hardly exceeds
+constexpr int bisections = 40;
 constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
 
 bool between(const std::vector<double>& times, double from, double to) {
@@ -32,8 +33,35 @@ void Curve::add(double t, double value, const std::vector<double>& kinks, Note&&
   note(value_[1] + 0.5 * slope * shift, time_[1] + shift);
 }
 
-Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels)
-    : passages_(std::move(passages)), probes_(passages_.size()), wheels_(wheels) {
+template <class Note>
+void RelaxingCurve::add(double t, double value, double rate, double b, Note&& note) {
+  const double h = t - time_, before = rate_, start = value_;
+  const bool turns = known_ && before * rate < 0.0;
+  if (!known_) note(value, t);
+  if (turns && before * start > 0.0) {
+    // start + p s + q s^2 + k b (exp(-s/b) - 1) with both values and both rates
+    const double lag = std::min(b, 100.0 * h), decay = std::exp(-h / lag), decayed = 1.0 - decay;
+    const double k = (value - start - 0.5 * h * (before + rate)) / (0.5 * h * (1.0 + decay) - lag * decayed);
+    const double p = before + k, q = 0.5 * (rate - before - k * decayed) / h;
+    double from = 0.0, to = h;
+    for (int i = 0; i < bisections; ++i) {
+      const double s = 0.5 * (from + to);
+      ((p + 2.0 * q * s - k * std::exp(-s / lag)) * before > 0.0 ? from : to) = s;
+    }
+    note(start + from * (p + q * from) - k * lag * (1.0 - std::exp(-from / lag)), time_ + from);
+  }
+  time_ = t;
+  value_ = value;
+  rate_ = rate;
+  known_ = true;
+}
+
+Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag)
+    : passages_(std::move(passages)),
+      lag_(lag),
+      moments_(lag > 0.0 ? passages_.size() : 0),
+      probes_(passages_.size()),
+      wheels_(wheels) {
   for (std::size_t q = 0; q < quantities; ++q) each_[q].resize(q == wheel_force ? wheels : passages_.size());
 }
 
@@ -59,9 +87,14 @@ void Peaks::add(double t, std::span<const beam::Response> probes, std::span<cons
   static const std::vector<double> smooth;
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].moment};
+    const auto note_of = [&](std::size_t q) {
+      return [this, q, i](double value, double at) { note(static_cast<Quantity>(q), i, value, at); };
+    };
     for (std::size_t q = 0; q < values.size(); ++q)
-      probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth,
-                        [&](double value, double at) { note(static_cast<Quantity>(q), i, value, at); });
+      if (q == moment && lag_ > 0.0)
+        moments_[i].add(t, values[q], probes[i].moment_rate, lag_, note_of(q));
+      else
+        probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth, note_of(q));
   }
   for (std::size_t i = 0; i < wheel_forces.size(); ++i)
     wheels_[i].add(t, wheel_forces[i], smooth, [&](double value, double at) { note(wheel_force, i, value, at); });
@@ -71,6 +104,8 @@ void Peaks::finish() {
   for (std::size_t i = 0; i < probes_.size(); ++i)
     for (std::size_t q = 0; q < wheel_force; ++q)
       probes_[i][q].finish([&](double value, double at) { note(static_cast<Quantity>(q), i, value, at); });
+  for (std::size_t i = 0; i < moments_.size(); ++i)
+    moments_[i].finish([&](double value, double at) { note(moment, i, value, at); });
   for (std::size_t i = 0; i < wheels_.size(); ++i)
     wheels_[i].finish([&](double value, double at) { note(wheel_force, i, value, at); });
 }

@@ -40,7 +40,9 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
     if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
   }
   for (const coupling::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
-  peaks_ = Peaks(passages_of(scene), wheel_count_);
+  const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
+  if (lag > 0.0) lag_.emplace(lag);
+  peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
   summary_.least_wheel_force = std::numeric_limits<double>::infinity();
 }
 
@@ -52,6 +54,7 @@ void Watch::sample(const integrate::Instant& instant) {
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
     recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
+    if (lag_) lag_->apply(instant.time, sample_.probes);
     for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   fill_vehicles(sample_);

@@ -195,21 +195,26 @@ Response Recovery::respond(const Section& s, const Values& v, const Values& w, c
 
   // Of the displacements what bends and stretches: the rest would cancel, but for its rounding.
   const double h = s.element.length;
-  const Values bent{0.0, 0.0, 0.0, v[3] - v[0], v[4] - v[1] - h * v[2], v[5] - v[2]};
+  const auto bending_part = [h](const Values& y) {
+    return Values{0.0, 0.0, 0.0, y[3] - y[0], y[4] - y[1] - h * y[2], y[5] - y[2]};
+  };
+  const Values bent = bending_part(v);
 
   Response r = s.weight;
   r.deflection += transverse(s.psi.value, v);
   r.velocity = transverse(s.psi.value, w);
   r.acceleration = transverse(s.psi.value, a);
-  r.moment += transverse(s.bending.moment(), bent);
-  r.shear += transverse(s.bending.shear(), bent);
-  r.moment +=
-      transverse(s.stiffness.moment(), v) + transverse(s.damping.moment(), w) + transverse(s.mass.moment(), inertial);
-  r.shear +=
-      transverse(s.stiffness.shear(), v) + transverse(s.damping.shear(), w) + transverse(s.mass.shear(), inertial);
+  r.nodal_moment = transverse(s.bending.moment(), bent);
+  r.nodal_shear = transverse(s.bending.shear(), bent);
+  r.nodal_axial_force = axial(s.bending.axial_force(), bent);
+  r.nodal_moment_rate = transverse(s.bending.moment(), bending_part(w));
+  r.moment += r.nodal_moment + transverse(s.stiffness.moment(), v) + transverse(s.damping.moment(), w) +
+              transverse(s.mass.moment(), inertial);
+  r.shear += r.nodal_shear + transverse(s.stiffness.shear(), v) + transverse(s.damping.shear(), w) +
+             transverse(s.mass.shear(), inertial);
   r.axial_displacement = axial(s.phi, v);
-  r.axial_force = axial(s.bending.axial_force(), bent) + axial(s.stiffness.axial_force(), v) +
-                  axial(s.damping.axial_force(), w) + axial(s.mass.axial_force(), inertial);
+  r.axial_force = r.nodal_axial_force + axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) +
+                  axial(s.mass.axial_force(), inertial);
   return r;
 }
 

@@ -49,6 +49,29 @@ TEST(Peaks, AtAKinkThatHasASample) {
   EXPECT_DOUBLE_EQ(peaks.largest(moment).time, kink);
 }
 
+// M + b dM/dt is a roof: its peak is (1 - b ln 2) high, b ln 2 behind the kink, whether steps are long or short for b.
+TEST(Peaks, BehindAKinkThatRelaxes) {
+  const double kink = 0.4321;
+  for (const double b : {1e-4, 3e-3, 0.05}) {
+    for (const double dt : {0.03, 0.003}) {
+      Peaks peaks({{kink}}, 0, b);
+      std::vector<double> times = {kink};
+      for (int i = 0; i * dt <= 1.0; ++i) times.push_back(i * dt);
+      std::sort(times.begin(), times.end());
+      for (const double t : times) {
+        const double s = t - kink, roof = 1.0 - std::abs(s);
+        beam::Response response;
+        response.moment = s < 0.0 ? roof - b : roof + b - 2.0 * b * std::exp(-s / b);
+        response.moment_rate = (roof - response.moment) / b;
+        peaks.add(t, {&response, 1}, {});
+      }
+      peaks.finish();
+      EXPECT_NEAR(peaks.largest(moment).value, 1.0 - b * std::log(2.0), 1e-12) << b << " " << dt;
+      EXPECT_NEAR(peaks.largest(moment).time, kink + b * std::log(2.0), 1e-9) << b << " " << dt;
+    }
+  }
+}
+
 TEST(Peaks, TheFirstAndTheLastValueCount) {
   EXPECT_DOUBLE_EQ(peaks_of_curve([](double t) { return 2.0 - t; }, 0.1).largest(acceleration).value, 2.0);
   EXPECT_NEAR(peaks_of_curve([](double t) { return -1.0 - t; }, 0.1).largest(wheel_force).value, -2.0, 1e-12);

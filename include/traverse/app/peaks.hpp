@@ -1,5 +1,6 @@
-// Extremes of sampled curves, of whose errors `accuracy` speaks. Between samples they are those of parabolas; not where
-// a wheel passes a probe, since the moment has a kink there, at a sample of its own (option step_probes).
+// Extremes of sampled curves, of whose errors `accuracy` speaks. Between samples they are those of parabolas. Where a
+// wheel passes a probe the moment has a kink, at a sample of its own (option step_probes); with damping b K it relaxes
+// behind it, within times of b, which may be much shorter than a step.
 #pragma once
 
 #include <array>
@@ -40,12 +41,29 @@ class Curve {
   std::size_t count_ = 0;
 };
 
+/// The extremes of a curve M that follows a smooth one by M + b dM/dt, but for its kinks, which have samples.
+class RelaxingCurve {
+ public:
+  /// b in s. Between samples of values and rates M is a second power and exp(-t/b).
+  template <class Note>
+  void add(double t, double value, double rate, double b, Note&& note);
+  template <class Note>
+  void finish(Note&& note) const {
+    if (known_) note(value_, time_);
+  }
+
+ private:
+  double time_ = 0.0, value_ = 0.0, rate_ = 0.0;  // the latest sample
+  bool known_ = false;
+};
+
 /// The extremes of a run: those above half of the largest so far.
 class Peaks {
  public:
   Peaks() = default;
-  /// passages: of each probe, the times at which something passes it.
-  Peaks(std::vector<std::vector<double>> passages, std::size_t wheels);
+  /// passages: of each probe, the times at which something passes it; lag: of the moments, b of Rayleigh damping in s,
+  /// where responses have rates.
+  Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag = 0.0);
 
   void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
   void finish();
@@ -62,6 +80,8 @@ class Peaks {
   void note(Quantity q, std::size_t place, double value, double time);
 
   std::vector<std::vector<double>> passages_;
+  double lag_ = 0.0;
+  std::vector<RelaxingCurve> moments_;  // instead, where they lag
   std::vector<std::array<Curve, wheel_force>> probes_;
   std::vector<Curve> wheels_;
   std::array<std::vector<Peak>, quantities> found_;

@@ -9,6 +9,7 @@
 #include "traverse/app/scene.hpp"
 #include "traverse/beam/ground_forces.hpp"
 #include "traverse/beam/recovery.hpp"
+#include "traverse/beam/viscous_lag.hpp"
 #include "traverse/coupling/system.hpp"
 #include "traverse/integrate/stepper.hpp"
 #include "traverse/results/recorder.hpp"
@@ -45,6 +46,7 @@ class Watch {
   const beam::Beam* beam_;
   results::Recorder& recorder_;
   std::optional<beam::Recovery> recovery_, rail_recovery_;
+  std::optional<beam::ViscousLag> lag_;
   std::optional<beam::GroundForces> ground_;
   std::vector<beam::Response> rail_, dragged_;
   Peaks peaks_;

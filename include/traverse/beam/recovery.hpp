@@ -21,6 +21,10 @@ struct Response {
   double deflection = 0.0, velocity = 0.0, acceleration = 0.0;
   double moment = 0.0, shear = 0.0;
   double axial_displacement = 0.0, axial_force = 0.0;
+  /// What the nodal values alone give of the forces and of d moment/dt (N m/s): all but what loads, inertia and
+  /// foundation inside the element add.
+  double nodal_moment = 0.0, nodal_shear = 0.0, nodal_axial_force = 0.0, nodal_moment_rate = 0.0;
+  double moment_rate = 0.0;  // d moment/dt, N m/s, where ViscousLag knows it
 };
 
 /// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.

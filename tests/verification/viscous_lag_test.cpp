@@ -1,0 +1,84 @@
+// The moment under a passing force, on a beam with stiffness-proportional damping: it follows b behind the force.
+#include "traverse/beam/viscous_lag.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "support/scene_run.hpp"
+
+namespace traverse::test {
+namespace {
+
+using std::numbers::pi;
+using Complex = std::complex<double>;
+
+constexpr double EI = 2e10, mass = 1e4, L = 25.0, F = 2e5, v = 60.0, a = 0.5, b = 1e-3;
+
+/// Moment in the middle of a simple span when the force is at x = v t, by modes, with C = a M + b K.
+double exact_moment(double t) {
+  double sum = 0.0;
+  for (int n = 1; n < 4000; n += 2) {
+    const double k = n * pi / L, forcing = k * v, omega2 = std::pow(k, 4) * EI / mass, c = a + b * omega2;
+    const Complex steady = 2.0 * F / (mass * L) / Complex(omega2 - forcing * forcing, c * forcing);
+    const Complex root = std::sqrt(Complex(0.25 * c * c - omega2, 0.0));
+    const Complex s1 = -omega2 / (0.5 * c + root), s2 = -0.5 * c - root;  // s1 without cancellation
+    const double q0 = -steady.imag(), rate0 = -(Complex(0.0, forcing) * steady).imag();
+    const Complex c1 = (rate0 - s2 * q0) / (s1 - s2), c2 = q0 - c1;
+    const double q =
+        (steady * std::exp(Complex(0.0, forcing * t))).imag() + (c1 * std::exp(s1 * t) + c2 * std::exp(s2 * t)).real();
+    sum += EI * k * k * q * (n % 4 == 1 ? 1.0 : -1.0);
+  }
+  return sum;
+}
+
+// Whatever the mesh.
+TEST(ViscousLag, MomentUnderAPassingForce) {
+  double exact = 0.0;
+  const double middle = 0.5 * L / v;
+  for (int i = -40; i <= 40; ++i) exact = std::max(exact, exact_moment(middle + i * 1e-4));
+  for (const char* elements : {"20", "80", "320"}) {
+    Results run = run_yaml(
+        "beam: {spans: 25.0, EI: 2.0e10, mass: 1.0e4, rayleigh: [0.5, 1.0e-3]}\n"
+        "support: {types: [pinned, roller]}\n"
+        "load: {forces: 2.0e5, positions: 0.0, speed: 60.0}\n",
+        {{"ts_dt", "1e-4"},
+         {"beam_elements_per_span", elements},
+         {"step_probes", "true"},
+         {"output_interval", "1e-4"}});
+    EXPECT_NEAR(run.attribute("/summary", "moment") / exact, 1.0, 1e-4) << elements;
+    const std::vector<double> time = run.time(), moment = run.column("/probes/moment");
+    double worst = 0.0;
+    for (std::size_t i = 0; i < time.size() && time[i] < L / v; i += 16)
+      worst = std::max(worst, std::abs(moment[i] - exact_moment(time[i])));
+    EXPECT_LT(worst, 1e-3 * exact) << elements;
+  }
+}
+
+// m + b dm/dt = c for c that rises and falls along straight lines, with any intervals, is followed exactly.
+TEST(ViscousLag, FollowsStraightLines) {
+  beam::ViscousLag lag(0.3);
+  std::vector<beam::Response> response(1);
+  const auto c = [](double t) { return t < 1.0 ? 2.0 * t : 3.0 - t; };
+  const auto m = [](double t) {
+    const double at_one = 2.0 - 0.6 + 0.6 * std::exp(-1.0 / 0.3);
+    return t < 1.0 ? 2.0 * t - 0.6 + 0.6 * std::exp(-t / 0.3)
+                   : 3.0 - t + 0.3 + (at_one - 2.3) * std::exp(-(t - 1.0) / 0.3);
+  };
+  for (const double t : {0.0, 0.2, 0.21, 0.9, 1.0, 1.001, 2.5, 2.5, 4.0}) {
+    response[0].moment = 5.0 + c(t);
+    response[0].shear = 1.0;
+    response[0].nodal_moment = 5.0;
+    response[0].nodal_moment_rate = 7.0;
+    lag.apply(t, response);
+    EXPECT_NEAR(response[0].moment, 5.0 + m(t), 1e-14) << t;
+    EXPECT_NEAR(response[0].moment_rate, 7.0 + (c(t) - m(t)) / 0.3, 1e-13) << t;
+    EXPECT_DOUBLE_EQ(response[0].shear, 1.0);
+  }
+}
+
+}  // namespace
+}  // namespace traverse::test
