@@ -31,9 +31,9 @@ Error error_from(double change, double size, const Error& before) {
     error.known = true;
     error.order = change > 0.0 ? std::log2(before.change / change) / halvings : highest_order;
     if (before.known && before.order < unsettled) error.order = std::min(error.order, supposed_order);
-    change = std::max(change, before.change / std::exp2((highest_order + 1.0) * halvings));
+    change = std::max(change, before.change / std::exp2((refining_order + 1.0) * halvings));
   }
-  error.value = change / (std::exp2(error.power()) - 1.0);
+  error.value = change / (std::exp2(error.power_refining()) - 1.0);
   return error;
 }
 

@@ -15,7 +15,8 @@ struct Error {
 
   /// The power law to go by towards longer steps or elements.
   double power() const;
-  /// Towards shorter ones: errors are not supposed to fall as fast as integrators promise.
+  /// Towards shorter ones, and from a change to the error: errors are not supposed to fall as fast as integrators
+  /// promise.
   double power_refining() const;
   /// Times the size that would leave the error `wanted`.
   double room(double wanted) const;

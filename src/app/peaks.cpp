@@ -7,8 +7,8 @@ namespace traverse::app {
 namespace {
 
 constexpr double kept = 0.5;      // of the largest extreme so far
-constexpr double compared = 0.9;  // of the largest one
-constexpr double likely = 1.5;    // times the root mean square: what an extreme's error hardly exceeds
+constexpr double compared = 0.6;  // of the largest one
+constexpr double likely = 2.0;    // times the root mean square: what an extreme's error hardly exceeds
 constexpr int bisections = 40;
 constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
 
@@ -152,13 +152,7 @@ std::vector<std::vector<double>> passages_of(const Scene& scene) {
   if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return passages;
   std::vector<std::pair<double, double>> starts;  // x at t = 0 and speed
   if (scene.train.drive == coupling::Drive::constant && scene.train.speed > 0.0)
-    for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
-      const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])];
-      for (const Wheel& wheel : vehicle.wheels) {
-        const auto& body = vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)];
-        starts.emplace_back(scene.train.positions[i] + body.position.x(), scene.train.speed);
-      }
-    }
+    for (const double x : wheels_at_start(scene)) starts.emplace_back(x, scene.train.speed);
   if (scene.load.speed > 0.0)
     for (const double x : scene.load.positions) starts.emplace_back(x, scene.load.speed);
   for (std::size_t p = 0; p < passages.size(); ++p) {

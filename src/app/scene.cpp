@@ -122,6 +122,21 @@ void check_scene(const Options& o, Scene& scene) {
 
 }  // namespace
 
+std::vector<double> wheels_at_start(const Scene& scene, std::size_t i) {
+  const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])];
+  std::vector<double> x;
+  for (const Wheel& wheel : vehicle.wheels)
+    x.push_back(scene.train.positions[i] + vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].position.x());
+  return x;
+}
+
+std::vector<double> wheels_at_start(const Scene& scene) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    for (const double x : wheels_at_start(scene, i)) all.push_back(x);
+  return all;
+}
+
 Scene read_scene(Options o) {
   Scene scene;
   const std::vector<std::string> train = declare_vehicles(o);

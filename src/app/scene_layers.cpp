@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene_parts.hpp"
+#include "traverse/app/plan.hpp"
 
 namespace traverse::app {
 namespace {
@@ -17,17 +18,9 @@ constexpr double behind_train = 12.0;  // m of track behind the last wheel at th
 /// Track on either side long enough for the whole train to stand on it at the start and at the end.
 double approach_of(const Scene& scene) {
   double rear = 0.0;
-  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
-    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])];
-    for (const Wheel& wheel : vehicle.wheels) {
-      const auto& body = vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)];
-      rear = std::min(rear, scene.train.positions[i] + body.position.x());
-    }
-  }
+  for (const double x : wheels_at_start(scene)) rear = std::min(rear, x);
   for (const double x : scene.load.positions) rear = std::min(rear, x);
-  const double speed = std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
-                                scene.load.forces.empty() ? 0.0 : scene.load.speed);
-  return std::max(least_approach, std::ceil(-rear + speed * scene.tail.value_or(0.0) + behind_train));
+  return std::max(least_approach, std::ceil(-rear + greatest_speed(scene) * scene.tail.value_or(0.0) + behind_train));
 }
 
 beam::Layer read_layer(const Options& o, const std::string& name) {

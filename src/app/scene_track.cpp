@@ -12,22 +12,6 @@ namespace {
 
 using options::Options;
 
-/// x of the foremost wheel at t = 0: roughness begins there, so that the train starts on level track.
-double front_wheel(const Scene& scene) {
-  double front = 0.0;
-  bool first = true;
-  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
-    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])];
-    for (const Wheel& wheel : vehicle.wheels) {
-      const auto& body = vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)];
-      const double x = scene.train.positions[i] + body.position.x();
-      front = first ? x : std::max(front, x);
-      first = false;
-    }
-  }
-  return front;
-}
-
 std::optional<track::Spectrum> spectrum_of(const std::string& profile) {
   const auto grade = [&](std::string_view kind, char first, char last) {
     return profile.size() == kind.size() + 1 && profile.starts_with(kind) && profile.back() >= first &&
@@ -45,7 +29,10 @@ track::Profile rough(const Options& o, const Scene& scene, const track::Spectrum
     wavelengths = o.numbers("track_wavelengths");
     if (!(wavelengths[0] < wavelengths[1])) o.refuse("track_wavelengths", "allowed: the shortest, then the longest");
   }
-  return track::Profile::rough(spectrum, wavelengths[0], wavelengths[1], front_wheel(scene),
+  const std::vector<double> wheels = wheels_at_start(scene);
+  // From the foremost wheel on, so that the train starts on level track.
+  const double start = wheels.empty() ? 0.0 : *std::max_element(wheels.begin(), wheels.end());
+  return track::Profile::rough(spectrum, wavelengths[0], wavelengths[1], start,
                                static_cast<std::uint64_t>(o.integer("track_seed")));
 }
 

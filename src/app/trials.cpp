@@ -29,22 +29,17 @@ bool is_node(const beam::BeamModel& beam, double x) {
   return false;
 }
 
-/// x of the foremost and the rearmost wheel of a vehicle of the train at t = 0.
-std::pair<double, double> wheels_of(const Scene& scene, std::size_t i) {
-  const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])];
-  std::pair<double, double> ends = {-1e300, 1e300};
-  for (const Wheel& wheel : vehicle.wheels) {
-    const double x =
-        scene.train.positions[i] + vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].position.x();
-    ends = {std::max(ends.first, x), std::min(ends.second, x)};
-  }
-  return ends;
+double foremost(const Scene& scene, std::size_t vehicle) {
+  const std::vector<double> wheels = wheels_at_start(scene, vehicle);
+  return wheels.empty() ? 0.0 : *std::max_element(wheels.begin(), wheels.end());
 }
 
 /// x at t = 0 of what of the first vehicle has to have crossed: its last wheel, in a train its middle.
 double last_to_watch(const Scene& scene) {
-  const auto [front, rear] = wheels_of(scene, 0);
-  return scene.train.vehicles.size() < 3 ? rear : 0.5 * (front + rear);
+  const std::vector<double> wheels = wheels_at_start(scene, 0);
+  if (wheels.empty()) return 0.0;
+  const auto [rear, front] = std::minmax_element(wheels.begin(), wheels.end());
+  return scene.train.vehicles.size() < 3 ? *rear : 0.5 * (*front + *rear);
 }
 
 void leave_out_vehicles(Scene& scene, double end) {
@@ -52,7 +47,7 @@ void leave_out_vehicles(Scene& scene, double end) {
   if (train.drive != coupling::Drive::constant || !train.couplers.empty()) return;
   std::size_t count = 1;
   for (std::size_t i = 1; i < train.vehicles.size(); ++i)
-    if (wheels_of(scene, i).first + train.speed * end > 0.0) count = i + 1;
+    if (foremost(scene, i) + train.speed * end > 0.0) count = i + 1;
   count = std::min(count, train.vehicles.size());
   train.vehicles.resize(count);
   train.positions.resize(count);
@@ -66,7 +61,7 @@ void leave_out_spans(Scene& scene, double end) {
   const bool plain = !founded && !beam.track && beam.hinges.empty();
   if (!plain || beam.spans.size() <= few_spans || scene.train.drive != coupling::Drive::constant) return;
   double front = scene.output.probes.empty() ? 0.0 : scene.output.probes.front();
-  if (!scene.train.vehicles.empty()) front = std::max(front, wheels_of(scene, 0).first + scene.train.speed * end);
+  if (!scene.train.vehicles.empty()) front = std::max(front, foremost(scene, 0) + scene.train.speed * end);
   for (const double x : scene.load.positions) front = std::max(front, x + scene.load.speed * end);
   std::size_t count = 0;
   for (double x = 0.0; count < beam.spans.size() && x < front; ++count) x += beam.spans[count];

@@ -76,6 +76,11 @@ struct Scene {
   std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
 };
 
+/// x of the wheels of vehicle `i` of the train at t = 0, in m.
+std::vector<double> wheels_at_start(const Scene& scene, std::size_t i);
+/// Of all vehicles.
+std::vector<double> wheels_at_start(const Scene& scene);
+
 /// Reads and checks all options and the vehicle files they name. Throws InputError with one line.
 Scene read_scene(options::Options options);
 /// Of the options in force: those that put_into_petsc saw last.
