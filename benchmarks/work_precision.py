@@ -144,7 +144,7 @@ class Case:
         self.longest = 0.3 if quick else 1.0  # s of a fixed run's time loop
         self.halvings = min(scene.halvings, 4) if quick else scene.halvings
         self.meshes = scene.meshes[:2] if quick else scene.meshes
-        self.options = scene.options | {"options_file": opened(scene.file, folder)}
+        self.options = {"options_file": opened(scene.file, folder)} | scene.options
 
     def fixed(self, mesh, step, integrator):
         return self.options | INTEGRATORS[integrator] | {self.scene.mesh: mesh, "ts_dt": step, "step_probes": "true"}

@@ -41,7 +41,7 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
   }
   for (const coupling::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
   const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
-  if (lag > 0.0) lag_.emplace(lag);
+  if (lag > 0.0) lag_.emplace(*recovery_, lag);
   peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
   summary_.least_wheel_force = std::numeric_limits<double>::infinity();
 }
@@ -54,7 +54,7 @@ void Watch::sample(const integrate::Instant& instant) {
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
     recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
-    if (lag_) lag_->apply(instant.time, sample_.probes);
+    if (lag_) lag_->apply(instant.time, observation_.bridge_loads, sample_.probes);
     for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   fill_vehicles(sample_);

@@ -163,6 +163,20 @@ Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stati
 Recovery::Recovery(Recovery&&) noexcept = default;
 Recovery::~Recovery() = default;
 
+std::pair<double, double> Recovery::element_of(std::size_t station) const {
+  const Element& e = sections_[station].element;
+  return {e.x, e.x + e.length};
+}
+
+Forces Recovery::inside(std::size_t station, double x, ElementLoad load) const {
+  const Section& s = sections_[station];
+  load.xi = (x - s.element.x) / s.element.length;
+  if (load.xi < 0.0 || load.xi > 1.0) return {};
+  Response added;
+  s.add_load(load, added);
+  return {added.moment, added.shear, added.axial_force};
+}
+
 void Recovery::gather(const double* v, const double* w, const double* a) {
   std::size_t at = 0;
   const auto take = [&](const double* vector, int unknown) {

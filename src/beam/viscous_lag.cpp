@@ -1,39 +1,89 @@
 #include "traverse/beam/viscous_lag.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace traverse::beam {
 
-// m + b dm/dt = c exactly, for c that is linear in time.
-void ViscousLag::follow(double& force, double nodal, Inner& inner) const {
-  const double c = force - nodal;
-  if (interval_ > 0.0) {
-    const double late = b_ * (c - inner.c) / interval_;
-    inner.m = c - late + (inner.m - inner.c + late) * decay_;
+/// The load's place and size at the call before: that of the nearest one among its neighbours in the list.
+const ElementLoad* ViscousLag::before(const std::vector<ElementLoad>& loads, std::size_t load) const {
+  const ElementLoad* found = nullptr;
+  double nearest = 0.0;
+  for (std::size_t i = load > 0 ? load - 1 : 0; i <= load + 1 && i < loads_.size(); ++i) {
+    const double apart = std::abs(recovery_.x_of(loads_[i]) - recovery_.x_of(loads[load]));
+    if (found != nullptr && apart >= nearest) continue;
+    found = &loads_[i];
+    nearest = apart;
   }
-  inner.c = c;
-  force = nodal + inner.m;
+  return found;
 }
 
-void ViscousLag::apply(double t, std::vector<Response>& responses) {
-  const bool first = inner_.empty();
-  interval_ = first ? 0.0 : t - time_;
-  decay_ = std::exp(-interval_ / b_);
-  time_ = t;
-  if (first) inner_.resize(responses.size());
+/// What loads that move through the station's element add, part by part of the interval; whether there are any.
+bool ViscousLag::passing(std::size_t station, const std::vector<ElementLoad>& loads, History& by_loads) const {
+  const auto [left, right] = recovery_.element_of(station);
+  bool any = false;
+  for (std::size_t i = 0; i < loads.size(); ++i) {
+    const ElementLoad& now = loads[i];
+    const double x = recovery_.x_of(now);
+    if (x <= left || x - right > right - left) continue;  // it has not come yet, or is long past
+    const ElementLoad* then = before(loads, i);
+    const double from = then != nullptr ? recovery_.x_of(*then) : x;
+    if (from >= right || from == x) continue;
+    if (!any) by_loads.fill({});
+    any = true;
+    for (std::size_t k = 0; k <= parts; ++k) {
+      const double at = static_cast<double>(k) / parts;
+      ElementLoad load = now;
+      load.fx += (1.0 - at) * (then->fx - now.fx);
+      load.fy += (1.0 - at) * (then->fy - now.fy);
+      load.moment += (1.0 - at) * (then->moment - now.moment);
+      const Forces added = recovery_.inside(station, k == parts ? x : from + at * (x - from), load);
+      for (std::size_t f = 0; f < added.size(); ++f) by_loads[k][f] += added[f];
+    }
+  }
+  return any;
+}
+
+// m + b dm/dt = c, exactly for c that is linear from part to part.
+void ViscousLag::follow(std::size_t station, const std::vector<ElementLoad>& loads, const Forces& c) {
+  Inner& inner = inner_[station];
+  History by_loads;
+  const bool moving = passing(station, loads, by_loads);
+  const double h = moving ? interval_ / parts : interval_, decay = std::exp(-h / b_);
+  for (std::size_t f = 0; f < c.size(); ++f) {
+    const auto advance = [&, m = &inner.m[f]](double from, double to) {
+      const double late = b_ * (to - from) / h;
+      *m = to - late + (*m - from + late) * decay;
+    };
+    if (moving) {
+      const double rest = inner.c[f] - by_loads[0][f], change = (c[f] - by_loads[parts][f] - rest) / parts;
+      for (std::size_t k = 0; k < parts; ++k)
+        advance(rest + change * static_cast<double>(k) + by_loads[k][f],
+                rest + change * static_cast<double>(k + 1) + by_loads[k + 1][f]);
+    } else {
+      advance(inner.c[f], c[f]);
+    }
+  }
+}
+
+void ViscousLag::apply(double t, const std::vector<ElementLoad>& loads, std::vector<Response>& responses) {
+  interval_ = t - time_;
   for (std::size_t i = 0; i < responses.size(); ++i) {
     Response& r = responses[i];
-    auto& [moment, shear, axial] = inner_[i];
-    if (first) {
-      moment.m = r.moment - r.nodal_moment;
-      shear.m = r.shear - r.nodal_shear;
-      axial.m = r.axial_force - r.nodal_axial_force;
-    }
-    follow(r.moment, r.nodal_moment, moment);
-    follow(r.shear, r.nodal_shear, shear);
-    follow(r.axial_force, r.nodal_axial_force, axial);
-    r.moment_rate = r.nodal_moment_rate + (moment.c - moment.m) / b_;
+    Inner& inner = inner_[i];
+    const Forces nodal = {r.nodal_moment, r.nodal_shear, r.nodal_axial_force};
+    const Forces c = {r.moment - nodal[0], r.shear - nodal[1], r.axial_force - nodal[2]};
+    if (first_) inner.m = c;
+    if (!first_ && interval_ > 0.0) follow(i, loads, c);
+    inner.c = c;
+    r.moment = nodal[0] + inner.m[0];
+    r.shear = nodal[1] + inner.m[1];
+    r.axial_force = nodal[2] + inner.m[2];
+    r.moment_rate = r.nodal_moment_rate + (c[0] - inner.m[0]) / b_;
   }
+  time_ = t;
+  loads_ = loads;
+  first_ = false;
 }
 
 }  // namespace traverse::beam

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "traverse/beam/beam.hpp"
@@ -27,6 +28,9 @@ struct Response {
   double moment_rate = 0.0;  // d moment/dt, N m/s, where ViscousLag knows it
 };
 
+/// Moment, shear and axial force.
+using Forces = std::array<double, 3>;
+
 /// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.
 class Recovery {
  public:
@@ -49,6 +53,13 @@ class Recovery {
                 std::vector<Response>& out);
 
   const std::vector<double>& stations() const { return stations_; }
+  /// Where the element of a station begins and ends, m.
+  std::pair<double, double> element_of(std::size_t station) const;
+  double x_of(const ElementLoad& load) const {
+    return line_.mesh.x(load.element) + load.xi * (line_.mesh.x(load.element + 1) - line_.mesh.x(load.element));
+  }
+  /// What a load adds to the forces by acting inside the station's element, if it stood at x: none elsewhere.
+  Forces inside(std::size_t station, double x, ElementLoad load) const;
 
  private:
   struct Section;  // what is known of a station beforehand

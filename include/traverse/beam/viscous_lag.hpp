@@ -13,22 +13,31 @@ namespace traverse::beam {
 /// under a passing wheel has no kink, but follows b behind.
 class ViscousLag {
  public:
-  /// b in s, above 0.
-  explicit ViscousLag(double b) : b_(b) {}
+  /// Of the stations of `recovery`, which must outlive it; b in s, above 0.
+  ViscousLag(const Recovery& recovery, double b) : recovery_(recovery), b_(b), inner_(recovery.stations().size()) {}
 
-  /// Of all stations at ascending times: replaces what c adds to moment, shear and axial force by m. Between calls c is
-  /// linear; at the first one the beam is at rest, m = c. Fills in moment_rate.
-  void apply(double t, std::vector<Response>& responses);
+  /// Of all stations at ascending times, with the loads that were given to evaluate(): replaces what c adds to moment,
+  /// shear and axial force by m, and fills in moment_rate. Between calls loads move and change evenly, and so does what
+  /// else is in c; at the first one the beam is at rest, m = c.
+  void apply(double t, const std::vector<ElementLoad>& loads, std::vector<Response>& responses);
 
  private:
+  static constexpr std::size_t parts = 16;  // of an interval in which a load passes through a station's element
+  using History = std::array<Forces, parts + 1>;
   struct Inner {
-    double c = 0.0, m = 0.0;
+    Forces c{}, m{};
   };
-  void follow(double& force, double nodal, Inner& inner) const;
 
+  bool passing(std::size_t station, const std::vector<ElementLoad>& loads, History& by_loads) const;
+  const ElementLoad* before(const std::vector<ElementLoad>& loads, std::size_t load) const;
+  void follow(std::size_t station, const std::vector<ElementLoad>& loads, const Forces& c);
+
+  const Recovery& recovery_;
   double b_;
-  double time_ = 0.0, interval_ = 0.0, decay_ = 1.0;  // since the call before, and exp(-interval/b)
-  std::vector<std::array<Inner, 3>> inner_;           // of each station: moment, shear, axial force
+  double time_ = 0.0, interval_ = 0.0;  // of the latest call, and since the one before, s
+  std::vector<Inner> inner_;            // of each station
+  std::vector<ElementLoad> loads_;      // of the latest call
+  bool first_ = true;
 };
 
 }  // namespace traverse::beam
