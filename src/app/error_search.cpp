@@ -22,8 +22,8 @@ constexpr double best_effort = 10.0;            // times the wanted error, of wh
 constexpr double unsettled = 0.5, slow = 0.75;  // orders below which an error does not fall
 constexpr int most_rounds = 14;
 constexpr double finest = 32.0;          // times the first step
-constexpr double hardly_anything = 1.0;  // s of trial runs, estimated
-constexpr double part_of_run = 0.5;      // for trial runs
+constexpr double hardly_anything = 1.5;  // s of trial runs, estimated
+constexpr double part_of_run = 0.7;      // for trial runs
 constexpr double farthest_guess = 8.0;   // of the run's mesh and step, for that
 constexpr double passed_over = 2.0;      // times the wanted error, on the way to longer steps
 constexpr double between = 0.5;          // of the wanted error, where it is only known for shorter and longer steps

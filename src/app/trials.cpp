@@ -17,6 +17,7 @@ constexpr double roughness = 5.0;        // times the work on vehicles on a roug
 constexpr double rounding = 1e-9;
 constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;
+constexpr std::size_t crossed_in_full = 3;  // spans
 constexpr double behind = 1.1;  // spans, until what the last wheel does as it leaves is seen
 
 bool is_node(const beam::BeamModel& beam, double x) {
@@ -111,7 +112,7 @@ int mesh_of(const Scene& scene) {
 
 double beginning(const Scene& scene, double end) {
   const std::vector<double>& spans = scene.beam->spans;
-  const double reach = behind * (spans[0] + (spans.size() == 2 ? spans[1] : 0.0));
+  const double reach = behind * (spans.size() <= crossed_in_full ? scene.beam->length() : spans[0]);
   const auto crossing = [&](double rear, double speed) { return speed > 0.0 ? (reach - rear) / speed : end; };
   double until = 0.0;
   if (!scene.train.vehicles.empty())
