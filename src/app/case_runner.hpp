@@ -28,6 +28,8 @@ class CaseRunner {
   std::size_t trains() const { return loads_.size(); }
   /// s from the start to the end, by which runs are dealt.
   double duration(std::size_t train, double speed) const;
+  /// What a second of motion takes, s: estimated by counting, the same on every rank and machine.
+  double cost() const;
   CaseResult run(std::size_t train, double speed);
 
  private:

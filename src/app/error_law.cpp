@@ -6,7 +6,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr double highest_order = 4.0, refining_order = 3.0;
+constexpr double refining_order = 3.0;
 constexpr double unsettled = 0.5, supposed_order = 2.0;  // after the one, not more than the other is believed
 constexpr double no_limit = 1e3;
 
@@ -24,8 +24,8 @@ double Error::room(double wanted) const {
 
 double Error::at(double times) const { return value * std::pow(times, times < 1.0 ? power_refining() : power()); }
 
-Error error_from(double change, double size, const Error& before) {
-  Error error{change, before.order, before.known, change, size};
+Error error_from(double change, double size, const Error& before, double most) {
+  Error error{change, std::min(before.order, most), before.known, change, size};
   if (before.size > 1.5 * size) {
     const double halvings = std::log2(before.size / size);
     error.known = true;
@@ -33,6 +33,7 @@ Error error_from(double change, double size, const Error& before) {
     if (before.known && before.order < unsettled) error.order = std::min(error.order, supposed_order);
     change = std::max(change, before.change / std::exp2((refining_order + 1.0) * halvings));
   }
+  error.order = std::min(error.order, most);
   error.value = change / (std::exp2(error.power_refining()) - 1.0);
   return error;
 }

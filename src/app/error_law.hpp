@@ -5,6 +5,8 @@
 
 namespace traverse::app {
 
+inline constexpr double highest_order = 4.0;  // of the default integrator and of the elements
+
 /// The error of a run, relative to the peak: value * (size/size_of_run)^power.
 struct Error {
   double value = 0.0;
@@ -25,7 +27,7 @@ struct Error {
 };
 
 /// From what halving the size to `size` changed, and what was known before of another size. Where the change is so much
-/// smaller than before that it must be chance, less is believed.
-Error error_from(double change, double size, const Error& before);
+/// smaller than before that it must be chance, less is believed. most: the highest order there can be.
+Error error_from(double change, double size, const Error& before, double most = highest_order);
 
 }  // namespace traverse::app

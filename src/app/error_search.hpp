@@ -53,6 +53,7 @@ class ErrorSearch {
   double end_, horizon_;  // s, of the run and of trials
   Trials trials_;
   bool open_mesh_, open_step_;
+  bool undamped_ = false;  // no damping grows with the frequency
   double wanted_;  // error of the step, and of the mesh
   int mesh_, most_elements_;
   double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s

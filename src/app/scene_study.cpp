@@ -47,6 +47,7 @@ void read_sweep(const Options& o, Scene& scene) {
 void read_modal(const Options& o, Scene& scene) {
   const std::string value = o.text("model_modes");
   if (value == "auto" || value == "0") {
+    scene.modes_open = value == "auto";
     if (o.has("model_damping_ratios")) o.refuse("model_damping_ratios", "needs model_modes, whose ratios these are");
     return;
   }

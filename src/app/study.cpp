@@ -9,6 +9,7 @@
 
 #include "case_runner.hpp"
 #include "deal.hpp"
+#include "modes_choice.hpp"
 #include "process.hpp"
 #include "traverse/app/accuracy.hpp"
 #include "traverse/options/input.hpp"
@@ -138,7 +139,7 @@ Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal
   return failure;
 }
 
-/// With mesh and step for the fastest run; the same on every rank.
+/// With mesh and step for the fastest run, or modes; the same on every rank.
 Scene chosen(Scene scene, std::vector<std::string>& notes) {
   Scene fastest = scene;
   if (!scene.sweep->speeds.empty()) {
@@ -147,10 +148,12 @@ Scene chosen(Scene scene, std::vector<std::string>& notes) {
     fastest.train.speed = scene.vehicles.empty() ? 0.0 : speed;
     fastest.load.speed = fastest.load.forces.empty() ? 0.0 : speed;
   }
-  if (!choose(PETSC_COMM_SELF, fastest, notes).measured) return scene;
+  const Accuracy accuracy = choose(PETSC_COMM_SELF, fastest, notes);
+  if (!accuracy.measured) return scene;
   scene.beam = fastest.beam;
   scene.time_step = fastest.time_step;
   scene.step_probes = fastest.step_probes;
+  scene.model_modes = modes_that_do(scene, accuracy, notes);
   return scene;
 }
 

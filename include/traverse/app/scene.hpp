@@ -60,6 +60,7 @@ struct Scene {
   std::optional<double> time_step;  // -ts_dt
   int mode_count = 10;
   int model_modes = 0;                   // the bridge by so many modes; 0: by its elements
+  bool modes_open = false;               // a sweep may take modes where these do as well
   std::vector<double> damping_of_modes;  // ratio of each of these modes, the last one of all further; empty: Rayleigh's
   std::optional<Sweep> sweep;
   std::optional<double> contact_tolerance;  // s
