@@ -54,7 +54,7 @@ class ErrorSearch {
   Trials trials_;
   bool open_mesh_, open_step_;
   bool undamped_ = false;  // no damping grows with the frequency
-  double wanted_;  // error of the step, and of the mesh
+  double wanted_;          // error of the step, and of the mesh
   int mesh_, most_elements_;
   double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s
   double growth_ = 1.0;  // of errors in free oscillations until these have died away, for runs longer than the trials

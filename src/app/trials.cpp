@@ -18,7 +18,7 @@ constexpr double rounding = 1e-9;
 constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;
 constexpr std::size_t crossed_in_full = 3;  // spans
-constexpr double behind = 1.1;  // spans, until what the last wheel does as it leaves is seen
+constexpr double behind = 1.1;              // spans, until what the last wheel does as it leaves is seen
 
 bool is_node(const beam::BeamModel& beam, double x) {
   double left = 0.0;
