@@ -95,6 +95,7 @@ void ErrorSearch::coarsen() {
   const double fine = step_;
   const Errors errors = time_;
   for (double step = 2.0 * fine; step <= longest_step_ && signal_on_any(comm_) == 0; step *= 2.0) {
+    if (trials_.run(mesh_, step).failed()) return;  // and nothing is known of steps between
     Errors longer = errors;
     for (std::size_t q = 0; q < quantities; ++q)
       longer[q].value += growth_ * difference(trials_.run(mesh_, step), trials_.run(mesh_, fine),

@@ -6,6 +6,8 @@
 #include <chrono>
 #include <limits>
 #include <numeric>
+#include <optional>
+#include <set>
 
 #include "case_runner.hpp"
 #include "deal.hpp"
@@ -15,6 +17,7 @@
 #include "traverse/options/input.hpp"
 #include "traverse/results/sweep.hpp"
 #include "traverse/results/terminal.hpp"
+#include "trials.hpp"
 
 namespace traverse::app {
 namespace {
@@ -139,21 +142,43 @@ Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal
   return failure;
 }
 
-/// With mesh and step for the fastest run, or modes; the same on every rank.
+/// The scene of one run.
+Scene at_speed(const Scene& sweep, double speed) {
+  Scene scene = sweep;
+  if (!sweep.sweep->loads.empty()) scene.load = sweep.sweep->loads.front();
+  scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
+  scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
+  return scene;
+}
+
+/// With the finest mesh and step that the slowest, a middle and the fastest run need, or modes; the same on every rank.
 Scene chosen(Scene scene, std::vector<std::string>& notes) {
-  Scene fastest = scene;
-  if (!scene.sweep->speeds.empty()) {
-    const double speed = *std::max_element(scene.sweep->speeds.begin(), scene.sweep->speeds.end());
-    if (!scene.sweep->loads.empty()) fastest.load = scene.sweep->loads.front();
-    fastest.train.speed = scene.vehicles.empty() ? 0.0 : speed;
-    fastest.load.speed = fastest.load.forces.empty() ? 0.0 : speed;
+  const std::vector<double>& speeds = scene.sweep->speeds;
+  if (speeds.empty()) {
+    const Accuracy accuracy = choose(PETSC_COMM_SELF, scene, notes);
+    scene.model_modes = modes_that_do(scene, accuracy, notes);
+    return scene;
   }
-  const Accuracy accuracy = choose(PETSC_COMM_SELF, fastest, notes);
-  if (!accuracy.measured) return scene;
-  scene.beam = fastest.beam;
-  scene.time_step = fastest.time_step;
-  scene.step_probes = fastest.step_probes;
-  scene.model_modes = modes_that_do(scene, accuracy, notes);
+  std::optional<Accuracy> all;
+  const Scene given = scene;
+  for (const double speed : std::set{speeds.front(), speeds[speeds.size() / 2], speeds.back()}) {
+    Scene one = at_speed(given, speed);
+    std::vector<std::string> own;
+    const Accuracy accuracy = choose(PETSC_COMM_SELF, one, own);
+    if (!accuracy.measured) return given;
+    notes.push_back(fmt::format("at {:g} m/s:", speed));
+    notes.insert(notes.end(), own.begin(), own.end());
+    const int mesh = all ? std::max(mesh_of(scene), mesh_of(one)) : mesh_of(one);
+    if (!all || *one.time_step < *scene.time_step) scene.time_step = one.time_step;
+    set_mesh(scene, mesh);
+    scene.rest_tolerance = one.rest_tolerance;
+    scene.step_probes = one.step_probes;
+    if (!all) all = accuracy;
+    for (std::size_t q = 0; q < quantities; ++q) all->promises[q].kept &= accuracy.promises[q].kept;
+  }
+  notes.push_back(fmt::format("all runs: {} elements a {}, steps of {:g} s", mesh_of(scene),
+                              scene.beam->track ? "sleeper bay" : "span", *scene.time_step));
+  scene.model_modes = modes_that_do(scene, *all, notes);
   return scene;
 }
 

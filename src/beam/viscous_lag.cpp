@@ -5,39 +5,18 @@
 
 namespace traverse::beam {
 
-/// The load's place and size at the call before: that of the nearest one among its neighbours in the list.
-const ElementLoad* ViscousLag::before(const std::vector<ElementLoad>& loads, std::size_t load) const {
-  const ElementLoad* found = nullptr;
-  double nearest = 0.0;
-  for (std::size_t i = load > 0 ? load - 1 : 0; i <= load + 1 && i < loads_.size(); ++i) {
-    const double apart = std::abs(recovery_.x_of(loads_[i]) - recovery_.x_of(loads[load]));
-    if (found != nullptr && apart >= nearest) continue;
-    found = &loads_[i];
-    nearest = apart;
-  }
-  return found;
-}
-
 /// What loads that move through the station's element add, part by part of the interval; whether there are any.
 bool ViscousLag::passing(std::size_t station, const std::vector<ElementLoad>& loads, History& by_loads) const {
   const auto [left, right] = recovery_.element_of(station);
   bool any = false;
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    const ElementLoad& now = loads[i];
-    const double x = recovery_.x_of(now);
-    if (x <= left || x - right > right - left) continue;  // it has not come yet, or is long past
-    const ElementLoad* then = before(loads, i);
-    const double from = then != nullptr ? recovery_.x_of(*then) : x;
-    if (from >= right || from == x) continue;
+  for (const ElementLoad& load : loads) {
+    const double x = recovery_.x_of(load), way = load.speed * interval_;
+    if (way == 0.0 || std::max(x, x - way) <= left || std::min(x, x - way) >= right) continue;
     if (!any) by_loads.fill({});
     any = true;
     for (std::size_t k = 0; k <= parts; ++k) {
-      const double at = static_cast<double>(k) / parts;
-      ElementLoad load = now;
-      load.fx += (1.0 - at) * (then->fx - now.fx);
-      load.fy += (1.0 - at) * (then->fy - now.fy);
-      load.moment += (1.0 - at) * (then->moment - now.moment);
-      const Forces added = recovery_.inside(station, k == parts ? x : from + at * (x - from), load);
+      const double back = 1.0 - static_cast<double>(k) / parts;
+      const Forces added = recovery_.inside(station, x - back * way, load);
       for (std::size_t f = 0; f < added.size(); ++f) by_loads[k][f] += added[f];
     }
   }
@@ -82,7 +61,6 @@ void ViscousLag::apply(double t, const std::vector<ElementLoad>& loads, std::vec
     r.moment_rate = r.nodal_moment_rate + (c[0] - inner.m[0]) / b_;
   }
   time_ = t;
-  loads_ = loads;
   first_ = false;
 }
 

@@ -12,7 +12,7 @@ void System::moving_loads(double t) {
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
     if (on_beam_[i] == 0) continue;
     const beam::Station s = line_->mesh.locate(input_.load.positions[i] + input_.load.speed * t);
-    loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0});
+    loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0, input_.load.speed});
   }
 }
 

@@ -18,7 +18,8 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
     for (const WheelContact& c : fleet_.wheels) {
       if (c.slot() < 0 || c.force.normal == 0.0) continue;
       const Eigen::Vector3d f = c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
-      out.loads.push_back({c.patches[c.active].element, c.touch.xi, f.x(), f.y(), -surface_height() * f.x()});
+      const double speed = fleet_.vehicles[c.vehicle].state.qd[3 * static_cast<Eigen::Index>(c.body)];
+      out.loads.push_back({c.patches[c.active].element, c.touch.xi, f.x(), f.y(), -surface_height() * f.x(), speed});
     }
     if (beam_->rail() == nullptr) out.bridge_loads = out.loads;
     if (nonlinear_) {

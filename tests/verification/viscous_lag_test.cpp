@@ -106,7 +106,7 @@ TEST(ViscousLag, FollowsAForceWithinAnInterval) {
     for (int i = 0; i <= intervals; ++i) {
       const double t = 0.1 * i / intervals, x = from + (to - from) * i / intervals;
       const beam::Station s = beam.mesh().locate(x);
-      const beam::ElementLoad load{s.element, s.xi, 0.0, -F * (1.0 + t), 0.0};
+      const beam::ElementLoad load{s.element, s.xi, 0.0, -F, 0.0, 60.0};
       response[0] = {};
       response[0].moment = recovery.inside(0, x, load)[0];
       lag.apply(t, {load}, response);

@@ -9,11 +9,13 @@
 
 namespace traverse::beam {
 
-/// A concentrated load on an element, at xi: fx, fy in N (fy upward), moment in N m counter-clockwise.
+/// A concentrated load on an element, at xi: fx, fy in N (fy upward), moment in N m counter-clockwise. It moves with
+/// `speed` along x, m/s.
 struct ElementLoad {
   int element = 0;
   double xi = 0.0;
   double fx = 0.0, fy = 0.0, moment = 0.0;
+  double speed = 0.0;
 };
 
 /// Response at one station. Deflection positive upward, moment positive in sagging (EI v'' > 0),

@@ -17,8 +17,8 @@ class ViscousLag {
   ViscousLag(const Recovery& recovery, double b) : recovery_(recovery), b_(b), inner_(recovery.stations().size()) {}
 
   /// Of all stations at ascending times, with the loads that were given to evaluate(): replaces what c adds to moment,
-  /// shear and axial force by m, and fills in moment_rate. Between calls loads move and change evenly, and so does what
-  /// else is in c; at the first one the beam is at rest, m = c.
+  /// shear and axial force by m, and fills in moment_rate. Between calls loads have moved with their speeds, and what
+  /// else is in c has changed evenly; at the first one the beam is at rest, m = c.
   void apply(double t, const std::vector<ElementLoad>& loads, std::vector<Response>& responses);
 
  private:
@@ -29,14 +29,12 @@ class ViscousLag {
   };
 
   bool passing(std::size_t station, const std::vector<ElementLoad>& loads, History& by_loads) const;
-  const ElementLoad* before(const std::vector<ElementLoad>& loads, std::size_t load) const;
   void follow(std::size_t station, const std::vector<ElementLoad>& loads, const Forces& c);
 
   const Recovery& recovery_;
   double b_;
   double time_ = 0.0, interval_ = 0.0;  // of the latest call, and since the one before, s
   std::vector<Inner> inner_;            // of each station
-  std::vector<ElementLoad> loads_;      // of the latest call
   bool first_ = true;
 };
 
