@@ -158,7 +158,8 @@ void ErrorSearch::measure() {
 Error ErrorSearch::error_in_time(Quantity q) {
   const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
   // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
-  return error_from(growth_ * change, step_, time_[q], q == moment && undamped_ ? 1.0 : highest_order);
+  const double most = q != moment || !undamped_ ? highest_order : time_[q].size > 0.0 ? 2.0 : 1.0;
+  return error_from(growth_ * change, step_, time_[q], most);
 }
 
 // With twice the step, at half the cost: runs that the error in time asks for too. Steps over more than an element
