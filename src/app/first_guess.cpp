@@ -11,7 +11,7 @@ namespace {
 
 constexpr int first_bay = 2;
 constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 EI/k)^(1/4)
-constexpr double steps_a_period = 12.0, steps_a_crossing = 24.0, steps_a_wave = 20.0;
+constexpr double steps_a_period = 12.0, steps_a_crossing = 24.0, steps_a_wave = 20.0, steps_a_sleeper = 8.0;
 constexpr double part_of_run = 1e-2;
 // Step times frequency of the contacts, rad, at an accuracy of 1e-2 and at the finest; it falls as accuracy^0.22, which
 // is what coaches on Hertz wheels were found to need.
@@ -64,7 +64,11 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
   if (scene.output.interval) step = std::min(step, *scene.output.interval);
   const double contact = contact_frequency(scene);
   // On a track the rail goes on over the bridge's ends: nothing stirs the contacts there.
-  if (contact == 0.0 || (scene.beam->track && scene.accuracy >= coarse)) return {step, step};
+  if (scene.beam->track && greatest_speed(scene) > 0.0) {
+    const double sleeper = scene.beam->track->spacing / greatest_speed(scene) / steps_a_sleeper;
+    if (contact == 0.0 || scene.accuracy >= coarse) return {std::min(step, sleeper), step};
+  }
+  if (contact == 0.0) return {step, step};
   return {std::min(step, std::max(contact_angle_of(scene.accuracy) / contact, step / finest)), step};
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
 constexpr std::size_t few_spans = 24;    // are all kept
 constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
-constexpr double roughness = 5.0;        // times the work on vehicles on a rough track
+constexpr double roughness = 1.3;        // times the work on vehicles on a rough track
 constexpr double rounding = 1e-9;
 constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;

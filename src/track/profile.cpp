@@ -1,8 +1,6 @@
 #include "traverse/track/profile.hpp"
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -20,6 +18,7 @@ constexpr double stations_a_wave = 16.0;
 constexpr int stations_between_lines = 8;
 constexpr double most_overshoot = 0.3;  // of a table's range of heights: three lines a wave make a tenth
 constexpr int waves_in_all = 240;
+static_assert(waves_in_all % Waves::lanes == 0);
 
 /// Second derivatives of the natural cubic spline at its knots (Thomas algorithm).
 std::vector<double> natural_spline(const std::vector<double>& x, const std::vector<double>& h) {
@@ -133,18 +132,20 @@ Profile Profile::rough(const Spectrum& spectrum, double shortest, double longest
   p.start_ = start;
   p.length_ = std::max(least_fade, longest / 5.0);
   std::mt19937_64 random(seed);
+  std::vector<double> amplitude, frequency, phase;
   double of_slope = 0.0, of_curvature = 0.0;  // variances
   for (int i = 0; i < waves_in_all; ++i) {
     const double a = lowest * std::pow(highest / lowest, double(i) / waves_in_all);
     const double b = lowest * std::pow(highest / lowest, double(i + 1) / waves_in_all);
     const double power = spectrum.power(a, b);
     const double k = std::sqrt(a * b);
-    p.amplitude_.push_back(std::sqrt(2.0 * power));
-    p.frequency_.push_back(k / two_pi);
-    p.phase_.push_back(static_cast<double>(random() >> 11) * 0x1.0p-53);
+    amplitude.push_back(std::sqrt(2.0 * power));
+    frequency.push_back(k / two_pi);
+    phase.push_back(static_cast<double>(random() >> 11) * 0x1.0p-53);
     of_slope += power * k * k;
     of_curvature += power * k * k * k * k;
   }
+  p.waves_ = Waves(std::move(amplitude), std::move(frequency), std::move(phase));
   p.greatest_slope_ = 6.0 * std::sqrt(of_slope);
   p.greatest_valley_ = 6.0 * std::sqrt(of_curvature);
   p.resolution_ = shortest / stations_a_wave;
@@ -174,49 +175,8 @@ Height spline_at(const std::vector<double>& x, const std::vector<double>& h, con
   return r;
 }
 
-constexpr int lanes = 4;  // waves computed at once; waves_in_all is a multiple
-using Lanes = Eigen::Array<double, lanes, 1>;
-
-/// Coefficients of sin(pi u)/u and cos(pi u) in powers of u^2.
-template <int terms>
-constexpr std::array<double, terms> series(double first, int odd) {
-  std::array<double, terms> c{first};
-  for (int n = 1; n < terms; ++n) {
-    c[static_cast<std::size_t>(n)] = -c[static_cast<std::size_t>(n) - 1] * std::numbers::pi * std::numbers::pi /
-                                     ((2.0 * n - 1.0 + odd) * (2.0 * n + odd));
-  }
-  return c;
-}
-constexpr auto sine_series = series<11>(std::numbers::pi, 1);
-constexpr auto cosine_series = series<11>(1.0, 0);
-
-/// sin and cos of 2 pi u for |u| <= 1/2, by their series at half the angle: good to 1e-15 and without branches.
-void sine_cosine(const Lanes& u, Lanes& sine, Lanes& cosine) {
-  const Lanes y = u * u;
-  Lanes s = Lanes::Constant(sine_series.back()), c = Lanes::Constant(cosine_series.back());
-  for (std::size_t n = sine_series.size() - 1; n-- > 0;) {
-    s = s * y + sine_series[n];
-    c = c * y + cosine_series[n];
-  }
-  s *= u;
-  sine = 2.0 * s * c;
-  cosine = 1.0 - 2.0 * s * s;
-}
-
-/// The sum of all waves at s, which is counted in m from the start; frequency in cycles/m, phase in cycles.
-Height waves_at(const std::vector<double>& amplitude, const std::vector<double>& frequency,
-                const std::vector<double>& phase, double s, double fade) {
-  Lanes value = Lanes::Zero(), slope = Lanes::Zero(), curvature = Lanes::Zero(), sine, cosine;
-  for (std::size_t i = 0; i < amplitude.size(); i += lanes) {
-    const Eigen::Map<const Lanes> a(&amplitude[i]), f(&frequency[i]), p(&phase[i]);
-    const Lanes cycles = f * s + p;
-    sine_cosine(cycles - cycles.rint(), sine, cosine);
-    const Lanes k = two_pi * f;
-    value += a * cosine;
-    slope -= k * a * sine;
-    curvature -= k * k * a * cosine;
-  }
-  const Height w{value.sum(), slope.sum(), curvature.sum()};
+/// The waves at s, which is counted in m from the start.
+Height faded(const Height& w, double s, double fade) {
   if (s >= fade) return w;
   Height f = smooth_step(s / fade);
   f.slope /= fade;
@@ -241,7 +201,7 @@ Height Profile::at(double x) const {
     case Kind::table:
       return spline_at(x_, h_, h2_, x);
     case Kind::waves:
-      return x > start_ ? waves_at(amplitude_, frequency_, phase_, x - start_, length_) : Height{};
+      return x > start_ ? faded(waves_.at(x - start_), x - start_, length_) : Height{};
   }
   return {};
 }

@@ -11,6 +11,7 @@ BUILD = pathlib.Path(os.environ["TRAVERSE_BINARY"]).parent
 sys.path.insert(0, str(SOURCE / "benchmarks"))
 import fidelity  # noqa: E402
 import promises  # noqa: E402
+import scene_texts  # noqa: E402
 import work_precision  # noqa: E402
 
 
@@ -47,12 +48,25 @@ class WorkPrecision(InAFolder):
         self.assertLess(errors[-1], 1e-3)
 
 
-class Promises(InAFolder):
+    def test_options_of_a_scene_come_after_its_file(self):
+        scene = work_precision.Scene("two coaches", "three_span_train", 0.02, 0, [4], wanted=[],
+                                     options=work_precision.TWO_COACHES)
+        case = work_precision.Case(BUILD, self.folder, scene, quick=True)
+        point = work_precision.Point(BUILD, self.folder, case.fixed(4, 0.02, "genalpha"))
+        self.assertIn("vehicles 2,", point.text)
+
+
+class Promises(unittest.TestCase):
     def test_a_scene(self):
-        row, = promises.judge(str(BUILD), "truck", [1e-2], self.folder)
+        row, = promises.judge(str(BUILD), "truck", promises.SCENES["truck"], [1e-2])
         self.assertLessEqual(row["worst"], 1.0)
+        self.assertEqual(row["judged"], 4)
         self.assertEqual(row["not promised"], [])
         self.assertGreater(row["trials"], 0.0)
+
+    def test_drawn_scenes_are_always_the_same(self):
+        self.assertEqual(scene_texts.drawn(3), scene_texts.drawn(3))
+        self.assertNotEqual(scene_texts.drawn(3)[1], scene_texts.drawn(4)[1])
 
 
 class Fidelity(InAFolder):

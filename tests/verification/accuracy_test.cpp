@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "support/curve.hpp"
+#include "support/quarter_car.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::test {
@@ -24,20 +25,7 @@ std::optional<double> expected(const Results& run, const std::string& quantity) 
   return std::isnan(error) ? std::nullopt : std::optional(error);
 }
 
-const std::string quarter_car = R"(
-vehicle:
-  car:
-    bodies:  [body, axle]
-    joints:  [guide]
-    springs: [suspension]
-    wheels:  [wheel]
-    drivers: [level]
-    body:    {mass: 18000.0, inertia: 1.0, position: [0.0, 2.0]}
-    axle:    {mass: 1200.0, inertia: 1.0, position: [0.0, 0.46]}
-    guide:   {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}
-    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 1.8e6, damping: 2.0e4}
-    level:   {body: body, coordinate: phi}
-)";
+std::string quarter_car(const std::string& wheel) { return quarter_car_with(18e3, 1200.0, 1.8e6, 2e4, wheel); }
 
 struct Case {
   const char* name;
@@ -49,19 +37,16 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 const std::string one_span =
     "beam: {spans: 30.0, EI: 1.2e10, mass: 9000.0, damping_ratios: 0.03}\n"
     "support: {types: [pinned, roller]}\n";
-const std::string on_tyre =
-    "    wheel: {body: axle, radius: 0.46, law: linear, stiffness: 4.0e6}\n"
-    "train: {vehicles: car, positions: 0.0, speed: 25.0}\n";
-const std::string on_steel =
-    "    wheel: {body: axle, radius: 0.46, law: hertz, stiffness: 3.6e10}\n"
-    "train: {vehicles: car, positions: -1.0, speed: 60.0}\n";
+const std::string car_on_tyre =
+    quarter_car("law: linear, stiffness: 4.0e6") + "train: {vehicles: car, positions: 0.0, speed: 25.0}\n";
+const std::string car_on_steel =
+    quarter_car("law: hertz, stiffness: 3.6e10") + "train: {vehicles: car, positions: -1.0, speed: 60.0}\n";
 const std::string forces = "load: {forces: 2.0e5*4, positions: [0.0, -3.0, -11.0, -14.0], speed: 60.0}\n";
 
 class Promise : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     Accuracy, Promise,
-    testing::Values(Case{"tyre", one_span + quarter_car + on_tyre},
-                    Case{"steel_wheel", one_span + quarter_car + on_steel},
+    testing::Values(Case{"tyre", one_span + car_on_tyre}, Case{"steel_wheel", one_span + car_on_steel},
                     Case{"three_spans_and_forces",
                          "beam: {spans: [30.0, 36.0, 30.0], EI: 2.0e10, mass: 1.0e4, damping_ratios: 0.02}\n"
                          "support: {types: [pinned, roller, roller, roller]}\nscene: {tail: 0.5}\n" +
@@ -69,9 +54,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{"undamped",
                          "beam: {spans: [25.0, 25.0], EI: 1.0e10, mass: 3000.0}\n"
                          "support: {types: [pinned, roller, roller]}\n" +
-                             quarter_car + on_tyre,
+                             car_on_tyre,
                          false},
-                    Case{"bump", one_span + quarter_car + on_tyre +
+                    Case{"bump", one_span + car_on_tyre +
                                      "track: {profile: bump, bump: {start: 10.0, length: 1.5, height: 0.01}}\n"}),
     [](const auto& which) { return which.param.name; });
 
@@ -109,7 +94,7 @@ TEST_P(Promise, IsKeptAtEveryAccuracy) {
 
 // What the user has fixed stays, and says so where it is too coarse.
 TEST(Accuracy, FixedMeshIsNotPromised) {
-  const std::string scene = one_span + quarter_car + on_tyre;
+  const std::string scene = one_span + car_on_tyre;
   const Results coarse = run_yaml(scene, {{"accuracy", "1e-3"}, {"beam_elements_per_span", "2"}});
   EXPECT_FALSE(expected(coarse, "acceleration"));
   const Results fine = run_yaml(scene, {{"accuracy", "1e-3"}, {"beam_elements_per_span", "40"}});
@@ -118,7 +103,7 @@ TEST(Accuracy, FixedMeshIsNotPromised) {
 
 // With mesh and step given there is nothing to choose, and nothing is promised.
 TEST(Accuracy, NothingOpenNothingPromised) {
-  const Results run = run_yaml(one_span + quarter_car + on_tyre, {{"ts_dt", "1e-3"}, {"beam_elements_per_span", "10"}});
+  const Results run = run_yaml(one_span + car_on_tyre, {{"ts_dt", "1e-3"}, {"beam_elements_per_span", "10"}});
   for (const char* quantity : quantities) EXPECT_FALSE(expected(run, quantity)) << quantity;
 }
 

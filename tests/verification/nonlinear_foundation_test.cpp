@@ -11,6 +11,7 @@
 
 #include "support/beam_model.hpp"
 #include "support/curve.hpp"
+#include "support/quarter_car.hpp"
 #include "traverse/integrate/stepper.hpp"
 
 namespace traverse::test {
@@ -380,26 +381,14 @@ output: {probes: [0.0, 10.0]}
 
 // --- trains --------------------------------------------------------------------------------------------------------
 
-constexpr const char* train = R"(
-beam: {spans: [15.0, 30.0, 15.0], elements_per_span: 6, EI: 8.33e9, mass: 5000.0, rayleigh: [0.2, 1.0e-4], self_weight: true}
-support: {types: [free, roller, roller, free]}
-vehicle:
-  car:
-    bodies:  [body, axle]
-    joints:  [guide]
-    springs: [suspension]
-    wheels:  [wheel]
-    drivers: [level]
-    body:    {mass: 4.0e4, inertia: 1.0e4, position: [0.0, 2.0]}
-    axle:    {mass: 3.0e3, inertia: 1.0e2, position: [0.0, 0.46]}
-    guide:   {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}
-    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 2.0e6, damping: 4.0e4}
-    wheel:   {body: axle, radius: 0.46, law: hertz, stiffness: 3.6e10}
-    level:   {body: body, coordinate: phi}
-train: {vehicles: [car, car], positions: [14.0, 8.0], speed: 40.0}
-ts: {max_time: 0.9, dt: 2.5e-4}
-output: {interval: 0.01, probes: [0.0, 7.5, 30.0, 45.0, 60.0]}
-)";
+const std::string train =
+    "beam: {spans: [15.0, 30.0, 15.0], elements_per_span: 6, EI: 8.33e9, mass: 5000.0, rayleigh: [0.2, 1.0e-4], "
+    "self_weight: true}\n"
+    "support: {types: [free, roller, roller, free]}\n" +
+    quarter_car_with(4e4, 3e3, 2e6, 4e4, "law: hertz, stiffness: 3.6e10") +
+    "train: {vehicles: [car, car], positions: [14.0, 8.0], speed: 40.0}\n"
+    "ts: {max_time: 0.9, dt: 2.5e-4}\n"
+    "output: {interval: 0.01, probes: [0.0, 7.5, 30.0, 45.0, 60.0]}\n";
 
 const Values bearings = {{"foundation_vertical_x", "0,60"}, {"foundation_vertical_k", "1e8"}};
 

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "support/curve.hpp"
+#include "support/quarter_car.hpp"
 #include "support/scene_run.hpp"
 #include "traverse/coupling/system.hpp"
 
@@ -97,24 +98,11 @@ TEST(PolygonalWheel, IsResolvedByTheChosenStep) {
 }
 
 // A quarter car with a flat of 60 mm at 20 m/s: the wheel leaves the ground and strikes.
-constexpr const char* quarter_car_with_flat = R"(
-vehicle:
-  car:
-    bodies:  [body, axle]
-    joints:  [guide]
-    springs: [suspension]
-    wheels:  [wheel]
-    drivers: [level]
-    body:    {mass: 5750.0, inertia: 1.0, position: [0.0, 2.0]}
-    axle:    {mass: 1000.0, inertia: 1.0, position: [0.0, 0.46]}
-    guide:   {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}
-    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 1.595e6, damping: 1.0e4}
-    wheel:   {body: axle, radius: 0.46, law: hertz, stiffness: 3.64e10, damping: 1.0e5, flat_length: 0.06}
-    level:   {body: body, coordinate: phi}
-train: {vehicles: car, positions: 1.0, speed: 20.0}
-ts: {max_time: 0.1, dt: 2.0e-5}
-output: {interval: 2.5e-4}
-)";
+const std::string with_flat = quarter_car_with(5750.0, 1000.0, 1.595e6, 1e4,
+                                               "law: hertz, stiffness: 3.64e10, damping: 1.0e5, flat_length: 0.06") +
+                              "train: {vehicles: car, positions: 1.0, speed: 20.0}\n"
+                              "ts: {max_time: 0.1, dt: 2.0e-5}\n"
+                              "output: {interval: 2.5e-4}\n";
 
 // Heights of body and axle above equilibrium at rest, and their rates.
 using State = std::array<double, 4>;
@@ -147,7 +135,7 @@ struct Reference {
 };
 
 TEST(Flat, AgainstAnIntegrationOfItsOwn) {
-  Results run = run_yaml(quarter_car_with_flat, {{"vehicle_car_wheel_damping", "0"}, {"ts_dt", "1e-5"}});
+  Results run = run_yaml(with_flat, {{"vehicle_car_wheel_damping", "0"}, {"ts_dt", "1e-5"}});
   const std::vector<double> t = run.time(), force = run("/vehicles/0/wheel/normal_force");
   const Reference reference;
   State s{};
@@ -169,7 +157,7 @@ TEST(Flat, AgainstAnIntegrationOfItsOwn) {
 }
 
 TEST(Flat, EnergyBalances) {
-  Results run = run_yaml(quarter_car_with_flat, {{"ts_dt", "1e-5"}});
+  Results run = run_yaml(with_flat, {{"ts_dt", "1e-5"}});
   const double scale = range(run("/energy/dissipated")) + range(run("/energy/work"));
   RecordProperty("residual_over_scale", text(peak(run("/energy/residual")).first / scale));
   EXPECT_GT(scale, 10.0);

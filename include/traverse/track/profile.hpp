@@ -6,14 +6,9 @@
 #include <vector>
 
 #include "traverse/track/spectrum.hpp"
+#include "traverse/track/waves.hpp"
 
 namespace traverse::track {
-
-struct Height {
-  double value = 0.0;      // m
-  double slope = 0.0;      // 1
-  double curvature = 0.0;  // 1/m
-};
 
 /// h(x), twice differentiable except at `kinks`.
 class Profile {
@@ -55,9 +50,9 @@ class Profile {
   void bound_table();
 
   Kind kind_ = Kind::level;
-  double start_ = 0.0, length_ = 0.0, height_ = 0.0;   // length: of the bump, or of the fade
-  std::vector<double> x_, h_, h2_;                     // table
-  std::vector<double> amplitude_, frequency_, phase_;  // waves: m, cycles/m, cycles
+  double start_ = 0.0, length_ = 0.0, height_ = 0.0;  // length: of the bump, or of the fade
+  std::vector<double> x_, h_, h2_;                    // table
+  Waves waves_;
   std::vector<double> kinks_;
   double greatest_valley_ = 0.0, greatest_slope_ = 0.0, resolution_ = 0.0;
 };

@@ -1,0 +1,43 @@
+// A sum of many cosines with its derivatives, from a table of its own.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace traverse::track {
+
+struct Height {
+  double value = 0.0;      // m
+  double slope = 0.0;      // 1
+  double curvature = 0.0;  // 1/m
+};
+
+/// sum a cos(2 pi (f s + phase)). Wheels come along in small steps and look many times near each place: the sum is
+/// formed at stations 1/96 of the shortest wave apart, as they are needed, and quintic polynomials take its value and
+/// two derivatives from one to the next. Against the sum that is 1e-14 of the shortest wave's height, 1e-8 of its
+/// curvature, and it does not depend on what was asked before.
+class Waves {
+ public:
+  Waves() = default;
+  /// m, cycles/m and cycles of each wave, their number a multiple of `lanes`.
+  Waves(std::vector<double> amplitude, std::vector<double> frequency, std::vector<double> phase);
+
+  Height at(double s) const;
+  /// The sum itself.
+  Height sum(double s) const;
+
+  static constexpr int lanes = 4;  // waves computed at once
+
+ private:
+  struct Station {
+    std::int64_t number = INT64_MIN;
+    Height height;
+  };
+  const Height& station(std::int64_t number) const;
+
+  std::vector<double> amplitude_, frequency_, phase_;
+  double spacing_ = 0.0;                   // m
+  mutable std::vector<Station> stations_;  // those looked at last, by their number's last digits
+};
+
+}  // namespace traverse::track

@@ -1,0 +1,89 @@
+#include "traverse/track/waves.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace traverse::track {
+namespace {
+
+constexpr double two_pi = 2.0 * std::numbers::pi;
+constexpr double stations_a_wave = 96.0;
+constexpr std::size_t kept = 4096;  // stations, a power of two
+
+using Lanes = Eigen::Array<double, Waves::lanes, 1>;
+
+/// Coefficients of sin(pi u)/u and cos(pi u) in powers of u^2.
+template <int terms>
+constexpr std::array<double, terms> series(double first, int odd) {
+  std::array<double, terms> c{first};
+  for (int n = 1; n < terms; ++n) {
+    c[static_cast<std::size_t>(n)] = -c[static_cast<std::size_t>(n) - 1] * std::numbers::pi * std::numbers::pi /
+                                     ((2.0 * n - 1.0 + odd) * (2.0 * n + odd));
+  }
+  return c;
+}
+constexpr auto sine_series = series<11>(std::numbers::pi, 1);
+constexpr auto cosine_series = series<11>(1.0, 0);
+
+/// sin and cos of 2 pi u for |u| <= 1/2, by their series at half the angle: good to 1e-15 and without branches.
+void sine_cosine(const Lanes& u, Lanes& sine, Lanes& cosine) {
+  const Lanes y = u * u;
+  Lanes s = Lanes::Constant(sine_series.back()), c = Lanes::Constant(cosine_series.back());
+  for (std::size_t n = sine_series.size() - 1; n-- > 0;) {
+    s = s * y + sine_series[n];
+    c = c * y + cosine_series[n];
+  }
+  s *= u;
+  sine = 2.0 * s * c;
+  cosine = 1.0 - 2.0 * s * s;
+}
+
+}  // namespace
+
+Waves::Waves(std::vector<double> amplitude, std::vector<double> frequency, std::vector<double> phase)
+    : amplitude_(std::move(amplitude)),
+      frequency_(std::move(frequency)),
+      phase_(std::move(phase)),
+      spacing_(1.0 / (stations_a_wave * *std::max_element(frequency_.begin(), frequency_.end()))),
+      stations_(kept) {}
+
+Height Waves::sum(double s) const {
+  Lanes value = Lanes::Zero(), slope = Lanes::Zero(), curvature = Lanes::Zero(), sine, cosine;
+  for (std::size_t i = 0; i < amplitude_.size(); i += lanes) {
+    const Eigen::Map<const Lanes> a(&amplitude_[i]), f(&frequency_[i]), p(&phase_[i]);
+    const Lanes cycles = f * s + p;
+    sine_cosine(cycles - cycles.rint(), sine, cosine);
+    const Lanes k = two_pi * f;
+    value += a * cosine;
+    slope -= k * a * sine;
+    curvature -= k * k * a * cosine;
+  }
+  return {value.sum(), slope.sum(), curvature.sum()};
+}
+
+const Height& Waves::station(std::int64_t number) const {
+  Station& s = stations_[static_cast<std::size_t>(number) % kept];
+  if (s.number != number) s = {number, sum(static_cast<double>(number) * spacing_)};
+  return s.height;
+}
+
+Height Waves::at(double s) const {
+  const double place = s / spacing_, left = std::floor(place), t = place - left, h = spacing_;
+  const auto number = static_cast<std::int64_t>(left);
+  const Height a = station(number), b = station(number + 1);
+  // a.value + c1 t + c2 t^2 + ... + c5 t^5 with b's value and derivatives at t = 1
+  const double c1 = h * a.slope, c2 = 0.5 * h * h * a.curvature;
+  const double rise = b.value - a.value - c1 - c2, turn = h * b.slope - c1 - 2.0 * c2,
+               bend = 0.5 * h * h * (b.curvature - a.curvature);
+  const double c3 = 10.0 * rise - 4.0 * turn + bend, c4 = -15.0 * rise + 7.0 * turn - 2.0 * bend,
+               c5 = 6.0 * rise - 3.0 * turn + bend;
+  return {a.value + t * (c1 + t * (c2 + t * (c3 + t * (c4 + t * c5)))),
+          (c1 + t * (2.0 * c2 + t * (3.0 * c3 + t * (4.0 * c4 + t * 5.0 * c5)))) / h,
+          (2.0 * c2 + t * (6.0 * c3 + t * (12.0 * c4 + t * 20.0 * c5))) / (h * h)};
+}
+
+}  // namespace traverse::track
