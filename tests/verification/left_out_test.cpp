@@ -10,7 +10,8 @@ namespace traverse::test {
 namespace {
 
 const std::string coaches =
-    "options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n"
+    "options_file: " TRAVERSE_SOURCE_DIR
+    "/options/scenes/three_span_train.yml\n"
     "train_vehicles: coach*2\nscene_tail: 0.2\nbeam_elements_per_span: 8\nts_dt: 2.0e-3\noutput_interval: 0.02\n";
 
 struct Said {
@@ -26,7 +27,8 @@ Said run_and_listen(const std::string& scene, const Values& options) {
 // Nothing acts along the beam but what inclined normal forces have along it, a millionth of them.
 TEST(LeftOut, AxialUnknowns) {
   const Values stiff = {{"beam_EA", "2e11"}};
-  Said without = run_and_listen(coaches, stiff), with = run_and_listen(coaches, stiff + Values{{"model_axial", "true"}});
+  Said without = run_and_listen(coaches, stiff),
+       with = run_and_listen(coaches, stiff + Values{{"model_axial", "true"}});
   EXPECT_NE(without.text.find("axial unknowns: none, nothing acts along the beam"), std::string::npos) << without.text;
   EXPECT_NE(without.text.find("2 unknowns a node"), std::string::npos);
   EXPECT_NE(with.text.find("3 unknowns a node"), std::string::npos);
