@@ -39,42 +39,49 @@ bool worth_trying(const Scene& scene, const Accuracy& accuracy) {
   return scene.sweep->speeds.size() * std::max<std::size_t>(1, scene.sweep->loads.size()) >= least_runs;
 }
 
-}  // namespace
+struct Sample {
+  std::size_t train;
+  double speed;
+  CaseResult result;
+};
 
-int modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vector<std::string>& notes) {
-  if (!worth_trying(scene, accuracy)) return 0;
-  std::vector<std::string> ignored;
-  CaseRunner elements(scene, ignored);
-  struct Sample {
-    std::size_t train;
-    double speed;
-    CaseResult peaks;
-  };
+/// Runs by elements of all trains in turn, from the slowest to the fastest; SolverError where a signal came.
+std::vector<Sample> some_runs(CaseRunner& elements) {
   const std::vector<double>& speeds = elements.speeds();
   const std::size_t count = std::min(most_samples, speeds.size() * elements.trains() / runs_a_sample);
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < count; ++i) {
     const double speed = speeds[i * (speeds.size() - 1) / (count - 1)];
     samples.push_back({i % elements.trains(), speed, elements.run(i % elements.trains(), speed)});
-    if (!samples.back().peaks.ended) return 0;
+    if (!samples.back().result.ended) throw SolverError("ended by a signal");
   }
-  Scene by_modes = scene;
-  for (const int number : {2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
-    by_modes.model_modes = number;
-    double worst = 0.0;
-    try {
+  return samples;
+}
+
+}  // namespace
+
+int modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vector<std::string>& notes) {
+  if (!worth_trying(scene, accuracy)) return 0;
+  try {
+    std::vector<std::string> ignored;
+    CaseRunner elements(scene, ignored);
+    const std::vector<Sample> samples = some_runs(elements);
+    Scene by_modes = scene;
+    for (const int number : {2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
+      by_modes.model_modes = number;
       CaseRunner modes(by_modes, ignored);
       if (modes.cost() > elements.cost()) return 0;
-      for (const Sample& s : samples) worst = std::max(worst, difference(modes.run(s.train, s.speed), s.peaks));
-    } catch (const InputError&) {
-      return 0;  // dampers or springs that couple modes, or not so many modes
+      double worst = 0.0;
+      for (const Sample& s : samples) worst = std::max(worst, difference(modes.run(s.train, s.speed), s.result));
+      if (worst > share * scene.accuracy) continue;
+      notes.push_back(fmt::format(
+          "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "
+          "-model_modes 0 keeps the elements",
+          number, samples.size(), worst));
+      return number;
     }
-    if (worst > share * scene.accuracy) continue;
-    notes.push_back(fmt::format(
-        "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "
-        "-model_modes 0 keeps the elements",
-        number, samples.size(), worst));
-    return number;
+  } catch (const Error&) {
+    // Dampers or springs that couple modes, not so many modes, or a run that fails: the sweep itself will say so.
   }
   return 0;
 }

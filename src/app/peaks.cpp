@@ -36,9 +36,8 @@ void Curve::add(double t, double value, const std::vector<double>& kinks, Note&&
 template <class Note>
 void RelaxingCurve::add(double t, double value, double rate, double b, Note&& note) {
   const double h = t - time_, before = rate_, start = value_;
-  const bool turns = known_ && before * rate < 0.0;
   if (!known_) note(value, t);
-  if (turns && before * start > 0.0) {
+  if (known_ && h > 0.0 && before * rate < 0.0 && before * start > 0.0) {
     // start + p s + q s^2 + k b (exp(-s/b) - 1) with both values and both rates
     const double lag = std::min(b, 100.0 * h), decay = std::exp(-h / lag), decayed = 1.0 - decay;
     const double k = (value - start - 0.5 * h * (before + rate)) / (0.5 * h * (1.0 + decay) - lag * decayed);
