@@ -58,7 +58,8 @@ class Recovery {
   /// Where the element of a station begins and ends, m.
   std::pair<double, double> element_of(std::size_t station) const;
   double x_of(const ElementLoad& load) const {
-    return line_.mesh.x(load.element) + load.xi * (line_.mesh.x(load.element + 1) - line_.mesh.x(load.element));
+    const Element& e = line_.mesh.element(load.element);
+    return e.x + load.xi * e.length;
   }
   /// What a load adds to the forces by acting inside the station's element, if it stood at x: none elsewhere.
   Forces inside(std::size_t station, double x, ElementLoad load) const;
