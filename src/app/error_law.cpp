@@ -25,7 +25,7 @@ double Error::room(double wanted) const {
 double Error::at(double times) const { return value * std::pow(times, times < 1.0 ? power_refining() : power()); }
 
 Error error_from(double change, double size, const Error& before, double most) {
-  Error error{change, std::min(before.order, most), before.known, change, size};
+  Error error{change, before.order, before.known, change, size};
   if (before.size > 1.5 * size) {
     const double halvings = std::log2(before.size / size);
     error.known = true;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include "traverse/track/waves.hpp"
 
@@ -34,6 +35,9 @@ TEST(Waves, TableAgainstTheSum) {
     slope = std::max(slope, std::abs(is.slope - exact.slope));
     curvature = std::max(curvature, std::abs(is.curvature - exact.curvature));
   }
+  RecordProperty("value", std::to_string(1e12 * value / height) + "e-12");
+  RecordProperty("slope", std::to_string(1e12 * slope / (height * k)) + "e-12");
+  RecordProperty("curvature", std::to_string(1e12 * curvature / (height * k * k)) + "e-12");
   EXPECT_LT(value, 1e-11 * height);
   EXPECT_LT(slope, 2e-9 * height * k);
   EXPECT_LT(curvature, 1e-7 * height * k * k);

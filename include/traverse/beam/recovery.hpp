@@ -30,7 +30,7 @@ struct Response {
   double moment_rate = 0.0;  // d moment/dt, N m/s, where ViscousLag knows it
 };
 
-/// Moment, shear and axial force.
+/// Moment (N m), shear and axial force (N).
 using Forces = std::array<double, 3>;
 
 /// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.
@@ -57,6 +57,7 @@ class Recovery {
   const std::vector<double>& stations() const { return stations_; }
   /// Where the element of a station begins and ends, m.
   std::pair<double, double> element_of(std::size_t station) const;
+  /// Where a load on this line stands, m.
   double x_of(const ElementLoad& load) const {
     const Element& e = line_.mesh.element(load.element);
     return e.x + load.xi * e.length;
