@@ -48,7 +48,7 @@ build() {
 
 {
   flock 9  # two calls at once build one after the other
-  install_packages g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-real3.18-dev libopenmpi-dev openmpi-bin \
+  install_packages g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-real-dev libopenmpi-dev openmpi-bin \
     libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev libgtest-dev libbenchmark-dev python3-h5py \
     python3-matplotlib
   build

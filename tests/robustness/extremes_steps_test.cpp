@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "support/extremes.hpp"
+#include "support/paths.hpp"
 #include "support/program.hpp"
 
 namespace traverse::test {

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <thread>
 
+#include "support/paths.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 

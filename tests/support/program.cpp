@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <thread>
 
+#include "support/paths.hpp"
+
 namespace traverse::test {
 namespace {
 

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "support/paths.hpp"
 #include "traverse/app/run.hpp"
 #include "traverse/base/petsc.hpp"
 #include "traverse/options/input.hpp"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/counted_memory.hpp"
+#include "support/paths.hpp"
 #include "traverse/app/scene.hpp"
 #include "traverse/base/petsc.hpp"
 #include "traverse/integrate/stepper.hpp"

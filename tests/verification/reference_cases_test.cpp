@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "support/curve.hpp"
+#include "support/paths.hpp"
 
 namespace traverse::test {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/curve.hpp"
+#include "support/paths.hpp"
 
 namespace traverse::test {
 namespace {
