@@ -16,7 +16,8 @@ namespace {
 std::vector<std::string> datasets(const std::string& path) {
   std::vector<std::string> names;
   const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-  auto visit = [](hid_t root, const char* name, const auto* info, void* into) -> herr_t {  // H5O_info_t changes with HDF5
+  auto visit = [](hid_t root, const char* name, const auto* info,
+                  void* into) -> herr_t {  // H5O_info_t changes with HDF5
     if (info->type != H5O_TYPE_DATASET) return 0;
     const hid_t set = H5Dopen2(root, name, H5P_DEFAULT);
     const hid_t type = H5Dget_type(set);
