@@ -5,10 +5,11 @@
 #   RANKS=2 ./run.sh ...                                         on two ranks
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/scripts/setup.sh"
+locked set_up_program
 
 program=(build/traverse)
 if [ "${RANKS:-1}" != 1 ]; then
-  program=(mpirun --oversubscribe -n "$RANKS" "${program[@]}")
+  program=(mpirun -n "$RANKS" "${program[@]}")
 fi
 [ $# -gt 0 ] || set -- -options_file options/scenes/three_span_train.yml
 

@@ -3,6 +3,7 @@
 # The last line counts: N passed, N failed.
 set -euo pipefail
 source "$(dirname "${BASH_SOURCE[0]}")/scripts/setup.sh"
+locked set_up_tests
 
 status=0
 ctest --test-dir build -j "$(nproc)" --output-on-failure --no-tests=error "$@" | tee build/test.log || status=$?

@@ -1,17 +1,26 @@
-# Set-up, sourced by run.sh and test.sh: goes to the project's root, installs what is missing from Debian's own
-# packages, builds build/ in release mode and sets what Open MPI needs. Says nothing when there is nothing to do.
+# Set-up, sourced by run.sh and test.sh: goes to the project's root and sets what Open MPI needs. Its functions install
+# what is missing from the distribution's own packages and build build/ in release mode. Says nothing when there is
+# nothing to do.
 
 cd -P "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 mkdir -p build
 setup_log=build/setup.log
 
+# No name carries a version, so that Debian 12 and 13 and Ubuntu take what they have.
+program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-real-dev libopenmpi-dev openmpi-bin
+  libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev python3-h5py python3-matplotlib)
+test_packages=(libgtest-dev)
+benchmark_packages=(libbenchmark-dev)
+
+# One line that says what stopped, with the log's first line that names an error.
 fail() {
-  tail -n 40 "$setup_log" >&2
-  echo "$* The whole log is $setup_log." >&2
+  local cause
+  cause=$(grep -m 1 -E '^E: |[Ee]rror[: ]|^ninja: |not found' "$setup_log") || cause=$(tail -n 1 "$setup_log")
+  echo "$* ${cause:+$cause }(the whole log is $setup_log)" >&2
   exit 1
 }
 
-# Those of the named Debian packages that are not installed.
+# Those of the named packages that are not installed.
 missing_packages() {
   local installed name
   installed=$(dpkg-query -W -f '|${Package}:${db:Status-Status}|' "$@" 2>/dev/null) || true
@@ -20,7 +29,18 @@ missing_packages() {
   done
 }
 
-# Installs what is missing of the named packages. On other systems than Debian the user provides them.
+# Fetches the lists of packages, through the given command where it is not root that asks. It waits up to ten minutes for
+# another apt to end, as DPkg::Lock::Timeout does for installing; a source that is out of reach is not an error yet.
+update_lists() {
+  local tries
+  for tries in {1..120}; do
+    "$@" apt-get update 2>&1 | tee build/update.log
+    grep -q '^E: Could not get lock' build/update.log || return 0
+    sleep 5
+  done
+}
+
+# Installs what is missing of the named packages. On systems without apt the user provides them.
 install_packages() {
   local missing as_root=
   command -v apt-get >/dev/null || return 0
@@ -31,34 +51,54 @@ install_packages() {
   fi
   echo "Installing $missing" >&2
   # shellcheck disable=SC2086  # the list is meant to split
-  { $as_root apt-get update || true
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends -o Dpkg::Use-Pty=0 $missing
+  { update_lists $as_root
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends -o Dpkg::Use-Pty=0 \
+      -o DPkg::Lock::Timeout=600 $missing
   } >"$setup_log" 2>&1 </dev/null || fail "Packages could not be installed."
 }
 
-# Configures when that has not been done for this very folder, and builds what is out of date.
+# Whether build/ is configured for this very folder with all the given options of CMake, each as -DNAME=VALUE.
+configured() {
+  local option
+  [ -f build/build.ninja ] && grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" build/CMakeCache.txt || return 1
+  for option in "$@"; do
+    option=${option#-D}
+    grep -qxE "${option%%=*}:[A-Z]+=${option#*=}" build/CMakeCache.txt || return 1
+  done
+}
+
+# build TARGET [-DOPTION=VALUE ...]: configures where that has to be done, and builds what is out of date.
 build() {
-  if [ ! -f build/build.ninja ] || ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$PWD" build/CMakeCache.txt; then
-    cmake --fresh --preset release >"$setup_log" 2>&1 || fail "CMake could not configure."
+  local target=$1 fresh=
+  shift
+  if ! configured "$@"; then
+    configured || fresh=--fresh
+    cmake $fresh --preset release "$@" >"$setup_log" 2>&1 || fail "CMake could not configure."
   fi
-  cmake --build build 2>&1 | awk -v log_file="$setup_log" '
+  cmake --build build --target "$target" 2>&1 | awk -v log_file="$setup_log" '
     /^\[[1-9]/ && !said++ { print "Building Traverse, log in " log_file > "/dev/stderr" }
     { print > log_file }' || fail "Traverse could not be built."
 }
 
-{
-  flock 9  # two calls at once build one after the other
-  install_packages g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-real-dev libopenmpi-dev openmpi-bin \
-    libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev libgtest-dev libbenchmark-dev python3-h5py \
-    python3-matplotlib
-  build
-} 9>build/setup.lock
+# The program alone; the program and its tests; the benchmarks too.
+set_up_program() { install_packages "${program_packages[@]}" && build traverse; }
+set_up_tests() { install_packages "${program_packages[@]}" "${test_packages[@]}" && build all -DTRAVERSE_TESTS=ON; }
+set_up_benchmarks() {
+  install_packages "${program_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}" &&
+    build all -DTRAVERSE_TESTS=ON -DTRAVERSE_BENCHMARKS=ON
+}
+
+# locked FUNCTION: two calls at once build one after the other.
+locked() { { flock 9; "$@"; } 9>build/setup.lock; }
 
 if [ "$(id -u)" = 0 ]; then
   export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
-# One machine: no search for networks, displays or accelerators; no process reads another's memory, which containers
-# forbid. What speeds up a single rank further the programs set themselves.
+# One machine: no search for networks, displays or accelerators; more ranks than processors are allowed, in Open MPI 4's
+# words and in 5's. What speeds up a single rank further the programs set themselves.
 export OMPI_MCA_pml="${OMPI_MCA_pml:-ob1}" OMPI_MCA_btl="${OMPI_MCA_btl:-self,vader}"
+export OMPI_MCA_rmaps_base_oversubscribe="${OMPI_MCA_rmaps_base_oversubscribe:-1}"
+export PRTE_MCA_rmaps_default_mapping_policy="${PRTE_MCA_rmaps_default_mapping_policy:-:oversubscribe}"
+# No process reads another's memory, which containers forbid.
 export OMPI_MCA_btl_vader_single_copy_mechanism="${OMPI_MCA_btl_vader_single_copy_mechanism:-none}"
 export HWLOC_COMPONENTS="${HWLOC_COMPONENTS:--gl,-opencl}" HWLOC_HIDE_ERRORS="${HWLOC_HIDE_ERRORS:-2}"

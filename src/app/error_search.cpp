@@ -14,19 +14,19 @@ namespace traverse::app {
 namespace {
 
 // Of the wanted error, for the step and for the mesh each; less where errors fall too slowly to be told well.
-constexpr double share = 0.4, small_share = 0.25, small_error = 3e-5;
+constexpr double usual_share = 0.4, small_share = 0.25, small_error = 3e-5;
 // Times a measured size that an error is extrapolated to: by a measured order, by a supposed one, and where measuring
 // would cost more than it is worth.
 constexpr double farthest = 2.2, supposed = 1.5, at_most = 2.5;
-constexpr double best_effort = 10.0;            // times the wanted error, of what is refused
-constexpr double unsettled = 0.5, slow = 0.75;  // orders below which an error does not fall
+constexpr double best_effort = 10.0;                  // times the wanted error, of what is refused
+constexpr double unsettled_order = 0.5, slow = 0.75;  // orders below which an error does not fall
 constexpr int most_rounds = 14;
-constexpr double finest = 32.0;          // times the first step
+constexpr double finest_factor = 32.0;   // times the first step
 constexpr double hardly_anything = 1.5;  // s of trial runs, estimated
-constexpr double part_of_run = 0.7;      // for trial runs
+constexpr double trials_of_run = 0.7;    // for trial runs
 constexpr double farthest_guess = 8.0;   // of the run's mesh and step, for that
 constexpr double passed_over = 2.0;      // times the wanted error, on the way to longer steps
-constexpr double between = 0.5;          // of the wanted error, where it is only known for shorter and longer steps
+constexpr double share_between = 0.5;    // of the wanted error, where it is only known for shorter and longer steps
 constexpr double most_growth = 4.0;
 constexpr int most_elements_a_bay = 8, most_elements_in_all = 1200;
 
@@ -36,7 +36,7 @@ double two_digits(double x) {
   return std::floor(x / unit * (1.0 + 1e-9)) * unit;
 }
 
-int most_elements(const Scene& scene) {
+int most_trial_elements(const Scene& scene) {
   const int dense = most_elements_in_all / static_cast<int>(std::min<std::size_t>(scene.beam->spans.size(), 1000));
   return std::max(scene.beam->track ? most_elements_a_bay : std::clamp(dense, 32, 256), 4 * mesh_of(scene));
 }
@@ -51,9 +51,9 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const Structure& str
       trials_(comm, shortened(scene, horizon_)),
       open_mesh_(scene.mesh_open),
       open_step_(!scene.time_step),
-      wanted_((scene.accuracy > small_error ? share : small_share) * scene.accuracy),
+      wanted_((scene.accuracy > small_error ? usual_share : small_share) * scene.accuracy),
       mesh_(mesh_of(scene)),
-      most_elements_(most_elements(scene)) {
+      most_elements_(most_trial_elements(scene)) {
   for (Promise& p : promises_) p.present = p.kept = true;
   const double omega = structure.omega ? structure.omega->first : 0.0;
   const FirstSteps steps = first_steps(scene, omega, horizon_);
@@ -204,7 +204,7 @@ double ErrorSearch::factor_of_step() const {
   double least = std::min(2.0, room_to_coarsen(time_));
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!promised(q) || time_[q].value == 0.0) continue;
-    const double growth = (*coarser_)[q].value / time_[q].value, allowed = between * wanted_ / time_[q].value;
+    const double growth = (*coarser_)[q].value / time_[q].value, allowed = share_between * wanted_ / time_[q].value;
     if (growth > allowed) least = std::min(least, std::exp2(std::log(allowed) / std::log(growth)));
   }
   return std::max(least, 1.0);
@@ -228,11 +228,11 @@ void ErrorSearch::refuse_what_does_not_settle() {
     const Error &t = time_[q], &s = space_[q];
     const bool long_step = open_step_ && t.room(wanted_) < 1.0, long_element = open_mesh_ && s.room(wanted_) < 1.0;
     crawls_[q] = t.known && t.order < slow && 4.0 * step_ <= first_step_ ? crawls_[q] + 1 : 0;
-    if (long_step && step_ <= first_step_ / finest)
+    if (long_step && step_ <= first_step_ / finest_factor)
       refuse(q, fmt::format("steps of {:.2g} s still leave an error of {:.1g}", step_, t.value));
     else if (long_step && crawls_[q] > 1)
       refuse(q, fmt::format("it does not settle as steps are halved ({:.1g} with {:.2g} s)", t.value, step_));
-    else if (long_element && s.known && s.order < unsettled && 4 * mesh_ > most_elements_)
+    else if (long_element && s.known && s.order < unsettled_order && 4 * mesh_ > most_elements_)
       refuse(q, fmt::format("it does not settle as elements are halved ({:.1g} with {} a {})", s.value, mesh_,
                             unit_of_mesh()));
     else if (long_element && s.room(wanted_) < 1.0 / farthest && 2 * mesh_ > most_elements_)
@@ -271,7 +271,7 @@ void ErrorSearch::refuse_what_is_given() {
 bool ErrorSearch::worth_it(double step, int mesh) const {
   const auto guess = [&](const Errors& errors) { return std::clamp(room(errors), 1.0 / farthest_guess, 1.0); };
   const double run = trials_.seconds(static_cast<int>(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
-  return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, part_of_run * run);
+  return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, trials_of_run * run);
 }
 
 }  // namespace traverse::app

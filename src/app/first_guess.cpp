@@ -11,7 +11,7 @@ namespace {
 
 constexpr int first_bay = 2;
 constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 EI/k)^(1/4)
-constexpr double steps_a_period = 12.0, steps_a_crossing = 24.0, steps_a_wave = 20.0, steps_a_sleeper = 8.0;
+constexpr double trial_steps_a_period = 12.0, steps_a_crossing = 24.0, trial_steps_a_wave = 20.0, steps_a_sleeper = 8.0;
 constexpr double part_of_run = 1e-2;
 // Step times frequency of the contacts, rad, at an accuracy of 1e-2 and at the finest; it falls as accuracy^0.22, which
 // is what coaches on Hertz wheels were found to need.
@@ -56,10 +56,10 @@ double contact_frequency(const Scene& scene) {
 
 FirstSteps first_steps(const Scene& scene, double omega, double duration) {
   double step = part_of_run * duration;
-  if (omega > 0.0) step = std::min(step, 2.0 * std::numbers::pi / omega / steps_a_period);
+  if (omega > 0.0) step = std::min(step, 2.0 * std::numbers::pi / omega / trial_steps_a_period);
   if (const double speed = greatest_speed(scene); speed > 0.0) {
     const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
-    step = std::min({step, span / speed / steps_a_crossing, shortest_wave(scene) / speed / steps_a_wave});
+    step = std::min({step, span / speed / steps_a_crossing, shortest_wave(scene) / speed / trial_steps_a_wave});
   }
   if (scene.output.interval) step = std::min(step, *scene.output.interval);
   const double contact = contact_frequency(scene);

@@ -9,10 +9,10 @@
 namespace traverse::app {
 namespace {
 
-constexpr double steps_a_period = 100.0;   // of the first period or a span's crossing, at an accuracy of 1e-3
-constexpr double steps_a_wave = 20.0;      // of the track or of a wheel out of round, at that accuracy
-constexpr double samples_a_period = 20.0;  // of a bridge by its modes, where the interval is left open
-constexpr double mechanism_step = 1e-3;    // s, where there is no beam to judge by
+constexpr double first_steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
+constexpr double steps_a_wave = 20.0;           // of the track or of a wheel out of round, at that accuracy
+constexpr double samples_a_period = 20.0;       // of a bridge by its modes, where the interval is left open
+constexpr double mechanism_step = 1e-3;         // s, where there is no beam to judge by
 constexpr double least_steps_a_span = 10.0;
 constexpr double most_steps = 1e10;
 constexpr double stored_samples = 2000.0;  // at most, where the interval is left open
@@ -65,7 +65,7 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
   const double speed = greatest_speed(scene);
   const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
   if (speed > 0.0) scale = std::min(scale, span / speed);
-  const double step = round_down(scale / steps_a_period * finer);
+  const double step = round_down(scale / first_steps_a_period * finer);
   if (wave_step < step) return by_waves();
   notes.push_back(fmt::format(
       "time step {:g} s: from accuracy {:g}, the first period and the crossing of a span; -ts_dt changes it", step,

@@ -19,12 +19,12 @@ constexpr double rough_on_bed = 1.0, longest_on_bed = 2.0;
 // Peaks of a bridge of three spans under a moving force (R6): esdirk4 is 3e-3 off at 12 steps a first period, 5e-3 at
 // 7, 3 % at 5 and 5 % at 4; the second-order genalpha 1 % at 36 and 5 % at 12. One span under a sprung mass (R3) is
 // right to 2e-4 at 5.
-constexpr double least_steps_a_period = 4.0, steps_a_period = 8.0, second_order_steps_a_period = 40.0;
+constexpr double least_steps_a_period = 4.0, good_steps_a_period = 8.0, second_order_steps_a_period = 40.0;
 // A bridge that is crossed in so many first periods deflects as at rest, to a hundredth, whatever the step.
 constexpr double periods_of_a_slow_crossing = 50.0;
 
 // Wheel forces over a bump of 2 m: a hundredth off at 20 steps, a tenth at 8, nearly half at 4.
-constexpr double least_steps_a_wave = 8.0, steps_a_wave = 20.0;
+constexpr double least_steps_a_wave = 8.0, good_steps_a_wave = 20.0;
 // Sleepers and contacts that oscillate stir wheel forces less: a part of what varies is lost.
 constexpr double steps_a_sleeper = 4.0, steps_an_oscillation = 10.0;
 
@@ -42,11 +42,11 @@ void check_waves(const Scene& scene, double step, std::vector<std::string>& note
         fmt::format("ts_dt = {:g}: the track's shortest wave, {:g} m, is passed in {:g} s; allowed: at most {:g} s, or "
                     "leave ts_dt out",
                     step, wave, passage, passage / least_steps_a_wave));
-  if (step > passage / steps_a_wave)
+  if (step > passage / good_steps_a_wave)
     notes.push_back(fmt::format(
         "steps of {:g} s are long for the track's shortest wave, {:g} m, passed in {:g} s: wheel forces are rough; "
         "-ts_dt {:.2g} resolves it",
-        step, wave, passage, passage / steps_a_wave));
+        step, wave, passage, passage / good_steps_a_wave));
 }
 
 // The bridge does not notice single sleepers, wheels do.
@@ -70,7 +70,7 @@ void check_periods(const Scene& scene, double step, double period, bool high_ord
         "ts_dt = {:g}: the first period of the beam is {:g} s, which the load excites; allowed: at most {:g} s, or "
         "leave ts_dt out",
         step, period, period / least_steps_a_period));
-  const double good = period / (high_order ? steps_a_period : second_order_steps_a_period);
+  const double good = period / (high_order ? good_steps_a_period : second_order_steps_a_period);
   if (step <= good) return;
   notes.push_back(
       fmt::format("steps of {:g} s are long for the first period of {:g} s{}: deflections may be some per cent off; "

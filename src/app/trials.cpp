@@ -14,7 +14,7 @@ constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: 
 constexpr std::size_t few_spans = 24;    // are all kept
 constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
 constexpr double roughness = 1.3;        // times the work on vehicles on a rough track
-constexpr double rounding = 1e-9;
+constexpr double same_node = 1e-9;
 constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;
 constexpr std::size_t crossed_in_full = 3;  // spans
@@ -24,8 +24,8 @@ bool is_node(const beam::BeamModel& beam, double x) {
   double left = 0.0;
   for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
     const double node = (x - left) / beam.spans[i] * beam.elements[i];
-    if (x <= left + beam.spans[i] * (1.0 + rounding))
-      return std::abs(node - std::round(node)) < rounding * beam.elements[i];
+    if (x <= left + beam.spans[i] * (1.0 + same_node))
+      return std::abs(node - std::round(node)) < same_node * beam.elements[i];
   }
   return false;
 }

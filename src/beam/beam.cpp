@@ -12,7 +12,7 @@ namespace traverse::beam {
 namespace {
 
 /// First columns of the parts that do not touch: spans between separate joints. A track joins them all.
-std::vector<int> parts_of(const Line& bridge, bool track, int columns) {
+std::vector<int> columns_of_parts(const Line& bridge, bool track, int columns) {
   std::vector<int> begins = {0};
   for (int end = 1; end < bridge.mesh.spans() && !track; ++end) {
     const auto [left, right] = bridge.mesh.nodes_at(end);
@@ -93,7 +93,7 @@ Beam::Beam(MPI_Comm comm, BeamModel model)
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm_, &rank);
   MPI_Comm_size(comm_, &ranks);
-  parts_ = parts_of(bridge_, rail_.has_value(), columns());
+  parts_ = columns_of_parts(bridge_, rail_.has_value(), columns());
   cuts_ = cut(parts_, ranks);
   first_ = cuts_[index(rank)];
   local_ = cuts_[index(rank + 1)] - first_;

@@ -9,7 +9,7 @@ namespace traverse::coupling {
 
 namespace {
 constexpr std::size_t kept_values = std::size_t{8} << 20;  // doubles in columns that are not in use
-constexpr double negligible = 1e-18;                       // of a column's peak
+constexpr double died_out = 1e-18;                         // of a column's peak
 constexpr std::ptrdiff_t least_margin = 32;                // nodes
 constexpr int short_part = 100;                            // columns: statics lose 0.02 eps n^4
 }  // namespace
@@ -167,7 +167,7 @@ std::ptrdiff_t Compliance::solve_window(const BeamFactor& factor, int element) {
     }
     if (operator_.shared()) MPI_Allreduce(MPI_IN_PLACE, sizes.data(), 2 * m_, MPI_DOUBLE, MPI_MAX, beam_.comm());
     bool died = true;
-    for (int j = 0; j < m_; ++j) died = died && sizes[2 * j + 1] <= negligible * sizes[2 * j];
+    for (int j = 0; j < m_; ++j) died = died && sizes[2 * j + 1] <= died_out * sizes[2 * j];
     if (died || margin_ > beam_.columns()) return first;
   }
 }
@@ -188,8 +188,8 @@ void Compliance::keep(Column& c, std::ptrdiff_t first, int base_unknown) const {
     double peak = 0.0;
     for (int i = 0; i < n; ++i) peak = std::max(peak, std::abs(x[i]));
     int low = 0, high = n;
-    while (low < high && std::abs(x[low]) <= negligible * peak) ++low;
-    while (high > low && std::abs(x[high - 1]) <= negligible * peak) --high;
+    while (low < high && std::abs(x[low]) <= died_out * peak) ++low;
+    while (high > low && std::abs(x[high - 1]) <= died_out * peak) --high;
     if (low < high) {
       lowest = std::min(lowest, low);
       highest = std::max(highest, high);

@@ -9,7 +9,7 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double unbounded = std::numeric_limits<double>::infinity();
 // Within this part of its radius from a kink a wheel may touch on either side of it.
 constexpr double nearby = 0.1;
 constexpr double at_end = 1e-10;  // m: of a patch
@@ -87,7 +87,7 @@ void Fleet::find_points(WheelContact& c) {
   const track::TouchingPoints found = track::touching_points(*profile_, wheel(c).radius, coordinates(c).x());
   std::array<contact::Kinematics, track::most_points> kinematics;
   kinematics.fill({-wheel(c).radius, 0.0, 0.0});
-  double deepest = -infinite;
+  double deepest = -unbounded;
   for (int i = 0; i < track::most_points; ++i) {
     const WheelContact& old = point(c, i);
     if (old.candidates == 0) continue;
@@ -128,7 +128,7 @@ void Fleet::place_wheels() {
     if (c.further > 0)
       find_points(c);
     else if (!c.is_further)
-      find_patches(c, x, x - near, x + near, -infinite, infinite);
+      find_patches(c, x, x - near, x + near, -unbounded, unbounded);
   }
   for (const WheelContact& c : wheels)
     for (int i = 0; i < c.candidates; ++i)
@@ -163,7 +163,7 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
   const Eigen::Vector3d qd = velocities(c);
   Touch candidate;
   candidate.ahead = c.touch.ahead;
-  double deepest = -infinite;
+  double deepest = -unbounded;
   for (int i = 0; i < c.candidates; ++i) {
     const std::ptrdiff_t at = c.slots[i] < 0 ? 0 : m * c.slots[i];
     if (!coupling::touch(c.patches[i], *profile_, wheel(c).radius, q, qd, per_node, v + at, w + at, candidate, find))

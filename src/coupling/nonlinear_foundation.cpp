@@ -10,15 +10,15 @@ namespace {
 
 using beam::Direction;
 
-constexpr double tolerance = 1e-12;  // of the greatest force: what tangents may leave
-constexpr int most_iterations = 40;  // of a stage; else the step is cut
+constexpr double tolerance = 1e-12;        // of the greatest force: what tangents may leave
+constexpr int most_stage_iterations = 40;  // of a stage; else the step is cut
 constexpr int most_static_iterations = 100;
 constexpr double near_tangent = 0.1;  // of a stiffness: tangents that are kept
 constexpr int patience = 4;           // iterations with them, then only with the true ones
 constexpr double loose = 1e-6;        // of the reference stiffness: what holds in statics where nothing touches
 constexpr double overshoot = 0.5;     // of the slope at the start of a step, at its end
 constexpr int most_trials = 50;       // for the length of a step
-constexpr double rounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double unit_rounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 bool near(double kept, double wanted, double share) {
   return std::abs(kept - wanted) <= share * std::max(std::abs(kept), std::abs(wanted));
@@ -243,8 +243,8 @@ NonlinearFoundation::Verdict NonlinearFoundation::judge(const double* z) {
     p.state = force_at(p, p.zeta);
     const double size = std::abs(p.still) + std::abs(p.zeta) + std::abs(p.zeta0) + p.its.law.gap;
     const double rate = std::abs(p.still_rate) + shift_ * (std::abs(p.zeta) + std::abs(p.zeta0));
-    const double floor = rounding * ((std::abs(p.state.by_displacement) + std::abs(tangent.k[n])) * size +
-                                     (p.state.by_rate + tangent.c[n]) * rate);
+    const double floor = unit_rounding * ((std::abs(p.state.by_displacement) + std::abs(tangent.k[n])) * size +
+                                          (p.state.by_rate + tangent.c[n]) * rate);
     p.misfit = std::abs(p.state.force - p.linear_force) - floor;
     if (!std::isfinite(p.zeta)) p.misfit = std::numeric_limits<double>::infinity();
     greatest[0] = std::max(greatest[0], p.misfit);
@@ -252,7 +252,7 @@ NonlinearFoundation::Verdict NonlinearFoundation::judge(const double* z) {
   }
   MPI_Allreduce(MPI_IN_PLACE, greatest, 2, MPI_DOUBLE, MPI_MAX, comm_);
   if (greatest[0] <= tolerance * std::max(greatest[1], point_load_)) return Verdict::settled;
-  if (!std::isfinite(greatest[0]) || ++iteration_ >= (shift_ > 0.0 ? most_iterations : most_static_iterations))
+  if (!std::isfinite(greatest[0]) || ++iteration_ >= (shift_ > 0.0 ? most_stage_iterations : most_static_iterations))
     return Verdict::failed;
   const double share = iteration_ == 1 ? 1.0 : best_share();  // of the first step the beginning is not in balance
   for (Point& p : points_) {

@@ -9,7 +9,7 @@
 namespace traverse::coupling {
 namespace {
 
-constexpr double same_place = 1e-9;     // m or rad: a step's last stage is its end
+constexpr double same_position = 1e-9;  // m or rad: a step's last stage is its end
 constexpr double measured_steps = 2.0;  // of one stage, from one look at the beam's dissipation to the next
 
 /// Free response of a fused stage, whose vectors v and w are never formed.
@@ -288,7 +288,7 @@ void System::finish_step(double* y) {
     double next = 0.0;
     for (int j = 0; j < rule.known; ++j) next += rule.a_next[j] * m.pdd[j][i];
     m.pdd[0][i] = next;
-    if (std::abs(m.p[i] - p_[i]) > same_place) signs_ |= VehicleShare::moved;
+    if (std::abs(m.p[i] - p_[i]) > same_position) signs_ |= VehicleShare::moved;
   }
   const bool counts = share_.dealt() || rank_ == 0;  // of vehicles and contacts
   for (int j = 0; j < rule.known; ++j) {

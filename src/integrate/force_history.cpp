@@ -6,8 +6,8 @@
 namespace traverse::integrate {
 namespace {
 
-constexpr double most_numbers = 2e8;  // 1.6 GB
-constexpr double same = 1e-12;        // of the bridge: distances that are one
+constexpr double most_numbers = 2e8;     // 1.6 GB
+constexpr double same_distance = 1e-12;  // of the bridge: distances that are one
 
 /// Adds force*influence at x, as a polynomial of a distance that adds to x.
 void add(const PiecewiseCubic& influence, std::size_t piece, double force, double x, double* sum) {
@@ -37,8 +37,9 @@ ForceHistory::ForceHistory(const PiecewiseCubic& influence, const coupling::Movi
       if (at > x) start.push_back(at - x);
   }
   std::sort(start.begin(), start.end());
-  start.erase(std::unique(start.begin(), start.end(), [&](double a, double b) { return b - a <= same * length; }),
-              start.end());
+  start.erase(
+      std::unique(start.begin(), start.end(), [&](double a, double b) { return b - a <= same_distance * length; }),
+      start.end());
   coefficients.assign(4 * channels * start.size(), 0.0);
   for (std::size_t i = 0; i < start.size(); ++i) {
     double middle = start[i];

@@ -88,7 +88,7 @@ void take_step(TS ts, Data& data, double* y) {
   }
 }
 
-PetscErrorCode step(TS ts) {
+PetscErrorCode step_second_order(TS ts) {
   return guard([&] {
     double* y = nullptr;
     check(VecGetArray(ts->vec_sol, &y));
@@ -111,7 +111,7 @@ PetscErrorCode reset(TS ts) {
   return 0;
 }
 
-PetscErrorCode destroy(TS ts) {
+PetscErrorCode destroy_second_order(TS ts) {
   delete static_cast<Data*>(ts->data);
   ts->data = nullptr;
   return 0;
@@ -128,12 +128,12 @@ PetscErrorCode error_of_step(TS ts, NormType, PetscInt* order, PetscReal* error)
   });
 }
 
-PetscErrorCode create(TS ts) {
+PetscErrorCode create_second_order(TS ts) {
   ts->ops->setup = set_up;
-  ts->ops->step = step;
+  ts->ops->step = step_second_order;
   ts->ops->setfromoptions = read_options;
   ts->ops->reset = reset;
-  ts->ops->destroy = destroy;
+  ts->ops->destroy = destroy_second_order;
   ts->ops->evaluatewlte = error_of_step;
   ts->data = new Data;
   return 0;
@@ -161,8 +161,8 @@ PetscErrorCode create_ladder(TSAdapt adapt) {
 
 void register_second_order() {
   check(TSAdaptRegister(ladder_adapt, create_ladder));
-  check(TSRegister(esdirk4_type, create));
-  check(TSRegister(genalpha_type, create));
+  check(TSRegister(esdirk4_type, create_second_order));
+  check(TSRegister(genalpha_type, create_second_order));
 }
 
 bool is_second_order(TS ts) { return is(ts, esdirk4_type) || is(ts, genalpha_type); }

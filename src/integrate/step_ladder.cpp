@@ -6,13 +6,13 @@
 namespace traverse::integrate {
 namespace {
 
-constexpr int lowest = 16;         // rung that errors lead to
-constexpr int most_fallen = 4;     // rungs at once
-constexpr double growth = 16.0;    // of the error from a rung to the next: local errors of order 4
-constexpr double aim = 0.5;        // of the tolerance, on another rung
-constexpr int calm_steps = 2;      // before a longer one
-constexpr double same = 1e-6;      // of a step: lengths that differ by rounding
-constexpr double rounding = 1e-9;  // of a step
+constexpr int lowest = 16;          // rung that errors lead to
+constexpr int most_fallen = 4;      // rungs at once
+constexpr double growth = 16.0;     // of the error from a rung to the next: local errors of order 4
+constexpr double aim = 0.5;         // of the tolerance, on another rung
+constexpr int calm_steps = 2;       // before a longer one
+constexpr double same_step = 1e-6;  // of a step: lengths that differ by rounding
+constexpr double rounding = 1e-9;   // of a step
 
 }  // namespace
 
@@ -29,15 +29,15 @@ int StepLadder::rung_within(double most) const {
 }
 
 bool StepLadder::judge(double h, double error) {
-  if (!(error <= 1.0) && h > length(lowest) * (1.0 + same)) {
-    int rung = rung_within(h * (1.0 - same));
+  if (!(error <= 1.0) && h > length(lowest) * (1.0 + same_step)) {
+    int rung = rung_within(h * (1.0 - same_step));
     const int last = std::min(lowest, rung + most_fallen - 1);
     while (rung < last && !(error * std::pow(length(rung) / h, std::log2(growth)) <= aim)) ++rung;
     rung_ = std::max(rung, rung_);
     calm_ = 0;
     return false;
   }
-  if (h < wanted() * (1.0 - same)) return true;  // it says little of longer ones
+  if (h < wanted() * (1.0 - same_step)) return true;  // it says little of longer ones
   calm_ = error * growth <= aim ? calm_ + 1 : 0;
   if (rung_ > 0 && calm_ >= calm_steps) {
     --rung_;
@@ -50,7 +50,7 @@ double StepLadder::towards(double left, double most) const {
   const int first = std::max(rung_, rung_within(most));
   for (int rung = first; rung <= std::max(first, lowest); ++rung) {
     const double count = std::round(left / length(rung));
-    if (count >= 1.0 && std::abs(left - count * length(rung)) <= same * length(rung))
+    if (count >= 1.0 && std::abs(left - count * length(rung)) <= same_step * length(rung))
       return count == 1.0 ? left : length(rung);
   }
   const double h = length(first);

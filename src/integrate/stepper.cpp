@@ -25,7 +25,7 @@ constexpr int most_trials = 40;         // of a step's end at the change of a co
 constexpr double restart_growth = 2.0;  // steps of a multistep method may not grow faster
 constexpr long steps_unseen = 16;       // between two looks at the bounds of the motion, which cost a pass over it
 
-bool is(TS ts, const char* type) {
+bool has_type(TS ts, const char* type) {
   PetscBool same = PETSC_FALSE;
   check(PetscObjectTypeCompare(reinterpret_cast<PetscObject>(static_cast<TS>(ts)), type, &same));
   return same == PETSC_TRUE;
@@ -84,10 +84,10 @@ void Stepper::set_up_type() {
     return;
   }
   check(VecDuplicate(y_, before_.out()));
-  implicit_ = !is(ts_, TSRK);
-  multistep_ = is(ts_, TSBDF);
+  implicit_ = !has_type(ts_, TSRK);
+  multistep_ = has_type(ts_, TSBDF);
   bool imex = false;
-  if (is(ts_, TSARKIMEX)) {
+  if (has_type(ts_, TSARKIMEX)) {
     PetscBool fully = PETSC_TRUE;
     check(TSARKIMEXGetFullyImplicit(ts_, &fully));
     imex = fully != PETSC_TRUE;
@@ -119,7 +119,7 @@ std::string Stepper::method() const {
   TSType type = nullptr;
   check(TSGetType(ts_, &type));
   std::string text = type;
-  if (is(ts_, TSARKIMEX)) {
+  if (has_type(ts_, TSARKIMEX)) {
     TSARKIMEXType which = nullptr;
     check(TSARKIMEXGetType(ts_, &which));
     text = std::string("arkimex ") + which + (implicit_part_ == Part::all ? ", implicit" : ", beam implicit");
@@ -131,7 +131,7 @@ std::string Stepper::method() const {
   return text;
 }
 
-bool Stepper::high_order() const { return is(ts_, esdirk4_type) || is(ts_, TSARKIMEX); }
+bool Stepper::high_order() const { return has_type(ts_, esdirk4_type) || has_type(ts_, TSARKIMEX); }
 
 double* Stepper::state() {
   double* array = nullptr;

@@ -22,7 +22,7 @@ void show(const ModalMotion& motion, Vec y) {
   check(VecRestoreArray(y, &values));
 }
 
-PetscErrorCode step(TS ts) {
+PetscErrorCode step_modal(TS ts) {
   return base::guard([&] {
     motion_of(ts).advance(ts->ptime + ts->time_step);
     ts->ptime += ts->time_step;
@@ -34,15 +34,15 @@ PetscErrorCode view(TS ts, PetscViewer viewer) {
   return PetscViewerASCIIPrintf(viewer, "  %d modes, exact in time\n", static_cast<int>(motion_of(ts).q().size()));
 }
 
-PetscErrorCode destroy(TS ts) {  // the motion is its owner's
+PetscErrorCode destroy_modal(TS ts) {  // the motion is its owner's
   ts->data = nullptr;
   return 0;
 }
 
-PetscErrorCode create(TS ts) {
-  ts->ops->step = step;
+PetscErrorCode create_modal(TS ts) {
+  ts->ops->step = step_modal;
   ts->ops->view = view;
-  ts->ops->destroy = destroy;
+  ts->ops->destroy = destroy_modal;
   ts->usessnes = PETSC_FALSE;
   ts->default_adapt_type = TSADAPTNONE;
   return 0;
@@ -51,7 +51,7 @@ PetscErrorCode create(TS ts) {
 }  // namespace
 
 base::Handle<TS> make_modal_ts(ModalMotion& motion) {
-  check(TSRegister(type_name, create));
+  check(TSRegister(type_name, create_modal));
   base::Handle<TS> ts;
   base::Handle<Vec> y;
   const auto size = static_cast<PetscInt>(2 * motion.q().size());

@@ -14,7 +14,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-struct Mode {
+struct DampedMode {
   Complex lambda;
   const Segment* segment = nullptr;
   int offset = 0;
@@ -63,15 +63,15 @@ std::vector<DampedPair> modes_of(const Segment& s, const beam::Rayleigh& ab, int
   return modes;
 }
 
-std::vector<Mode> lowest(const std::vector<Segment>& segments, const beam::Rayleigh& ab, int count) {
-  std::vector<Mode> modes;
+std::vector<DampedMode> lowest_damped(const std::vector<Segment>& segments, const beam::Rayleigh& ab, int count) {
+  std::vector<DampedMode> modes;
   for (const Segment& s : segments) {
     const int equal = static_cast<int>(s.offsets.size());
     for (const DampedPair& pair : modes_of(s, ab, (count + equal - 1) / equal)) {
       for (int offset : s.offsets) modes.push_back({pair.lambda, &s, offset, pair.shape});
     }
   }
-  std::stable_sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) {
+  std::stable_sort(modes.begin(), modes.end(), [](const DampedMode& a, const DampedMode& b) {
     return std::tuple(std::abs(a.lambda), a.segment->nodes[0] + a.offset) <
            std::tuple(std::abs(b.lambda), b.segment->nodes[0] + b.offset);
   });
@@ -85,7 +85,7 @@ DampedModes damped_modes(const beam::Beam& beam, int count, bool shapes) {
   auto segments = transverse_segments(beam, Damping::included);
   for (Segment& s : axial_segments(beam, Damping::included)) segments.push_back(std::move(s));
   DampedModes result;
-  for (const Mode& mode : lowest(segments, beam.rayleigh(), std::max(count, 0))) {
+  for (const DampedMode& mode : lowest_damped(segments, beam.rayleigh(), std::max(count, 0))) {
     result.lambda.push_back(mode.lambda);
     result.axial.push_back(mode.segment->axial ? 1 : 0);
     if (shapes) result.shape.push_back(nodal_shape(*mode.segment, mode.offset, mode.shape, beam.mesh().nodes()));

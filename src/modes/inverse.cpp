@@ -9,7 +9,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-MatrixXd product(const Band& A, double factor, const MatrixXd& X) {
+MatrixXd times(const Band& A, double factor, const MatrixXd& X) {
   MatrixXd Y = MatrixXd::Zero(X.rows(), X.cols());
   for (Eigen::Index c = 0; c < X.cols(); ++c) add_product(A, factor, X.col(c).data(), Y.col(c).data());
   return Y;
@@ -56,12 +56,12 @@ void Inverse::prepare_motions() {
   for (Eigen::Index c = 0; c < given.cols(); ++c) {
     given.col(c) = VectorXd::Map(s_.rigid[static_cast<std::size_t>(c)].data(), unknowns());
   }
-  const auto damping = [&](const MatrixXd& X) -> MatrixXd { return product(s_.M, ab_.a, X) + product(s_.D, 1.0, X); };
+  const auto damping = [&](const MatrixXd& X) -> MatrixXd { return times(s_.M, ab_.a, X) + times(s_.D, 1.0, X); };
   // Those of least damping first.
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> principal(given.transpose() * damping(given),
-                                                                     given.transpose() * product(s_.M, 1.0, given));
+                                                                     given.transpose() * times(s_.M, 1.0, given));
   motions_ = given * principal.eigenvectors();
-  mass_motions_ = product(s_.M, 1.0, motions_);
+  mass_motions_ = times(s_.M, 1.0, motions_);
   damped_motions_ = damping(motions_);
   rates_ = principal.eigenvalues();
   double least = 0.0;

@@ -15,7 +15,7 @@ namespace {
 using base::check;
 using Complex = std::complex<double>;
 
-constexpr double tolerance = 1e-11;  // of SLEPc, relative to the inverted eigenvalue
+constexpr double eigen_tolerance = 1e-11;  // of SLEPc, relative to the inverted eigenvalue
 constexpr int restarts = 2000;
 constexpr int few_unknowns = 64;   // by LAPACK, all modes at once
 constexpr double farthest = 1e-4;  // of lambda: what polishing may change
@@ -36,7 +36,7 @@ PetscErrorCode multiply(Mat matrix, Vec x, Vec y) {
   });
 }
 
-base::Handle<Mat> matrix(Inverse& inverse) {
+base::Handle<Mat> matrix_of(Inverse& inverse) {
   base::Handle<Mat> shell;
   const PetscInt n = inverse.size();
   check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &inverse, shell.out()));
@@ -46,7 +46,7 @@ base::Handle<Mat> matrix(Inverse& inverse) {
 
 class Spectrum {
  public:
-  Spectrum(Inverse& inverse, int eigenvalues, bool all) : inverse_(inverse), matrix_(matrix(inverse)) {
+  Spectrum(Inverse& inverse, int eigenvalues, bool all) : inverse_(inverse), matrix_(matrix_of(inverse)) {
     check(EPSCreate(PETSC_COMM_SELF, eps_.out()));
     check(EPSSetOperators(eps_, matrix_, nullptr));
     check(EPSSetProblemType(eps_, EPS_NHEP));
@@ -54,7 +54,7 @@ class Spectrum {
     check(EPSSetType(eps_, all ? EPSLAPACK : EPSKRYLOVSCHUR));
     if (!all) {
       const int subspace = std::min(inverse.size(), std::max(2 * eigenvalues, eigenvalues + 30));
-      check(EPSSetTolerances(eps_, tolerance, restarts));
+      check(EPSSetTolerances(eps_, eigen_tolerance, restarts));
       check(EPSSetDimensions(eps_, eigenvalues, subspace, PETSC_DEFAULT));
       const base::Handle<Vec> start = vector(start_vector(inverse.size(), 0));
       Vec raw = start;

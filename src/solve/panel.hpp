@@ -9,10 +9,14 @@
 // four times faster. Not so where nothing is optimised, nor under sanitizers, whose checks would make it huge.
 #if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 #define TRAVERSE_FLATTEN [[gnu::flatten]]
-#define TRAVERSE_UNROLL _Pragma("GCC unroll 8")
 #else
 #define TRAVERSE_FLATTEN
+#define TRAVERSE_KEEP_LOOPS
+#endif
+#ifdef TRAVERSE_KEEP_LOOPS
 #define TRAVERSE_UNROLL
+#else
+#define TRAVERSE_UNROLL _Pragma("GCC unroll 8")
 #endif
 
 namespace traverse::solve {

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 
 #include "traverse/base/error.hpp"
+#include "two_pi.hpp"
 
 namespace traverse::track {
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
 constexpr double least_fade = 20.0;    // m
 constexpr double least_corner = 5e-3;  // of slope: below it a wheel of 0.5 m bridges the corner by a micrometre
 constexpr double stations_a_wave = 16.0;

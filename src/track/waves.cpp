@@ -7,11 +7,12 @@
 #include <numbers>
 #include <utility>
 
+#include "two_pi.hpp"
+
 namespace traverse::track {
 namespace {
 
-constexpr double two_pi = 2.0 * std::numbers::pi;
-constexpr double stations_a_wave = 96.0;
+constexpr double table_stations_a_wave = 96.0;
 constexpr std::size_t kept = 4096;  // stations, a power of two
 
 using Lanes = Eigen::Array<double, Waves::lanes, 1>;
@@ -48,7 +49,7 @@ Waves::Waves(std::vector<double> amplitude, std::vector<double> frequency, std::
     : amplitude_(std::move(amplitude)),
       frequency_(std::move(frequency)),
       phase_(std::move(phase)),
-      spacing_(1.0 / (stations_a_wave * *std::max_element(frequency_.begin(), frequency_.end()))),
+      spacing_(1.0 / (table_stations_a_wave * *std::max_element(frequency_.begin(), frequency_.end()))),
       stations_(kept) {}
 
 Height Waves::sum(double s) const {

@@ -4,13 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "two_pi.hpp"
+
 namespace traverse::track {
-namespace {
-
-constexpr double two_pi = 2.0 * std::numbers::pi;
-
-}  // namespace
-
 double flat_depth(double length, double radius) { return length * length / (16.0 * radius); }
 
 RadiusGain radius_gain(const WheelShape& shape, double radius, double angle) {

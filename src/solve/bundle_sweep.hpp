@@ -1,15 +1,17 @@
+// Solves with a bundle: the bodies of Bundle<B> that blocks.hpp compiles.
+#pragma once
+
 #include <algorithm>
 #include <utility>
 
 #include "bundle.hpp"
 
 namespace traverse::solve {
-namespace {
 
 // What is swept at once, so that what a filler has written is still near, and what several sweeps share, too.
-constexpr std::ptrdiff_t tile = 128;
+inline constexpr std::ptrdiff_t tile = 128;
 
-constexpr unsigned all_chains = (1U << lanes) - 1U;
+inline constexpr unsigned all_chains = (1U << lanes) - 1U;
 
 /// Has the filler write the nodes of each chain up to those that its next steps need.
 class Filling {
@@ -37,8 +39,6 @@ class Filling {
   const std::array<Run, lanes>& runs_;
   std::array<std::ptrdiff_t, lanes> filled_ = {};
 };
-
-}  // namespace
 
 template <int B>
 LaneSweep<B> Bundle<B>::lane_sweep(const Columns& x) const {
@@ -239,22 +239,5 @@ void Bundle<B>::backward(const Columns& x, Range window, const ChainBorders<B, C
     }
   }
 }
-
-#define TRAVERSE_INSTANTIATE_COLUMNS(B, C)                                                            \
-  template void Bundle<B>::forward<C>(const Columns&, Range, NodeFiller*, ChainBorders<B, C>&) const; \
-  template void Bundle<B>::backward<C>(const Columns&, Range, const ChainBorders<B, C>&) const;       \
-  template void Bundle<B>::solve_alone<C>(const Columns&) const;
-#define TRAVERSE_INSTANTIATE(B)      \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 1) \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 2) \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 4) \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 8)
-TRAVERSE_INSTANTIATE(2)
-TRAVERSE_INSTANTIATE(3)
-TRAVERSE_INSTANTIATE(4)
-TRAVERSE_INSTANTIATE(5)
-TRAVERSE_INSTANTIATE(6)
-TRAVERSE_INSTANTIATE(7)
-TRAVERSE_INSTANTIATE(any_block)
 
 }  // namespace traverse::solve

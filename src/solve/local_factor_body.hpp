@@ -1,17 +1,19 @@
-#include "local_factor.hpp"
+// The bodies of LocalFactor<B> that blocks.hpp compiles.
+#pragma once
 
 #include <algorithm>
 
+#include "local_factor.hpp"
+
 namespace traverse::solve {
-namespace {
 
 // Fewer nodes are one part, two chains: separators would cost more than further chains would gain.
-constexpr std::ptrdiff_t nodes_worth_cutting = 512;
+inline constexpr std::ptrdiff_t nodes_worth_cutting = 512;
 
 // The way back through a bundle follows soon upon the way there, while its factors are in a cache.
-constexpr std::ptrdiff_t nodes_a_bundle = 16384;
+inline constexpr std::ptrdiff_t nodes_a_bundle = 16384;
 
-std::ptrdiff_t count_parts(std::ptrdiff_t nodes) {
+inline std::ptrdiff_t count_parts(std::ptrdiff_t nodes) {
   if (nodes < nodes_worth_cutting) return 1;
   return static_cast<std::ptrdiff_t>(parts_a_bundle) * std::max<std::ptrdiff_t>(1, nodes / nodes_a_bundle);
 }
@@ -21,8 +23,6 @@ bool is_zero(const Block<B>& block) {
   return std::all_of(block.data(), block.data() + std::ptrdiff_t{block.size()} * block.size(),
                      [](double entry) { return entry == 0.0; });
 }
-
-}  // namespace
 
 template <int B>
 LocalFactor<B>::LocalFactor(Extent<B> block, std::ptrdiff_t nodes, bool follows, bool followed)
@@ -220,22 +220,5 @@ void LocalFactor<B>::finish_separators(const Work& work, std::ptrdiff_t bundle) 
     store<C>(solution, work.x, begin(p));
   }
 }
-
-#define TRAVERSE_INSTANTIATE_COLUMNS(B, C)                                                                     \
-  template void LocalFactor<B>::eliminate<C>(const Columns&, int, Range, NodeFiller*, SeparatorPanels<B, C>&); \
-  template void LocalFactor<B>::substitute<C>(const Columns&, int, Range, const SeparatorPanels<B, C>&);
-#define TRAVERSE_INSTANTIATE(B)      \
-  template class LocalFactor<B>;     \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 1) \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 2) \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 4) \
-  TRAVERSE_INSTANTIATE_COLUMNS(B, 8)
-TRAVERSE_INSTANTIATE(2)
-TRAVERSE_INSTANTIATE(3)
-TRAVERSE_INSTANTIATE(4)
-TRAVERSE_INSTANTIATE(5)
-TRAVERSE_INSTANTIATE(6)
-TRAVERSE_INSTANTIATE(7)
-TRAVERSE_INSTANTIATE(any_block)
 
 }  // namespace traverse::solve

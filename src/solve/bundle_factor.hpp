@@ -1,16 +1,16 @@
+// Factors a bundle: the bodies of Bundle<B> that blocks.hpp compiles.
+#pragma once
+
 #include <algorithm>
 #include <cmath>
 
 #include "bundle.hpp"
 
 namespace traverse::solve {
-namespace {
 
 // The fill is dropped from the first node on where every entry is below this part of its largest value so far: far
 // below rounding, so that the solution is the exact one, and far above the range where numbers lose their digits.
-constexpr double negligible = 1e-30;
-
-}  // namespace
+inline constexpr double negligible = 1e-30;
 
 /// What a chain carries from one node to the next while factoring.
 template <int B>
@@ -162,13 +162,5 @@ typename Bundle<B>::Plan Bundle<B>::plan(Range window) const {
   }
   return result;
 }
-
-template class Bundle<2>;
-template class Bundle<3>;
-template class Bundle<4>;
-template class Bundle<5>;
-template class Bundle<6>;
-template class Bundle<7>;
-template class Bundle<any_block>;
 
 }  // namespace traverse::solve

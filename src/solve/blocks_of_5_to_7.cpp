@@ -1,0 +1,9 @@
+#include "blocks.hpp"
+
+namespace traverse::solve {
+
+TRAVERSE_COMPILE_BLOCK(5)
+TRAVERSE_COMPILE_BLOCK(6)
+TRAVERSE_COMPILE_BLOCK(7)
+
+}  // namespace traverse::solve
