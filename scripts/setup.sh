@@ -12,11 +12,14 @@ program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-re
 test_packages=(libgtest-dev)
 benchmark_packages=(libbenchmark-dev)
 
-# One line that says what stopped, with the log's first line that names an error.
+# One line that says what stopped, with what the log says of the first error: CMake says it on the lines that follow.
 fail() {
   local cause
-  cause=$(grep -m 1 -E '^E: |[Ee]rror[: ]|^ninja: |not found' "$setup_log") || cause=$(tail -n 1 "$setup_log")
-  echo "$* ${cause:+$cause }(the whole log is $setup_log)" >&2
+  cause=$(awk '/^CMake Error/ { cmake = 1; next }
+               cmake && /^ / { line = line $0; next }
+               cmake && line != "" || /^E: |error: |^ninja: / { print line != "" ? line : $0; exit }' "$setup_log" |
+    tr -s ' ')
+  echo "$* ${cause:-$(tail -n 1 "$setup_log")} (The whole log is $setup_log.)" >&2
   exit 1
 }
 
