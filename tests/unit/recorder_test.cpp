@@ -107,7 +107,7 @@ TEST_F(RecorderTest, WritesEveryDatasetOfTheTable) {
 TEST_F(RecorderTest, WritesAttributesOptionsAndSummary) {
   auto recorder = open(small_layout());
   recorder->add(sample_at(0));
-  recorder->shape({1.5, {0.0, -0.002, 0.0}});
+  recorder->shape({1.5, {0.0, 5.0, 10.0}, {0.0, -0.002, 0.0}});
   Summary summary;
   summary.deflection = {-0.002, 1.5, 5.0};
   summary.least_wheel = "vehicle 0, rear_wheel";
@@ -139,8 +139,10 @@ TEST_F(RecorderTest, WritesAttributesOptionsAndSummary) {
 
 TEST_F(RecorderTest, WritesModes) {
   auto recorder = open(small_layout());
-  const modes::Modes modes = {
-      .omega = {2.0 * std::numbers::pi, 30.0}, .axial = {0, 1}, .shape = {{0.0, 1.0, 0.0}, {0.5, 0.0, -1.0}}};
+  const modes::Modes modes = {.omega = {2.0 * std::numbers::pi, 30.0},
+                              .axial = {0, 1},
+                              .shape = {{0.0, 1.0, 0.0}, {0.5, 0.0, -1.0}},
+                              .x = {0.0, 5.0, 10.0}};
   recorder->modes(modes, 0.1, 0.002, 6.3, 30.0);
   recorder->finish({});
   const Reader reader(file_);
