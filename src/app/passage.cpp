@@ -62,7 +62,7 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
   if (!still_)
     notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s{}", method, plan_.end_time,
                                 plan_.interval * plan_.stored,
-                                plan_.ends_at_sample() ? "" : ", the end's own apart under /end"));
+                                plan_.ends_at_sample() || scene.sweep ? "" : ", the end's own apart under /end"));
 }
 
 void Passage::leave_out_rest(std::vector<std::string>& notes) {

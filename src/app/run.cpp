@@ -46,9 +46,7 @@ int run_modes(MPI_Comm comm, const Scene& scene, Structure& structure, std::vect
   results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);
   if (damping) recorder.damped_modes(damped);
-  results::Summary summary;
-  summary.ended = "reached its end";
-  recorder.finish(summary);
+  recorder.finish_with({{"ended", "reached its end"}});
   if (rank == 0) fmt::print("results  {}\n", scene.output.file);
   return 0;
 }

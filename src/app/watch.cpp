@@ -210,6 +210,13 @@ const Peaks& Watch::finished_peaks() {
   return peaks_;
 }
 
+const results::Summary& Watch::finished_extremes() {
+  summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, finished_peaks().largest(wheel_force).value);
+  note_separations();
+  if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
+  return summary_;
+}
+
 results::Summary Watch::finish() {
   const Peaks& peaks = finished_peaks();
   const auto extreme = [&](Quantity q) {
@@ -221,9 +228,7 @@ results::Summary Watch::finish() {
     summary_.acceleration = extreme(acceleration);
     summary_.moment = extreme(moment);
   }
-  summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, peaks.largest(wheel_force).value);
-  note_separations();
-  if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
+  finished_extremes();
   if (beam_ == nullptr) return summary_;
   int some = worst_.v.empty() && system_.beam_unknowns() > 0 ? 0 : 1;
   MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());

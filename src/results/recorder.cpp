@@ -103,7 +103,7 @@ struct Recorder::Impl {
   void add(const Sample& sample);
   void end(const Sample& sample);
   void flush();
-  void summarise(const Summary& summary);
+  void write(const std::string& object, const Attribute& attribute);
   /// Runs `write`; a failure leaves in the file what was flushed before, and ends the writing.
   template <class Write>
   void attempt(Write&& write);
@@ -270,40 +270,51 @@ void Recorder::Impl::flush() {
   flush_cost = seconds_since(start);
 }
 
-void Recorder::Impl::summarise(const Summary& summary) {
-  file.attribute("/", "steps", summary.steps);
-  file.attribute("/", "wall_seconds", summary.wall_seconds);
-  const std::string group = "/summary";
-  file.group(group);
+namespace {
+
+std::vector<Attribute> attributes_of(const Summary& summary, const Layout& layout) {
+  std::vector<Attribute> list;
+  const auto add = [&](const std::string& name, auto value) { list.push_back({name, value}); };
   const auto extreme = [&](const std::string& name, const Extreme& value) {
-    file.attribute(group, name, value.value);
-    file.attribute(group, name + "_time", value.time);
-    file.attribute(group, name + "_place", value.place);
+    add(name, value.value);
+    add(name + "_time", value.time);
+    add(name + "_place", value.place);
   };
-  extreme("deflection", summary.deflection);
-  extreme("acceleration", summary.acceleration);
-  extreme("moment", summary.moment);
-  file.attribute(group, "static_deflection", summary.static_deflection);
-  file.attribute(group, "amplification", summary.amplification);
-  file.attribute(group, "least_wheel_force", summary.least_wheel_force);
-  file.attribute(group, "least_wheel_force_time", summary.least_wheel_force_time);
-  file.attribute(group, "least_wheel", summary.least_wheel);
-  file.attribute(group, "greatest_wheel_force", summary.greatest_wheel_force);
-  file.attribute(group, "contact_losses", static_cast<long>(summary.contact_losses));
-  file.attribute(group, "longest_loss", summary.longest_loss);
-  file.attribute(group, "energy_residual", summary.energy_residual);
-  file.attribute(group, "energy_left", summary.energy_left);
-  file.attribute(group, "rest_error", summary.rest_error());
-  file.attribute(group, "energy_scale", summary.energy_scale);
-  file.attribute(group, "static_error", summary.static_error);
-  file.attribute(group, "steps", summary.steps);
-  file.attribute(group, "rejected_steps", summary.rejected_steps);
-  file.attribute(group, "solves", summary.solves);
-  file.attribute(group, "factorisations", summary.factorisations);
-  file.attribute(group, "wall_seconds", summary.wall_seconds);
-  file.attribute(group, "ended", summary.ended);
-  for (const auto& [quantity, error] : summary.expected_errors)
-    file.attribute(group, "expected_error_" + quantity, error);
+  if (!layout.probes.empty()) {
+    extreme("deflection", summary.deflection);
+    extreme("acceleration", summary.acceleration);
+    extreme("moment", summary.moment);
+    if (summary.static_deflection > 0.0) add("static_deflection", summary.static_deflection);
+    if (summary.amplification > 0.0) add("amplification", summary.amplification);
+  }
+  if (!summary.least_wheel.empty()) {
+    add("least_wheel_force", summary.least_wheel_force);
+    add("least_wheel_force_time", summary.least_wheel_force_time);
+    add("least_wheel", summary.least_wheel);
+    add("greatest_wheel_force", summary.greatest_wheel_force);
+  }
+  add("contact_losses", static_cast<long>(summary.contact_losses));
+  add("longest_loss", summary.longest_loss);
+  add("energy_residual", summary.energy_residual);
+  add("energy_left", summary.energy_left);
+  add("rest_error", summary.rest_error());
+  add("energy_scale", summary.energy_scale);
+  add("static_error", summary.static_error);
+  add("steps", summary.steps);
+  add("rejected_steps", summary.rejected_steps);
+  add("solves", summary.solves);
+  add("factorisations", summary.factorisations);
+  add("end_time", summary.end_time);
+  add("wall_seconds", summary.wall_seconds);
+  add("ended", summary.ended);
+  for (const auto& [quantity, error] : summary.expected_errors) add("expected_error_" + quantity, error);
+  return list;
+}
+
+}  // namespace
+
+void Recorder::Impl::write(const std::string& object, const Attribute& attribute) {
+  std::visit([&](const auto& value) { file.attribute(object, attribute.name, value); }, attribute.value);
 }
 
 Recorder::Recorder(MPI_Comm comm, const std::string& file, const Layout& layout, const Pairs& attributes,
@@ -429,11 +440,26 @@ double Summary::rest_error() const {
   return structure_energy > 0.0 ? std::sqrt(std::abs(energy_left) / structure_energy) : 0.0;
 }
 
+void Recorder::attributes(const std::string& group, const std::vector<Attribute>& list) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const Attribute& attribute : list) impl_->write(group, attribute);
+  });
+}
+
 void Recorder::finish(const Summary& summary) {
+  if (impl_ != nullptr) finish_with(attributes_of(summary, impl_->layout), {"steps", "wall_seconds"});
+}
+
+void Recorder::finish_with(const std::vector<Attribute>& summary, const std::vector<std::string>& at_root) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {
     impl_->flush();
-    impl_->summarise(summary);
+    impl_->file.group("/summary");
+    for (const Attribute& attribute : summary) {
+      impl_->write("/summary", attribute);
+      if (std::find(at_root.begin(), at_root.end(), attribute.name) != at_root.end()) impl_->write("/", attribute);
+    }
     impl_->series.clear();
     impl_->file.close();
     impl_->closed = true;

@@ -30,6 +30,8 @@ class Watch {
   /// What was seen last.
   const results::Sample& last() const { return sample_; }
   const results::Summary& extremes() const { return summary_; }
+  /// Those of wheels and contacts too, after the last sample.
+  const results::Summary& finished_extremes();
   /// The extremes so far, after the last sample.
   const Peaks& finished_peaks();
 

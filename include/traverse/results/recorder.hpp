@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "traverse/beam/recovery.hpp"
@@ -113,6 +114,12 @@ struct Summary {
   std::vector<std::pair<std::string, double>> expected_errors;
 };
 
+/// Of a group or dataset.
+struct Attribute {
+  std::string name;
+  std::variant<double, long, std::string> value;
+};
+
 /// The writer. Only rank 0 opens and writes the file; on the other ranks every call does nothing.
 class Recorder {
  public:
@@ -139,8 +146,12 @@ class Recorder {
     std::string unit;
   };
   void datasets(const std::vector<Dataset>& sets);
+  /// Of a group that is there.
+  void attributes(const std::string& group, const std::vector<Attribute>& list);
   /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.
   void finish(const Summary& summary);
+  /// The same with a summary that is not one of a single run; those named in `at_root` become attributes of / too.
+  void finish_with(const std::vector<Attribute>& summary, const std::vector<std::string>& at_root = {});
 
  private:
   struct Impl;
