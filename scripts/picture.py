@@ -7,6 +7,7 @@ and accelerations over time; or natural shapes; or the peaks of a sweep over the
 
 import argparse
 import sys
+from typing import NamedTuple
 
 import h5py
 import matplotlib
@@ -35,17 +36,28 @@ plt.rcParams.update({
 })
 
 
-def label_at_ends(ax, curves):
-    """Names right of the axes, each joined to the end of its curve. curves: (last value, name, colour, style)."""
+class End(NamedTuple):
+    """The end of a curve, with the curve's name and looks. x: as a part of the axes' width."""
+    value: float
+    name: str
+    colour: str
+    style: object = "-"
+    x: float = 1.0
+
+
+def label_at_ends(ax, ends):
+    """Names right of the axes, each joined to the end of its curve."""
     low, high = ax.get_ylim()
     height = ax.get_position().height * ax.figure.get_figheight() * 72  # points
     gap = 1.5 * LABEL_SIZE / height
-    places = spread([(value - low) / (high - low) for value, *_ in curves], gap, 0.03, 0.97)
-    for (value, name, colour, style), place in zip(curves, places):
-        ax.annotate(name, xy=(1.0, (value - low) / (high - low)), xytext=(1.035, place), xycoords="axes fraction",
-                    textcoords="axes fraction", va="center", color=colour, fontsize=LABEL_SIZE, annotation_clip=False,
-                    arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.9, "ls": style, "shrinkA": 1, "shrinkB": 0,
-                                "relpos": (0.0, 0.5)})
+    places = spread([(end.value - low) / (high - low) for end in ends], gap, 0.03, 0.97)
+    for end, place in zip(ends, places):
+        early = end.x < 1.0  # the line to the name must not look like the curve
+        line = {"arrowstyle": "-", "color": PALE if early else end.colour, "lw": 0.9, "ls": ":" if early else end.style, "shrinkA": 1, "shrinkB": 0,
+                "relpos": (0.0, 0.5)}
+        ax.annotate(end.name, xy=(end.x, (end.value - low) / (high - low)), xytext=(1.035, place),
+                    xycoords="axes fraction", textcoords="axes fraction", va="center", color=end.colour,
+                    fontsize=LABEL_SIZE, annotation_clip=False, arrowprops=line)
 
 
 def time_panel(ax, results, title, unit, curves, band=None, worst=None):
@@ -59,10 +71,10 @@ def time_panel(ax, results, title, unit, curves, band=None, worst=None):
         u, upper = thin(time, greatest)
         grid = np.union1d(t, u)
         ax.fill_between(grid, np.interp(grid, t, lower), np.interp(grid, u, upper), color=PALE, alpha=0.55, lw=0)
-        ends.append((0.5 * (least[-1] + greatest[-1]), name, GREY, "-"))
+        ends.append(End(0.5 * (least[-1] + greatest[-1]), name, GREY))
     for (name, values), colour in zip(curves, COLOURS):
         ax.plot(*thin(time, values), color=colour)
-        ends.append((values[-1], name, colour, "-"))
+        ends.append(End(values[-1], name, colour))
     if worst is not None and time[0] <= worst <= time[-1]:
         ax.axvline(worst, color=GREY, lw=0.9, ls=(0, (4, 3)))
         ax.text(1.0, 1.03, "dashed: worst instant", transform=ax.transAxes, ha="right", va="bottom", fontsize=9,
@@ -208,15 +220,20 @@ def draw_sweep(ax, results):
     ax.set_ylabel("mm")
     ax.set_xlabel("speed (km/h)")
     numbers, ends = results.values("sweep/hslm_a"), []
+    there = speed[known.any(axis=0)] if known.any() else speed
+    low, high = there[0], there[-1]
     for place, i in enumerate(chosen):
         colour, style = COLOURS[place % len(COLOURS)], STYLES[place // len(COLOURS) % len(STYLES)]
         ax.plot(speed, peaks[i], color=colour, ls=style, marker="o" if known[i].sum() == 1 else None)
         name = f"train A{numbers[i]:.0f}" if numbers is not None else ordinal(i, len(peaks), "train")
         if known[i].any():
-            ends.append((peaks[i][known[i]][-1], name, colour, style))
-    if len(speed) > 1:
-        ax.set_xlim(speed[0], speed[-1])
-    ax.set_ylim(0.0, None)
+            last = np.flatnonzero(known[i])[-1]
+            part = (speed[last] - low) / (high - low) if high > low else 0.5
+            ends.append(End(peaks[i][last], name, colour, style, part))
+    if high > low:
+        ax.set_xlim(low, high)
+    if known.any():
+        ax.set_ylim(0.0, 1.08 * np.nanmax(peaks[chosen]) or None)
     label_at_ends(ax, ends)
 
 

@@ -38,9 +38,12 @@ def at_worst_place(results):
 
 
 def worst_in_words(results, x, deflection):
-    """'2.87 mm down', with the place where it is none of the probes', whose peak stands in the heading."""
-    place = "" if at_worst_place(results) or not results.summary else f", at {x:.4g} m"
-    return f"{millimetres(deflection)} {'down' if deflection < 0.0 else 'up'}{place}"
+    """'2.87 mm down', and why, where that is not the peak in the heading."""
+    why = ""
+    if results.summary and not at_worst_place(results):
+        at_probe = abs(x - results.summary.get("deflection_place", x)) < 1e-6 * max(abs(x), 1.0)
+        why = " at the nearest sample" if at_probe else f", at {x:.4g} m"
+    return f"{millimetres(deflection)} {'down' if deflection < 0.0 else 'up'}{why}"
 
 
 def sweep_in_words(results):

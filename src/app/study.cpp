@@ -39,6 +39,12 @@ std::vector<Case> cases_of(const CaseRunner& runner) {
   return cases;
 }
 
+std::vector<double> span_ends(const beam::BeamModel& beam) {
+  std::vector<double> ends = {beam.start};
+  for (const double span : beam.spans) ends.push_back(ends.back() + span);
+  return ends;
+}
+
 results::Sweep empty_sweep(const Scene& scene, const CaseRunner& runner, const results::Sweep::Model& model) {
   results::Sweep sweep;
   sweep.model = model;
@@ -220,6 +226,7 @@ int run_sweep(MPI_Comm comm, const Scene& given) {
 
   results::Layout layout;
   layout.probes = scene.output.probes;
+  layout.supports = span_ends(*scene.beam);
   results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
   results::Sweep sweep = empty_sweep(scene, runner, choice.model);
   Course course(cases, runner, ranks, scene.quiet || rank != 0);

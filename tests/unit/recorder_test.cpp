@@ -104,6 +104,20 @@ TEST_F(RecorderTest, WritesEveryDatasetOfTheTable) {
   for (const auto& [name, offset] : energies) expect_ramp(reader, "/energy/" + name, rows, offset);
 }
 
+TEST_F(RecorderTest, KeepsTheEndApartFromTheSamples) {
+  auto recorder = open(small_layout());
+  for (long i = 0; i < 3; ++i) recorder->add(sample_at(i));
+  recorder->end(sample_at(7));
+  recorder->finish({});
+  const Reader reader(file_);
+  EXPECT_EQ(reader.values("/time"), (std::vector{0.0, 1.0, 2.0}));
+  EXPECT_EQ(reader.number("/time", "interval"), 1.0);
+  EXPECT_EQ(reader.values("/end/time"), (std::vector{7.0}));
+  EXPECT_EQ(reader.shape("/end/vehicles/0/car/position"), (Shape1{1, 3}));
+  EXPECT_DOUBLE_EQ(reader.values("/end/vehicles/0/car/position")[2], 7.32);
+  EXPECT_EQ(reader.text("/end/supports/reaction", "unit"), "N, N, N m");
+}
+
 TEST_F(RecorderTest, WritesAttributesOptionsAndSummary) {
   auto recorder = open(small_layout());
   recorder->add(sample_at(0));
