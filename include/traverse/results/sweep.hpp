@@ -34,7 +34,7 @@ struct Sweep {
     double time_step = 0.0;  // s; 0: exact in time, or chosen for each run
     double accuracy = 0.0;   // from which mesh, step and modes were chosen; 0: they were given
     /// Relative, of the peaks whose accuracy is promised.
-    std::vector<std::pair<std::string, double>> expected_errors;
+    std::vector<std::pair<std::string, double>> expected_errors{};
   } model;
 
   std::size_t rows() const { return trains.empty() ? 1 : trains.size(); }
