@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "hdf5.hpp"
+#include "summary.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results {
@@ -270,49 +271,6 @@ void Recorder::Impl::flush() {
   flush_cost = seconds_since(start);
 }
 
-namespace {
-
-std::vector<Attribute> attributes_of(const Summary& summary, const Layout& layout) {
-  std::vector<Attribute> list;
-  const auto add = [&](const std::string& name, auto value) { list.push_back({name, value}); };
-  const auto extreme = [&](const std::string& name, const Extreme& value) {
-    add(name, value.value);
-    add(name + "_time", value.time);
-    add(name + "_place", value.place);
-  };
-  if (!layout.probes.empty()) {
-    extreme("deflection", summary.deflection);
-    extreme("acceleration", summary.acceleration);
-    extreme("moment", summary.moment);
-    if (summary.static_deflection > 0.0) add("static_deflection", summary.static_deflection);
-    if (summary.amplification > 0.0) add("amplification", summary.amplification);
-  }
-  if (!summary.least_wheel.empty()) {
-    add("least_wheel_force", summary.least_wheel_force);
-    add("least_wheel_force_time", summary.least_wheel_force_time);
-    add("least_wheel", summary.least_wheel);
-    add("greatest_wheel_force", summary.greatest_wheel_force);
-  }
-  add("contact_losses", static_cast<long>(summary.contact_losses));
-  add("longest_loss", summary.longest_loss);
-  add("energy_residual", summary.energy_residual);
-  add("energy_left", summary.energy_left);
-  add("rest_error", summary.rest_error());
-  add("energy_scale", summary.energy_scale);
-  add("static_error", summary.static_error);
-  add("steps", summary.steps);
-  add("rejected_steps", summary.rejected_steps);
-  add("solves", summary.solves);
-  add("factorisations", summary.factorisations);
-  add("end_time", summary.end_time);
-  add("wall_seconds", summary.wall_seconds);
-  add("ended", summary.ended);
-  for (const auto& [quantity, error] : summary.expected_errors) add("expected_error_" + quantity, error);
-  return list;
-}
-
-}  // namespace
-
 void Recorder::Impl::write(const std::string& object, const Attribute& attribute) {
   std::visit([&](const auto& value) { file.attribute(object, attribute.name, value); }, attribute.value);
 }
@@ -436,10 +394,6 @@ void Recorder::datasets(const std::vector<Dataset>& sets) {
   });
 }
 
-double Summary::rest_error() const {
-  return structure_energy > 0.0 ? std::sqrt(std::abs(energy_left) / structure_energy) : 0.0;
-}
-
 void Recorder::attributes(const std::string& group, const std::vector<Attribute>& list) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {
@@ -448,7 +402,7 @@ void Recorder::attributes(const std::string& group, const std::vector<Attribute>
 }
 
 void Recorder::finish(const Summary& summary) {
-  if (impl_ != nullptr) finish_with(attributes_of(summary, impl_->layout), {"steps", "wall_seconds"});
+  if (impl_ != nullptr) finish_with(attributes_of(summary, !impl_->layout.probes.empty()), {"steps", "wall_seconds"});
 }
 
 void Recorder::finish_with(const std::vector<Attribute>& summary, const std::vector<std::string>& at_root) {
