@@ -7,6 +7,7 @@ and accelerations over time; or natural shapes; or the peaks of a sweep over the
 
 import argparse
 import sys
+from typing import NamedTuple
 
 import h5py
 import matplotlib
@@ -16,11 +17,14 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.transforms import ScaledTranslation, blended_transform_factory  # noqa: E402
 from picture_data import (  # noqa: E402
-    MOST_CURVES, MOST_WHEELS, Results, car_body, choose, choose_probes, envelope, natural, ordinal, place_in_words,
-    spread, thin)
+    MOST_CURVES, MOST_TRAINS, MOST_WHEELS, Results, car_body, choose, choose_probes, envelope, natural, ordinal,
+    place_in_words, spread, thin)
+from picture_words import (  # noqa: E402
+    method_in_words, modes_in_words, summary_in_words, sweep_in_words, worst_in_words)
 
 # Okabe and Ito's colours, told apart by colour-blind readers; the darker ones first, they carry text.
 COLOURS = ["#0072B2", "#D55E00", "#007A59", "#A8578A", "#8A6A00", "#3A3A3A"]
+STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2))]  # where there are more curves than colours
 GREY, PALE = "#666666", "#B8B8B8"
 LABEL_SIZE = 10
 
@@ -32,17 +36,28 @@ plt.rcParams.update({
 })
 
 
-def label_at_ends(ax, curves):
-    """Names right of the axes, each joined to the end of its curve. curves: (last value, name, colour)."""
+class End(NamedTuple):
+    """The end of a curve, with the curve's name and looks. x: as a part of the axes' width."""
+    value: float
+    name: str
+    colour: str
+    style: object = "-"
+    x: float = 1.0
+
+
+def label_at_ends(ax, ends):
+    """Names right of the axes, each joined to the end of its curve."""
     low, high = ax.get_ylim()
     height = ax.get_position().height * ax.figure.get_figheight() * 72  # points
     gap = 1.5 * LABEL_SIZE / height
-    places = spread([(value - low) / (high - low) for value, _, _ in curves], gap, 0.03, 0.97)
-    for (value, name, colour), place in zip(curves, places):
-        ax.annotate(name, xy=(1.0, (value - low) / (high - low)), xytext=(1.035, place), xycoords="axes fraction",
-                    textcoords="axes fraction", va="center", color=colour, fontsize=LABEL_SIZE, annotation_clip=False,
-                    arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.9, "shrinkA": 1, "shrinkB": 0,
-                                "relpos": (0.0, 0.5)})
+    places = spread([(end.value - low) / (high - low) for end in ends], gap, 0.03, 0.97)
+    for end, place in zip(ends, places):
+        early = end.x < 1.0  # the line to the name must not look like the curve
+        line = {"arrowstyle": "-", "color": PALE if early else end.colour, "lw": 0.9, "ls": ":" if early else end.style, "shrinkA": 1, "shrinkB": 0,
+                "relpos": (0.0, 0.5)}
+        ax.annotate(end.name, xy=(end.x, (end.value - low) / (high - low)), xytext=(1.035, place),
+                    xycoords="axes fraction", textcoords="axes fraction", va="center", color=end.colour,
+                    fontsize=LABEL_SIZE, annotation_clip=False, arrowprops=line)
 
 
 def time_panel(ax, results, title, unit, curves, band=None, worst=None):
@@ -56,10 +71,10 @@ def time_panel(ax, results, title, unit, curves, band=None, worst=None):
         u, upper = thin(time, greatest)
         grid = np.union1d(t, u)
         ax.fill_between(grid, np.interp(grid, t, lower), np.interp(grid, u, upper), color=PALE, alpha=0.55, lw=0)
-        ends.append((0.5 * (least[-1] + greatest[-1]), name, GREY))
+        ends.append(End(0.5 * (least[-1] + greatest[-1]), name, GREY))
     for (name, values), colour in zip(curves, COLOURS):
         ax.plot(*thin(time, values), color=colour)
-        ends.append((values[-1], name, colour))
+        ends.append(End(values[-1], name, colour))
     if worst is not None and time[0] <= worst <= time[-1]:
         ax.axvline(worst, color=GREY, lw=0.9, ls=(0, (4, 3)))
         ax.text(1.0, 1.03, "dashed: worst instant", transform=ax.transAxes, ha="right", va="bottom", fontsize=9,
@@ -175,7 +190,7 @@ def draw_shape(ax, results):
     worst = int(np.argmax(np.abs(shape)))
     if np.any(shape):
         down = shape[worst] < 0.0
-        ax.annotate(f"{abs(shape[worst]):.3g} mm {'down' if down else 'up'}", xy=(x[worst], shape[worst]),
+        ax.annotate(worst_in_words(results, x[worst], 1e-3 * shape[worst]), xy=(x[worst], shape[worst]),
                     xytext=(0, -6 if down else 6), textcoords="offset points", ha="center",
                     va="top" if down else "bottom", color=COLOURS[0], fontsize=LABEL_SIZE)
     box = ax.get_position()
@@ -191,25 +206,41 @@ def draw_shape(ax, results):
 
 
 def draw_sweep(ax, results):
+    """The greatest deflection at any probe, a curve a train; runs that did not end leave gaps."""
     speed = 3.6 * results.values("sweep/speed")
     peaks = 1e3 * np.abs(results.values("sweep/peak_deflection"))
-    peaks = peaks.reshape(-1, len(speed), peaks.shape[-1]).max(axis=-1)
-    ax.set_title("Greatest deflection of the bridge over the train's speed")
+    peaks = peaks.reshape(-1, len(speed), peaks.shape[-1])
+    known = ~np.isnan(peaks).any(axis=-1)
+    peaks = np.where(known, peaks.max(axis=-1), np.nan)
+    chosen = choose(len(peaks), MOST_TRAINS, np.where(known, peaks, 0.0).max(axis=1))
+    notes = [f"{len(chosen)} of {len(peaks)} trains"] if len(chosen) < len(peaks) else []
+    notes += [f"{int((~known).sum())} of {known.size} runs are missing"] if not known.all() else []
+    ax.set_title("Greatest deflection of the bridge over the train's speed" +
+                 (f" ({', '.join(notes)})" if notes else ""))
     ax.set_ylabel("mm")
     ax.set_xlabel("speed (km/h)")
-    trains = results.options.get("sweep_hslm_a", "").replace(" ", "").split(",")
-    ends = []
-    for i, colour in zip(choose(len(peaks), MOST_CURVES, peaks.max(axis=1)), COLOURS):
-        ax.plot(speed, peaks[i], color=colour)
-        name = f"train A{trains[i]}" if len(trains) == len(peaks) and trains[i] else ordinal(i, len(peaks), "train")
-        ends.append((peaks[i][-1], name, colour))
-    ax.set_ylim(0.0, None)
+    numbers, ends = results.values("sweep/hslm_a"), []
+    there = speed[known.any(axis=0)] if known.any() else speed
+    low, high = there[0], there[-1]
+    for place, i in enumerate(chosen):
+        colour, style = COLOURS[place % len(COLOURS)], STYLES[place // len(COLOURS) % len(STYLES)]
+        ax.plot(speed, peaks[i], color=colour, ls=style, marker="o" if known[i].sum() == 1 else None)
+        name = f"train A{numbers[i]:.0f}" if numbers is not None else ordinal(i, len(peaks), "train")
+        if known[i].any():
+            last = np.flatnonzero(known[i])[-1]
+            part = (speed[last] - low) / (high - low) if high > low else 0.5
+            ends.append(End(peaks[i][last], name, colour, style, part))
+    if high > low:
+        ax.set_xlim(low, high)
+    if known.any():
+        ax.set_ylim(0.0, 1.08 * np.nanmax(peaks[chosen]) or None)
     label_at_ends(ax, ends)
 
 
 def draw_modes(figure, results):
     """The first shapes, two a row; or the frequencies alone."""
     frequency, shapes = results.values("modes/frequency"), results.values("modes/shape")
+    figure.text(0.06, 0.16 / figure.get_figheight(), modes_in_words(frequency, shapes), fontsize=8.5, color=GREY)
     if shapes is None:
         ax = figure.add_axes([0.1, 0.12, 0.85, 0.7])
         ax.plot(np.arange(1, len(frequency) + 1), frequency, "o", color=COLOURS[0])
@@ -218,7 +249,7 @@ def draw_modes(figure, results):
     axial = results.values("modes/axial")
     x = results.values("modes/x")
     x = np.arange(shapes.shape[1], dtype=float) if x is None else x
-    count = min(len(shapes), 6)
+    count = min(len(shapes), MOST_CURVES)
     rows = (count + 1) // 2
     for i in range(count):
         ax = figure.add_axes([0.06 + 0.485 * (i % 2), 0.1 + 0.76 * (rows - 1 - i // 2) / rows, 0.43, 0.76 / rows - 0.1])
@@ -241,17 +272,12 @@ def heading(figure, results, modes_only):
         title += ": natural shapes of the bridge"
     elif results.options.get("scene_analysis") == "static":
         title += ", at rest"
+    elif "sweep/speed" in results.file:
+        title += f", {sweep_in_words(results)}"
     elif speed:
         title += f", {3.6 * speed:.4g} km/h"
     figure.text(0.06, 1.0 - 0.30 / figure.get_figheight(), title, fontsize=18, weight="bold", va="top")
-    said = []
-    if summary.get("deflection"):
-        said.append(f"greatest deflection {1e3 * abs(summary['deflection']):.3g} mm, "
-                    f"{place_in_words(summary['deflection_place'], results.supports)}")
-    if summary.get("amplification"):
-        said.append(f"{summary['amplification']:.3g} times the static one")
-    if summary.get("least_wheel"):
-        said.append(f"least wheel force {1e-3 * summary['least_wheel_force']:.3g} kN")
+    said = summary_in_words(results)
     if not summary and results.rows:
         said.append(f"the run did not reach its end; drawn as far as {results.time[-1]:.4g} s")
     if modes_only and "modes/shape" in results.file:
@@ -259,8 +285,11 @@ def heading(figure, results, modes_only):
     figure.text(0.06, 1.0 - 0.68 / figure.get_figheight(), "; ".join(said), fontsize=11.5, color=GREY, va="top")
     attrs = results.file.attrs
     foot = f"{attrs.get('program', 'traverse')} {attrs.get('version', '')}"
-    if "steps" in attrs and attrs["steps"]:
-        foot += f", {attrs['steps']} steps in {attrs['wall_seconds']:.3g} s"
+    for what in ("steps", "runs"):
+        if attrs.get(what):
+            foot += f", {attrs[what]} {what} in {attrs['wall_seconds']:.3g} s"
+    if "sweep" in results.file:
+        foot = f"{method_in_words(results)}   {foot}"
     figure.text(0.94, 0.16 / figure.get_figheight(), foot, fontsize=8.5, color=GREY, ha="right")
 
 
@@ -289,16 +318,18 @@ def draw(results, out):
     modes_only = not found and "modes/frequency" in results.file
     if not found and not modes_only:
         raise ValueError("holds nothing that could be drawn")
-    height = 7.5 if modes_only else 1.45 + 2.75 * len(found)
+    sweep_only = len(found) == 1 and "sweep/peak_deflection" in results.file
+    taller = 1.75 if sweep_only else 0.0  # ten names beside the curves
+    height = 7.5 if modes_only else 1.45 + 2.75 * len(found) + taller
     figure = plt.figure(figsize=(11.5, height))
     heading(figure, results, modes_only)
     if modes_only:
         draw_modes(figure, results)
     worst = None
     for i, panel in enumerate(found):
-        bottom = height - 1.2 - 2.75 * (i + 1) + 0.75
+        bottom = height - 1.2 - 2.75 * (i + 1) - taller + 0.75
         shape_on_top = i == 0 and "shape/deflection" in results.file
-        ax = figure.add_axes([0.075, bottom / height, 0.635, 1.75 / height])
+        ax = figure.add_axes([0.075, bottom / height, 0.635, (1.75 + taller) / height])
         worst = panel(ax, worst) if shape_on_top else (panel(ax, worst), worst)[1]
         if results.rows > 1 and panel is found[-1] and not ax.get_xlabel():
             ax.set_xlabel("time (s)")

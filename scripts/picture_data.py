@@ -6,6 +6,7 @@ import numpy as np
 
 MOST_CURVES = 6
 MOST_WHEELS = 4
+MOST_TRAINS = 14
 MOST_POINTS = 4000
 
 

@@ -12,7 +12,7 @@ namespace {
 
 // As measured; peaks by modes are looked for at so many instants a period of the highest mode.
 constexpr double seconds_a_mode = 1.3e-8, instants_a_period = 20.0;
-constexpr double seconds_a_step = 5e-6, seconds_an_element = 1e-7;
+constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
 
 }  // namespace
 
@@ -56,14 +56,26 @@ double CaseRunner::cost() const {
     return seconds_a_mode * instants_a_period * omega.back() / (2.0 * std::numbers::pi) *
            static_cast<double>(omega.size());
   }
-  return (seconds_a_step + seconds_an_element * structure_.beam->mesh().elements()) / scene_.time_step.value_or(1.0);
+  double bodies = 0.0;
+  for (const int type : scene_.train.vehicles)
+    bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
+  const double a_step =
+      seconds_a_step + seconds_a_body * bodies + seconds_an_element * structure_.beam->mesh().elements();
+  return a_step / scene_.time_step.value_or(1.0);
 }
 
-CaseResult CaseRunner::run(std::size_t train, double speed) {
-  return structure_.modal ? run_by_modes(train, speed) : run_by_elements(train, speed);
+double CaseRunner::cost_of_all() const {
+  double motion = 0.0;
+  for (std::size_t train = 0; train < trains(); ++train)
+    for (const double speed : speeds_) motion += duration(train, speed);
+  return cost() * motion;
 }
 
-CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
+CaseResult CaseRunner::run(std::size_t train, double speed, const std::function<void(double)>& reached) {
+  return structure_.modal ? run_by_modes(train, speed) : run_by_elements(train, speed, reached);
+}
+
+CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached) {
   std::vector<std::string> ignored;
   const Scene& scene = scene_of(train, speed);
   // Factorisations of other runs would serve shifts that are equal but for rounding: results would depend on which runs
@@ -78,6 +90,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
   const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
   const auto step = [&](double t, long) {
     watch.step(t);
+    if (reached) reached(t);
     return caught_signal() == 0;
   };
   passage.run(sample, step);
@@ -92,7 +105,11 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
     };
     result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
   }
-  result.least_wheel_force = watch.extremes().least_wheel_force;
+  const results::Summary& extremes = watch.finished_extremes();
+  result.least_wheel_force = extremes.least_wheel_force;
+  result.greatest_wheel_force = extremes.greatest_wheel_force;
+  result.contact_losses = extremes.contact_losses;
+  result.longest_loss = extremes.longest_loss;
   std::vector<double>& at_rest = static_deflection_[train];
   if (at_rest.empty())
     for (const double x : scene.output.probes) at_rest.push_back(passage.system().static_peak(x));

@@ -180,7 +180,6 @@ results::Layout layout_of(const Scene& scene, const coupling::System& system, co
   if (beam != nullptr) {
     layout.probes = scene.output.probes;
     layout.supports = beam->mesh().span_ends();
-    for (int i = 0; i < beam->mesh().nodes(); ++i) layout.nodes.push_back(beam->mesh().x(i));
     describe_foundation(*beam, layout);
     describe_balance(layout);
     if (beam->rail() != nullptr) describe_rail(scene.output.probes, layout);

@@ -4,15 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "case_runner.hpp"
+#include "traverse/modes/modes.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
 namespace {
 
 constexpr std::size_t runs_a_sample = 10, most_samples = 9, least_runs = 2 * runs_a_sample;
-constexpr double share = 0.25;  // of the wanted error: other runs may be off by more
+constexpr double share = 0.25;                              // of the wanted error: other runs may be off by more
+constexpr double code_frequency = 30.0, code_factor = 1.5;  // Hz; times the first one
+constexpr std::size_t code_modes = 3;
+constexpr int most_counted = 64, nodes_for_a_question = 1000;
 
 /// The largest difference of a peak at any probe, relative to the largest peak of its kind.
 double difference(const CaseResult& modes, const CaseResult& elements) {
@@ -30,10 +35,14 @@ double difference(const CaseResult& modes, const CaseResult& elements) {
   return worst;
 }
 
+/// As read_modal has it.
+bool allowed(const Scene& scene) {
+  return scene.vehicles.empty() && !scene.load.forces.empty() && !scene.beam->track &&
+         !scene.beam->foundation.nonlinear() && options::in_force().find("ts_type") == nullptr;
+}
+
 bool worth_trying(const Scene& scene, const Accuracy& accuracy) {
-  if (!scene.modes_open || !accuracy.measured || !scene.vehicles.empty() || scene.load.forces.empty()) return false;
-  if (scene.beam->track || scene.beam->foundation.nonlinear() || options::in_force().find("ts_type") != nullptr)
-    return false;
+  if (!scene.modes_open || !accuracy.measured || !allowed(scene)) return false;
   for (const Quantity q : {deflection, acceleration, moment})
     if (!accuracy.promises[q].kept) return false;
   return scene.sweep->speeds.size() * std::max<std::size_t>(1, scene.sweep->loads.size()) >= least_runs;
@@ -58,10 +67,23 @@ std::vector<Sample> some_runs(CaseRunner& elements) {
   return samples;
 }
 
+/// Those that EN 1990, A2.4.4.2.1 wants.
+QuickerModes counted_modes(const beam::Beam& beam) {
+  std::vector<double> frequencies;  // Hz, of bending
+  const modes::Modes found = modes::natural_modes(beam, most_counted, false);
+  for (std::size_t i = 0; i < found.omega.size(); ++i)
+    if (found.axial[i] == 0 && found.omega[i] > 0.0) frequencies.push_back(found.omega[i] / (2.0 * std::numbers::pi));
+  if (frequencies.empty()) throw SolverError("the bridge has no mode of bending");
+  const double wanted = std::max(code_frequency, code_factor * frequencies.front());
+  const auto past = std::upper_bound(frequencies.begin(), frequencies.end(), wanted) - frequencies.begin();
+  const auto count = std::min(std::max<std::size_t>(static_cast<std::size_t>(past), code_modes), frequencies.size());
+  return {static_cast<int>(count), frequencies[count - 1], 0.0};
+}
+
 }  // namespace
 
-int modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vector<std::string>& notes) {
-  if (!worth_trying(scene, accuracy)) return 0;
+ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vector<std::string>& notes) {
+  if (!worth_trying(scene, accuracy)) return {};
   try {
     std::vector<std::string> ignored;
     CaseRunner elements(scene, ignored);
@@ -70,7 +92,7 @@ int modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vector<std:
     for (const int number : {2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
       by_modes.model_modes = number;
       CaseRunner modes(by_modes, ignored);
-      if (modes.cost() > elements.cost()) return 0;
+      if (modes.cost() > elements.cost()) return {};
       double worst = 0.0;
       for (const Sample& s : samples) worst = std::max(worst, difference(modes.run(s.train, s.speed), s.result));
       if (worst > share * scene.accuracy) continue;
@@ -78,12 +100,28 @@ int modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vector<std:
           "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "
           "-model_modes 0 keeps the elements",
           number, samples.size(), worst));
-      return number;
+      return {number, worst};
     }
   } catch (const Error&) {
     // Dampers or springs that couple modes, not so many modes, or a run that fails: the sweep itself will say so.
   }
-  return 0;
+  return {};
+}
+
+std::optional<QuickerModes> quicker_modes(const Scene& scene) {
+  if (!allowed(scene) || scene.model_modes > 0) return std::nullopt;
+  try {
+    std::vector<std::string> ignored;
+    const Structure structure(PETSC_COMM_SELF, scene, ignored);
+    if (structure.beam->mesh().nodes() > nodes_for_a_question) return std::nullopt;
+    const QuickerModes counted = counted_modes(*structure.beam);
+    Scene by_modes = scene;
+    by_modes.model_modes = counted.modes;
+    const CaseRunner runner(by_modes, ignored);
+    return QuickerModes{counted.modes, counted.frequency, runner.cost_of_all()};
+  } catch (const Error&) {
+    return std::nullopt;  // dampers or springs that couple modes, say
+  }
 }
 
 }  // namespace traverse::app

@@ -60,8 +60,9 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
                               system_.fleet().members.size(), system_.freedom(), scene.load.forces.size()));
   if (!still_)
-    notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s", method, plan_.end_time,
-                                plan_.interval * plan_.stored));
+    notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s{}", method, plan_.end_time,
+                                plan_.interval * plan_.stored,
+                                plan_.ends_at_sample() || scene.sweep ? "" : ", the end's own apart under /end"));
 }
 
 void Passage::leave_out_rest(std::vector<std::string>& notes) {

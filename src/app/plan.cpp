@@ -16,6 +16,7 @@ constexpr double mechanism_step = 1e-3;         // s, where there is no beam to 
 constexpr double least_steps_a_span = 10.0;
 constexpr double most_steps = 1e10;
 constexpr double stored_samples = 2000.0;  // at most, where the interval is left open
+constexpr double at_a_sample = 1e-3;       // of a step: an end so close to a multiple of the interval is moved there
 
 // The largest of 1, 2, 5 times a power of ten that does not exceed x.
 double round_down(double x) {
@@ -83,7 +84,20 @@ void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector
                     plan.interval));
 }
 
+double sample_next_to_end(const Plan& plan) {
+  const double interval = plan.interval * plan.stored;
+  return std::round(plan.end_time / interval) * interval;
+}
+
+// Leaving times are known to rounding, and a step to an end just behind the last sample would be far too short.
+void move_end_to_sample(Plan& plan) {
+  const double near = at_a_sample * std::min({plan.time_step, plan.interval, plan.end_time});
+  if (std::abs(sample_next_to_end(plan) - plan.end_time) < near) plan.end_time = sample_next_to_end(plan);
+}
+
 }  // namespace
+
+bool Plan::ends_at_sample() const { return end_time == sample_next_to_end(*this); }
 
 double greatest_speed(const Scene& scene) {
   return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
@@ -113,6 +127,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
         "or ts_max_time in s above 0");
   if (scene.model_modes > 0) {
     plan_modal(scene, first_period, plan, notes);
+    move_end_to_sample(plan);
     return plan;
   }
   check_step(scene, plan);
@@ -130,6 +145,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
     plan.stored = scene.step_probes ? static_cast<int>(steps) : 1;
     plan.interval = plan.time_step * (scene.step_probes ? 1.0 : steps);
   }
+  move_end_to_sample(plan);
   return plan;
 }
 

@@ -28,12 +28,13 @@ int run_modes(MPI_Comm comm, const Scene& scene, Structure& structure, std::vect
   const beam::Rayleigh ab = structure.rayleigh;
   options::check_all_used(options::in_force());
   print_notes(comm, notes);
-  const modes::Modes found = modes::natural_modes(beam, scene.mode_count, true);
+  const beam::ShapePoints points(beam.mesh());
+  const modes::Modes found = modes::natural_modes(beam, scene.mode_count, points);
   const bool damping = modes::damped(beam);
-  const modes::DampedModes damped = damping ? modes::damped_modes(beam, scene.mode_count, true) : modes::DampedModes();
+  const modes::DampedModes damped =
+      damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
   results::Layout layout;
   layout.supports = beam.mesh().span_ends();
-  for (int i = 0; i < beam.mesh().nodes(); ++i) layout.nodes.push_back(beam.mesh().x(i));
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   if (rank == 0) results::print_modes(found, omega1, omega2, ab.a, ab.b, damped);
@@ -45,9 +46,7 @@ int run_modes(MPI_Comm comm, const Scene& scene, Structure& structure, std::vect
   results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);
   if (damping) recorder.damped_modes(damped);
-  results::Summary summary;
-  summary.ended = "reached its end";
-  recorder.finish(summary);
+  recorder.finish_with({{"ended", "reached its end"}});
   if (rank == 0) fmt::print("results  {}\n", scene.output.file);
   return 0;
 }
@@ -58,7 +57,8 @@ void store_modes(const Structure& structure, results::Recorder& recorder) {
   const auto [omega1, omega2] = *structure.omega;
   modes::Modes modes;
   modes.omega = {omega1, omega2};
-  if (structure.modal) modes = modes::at_nodes(*structure.beam, structure.modal->basis());
+  if (structure.modal)
+    modes = modes::as_stored(*structure.beam, structure.modal->basis(), beam::ShapePoints(structure.beam->mesh()));
   recorder.modes(modes, structure.rayleigh.a, structure.rayleigh.b, omega1, omega2);
 }
 
@@ -119,16 +119,19 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
                     system.static_error()));
   print_notes(comm, notes);
 
-  results::Recorder recorder(comm, scene.output.file, layout_of(scene, system, beam), attributes(comm, scene),
-                             scene.options);
+  results::Layout layout = layout_of(scene, system, beam);
+  if (!still) layout.interval = passage.plan().interval * passage.plan().stored;
+  results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
   store_modes(structure, recorder);
   if (structure.beam) structure.beam->release_matrices();
   Watch watch(scene, system, beam, recorder);
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
+  double reached = 0.0;
   auto summarise = [&](const std::string& ended) {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     results::Summary summary = watch.finish();
+    summary.end_time = reached;
     summary.steps = passage.steps();
     summary.rejected_steps = passage.rejected();
     summary.solves = system.beam_solves();
@@ -148,6 +151,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
     passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
                 [&](double t, long steps) {
                   watch.step(t);
+                  reached = t;
                   progress.update(t, steps);
                   stopped = signal_on_any(comm);
                   return stopped == 0;

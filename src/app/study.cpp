@@ -6,23 +6,22 @@
 #include <chrono>
 #include <limits>
 #include <numeric>
-#include <optional>
-#include <set>
 
 #include "case_runner.hpp"
 #include "deal.hpp"
 #include "modes_choice.hpp"
 #include "process.hpp"
-#include "traverse/app/accuracy.hpp"
+#include "sweep_choice.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/results/sweep.hpp"
 #include "traverse/results/terminal.hpp"
-#include "trials.hpp"
 
 namespace traverse::app {
 namespace {
 
 constexpr int nobody = std::numeric_limits<int>::max();
+constexpr double worth_a_word = 10.0;  // s, from which on quicker ways are looked for
+constexpr double quicker_by = 0.2;     // of the time: what modes must do with
 
 /// One run of the sweep.
 struct Case {
@@ -40,8 +39,15 @@ std::vector<Case> cases_of(const CaseRunner& runner) {
   return cases;
 }
 
-results::Sweep empty_sweep(const Scene& scene, const CaseRunner& runner) {
+std::vector<double> span_ends(const beam::BeamModel& beam) {
+  std::vector<double> ends = {beam.start};
+  for (const double span : beam.spans) ends.push_back(ends.back() + span);
+  return ends;
+}
+
+results::Sweep empty_sweep(const Scene& scene, const CaseRunner& runner, const results::Sweep::Model& model) {
   results::Sweep sweep;
+  sweep.model = model;
   sweep.speed = runner.speeds();
   sweep.trains = scene.sweep->trains;
   sweep.probes = scene.output.probes;
@@ -49,9 +55,12 @@ results::Sweep empty_sweep(const Scene& scene, const CaseRunner& runner) {
   const std::vector<double> none(runs * sweep.probes.size(), results::Sweep::not_run);
   sweep.deflection = sweep.acceleration = sweep.moment = {none, none};
   sweep.amplification = none;
+  sweep.static_deflection.assign(sweep.rows() * sweep.probes.size(), results::Sweep::not_run);
   const auto rolls = [](const Vehicle& v) { return !v.wheels.empty(); };
   if (std::any_of(scene.vehicles.begin(), scene.vehicles.end(), rolls))
-    sweep.least_wheel_force.assign(runs, results::Sweep::not_run);
+    for (std::vector<double>* values :
+         {&sweep.least_wheel_force, &sweep.greatest_wheel_force, &sweep.contact_losses, &sweep.longest_loss})
+      values->assign(runs, results::Sweep::not_run);
   return sweep;
 }
 
@@ -68,8 +77,13 @@ void store(const CaseResult& result, const Case& c, results::Sweep& sweep) {
     put(result.peaks[p].moment, sweep.moment);
     const double rest = result.static_deflection[p];
     sweep.amplification[at] = rest > 0.0 ? result.peaks[p].deflection.value / rest : 0.0;
+    if (rest > 0.0) sweep.static_deflection[c.train * sweep.probes.size() + p] = rest;
   }
-  if (!sweep.least_wheel_force.empty()) sweep.least_wheel_force[run] = result.least_wheel_force;
+  if (sweep.least_wheel_force.empty()) return;
+  sweep.least_wheel_force[run] = result.least_wheel_force;
+  sweep.greatest_wheel_force[run] = result.greatest_wheel_force;
+  sweep.contact_losses[run] = result.contact_losses;
+  sweep.longest_loss[run] = result.longest_loss;
 }
 
 /// What went wrong on this rank, if anything.
@@ -98,7 +112,8 @@ Failure first_of(MPI_Comm comm, Failure mine) {
 void gather(MPI_Comm comm, results::Sweep& sweep) {
   for (std::vector<double>* values :
        {&sweep.deflection.value, &sweep.deflection.time, &sweep.acceleration.value, &sweep.acceleration.time,
-        &sweep.moment.value, &sweep.moment.time, &sweep.amplification, &sweep.least_wheel_force}) {
+        &sweep.moment.value, &sweep.moment.time, &sweep.amplification, &sweep.static_deflection,
+        &sweep.least_wheel_force, &sweep.greatest_wheel_force, &sweep.contact_losses, &sweep.longest_loss}) {
     std::vector<double> known(*values);
     for (double& value : known)
       if (value != value) value = -std::numeric_limits<double>::infinity();
@@ -115,9 +130,35 @@ std::string name_of(const Case& c, const results::Sweep& sweep) {
   return fmt::format("the run{} at {:g} m/s ({:g} km/h)", train, speed, 3.6 * speed);
 }
 
+/// How far the sweep is, by the time that its runs' motions last: runs are dealt longest first.
+class Course {
+ public:
+  Course(const std::vector<Case>& cases, const CaseRunner& runner, int ranks, bool quiet)
+      : ranks_(static_cast<std::size_t>(ranks)), progress_(0.0, 1.0, quiet) {
+    for (const Case& c : cases) {
+      duration_.push_back(runner.duration(c.train, runner.speeds()[c.speed]));
+      until_.push_back(until_.back() + duration_.back());
+    }
+  }
+
+  /// So many runs are taken; this rank's own has `left` s to go, those of the others half of theirs.
+  void show(std::size_t taken, double left) {
+    if (taken == 0) return;
+    const double others = 0.5 * static_cast<double>(ranks_ - 1) * duration_[taken - 1];
+    const double done = std::max(until_[taken] - left - others, 0.0);
+    progress_.runs(done / until_.back(), taken > ranks_ ? taken - ranks_ : 0, duration_.size());
+  }
+  void done() { progress_.done(); }
+
+ private:
+  std::size_t ranks_;
+  results::Progress progress_;
+  std::vector<double> duration_, until_{0.0};  // s, of each run, and of all before it
+};
+
 /// This rank's share of the runs.
-Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal, results::Progress& progress,
-                  results::Sweep& sweep, long& runs) {
+Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal, Course& course, results::Sweep& sweep,
+                  long& runs) {
   Failure failure;
   while (const auto piece = deal.next()) {
     const Case& c = cases[*piece];
@@ -126,7 +167,9 @@ Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal
       deal.stop();
     };
     try {
-      const CaseResult result = runner.run(c.train, runner.speeds()[c.speed]);
+      const double speed = runner.speeds()[c.speed], duration = runner.duration(c.train, speed);
+      const CaseResult result =
+          runner.run(c.train, speed, [&](double t) { course.show(deal.taken(), std::max(duration - t, 0.0)); });
       if (result.ended) {
         store(result, c, sweep);
         ++runs;
@@ -137,49 +180,32 @@ Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal
       fail(70, error.what());
     }
     if (caught_signal() != 0) deal.stop();
-    progress.runs(deal.taken());
+    course.show(deal.taken(), 0.0);
   }
   return failure;
 }
 
-/// The scene of one run.
-Scene at_speed(const Scene& sweep, double speed) {
-  Scene scene = sweep;
-  if (!sweep.sweep->loads.empty()) scene.load = sweep.sweep->loads.front();
-  scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
-  scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
-  return scene;
-}
-
-/// With the finest mesh and step that the slowest, a middle and the fastest run need, or modes; the same on every rank.
-Scene chosen(Scene scene, std::vector<std::string>& notes) {
-  const std::vector<double>& speeds = scene.sweep->speeds;
-  if (speeds.empty()) {
-    const Accuracy accuracy = choose(PETSC_COMM_SELF, scene, notes);
-    scene.model_modes = modes_that_do(scene, accuracy, notes);
-    return scene;
-  }
-  std::optional<Accuracy> all;
-  const Scene given = scene;
-  for (const double speed : std::set{speeds.front(), speeds[speeds.size() / 2], speeds.back()}) {
-    Scene one = at_speed(given, speed);
-    std::vector<std::string> own;
-    const Accuracy accuracy = choose(PETSC_COMM_SELF, one, own);
-    if (!accuracy.measured) return given;
-    notes.push_back(fmt::format("at {:g} m/s:", speed));
-    notes.insert(notes.end(), own.begin(), own.end());
-    const int mesh = all ? std::max(mesh_of(scene), mesh_of(one)) : mesh_of(one);
-    if (!all || *one.time_step < *scene.time_step) scene.time_step = one.time_step;
-    set_mesh(scene, mesh);
-    scene.rest_tolerance = one.rest_tolerance;
-    scene.step_probes = one.step_probes;
-    if (!all) all = accuracy;
-    for (std::size_t q = 0; q < quantities; ++q) all->promises[q].kept &= accuracy.promises[q].kept;
-  }
-  notes.push_back(fmt::format("all runs: {} elements a {}, steps of {:g} s", mesh_of(scene),
-                              scene.beam->track ? "sleeper bay" : "span", *scene.time_step));
-  scene.model_modes = modes_that_do(scene, *all, notes);
-  return scene;
+/// How many runs, what they will take and what would be quicker.
+void announce(const Scene& scene, const CaseRunner& runner, const results::Sweep::Model& model, int ranks,
+              std::vector<std::string>& notes) {
+  const auto& speeds = runner.speeds();
+  const double seconds = runner.cost_of_all() / ranks;
+  notes.push_back(fmt::format("sweep of {} runs: {} speed{} from {:g} to {:g} m/s, {} train{}; above for the first one",
+                              speeds.size() * runner.trains(), speeds.size(), speeds.size() == 1 ? "" : "s",
+                              speeds.front(), speeds.back(), runner.trains(), runner.trains() == 1 ? "" : "s"));
+  const bool known = model.modes > 0 || model.time_step > 0.0;
+  notes.push_back(fmt::format("the sweep is {}{}", results::method_of(model),
+                              known ? ", which will take about " + results::duration_text(seconds) : ""));
+  if (ranks > 1)
+    notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
+  if (!known || seconds < worth_a_word) return;
+  const std::optional<QuickerModes> quicker = quicker_modes(scene);
+  if (quicker && quicker->seconds < quicker_by * seconds * ranks)
+    notes.push_back(fmt::format("quicker: -model_modes {} (all modes up to {:.3g} Hz) would take about {}{}",
+                                quicker->modes, quicker->frequency, results::duration_text(quicker->seconds / ranks),
+                                scene.modes_open && model.accuracy == 0.0
+                                    ? "; with ts_dt and the elements left open, modes are taken where they do as well"
+                                    : ""));
 }
 
 }  // namespace
@@ -189,55 +215,52 @@ int run_sweep(MPI_Comm comm, const Scene& given) {
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
   std::vector<std::string> notes;
-  const Scene scene = chosen(given, notes);
+  const SweepChoice choice = choose_for_sweep(given, notes);
+  const Scene& scene = choice.scene;
   CaseRunner runner(scene, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
   const std::vector<Case> cases = cases_of(runner);
-  const auto& speeds = runner.speeds();
-  notes.push_back(fmt::format("sweep of {} runs: {} speed{} from {:g} to {:g} m/s, {} train{}; above for the first one",
-                              cases.size(), speeds.size(), speeds.size() == 1 ? "" : "s", speeds.front(), speeds.back(),
-                              runner.trains(), runner.trains() == 1 ? "" : "s"));
-  if (ranks > 1)
-    notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
+  announce(scene, runner, choice.model, ranks, notes);
   print_notes(comm, notes);
 
   results::Layout layout;
   layout.probes = scene.output.probes;
+  layout.supports = span_ends(*scene.beam);
   results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
-  results::Sweep sweep = empty_sweep(scene, runner);
-  results::Progress progress(0.0, static_cast<double>(cases.size()), scene.quiet || rank != 0);
+  results::Sweep sweep = empty_sweep(scene, runner, choice.model);
+  Course course(cases, runner, ranks, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
   long done[2] = {0, 0};  // runs, the signal that came
   Failure failure;
   {
     Deal deal(comm, cases.size());
-    failure = run_share(cases, runner, deal, progress, sweep, done[0]);
+    failure = run_share(cases, runner, deal, course, sweep, done[0]);
     done[1] = caught_signal();
   }
-  progress.done();
+  course.done();
   failure = first_of(comm, std::move(failure));
   MPI_Allreduce(MPI_IN_PLACE, &done[0], 1, MPI_LONG, MPI_SUM, comm);
   MPI_Allreduce(MPI_IN_PLACE, &done[1], 1, MPI_LONG, MPI_MAX, comm);
   gather(comm, sweep);
 
-  results::Summary summary = results::extremes(sweep);
-  summary.steps = done[0];
-  summary.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  summary.ended = failure.run != nobody ? failure.message
-                  : done[1] != 0        ? fmt::format("ended by signal {}", done[1])
-                                        : "reached its end";
+  const results::SweepCourse whole = {done[0], static_cast<long>(cases.size()),
+                                      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                                      failure.run != nobody ? failure.message
+                                      : done[1] != 0        ? fmt::format("ended by signal {}", done[1])
+                                                            : "reached its end"};
   try {
     results::record(sweep, recorder);
-    recorder.finish(summary);
+    recorder.finish_with(results::summary_of(sweep, whole), {"runs", "wall_seconds"});
   } catch (const FileError& error) {
     leave_together(comm, error);
   }
   if (rank == 0) {
     if (done[0] > 0) results::print_sweep(sweep);
-    fmt::print("  {} of {} runs in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], cases.size(),
-               summary.wall_seconds, 1e3 * summary.wall_seconds / static_cast<double>(std::max(done[0], 1L)),
-               "the sweep", summary.ended, scene.output.file.empty() ? "none" : scene.output.file);
+    fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], cases.size(),
+               results::method_of(choice.model), whole.wall_seconds,
+               1e3 * whole.wall_seconds / static_cast<double>(std::max(done[0], 1L)), "the sweep", whole.ended,
+               scene.output.file.empty() ? "none" : scene.output.file);
   }
   if (failure.run != nobody) throw Error(failure.message, failure.status);
   return done[1] == 0 ? 0 : 128 + static_cast<int>(done[1]);

@@ -58,18 +58,21 @@ void Watch::sample(const integrate::Instant& instant) {
     for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   fill_vehicles(sample_);
-  note_peaks(v);
-  if (instant.stored) store(v, w);
+  note_peaks(v, w);
+  if (instant.purpose != integrate::Purpose::look) store(v, w, instant.purpose == integrate::Purpose::end);
 }
 
-void Watch::store(const double* v, const double* w) {
+void Watch::store(const double* v, const double* w, bool end) {
   if (beam_ != nullptr) {
     if (rail_recovery_) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
     beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
   }
   fill_fields(v, w);
   note_energy();
-  recorder_.add(sample_);
+  if (end)
+    recorder_.end(sample_);
+  else
+    recorder_.add(sample_);
   if (summary_.energy_residual > diverged * summary_.energy_scale + rounding * summary_.largest_energy)
     throw SolverError(
         fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
@@ -134,7 +137,7 @@ void Watch::fill_fields(const double* v, const double* w) {
   if (rail_recovery_) fill_rail(rail_, fields);
 }
 
-void Watch::note_peaks(const double* v) {
+void Watch::note_peaks(const double* v, const double* w) {
   wheel_forces_.clear();
   for (std::size_t k = 0; k < sample_.vehicles.size(); ++k)
     for (std::size_t i = 0; i < system_.fleet().members[k].type->wheels.size(); ++i)
@@ -144,8 +147,11 @@ void Watch::note_peaks(const double* v) {
   for (const beam::Response& probe : sample_.probes) deflected = std::max(deflected, std::abs(probe.deflection));
   if (deflected > most_deflected_) {
     most_deflected_ = deflected;
-    most_deflected_time_ = sample_.time;
-    worst_shape_.assign(v, v + system_.beam_unknowns());
+    worst_.time = sample_.time;
+    worst_.v.assign(v, v + system_.beam_unknowns());
+    worst_.w.assign(w, w + system_.beam_unknowns());
+    worst_.a = observation_.a;
+    worst_.loads = observation_.bridge_loads;
   }
 }
 
@@ -204,6 +210,13 @@ const Peaks& Watch::finished_peaks() {
   return peaks_;
 }
 
+const results::Summary& Watch::finished_extremes() {
+  summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, finished_peaks().largest(wheel_force).value);
+  note_separations();
+  if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
+  return summary_;
+}
+
 results::Summary Watch::finish() {
   const Peaks& peaks = finished_peaks();
   const auto extreme = [&](Quantity q) {
@@ -215,25 +228,16 @@ results::Summary Watch::finish() {
     summary_.acceleration = extreme(acceleration);
     summary_.moment = extreme(moment);
   }
-  summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, peaks.largest(wheel_force).value);
-  note_separations();
-  if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
+  finished_extremes();
   if (beam_ == nullptr) return summary_;
-  int some = worst_shape_.empty() && system_.beam_unknowns() > 0 ? 0 : 1;
+  int some = worst_.v.empty() && system_.beam_unknowns() > 0 ? 0 : 1;
   MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
   if (some == 0) return summary_;
   if (scene_.analysis == Analysis::transient)
     summary_.static_deflection = system_.static_peak(summary_.deflection.place);
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
-  results::Shape shape{most_deflected_time_, std::vector<double>(beam_->mesh().nodes(), 0.0)};
-  for (int node = 0; node < beam_->mesh().nodes(); ++node) {
-    const int local = beam_->local(beam_->bridge().unknown(node, 1));
-    if (local >= 0) shape.deflection[node] = worst_shape_[local];
-  }
-  MPI_Allreduce(MPI_IN_PLACE, shape.deflection.data(), static_cast<int>(shape.deflection.size()), MPI_DOUBLE, MPI_SUM,
-                beam_->comm());
-  recorder_.shape(shape);
+  recorder_.shape(shape_of(*beam_, scene_, worst_));
   return summary_;
 }
 

@@ -47,15 +47,16 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
                          const std::function<bool(double, long)>& step) {
   const double slack = 1e-3 * std::min(interval_, end_time_);
   system_.begin_step(0.0, 0.0);
-  sample_now(sample);
+  sample_now(sample, Purpose::sample);
   for (bool going = true; going && motion_.time() < end_time_ - slack;) {
     double t = static_cast<double>(steps_ + 1) * interval_;
+    const bool beyond = t > end_time_ + slack;  // the end is no multiple of the interval
     if (t > end_time_ - slack) t = end_time_;
     base::check(TSSetTimeStep(ts_, t - motion_.time()));
     base::check(TSStep(ts_));
     system_.begin_step(t - 2.0 * just_before * end_time_, t);
     ++steps_;
-    sample_now(sample);
+    sample_now(sample, beyond ? Purpose::end : Purpose::sample);
     going = step(t, steps_) && !stopped_at_limit();
   }
   return motion_.time();
@@ -79,7 +80,7 @@ void ModalStepper::load_now(double* nodal) const {
   }
 }
 
-void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample) {
+void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   const std::size_t n = force_.size();
   double *v = y_.data(), *w = v + n, *a = ydot_.data() + n;
   load_now(force_.data());
@@ -118,7 +119,7 @@ void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample)
     y_[2 * n] = motion_.dissipated();
     y_[2 * n + 1] = motion_.work() + stored - at_start_;  // what the correction stores, forces have put in
   }
-  sample({motion_.time(), y_.data(), ydot_.data(), dragged_ ? drag_.data() : nullptr});
+  sample({motion_.time(), y_.data(), ydot_.data(), dragged_ ? drag_.data() : nullptr, purpose});
 }
 
 }  // namespace traverse::integrate

@@ -144,19 +144,20 @@ void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array));
 // --- the loop ------------------------------------------------------------------------------------------------------
 
 double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step) {
-  const double slack = near_event * std::min(settings_.time_step, settings_.end_time);
+  const double slack = near_event * std::min({settings_.time_step, settings_.interval, settings_.end_time});
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::max(settings_.end_time, 1.0);
   std::size_t event = 0, passage = 0;
   long samples = 0;
   double t = 0.0;
   bool going = true;
-  sample_now(sample, true);
+  sample_now(sample, Purpose::sample);
   {
     Array y(y_);
     system_.accept(t, y.data);
   }
   while (going && t < settings_.end_time - slack) {
     double next_sample = static_cast<double>(samples + 1) * settings_.interval;
+    const bool beyond = next_sample > settings_.end_time + slack;  // the end is no multiple of the interval
     if (next_sample > settings_.end_time - slack) next_sample = settings_.end_time;
     double target = next_sample;
     const auto stop_at = [&](const std::vector<double>& times, std::size_t& next) {
@@ -180,10 +181,12 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       if (steps_ % steps_unseen == 0) check_bounds(t, y.data, nullptr);
       going = step(t, steps_) && !stopped_at_limit();
     }
-    if (t == next_sample)
-      sample_now(sample, ++samples % settings_.stored == 0 || t == settings_.end_time);
-    else if (passage < settings_.passages.size() && t == settings_.passages[passage])
-      sample_now(sample, false);
+    if (t == next_sample) {
+      const bool stored = ++samples % settings_.stored == 0 && !beyond;
+      sample_now(sample, stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::look);
+    } else if (passage < settings_.passages.size() && t == settings_.passages[passage]) {
+      sample_now(sample, Purpose::look);
+    }
   }
   return t;
 }
@@ -277,7 +280,7 @@ void Stepper::locate_contact_change(double from) {
   if (at != bracket.end()) again(bracket.end());
 }
 
-void Stepper::sample_now(const std::function<void(const Instant&)>& sample, bool stored) {
+void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
   if (second_order_ && steps_ > 0 && system_.knows_rate()) {
@@ -290,7 +293,7 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample, bool
   ReadArray y(y_);
   ReadArray ydot(rate_);
   check_bounds(t, y.data, ydot.data);
-  sample({t, y.data, ydot.data, nullptr, stored});
+  sample({t, y.data, ydot.data, nullptr, purpose});
 }
 
 // SolverError where the motion is no number any more, or the beam deflects by more than its length. ydot: or null.

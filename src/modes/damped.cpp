@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "eigen.hpp"
-#include "nodal_shape.hpp"
 #include "quadratic.hpp"
+#include "stored_shape.hpp"
 #include "traverse/modes/modes.hpp"
 
 namespace traverse::modes {
@@ -79,18 +79,27 @@ std::vector<DampedMode> lowest_damped(const std::vector<Segment>& segments, cons
   return modes;
 }
 
-}  // namespace
-
-DampedModes damped_modes(const beam::Beam& beam, int count, bool shapes) {
+DampedModes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* points) {
   auto segments = transverse_segments(beam, Damping::included);
   for (Segment& s : axial_segments(beam, Damping::included)) segments.push_back(std::move(s));
   DampedModes result;
   for (const DampedMode& mode : lowest_damped(segments, beam.rayleigh(), std::max(count, 0))) {
     result.lambda.push_back(mode.lambda);
     result.axial.push_back(mode.segment->axial ? 1 : 0);
-    if (shapes) result.shape.push_back(nodal_shape(*mode.segment, mode.offset, mode.shape, beam.mesh().nodes()));
+    if (points != nullptr) result.shape.push_back(stored_shape(beam, *mode.segment, mode.offset, mode.shape, *points));
   }
   return result;
+}
+
+}  // namespace
+
+DampedModes damped_modes(const beam::Beam& beam, int count, bool shapes) {
+  if (!shapes) return modes_of(beam, count, nullptr);
+  return damped_modes(beam, count, beam::ShapePoints::at_nodes(beam.mesh()));
+}
+
+DampedModes damped_modes(const beam::Beam& beam, int count, const beam::ShapePoints& points) {
+  return modes_of(beam, count, &points);
 }
 
 bool damped(const beam::Beam& beam) {

@@ -6,8 +6,8 @@
 #include <tuple>
 
 #include "eigen.hpp"
-#include "nodal_shape.hpp"
 #include "segment.hpp"
+#include "stored_shape.hpp"
 
 namespace traverse::modes {
 namespace {
@@ -69,6 +69,19 @@ void orthonormalise(std::vector<Mode>& modes) {
   }
 }
 
+Modes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* points) {
+  auto segments = transverse_segments(beam);
+  for (Segment& s : axial_segments(beam)) segments.push_back(std::move(s));
+  Modes result;
+  if (points != nullptr) result.x = points->x();
+  for (const Mode& mode : lowest(segments, std::max(count, 0))) {
+    result.omega.push_back(mode.omega);
+    result.axial.push_back(mode.segment->axial ? 1 : 0);
+    if (points != nullptr) result.shape.push_back(stored_shape(beam, *mode.segment, mode.offset, mode.shape, *points));
+  }
+  return result;
+}
+
 /// As `lowest`, and the remaining copies of the last frequency.
 std::vector<Mode> lowest_with_copies(const std::vector<Segment>& segments, int count) {
   for (int more = count + 1;; more *= 2) {
@@ -97,32 +110,26 @@ Basis bending_basis(const beam::Beam& beam, int count) {
   return basis;
 }
 
-Modes at_nodes(const beam::Beam& beam, const Basis& basis) {
+Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoints& points) {
   Modes modes;
   modes.omega = basis.omega;
   modes.axial.assign(basis.omega.size(), 0);
+  modes.x = points.x();
   for (const auto& mode : basis.shape) {
-    auto& shape = modes.shape.emplace_back();
-    for (int node = 0; node < beam.mesh().nodes(); ++node)
-      shape.push_back(mode[static_cast<std::size_t>(beam.bridge().unknown(node, 1))]);
-    double largest = 0.0;
-    for (const double v : shape)
-      if (std::abs(v) > (1.0 + 1e-9) * std::abs(largest)) largest = v;
-    for (double& v : shape) v = largest != 0.0 ? v / largest : 0.0;
+    const auto value = [&](int unknown) { return mode[static_cast<std::size_t>(unknown)]; };
+    modes.shape.push_back(points.curve<double>(beam.bridge(), false, value));
+    scale_to_one(modes.shape.back(), 0.0);
   }
   return modes;
 }
 
 Modes natural_modes(const beam::Beam& beam, int count, bool shapes) {
-  auto segments = transverse_segments(beam);
-  for (Segment& s : axial_segments(beam)) segments.push_back(std::move(s));
-  Modes result;
-  for (const Mode& mode : lowest(segments, std::max(count, 0))) {
-    result.omega.push_back(mode.omega);
-    result.axial.push_back(mode.segment->axial ? 1 : 0);
-    if (shapes) result.shape.push_back(nodal_shape(*mode.segment, mode.offset, mode.shape, beam.mesh().nodes()));
-  }
-  return result;
+  if (!shapes) return modes_of(beam, count, nullptr);
+  return natural_modes(beam, count, beam::ShapePoints::at_nodes(beam.mesh()));
+}
+
+Modes natural_modes(const beam::Beam& beam, int count, const beam::ShapePoints& points) {
+  return modes_of(beam, count, &points);
 }
 
 std::pair<double, double> distinct_pair(const beam::Beam& beam) {

@@ -195,7 +195,7 @@ Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, co
   auto most = shape_;
   most[0] = H5S_UNLIMITED;
   auto chunk = shape_;
-  chunk[0] = std::clamp<hsize_t>(kChunkBytes / (sizeof(double) * width_), 1, kChunkRows);
+  chunk[0] = rows == 1 ? 1 : std::clamp<hsize_t>(kChunkBytes / (sizeof(double) * width_), 1, kChunkRows);
 
   const Id space(file.check(H5Screate_simple(static_cast<int>(shape_.size()), shape_.data(), most.data())));
   const Id creation(file.check(H5Pcreate(H5P_DATASET_CREATE)));

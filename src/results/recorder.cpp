@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "hdf5.hpp"
+#include "summary.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results {
@@ -101,15 +102,16 @@ struct Recorder::Impl {
   ~Impl();
 
   void add(const Sample& sample);
+  void end(const Sample& sample);
   void flush();
-  void summarise(const Summary& summary);
+  void write(const std::string& object, const Attribute& attribute);
   /// Runs `write`; a failure leaves in the file what was flushed before, and ends the writing.
   template <class Write>
   void attempt(Write&& write);
 
   hdf5::File file;
   Layout layout;
-  std::vector<Series> series;  // in the order of `create_series`, which `add` follows
+  std::vector<Series> series;  // in the order of `create_series`, which `fill` follows
   std::size_t block_rows;
   std::size_t waiting = 0;  // samples in memory
   Clock::time_point last_flush = Clock::now();
@@ -117,8 +119,9 @@ struct Recorder::Impl {
   bool closed = false;
 
  private:
-  void create_series();
-  Series& create(const std::string& name, const std::vector<hsize_t>& row, const std::string& unit);
+  /// Under `group`, with buffers of so many rows.
+  std::vector<Series> create_series(const std::string& group, std::size_t rows);
+  static void fill(std::vector<Series>& series, const Sample& sample);
 };
 
 Recorder::Impl::Impl(const std::string& path, const Layout& given, const Pairs& attributes, const Pairs& options,
@@ -169,11 +172,11 @@ void Recorder::Impl::attempt(Write&& write) {
   }
 }
 
-Series& Recorder::Impl::create(const std::string& name, const std::vector<hsize_t>& row, const std::string& unit) {
-  return series.emplace_back(file, name, row, unit, static_cast<int>(block_rows));
-}
-
-void Recorder::Impl::create_series() {
+std::vector<Series> Recorder::Impl::create_series(const std::string& group, std::size_t rows) {
+  std::vector<Series> created;
+  const auto create = [&](const std::string& name, const std::vector<hsize_t>& row, const std::string& unit) {
+    created.emplace_back(file, group + name, row, unit, static_cast<int>(rows));
+  };
   create("/time", {}, "s");
   if (!layout.probes.empty()) {
     for (const auto& quantity : kProbeQuantities) {
@@ -199,14 +202,30 @@ void Recorder::Impl::create_series() {
     for (const auto& spring : layout.vehicles[k].springs) create(vehicle + spring + "/force", {}, "N");
     for (const auto& spring : layout.vehicles[k].torsion_springs) create(vehicle + spring + "/moment", {}, "N m");
   }
+  return created;
 }
 
 void Recorder::Impl::add(const Sample& sample) {
   if (!fits(sample, layout)) throw std::logic_error("a sample does not fit the layout of the results file");
   if (series.empty()) {
-    create_series();
+    series = create_series("", block_rows);
+    if (layout.interval > 0.0) file.attribute("/time", "interval", layout.interval);
     file.flush();  // from here on the file's structure stays, only lengths grow
   }
+  fill(series, sample);
+  ++waiting;
+  if (waiting >= block_rows || seconds_since(last_flush) > std::max(kLongestWait, kCostFactor * flush_cost)) flush();
+}
+
+void Recorder::Impl::end(const Sample& sample) {
+  if (!fits(sample, layout)) throw std::logic_error("a sample does not fit the layout of the results file");
+  std::vector<Series> apart = create_series("/end", 1);
+  fill(apart, sample);
+  for (Series& one : apart) one.write(file);
+  file.flush();
+}
+
+void Recorder::Impl::fill(std::vector<Series>& series, const Sample& sample) {
   auto next = series.begin();
   next++->add(sample.time);
   if (!sample.probes.empty()) {
@@ -239,8 +258,6 @@ void Recorder::Impl::add(const Sample& sample) {
     for (const double force : vehicle.springs) next++->add(force);
     for (const double moment : vehicle.torsion_springs) next++->add(moment);
   }
-  ++waiting;
-  if (waiting >= block_rows || seconds_since(last_flush) > std::max(kLongestWait, kCostFactor * flush_cost)) flush();
 }
 
 void Recorder::Impl::flush() {
@@ -254,40 +271,8 @@ void Recorder::Impl::flush() {
   flush_cost = seconds_since(start);
 }
 
-void Recorder::Impl::summarise(const Summary& summary) {
-  file.attribute("/", "steps", summary.steps);
-  file.attribute("/", "wall_seconds", summary.wall_seconds);
-  const std::string group = "/summary";
-  file.group(group);
-  const auto extreme = [&](const std::string& name, const Extreme& value) {
-    file.attribute(group, name, value.value);
-    file.attribute(group, name + "_time", value.time);
-    file.attribute(group, name + "_place", value.place);
-  };
-  extreme("deflection", summary.deflection);
-  extreme("acceleration", summary.acceleration);
-  extreme("moment", summary.moment);
-  file.attribute(group, "static_deflection", summary.static_deflection);
-  file.attribute(group, "amplification", summary.amplification);
-  file.attribute(group, "least_wheel_force", summary.least_wheel_force);
-  file.attribute(group, "least_wheel_force_time", summary.least_wheel_force_time);
-  file.attribute(group, "least_wheel", summary.least_wheel);
-  file.attribute(group, "greatest_wheel_force", summary.greatest_wheel_force);
-  file.attribute(group, "contact_losses", static_cast<long>(summary.contact_losses));
-  file.attribute(group, "longest_loss", summary.longest_loss);
-  file.attribute(group, "energy_residual", summary.energy_residual);
-  file.attribute(group, "energy_left", summary.energy_left);
-  file.attribute(group, "rest_error", summary.rest_error());
-  file.attribute(group, "energy_scale", summary.energy_scale);
-  file.attribute(group, "static_error", summary.static_error);
-  file.attribute(group, "steps", summary.steps);
-  file.attribute(group, "rejected_steps", summary.rejected_steps);
-  file.attribute(group, "solves", summary.solves);
-  file.attribute(group, "factorisations", summary.factorisations);
-  file.attribute(group, "wall_seconds", summary.wall_seconds);
-  file.attribute(group, "ended", summary.ended);
-  for (const auto& [quantity, error] : summary.expected_errors)
-    file.attribute(group, "expected_error_" + quantity, error);
+void Recorder::Impl::write(const std::string& object, const Attribute& attribute) {
+  std::visit([&](const auto& value) { file.attribute(object, attribute.name, value); }, attribute.value);
 }
 
 Recorder::Recorder(MPI_Comm comm, const std::string& file, const Layout& layout, const Pairs& attributes,
@@ -313,6 +298,11 @@ void Recorder::add(const Sample& sample) {
   impl_->attempt([&] { impl_->add(sample); });
 }
 
+void Recorder::end(const Sample& sample) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] { impl_->end(sample); });
+}
+
 void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {
@@ -324,11 +314,11 @@ void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double raylei
       file.dataset("/modes/axial", {modes.axial.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
     }
     if (!modes.shape.empty()) {
-      const std::size_t nodes = modes.shape.front().size();
+      const std::size_t points = modes.shape.front().size();
       std::vector<double> shapes;
       for (const auto& shape : modes.shape) shapes.insert(shapes.end(), shape.begin(), shape.end());
-      file.dataset("/modes/shape", {modes.shape.size(), nodes}, shapes, "1");
-      if (impl_->layout.nodes.size() == nodes) file.dataset("/modes/x", {nodes}, impl_->layout.nodes, "m");
+      file.dataset("/modes/shape", {modes.shape.size(), points}, shapes, "1");
+      if (modes.x.size() == points) file.dataset("/modes/x", {points}, modes.x, "m");
     }
     file.attribute("/modes", "rayleigh_a", rayleigh_a);
     file.attribute("/modes", "rayleigh_b", rayleigh_b);
@@ -367,10 +357,9 @@ void Recorder::shape(const Shape& shape) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {
     auto& file = impl_->file;
-    const auto& nodes = impl_->layout.nodes;
-    if (shape.deflection.size() != nodes.size()) throw std::logic_error("a shape with another number of nodes");
-    file.dataset("/shape/x", {nodes.size()}, nodes, "m");
-    file.dataset("/shape/deflection", {nodes.size()}, shape.deflection, "m");
+    if (shape.deflection.size() != shape.x.size()) throw std::logic_error("a shape with another number of points");
+    file.dataset("/shape/x", {shape.x.size()}, shape.x, "m");
+    file.dataset("/shape/deflection", {shape.x.size()}, shape.deflection, "m");
     file.attribute("/shape/deflection", "time", shape.time);
     file.attribute("/shape", "time", shape.time);
   });
@@ -405,15 +394,26 @@ void Recorder::datasets(const std::vector<Dataset>& sets) {
   });
 }
 
-double Summary::rest_error() const {
-  return structure_energy > 0.0 ? std::sqrt(std::abs(energy_left) / structure_energy) : 0.0;
+void Recorder::attributes(const std::string& group, const std::vector<Attribute>& list) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const Attribute& attribute : list) impl_->write(group, attribute);
+  });
 }
 
 void Recorder::finish(const Summary& summary) {
+  if (impl_ != nullptr) finish_with(attributes_of(summary, !impl_->layout.probes.empty()), {"steps", "wall_seconds"});
+}
+
+void Recorder::finish_with(const std::vector<Attribute>& summary, const std::vector<std::string>& at_root) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {
     impl_->flush();
-    impl_->summarise(summary);
+    impl_->file.group("/summary");
+    for (const Attribute& attribute : summary) {
+      impl_->write("/summary", attribute);
+      if (std::find(at_root.begin(), at_root.end(), attribute.name) != at_root.end()) impl_->write("/", attribute);
+    }
     impl_->series.clear();
     impl_->file.close();
     impl_->closed = true;

@@ -15,8 +15,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kSilentStart = 2.0;  // s without progress lines
-constexpr double kRedrawEvery = 0.2;  // s, on a terminal
+constexpr double kSilentStart = 2.0;      // s without progress lines
+constexpr double kRedrawEvery = 0.2;      // s, on a terminal
+constexpr double kLongestSilence = 30.0;  // s, elsewhere
 constexpr int kLabelWidth = 22;
 
 bool is_first_rank() {
@@ -28,6 +29,8 @@ bool is_first_rank() {
 
 double seconds(Clock::duration duration) { return std::chrono::duration<double>(duration).count(); }
 
+}  // namespace
+
 std::string duration_text(double s) {
   if (s < 0.9995) return fmt::format("{:.3g} ms", 1e3 * s);
   if (s < 9.995) return fmt::format("{:.3g} s", s);
@@ -36,6 +39,8 @@ std::string duration_text(double s) {
   if (whole < 3600) return fmt::format("{} min {:02d} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02d} min", whole / 3600, whole % 3600 / 60);
 }
+
+namespace {
 
 void line(const std::string& label, const std::string& text) { fmt::print("  {:<{}}{}\n", label, kLabelWidth, text); }
 
@@ -156,8 +161,8 @@ void Progress::update(double t, long steps) {
   show(t, [&] { return fmt::format("t = {:.4g} s   step {}", t, steps); });
 }
 
-void Progress::runs(std::size_t done) {
-  show(static_cast<double>(done), [&] { return fmt::format("{} of {:.0f} runs", done, end_); });
+void Progress::runs(double part, std::size_t done, std::size_t all) {
+  show(part, [&] { return fmt::format("{} of {} runs", done, all); });
 }
 
 template <class Text>
@@ -166,8 +171,8 @@ void Progress::show(double t, Text what) {
   const double part = std::min((t - start_) / (end_ - start_), 1.0);
   if (part >= 1.0) return;
   const int tenth = static_cast<int>(10.0 * part);
-  if (!terminal_ && tenth <= shown_) return;
   const auto now = Clock::now();
+  if (!terminal_ && tenth <= shown_ && seconds(now - last_) < kLongestSilence) return;
   const double elapsed = seconds(now - begin_);
   if (elapsed < kSilentStart || (terminal_ && seconds(now - last_) < kRedrawEvery)) return;
   const std::string text =

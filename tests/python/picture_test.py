@@ -14,7 +14,10 @@ import numpy as np
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
 SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
+import matplotlib.pyplot as plt  # noqa: E402
+import picture  # noqa: E402
 import picture_data  # noqa: E402
+import picture_words  # noqa: E402
 
 
 def write_run(path, *, beam=True, vehicles=2, wheels=("front_wheel", "rear_wheel"), rows=400, finished=True, extra=0):
@@ -119,6 +122,73 @@ class PictureTest(unittest.TestCase):
             file["sweep/speed"] = np.linspace(30.0, 90.0, 13)
             file["sweep/peak_deflection"] = 1e-3 * np.ones((3, 13, 2))
         self.assert_drawn()
+
+    def write_sweep(self, trains, missing=()):
+        with h5py.File(self.file, "w") as file:
+            file["sweep/speed"] = np.linspace(30.0, 90.0, 13)
+            peaks = 1e-3 * np.arange(1.0, trains * 13 * 2 + 1).reshape(trains, 13, 2)
+            for train, speed in missing:
+                peaks[train, speed] = np.nan
+            file["sweep/peak_deflection"] = peaks
+            file["sweep/hslm_a"] = np.arange(1.0, trains + 1)
+            file["sweep"].attrs.update({"modes": 3, "elements_per_span": 10})
+            file.create_group("summary").attrs.update({
+                "deflection": 0.0675, "deflection_place": 12.5, "deflection_speed": 95.5555556, "deflection_train": 10,
+                "amplification": 8.15, "greatest_amplification": 9.9, "runs": trains * 13})
+            file.attrs.update({"runs": trains * 13, "wall_seconds": 0.5})
+
+    def drawn_sweep(self):
+        figure, ax = plt.subplots()
+        self.addCleanup(plt.close, figure)
+        with h5py.File(self.file) as file:
+            picture.draw_sweep(ax, picture_data.Results(file))
+        return ax
+
+    def test_sweep_draws_every_train(self):
+        self.write_sweep(10)
+        ax = self.drawn_sweep()
+        self.assertEqual(len(ax.lines), 10)
+        self.assertEqual({text.get_text() for text in ax.texts}, {f"train A{i}" for i in range(1, 11)})
+        looks = {(line.get_color(), str(line.get_linestyle()), line._unscaled_dash_pattern[1]) for line in ax.lines}
+        self.assertEqual(len({(colour, str(dashes)) for colour, _, dashes in looks}), 10)
+        self.assert_drawn()
+
+    def test_sweep_says_what_it_leaves_out(self):
+        self.write_sweep(20, missing=[(0, 0), (3, 12)])
+        self.assertIn(f"({picture_data.MOST_TRAINS} of 20 trains, 2 of 260 runs are missing)",
+                      self.drawn_sweep().get_title(loc="left"))
+        self.assert_drawn()
+
+    def test_sweep_without_a_run(self):
+        self.write_sweep(1, missing=[(0, i) for i in range(13)])
+        self.assert_drawn()
+
+    def test_sweep_in_words(self):
+        self.write_sweep(10)
+        with h5py.File(self.file) as file:
+            results = picture_data.Results(file)
+            said = "; ".join(picture_words.summary_in_words(results))
+            self.assertEqual(picture_words.method_in_words(results), "by 3 modes")
+            self.assertEqual(picture_words.sweep_in_words(results), "10 trains, 13 speeds from 108 to 324 km/h")
+        self.assertEqual(said, "greatest deflection 67.5 mm, at 12.5 m by train A10 at 344 km/h; "
+                               "8.15 times the static one")
+
+    def test_head_and_curve_agree_or_say_why(self):
+        for deepest, head, label in ((-1e-3, "greatest deflection 1 mm", "1 mm down"),
+                                     (-2e-3, "greatest deflection at a probe 1 mm", "2 mm down, at 12 m")):
+            write_run(self.file)
+            with h5py.File(self.file, "a") as file:
+                shape = np.zeros(21)
+                shape[6] = deepest
+                file["shape/deflection"][...] = shape
+                results = picture_data.Results(file)
+                self.assertTrue(picture_words.summary_in_words(results)[0].startswith(head))
+                self.assertEqual(picture_words.worst_in_words(results, 12.0, deepest), label)
+
+    def test_modes_left_out_are_said(self):
+        self.assertEqual(picture_words.modes_in_words(np.ones(10), np.ones((10, 5))),
+                         "drawn: the first 6 of 10 modes")
+        self.assertEqual(picture_words.modes_in_words(np.ones(3), np.ones((3, 5))), "")
 
     def test_file_with_nothing_to_draw(self):
         h5py.File(self.file, "w").close()

@@ -105,7 +105,9 @@ TEST(Run, EmptyTrain) {
 TEST(Run, ShorterThanAStep) {
   const Workplace workplace(small_scene());
   Results results = run(workplace, {"-ts_max_time", "1e-6"});
-  EXPECT_DOUBLE_EQ(results.time().back(), 1e-6);
+  EXPECT_DOUBLE_EQ(results.attribute("/summary", "end_time"), 1e-6);
+  EXPECT_DOUBLE_EQ(results("/end/time")[0], 1e-6);
+  EXPECT_EQ(results.time(), std::vector<double>{0.0});
 }
 
 TEST(Run, NoGravityAndNoContact) {

@@ -46,6 +46,21 @@ TEST(SweepEnds, ByASignalWithWhatItHas) {
   EXPECT_LT(runs, 4001u);
 }
 
+// Before it begins: what it will take, and what would be quicker.
+TEST(SweepCost, IsSaidBeforehand) {
+  const Workplace workplace(std::string(two_spans) +
+                            "load: {forces: 1.0e5}\nsweep: {speed: [20, 60, 0.01]}\nts_dt: 1.0e-4\n");
+  Child child(workplace.command({"-output_file", "r.h5"}), workplace.folder());
+  ASSERT_TRUE(child.wait_for("the sweep is by 4 elements a span and steps of 0.0001 s, which will take about ", 300.0));
+  ASSERT_TRUE(child.wait_for("quicker: -model_modes ", 300.0));
+  child.kill(SIGTERM);
+  EXPECT_EQ(child.wait(300.0).status, 128 + SIGTERM);
+  const Outcome modes = workplace.run({"-output_file", "m.h5", "-model_modes", "4"}, 1, 300.0);
+  expect_success(modes);
+  EXPECT_EQ(modes.out.find("quicker:"), std::string::npos) << modes.out;
+  EXPECT_NE(modes.out.find("4001 of 4001 runs by 4 modes"), std::string::npos) << modes.out;
+}
+
 TEST(SweepInput, IsCheckedForItsFastestRunToo) {
   const Workplace workplace(std::string(two_spans) +
                             "load: {forces: 1.0e5}\nsweep: {speed: [20, 80, 20]}\nts_dt: 0.05\n");

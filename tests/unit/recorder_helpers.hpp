@@ -24,7 +24,7 @@ inline Layout small_layout() {
   Layout layout;
   layout.probes = {2.5, 5.0};
   layout.supports = {0.0, 5.0, 10.0};
-  layout.nodes = {0.0, 5.0, 10.0};
+  layout.interval = 1.0;
   layout.vehicles = {{{"car"}, {"front_wheel", "rear_wheel"}, {"guide"}, {"spring"}, {"bar"}},
                      {{"car", "bogie"}, {}, {}, {}, {}}};
   return layout;

@@ -104,10 +104,24 @@ TEST_F(RecorderTest, WritesEveryDatasetOfTheTable) {
   for (const auto& [name, offset] : energies) expect_ramp(reader, "/energy/" + name, rows, offset);
 }
 
+TEST_F(RecorderTest, KeepsTheEndApartFromTheSamples) {
+  auto recorder = open(small_layout());
+  for (long i = 0; i < 3; ++i) recorder->add(sample_at(i));
+  recorder->end(sample_at(7));
+  recorder->finish({});
+  const Reader reader(file_);
+  EXPECT_EQ(reader.values("/time"), (std::vector{0.0, 1.0, 2.0}));
+  EXPECT_EQ(reader.number("/time", "interval"), 1.0);
+  EXPECT_EQ(reader.values("/end/time"), (std::vector{7.0}));
+  EXPECT_EQ(reader.shape("/end/vehicles/0/car/position"), (Shape1{1, 3}));
+  EXPECT_DOUBLE_EQ(reader.values("/end/vehicles/0/car/position")[2], 7.32);
+  EXPECT_EQ(reader.text("/end/supports/reaction", "unit"), "N, N, N m");
+}
+
 TEST_F(RecorderTest, WritesAttributesOptionsAndSummary) {
   auto recorder = open(small_layout());
   recorder->add(sample_at(0));
-  recorder->shape({1.5, {0.0, -0.002, 0.0}});
+  recorder->shape({1.5, {0.0, 5.0, 10.0}, {0.0, -0.002, 0.0}});
   Summary summary;
   summary.deflection = {-0.002, 1.5, 5.0};
   summary.least_wheel = "vehicle 0, rear_wheel";
@@ -139,8 +153,10 @@ TEST_F(RecorderTest, WritesAttributesOptionsAndSummary) {
 
 TEST_F(RecorderTest, WritesModes) {
   auto recorder = open(small_layout());
-  const modes::Modes modes = {
-      .omega = {2.0 * std::numbers::pi, 30.0}, .axial = {0, 1}, .shape = {{0.0, 1.0, 0.0}, {0.5, 0.0, -1.0}}};
+  const modes::Modes modes = {.omega = {2.0 * std::numbers::pi, 30.0},
+                              .axial = {0, 1},
+                              .shape = {{0.0, 1.0, 0.0}, {0.5, 0.0, -1.0}},
+                              .x = {0.0, 5.0, 10.0}};
   recorder->modes(modes, 0.1, 0.002, 6.3, 30.0);
   recorder->finish({});
   const Reader reader(file_);

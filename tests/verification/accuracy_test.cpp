@@ -71,7 +71,7 @@ TEST_P(Promise, IsKeptAtEveryAccuracy) {
     const double wanted = std::stod(accuracy);
     std::size_t promised = 0;
     for (const std::string quantity : quantities) {
-      if (peak_of(truth, quantity) == 0.0) continue;
+      if (!(peak_of(truth, quantity) > 0.0)) continue;  // no wheels, no wheel force in the summary
       const auto expectation = expected(run, quantity);
       const double error = std::abs(peak_of(run, quantity) / peak_of(truth, quantity) - 1.0);
       RecordProperty(quantity + "_" + accuracy, text(error));

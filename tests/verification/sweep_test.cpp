@@ -91,8 +91,15 @@ TEST(Sweep, ByModes) {
     const bool first = std::abs(alone.attribute("/summary", "deflection_place") - 10.0) < 1e-9;
     const double amplification = sweep("/sweep/amplification")[2 * run + (first ? 0 : 1)];
     EXPECT_NEAR(amplification, alone.attribute("/summary", "amplification"), 1e-3 * amplification);
+    if (std::stod(speed) == sweep.attribute("/summary", "deflection_speed")) {
+      EXPECT_NEAR(sweep.attribute("/summary", "amplification"), amplification, 1e-12);
+      EXPECT_NEAR(sweep.attribute("/summary", "static_deflection"), alone.attribute("/summary", "static_deflection"),
+                  1e-3 * sweep.attribute("/summary", "static_deflection"));
+    }
     ++run;
   }
+  EXPECT_EQ(sweep.attribute("/sweep", "modes"), 6.0);
+  EXPECT_EQ(sweep.attribute("/sweep", "elements_per_span"), 6.0);
 }
 
 // What is chosen at some speeds serves all, by elements and, where these do as well, by modes: every peak of every run
@@ -114,6 +121,13 @@ TEST_P(SweepAccuracy, HoldsInEveryRun) {
     const bool by_modes = said.find("modes instead of the elements") != std::string::npos;
     if (std::string(GetParam()) == "1e-2") {  // at 1e-3 accelerations at low speed are not promised, nor tried by modes
       EXPECT_EQ(by_modes, std::string(modes) == "auto") << said;
+      EXPECT_EQ(run.attribute("/sweep", "modes") > 0.0, by_modes);
+      EXPECT_EQ(std::isnan(run.attribute("/sweep", "time_step")), by_modes) << "modes are exact in time";
+      for (const char* name : {"deflection", "acceleration", "moment"}) {
+        const double expected = run.attribute("/summary", std::string("expected_error_") + name);
+        EXPECT_GT(expected, 0.0) << name;
+        EXPECT_LT(expected, 1e-2 * 1.25) << name;
+      }
     }
     for (const char* name : {"deflection", "acceleration", "moment"}) {
       const auto &found = run(std::string("/sweep/peak_") + name), &exact = fine(std::string("/sweep/peak_") + name);
@@ -136,6 +150,12 @@ TEST(Sweep, VehiclesHaveTheirLeastWheelForce) {
   ASSERT_EQ(least.size(), 2u);
   Results alone = run_yaml(coaches, options + Values{{"train_speed", "80"}});
   EXPECT_NEAR(least[1], alone.attribute("/summary", "least_wheel_force"), 1e-9 * least[1]);
+  const double greatest = sweep("/sweep/greatest_wheel_force")[1];
+  EXPECT_NEAR(greatest, alone.attribute("/summary", "greatest_wheel_force"), 1e-9 * greatest);
+  EXPECT_EQ(sweep.attribute("/summary", "least_wheel_force"), *std::min_element(least.begin(), least.end()));
+  EXPECT_EQ(sweep.attribute("/summary", "runs"), 2.0);
+  EXPECT_TRUE(std::isnan(sweep.attribute("/summary", "steps"))) << "runs are no steps";
+  EXPECT_TRUE(std::isnan(sweep.attribute("/", "steps")));
 }
 
 }  // namespace

@@ -14,16 +14,19 @@ struct Plan {
   double time_step = 0.0;  // s
   double interval = 0.0;   // s between samples
   int stored = 1;          // every so many samples one is stored
+
+  /// Whether the end is a multiple of the interval between stored samples.
+  bool ends_at_sample() const;
 };
 
-/// Fills in what the user left open and says so in `notes`. first_period: of the beam (s), 0 where not known.
-/// InputError when the scene has no end.
 /// m/s, of the train or the forces; 0 where there are none.
 double greatest_speed(const Scene& scene);
 
 /// m: the shortest wave of the track or of a wheel out of round; infinite where all is smooth.
 double shortest_wave(const Scene& scene);
 
+/// Fills in what the user left open and says so in `notes`. first_period: of the beam (s), 0 where not known.
+/// InputError when the scene has no end.
 Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
                std::vector<std::string>& notes);
 

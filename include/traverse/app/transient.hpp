@@ -7,6 +7,7 @@
 #include "traverse/app/peaks.hpp"
 #include "traverse/app/plan.hpp"
 #include "traverse/app/scene.hpp"
+#include "traverse/app/worst_shape.hpp"
 #include "traverse/beam/ground_forces.hpp"
 #include "traverse/beam/recovery.hpp"
 #include "traverse/beam/viscous_lag.hpp"
@@ -29,6 +30,8 @@ class Watch {
   /// What was seen last.
   const results::Sample& last() const { return sample_; }
   const results::Summary& extremes() const { return summary_; }
+  /// Those of wheels and contacts too, after the last sample.
+  const results::Summary& finished_extremes();
   /// The extremes so far, after the last sample.
   const Peaks& finished_peaks();
 
@@ -37,8 +40,8 @@ class Watch {
   void fill_fields(const double* v, const double* w);
   void drag(const double* drag);
   void note_separations();
-  void store(const double* v, const double* w);
-  void note_peaks(const double* v);
+  void store(const double* v, const double* w, bool end);
+  void note_peaks(const double* v, const double* w);
   void note_energy();
 
   const Scene& scene_;
@@ -56,8 +59,8 @@ class Watch {
   coupling::Observation observation_;
   results::Sample sample_;
   results::Summary summary_;
-  double most_deflected_ = 0.0, most_deflected_time_ = 0.0;  // m, s
-  std::vector<double> worst_shape_;                          // nodal unknowns of this rank at the largest deflection
+  double most_deflected_ = 0.0;  // m
+  WorstInstant worst_;
   coupling::Energy energy_at_start_;
   bool first_ = true;
 };

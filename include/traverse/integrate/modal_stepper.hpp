@@ -24,7 +24,7 @@ class ModalStepper {
   std::string method() const;
 
  private:
-  void sample_now(const std::function<void(const Instant&)>& sample);
+  void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void load_now(double* nodal) const;
 
   coupling::System& system_;

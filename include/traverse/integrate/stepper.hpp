@@ -27,13 +27,17 @@ struct Settings {
   int stored = 1;                  // every so many of the other samples is to be stored
 };
 
+/// What an instant is for: one of the evenly spaced samples, a look at peaks between them, or the end of the run where
+/// that is no multiple of the interval between samples.
+enum class Purpose { sample, look, end };
+
 /// An accepted instant: y and y' = G(t, y) of this rank.
 struct Instant {
   double time;
   const double* y;
   const double* ydot;
   const double* drag = nullptr;  // what modal damping forces are over the mass, this rank's beam; null: none
-  bool stored = true;            // else only to look at
+  Purpose purpose = Purpose::sample;
 };
 
 class Stepper {
@@ -45,8 +49,8 @@ class Stepper {
   double* state();  // this rank's entries, before run()
   void restore_state(double** array);
 
-  /// Collective. Runs to the end. `sample` is called at t = 0 and at every multiple of the interval, at passages
-  /// and at the end, `step` after every step; when it returns false the run stops early. Throws SolverError with what
+  /// Collective. Runs to the end. `sample` is called at t = 0, at every multiple of the interval, at passages and at
+  /// the end, `step` after every step; when it returns false the run stops early. Throws SolverError with what
   /// to change when a step cannot be taken. Returns the time reached.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
 
@@ -71,7 +75,7 @@ class Stepper {
   void take_step(double left);
   double step_to(double end);
   void locate_contact_change(double from);
-  void sample_now(const std::function<void(const Instant&)>& sample, bool stored);
+  void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y, const double* ydot) const;
   void rate(double t, Vec y, Vec ydot, coupling::Part part);
   bool remembered(double t, const double* y) const;

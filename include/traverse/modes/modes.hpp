@@ -6,15 +6,17 @@
 #include <vector>
 
 #include "traverse/beam/beam.hpp"
+#include "traverse/beam/shape_points.hpp"
 
 namespace traverse::modes {
 
 struct Modes {
   std::vector<double> omega;               // rad/s, ascending, repeated as often as they occur
   std::vector<char> axial;                 // per mode: non-zero for motion along x, else bending
-  std::vector<std::vector<double>> shape;  // per mode: deflection at every node of the beam, largest magnitude 1;
+  std::vector<std::vector<double>> shape;  // per mode: deflection at every point asked for, largest magnitude 1;
                                            // of an axial mode the displacement along x. All zero where a mode turns
-                                           // its nodes without moving them (one element a span)
+                                           // the points without moving them (the nodes of one element a span)
+  std::vector<double> x{};                 // of these points, m
 };
 
 /// Collective; the same result on every rank, to the last bit. The `count` lowest frequencies of M, K*.
@@ -23,7 +25,10 @@ struct Modes {
 /// come out as exactly 0. count may exceed the number of unknowns: then all of them. Throws SolverError when SLEPc
 /// fails. The relative error, by rounding, of the lowest frequency is about 0.02 eps n^4 for n elements between
 /// supports: 3e-6 for 1,000, 2 % for 10,000.
+/// `shapes`: at the nodes.
 Modes natural_modes(const beam::Beam& beam, int count, bool shapes);
+/// With shapes at these points of the bridge.
+Modes natural_modes(const beam::Beam& beam, int count, const beam::ShapePoints& points);
 
 /// Modes of bending as vectors of all unknowns of the beam (all ranks'), with phi^T M phi = 1 kg.
 struct Basis {
@@ -35,8 +40,8 @@ struct Basis {
 /// one's frequency, so that nothing depends on which of equal spans comes first. Not for layered tracks.
 Basis bending_basis(const beam::Beam& beam, int count);
 
-/// A basis as modes are stored: deflections at the nodes, the largest 1.
-Modes at_nodes(const beam::Beam& beam, const Basis& basis);
+/// A basis as modes are stored: deflections at these points of the bridge, the largest 1.
+Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoints& points);
 
 /// Solutions v = Re(shape exp(lambda t)) of M a + C* w + K* v = 0: of each pair of conjugates the one with Im >= 0.
 struct DampedModes {
@@ -66,6 +71,7 @@ struct DampedModes {
 /// 1e-5, for modes 1e4 and more times faster than a creeping one. Crowded modes of a long bridge cost far more than
 /// without damping. Throws SolverError when SLEPc fails.
 DampedModes damped_modes(const beam::Beam& beam, int count, bool shapes);
+DampedModes damped_modes(const beam::Beam& beam, int count, const beam::ShapePoints& points);
 
 /// Whether C* has any entry that is not zero. Collective, after Beam::set_rayleigh.
 bool damped(const beam::Beam& beam);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "traverse/beam/recovery.hpp"
@@ -18,9 +19,9 @@ struct Layout {
   struct VehicleNames {
     std::vector<std::string> bodies, wheels, joints, springs, torsion_springs;
   };
+  double interval = 0.0;         // s between samples; 0: there is one instant only
   std::vector<double> probes;    // stations, m; empty without a beam
   std::vector<double> supports;  // stations of the span ends, m
-  std::vector<double> nodes;     // x of every node, m: the bridge's shape is stored at the worst instants
   std::vector<VehicleNames> vehicles;
   /// A dataset that belongs to some scenes only: forces of the foundation, the response of a rail.
   struct Field {
@@ -63,10 +64,10 @@ struct Sample {
   } energy;
 };
 
-/// The bridge's deflection at all nodes at one instant.
+/// The bridge's deflection at one instant, at its nodes and at points between them.
 struct Shape {
   double time = 0.0;
-  std::vector<double> deflection;
+  std::vector<double> x, deflection;  // m
 };
 
 /// From the loss of a contact to the impact that ends it.
@@ -106,10 +107,17 @@ struct Summary {
   long rejected_steps = 0;    // tried and taken again, shorter
   long solves = 0;            // beam solves
   long factorisations = 0;    // of the beam's matrices
+  double end_time = 0.0;      // s, how far the run has come
   double wall_seconds = 0.0;  // of the time loop
   std::string ended;          // "reached its end", or why it stopped
   /// Relative, of the peaks whose accuracy is promised: name of the quantity and what is expected.
   std::vector<std::pair<std::string, double>> expected_errors;
+};
+
+/// Of a group or dataset.
+struct Attribute {
+  std::string name;
+  std::variant<double, long, std::string> value;
 };
 
 /// The writer. Only rank 0 opens and writes the file; on the other ranks every call does nothing.
@@ -122,6 +130,8 @@ class Recorder {
   ~Recorder();  // flushes what is there; never throws
 
   void add(const Sample& sample);
+  /// The end of the run where it is no multiple of the interval: what `add` would append, apart under /end.
+  void end(const Sample& sample);
   void modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2);
   void damped_modes(const modes::DampedModes& modes);
   /// The shape at the instant of the largest deflection: /shape/x, /shape/deflection, attribute time.
@@ -136,8 +146,12 @@ class Recorder {
     std::string unit;
   };
   void datasets(const std::vector<Dataset>& sets);
+  /// Of a group that is there.
+  void attributes(const std::string& group, const std::vector<Attribute>& list);
   /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.
   void finish(const Summary& summary);
+  /// The same with a summary that is not one of a single run; those named in `at_root` become attributes of / too.
+  void finish_with(const std::vector<Attribute>& summary, const std::vector<std::string>& at_root = {});
 
  private:
   struct Impl;

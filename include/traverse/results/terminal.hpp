@@ -10,17 +10,20 @@
 
 namespace traverse::results {
 
+/// "12 ms", "3.4 s", "2 min 05 s", "1 h 10 min".
+std::string duration_text(double seconds);
+
 /// "modelled" lines: each one a thing and, after it, why or how it was chosen.
 void print_modelled(const std::vector<std::string>& lines);
 
-/// Progress with the time left: on a terminal one line rewritten, otherwise a line every tenth of the run at most
-/// and none for runs that end within two seconds. Costs nothing measurable when called every step.
+/// Progress with the time left: on a terminal one line rewritten, otherwise a line every tenth of the run and every
+/// half minute, and none for runs that end within two seconds. Costs nothing measurable when called every step.
 class Progress {
  public:
   Progress(double start, double end, bool quiet);
   void update(double t, long steps);
-  /// Of a sweep, whose end is the number of its runs.
-  void runs(std::size_t done);
+  /// Of a sweep from 0 to 1: the part of its work that is done, and how many of its runs.
+  void runs(double part, std::size_t done, std::size_t all);
   void done();
 
  private:

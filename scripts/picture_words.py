@@ -1,0 +1,78 @@
+"""What picture.py says about a run: its peaks, each with the place, speed and train that it belongs to."""
+
+from picture_data import MOST_CURVES, place_in_words
+
+
+def millimetres(metres):
+    return f"{1e3 * abs(metres):.3g} mm"
+
+
+def run_in_words(summary, name):
+    """' by train A10 at 344 km/h': whose peak it is, in a sweep; else nothing."""
+    train = f" by train A{summary[f'{name}_train']}" if f"{name}_train" in summary else ""
+    speed = f" at {3.6 * summary[f'{name}_speed']:.4g} km/h" if f"{name}_speed" in summary else ""
+    return train + speed
+
+
+def summary_in_words(results):
+    """The peaks of /summary. The amplification is that of the greatest deflection."""
+    summary, said = results.summary, []
+    if summary.get("deflection"):
+        probed = "" if "sweep" in results.file or at_worst_place(results) else " at a probe"
+        said.append(f"greatest deflection{probed} {millimetres(summary['deflection'])}, "
+                    f"{place_in_words(summary['deflection_place'], results.supports)}"
+                    f"{run_in_words(summary, 'deflection')}")
+    if summary.get("amplification"):
+        said.append(f"{summary['amplification']:.3g} times the static one")
+    if summary.get("least_wheel_force") is not None:
+        wheels = "least_wheel" in summary or "least_wheel_force_speed" in summary
+        force = f"least wheel force {1e-3 * summary['least_wheel_force']:.3g} kN"
+        said += [force + run_in_words(summary, "least_wheel_force")] if wheels else []
+    return said
+
+
+def at_worst_place(results):
+    """Whether the stored shape shows the greatest deflection that the summary gives, to the digits that are shown."""
+    shape = results.values("shape/deflection")
+    return shape is None or millimetres(max(shape, key=abs)) == millimetres(results.summary.get("deflection", 0.0))
+
+
+def worst_in_words(results, x, deflection):
+    """'2.87 mm down', and why, where that is not the peak in the heading."""
+    why = ""
+    if results.summary and not at_worst_place(results):
+        at_probe = abs(x - results.summary.get("deflection_place", x)) < 1e-6 * max(abs(x), 1.0)
+        why = " at the nearest sample" if at_probe else f", at {x:.4g} m"
+    return f"{millimetres(deflection)} {'down' if deflection < 0.0 else 'up'}{why}"
+
+
+def sweep_in_words(results):
+    speeds = 3.6 * results.values("sweep/speed")
+    numbers = results.values("sweep/hslm_a")
+    trains = "" if numbers is None or len(numbers) == 1 else f"{len(numbers)} trains, "
+    if len(speeds) == 1:
+        return f"{trains}{speeds[0]:.4g} km/h"
+    return f"{trains}{len(speeds)} speeds from {speeds[0]:.4g} to {speeds[-1]:.4g} km/h"
+
+
+def method_in_words(results):
+    """How the runs of a sweep are computed, and the error of the deflections that is to be expected."""
+    attrs = results.file["sweep"].attrs
+    said = ""
+    if attrs.get("modes"):
+        said = f"by {attrs['modes']} mode{'' if attrs['modes'] == 1 else 's'}"
+    elif "elements_per_span" in attrs:
+        said = f"by {attrs['elements_per_span']} elements a span"
+    elif "elements_per_bay" in attrs:
+        said = f"by {attrs['elements_per_bay']} elements a sleeper bay"
+    if "time_step" in attrs:
+        said += f", steps of {1e3 * attrs['time_step']:.3g} ms"
+    if "expected_error_deflection" in results.summary:
+        said += f", expected error of the deflections {results.summary['expected_error_deflection']:.1g}"
+    return said
+
+
+def modes_in_words(frequency, shapes):
+    """How many of the modes are drawn, where these are not all."""
+    drawn = len(frequency) if shapes is None else min(len(shapes), MOST_CURVES)
+    return "" if drawn == len(frequency) else f"drawn: the first {drawn} of {len(frequency)} modes"

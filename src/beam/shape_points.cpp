@@ -1,0 +1,53 @@
+#include "traverse/beam/shape_points.hpp"
+
+#include <algorithm>
+
+namespace traverse::beam {
+namespace {
+
+constexpr int least_a_span = 24, least_in_all = 200;
+constexpr double at_node = 1e-9;  // of an element: a station so close to a node is the node
+
+/// Of each span.
+std::vector<int> elements_of_spans(const Mesh& mesh) {
+  std::vector<int> count(static_cast<std::size_t>(mesh.spans()), 0);
+  for (int e = 0; e < mesh.elements(); ++e) ++count[static_cast<std::size_t>(mesh.element(e).span)];
+  return count;
+}
+
+}  // namespace
+
+ShapePoints::ShapePoints(const Mesh& mesh, std::vector<double> also)
+    : ShapePoints(mesh, std::move(also), std::max(least_a_span, least_in_all / mesh.spans())) {}
+
+ShapePoints::ShapePoints(const Mesh& mesh, std::vector<double> also, int points_a_span) {
+  std::sort(also.begin(), also.end());
+  auto next = also.begin();
+  const std::vector<int> elements = elements_of_spans(mesh);
+  for (int e = 0; e < mesh.elements(); ++e) {
+    const Element& element = mesh.element(e);
+    const int in_span = elements[static_cast<std::size_t>(element.span)];
+    const int pieces = (points_a_span + in_span - 1) / in_span;
+    std::vector<double> inside;  // xi
+    for (int i = 1; i < pieces; ++i) inside.push_back(static_cast<double>(i) / pieces);
+    for (; next != also.end() && *next < element.x + element.length; ++next) {
+      const double xi = (*next - element.x) / element.length;
+      if (xi > at_node && xi < 1.0 - at_node) inside.push_back(xi);
+    }
+    std::sort(inside.begin(), inside.end());
+    inside.erase(std::unique(inside.begin(), inside.end()), inside.end());
+    if (points_.empty() || points_.back().node != element.left)
+      points_.push_back({mesh.x(element.left), element.left, {e, 0.0}});
+    for (const double xi : inside) points_.push_back({element.x + xi * element.length, -1, {e, xi}});
+    points_.push_back({mesh.x(element.left + 1), element.left + 1, {e, 1.0}});
+  }
+}
+
+std::vector<double> ShapePoints::x() const {
+  std::vector<double> out;
+  out.reserve(points_.size());
+  for (const Point& p : points_) out.push_back(p.x);
+  return out;
+}
+
+}  // namespace traverse::beam

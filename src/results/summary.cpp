@@ -1,0 +1,50 @@
+#include "summary.hpp"
+
+#include <cmath>
+
+namespace traverse::results {
+
+double Summary::rest_error() const {
+  return structure_energy > 0.0 ? std::sqrt(std::abs(energy_left) / structure_energy) : 0.0;
+}
+
+std::vector<Attribute> attributes_of(const Summary& summary, bool probes) {
+  std::vector<Attribute> list;
+  const auto add = [&](const std::string& name, auto value) { list.push_back({name, value}); };
+  const auto extreme = [&](const std::string& name, const Extreme& value) {
+    add(name, value.value);
+    add(name + "_time", value.time);
+    add(name + "_place", value.place);
+  };
+  if (probes) {
+    extreme("deflection", summary.deflection);
+    extreme("acceleration", summary.acceleration);
+    extreme("moment", summary.moment);
+    if (summary.static_deflection > 0.0) add("static_deflection", summary.static_deflection);
+    if (summary.amplification > 0.0) add("amplification", summary.amplification);
+  }
+  if (!summary.least_wheel.empty()) {
+    add("least_wheel_force", summary.least_wheel_force);
+    add("least_wheel_force_time", summary.least_wheel_force_time);
+    add("least_wheel", summary.least_wheel);
+    add("greatest_wheel_force", summary.greatest_wheel_force);
+  }
+  add("contact_losses", static_cast<long>(summary.contact_losses));
+  add("longest_loss", summary.longest_loss);
+  add("energy_residual", summary.energy_residual);
+  add("energy_left", summary.energy_left);
+  add("rest_error", summary.rest_error());
+  add("energy_scale", summary.energy_scale);
+  add("static_error", summary.static_error);
+  add("steps", summary.steps);
+  add("rejected_steps", summary.rejected_steps);
+  add("solves", summary.solves);
+  add("factorisations", summary.factorisations);
+  add("end_time", summary.end_time);
+  add("wall_seconds", summary.wall_seconds);
+  add("ended", summary.ended);
+  for (const auto& [quantity, error] : summary.expected_errors) add("expected_error_" + quantity, error);
+  return list;
+}
+
+}  // namespace traverse::results

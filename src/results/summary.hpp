@@ -1,0 +1,13 @@
+// The summary of a run as attributes of the results file.
+#pragma once
+
+#include <vector>
+
+#include "traverse/results/recorder.hpp"
+
+namespace traverse::results {
+
+/// What is not known, or what the scene has not, is left out. probes: whether there are any.
+std::vector<Attribute> attributes_of(const Summary& summary, bool probes);
+
+}  // namespace traverse::results
