@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
@@ -79,7 +80,20 @@ void read_probes(const Options& o, Scene& scene) {
   }
 }
 
+bool has_control_character(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
+}
+
+/// The name is a part of a file's name, which stays in the folder of results.
+void check_name(const Options& o, const std::string& name) {
+  if (name.find('/') != std::string::npos || name == "." || name == ".." || has_control_character(name))
+    o.refuse("scene_name", "allowed: a name without / and line breaks; -output_file takes a path");
+}
+
 void read_output(const Options& o, Scene& scene) {
+  check_name(o, scene.name);
+  if (o.has("output_file") && has_control_character(o.text("output_file")))
+    o.refuse("output_file", "allowed: a path without line breaks and other control characters");
   scene.output.file = o.has("output_file") ? o.text("output_file") : "results/" + scene.name + ".h5";
   if (scene.output.file == "none") scene.output.file.clear();
   scene.output.interval = o.optional_number("output_interval");

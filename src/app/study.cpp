@@ -184,7 +184,7 @@ Scene chosen(Scene scene, std::vector<std::string>& notes) {
 
 }  // namespace
 
-int run_sweep(MPI_Comm comm, const Scene& given) {
+int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
@@ -204,7 +204,7 @@ int run_sweep(MPI_Comm comm, const Scene& given) {
 
   results::Layout layout;
   layout.probes = scene.output.probes;
-  results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
+  results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
   results::Sweep sweep = empty_sweep(scene, runner);
   results::Progress progress(0.0, static_cast<double>(cases.size()), scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
