@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "process.hpp"
+#include "size_check.hpp"
 #include "traverse/app/accuracy.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/app/study.hpp"
@@ -175,6 +176,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
   check_balance(scene, summary);
+  check_size(comm, scene, summary.deflection.value);
   if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
       !report(comm, scene, accuracy, watch.finished_peaks()))
     throw SolverError(

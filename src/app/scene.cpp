@@ -153,14 +153,14 @@ std::vector<double> wheels_at_start(const Scene& scene) {
 
 Scene read_scene(Options o) {
   Scene scene;
-  const std::vector<std::string> train = declare_vehicles(o);
+  const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
   o.check_names();
   o.check_values();
   read_run(o, scene);
   read_beam(o, scene);
   read_sweep(o, scene);
-  read_train(o, train, scene);
+  read_train(o, vehicles.train, scene);
   read_load(o, scene);
   read_track(o, scene);
   read_layers(o, scene);
@@ -168,6 +168,7 @@ Scene read_scene(Options o) {
   read_output(o, scene);
   read_modal(o, scene);
   check_scene(o, scene);
+  check_sense(o, vehicles, scene);
   scene.options = o.all();
   return scene;
 }

@@ -13,6 +13,7 @@
 #include "deal.hpp"
 #include "modes_choice.hpp"
 #include "process.hpp"
+#include "size_check.hpp"
 #include "traverse/app/accuracy.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/results/sweep.hpp"
@@ -240,6 +241,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
                "the sweep", summary.ended, scene.output.file.empty() ? "none" : scene.output.file);
   }
   if (failure.run != nobody) throw Error(failure.message, failure.status);
+  check_size(comm, scene, summary.deflection.value);
   return done[1] == 0 ? 0 : 128 + static_cast<int>(done[1]);
 }
 

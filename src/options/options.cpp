@@ -16,8 +16,6 @@ namespace traverse::options {
 namespace {
 
 constexpr std::size_t longest_list = 10'000'000;
-constexpr double least_number = 1e-50,
-                 greatest_number = 1e50;  // products and powers of SI units stay far from overflow
 
 std::string trim(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";  // YAML's text blocks end with a line break
@@ -215,9 +213,9 @@ double Options::to_number(std::string_view name, const std::string& word) const 
     refuse(name, fmt::format("'{}' is no finite number; allowed: {}", word, allowed(known)));
   }
   if (!known.range.holds(value)) refuse(name, "allowed: " + allowed(known));
-  if (value != 0.0 && (std::abs(value) < least_number || std::abs(value) > greatest_number))
+  if (!is_quantity(value))
     refuse(name, fmt::format("'{}' is beyond any quantity in SI units; allowed: 0, or {:g} to {:g} in magnitude", word,
-                             least_number, greatest_number));
+                             least_quantity, greatest_quantity));
   return value;
 }
 

@@ -18,7 +18,8 @@ constexpr int deepest_include = 8;
 
 std::string at(const std::string& file, int line) { return fmt::format("{}:{}: ", file, line); }
 
-/// Walks a YAML tree and notes every leaf as an entry. What a merge key (<<) brings counts unless the block itself has it.
+/// Walks a YAML tree and notes every leaf as an entry. What a merge key (<<) brings counts unless the block itself has
+/// it.
 class Flattener {
  public:
   Flattener(const std::string& file, std::vector<Entry>& entries) : file_(file), entries_(entries) {}
@@ -80,7 +81,8 @@ class Flattener {
   }
 
   [[noreturn]] void refuse_second(const std::string& name, int line, int first) const {
-    throw InputError(fmt::format("{}{} is given twice, first in line {}; keep one of them", at(file_, line), name, first));
+    throw InputError(
+        fmt::format("{}{} is given twice, first in line {}; keep one of them", at(file_, line), name, first));
   }
 
   std::string list(const YAML::Node& node, const std::string& name) const {
@@ -137,9 +139,11 @@ bool is_name(const std::string& word) {
 void check_name(const std::string& word, const std::string& source, int line) {
   const auto belongs = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
   if (std::all_of(word.begin(), word.end(), belongs)) return;
-  throw InputError((line > 0 ? at(source, line) : source + ": ") + "'" + word +
-                   "' is no name of an option: letters, digits and _ only, a blank before the value (-name value); a file "
-                   "whose name starts with a dash is written ./" + word);
+  throw InputError(
+      (line > 0 ? at(source, line) : source + ": ") + "'" + word +
+      "' is no name of an option: letters, digits and _ only, a blank before the value (-name value); a file "
+      "whose name starts with a dash is written ./" +
+      word);
 }
 
 std::string text_of(const std::string& path) {
@@ -181,8 +185,9 @@ std::vector<Entry> read_nested(const std::string& path, int depth) {
     for (const std::string& name : names_in(entry)) {
       const std::string found = find_file(name, path);
       if (found.empty()) {
-        throw InputError("options_file = " + name + " (" + entry.where() +
-                         "): there is no such file, neither beside the file that names it nor in the working directory");
+        throw InputError(
+            "options_file = " + name + " (" + entry.where() +
+            "): there is no such file, neither beside the file that names it nor in the working directory");
       }
       for (Entry& inner : read_nested(found, depth + 1)) all.push_back(std::move(inner));
     }

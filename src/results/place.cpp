@@ -101,7 +101,8 @@ void Place::claim() {
   setenv(hdf5_locks, "FALSE", 1);
   if (::fstat(descriptor_, &status) != 0) fail(path_, std::strerror(errno));
   if (status.st_size > 0 && !is_results_file(path_))
-    fail(path_, "it is there already and is no results file of Traverse; remove it, or name another file with -output_file");
+    fail(path_,
+         "it is there already and is no results file of Traverse; remove it, or name another file with -output_file");
 }
 
 void Place::give_up() noexcept {

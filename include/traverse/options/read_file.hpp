@@ -9,8 +9,8 @@
 namespace traverse::options {
 
 /// The entries of a file in their order. Nested keys are joined by underscores, lists become comma lists.
-/// An option `options_file` inside a file is followed: its entries stand in its place; its path is found as by find_file.
-/// Throws InputError naming file and line for a file that cannot be read or is not well formed.
+/// An option `options_file` inside a file is followed: its entries stand in its place; its path is found as by
+/// find_file. Throws InputError naming file and line for a file that cannot be read or is not well formed.
 std::vector<Entry> read_options_file(const std::string& path);
 
 /// The same from text in memory; `name` stands for the file in messages.
