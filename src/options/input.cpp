@@ -201,12 +201,13 @@ void refuse_by_petsc(const std::string& message) {
   const std::size_t last = message.rfind(": ");
   const std::string reason = last == std::string::npos ? message : message.substr(last + 2);
   std::string blamed, all;
+  const auto add = [](std::string& list, const Entry& entry) { list += (list.empty() ? "" : ", ") + entry.given(); };
   for (const Entry& entry : last_put) {
-    if (!asked_by_solvers(entry.name)) continue;
-    all += (all.empty() ? "" : ", ") + entry.given();
-    if (!entry.value.empty() && speaks_of(reason, entry.value)) blamed += (blamed.empty() ? "" : ", ") + entry.given();
+    if (!asked_by_solvers(entry.name) || find_row(fixed_rows(), entry.name) != nullptr) continue;
+    add(all, entry);
+    const bool value = !entry.value.empty() && speaks_of(reason, entry.value);
+    if (value || speaks_of(reason, "-" + entry.name)) add(blamed, entry);
   }
-  if (blamed.empty()) blamed = all.empty() ? "an option of PETSc's solvers" : "one of " + all;
   throw InputError(blamed + ": PETSc does not allow it: " + reason);
 }
 

@@ -148,10 +148,11 @@ constexpr std::string_view petsc_names[] = {
   "ts_bdf_order", "ts_rk_type", "ts_rosw_type", "ts_theta_theta", "ts_theta_endpoint", "ts_alpha_radius", "ts_genalpha_radius",
   "snes_type", "snes_atol", "snes_rtol", "snes_stol", "snes_max_it", "snes_monitor", "snes_converged_reason",
   "snes_view", "snes_lag_jacobian", "ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it", "ksp_monitor", "pc_type",
-  "pc_factor_mat_solver_type", "mat_type", "vec_type", "eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it",
+  "pc_factor_mat_solver_type", "eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it",
   "eps_target", "eps_monitor", "eps_view", "st_type", "st_shift", "log_view", "log_view_memory", "log_trace",
   "options_left", "options_view", "options_monitor", "malloc_debug", "malloc_dump", "malloc_view", "memory_view",
-  "objects_dump", "info", "version",
+  "malloc_view_threshold", "objects_dump", "mpidump", "citations", "get_total_flops", "tmp", "shared_tmp",
+  "not_shared_tmp", "draw_pause", "draw_save", "nox", "info", "version",
 };
 // clang-format on
 

@@ -31,6 +31,7 @@ std::vector<fs::path> make_folders(const std::string& path) {
   std::vector<fs::path> made;
   std::error_code error;
   fs::path folder = fs::path(path).parent_path();
+  if (folder.empty()) return made;
   for (; !folder.empty() && !fs::exists(folder, error); folder = folder.parent_path()) {
     made.insert(made.begin(), folder);
     if (folder == folder.parent_path()) break;
@@ -101,8 +102,7 @@ void Place::claim() {
   setenv(hdf5_locks, "FALSE", 1);
   if (::fstat(descriptor_, &status) != 0) fail(path_, std::strerror(errno));
   if (status.st_size > 0 && !is_results_file(path_))
-    fail(path_,
-         "it is there already and is no results file of Traverse; remove it, or name another file with -output_file");
+    fail(path_, "it is there already and is no results file of Traverse; name another file with -output_file");
 }
 
 void Place::give_up() noexcept {
