@@ -100,7 +100,7 @@ void note_overlaps(const Options& o, Scene& scene) {
   scene.notes.push_back(fmt::format(
       "vehicles {} and {} of the train overlap{}, by up to {:.3g} m (train_positions, "
       "train_spacing)",
-      order[first], order[first + 1], pairs > 1 ? fmt::format(" and {} pairs more", pairs - 1) : "", deepest));
+      order[first], order[first + 1], pairs > 1 ? fmt::format(" and {} more pairs", pairs - 1) : "", deepest));
 }
 
 void note_speeds(const Options& o, Scene& scene) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
 #include <sstream>
 
@@ -135,6 +136,18 @@ bool speaks_of(const std::string& message, const std::string& value) {
   return false;
 }
 
+/// "PETSc error 86: what such errors are: what this one is", without all that is said of every such error.
+std::string specific_part(const std::string& message) {
+  int code = 0;
+  const char* general = nullptr;
+  if (std::sscanf(message.c_str(), "PETSc error %d", &code) != 1 || PetscErrorMessage(code, &general, nullptr) != 0 ||
+      general == nullptr)
+    return message;
+  const std::size_t at = message.find(general);
+  const std::size_t begin = at == std::string::npos ? at : at + std::string_view(general).size() + 2;
+  return begin < message.size() ? message.substr(begin) : message;
+}
+
 }  // namespace
 
 Input read_input(int argc, char** argv) {
@@ -198,8 +211,7 @@ std::vector<std::string> check_all_used(const Entries& entries) {
 }
 
 void refuse_by_petsc(const std::string& message) {
-  const std::size_t last = message.rfind(": ");
-  const std::string reason = last == std::string::npos ? message : message.substr(last + 2);
+  const std::string reason = specific_part(message);
   std::string blamed, all;
   const auto add = [](std::string& list, const Entry& entry) { list += (list.empty() ? "" : ", ") + entry.given(); };
   for (const Entry& entry : last_put) {
@@ -208,6 +220,7 @@ void refuse_by_petsc(const std::string& message) {
     const bool value = !entry.value.empty() && speaks_of(reason, entry.value);
     if (value || speaks_of(reason, "-" + entry.name)) add(blamed, entry);
   }
+  if (blamed.empty()) blamed = all.empty() ? "an option of PETSc's solvers" : "one of " + all;
   throw InputError(blamed + ": PETSc does not allow it: " + reason);
 }
 

@@ -157,9 +157,10 @@ std::string text_of(const std::string& path) {
 
 bool is_yaml(const std::string& path) { return path.ends_with(".yml") || path.ends_with(".yaml"); }
 
-/// The files that an option `options_file` of a file names, at least one.
+/// The files that an option `options_file` of a file names; none where it says so.
 std::vector<std::string> names_in(const Entry& entry) {
   std::vector<std::string> names;
+  if (entry.value == "[]") return names;
   std::istringstream list(entry.value);
   for (std::string name; std::getline(list, name, ',');) {
     const std::size_t first = name.find_first_not_of(" \t");

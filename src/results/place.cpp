@@ -49,8 +49,14 @@ std::vector<fs::path> make_folders(const std::string& path) {
 
 /// Whether the user has switched locks off, for a file system that has none.
 bool locks_are_off() {
-  const char* value = std::getenv(hdf5_locks);
-  return value != nullptr && (std::string_view(value) == "FALSE" || std::string_view(value) == "0");
+  static const bool off = [] {
+    const char* value = std::getenv(hdf5_locks);
+    const bool switched_off =
+        value != nullptr && (std::string_view(value) == "FALSE" || std::string_view(value) == "0");
+    setenv(hdf5_locks, "FALSE", 1);  // our locks hold for HDF5, too, whose own would contradict them
+    return switched_off;
+  }();
+  return off;
 }
 
 /// Whether the file is HDF5 and says of itself that Traverse has written it.
@@ -75,8 +81,9 @@ Place::Place(std::string path) : path_(std::move(path)) {
   if (path_.empty()) return;
   std::error_code ignored;
   if (fs::exists(path_, ignored) && !fs::is_regular_file(path_, ignored))
-    fail(path_, fs::is_directory(path_, ignored) ? "it is a folder; name a file in it with -output_file"
-                                                 : "it is there already and is no ordinary file");
+    fail(path_, fs::is_directory(path_, ignored)
+                    ? "it is a folder and no ordinary file; name a file in it with -output_file"
+                    : "it is there already and is no ordinary file");
   folders_ = make_folders(path_);
   try {
     claim();
@@ -98,8 +105,6 @@ void Place::claim() {
     made_ = false;
     fail(path_, "another run or program has it open; name another file with -output_file");
   }
-  // This lock holds for HDF5 too, whose own one would contradict it.
-  setenv(hdf5_locks, "FALSE", 1);
   if (::fstat(descriptor_, &status) != 0) fail(path_, std::strerror(errno));
   if (status.st_size > 0 && !is_results_file(path_))
     fail(path_, "it is there already and is no results file of Traverse; name another file with -output_file");
