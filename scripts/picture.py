@@ -32,6 +32,7 @@ plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 11, "axes.titlesize": 13, "axes.titleweight": "bold",
     "axes.titlelocation": "left", "axes.titlepad": 8, "axes.grid": True, "grid.color": "#DDDDDD",
     "grid.linewidth": 0.6, "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#888888",
+    "text.parse_math": False,  # a scene's name may hold $
     "axes.axisbelow": True, "lines.linewidth": 1.5, "lines.solid_joinstyle": "round", "axes.xmargin": 0.0,
 })
 

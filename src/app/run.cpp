@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "process.hpp"
+#include "size_check.hpp"
 #include "traverse/app/accuracy.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/app/study.hpp"
@@ -21,7 +22,8 @@ namespace {
 
 constexpr int nodes_for_a_check = 1000;  // of a given step by the first period: up to here frequencies take no time
 
-int run_modes(MPI_Comm comm, const Scene& scene, Structure& structure, std::vector<std::string> notes) {
+int run_modes(MPI_Comm comm, const Scene& scene, results::Place place, Structure& structure,
+              std::vector<std::string> notes) {
   structure.damp(scene, true, notes);
   const beam::Beam& beam = *structure.beam;
   const auto [omega1, omega2] = *structure.omega;
@@ -43,7 +45,7 @@ int run_modes(MPI_Comm comm, const Scene& scene, Structure& structure, std::vect
         "  damped modes are listed below |lambda| = 1/b = {:.6g} rad/s: above it the elements decide, not the beam\n",
         1.0 / std::abs(ab.b));
   if (scene.output.file.empty()) return 0;
-  results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
+  results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);
   if (damping) recorder.damped_modes(damped);
   recorder.finish_with({{"ended", "reached its end"}});
@@ -95,8 +97,8 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
   return all_kept;
 }
 
-int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, Structure& structure,
-                  std::vector<std::string> notes) {
+int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const Accuracy& accuracy,
+                  Structure& structure, std::vector<std::string> notes) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const bool still = scene.analysis == Analysis::static_response;
@@ -121,7 +123,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
 
   results::Layout layout = layout_of(scene, system, beam);
   if (!still) layout.interval = passage.plan().interval * passage.plan().stored;
-  results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
+  results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
   store_modes(structure, recorder);
   if (structure.beam) structure.beam->release_matrices();
   Watch watch(scene, system, beam, recorder);
@@ -178,6 +180,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
   check_balance(scene, summary);
+  check_size(comm, scene, summary.deflection.value);
   if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
       !report(comm, scene, accuracy, watch.finished_peaks()))
     throw SolverError(
@@ -190,14 +193,15 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
 
 int run(MPI_Comm comm, const Scene& given) {
   catch_signals();
-  if (given.sweep) return run_sweep(comm, given);
+  results::Place place = results::claim_place(comm, given.output.file);
+  if (given.sweep) return run_sweep(comm, given, std::move(place));
   Scene scene = given;
   std::vector<std::string> notes;
   const Accuracy accuracy = choose(comm, scene, notes);
   Structure structure(comm, scene, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-  if (scene.analysis == Analysis::modes) return run_modes(comm, scene, structure, std::move(notes));
-  return run_transient(comm, scene, accuracy, structure, std::move(notes));
+  if (scene.analysis == Analysis::modes) return run_modes(comm, scene, std::move(place), structure, std::move(notes));
+  return run_transient(comm, scene, std::move(place), accuracy, structure, std::move(notes));
 }
 
 }  // namespace traverse::app

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
@@ -79,7 +80,20 @@ void read_probes(const Options& o, Scene& scene) {
   }
 }
 
+bool has_control_character(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
+}
+
+/// The name is a part of a file's name, which stays in the folder of results.
+void check_name(const Options& o, const std::string& name) {
+  if (name.find('/') != std::string::npos || name == "." || name == ".." || has_control_character(name))
+    o.refuse("scene_name", "allowed: a name without / and line breaks; -output_file takes a path");
+}
+
 void read_output(const Options& o, Scene& scene) {
+  check_name(o, scene.name);
+  if (o.has("output_file") && has_control_character(o.text("output_file")))
+    o.refuse("output_file", "allowed: a path without line breaks and other control characters");
   scene.output.file = o.has("output_file") ? o.text("output_file") : "results/" + scene.name + ".h5";
   if (scene.output.file == "none") scene.output.file.clear();
   scene.output.interval = o.optional_number("output_interval");
@@ -139,14 +153,14 @@ std::vector<double> wheels_at_start(const Scene& scene) {
 
 Scene read_scene(Options o) {
   Scene scene;
-  const std::vector<std::string> train = declare_vehicles(o);
+  const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
   o.check_names();
   o.check_values();
   read_run(o, scene);
   read_beam(o, scene);
   read_sweep(o, scene);
-  read_train(o, train, scene);
+  read_train(o, vehicles.train, scene);
   read_load(o, scene);
   read_track(o, scene);
   read_layers(o, scene);
@@ -154,6 +168,7 @@ Scene read_scene(Options o) {
   read_output(o, scene);
   read_modal(o, scene);
   check_scene(o, scene);
+  check_sense(o, vehicles, scene);
   scene.options = o.all();
   return scene;
 }

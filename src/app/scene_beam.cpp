@@ -176,9 +176,8 @@ beam::Distribution read_distribution(const Options& o, const std::string& name) 
   const auto columns = options::read_columns(path, 2, 2);
   beam::Distribution table(columns[0], columns[1], name + " (" + path + ")");
   const options::Row& row = *options::find_row(options::fixed_rows(), name);
-  const double least = table.minimum();
-  if (row.range.above ? !(least > row.range.low) : !(least >= row.range.low)) {
-    o.refuse(name, fmt::format("holds {:g}; allowed: {}", least, options::allowed(row)));
+  for (const double value : {table.minimum(), table.maximum()}) {
+    if (!row.range.holds(value)) o.refuse(name, fmt::format("holds {:g}; allowed: {}", value, options::allowed(row)));
   }
   return table;
 }

@@ -71,13 +71,19 @@ void VehicleReader::joint(const std::string& name) {
   vehicle_.mechanism.joints.push_back(j);
 }
 
-multibody::Polyline VehicleReader::polyline(std::string_view field) const {
-  auto columns = options::read_columns(o_.path(key(field)), 2, 2);
+/// What `make` makes of the columns of the option's file; errors name the option, too.
+template <class Make>
+auto VehicleReader::from_table(std::string_view field, std::size_t least, std::size_t most, Make&& make) const {
   try {
-    return {std::move(columns[0]), std::move(columns[1])};
+    return make(options::read_columns(o_.path(key(field)), least, most, options::Order::rising));
   } catch (const InputError& error) {
+    if (std::string_view(error.what()).starts_with(key(field))) throw;  // the path's own
     o_.refuse(key(field), error.what());
   }
+}
+
+multibody::Polyline VehicleReader::polyline(std::string_view field) const {
+  return from_table(field, 2, 2, [](auto columns) { return multibody::Polyline(columns[0], columns[1]); });
 }
 
 /// Nothing for a linear spring.
@@ -146,10 +152,13 @@ void VehicleReader::torsion_spring(const std::string& name) {
 }
 
 void VehicleReader::actuator_table(multibody::Actuator& a) const {
-  const auto columns = options::read_columns(o_.path(key("table")), 2, 4);
-  const std::size_t first = columns.size() == 2 ? 2 : 0;  // t,moment or t,fx,fy[,moment]
-  for (std::size_t i = 1; i < columns.size(); ++i)
-    a.action[first + i - 1] = base::TimeFunction::piecewise_linear(columns[0], columns[i]);
+  a.action = from_table("table", 2, 4, [](const auto& columns) {
+    auto action = multibody::Actuator().action;
+    const std::size_t first = columns.size() == 2 ? 2 : 0;  // t,moment or t,fx,fy[,moment]
+    for (std::size_t i = 1; i < columns.size(); ++i)
+      action[first + i - 1] = base::TimeFunction::piecewise_linear(columns[0], columns[i]);
+    return action;
+  });
 }
 
 void VehicleReader::actuator(const std::string& name) {
@@ -184,8 +193,7 @@ void VehicleReader::driver(const std::string& name) {
   d.coordinate = coordinate == "x" ? 0 : coordinate == "y" ? 1 : 2;
   if (has("table")) {
     if (has("value") || has("rate")) o_.refuse(key("table"), "give either a table or value and rate");
-    const auto columns = options::read_columns(o_.path(key("table")), 2, 2);
-    d.value = base::TimeFunction(columns[0], columns[1]);
+    d.value = from_table("table", 2, 2, [](const auto& columns) { return base::TimeFunction(columns[0], columns[1]); });
   } else {
     const double now = vehicle_.mechanism.bodies[static_cast<std::size_t>(d.body)].position[d.coordinate];
     d.value = base::TimeFunction(has("value") ? number("value") : now, number("rate"));

@@ -9,9 +9,13 @@
 
 namespace traverse::app {
 
-/// Finds the vehicles of a scene, reads their files and makes the options of their parts known. Returns the train's
-/// vehicle names, front one first.
-std::vector<std::string> declare_vehicles(options::Options& options);
+struct NamedVehicles {
+  std::vector<std::string> train;   // front one first
+  std::vector<std::string> unused;  // defined, and in no train
+};
+
+/// Finds the vehicles of a scene, reads their files and makes the options of their parts known.
+NamedVehicles declare_vehicles(options::Options& options);
 Vehicle read_vehicle(const options::Options& options, const std::string& name);
 
 /// Makes the options of the train's couplers known.
@@ -33,5 +37,7 @@ void read_modal(const options::Options& options, Scene& scene);    // last: it d
 void read_track(const options::Options& options, Scene& scene);    // after train: the roughness begins before it
 void read_layers(const options::Options& options, Scene& scene);   // after train and load: the track is as long
 void decide_axial(const options::Options& options, Scene& scene);  // after beam and train
+/// Refuses what can run but cannot be meant, notes what is possible but unusual. Last.
+void check_sense(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
 
 }  // namespace traverse::app

@@ -115,7 +115,7 @@ void check_defined(const Options& o, const std::string& name) {
 
 }  // namespace
 
-std::vector<std::string> declare_vehicles(Options& o) {
+NamedVehicles declare_vehicles(Options& o) {
   std::vector<std::string> train;
   if (o.has("train_vehicles")) train = o.texts("train_vehicles");
   std::vector<std::string> types = train;
@@ -133,8 +133,8 @@ std::vector<std::string> declare_vehicles(Options& o) {
     types.push_back(name);
   }
   const bool loads = o.has("load_forces") || o.has("load_hslm_a");
-  if (!o.entries().has("train_vehicles") && !loads && others.size() == 1) train = others;
-  return train;
+  if (!o.entries().has("train_vehicles") && !loads && others.size() == 1) return {others, {}};
+  return {train, others};
 }
 
 void declare_couplers(Options& o) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -11,6 +12,7 @@
 #include "deal.hpp"
 #include "modes_choice.hpp"
 #include "process.hpp"
+#include "size_check.hpp"
 #include "sweep_choice.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/results/sweep.hpp"
@@ -210,7 +212,7 @@ void announce(const Scene& scene, const CaseRunner& runner, const results::Sweep
 
 }  // namespace
 
-int run_sweep(MPI_Comm comm, const Scene& given) {
+int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
@@ -227,7 +229,7 @@ int run_sweep(MPI_Comm comm, const Scene& given) {
   results::Layout layout;
   layout.probes = scene.output.probes;
   layout.supports = span_ends(*scene.beam);
-  results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
+  results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
   results::Sweep sweep = empty_sweep(scene, runner, choice.model);
   Course course(cases, runner, ranks, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
@@ -263,6 +265,9 @@ int run_sweep(MPI_Comm comm, const Scene& given) {
                scene.output.file.empty() ? "none" : scene.output.file);
   }
   if (failure.run != nobody) throw Error(failure.message, failure.status);
+  const std::vector<double>& peaks = sweep.deflection.value;  // std::fmax passes over runs without one
+  check_size(comm, scene,
+             std::accumulate(peaks.begin(), peaks.end(), 0.0, [](double a, double b) { return std::fmax(a, b); }));
   return done[1] == 0 ? 0 : 128 + static_cast<int>(done[1]);
 }
 

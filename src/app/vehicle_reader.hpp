@@ -89,6 +89,8 @@ class VehicleReader {
 
   void body(const std::string& name);
   void joint(const std::string& name);
+  template <class Make>
+  auto from_table(std::string_view field, std::size_t least, std::size_t most, Make&& make) const;
   multibody::Polyline polyline(std::string_view field) const;
   std::optional<multibody::ForceLaw> force_law() const;
   void check_spring_given(std::string_view kind) const;

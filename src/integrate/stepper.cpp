@@ -10,6 +10,7 @@
 #include "arrays.hpp"
 #include "integrator_choice.hpp"
 #include "traverse/integrate/second_order.hpp"
+#include "traverse/options/input.hpp"
 
 namespace traverse::integrate {
 namespace {
@@ -59,7 +60,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
   try {
     check(TSSetFromOptions(ts_));
   } catch (const SolverError& error) {
-    throw InputError(std::string("an option that starts with -ts_ is not one that PETSc allows: ") + error.what());
+    options::refuse_by_petsc(error.what());
   }
   check(TSGetMaxSteps(ts_, &most_steps_));
   check(TSSetMaxSteps(ts_, no_limit));

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "traverse/options/input.hpp"
+
 namespace traverse::integrate {
 namespace {
 
@@ -65,7 +67,11 @@ base::Handle<TS> make_modal_ts(ModalMotion& motion) {
   check(TSSetMaxSteps(ts, std::numeric_limits<PetscInt>::max() - 1));
   check(TSSetMaxTime(ts, std::numeric_limits<double>::max()));
   check(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
-  check(TSSetFromOptions(ts));
+  try {
+    check(TSSetFromOptions(ts));
+  } catch (const SolverError& error) {
+    options::refuse_by_petsc(error.what());
+  }
   return ts;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "vectors.hpp"
@@ -137,7 +138,8 @@ class Solver {
     check(KSPSetType(ksp, KSPPREONLY));
     check(KSPGetPC(ksp, &pc));
     check(PCSetType(pc, PCLU));
-    check(PCFactorSetMatOrderingType(pc, MATORDERINGNATURAL));  // a band: no fill beyond it
+    check(PCFactorSetMatOrderingType(pc, MATORDERINGNATURAL));            // a band: no fill beyond it
+    check(PCFactorSetZeroPivot(pc, std::numeric_limits<double>::min()));  // pivots carry units: 1e-14 may be all right
     if (!known_.empty()) {
       std::vector<Vec> raw(known_.begin(), known_.end());
       check(EPSSetDeflationSpace(eps, static_cast<PetscInt>(raw.size()), raw.data()));

@@ -23,12 +23,17 @@ std::vector<double> numbers_of(std::string line, const std::string& where) {
   for (std::string word; words >> word;) {
     double number = 0.0;
     if (!parse_number(word, number)) throw InputError(fmt::format("{}'{}' is no finite number", where, word));
+    if (!is_quantity(number)) throw InputError(fmt::format("{}'{}' is beyond any quantity in SI units", where, word));
     numbers.push_back(number);
   }
   return numbers;
 }
 
 }  // namespace
+
+bool is_quantity(double number) {
+  return number == 0.0 || (std::abs(number) >= least_quantity && std::abs(number) <= greatest_quantity);
+}
 
 bool parse_number(const std::string& word, double& number) {
   const char* begin = word.data();
@@ -38,7 +43,8 @@ bool parse_number(const std::string& word, double& number) {
   return code == std::errc() && stop == end && begin != end && std::isfinite(number);
 }
 
-std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most) {
+std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most,
+                                              Order order) {
   std::ifstream file(path);
   if (!file || std::filesystem::is_directory(path)) throw InputError(path + ": the file cannot be read");
   std::vector<std::vector<double>> columns;
@@ -54,6 +60,10 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
                                      ? std::to_string(columns.size())
                                      : std::to_string(least) + " to " + std::to_string(most);
       throw InputError(where + "holds " + std::to_string(row.size()) + " numbers, expected " + wanted);
+    }
+    if (order == Order::rising && !columns[0].empty() && !(row[0] > columns[0].back())) {
+      throw InputError(fmt::format("{}the first column must increase strictly: row {} has {:g} after {:g}", where,
+                                   columns[0].size() + 1, row[0], columns[0].back()));
     }
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
   }

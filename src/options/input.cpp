@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdio>
 #include <filesystem>
 #include <sstream>
 
 #include "traverse/base/petsc.hpp"
+#include "traverse/options/data_file.hpp"
 #include "traverse/options/read_file.hpp"
 #include "traverse/options/table.hpp"
 
@@ -26,6 +28,15 @@ std::vector<Entry> command_line(int argc, char** argv) {
                                  words.front(), words.front()));
   }
   return parse_words(words, "command line", 0);
+}
+
+/// The name of the options file without folder and ending; _ for characters that cannot be printed.
+std::string name_of_scene(const std::string& file) {
+  std::string name = std::filesystem::path(file).stem().string();
+  for (char& c : name) {
+    if (std::iscntrl(static_cast<unsigned char>(c)) != 0) c = '_';
+  }
+  return name;
 }
 
 void add(Input& input, Entry entry) {
@@ -78,9 +89,63 @@ bool asked_by_solvers(const std::string& name) {
                                              "pep_", "nep_", "bv_", "ds_", "rg_", "fn_", "beam_"});
 }
 
-/// Kinds of options that PETSc itself asks for when it starts; a few only when it ends.
-bool asked_by_petsc(const std::string& name) {
-  return starts_with_one_of(name, std::array{"log_", "options_", "malloc", "info", "memory_", "objects_"});
+bool is_common(const std::string& name) {
+  const auto common = common_petsc_names();
+  return std::find(common.begin(), common.end(), name) != common.end();
+}
+
+/// The options in PETSc's table that nothing has asked for.
+std::vector<std::string> left_over() {
+  PetscInt count = 0;
+  char **names = nullptr, **values = nullptr;
+  base::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
+  std::vector<std::string> left(names, names + count);
+  base::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
+  return left;
+}
+
+[[noreturn]] void refuse_left_over(const Entries& entries, const std::string& name) {
+  const Entry* entry = entries.find(name);
+  const auto common = common_petsc_names();
+  const std::string near = nearest(name, {common.begin(), common.end()});
+  throw InputError(fmt::format("option {}: {} asks for it{}", entry != nullptr ? entry->given() : name,
+                               asked_by_solvers(name) ? "no solver of this scene" : "nothing",
+                               near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+}
+
+/// PETSc has asked for its own options when it started, or never will.
+void check_asked_at_start(const Entries& entries) {
+  for (const std::string& name : left_over()) {
+    const bool owned = entries.has(name) && owned_by_petsc(name);
+    if (owned && !asked_by_solvers(name) && !is_common(name)) refuse_left_over(entries, name);
+  }
+}
+
+/// Whether PETSc's message holds the value, as it was written or as a number written otherwise.
+bool speaks_of(const std::string& message, const std::string& value) {
+  double wanted = 0.0, found = 0.0;
+  const bool number = parse_number(value, wanted);
+  std::string text = message;
+  for (char& c : text) {
+    if (c == '"' || c == '\'' || c == '(' || c == ')' || c == ',' || c == ';') c = ' ';
+  }
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (word == value || (number && parse_number(word, found) && found == wanted)) return true;
+  }
+  return false;
+}
+
+/// "PETSc error 86: what such errors are: what this one is", without all that is said of every such error.
+std::string specific_part(const std::string& message) {
+  int code = 0;
+  const char* general = nullptr;
+  if (std::sscanf(message.c_str(), "PETSc error %d", &code) != 1 || PetscErrorMessage(code, &general, nullptr) != 0 ||
+      general == nullptr)
+    return message;
+  const std::size_t at = message.find(general);
+  const std::size_t begin = at == std::string::npos ? at : at + std::string_view(general).size() + 2;
+  return begin < message.size() ? message.substr(begin) : message;
 }
 
 }  // namespace
@@ -93,8 +158,10 @@ Input read_input(int argc, char** argv) {
       add(input, std::move(entry));
       continue;
     }
-    if (entry.value.empty()) throw InputError("options_file (command line): wanted: the name of a file");
-    if (scene_name.empty()) scene_name = std::filesystem::path(entry.value).stem().string();
+    if (entry.value.empty())
+      throw InputError(
+          "options_file (command line): wanted: the name of a file; one that starts with a dash is written ./-NAME");
+    if (scene_name.empty()) scene_name = name_of_scene(entry.value);
     for (Entry& inner : read_options_file(entry.value)) add(input, std::move(inner));
   }
   check_room(input.entries);
@@ -126,33 +193,35 @@ void put_into_petsc(Input& input) {
     base::check(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &found));
   }
   last_put = input.entries;
+  check_asked_at_start(last_put);
 }
 
 const Entries& in_force() { return last_put; }
 
 std::vector<std::string> check_all_used(const Entries& entries) {
-  PetscInt count = 0;
-  char **names = nullptr, **values = nullptr;
-  base::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
-  std::vector<std::string> left(names, names + count);
-  base::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
-  const auto common = common_petsc_names();
-  const std::vector<std::string> known(common.begin(), common.end());
   std::vector<std::string> notes;
-  for (const std::string& name : left) {
-    const bool solver = asked_by_solvers(name);
-    if (!solver && !asked_by_petsc(name)) continue;
+  for (const std::string& name : left_over()) {
+    const bool common = is_common(name);
+    if (!common && owned_by_petsc(name)) refuse_left_over(entries, name);
     const Entry* entry = entries.find(name);
-    const std::string given = entry != nullptr ? entry->given() : name;
-    if (std::find(known.begin(), known.end(), name) != known.end()) {
-      if (solver) notes.push_back(given + " has no effect in this scene");
-      continue;
-    }
-    const std::string near = nearest(name, known);
-    throw InputError(fmt::format("option {}: {} asks for it{}", given, solver ? "no solver of this scene" : "nothing",
-                                 near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+    if (common && asked_by_solvers(name))
+      notes.push_back((entry != nullptr ? entry->given() : name) + " has no effect in this scene");
   }
   return notes;
+}
+
+void refuse_by_petsc(const std::string& message) {
+  const std::string reason = specific_part(message);
+  std::string blamed, all;
+  const auto add = [](std::string& list, const Entry& entry) { list += (list.empty() ? "" : ", ") + entry.given(); };
+  for (const Entry& entry : last_put) {
+    if (!asked_by_solvers(entry.name) || find_row(fixed_rows(), entry.name) != nullptr) continue;
+    add(all, entry);
+    const bool value = !entry.value.empty() && speaks_of(reason, entry.value);
+    if (value || speaks_of(reason, "-" + entry.name)) add(blamed, entry);
+  }
+  if (blamed.empty()) blamed = all.empty() ? "an option of PETSc's solvers" : "one of " + all;
+  throw InputError(blamed + ": PETSc does not allow it: " + reason);
 }
 
 }  // namespace traverse::options

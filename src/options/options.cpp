@@ -16,13 +16,12 @@ namespace traverse::options {
 namespace {
 
 constexpr std::size_t longest_list = 10'000'000;
-constexpr double least_number = 1e-50,
-                 greatest_number = 1e50;  // products and powers of SI units stay far from overflow
 
 std::string trim(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
+  constexpr std::string_view blanks = " \t\r\n";  // YAML's text blocks end with a line break
+  const std::size_t first = text.find_first_not_of(blanks);
   if (first == std::string_view::npos) return "";
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
+  return std::string(text.substr(first, text.find_last_not_of(blanks) - first + 1));
 }
 
 /// The words of a comma list, brackets around it taken off.
@@ -52,10 +51,6 @@ Entries entries_of(std::initializer_list<std::pair<std::string, std::string>> va
   Entries entries;
   for (const auto& [name, value] : values) entries.set({name, value, "command line", 0});
   return entries;
-}
-
-bool inside(const Range& range, double value) {
-  return value <= range.high && (range.above ? value > range.low : value >= range.low);
 }
 
 }  // namespace
@@ -131,6 +126,9 @@ void Options::check_value(const Entry& entry, const Row& row) const {
   // an empty list of parts or vehicles is one, other lists without an entry are forgotten values
   if (row.kind != Kind::flag && row.kind != Kind::texts && split(entry.value).empty()) {
     refuse(name, "has no value; wanted: " + allowed(row));
+  }
+  if (row.kind == Kind::texts && entry.from_file() && trim(entry.value).empty()) {
+    refuse(name, "has no value; wanted: " + allowed(row) + ", or [] for none");
   }
   switch (row.kind) {
     case Kind::number:
@@ -214,10 +212,10 @@ double Options::to_number(std::string_view name, const std::string& word) const 
   if (!parse_number(word, value)) {
     refuse(name, fmt::format("'{}' is no finite number; allowed: {}", word, allowed(known)));
   }
-  if (!inside(known.range, value)) refuse(name, "allowed: " + allowed(known));
-  if (value != 0.0 && (std::abs(value) < least_number || std::abs(value) > greatest_number))
+  if (!known.range.holds(value)) refuse(name, "allowed: " + allowed(known));
+  if (!is_quantity(value))
     refuse(name, fmt::format("'{}' is beyond any quantity in SI units; allowed: 0, or {:g} to {:g} in magnitude", word,
-                             least_number, greatest_number));
+                             least_quantity, greatest_quantity));
   return value;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
@@ -17,30 +18,30 @@ constexpr int deepest_include = 8;
 
 std::string at(const std::string& file, int line) { return fmt::format("{}:{}: ", file, line); }
 
-/// Walks a YAML tree and notes every leaf as an entry.
+/// Walks a YAML tree and notes every leaf as an entry. What a merge key (<<) brings counts unless the block itself has
+/// it.
 class Flattener {
  public:
   Flattener(const std::string& file, std::vector<Entry>& entries) : file_(file), entries_(entries) {}
 
-  void map(const YAML::Node& node, const std::string& prefix) {
+  void map(const YAML::Node& node, const std::string& prefix, bool merged = false) {
     std::unordered_map<std::string, int> lines;
+    std::vector<YAML::Node> merges;
     for (const auto& item : node) {
       const int line = line_of(item.first);
       if (!item.first.IsScalar()) throw InputError(at(file_, line) + "a key has to be a word");
       const std::string& key = item.first.Scalar();
       if (key == "<<") {  // YAML's merge key; an anchor's block may be kept under a key that starts with $$
-        map(item.second, prefix);
+        merges.push_back(item.second);
         continue;
       }
       if (key.starts_with("$$")) continue;
       check_key(key, line);
       const auto [first, is_new] = lines.try_emplace(key, line);
-      if (!is_new) {
-        throw InputError(
-            fmt::format("{}{}{} is given twice, first in line {}", at(file_, line), prefix, key, first->second));
-      }
-      value(item.second, prefix + key, line);
+      if (!is_new) refuse_second(prefix + key, line, first->second);
+      value(item.second, prefix + key, line, merged);
     }
+    for (const YAML::Node& merge : merges) add_merged(merge, prefix);
   }
 
  private:
@@ -55,17 +56,37 @@ class Flattener {
     if (key.empty()) throw InputError(at(file_, line) + "an empty key");
   }
 
-  void value(const YAML::Node& node, const std::string& name, int line) {
+  void add_merged(const YAML::Node& node, const std::string& prefix) {
+    if (node.IsMap()) return map(node, prefix, true);
+    if (!node.IsSequence()) throw InputError(at(file_, line_of(node)) + "<< takes a block, or a list of blocks");
+    for (const auto& item : node) add_merged(item, prefix);
+  }
+
+  void value(const YAML::Node& node, const std::string& name, int line, bool merged) {
     if (node.IsMap()) {
-      map(node, name + "_");
+      map(node, name + "_", merged);
     } else if (node.IsSequence()) {
-      entries_.push_back({name, list(node, name), file_, line});
+      add(name, list(node, name), line, merged);
     } else {
-      entries_.push_back({name, node.IsNull() ? "" : node.Scalar(), file_, line});
+      add(name, node.IsNull() ? "" : node.Scalar(), line, merged);
     }
   }
 
+  /// One file gives an option once: `beam: {mass: 1}` and `beam_mass: 2` are the same one.
+  void add(const std::string& name, std::string text, int line, bool merged) {
+    const auto [first, is_new] = given_.try_emplace(name, line);
+    if (!is_new && merged) return;
+    if (!is_new) refuse_second(name, line, first->second);
+    entries_.push_back({name, std::move(text), file_, line});
+  }
+
+  [[noreturn]] void refuse_second(const std::string& name, int line, int first) const {
+    throw InputError(
+        fmt::format("{}{} is given twice, first in line {}; keep one of them", at(file_, line), name, first));
+  }
+
   std::string list(const YAML::Node& node, const std::string& name) const {
+    if (node.size() == 0) return "[]";  // meant so, unlike a key without a value
     std::string joined;
     for (const auto& item : node) {
       if (!item.IsScalar()) {
@@ -79,6 +100,7 @@ class Flattener {
 
   const std::string& file_;
   std::vector<Entry>& entries_;
+  std::unordered_map<std::string, int> given_;  // option: its line
 };
 
 /// Splits a line into words; "..." and '...' hold blanks together, # starts a comment.
@@ -106,11 +128,22 @@ std::vector<std::string> words_of(const std::string& line, const std::string& wh
   return words;
 }
 
+/// Begins like a name of an option: a dash or two, then a letter.
 bool is_name(const std::string& word) {
   std::size_t dashes = 0;
   while (dashes < word.size() && word[dashes] == '-') ++dashes;
   return dashes >= 1 && dashes <= 2 && dashes < word.size() &&
          (std::isalpha(static_cast<unsigned char>(word[dashes])) != 0 || word[dashes] == '_');
+}
+
+void check_name(const std::string& word, const std::string& source, int line) {
+  const auto belongs = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
+  if (std::all_of(word.begin(), word.end(), belongs)) return;
+  throw InputError(
+      (line > 0 ? at(source, line) : source + ": ") + "'" + word +
+      "' is no name of an option: letters, digits and _ only, a blank before the value (-name value); a file "
+      "whose name starts with a dash is written ./" +
+      word);
 }
 
 std::string text_of(const std::string& path) {
@@ -124,6 +157,21 @@ std::string text_of(const std::string& path) {
 
 bool is_yaml(const std::string& path) { return path.ends_with(".yml") || path.ends_with(".yaml"); }
 
+/// The files that an option `options_file` of a file names; none where it says so.
+std::vector<std::string> names_in(const Entry& entry) {
+  std::vector<std::string> names;
+  if (entry.value == "[]") return names;
+  std::istringstream list(entry.value);
+  for (std::string name; std::getline(list, name, ',');) {
+    const std::size_t first = name.find_first_not_of(" \t");
+    if (first == std::string::npos) continue;
+    names.push_back(name.substr(first, name.find_last_not_of(" \t") - first + 1));
+  }
+  if (names.empty())
+    throw InputError("options_file (" + entry.where() + "): has no value; wanted: the name of a file, or leave it out");
+  return names;
+}
+
 std::vector<Entry> read_nested(const std::string& path, int depth) {
   const std::string text = text_of(path);
   std::vector<Entry> all;
@@ -135,11 +183,12 @@ std::vector<Entry> read_nested(const std::string& path, int depth) {
     if (depth >= deepest_include) {
       throw InputError("options_file = " + entry.value + " (" + entry.where() + "): files name each other in a circle");
     }
-    std::istringstream names(entry.value);
-    for (std::string name; std::getline(names, name, ',');) {
+    for (const std::string& name : names_in(entry)) {
       const std::string found = find_file(name, path);
       if (found.empty()) {
-        throw InputError("options_file = " + name + " (" + entry.where() + "): there is no such file");
+        throw InputError(
+            "options_file = " + name + " (" + entry.where() +
+            "): there is no such file, neither beside the file that names it nor in the working directory");
       }
       for (Entry& inner : read_nested(found, depth + 1)) all.push_back(std::move(inner));
     }
@@ -196,6 +245,7 @@ std::vector<Entry> parse_words(const std::vector<std::string>& words, const std:
   bool has_value = true;  // of the last entry: a further word belongs to nothing
   for (const std::string& word : words) {
     if (is_name(word)) {
+      check_name(word, source, line);
       entries.push_back({word.substr(word.find_first_not_of('-')), "", source, line});
       has_value = false;
     } else if (!has_value) {
@@ -211,10 +261,13 @@ std::vector<Entry> parse_words(const std::vector<std::string>& words, const std:
 
 std::string find_file(const std::string& path, const std::string& named_in) {
   std::error_code ignored;
-  if (std::filesystem::exists(path, ignored)) return path;
-  if (named_in.empty() || std::filesystem::path(path).is_absolute()) return "";
-  const std::filesystem::path beside = std::filesystem::path(named_in).parent_path() / path;
-  return std::filesystem::exists(beside, ignored) ? beside.lexically_normal().string() : "";
+  if (!named_in.empty() && !std::filesystem::path(path).is_absolute()) {
+    const std::filesystem::path beside = std::filesystem::path(named_in).parent_path() / path;
+    const std::filesystem::path plain = beside.lexically_normal();  // another file where a folder is a symbolic link
+    if (std::filesystem::equivalent(beside, plain, ignored)) return plain.string();
+    if (std::filesystem::exists(beside, ignored)) return beside.string();
+  }
+  return std::filesystem::exists(path, ignored) ? path : "";
 }
 
 std::vector<Entry> read_options_file(const std::string& path) { return read_nested(path, 0); }

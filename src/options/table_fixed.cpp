@@ -1,4 +1,6 @@
 // Rows of the option table: options with a fixed name. See table.hpp for the columns.
+#include <limits>
+
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {
@@ -6,16 +8,20 @@ namespace {
 
 using enum Kind;
 constexpr Range tolerance = {1e-10, 0.1};
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+// Below these no beam is meant: a steel wire of 0.1 mm has EI = 1e-6 N m2, EA = 1.6e3 N and 6e-5 kg/m.
+constexpr Range beam_length = {1e-3, 1e6, true}, beam_stiffness = {1e-7, unbounded, true},
+                beam_weight = {1e-7, unbounded, true};
 
 // clang-format off
 constexpr Row rows[] = {
   {"options_file", text, "", "", any, "", 0, "a YAML (.yml, .yaml) or classic options file, which may name further ones"},
 
-  {"beam_spans", numbers, "m", "", {0.0, 1e6, true}, "", 0, "length of each span; left out: no bridge"},
+  {"beam_spans", numbers, "m", "", beam_length, "", 0, "length of each span; left out: no bridge"},
   {"beam_elements_per_span", integers, "", "(from accuracy)", {1, 100000}, "", 0, "elements a span, one number or one per span"},
-  {"beam_EI", number_or_file, "N m2", "", positive, "", 0, "bending stiffness, or a file x,value"},
-  {"beam_EA", number_or_file, "N", "", positive, "", 0, "axial stiffness, or a file x,value; needed for longitudinal action only"},
-  {"beam_mass", number_or_file, "kg/m", "", positive, "", 0, "mass per length, or a file x,value"},
+  {"beam_EI", number_or_file, "N m2", "", beam_stiffness, "", 0, "bending stiffness, or a file x,value"},
+  {"beam_EA", number_or_file, "N", "", beam_stiffness, "", 0, "axial stiffness, or a file x,value; needed for longitudinal action only"},
+  {"beam_mass", number_or_file, "kg/m", "", beam_weight, "", 0, "mass per length, or a file x,value"},
   {"beam_continuity", choice_list, "", "continuous", any, "continuous simply_supported hinge", 0, "at every inner span end, one word serves all; simply_supported: two beams end there"},
   {"beam_hinges", numbers, "m", "", not_negative, "", 0, "stations of hinges within spans"},
   {"beam_damping_ratios", numbers, "1", "", {0.0, 0.999}, "", 0, "damping ratios at the first two distinct frequencies (eq. 20)"},
@@ -100,6 +106,7 @@ constexpr Row rows[] = {
   {"scene_start", choice, "", "equilibrium", any, "equilibrium given", 0, "given: positions and velocities as written"},
   {"scene_tail", number, "s", "", not_negative, "", 0, "free vibration after the last wheel has left"},
   {"ts_max_time", number, "s", "(when the last wheel has left)", positive, "", 0, "the run's end"},
+  {"ts_max_steps", integer, "", "(no limit)", {1, 2147483646.0}, "", 0, "the run ends after so many steps at the latest"},
   {"ts_dt", number, "s", "(from accuracy)", positive, "", 0, "the step, or the first one"},
   {"modes_count", integer, "", "10", {1, 100000}, "", 0, "frequencies with scene_analysis modes"},
   {"contact_tolerance", number, "s", "(a thousandth of the step)", not_negative, "", 0, "steps end so close behind the loss or gain of a contact; 0: wherever they end"},
@@ -141,10 +148,11 @@ constexpr std::string_view petsc_names[] = {
   "ts_bdf_order", "ts_rk_type", "ts_rosw_type", "ts_theta_theta", "ts_theta_endpoint", "ts_alpha_radius", "ts_genalpha_radius",
   "snes_type", "snes_atol", "snes_rtol", "snes_stol", "snes_max_it", "snes_monitor", "snes_converged_reason",
   "snes_view", "snes_lag_jacobian", "ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it", "ksp_monitor", "pc_type",
-  "pc_factor_mat_solver_type", "mat_type", "vec_type", "eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it",
+  "pc_factor_mat_solver_type", "eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it",
   "eps_target", "eps_monitor", "eps_view", "st_type", "st_shift", "log_view", "log_view_memory", "log_trace",
   "options_left", "options_view", "options_monitor", "malloc_debug", "malloc_dump", "malloc_view", "memory_view",
-  "objects_dump", "info", "version",
+  "malloc_view_threshold", "objects_dump", "mpidump", "citations", "get_total_flops", "tmp", "shared_tmp",
+  "not_shared_tmp", "draw_pause", "draw_save", "nox", "info", "version",
 };
 // clang-format on
 

@@ -1,7 +1,6 @@
 #include "hdf5.hpp"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -9,7 +8,6 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 #include <numeric>
 
 #include "traverse/base/error.hpp"
@@ -45,40 +43,18 @@ herr_t visit(unsigned depth, const H5E_error2_t* entry, void* data) {
   return 0;
 }
 
-/// HDF5 empties a file before it finds out that another program holds it: so ask first.
-void check_old_file(const std::string& path) {
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) return;
-  if (!std::filesystem::is_regular_file(path, ignored)) fail(path, "it is there already and is no ordinary file");
-  const int descriptor = open(path.c_str(), O_RDWR | O_CLOEXEC);
-  if (descriptor < 0) return;  // HDF5 says why
-  const bool busy = flock(descriptor, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  ::close(descriptor);
-  if (busy) fail(path, "another program has it open; name another file with -output_file");
-}
-
-void make_folder(const std::string& path) {
-  const auto folder = std::filesystem::path(path).parent_path();
-  if (folder.empty()) return;
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) fail(path, "its folder cannot be made: " + error.message());
-}
-
 }  // namespace
 
-File::File(std::string path) : path_(std::move(path)) {
+File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  make_folder(path_);
-  check_old_file(path_);
-
   const Id access(check(H5Pcreate(H5P_FILE_ACCESS)));
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));  // the oldest superblock
-  check(H5Pset_file_locking(access.get(), true, true));                            // where the file system has locks
+  check(H5Pset_file_locking(access.get(), false, true));                           // the place is locked
   check(H5Pset_meta_block_size(access.get(), kGrowthStep));
   check(H5Pset_small_data_block_size(access.get(), kGrowthStep));
   check(H5Pset_sieve_buf_size(access.get(), 0));  // else a failed write shows only when a dataset is closed
   file_ = Id(check(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())));
+  place_.keep();
   check(H5Fset_libver_bounds(file_.get(), H5F_LIBVER_V18, H5F_LIBVER_V18));  // but fast groups and datasets
 
   // No chunk cache: rows go straight to their place, none is ever rewritten, and no memory waits.
@@ -125,6 +101,7 @@ void File::close() {
   flush();
   check(H5Fclose(file_.get()));
   file_.release();
+  place_ = Place();
 }
 
 void File::abandon() noexcept {
@@ -152,7 +129,8 @@ void File::write_attribute(const std::string& object, const std::string& name, h
 }
 
 void File::attribute(const std::string& object, const std::string& name, const std::string& text) {
-  const char* value = text.c_str();
+  const std::string valid = printable(text);  // readers refuse what is no UTF-8
+  const char* value = valid.c_str();
   write_attribute(object, name, text_.get(), &value);
 }
 
@@ -174,11 +152,13 @@ void File::dataset(const std::string& name, const std::vector<hsize_t>& shape, c
 }
 
 void File::table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows) {
-  std::vector<const char*> cells;
+  std::vector<std::string> valid;  // readers refuse what is no UTF-8
   for (const auto& [key, value] : rows) {
-    cells.push_back(key.c_str());
-    cells.push_back(value.c_str());
+    valid.push_back(printable(key));
+    valid.push_back(printable(value));
   }
+  std::vector<const char*> cells;
+  for (const std::string& cell : valid) cells.push_back(cell.c_str());
   const hsize_t shape[] = {rows.size(), 2};
   const Id space(check(H5Screate_simple(2, shape, nullptr)));
   const Id data(check(H5Dcreate2(id(), name.c_str(), text_.get(), space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));

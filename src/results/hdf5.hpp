@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "traverse/results/place.hpp"
+
 namespace traverse::results::hdf5 {
 
 /// Move-only owner of one HDF5 identifier of any kind.
@@ -36,8 +38,8 @@ class Id {
 /// file's new end is on disk before anything refers to what lies there (HDF5 itself writes it last).
 class File {
  public:
-  /// Creates the file and its folder, replacing an older file unless another program has it open.
-  explicit File(std::string path);
+  /// Creates the file at its place, replacing an older one. The place is held until the file is closed.
+  explicit File(Place place);
 
   const std::string& path() const { return path_; }
   /// The identifier or status as it was; FileError with HDF5's innermost reason when it is negative.
@@ -71,6 +73,7 @@ class File {
   int descriptor() const;
   void write_attribute(const std::string& object, const std::string& name, hid_t type, const void* value);
 
+  Place place_;
   std::string path_;
   Id file_, parents_, rows_access_, text_;
   off_t reserved_ = 0;  // bytes of the file that have their place on the disk

@@ -27,20 +27,6 @@ constexpr double kCostFactor = 20.0;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// A failure on rank 0 becomes the same FileError on every rank. Collective.
-void share_failure(MPI_Comm comm, std::string failure) {
-  int ranks = 1, rank = 0;
-  MPI_Comm_size(comm, &ranks);
-  MPI_Comm_rank(comm, &rank);
-  if (ranks > 1) {
-    int size = static_cast<int>(failure.size());
-    MPI_Bcast(&size, 1, MPI_INT, 0, comm);
-    failure.resize(static_cast<std::size_t>(size));
-    MPI_Bcast(failure.data(), size, MPI_CHAR, 0, comm);
-  }
-  if (!failure.empty()) throw FileError(failure);
-}
-
 /// Numbers in one sample.
 std::size_t sample_size(const Layout& layout) {
   std::size_t size = 7 + 7 * layout.probes.size() + 3 * layout.supports.size();
@@ -98,7 +84,7 @@ constexpr const char* kReactionUnit = "N, N, N m";
 }  // namespace
 
 struct Recorder::Impl {
-  Impl(const std::string& path, const Layout& given, const Pairs& attributes, const Pairs& options, int ranks);
+  Impl(Place place, const Layout& given, const Pairs& attributes, const Pairs& options, int ranks);
   ~Impl();
 
   void add(const Sample& sample);
@@ -124,9 +110,8 @@ struct Recorder::Impl {
   static void fill(std::vector<Series>& series, const Sample& sample);
 };
 
-Recorder::Impl::Impl(const std::string& path, const Layout& given, const Pairs& attributes, const Pairs& options,
-                     int ranks)
-    : file(path),
+Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, const Pairs& options, int ranks)
+    : file(std::move(place)),
       layout(given),
       block_rows(std::clamp<std::size_t>(kBlockBytes / (sizeof(double) * sample_size(given)), 1, kBlockRows)) {
   attempt([&] {
@@ -276,14 +261,17 @@ void Recorder::Impl::write(const std::string& object, const Attribute& attribute
 }
 
 Recorder::Recorder(MPI_Comm comm, const std::string& file, const Layout& layout, const Pairs& attributes,
-                   const Pairs& options) {
+                   const Pairs& options)
+    : Recorder(comm, claim_place(comm, file), layout, attributes, options) {}
+
+Recorder::Recorder(MPI_Comm comm, Place place, const Layout& layout, const Pairs& attributes, const Pairs& options) {
   int ranks = 1, rank = 0;
   MPI_Comm_size(comm, &ranks);
   MPI_Comm_rank(comm, &rank);
   std::string failure;
-  if (rank == 0 && !file.empty()) {  // no name: no file
+  if (rank == 0 && !place.path().empty()) {  // no name: no file
     try {
-      impl_ = std::make_unique<Impl>(file, layout, attributes, options, ranks);
+      impl_ = std::make_unique<Impl>(std::move(place), layout, attributes, options, ranks);
     } catch (const std::exception& error) {
       failure = error.what();
     }

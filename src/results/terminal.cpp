@@ -9,6 +9,8 @@
 #include <cstdio>
 #include <numbers>
 
+#include "traverse/base/error.hpp"
+
 namespace traverse::results {
 
 namespace {
@@ -145,7 +147,7 @@ void print_with_damping(const modes::Modes& modes, const modes::DampedModes& dam
 void print_modelled(const std::vector<std::string>& lines) {
   if (!is_first_rank() || lines.empty()) return;
   fmt::print("modelled\n");
-  for (const auto& text : lines) fmt::print("  {}\n", text);
+  for (const auto& text : lines) fmt::print("  {}\n", printable(text));
   std::fflush(stdout);
 }
 

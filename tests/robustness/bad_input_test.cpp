@@ -236,7 +236,7 @@ TEST(BadFiles, TheirErrorsNameFileAndLine) {
                                   {"vehicle_truck_body_mass = heavy", "vehicle.yml:2", "allowed: a number above 0"}},
                                  {{"-beam_EI", "word.csv"}, {"word.csv:3: ", "'stiff'"}},
                                  {{"-beam_EI", "three.csv"}, {"three.csv:2: ", "3 numbers, expected 2"}},
-                                 {{"-beam_EI", "negative.csv"}, {"beam_EI = negative.csv", "-1", "above 0"}},
+                                 {{"-beam_EI", "negative.csv"}, {"beam_EI = negative.csv", "-1", "above 1e-07"}},
                                  {{"-beam_EI", "backward.csv"}, {"backward.csv", "row 2", "must not decrease"}},
                                  {{"-beam_EI", "empty.csv"}, {"empty.csv", "no numbers"}},
                              });
@@ -312,7 +312,7 @@ TEST(BadRuns, NoEnd) {
   const Workplace workplace(small_scene());
   expect_refusals(workplace, {
                                  {{"-train_speed", "0"}, {"ts_max_time", "train_speed is 0"}},
-                                 {{"-train_positions", "50"}, {"scene_tail", "ts_max_time"}},
+                                 {{"-train_drive", "free", "-train_positions", "50"}, {"ts_max_time"}},
                              });
   const Workplace beamless(quarter_car);
   expect_refusals(beamless, {{{}, {"ts_max_time"}}});

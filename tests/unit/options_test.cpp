@@ -45,7 +45,8 @@ TEST(Yaml, EmptyFilesAndMergeKeys) {
   EXPECT_TRUE(parse_yaml("# nothing\n", "s.yml").empty());
   const auto entries = parse_yaml("$$wheel: &w {radius: 0.46}\na: {<<: *w, law: linear}\n", "s.yml");
   ASSERT_EQ(entries.size(), 2u);
-  EXPECT_EQ(entries[0].name, "a_radius");
+  EXPECT_EQ(entries[0].name, "a_law");
+  EXPECT_EQ(entries[1].name, "a_radius");
 }
 
 TEST(Yaml, ErrorsNameFileAndLine) {
@@ -57,6 +58,35 @@ TEST(Yaml, ErrorsNameFileAndLine) {
   EXPECT_PRED2(contains, refused("a: [[1, 2], [3]]\n"), "a list holds numbers or words");
   EXPECT_PRED2(contains, refused("a b: 1\n"), "'a b' is no name");
   EXPECT_PRED2(contains, refused("a: 1\n---\nb: 2\n"), "more than one YAML document");
+}
+
+TEST(Yaml, AnOptionOnceAFileHoweverItIsWritten) {
+  const auto refused = [](const std::string& text) { return message_of([&] { parse_yaml(text, "s.yml"); }); };
+  EXPECT_PRED2(contains, refused("beam: {mass: 1e4}\nbeam_mass: 3e4\n"),
+               "s.yml:2: beam_mass is given twice, first in line 1");
+  EXPECT_PRED2(contains, refused("a_b: {c: 1}\na: {b_c: 2}\n"), "a_b_c is given twice");
+}
+
+TEST(Yaml, TheBlocksOwnKeysWinOverMergedOnes) {
+  for (const char* text : {"$$w: &w {r: 1, l: x}\na: {<<: *w, r: 2}\n", "$$w: &w {r: 1, l: x}\na: {r: 2, <<: *w}\n",
+                           "$$w: &w {l: x}\n$$v: &v {r: 1, l: y}\na: {<<: [*w, *v], r: 2}\n"}) {
+    SCOPED_TRACE(text);
+    const auto entries = parse_yaml(text, "s.yml");
+    ASSERT_EQ(entries.size(), 2u);
+    for (const Entry& entry : entries) EXPECT_EQ(entry.value, entry.name == "a_r" ? "2" : "x");
+  }
+  EXPECT_PRED2(contains, message_of([] { parse_yaml("a: {<<: 3}\n", "s.yml"); }), "<< takes a block");
+}
+
+TEST(Yaml, EmptyListsAreMeantAndMissingValuesAreNot) {
+  EXPECT_EQ(parse_yaml("a: []\n", "s.yml").front().value, "[]");
+  const auto check = [](const char* text) { Options::from_yaml(text).check_values(); };
+  check("train: {vehicles: []}\n");
+  for (const char* text : {"train: {vehicles: }\n", "train: {vehicles: ''}\n", "train: {couplers: }\n"}) {
+    SCOPED_TRACE(text);
+    EXPECT_PRED2(contains, message_of([&] { check(text); }), "has no value");
+    EXPECT_PRED2(contains, message_of([&] { check(text); }), "[] for none");
+  }
 }
 
 TEST(Classic, NamesValuesAndComments) {
@@ -114,6 +144,19 @@ TEST(CommandLine, FilesNameFurtherFiles) {
   EXPECT_PRED2(contains, message_of([&] { input_of({"-options_file", loop}); }), "circle");
   const std::string lost = folder.write("lost.yml", "a: 1\noptions_file: nowhere.yml\n");
   EXPECT_PRED2(contains, message_of([&] { input_of({"-options_file", lost}); }), "lost.yml:2");
+  for (const char* nothing : {"''", "", "[]", "' '"}) {
+    const std::string empty = folder.write("empty.yml", std::string("a: 1\noptions_file: ") + nothing + "\n");
+    if (std::string(nothing) == "[]") {
+      EXPECT_EQ(input_of({"-options_file", empty}).entries.size(), 2u);
+      continue;
+    }
+    EXPECT_PRED2(contains, message_of([&] { input_of({"-options_file", empty}); }), "empty.yml:2): has no value");
+  }
+}
+
+TEST(CommandLine, WordsThatAreNoNames) {
+  EXPECT_PRED2(contains, message_of([] { input_of({"-options_file", "-dash.yml"}); }), "written ./-dash.yml");
+  EXPECT_PRED2(contains, message_of([] { input_of({"-ts_type=bdf"}); }), "a blank before the value");
 }
 
 TEST(CommandLine, TooManyOptionsForPetscsTable) {
@@ -174,7 +217,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(Bad{"train_speed", "fast", "'fast' is no finite number"},
                     Bad{"train_speed", "nan", "no finite number"}, Bad{"train_speed", "1e999", "no finite number"},
                     Bad{"train_speed", "3 m/s", "no finite number"}, Bad{"train_speed", "-1", "from 0 to 10000 (m/s)"},
-                    Bad{"scene_tail", "-1", "not below 0 (s)"}, Bad{"beam_EI", "0", "above 0"},
+                    Bad{"scene_tail", "-1", "not below 0 (s)"}, Bad{"beam_EI", "0", "above 1e-07 (N m2)"},
                     Bad{"beam_EI", "inf", "no finite number"},
                     Bad{"beam_EI", "nowhere.csv", "neither a number nor a file"},
                     Bad{"beam_elements_per_span", "3.5", "whole numbers"}, Bad{"beam_elements_per_span", "0", "from 1"},
@@ -279,6 +322,35 @@ TEST(DataFile, FoundBesideTheFileThatNamesIt) {
   const Options o(input_of({"-options_file", scene}).entries);
   EXPECT_EQ(o.path("beam_EI"), folder.path("data/ei.csv"));
   EXPECT_FALSE(o.is_number("beam_EI"));
+}
+
+TEST(DataFile, BesideComesBeforeTheWorkingDirectory) {
+  const test::TemporaryFolder folder;
+  const std::string here = std::filesystem::current_path();
+  const std::string beside = folder.write("sub/table.csv", "0 1\n"), above = folder.write("table.csv", "0 2\n");
+  std::filesystem::current_path(folder.path(""));
+  EXPECT_EQ(find_file("table.csv", "sub/scene.yml"), "sub/table.csv");
+  EXPECT_EQ(find_file("table.csv", ""), "table.csv");
+  EXPECT_EQ(find_file("sub/table.csv", "sub/scene.yml"), "sub/table.csv");  // there is none in sub/sub
+  EXPECT_EQ(find_file(above, "sub/scene.yml"), above);
+  EXPECT_EQ(find_file("none.csv", "sub/scene.yml"), "");
+  std::filesystem::current_path(here);
+}
+
+TEST(DataFile, RowsInOrder) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("t.csv", "# time, force\n0 1\n\n2 1\n1 1\n");
+  EXPECT_EQ(read_columns(file, 2, 2).front().size(), 3u);
+  const std::string message = message_of([&] { read_columns(file, 2, 2, Order::rising); });
+  EXPECT_PRED2(contains, message, "t.csv:5: the first column must increase strictly: row 3 has 1 after 2");
+}
+
+TEST(DataFile, NumbersBeyondAnyQuantity) {
+  const test::TemporaryFolder folder;
+  for (const char* number : {"1e300", "-1e51", "1e-300"}) {
+    const std::string file = folder.write("t.csv", std::string("0 1\n1 ") + number + "\n");
+    EXPECT_PRED2(contains, message_of([&] { read_columns(file, 2, 2); }), "t.csv:2: '" + std::string(number));
+  }
 }
 
 }  // namespace

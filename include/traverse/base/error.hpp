@@ -3,13 +3,18 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace traverse {
 
-/// Any failure that ends a run with a message of one line.
+/// The text on one line of valid UTF-8: a line break becomes the two characters \n, a tab \t, any other control
+/// character and any byte that belongs to no UTF-8 character \x and its two hexadecimal digits.
+std::string printable(std::string_view text);
+
+/// Any failure that ends a run with a message of one line; what the user wrote is made printable in it.
 class Error : public std::runtime_error {
  public:
-  Error(const std::string& message, int status) : std::runtime_error(message), status_(status) {}
+  Error(const std::string& message, int status) : std::runtime_error(printable(message)), status_(status) {}
   int status() const noexcept { return status_; }
 
  private:

@@ -46,11 +46,15 @@ class Arguments {
 };
 
 /// After PetscInitialize: adds options of ours that came by PETSC_OPTIONS or .petscrc to input.entries (weakest of
-/// all), then puts all entries into PETSc's table.
+/// all), then puts all entries into PETSc's table. Refuses names of PETSc's own kind (-log_, -mpi, -draw_) that it has
+/// not asked for and that are no common name.
 void put_into_petsc(Input& input);
 
 /// The entries that put_into_petsc saw last.
 const Entries& in_force();
+
+/// Throws the InputError for what PETSc says about a value while it reads its solvers' options: names the option.
+[[noreturn]] void refuse_by_petsc(const std::string& message);
 
 /// After all XxxSetFromOptions: refuses options of PETSc's kind that nobody asked for and that are no common name
 /// (InputError with the nearest name). Returns notes on common ones without effect in this scene.

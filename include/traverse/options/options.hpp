@@ -58,7 +58,7 @@ class Options {
 
   /// Is the value of a number_or_file option a number?
   bool is_number(std::string_view name) const;
-  /// The file that an option names, found from the working directory or beside the file that names it.
+  /// The file that an option names, found beside the file that names it or from the working directory.
   std::string path(std::string_view name) const;
 
   /// Throws InputError "NAME = value (where): why", or "NAME: why" when it is not given.

@@ -9,9 +9,8 @@
 namespace traverse::options {
 
 /// The entries of a file in their order. Nested keys are joined by underscores, lists become comma lists.
-/// An option `options_file` inside a file is followed: its entries stand in its place; its path is tried relative to
-/// the working directory, then to the file that names it.
-/// Throws InputError naming file and line for a file that cannot be read or is not well formed.
+/// An option `options_file` inside a file is followed: its entries stand in its place; its path is found as by
+/// find_file. Throws InputError naming file and line for a file that cannot be read or is not well formed.
 std::vector<Entry> read_options_file(const std::string& path);
 
 /// The same from text in memory; `name` stands for the file in messages.
@@ -22,7 +21,8 @@ std::vector<Entry> parse_classic(const std::string& text, const std::string& nam
 /// `-5.0` is a value. Throws InputError for a value that belongs to no name.
 std::vector<Entry> parse_words(const std::vector<std::string>& words, const std::string& source, int line);
 
-/// `path` itself when it exists, otherwise beside `named_in` (a file; may be empty); empty when there is neither.
+/// The file that the file `named_in` calls `path`: beside `named_in` first, then from the working directory. Empty when
+/// there is neither. An empty `named_in` stands for the command line, which counts from the working directory alone.
 std::string find_file(const std::string& path, const std::string& named_in);
 
 }  // namespace traverse::options

@@ -28,6 +28,7 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool above = false;  // low itself is not allowed
+  bool holds(double value) const { return value <= high && (above ? value > low : value >= low); }
 };
 inline constexpr Range any = {};
 inline constexpr Range positive = {0.0, std::numeric_limits<double>::infinity(), true};

@@ -11,6 +11,7 @@
 
 #include "traverse/beam/recovery.hpp"
 #include "traverse/modes/modes.hpp"
+#include "traverse/results/place.hpp"
 
 namespace traverse::results {
 
@@ -123,7 +124,11 @@ struct Attribute {
 /// The writer. Only rank 0 opens and writes the file; on the other ranks every call does nothing.
 class Recorder {
  public:
-  /// Creates the file (and its folder): FileError when it cannot be. attributes: name, text.
+  /// Creates the file at its place: FileError when it cannot be. attributes: name, text.
+  Recorder(MPI_Comm comm, Place place, const Layout& layout,
+           const std::vector<std::pair<std::string, std::string>>& attributes,
+           const std::vector<std::pair<std::string, std::string>>& options);
+  /// The same, with its place claimed now.
   Recorder(MPI_Comm comm, const std::string& file, const Layout& layout,
            const std::vector<std::pair<std::string, std::string>>& attributes,
            const std::vector<std::pair<std::string, std::string>>& options);

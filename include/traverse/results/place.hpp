@@ -1,0 +1,45 @@
+// Where a results file will stand: claimed before anything is computed, so that a run does not find out at its end that
+// it may not write there, and never overwrites what is no results file.
+#pragma once
+
+#include <mpi.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace traverse::results {
+
+/// A path that this process may write, locked against other runs until the object goes. What it made (an empty file,
+/// folders) goes with it unless keep() was called.
+class Place {
+ public:
+  Place() = default;
+  /// An empty path is no place. FileError when it is a folder or a special file, cannot be written, is open elsewhere,
+  /// or holds something that is no results file of Traverse.
+  explicit Place(std::string path);
+  Place(Place&& other) noexcept;
+  Place& operator=(Place&& other) noexcept;
+  ~Place();
+
+  const std::string& path() const { return path_; }
+  /// A results file has been begun: it stays.
+  void keep();
+
+ private:
+  void claim();
+  void give_up() noexcept;
+
+  std::string path_;
+  int descriptor_ = -1;
+  bool made_ = false;  // the file, by this object
+  std::vector<std::filesystem::path> folders_;
+};
+
+/// Collective: rank 0 claims the place, the others hold none. The same FileError on every rank.
+Place claim_place(MPI_Comm comm, const std::string& path);
+
+/// Collective: a failure on rank 0, empty when there is none, becomes the same FileError on every rank.
+void share_failure(MPI_Comm comm, std::string failure);
+
+}  // namespace traverse::results
