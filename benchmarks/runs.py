@@ -40,7 +40,7 @@ def parser(text):
 
 def given(arguments, *benchmark_programs):
     """What the command line says. The programs have to be there, and the output folder is from here on."""
-    found = arguments.parse_args()
+    found = arguments.parse_intermixed_args()
     option = " -DTRAVERSE_BENCHMARKS=ON" if benchmark_programs else ""
     for program in [benchmark_program(found.build, name) for name in benchmark_programs] or [traverse(found.build)]:
         if not os.access(program, os.X_OK):
