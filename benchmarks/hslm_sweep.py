@@ -109,6 +109,7 @@ def measured(build, out, cases, listed):
                       + "".join(f"{e:12.1e}  " for e in off if e is not None), flush=True)
                 yield [*row, *off]
         if name == WITH_STATIONS:
+            print(file)
             picture(sweep, listed, os.path.join(out, "hslm_sweep.png"))
 
 

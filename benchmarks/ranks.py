@@ -21,15 +21,18 @@ UNKNOWNS, SMALLEST = 200_000, 1000  # of the bridge whose step's parts are taken
 PART_ROUNDS = 15
 PARTS = ["bare solve", "esdirk4 stage", "esdirk4 step", "genalpha step"]
 OPTIONS = os.path.join(runs.ROOT, "options")
-LONG = "5,150 isolated spans, 16 coaches, every span stepped"
+LONG, SHORT = "5,150 isolated spans, 16 coaches, every span stepped", "three spans, eight coaches"
 SCENES = {
     LONG: {
         "options_file": os.path.join(OPTIONS, "bridges", "danyang_kunshan.yml"),
         "vehicle_coach_file": os.path.join(OPTIONS, "vehicles", "s300.yml"),
         "train_vehicles": "coach*16", "train_speed": 83.333, "model_window": 0,
         "ts_dt": 1e-3, "ts_max_time": 10.0, "ts_max_steps": 200, "output_interval": 1.0},
-    "three spans, eight coaches": {"options_file": runs.scene("three_span_train"), "beam_elements_per_span": 10,
-                                   "ts_dt": 1e-3},
+    SHORT: {"options_file": runs.scene("three_span_train"), "beam_elements_per_span": 10, "ts_dt": 1e-3},
+}
+FEW_STEPS = {
+    "3 isolated spans, 16 coaches, 50 steps": SCENES[LONG] | {"beam_spans": "32.0*3", "ts_max_time": 0.05},
+    f"{SHORT}, 50 steps": SCENES[SHORT] | {"ts_max_time": 0.05},
 }
 
 
@@ -47,11 +50,8 @@ def parts(build, folder, ranks, unknowns, rounds):
 def taken_in(given, folder):
     """Seconds of every round: {name: {ranks: list}}."""
     unknowns, part_rounds, scenes = UNKNOWNS, PART_ROUNDS, SCENES
-    if given.smallest:  # the first 50 steps, the long bridge's on three spans
-        few = {"ts_max_time": 0.05}
-        unknowns, part_rounds = SMALLEST, 1
-        scenes = {name: scene | few for name, scene in SCENES.items()}
-        scenes[LONG] = scenes[LONG] | {"beam_spans": "32.0*3"}
+    if given.smallest:
+        unknowns, part_rounds, scenes = SMALLEST, 1, FEW_STEPS
     taken = {}
     for _ in range(1 if given.smallest else given.rounds):
         for ranks in (1, 2):

@@ -294,7 +294,7 @@ def picture(cases, file):
         for wanted, point in case.chosen.items():
             kept = [q for q in case.promised(wanted) if q in promised] or promised
             axis.plot(point.seconds, max(case.shown(case.errors(point))[q] for q in kept), "*", color="black", ms=10,
-                      label="-accuracy 1e-2 to 1e-5" if wanted == WANTED[0] else None)
+                      label="where -accuracy lands" if wanted == case.scene.wanted[0] else None)
             axis.axhline(wanted, color="grey", lw=0.4, ls=":")
         axis.set_title(f"{case.scene.name}: {', '.join(promised)}", fontsize=8)
         axis.set(xlabel="seconds of the time loop", ylabel="error")
