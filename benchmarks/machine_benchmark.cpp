@@ -2,7 +2,8 @@
 //   mpirun -n 2 build/benchmarks/machine_benchmark [FILE.csv [ROUNDS]]; also with other numbers of ranks.
 //   benchmarks/scaling.py reads it.
 //
-// Medians over ROUNDS (21), by the clock. One message: half of a ping-pong between the first two ranks. Memory: a[i] = b[i]
+// Medians over ROUNDS (21), by the clock. One message: half of a ping-pong between the first two ranks. Memory: a[i] =
+// b[i]
 // + s c[i] on every rank at once, far beyond the caches, 24 bytes an entry read and written.
 
 #include <mpi.h>

@@ -1,5 +1,5 @@
-// Prints what a step of 1 ms of esdirk4 and genalpha takes, its parts (medians of ROUNDS, 15, in turn), all per unknown,
-// and what memory.
+// Prints what a step of 1 ms of esdirk4 and genalpha takes, its parts (medians of ROUNDS, 15, in turn), all per
+// unknown, and what memory.
 //   build/benchmarks/step_parts_benchmark [FILE.csv [LARGEST [SMALLEST [ROUNDS]]]], also under mpirun -n 2;
 //   step_parts.py draws it.
 //

@@ -25,9 +25,12 @@ class InAFolder(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
+    def start_smallest(self, name):
+        return start(name, BUILD, self.folder, "--smallest")
+
     def run_smallest(self, name):
         """What the script prints; it ends without a complaint and leaves nothing but its tables and pictures."""
-        done = start(name, BUILD, self.folder, "--smallest")
+        done = self.start_smallest(name)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(done.stderr, "")
         for path in self.folder.iterdir():
