@@ -1,7 +1,8 @@
 // Solving with the beam's factorisation on one core, beside PETSc's own Cholesky (natural ordering), LAPACK's band
 // solver and MUMPS, all measured in turn in one run on the same matrix (bridge_matrix.hpp, a = 2,000 1/s):
-//   build/benchmarks/beam_solver_benchmark [FILE.csv]
-// prints ns per unknown (medians, and the least) and ratios to ours; benchmarks/beam_solver_picture.py draws the file.
+//   build/benchmarks/beam_solver_benchmark [FILE.csv [LARGEST]]
+// with up to LARGEST (1,000,000) unknowns; prints ns per unknown (medians, and the least) and ratios to ours;
+// benchmarks/beam_solver_picture.py draws the file.
 // Every solve starts from a right-hand side that is kept, so those in place copy it first, within their time.
 
 #include <petscmat.h>
@@ -180,7 +181,7 @@ double multiply_add_latency() {
   return median(times) / steps;
 }
 
-void run(const char* file) {
+void run(const char* file, int largest) {
   std::ofstream table;
   if (file != nullptr) table.open(file);
   table << "unknowns,solver,ns_per_unknown,ratio\n";
@@ -195,6 +196,7 @@ void run(const char* file) {
 #endif
   std::printf("%10s  %-14s %14s %9s %9s\n", "unknowns", "", "ns an unknown", "of ours", "least");
   for (int unknowns : sizes) {
+    if (unknowns > largest) break;
     const Bridge parts = bridge(block, 0, unknowns / block, true, 2000.0);
     const std::vector<double> b(static_cast<std::size_t>(unknowns), 1.0);
     std::vector<Solver> all = solvers(parts, b);
@@ -220,7 +222,7 @@ void run(const char* file) {
 int main(int argc, char** argv) {
   if (PetscInitialize(&argc, &argv, nullptr, nullptr) != 0) return EXIT_FAILURE;
   try {
-    run(argc > 1 ? argv[1] : nullptr);
+    run(argc > 1 ? argv[1] : nullptr, argc > 2 ? std::atoi(argv[2]) : sizes.back());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     PetscFinalize();

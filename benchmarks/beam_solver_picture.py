@@ -1,4 +1,7 @@
-"""Draws what beam_solver_benchmark has written: beam_solver_picture.py FILE.csv [PICTURE.png]."""
+#!/usr/bin/python3
+"""Draws what the program beam_solver_benchmark has written: ns per unknown over the number of unknowns, of each solver.
+/usr/bin/python3 benchmarks/beam_solver_picture.py FILE.csv [PICTURE.png]; left out: FILE.png."""
+
 import csv
 import sys
 from collections import defaultdict

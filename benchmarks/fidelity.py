@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """What simpler models of a train miss, and what each costs: forces, masses, sprung masses, coaches of 10 freedoms.
-/usr/bin/python3 benchmarks/fidelity.py [BUILD_FOLDER] [OUT_FOLDER] [--quick]; writes fidelity.csv, fidelity_limits.csv
-and fidelity.png to OUT_FOLDER.
+/usr/bin/python3 benchmarks/fidelity.py [BUILD_FOLDER] [OUT_FOLDER] [--quick] [--smallest]
+
+Writes fidelity.csv, fidelity_limits.csv and fidelity.png to OUT_FOLDER. --quick takes two speeds and two mass ratios,
+--smallest two speeds, one mass ratio, one coach and a coarse mesh and step.
 
 Four Velaro coaches cross a simply supported bridge of 30 m, 3.2 Hz, 1 % damping, over speed, mass ratio (the train's
 mass a metre over the bridge's, whose EI goes with its mass, so that its frequencies stay) and roughness. Errors are
@@ -11,8 +13,6 @@ samples ten times as long. At the end: up to which mass ratio each model is good
 """
 
 import os
-import shutil
-import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
@@ -34,6 +34,7 @@ ROUGHNESS = ["none", "german_low", "german_high"]
 WAVES = "3.0,80.0"  # m; shorter ones belong to the wheels' and rails' surfaces
 RUN_UP = 40.0  # m before the bridge
 STEP, ELEMENTS = 5e-4, 20
+SMALLEST = (2e-3, 4, 1)  # step, elements and coaches of the smallest runs
 QUANTITIES = ["deflection", "moment", "acceleration"]
 BOTH = ["deflection", "moment"]
 LOW = 0.2  # what mass ratios of railway bridges of concrete hardly exceed
@@ -74,10 +75,10 @@ MODELS = {  # name: the train, more options
 SHORT = {"none": "smooth", "german_low": "low", "german_high": "high"}
 
 
-def text_of(train):
-    """The scene, without bridge, speed and roughness."""
+def text_of(train, coaches):
+    """The scene of so many coaches, without bridge, speed and roughness."""
     front = -RUN_UP - AXLES[0]
-    places = [front - k * LENGTH + a for k in range(COACHES) for a in AXLES]
+    places = [front - k * LENGTH + a for k in range(coaches) for a in AXLES]
     text = "support: {types: [pinned, roller]}\nscene: {tail: 0.6}\n"
     if train == "forces":
         weight = (WHEELSET + HALF_BOGIE + QUARTER_CAR) * GRAVITY
@@ -85,7 +86,7 @@ def text_of(train):
     if train == "coaches":
         file = os.path.join(runs.ROOT, "options", "vehicles", "velaro.yml")
         text += f"vehicle: {{coach: {{file: {file}}}}}\n"
-        return text + f"train: {{vehicles: coach*{COACHES}, positions: {front}}}\n"
+        return text + f"train: {{vehicles: coach*{coaches}, positions: {front}}}\n"
     return text + f"vehicle:\n  one:{AXLE[train]}\ntrain: {{vehicles: one*{len(places)}, positions: {places}}}\n"
 
 
@@ -97,11 +98,11 @@ def bridge(ratio):
 
 
 class Passages:
-    def __init__(self, build, folder):
-        self.build, self.folder = build, folder
+    def __init__(self, build, folder, step=STEP, elements=ELEMENTS, coaches=COACHES):
+        self.build, self.folder, self.step, self.elements = build, folder, step, elements
         for train, _ in MODELS.values():
             with open(self.file(train), "w") as file:
-                file.write(text_of(train))
+                file.write(text_of(train, coaches))
 
     def file(self, train):
         return os.path.join(self.folder, train.replace(" ", "_") + ".yml")
@@ -121,7 +122,8 @@ class Passages:
         os.remove(file)
         return run
 
-    def fixed(self, model, speed, ratio, roughness, step=STEP, elements=ELEMENTS):
+    def fixed(self, model, speed, ratio, roughness, finer=1):
+        step, elements = self.step / finer, self.elements * finer
         resolved = {"output_interval": 10 * step} if "modes" in model else {"ts_dt": step, "step_probes": "true"}
         return self.run(self.options(model, speed, ratio, roughness) | resolved | {"beam_elements_per_span": elements})
 
@@ -146,7 +148,7 @@ def errors_of(found):
 
 def doubt(passages, found, ratio, roughness):
     """What half the step and elements change in the coaches' peaks, at resonance."""
-    fine = passages.fixed("coaches", RESONANCE, ratio, roughness, STEP / 2, 2 * ELEMENTS).peaks
+    fine = passages.fixed("coaches", RESONANCE, ratio, roughness, finer=2).peaks
     rough = found["coaches", roughness, ratio, RESONANCE].peaks
     return {q: abs(rough[q] / fine[q] - 1.0) for q in QUANTITIES}
 
@@ -251,12 +253,16 @@ def picture(errors, ratios, speeds, file):
 
 
 def main():
-    quick = "--quick" in sys.argv
-    build, out = runs.folders([w for w in sys.argv[1:] if w != "--quick"])
-    speeds, ratios = (SPEEDS[2:5:2], RATIOS[1:4:2]) if quick else (SPEEDS, RATIOS)
-    folder = tempfile.mkdtemp()
-    try:
-        passages = Passages(build, folder)
+    arguments = runs.parser(__doc__)
+    arguments.add_argument("--quick", action="store_true", help="two speeds and two mass ratios")
+    given = runs.given(arguments)
+    speeds, ratios, rounds, size = SPEEDS, RATIOS, 5, (STEP, ELEMENTS, COACHES)
+    if given.quick:
+        speeds, ratios, rounds = [60.0, RESONANCE], [0.1, 0.2], 1
+    if given.smallest:
+        speeds, ratios, rounds, size = [60.0, RESONANCE], [0.1], 1, SMALLEST
+    with tempfile.TemporaryDirectory() as folder:
+        passages = Passages(given.build, folder, *size)
         found = try_all(passages, speeds, ratios)
         errors = errors_of(found)
         for roughness in ROUGHNESS:
@@ -264,19 +270,17 @@ def main():
             print(f"half the step and elements change the coaches' peaks on the {SHORT[roughness]} track by "
                   + ", ".join(f"{q} {c:.0e}" for q, c in changes.items()))
         show_errors(errors, ratios, speeds)
-        taken = costs(passages, 1 if quick else 5)
+        taken = costs(passages, rounds)
         show_costs(taken)
         header, limits = show_limits(errors, ratios, speeds)
-    finally:
-        shutil.rmtree(folder)
-    runs.write_table(os.path.join(out, "fidelity.csv"),
+    runs.write_table(os.path.join(given.out, "fidelity.csv"),
                      ["model", "track", "mass ratio", "speed", *("peak " + q for q in QUANTITIES),
                       *("error of " + q for q in QUANTITIES), "steps", "seconds"],
                      [[k[0], SHORT[k[1]], k[2], k[3], *(run.peaks[q] for q in QUANTITIES),
                        *(errors.get(k, dict.fromkeys(QUANTITIES, 0.0))[q] for q in QUANTITIES), run.steps, run.seconds]
                       for k, run in found.items()])
-    runs.write_table(os.path.join(out, "fidelity_limits.csv"), header, limits)
-    picture(errors, ratios, speeds, os.path.join(out, "fidelity.png"))
+    runs.write_table(os.path.join(given.out, "fidelity_limits.csv"), header, limits)
+    picture(errors, ratios, speeds, os.path.join(given.out, "fidelity.png"))
 
 
 if __name__ == "__main__":

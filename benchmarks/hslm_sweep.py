@@ -1,16 +1,16 @@
 #!/usr/bin/python3
-"""Passages per second of sweeps, and their peaks against another program's: hslm_sweep.py [BUILD_FOLDER] [OUT_FOLDER]
+"""Passages per second of sweeps, and their peaks against another program's.
+/usr/bin/python3 benchmarks/hslm_sweep.py [BUILD_FOLDER] [OUT_FOLDER] [--smallest]
 
 Runs options/scenes/hslm_sweep.yml (10 HSLM-A trains, 100 to 360 km/h by 2: 1,310 passages) by three modes on one and on
 two ranks, a part of it by elements, and eight S300 coaches over the same bridge. Prints a table; writes hslm_sweep.csv
-(the table), hslm_sweep.h5 and hslm_sweep.png (envelopes of the peaks over the speed) into OUT_FOLDER (results).
+(the table), hslm_sweep.h5 (the passages by three modes at all stations) and hslm_sweep.png (envelopes of their peaks over
+the speed) to OUT_FOLDER.
 """
 
-import csv
 import os
 import resource
-import subprocess
-import sys
+import tempfile
 
 import h5py
 import matplotlib
@@ -18,35 +18,39 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
+import runs  # noqa: E402
 
-ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-SCENE = os.path.join(ROOT, "options", "scenes", "hslm_sweep.yml")
+SCENE = runs.scene("hslm_sweep")
 STATIONS = ",".join(f"{1.25 * i:g}" for i in range(1, 20))
 COARSE = "27.7777778,100,5.5555556"  # m/s: every 20 km/h
 
-ELEMENTS = f"""beam: {{spans: 25.0, EI: 3.0e10, mass: 1.5e4, damping_ratios: 0.01}}
-support: {{types: [pinned, roller]}}
-sweep: {{speed: [{COARSE}]}}
-scene: {{tail: 1.0}}
+ELEMENTS = """beam: {spans: 25.0, EI: 3.0e10, mass: 1.5e4, damping_ratios: 0.01}
+support: {types: [pinned, roller]}
+scene: {tail: 1.0}
 """
-TRAINS = "sweep_hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n"
-COACHES = f"""vehicle: {{coach: {{file: {ROOT}/options/vehicles/s300.yml}}}}
+COACHES = f"""vehicle: {{coach: {{file: {runs.ROOT}/options/vehicles/s300.yml}}}}
 train: {{vehicles: coach*8}}
 """
+WITH_STATIONS = "3 modes, 19 stations"
+CASES = {  # name: the scene as text or none, options
+    "3 modes": (None, {}),
+    WITH_STATIONS: (None, {"output_probes": STATIONS}),
+    "10 elements, every 20 km/h": (ELEMENTS, {"sweep_speed": COARSE, "sweep_hslm_a": "1,2,3,4,5,6,7,8,9,10"}),
+    "8 coaches, every 20 km/h": (ELEMENTS + COACHES, {"sweep_speed": COARSE}),
+}
+SMALLEST = {  # all passages at one station, as they take half a second; few of the others
+    "3 modes": (None, {}),
+    WITH_STATIONS: (None, {"output_probes": STATIONS, "sweep_speed": COARSE}),
+    "elements, two speeds": (ELEMENTS, {"sweep_speed": "60,80,20", "sweep_hslm_a": "1", "beam_elements_per_span": 4}),
+    "a coach, two speeds": (ELEMENTS + COACHES, {"sweep_speed": "60,80,20", "train_vehicles": "coach",
+                                                 "beam_elements_per_span": 4, "ts_dt": 5e-3}),
+}
 
-CASES = [  # name, the scene as text or none, words
-    ("3 modes", None, []),
-    ("3 modes, 19 stations", None, ["-output_probes", STATIONS]),
-    ("10 elements, every 20 km/h", ELEMENTS + TRAINS, []),
-    ("8 coaches, every 20 km/h", ELEMENTS + COACHES, []),
-]
 
-
-def run(program, scene, words, ranks, file):
+def run(build, scene, options, ranks, file):
     """Seconds by the clock, of the processors, and the results."""
-    command = (["mpirun", "-n", str(ranks)] if ranks > 1 else []) + [program, "-options_file", scene]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command + words + ["-output_file", file, "-output_quiet"], check=True, stdout=subprocess.DEVNULL)
+    runs.Run(build, {"options_file": scene} | options, file, ranks)
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     with h5py.File(file) as results:
         names = ("speed", "peak_deflection", "peak_acceleration")
@@ -82,40 +86,42 @@ def picture(sweep, listed, file):
     axes[0].set_title("HSLM-A over a simply supported bridge of 25 m, 1 % damping", loc="left", weight="bold")
     fig.tight_layout()
     fig.savefig(file, dpi=120)
+    print(file)
+
+
+def measured(build, out, cases, listed):
+    """Lines of the table; draws the case with stations."""
+    for name, (text, options) in cases.items():
+        with tempfile.TemporaryDirectory() as folder:
+            scene, file = SCENE, os.path.join(folder, "sweep.h5")
+            if text:
+                scene = os.path.join(folder, "scene.yml")
+                with open(scene, "w") as written:
+                    written.write(text)
+            if name == WITH_STATIONS:
+                file = os.path.join(out, "hslm_sweep.h5")
+            for ranks in (1, 2):
+                seconds, processor, sweep = run(build, scene, options, ranks, file)
+                passages = sweep["peak_deflection"].shape[0] * len(sweep["speed"])
+                off = errors(sweep, listed)
+                row = [name, ranks, passages, passages / seconds, 1e3 * seconds / passages, 1e3 * processor / passages]
+                print("{:28}{:6}{:10}{:12.4g}{:10.3g}{:10.3g}".format(*row)
+                      + "".join(f"{e:12.1e}  " for e in off if e is not None), flush=True)
+                yield [*row, *off]
+        if name == WITH_STATIONS:
+            print(file)
+            picture(sweep, listed, os.path.join(out, "hslm_sweep.png"))
 
 
 def main():
-    build = sys.argv[1] if len(sys.argv) > 1 else os.path.join(ROOT, "build")
-    out = sys.argv[2] if len(sys.argv) > 2 else "results"
-    os.makedirs(out, exist_ok=True)
-    listed = np.loadtxt(os.path.join(ROOT, "tests", "data", "hslm_peaks.csv"), delimiter=",")
-    written = os.path.join(out, "hslm_sweep_case.yml")
-    rows = []
+    given = runs.given(runs.parser(__doc__))
+    listed = np.loadtxt(os.path.join(runs.ROOT, "tests", "data", "hslm_peaks.csv"), delimiter=",")
     print(f"{'':28}{'ranks':>6}{'passages':>10}{'per second':>12}{'ms each':>10}{'CPU ms':>10}{'deflection':>12}"
           f"{'acceleration':>14}")
-    for name, text, words in CASES:
-        if text:
-            with open(written, "w") as file:
-                file.write(text)
-        for ranks in (1, 2):
-            file = os.path.join(out, "hslm_sweep.h5")
-            seconds, processor, sweep = run(os.path.join(build, "traverse"), written if text else SCENE, words, ranks,
-                                            file)
-            passages = sweep["peak_deflection"].shape[0] * len(sweep["speed"])
-            deflection, acceleration = errors(sweep, listed)
-            rows.append([name, ranks, passages, passages / seconds, 1e3 * seconds / passages,
-                         1e3 * processor / passages, deflection, acceleration])
-            shown = [f"{e:.1e}" if e is not None else "" for e in (deflection, acceleration)]
-            print(f"{name:28}{ranks:6}{passages:10}{passages / seconds:12.4g}{rows[-1][4]:10.3g}{rows[-1][5]:10.3g}"
-                  f"{shown[0]:>12}{shown[1]:>14}", flush=True)
-        if "stations" in name:
-            picture(sweep, listed, os.path.join(out, "hslm_sweep.png"))
-    os.remove(written)
-    with open(os.path.join(out, "hslm_sweep.csv"), "w", newline="") as file:
-        writer = csv.writer(file)
-        writer.writerow(["case", "ranks", "passages", "passages per second", "ms each", "CPU ms each",
-                         "deflection against the list", "acceleration against the list"])
-        writer.writerows(rows)
+    rows = list(measured(given.build, given.out, SMALLEST if given.smallest else CASES, listed))
+    runs.write_table(os.path.join(given.out, "hslm_sweep.csv"),
+                     ["case", "ranks", "passages", "passages per second", "ms each", "CPU ms each",
+                      "deflection against the list", "acceleration against the list"], rows)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,9 @@
 // Prints what a machine's messages and memory are worth to a step of many ranks: latencies, bandwidths, rates.
-//   mpirun -n 2 build/benchmarks/machine_benchmark [FILE.csv]; also with other numbers of ranks. benchmarks/scaling.py
-//   reads it.
+//   mpirun -n 2 build/benchmarks/machine_benchmark [FILE.csv [ROUNDS]]; also with other numbers of ranks.
+//   benchmarks/scaling.py reads it.
 //
-// Medians over rounds, by the clock. One message: half of a ping-pong between the first two ranks. Memory: a[i] = b[i]
+// Medians over ROUNDS (21), by the clock. One message: half of a ping-pong between the first two ranks. Memory: a[i] =
+// b[i]
 // + s c[i] on every rank at once, far beyond the caches, 24 bytes an entry read and written.
 
 #include <mpi.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -17,7 +19,7 @@
 
 namespace {
 
-constexpr int rounds = 21;
+int rounds = 21;
 
 int rank_of() {
   int rank = 0;
@@ -41,7 +43,7 @@ double median_time(int times, const std::function<void()>& work) {
     taken.push_back((MPI_Wtime() - start) / times);
   }
   std::nth_element(taken.begin(), taken.begin() + rounds / 2, taken.end());
-  return taken[rounds / 2];
+  return taken[static_cast<std::size_t>(rounds) / 2];
 }
 
 double message(int doubles, int times) {
@@ -87,6 +89,7 @@ double memory() {
 
 int main(int argc, char** argv) {
   MPI_Init(&argc, &argv);
+  if (argc > 2) rounds = std::max(1, std::atoi(argv[2]));
   std::ofstream table;
   if (argc > 1 && rank_of() == 0) table.open(argv[1]);
   table << "what,ranks,value,unit\n";

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """Whether -accuracy keeps its promise: scenes at several accuracies, each against a run that is refined until it settles.
-/usr/bin/python3 benchmarks/promises.py [BUILD_FOLDER] [OUT_FOLDER] [--quick] [--drawn FIRST LAST] [--finest]
+/usr/bin/python3 benchmarks/promises.py [BUILD_FOLDER] [OUT_FOLDER] [--quick] [--drawn FIRST LAST] [--finest] [--smallest]
 
-Twenty-two written scenes, or with --drawn those drawn at random with these numbers; --finest adds an accuracy of 1e-5.
+Twenty-two written scenes, or with --drawn those drawn at random with these numbers; --finest adds an accuracy of 1e-5,
+--quick takes four scenes at 1e-2 and 1e-3, --smallest one scene at 1e-2.
 Prints, for every scene and accuracy, the largest true error of what is promised over the accuracy, what is not promised,
 and the seconds of the trial runs, the time loop and the process (two scenes run at once). Writes promises.csv.
 
@@ -10,7 +11,6 @@ The reference is refined, step and mesh together, until what it says changes by 
 quantity whose reference does not get there is left out at that accuracy and counted as not judged.
 """
 
-import argparse
 import csv
 import os
 import re
@@ -75,7 +75,7 @@ def peaks(run):
         return {q: abs(float(values[name])) for q, name in QUANTITIES.items() if name in values}, promised
 
 
-def reference(build, name, scene, results, doubt):
+def reference(build, name, scene, results, doubt, longest):
     """Peaks, and how far off each may be: what halving step and elements once more has changed."""
     elements, step = REFERENCE
     elements = {"bed": ON_BED, "hinge": WITH_HINGE}.get(name, elements)
@@ -85,18 +85,19 @@ def reference(build, name, scene, results, doubt):
                                "step_probes": "true"}, results)
         found, _ = peaks(run)
         off = {q: abs(before[q] / p - 1.0) if before and p > 0.0 else 1.0 for q, p in found.items()}
-        if max(off.values()) < doubt or 4.0 * run.seconds > LONGEST:
+        if max(off.values()) < doubt or 4.0 * run.seconds > longest:
             break
         before, elements, step = found, 2 * elements, 0.5 * step
     return found, off
 
 
-def judge(build, name, text, accuracies):
+def judge(build, name, text, accuracies, longest=LONGEST):
+    """Lines of the table; longest: s of a reference's time loop."""
     with tempfile.TemporaryDirectory() as folder:
         scene, results = os.path.join(folder, "scene.yml"), os.path.join(folder, "run.h5")
         with open(scene, "w") as file:
             file.write(text)
-        truth, doubt = reference(build, name, scene, results, JUDGED * accuracies[-1])
+        truth, doubt = reference(build, name, scene, results, JUDGED * accuracies[-1], longest)
         rows = []
         for accuracy in accuracies:
             run = runs.Run(build, {"options_file": scene, "accuracy": accuracy}, results)
@@ -122,30 +123,35 @@ def show(row):
 
 
 def main():
-    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("folders", nargs="*")
-    arguments.add_argument("--quick", action="store_true")
-    arguments.add_argument("--finest", action="store_true")
-    arguments.add_argument("--drawn", nargs=2, type=int, metavar=("FIRST", "LAST"))
-    given = arguments.parse_args()
-    build, out = runs.folders(given.folders)
+    arguments = runs.parser(__doc__)
+    arguments.add_argument("--quick", action="store_true", help="four scenes, accuracies of 1e-2 and 1e-3")
+    arguments.add_argument("--finest", action="store_true", help="also an accuracy of 1e-5")
+    arguments.add_argument("--drawn", nargs=2, type=int, metavar=("FIRST", "LAST"), help="scenes drawn at random")
+    given = runs.given(arguments)
     accuracies = [1e-2, 1e-3] + ([] if given.quick else [1e-4]) + ([1e-5] if given.finest else [])
     scenes = [drawn(i) for i in range(given.drawn[0], given.drawn[1] + 1)] if given.drawn else list(SCENES.items())
+    if given.quick:
+        scenes = scenes[:4]
+    longest = LONGEST
+    if given.smallest:  # judged alike however slow the machine is
+        accuracies, scenes, longest = [1e-2], [("truck", SCENES["truck"])], float("inf")
     print(f"{'':42}  asked  true error over it  trials    loop process  s")
     rows = []
     with ThreadPoolExecutor(2) as pool:
-        for some in pool.map(lambda s: judge(build, *s, accuracies), scenes[: 4 if given.quick else None]):
+        for some in pool.map(lambda s: judge(given.build, *s, accuracies, longest), scenes):
             rows += some
             for row in some:
                 show(row)
     judged = sorted(row["worst"] for row in rows if row["judged"])
     print(f"kept in {sum(worst <= 1.0 for worst in judged)} of {len(judged)} runs that could be judged; the median of true "
           f"errors over what was asked is {judged[len(judged) // 2]:.2g}, {sum(worst < 0.01 for worst in judged)} are more "
-          f"than 100 times smaller")
-    with open(os.path.join(out, "promises.csv"), "w", newline="") as file:
+          f"than 100 times smaller" if judged else "no run could be judged")
+    path = os.path.join(given.out, "promises.csv")
+    with open(path, "w", newline="") as file:
         table = csv.DictWriter(file, list(rows[0]) + [q for q in QUANTITIES if q not in rows[0]], restval="")
         table.writeheader()
         table.writerows(rows)
+    print(path)
 
 
 if __name__ == "__main__":

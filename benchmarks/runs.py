@@ -1,10 +1,17 @@
-"""Runs of the program for the benchmarks here: what a run took, how large it was, and its peaks."""
+"""What the benchmark scripts share: their arguments, runs of the program, how large a run was, and its peaks.
 
+Every script takes [BUILD_FOLDER] [OUT_FOLDER] --smallest: the folder with the program (build), the folder that tables
+and pictures go to (results), and whether each kind of run is made once only, at the smallest size, which takes seconds
+and shows that the script works; the figures then mean nothing.
+"""
+
+import argparse
 import csv
 import os
 import re
 import statistics
 import subprocess
+import sys
 import time
 
 import h5py
@@ -19,29 +26,78 @@ def scene(name):
     return os.path.join(ROOT, "options", "scenes", name + ".yml")
 
 
-def folders(arguments):
-    """Where the program is and where tables and pictures go: arguments [BUILD_FOLDER] [OUT_FOLDER]."""
-    build = arguments[0] if arguments else os.path.join(ROOT, "build")
-    out = arguments[1] if len(arguments) > 1 else os.path.join(ROOT, "results")
-    os.makedirs(out, exist_ok=True)
-    return build, out
+def parser(text):
+    """Of the arguments that all scripts share, and --help; a script may add its own."""
+    arguments = argparse.ArgumentParser(description=text, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("build", nargs="?", default=os.path.join(ROOT, "build"), metavar="BUILD_FOLDER",
+                           help="where the program is; left out: build")
+    arguments.add_argument("out", nargs="?", default=os.path.join(ROOT, "results"), metavar="OUT_FOLDER",
+                           help="where tables and pictures go; left out: results")
+    arguments.add_argument("--smallest", action="store_true",
+                           help="each kind of run once, at its smallest size: shows in seconds that the script works")
+    return arguments
+
+
+def given(arguments, *benchmark_programs):
+    """What the command line says. The programs have to be there, and the output folder is from here on."""
+    found = arguments.parse_intermixed_args()
+    option = " -DTRAVERSE_BENCHMARKS=ON" if benchmark_programs else ""
+    for program in [benchmark_program(found.build, name) for name in benchmark_programs] or [traverse(found.build)]:
+        if not os.access(program, os.X_OK):
+            sys.exit(f"{arguments.prog}: {program} is missing; build it with: cmake -B build{option} && "
+                     "cmake --build build")
+    os.makedirs(found.out, exist_ok=True)
+    return found
+
+
+def traverse(build):
+    return os.path.join(build, "traverse")
+
+
+def benchmark_program(build, name):
+    """A program that is built only where CMake is told TRAVERSE_BENCHMARKS=ON."""
+    return os.path.join(build, "benchmarks", name)
+
+
+def on_ranks(ranks):
+    """What stands before a command that runs on so many ranks."""
+    return ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+
+
+def environment():
+    """Ours, and what Open MPI needs on one machine; scripts/setup.sh says why."""
+    needed = {"OMPI_MCA_pml": "ob1", "OMPI_MCA_btl": "self,vader", "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
+              "HWLOC_COMPONENTS": "-gl,-opencl", "HWLOC_HIDE_ERRORS": "2"}
+    if os.geteuid() == 0:
+        needed |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+    return needed | os.environ
 
 
 def words(options):
     return [part for name, value in options.items() for part in ("-" + name, str(value))]
 
 
+class Failed(RuntimeError):
+    """A run that the program refused or could not end: the command and what was said."""
+
+    def __init__(self, command, text):
+        super().__init__(f"{' '.join(command)}\n{text}")
+        said = [line for line in text.splitlines() if line.startswith("traverse: ")]
+        self.complaint = said[-1] if said else text.strip()
+        self.step_is_too_long = "ts_dt" in self.complaint
+
+
 class Run:
     """One run: seconds of its time loop and of the whole process, steps, unknowns, and the results file."""
 
     def __init__(self, build, options, file, ranks=1):
-        command = ["mpirun", "-n", str(ranks)] if ranks > 1 else []
-        command += [os.path.join(build, "traverse")] + words(options | {"output_file": file, "output_quiet": "true"})
+        command = on_ranks(ranks) + [traverse(build)]
+        command += words(options | {"output_file": file, "output_quiet": "true"})
         begin = time.monotonic()
-        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
         self.process_seconds = time.monotonic() - begin
         if done.returncode != 0:
-            raise RuntimeError(f"{' '.join(command)}\n{done.stdout}")
+            raise Failed(command, done.stdout)
         self.text = done.stdout
         self.unknowns = unknowns(done.stdout)
         self.file = file
@@ -91,16 +147,15 @@ def peaks(file):
     return {name: value for name, value in found.items() if value > 0.0}
 
 
-def in_turn(build, cases, rounds, out, ranks=1):
+def in_turn(build, cases, rounds, folder):
     """Runs every case once a round, so that what else the machine does meets all alike: medians of seconds, by name.
 
-    cases: {name: options}; ranks: a number, or {name: number}. Returns {name: (median seconds, last Run)}.
+    cases: {name: options}; results files go to the folder. Returns {name: (median seconds, last Run)}.
     """
     taken, last = {name: [] for name in cases}, {}
     for _ in range(rounds):
-        for name, options in cases.items():
-            count = ranks[name] if isinstance(ranks, dict) else ranks
-            last[name] = Run(build, options, os.path.join(out, "benchmark_run.h5"), count)
+        for i, (name, options) in enumerate(cases.items()):
+            last[name] = Run(build, options, os.path.join(folder, f"in_turn_{i}.h5"))
             taken[name].append(last[name].seconds)
     return {name: (statistics.median(taken[name]), last[name]) for name in cases}
 

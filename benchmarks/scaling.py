@@ -1,13 +1,15 @@
 #!/usr/bin/python3
 """Prints what a step takes on 1 to 1,000 ranks by the model of doc/scaling.md, from what it measures on this machine.
-/usr/bin/python3 benchmarks/scaling.py [BUILD_FOLDER] [OUT_FOLDER]; writes scaling.csv and .png to OUT_FOLDER. Of measured
-tables there (step_parts.csv of step_parts.py, machine_1.csv and machine_2.csv) those that are missing are measured."""
+/usr/bin/python3 benchmarks/scaling.py [BUILD_FOLDER] [OUT_FOLDER] [--smallest]
+
+Writes scaling.csv and scaling.png to OUT_FOLDER. Of measured tables there (step_parts.csv of step_parts.py, machine_1.csv
+and machine_2.csv) those that are missing are measured, with the programs step_parts_benchmark and machine_benchmark.
+"""
 
 import csv
 import math
 import os
 import subprocess
-import sys
 
 import matplotlib
 
@@ -16,6 +18,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 import runs  # noqa: E402
 
+PROGRAMS = ["step_parts_benchmark", "machine_benchmark"]
 RANKS = [1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1000]
 NETWORK_LATENCY = 1.5e-6    # s, assumed: 1 to 2 us of today's networks
 NETWORK_BANDWIDTH = 1.0e10  # B/s, assumed
@@ -34,18 +37,21 @@ CASES = [  # name, unknowns, bridge, coaches
 ]
 
 
-def measured(build, out):
+def measured(build, out, smallest):
     """The tables, measured where they are missing."""
-    made = {
-        "step_parts.csv": [os.path.join(build, "benchmarks", "step_parts_benchmark")],
-        "machine_1.csv": [os.path.join(build, "benchmarks", "machine_benchmark")],
-        "machine_2.csv": ["mpirun", "-n", "2", os.path.join(build, "benchmarks", "machine_benchmark")],
+    parts, machine = (runs.benchmark_program(build, name) for name in PROGRAMS)
+    sizes, rounds = (["10000", "10000", "1"], ["1"]) if smallest else ([], [])
+    made = {  # program, ranks, what follows the table's name
+        "step_parts.csv": (parts, 1, sizes),
+        "machine_1.csv": (machine, 1, rounds),
+        "machine_2.csv": (machine, 2, rounds),
     }
     tables = {}
-    for name, command in made.items():
+    for name, (program, ranks, words) in made.items():
         file = os.path.join(out, name)
         if not os.path.exists(file):
-            subprocess.run(command + [file], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run(runs.on_ranks(ranks) + [program, file] + words, check=True, stdout=subprocess.DEVNULL,
+                           env=runs.environment())
         with open(file, newline="") as table:
             tables[name] = list(csv.DictReader(table))
     machine = [{r["what"]: float(r["value"]) for r in tables[f"machine_{n}.csv"]} for n in (1, 2)]
@@ -62,6 +68,9 @@ class Model:
         self.memory = together["memory of each rank"]  # B/s, where all ranks read
         at_10000 = {r["part"]: r for r in parts if r["bridge"] == "continuous" and r["seconds"]
                     and abs(int(r["unknowns"]) - 10_000) < 100}
+        if not at_10000:
+            raise SystemExit("scaling.py: step_parts.csv in OUT_FOLDER has no line of 10,000 unknowns; remove it, and it "
+                             "is measured again")
         steps = [float(at_10000[name]["seconds"]) for name in ("esdirk4 step", "esdirk4 step without vehicles")]
         self.coach = (steps[0] - steps[1]) / int(at_10000["esdirk4 step"]["coaches"])
 
@@ -103,8 +112,8 @@ class Model:
 
 
 def main():
-    build, out = runs.folders(sys.argv[1:3])
-    parts, machine = measured(build, out)
+    given = runs.given(runs.parser(__doc__), *PROGRAMS)
+    parts, machine = measured(given.build, given.out, given.smallest)
     models = {"shared memory": Model(parts, machine),
               "network": Model(parts, machine, (NETWORK_LATENCY, NETWORK_BANDWIDTH))}
     print("measured:", ", ".join(f"{what} {value:.3g}" for what, value in machine[1].items()))
@@ -135,10 +144,11 @@ def main():
         axes.grid(True, alpha=0.4)
     all_axes[0].set_ylabel("ms a step of esdirk4")
     all_axes[0].legend(fontsize=8)
-    runs.write_table(os.path.join(out, "scaling.csv"), ["case", "messages", "ranks", "step, s", "faster by", "efficiency",
-                                                        "beam, s", "separators, s", "vehicles, s", "messages, s"], rows)
-    figure.savefig(os.path.join(out, "scaling.png"), dpi=120)
-    print(os.path.join(out, "scaling.png"))
+    runs.write_table(os.path.join(given.out, "scaling.csv"),
+                     ["case", "messages", "ranks", "step, s", "faster by", "efficiency", "beam, s", "separators, s",
+                      "vehicles, s", "messages, s"], rows)
+    figure.savefig(os.path.join(given.out, "scaling.png"), dpi=120)
+    print(os.path.join(given.out, "scaling.png"))
 
 
 if __name__ == "__main__":

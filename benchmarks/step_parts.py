@@ -1,11 +1,14 @@
 #!/usr/bin/python3
 """Prints what a step of 1 ms and its parts take per unknown, 10 to 1,000,000 unknowns, stage over bare solve, and memory.
-/usr/bin/python3 benchmarks/step_parts.py [BUILD_FOLDER] [OUT_FOLDER] [LARGEST]; writes step_parts.csv and .png to OUT_FOLDER."""
+/usr/bin/python3 benchmarks/step_parts.py [BUILD_FOLDER] [OUT_FOLDER] [LARGEST] [--smallest]
+
+LARGEST (1,000,000) is the number of unknowns to stop at. Writes step_parts.csv and step_parts.png to OUT_FOLDER. Needs the
+program step_parts_benchmark.
+"""
 
 import csv
 import os
 import subprocess
-import sys
 
 import matplotlib
 
@@ -33,13 +36,16 @@ def picture(lines, file):
 
 
 def main():
-    build, out = runs.folders(sys.argv[1:3])
-    table = os.path.join(out, "step_parts.csv")
-    program = os.path.join(build, "benchmarks", "step_parts_benchmark")
-    subprocess.run([program, table, *sys.argv[3:4]], check=True)
+    arguments = runs.parser(__doc__)
+    arguments.add_argument("largest", nargs="?", type=int, default=1_000_000, metavar="LARGEST")
+    given = runs.given(arguments, "step_parts_benchmark")
+    table = os.path.join(given.out, "step_parts.csv")
+    program = runs.benchmark_program(given.build, "step_parts_benchmark")
+    sizes = ["100", "10", "1"] if given.smallest else [str(given.largest)]
+    subprocess.run([program, table, *sizes], check=True, env=runs.environment())
     with open(table, newline="") as file:
         lines = [r for r in csv.DictReader(file) if r["seconds"]]
-    print("\nstage over bare solve, and cost of a step per unknown over that at 10,000 unknowns")
+    print("\nstage over bare solve, and cost of a step per unknown over that at 10,000 unknowns (or next to that)")
     for bridge in ("continuous", "simply supported"):
         of = {(int(r["unknowns"]), r["part"]): r for r in lines if r["bridge"] == bridge}
         sizes = sorted({size for size, part in of if part == "bare solve"})
@@ -52,7 +58,7 @@ def main():
                 words += f"   {name}: stage {float(of[size, name + ' stage']['of_bare_solve']):5.2f}, step {ratio:6.2f}"
             print(words)
     print(table)
-    picture(lines, os.path.join(out, "step_parts.png"))
+    picture(lines, os.path.join(given.out, "step_parts.png"))
 
 
 if __name__ == "__main__":

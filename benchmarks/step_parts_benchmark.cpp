@@ -1,7 +1,7 @@
-// Prints what a step of 1 ms of esdirk4 and genalpha takes, its parts (medians, in turn), all per unknown, and what
-// memory.
-//   build/benchmarks/step_parts_benchmark [FILE.csv [LARGEST [SMALLEST]]], also under mpirun -n 2; step_parts.py draws
-//   it.
+// Prints what a step of 1 ms of esdirk4 and genalpha takes, its parts (medians of ROUNDS, 15, in turn), all per
+// unknown, and what memory.
+//   build/benchmarks/step_parts_benchmark [FILE.csv [LARGEST [SMALLEST [ROUNDS]]]], also under mpirun -n 2;
+//   step_parts.py draws it.
 //
 // bare solve: of one right-hand side that stands ready. A stage makes its right-hand side (products of mass, damping
 // and stiffness with combinations of the step's vectors) while it solves. Steps with a train: one coach below 1,000
@@ -24,7 +24,6 @@ using namespace traverse;
 using namespace traverse::benchmarks;
 
 constexpr double step = 1e-3;  // s
-constexpr int rounds = 15;
 
 struct Part {
   std::string name;
@@ -88,7 +87,7 @@ struct Steps {
 };
 
 /// One kind of bridge at one size: lines of the table.
-void measure(int size, bool continuous, std::ofstream& table) {
+void measure(int size, bool continuous, int rounds, std::ofstream& table) {
   const StepScene bridge(size, continuous, 0);
   coupling::BeamOperator op(*bridge.beam);
   const int unknowns = bridge.unknowns(), coaches = size < 1000 ? 1 : 8;
@@ -157,6 +156,7 @@ void run(int argc, char** argv) {
   std::ofstream table;
   if (argc > 1 && rank() == 0) table.open(argv[1]);
   const int largest = argc > 2 ? std::atoi(argv[2]) : 1'000'000, smallest = argc > 3 ? std::atoi(argv[3]) : 10;
+  const int rounds = argc > 4 ? std::max(1, std::atoi(argv[4])) : 15;
   table << "unknowns,bridge,ranks,coaches,part,seconds,per_unknown,of_bare_solve\n";
   for (bool continuous : {true, false})
     for (int size : {100'000, 1'000'000})
@@ -164,7 +164,7 @@ void run(int argc, char** argv) {
   if (rank() == 0) std::printf("%9s  %-17s %-32s %10s %10s %8s\n", "unknowns", "", "", "us", "ns/unknown", "of solve");
   for (int size : {10, 100, 1000, 10'000, 100'000, 200'000, 1'000'000})
     for (bool continuous : {true, false})
-      if (size <= largest && size >= smallest) measure(size, continuous, table);
+      if (size <= largest && size >= smallest) measure(size, continuous, rounds, table);
 }
 
 }  // namespace

@@ -2,10 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <csignal>
-#include <thread>
+#include <fstream>
 
 #include "support/paths.hpp"
 #include "support/program.hpp"
@@ -84,7 +83,7 @@ TEST(ResultsFile, OutgrowsItsLimit) {
   for (const int ranks : {1, 2}) {
     SCOPED_TRACE(ranks);
     Child child(behind(line, workplace.command(ten_megabytes, ranks)), workplace.folder());
-    expect_one_complaint(child.wait(60.0), {"r.h5"});
+    expect_one_complaint(child.wait(), {"r.h5"});
     expect_readable(workplace.path("r.h5"));
   }
 }
@@ -94,15 +93,28 @@ TEST(ResultsFile, OutgrowsTheDisk) {
   const Workplace workplace(endless_scene());
   std::filesystem::create_directory(workplace.path("disk"));
   const std::string mount = "mount -t tmpfs -o size=4m none disk";
-  if (Child({"unshare", "-rm", "/bin/sh", "-c", mount}, workplace.folder()).wait(10.0).status != 0)
+  if (Child({"unshare", "-rm", "/bin/sh", "-c", mount}, workplace.folder()).wait().status != 0)
     GTEST_SKIP() << "no disk can be mounted here";
   const std::string line = mount + "; \"$0\" \"$@\"; status=$?; cp disk/r.h5 r.h5; exit $status";
   std::vector<std::string> command = workplace.command(ten_megabytes);
   command.insert(command.end(), {"-output_file", "disk/r.h5"});
   command = behind(line, command);
   command.insert(command.begin(), {"unshare", "-rm"});
-  expect_one_complaint(Child(command, workplace.folder()).wait(60.0), {"disk/r.h5", "space"});
+  expect_one_complaint(Child(command, workplace.folder()).wait(), {"disk/r.h5", "space"});
   expect_readable(workplace.path("r.h5"));
+}
+
+/// Waits until the run has written instants to r.h5; their number.
+std::size_t wait_for_instants(Child& child, const Workplace& workplace) {
+  std::size_t instants = 0;
+  EXPECT_TRUE(child.wait_until([&] { return (instants = stored_instants(workplace.path("r.h5"))) > 1; }));
+  return instants;
+}
+
+/// What was written before the signal is still there.
+void expect_kept(const Workplace& workplace, std::size_t instants) {
+  expect_readable(workplace.path("r.h5"));
+  EXPECT_GE(Results(workplace.path("r.h5")).time().size(), instants);
 }
 
 TEST(Signals, EndTheRunInOrder) {
@@ -111,38 +123,51 @@ TEST(Signals, EndTheRunInOrder) {
     SCOPED_TRACE(signal);
     std::filesystem::remove(workplace.path("r.h5"));
     Child child(workplace.command({"-ts_dt", "1e-3"}), workplace.folder());
-    ASSERT_TRUE(child.wait_for("integrator", 30.0));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    const std::size_t instants = wait_for_instants(child, workplace);
     child.kill(signal);
-    const Outcome outcome = child.wait(20.0);
+    const Outcome outcome = child.wait();
     ASSERT_FALSE(outcome.timed_out);
     EXPECT_EQ(outcome.status, 128 + signal);
     EXPECT_NE(outcome.out.find("ended by signal " + std::to_string(signal)), std::string::npos) << outcome.out;
-    expect_readable(workplace.path("r.h5"));
+    expect_kept(workplace, instants);
   }
 }
 
+// mpirun passes the signal on, and kills a second later the ranks that have not ended.
 TEST(Signals, EndTheRunOnTwoRanks) {
   const Workplace workplace(endless_scene());
   Child child(workplace.command({"-ts_dt", "1e-3"}, 2), workplace.folder());
-  ASSERT_TRUE(child.wait_for("integrator", 30.0));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  child.kill(SIGTERM);  // mpirun passes it on
-  const Outcome outcome = child.wait(20.0);
+  const std::size_t instants = wait_for_instants(child, workplace);
+  child.kill(SIGTERM);
+  const Outcome outcome = child.wait();
   ASSERT_FALSE(outcome.timed_out);
   EXPECT_NE(outcome.status, 0);
-  expect_readable(workplace.path("r.h5"));
+  expect_kept(workplace, instants);
+}
+
+TEST(Signals, ToOneRankEndTheRunOnBothInOrder) {
+  const Workplace workplace(endless_scene());
+  const std::string line = "echo $$ > rank_$OMPI_COMM_WORLD_RANK; exec \"$0\" \"$@\"";
+  Child child(behind(line, workplace.command({"-ts_dt", "1e-3"}, 2)), workplace.folder());
+  const std::size_t instants = wait_for_instants(child, workplace);
+  pid_t rank = 0;
+  std::ifstream(workplace.path("rank_1")) >> rank;
+  ASSERT_GT(rank, 0);
+  kill(rank, SIGTERM);
+  const Outcome outcome = child.wait();
+  ASSERT_FALSE(outcome.timed_out);
+  EXPECT_EQ(outcome.status, 128 + SIGTERM);
+  EXPECT_NE(outcome.out.find("ended by signal 15"), std::string::npos) << outcome.out;
+  expect_kept(workplace, instants);
 }
 
 TEST(Signals, KilledAtOnceLeavesWhatWasFlushed) {
   const Workplace workplace(endless_scene());
   Child child(workplace.command({}), workplace.folder());
-  ASSERT_TRUE(child.wait_for("integrator", 30.0));
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  const std::size_t instants = wait_for_instants(child, workplace);
   child.kill(SIGKILL);
-  const Outcome outcome = child.wait(20.0);
-  EXPECT_EQ(outcome.signal, SIGKILL);
-  expect_readable(workplace.path("r.h5"));
+  EXPECT_EQ(child.wait().signal, SIGKILL);
+  expect_kept(workplace, instants);
 }
 
 TEST(Steps, ExplicitBeyondItsLimit) {

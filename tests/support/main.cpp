@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 #include <slepcsys.h>
+#include <sys/resource.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 
@@ -25,6 +27,21 @@ void start_mpi(int* argc, char*** argv) {
   unsetenv(no_folder);  // an mpirun that a test starts cannot do without
 }
 
+// A test that computes without end is stopped by the processor time it has used: other than time by the clock, that
+// does not depend on what else the machine has to do.
+class ProcessorLimit : public testing::EmptyTestEventListener {
+  void OnTestStart(const testing::TestInfo&) override {
+    constexpr rlim_t longest = 900;  // s
+    rusage used{};
+    rlimit limit{};
+    getrusage(RUSAGE_SELF, &used);
+    getrlimit(RLIMIT_CPU, &limit);
+    const auto seconds = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
+    limit.rlim_cur = std::min(limit.rlim_max, seconds + longest);
+    setrlimit(RLIMIT_CPU, &limit);
+  }
+};
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -39,6 +56,8 @@ int main(int argc, char** argv) {
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   if (rank != 0) GTEST_FLAG_SET(brief, true);  // the other ranks print failures only
   testing::InitGoogleTest(&argc, argv);        // takes its own arguments out, before PETSc sees them
+
+  testing::UnitTest::GetInstance()->listeners().Append(new ProcessorLimit);
 
   if (SlepcInitialize(&argc, &argv, nullptr, nullptr) != 0) return EXIT_FAILURE;
   PetscPopSignalHandler();

@@ -29,8 +29,10 @@ std::vector<std::string> clean_environment() {
     if (!starts("OMPI_") && !starts("PMIX_") && !starts("ORTE_") && !starts("PETSC_OPTIONS"))
       variables.push_back(variable);
   }
-  variables.insert(variables.end(), {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_pml=ob1",
-                                     "OMPI_MCA_btl=self,vader", "HWLOC_COMPONENTS=-gl,-opencl"});
+  // A rank that waits leaves the processor to others, on a busy machine perhaps to the rank that it waits for.
+  variables.insert(variables.end(),
+                   {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_pml=ob1",
+                    "OMPI_MCA_btl=self,vader", "OMPI_MCA_mpi_yield_when_idle=1", "HWLOC_COMPONENTS=-gl,-opencl"});
   return variables;
 }
 
@@ -54,7 +56,7 @@ double since(Clock::time_point start) { return std::chrono::duration<double>(Clo
 }  // namespace
 
 Child::Child(std::vector<std::string> command, const std::string& folder) {
-  const std::string words = "cd \"$0\" && exec \"$@\"";
+  const std::string words = "ulimit -S -t 300; cd \"$0\" && exec \"$@\"";
   command.insert(command.begin(), {"/bin/sh", "-c", words, folder});
   std::vector<std::string> environment = clean_environment();
   posix_spawn_file_actions_t files;
@@ -89,12 +91,16 @@ bool Child::ended() {
 
 std::string Child::written(const std::string& ending) const { return text_of(streams_.path(ending)); }
 
-bool Child::wait_for(const std::string& text, double seconds) {
+bool Child::wait_until(const std::function<bool()>& state, double seconds) {
   for (const auto start = Clock::now(); since(start) < seconds; pause()) {
-    if (written("out").find(text) != std::string::npos) return true;
+    if (state()) return true;
     if (ended()) return false;
   }
   return false;
+}
+
+bool Child::wait_for(const std::string& text, double seconds) {
+  return wait_until([&] { return written("out").find(text) != std::string::npos; }, seconds);
 }
 
 Outcome Child::wait(double seconds) {
@@ -109,6 +115,7 @@ Outcome Child::wait(double seconds) {
   }
   if (WIFEXITED(state_)) outcome.status = WEXITSTATUS(state_);
   if (WIFSIGNALED(state_)) outcome.signal = WTERMSIG(state_);
+  outcome.timed_out |= outcome.signal == SIGXCPU;
   outcome.out = written("out");
   outcome.err = written("err");
   return outcome;

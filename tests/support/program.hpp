@@ -3,6 +3,7 @@
 
 #include <sys/types.h>
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -14,11 +15,16 @@ namespace traverse::test {
 struct Outcome {
   int status = -1;         ///< exit status; -1 when it did not exit by itself
   int signal = 0;          ///< the signal that ended it, or 0
-  bool timed_out = false;  ///< it had to be killed
+  bool timed_out = false;  ///< it did not end by itself in time
   std::string out, err;
 };
 
-/// A process in a group of its own, without the variables that Open MPI sets in this one. Killed with the object.
+/// Longest wait by the clock, s. It is long because a machine that is busy with other things may be a hundred times
+/// slower; a program that computes without end is stopped earlier, by the processor time that it has used.
+constexpr double patience = 3600.0;
+
+/// A process in a group of its own, without the variables that Open MPI sets in this one. Killed with the object, or by
+/// the system once it has used five minutes of processor time.
 class Child {
  public:
   Child(std::vector<std::string> command, const std::string& folder);
@@ -26,9 +32,12 @@ class Child {
   Child& operator=(const Child&) = delete;
   ~Child();
   void kill(int signal) const;
-  /// Waits until the process has written a line with `text`; false when it ends or `seconds` pass before.
-  bool wait_for(const std::string& text, double seconds);
-  Outcome wait(double seconds);
+  /// Waits until the process has brought about a state; false when it ends or `seconds` pass before.
+  bool wait_until(const std::function<bool()>& state, double seconds = patience);
+  /// Waits until the process has written `text`.
+  bool wait_for(const std::string& text, double seconds = patience);
+  /// Waits until the process ends.
+  Outcome wait(double seconds = patience);
 
  private:
   bool ended();
@@ -51,7 +60,7 @@ class Workplace {
   bool has(const std::string& name) const { return std::filesystem::exists(folder_.path(name)); }
   /// `traverse -options_file scene.yml words...`, through mpirun for more than one rank.
   std::vector<std::string> command(const std::vector<std::string>& words, int ranks = 1) const;
-  Outcome run(const std::vector<std::string>& words = {}, int ranks = 1, double seconds = 60.0) const;
+  Outcome run(const std::vector<std::string>& words = {}, int ranks = 1, double seconds = patience) const;
   std::string folder() const { return folder_.path(""); }
 
  private:

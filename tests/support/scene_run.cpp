@@ -127,6 +127,26 @@ double Results::attribute(const std::string& object, const std::string& name) co
   return value;
 }
 
+std::size_t stored_instants(const std::string& file) {
+  const std::string copy = temporary(".copy.h5");  // the run has locked its own
+  std::error_code failed;
+  std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing, failed);
+  if (failed) return 0;
+  hssize_t instants = 0;
+  H5E_BEGIN_TRY {  // HDF5 is silent about what is not there yet
+    const hid_t opened = H5Fopen(copy.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t time = H5Dopen2(opened, "/time", H5P_DEFAULT);
+    const hid_t space = H5Dget_space(time);
+    instants = H5Sget_simple_extent_npoints(space);
+    H5Sclose(space);
+    H5Dclose(time);
+    H5Fclose(opened);
+  }
+  H5E_END_TRY
+  std::filesystem::remove(copy, failed);
+  return instants > 0 ? static_cast<std::size_t>(instants) : 0;
+}
+
 double energy_error(Results& run) {
   double scale = 0.0;
   for (const char* term : {"kinetic", "strain", "potential", "work", "dissipated"})

@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <utility>
@@ -28,6 +29,10 @@ class Results {
   std::string file_;
   std::map<std::string, std::vector<double>> read_;
 };
+
+/// Instants that a results file holds while a run may still be writing it; 0 before the first of them, and while the
+/// file cannot be read.
+std::size_t stored_instants(const std::string& file);
 
 /// Collective over comm. Runs options/scenes/NAME.yml (or a path that ends in .yml) with options on top, given as
 /// names without dash and values. The results file is temporary. Exceptions of the program come through.

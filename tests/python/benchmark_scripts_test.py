@@ -1,0 +1,157 @@
+"""Every benchmark script that needs the program alone, at its smallest size: its tables, pictures and errors."""
+
+import contextlib
+import importlib
+import io
+import pathlib
+import sys
+import unittest
+from unittest import mock
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from benchmark_scripts import BUILD, SOURCE, InAFolder, start  # noqa: E402
+
+sys.path.insert(0, str(SOURCE / "benchmarks"))
+
+# Those that need a benchmark program are tested by tests/benchmarks/programs_test.py.
+WITH_PROGRAMS = {"step_parts": "step_parts_benchmark", "ranks": "step_parts_benchmark",
+                 "scaling": "step_parts_benchmark"}
+PARTS = {"runs", "scene_texts", "beam_solver_picture"}  # imported by the others, or draws a table that is given
+
+
+class Scripts(InAFolder):
+    def test_peers(self):
+        text = self.run_smallest("peers")
+        rows = self.table("peers.csv", ["case", "peer", "peer's seconds", "peer's error", "kind", "how", "unknowns",
+                                        "steps", "seconds", "factor", "error", "seconds of the process"])
+        self.assertNotIn("none of the grid is right", text)
+        self.assert_positive(rows, "unknowns", "steps", "seconds", "factor", "seconds of the process")
+        equal = [row for row in rows if row["kind"] == "equal error"]
+        same = [row for row in rows if row["kind"] == "same size and steps"]
+        self.assertEqual((len(same), len(equal)), (6, 5))
+        for row in equal:
+            self.assert_errors([row], "error", float(row["peer's error"]))
+        self.assert_errors(same, "error", 5e-4)
+        sizes = {row["case"]: (int(row["unknowns"]), int(row["steps"])) for row in same}
+        # The peers' own: VBI-2D with 60 elements, TTB-2D with 1,918 unknowns (a joint less), ROSE with 100 elements.
+        self.assertEqual(sizes, {"R3, 60 elements": (2 * 61 + 1, 1000), "R8, ballasted bridge": (1920, 3961),
+                                 "R7, 100 elements": (2 * 101 + 2, 2000)})
+        self.assert_picture("peers.png")
+
+    def test_promises(self):
+        text = self.run_smallest("promises")
+        self.assertIn("kept in 1 of 1 runs", text)
+        row, = self.table("promises.csv", [
+            "scene", "accuracy", "worst", "of", "judged", "not promised", "in doubt", "trials", "loop", "process",
+            "chosen", "deflection", "acceleration", "moment", "wheel force"])
+        self.assert_positive([row], "trials", "loop", "process")
+        self.assertEqual(row["judged"], "4")
+        for quantity in ("deflection", "acceleration", "moment", "wheel force"):
+            self.assert_errors([row], quantity, 1e-2)
+
+    def test_fidelity(self):
+        text = self.run_smallest("fidelity")
+        self.assertIn("ms of the time loop a passage", text)
+        rows = self.table("fidelity.csv", [
+            "model", "track", "mass ratio", "speed", "peak deflection", "peak moment", "peak acceleration",
+            "error of deflection", "error of moment", "error of acceleration", "steps", "seconds"])
+        self.assertEqual(len(rows), 6 * 3 * 2)  # models, tracks, speeds
+        self.assert_positive(rows, "peak deflection", "peak moment", "peak acceleration", "steps", "seconds")
+        smooth = [row for row in rows if row["track"] == "smooth" and row["model"] != "coaches"]
+        self.assert_errors(smooth, "error of deflection", 0.03)
+        self.assert_errors([row for row in rows if row["model"] == "coaches, IMEX"], "error of deflection", 1e-3)
+        limits = self.table("fidelity_limits.csv", [
+            "model", "track", "deflection and moment within 5 %", "deflection and moment within 10 %",
+            "deflection and moment within 20 %", "acceleration within 10 %", "acceleration within 20 %",
+            "at most too small by, mass ratio up to 0.2: deflection and moment", "acceleration"])
+        self.assertEqual(len(limits), 3 * 3)
+        self.assert_picture("fidelity.png")
+
+    def test_work_precision(self):
+        text = self.run_smallest("work_precision")
+        self.assertIn("worst error over the accuracy: 0.", text)
+        rows = self.table("work_precision.csv", [
+            "scene", "integrator", "elements", "step", "unknowns", "steps", "seconds", "process seconds",
+            "error of deflection", "error of acceleration", "error of moment", "error of wheel force"])
+        self.assertEqual(len({row["integrator"] for row in rows}), 8)
+        self.assert_positive(rows, "elements", "step", "unknowns", "steps", "seconds", "process seconds")
+        self.assert_errors(rows, "error of deflection", 0.2)
+        best = [row for row in rows if row["integrator"] == "esdirk4" and row["elements"] == "8"]
+        self.assert_errors([min(best, key=lambda row: float(row["step"]))], "error of deflection", 1e-3)
+        row, = self.table("work_precision_accuracy.csv", [
+            "scene", "accuracy", "elements", "step", "error over accuracy", "worst", "ms", "process ms", "cheapest",
+            "its elements", "its step", "its ms", "its process ms", "ms over its", "process over its", "not promised",
+            "unsettled"])
+        self.assertLessEqual(float(row["error over accuracy"]), 1.0)
+        self.assert_positive([row], "ms", "process ms", "its ms", "its process ms", "ms over its", "process over its")
+        self.assert_picture("work_precision.png")
+
+    def test_hslm_sweep(self):
+        self.run_smallest("hslm_sweep")
+        rows = self.table("hslm_sweep.csv", [
+            "case", "ranks", "passages", "passages per second", "ms each", "CPU ms each",
+            "deflection against the list", "acceleration against the list"])
+        self.assert_positive(rows, "passages", "passages per second", "ms each", "CPU ms each")
+        self.assertEqual([row["ranks"] for row in rows], ["1", "2"] * 4)
+        self.assertEqual([row["passages"] for row in rows[::2]], ["1310", "140", "2", "2"])
+        self.assert_errors(rows, "deflection against the list", 3e-4)
+        self.assert_errors(rows, "acceleration against the list", 3e-2)  # the list has all stations, this run midspan
+        self.assert_picture("hslm_sweep.png")
+
+    def test_long_bridge(self):
+        self.run_smallest("long_bridge")
+        rows = self.table("long_bridge.csv", ["bridge", "method", "times real time, 1 rank", "2 ranks",
+                                              "peaks wrong by"])
+        self.assertEqual(len(rows), 4 * 2)
+        self.assert_positive(rows, "times real time, 1 rank", "2 ranks")
+        self.assert_errors(rows, "peaks wrong by", 1e-2)
+        self.assert_picture("long_bridge.png")
+
+    def test_beam_solver_picture(self):
+        table = self.folder / "times.csv"
+        lines = [f"{n},{name},{ns},1" for n in (20, 200, 2000) for name, ns in (("traverse", 1.4), ("moving it", 0.4))]
+        table.write_text("unknowns,solver,ns_per_unknown,ratio\n" + "\n".join(lines) + "\n")
+        done = start("beam_solver_picture", table)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assert_picture("times.png")
+
+
+class Arguments(InAFolder):
+    def test_every_script_has_its_test(self):
+        scripts = {path.stem for path in (SOURCE / "benchmarks").glob("*.py")} - PARTS - set(WITH_PROGRAMS)
+        tested = {name.removeprefix("test_") for name in dir(Scripts) if name.startswith("test_")} - PARTS
+        self.assertEqual(scripts, tested)
+
+    def complaint(self, name, *words):
+        """What the script ends with, within this process."""
+        script = importlib.import_module(name)
+        output = io.StringIO()
+        with (mock.patch("sys.argv", [name + ".py", *map(str, words)]), contextlib.redirect_stdout(output),
+              self.assertRaises(SystemExit) as ended):
+            script.main()
+        return ended.exception.code or output.getvalue()
+
+    def test_programs_that_are_not_built_are_named(self):
+        for name, program in WITH_PROGRAMS.items():
+            path = self.folder / "benchmarks" / program
+            self.assertEqual(self.complaint(name, self.folder, self.folder),
+                             f"{name}.py: {path} is missing; build it with: cmake -B build -DTRAVERSE_BENCHMARKS=ON && "
+                             "cmake --build build")
+        self.assertEqual(self.complaint("peers", self.folder, self.folder),
+                         f"peers.py: {self.folder}/traverse is missing; build it with: cmake -B build && "
+                         "cmake --build build")
+
+    def test_scripts_say_what_they_take(self):
+        for path in (SOURCE / "benchmarks").glob("*.py"):
+            if path.stem not in PARTS:
+                text = self.complaint(path.stem, "--help")
+                for word in (path.name, "BUILD_FOLDER", "OUT_FOLDER", "--smallest"):
+                    self.assertIn(word, text)
+
+    def test_a_scene_that_is_not_there_is_refused(self):
+        self.assertRegex(self.complaint("work_precision", BUILD, self.folder, "--quick", "r99"),
+                         "^work_precision.py: r99: no such scene; allowed: r1_moving_force, ")
+
+
+if __name__ == "__main__":
+    unittest.main()
