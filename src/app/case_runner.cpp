@@ -92,7 +92,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
     };
     result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
   }
-  result.least_wheel_force = watch.extremes().least_wheel_force;
+  result.least_wheel_force = watch.least_wheel_force();
   std::vector<double>& at_rest = static_deflection_[train];
   if (at_rest.empty())
     for (const double x : scene.output.probes) at_rest.push_back(passage.system().static_peak(x));

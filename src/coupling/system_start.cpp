@@ -100,14 +100,17 @@ void System::add_flats(const WheelContact& c, double end, std::vector<double>& e
   for (double angle : track::flat_ends(wheel.shape, wheel.radius, turning * end)) events.push_back(angle / turning);
 }
 
+std::vector<double> System::corners() const {
+  std::vector<double> corners = input_.profile.kinks();
+  if (beam_ != nullptr) corners.insert(corners.end(), line_->mesh.kinks().begin(), line_->mesh.kinks().end());
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
 std::vector<double> System::known_events(double end, bool all_kinks) const {
   std::vector<double> kinks;
-  if (all_kinks) kinks = input_.profile.kinks();
+  if (all_kinks) kinks = corners();
   if (beam_ != nullptr && !all_kinks) kinks = {line_->mesh.start(), line_->mesh.end()};
-  if (beam_ != nullptr && all_kinks) {
-    const std::vector<double>& ends = line_->mesh.kinks();
-    kinks.insert(kinks.end(), ends.begin(), ends.end());
-  }
   std::vector<double> events;
   auto add = [&](double x, double speed) {
     if (speed <= 0.0) return;

@@ -7,6 +7,7 @@
 #include "traverse/app/peaks.hpp"
 #include "traverse/app/plan.hpp"
 #include "traverse/app/scene.hpp"
+#include "traverse/app/wheel_extremes.hpp"
 #include "traverse/beam/ground_forces.hpp"
 #include "traverse/beam/recovery.hpp"
 #include "traverse/beam/viscous_lag.hpp"
@@ -23,12 +24,15 @@ class Watch {
   Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder);
 
   void sample(const integrate::Instant& instant);
+  /// At the end of every step; a sample is one too.
   void step(double t);
   /// Collective. The summary so far, and the shape at the worst instant into the recorder.
   results::Summary finish();
   /// What was seen last.
   const results::Sample& last() const { return sample_; }
   const results::Summary& extremes() const { return summary_; }
+  /// N, so far; 0 without wheels.
+  double least_wheel_force() const;
   /// The extremes so far, after the last sample.
   const Peaks& finished_peaks();
 
@@ -37,6 +41,7 @@ class Watch {
   void fill_fields(const double* v, const double* w);
   void drag(const double* drag);
   void note_separations();
+  void note_wheels();
   void store(const double* v, const double* w);
   void note_peaks(const double* v);
   void note_energy();
@@ -50,6 +55,7 @@ class Watch {
   std::optional<beam::GroundForces> ground_;
   std::vector<beam::Response> rail_, dragged_;
   Peaks peaks_;
+  WheelExtremes wheels_;
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;
   bool finished_ = false;

@@ -166,6 +166,8 @@ class System {
   /// `kinks`, for a prescribed speed, also those at which a wheel or force passes a kink of the running surface or the
   /// end of its own flat.
   std::vector<double> known_events(double end, bool kinks = true) const;
+  /// Ascending stations at which the running surface may have a corner: of the profile, and span ends.
+  std::vector<double> corners() const;
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
   double leaving_time() const;
   /// Collective. Largest magnitude of the static deflection at a station while the train and the forces pass with
