@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "fields.hpp"
 #include "traverse/app/transient.hpp"
@@ -43,7 +42,7 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
   const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
   peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
-  summary_.least_wheel_force = std::numeric_limits<double>::infinity();
+  wheels_ = WheelExtremes(wheel_count_, system.corners());
 }
 
 void Watch::sample(const integrate::Instant& instant) {
@@ -58,6 +57,7 @@ void Watch::sample(const integrate::Instant& instant) {
     for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   fill_vehicles(sample_);
+  step(instant.time);  // the first instant is no step's end
   note_peaks(v, w);
   if (instant.purpose != integrate::Purpose::look) store(v, w, instant.purpose == integrate::Purpose::end);
 }
@@ -176,17 +176,23 @@ void Watch::note_energy() {
 
 void Watch::step(double t) {
   const coupling::Fleet& fleet = system_.fleet();
+  std::size_t wheel = 0;
+  for (const coupling::WheelContact& c : fleet.wheels)
+    if (!c.is_further) wheels_.add(wheel++, t, fleet.coordinates(c).x(), fleet.load(c).normal);
+}
+
+void Watch::note_wheels() {
+  const coupling::Fleet& fleet = system_.fleet();
+  summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.least().force;
+  summary_.greatest_wheel_force =
+      std::max({summary_.greatest_wheel_force, peaks_.largest(wheel_force).value, wheels_.greatest().force});
+  const WheelExtreme& least = wheels_.least();
+  int wheel = 0;
   for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
     const coupling::WheelContact& c = fleet.wheels[i];
-    if (c.is_further) continue;
-    const double normal = fleet.load(c).normal;
-    summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, normal);
-    if (normal < summary_.least_wheel_force) {
-      summary_.least_wheel_force = normal;
-      summary_.least_wheel_force_time = t;
-      summary_.least_wheel =
-          "vehicle " + std::to_string(fleet.member(static_cast<int>(i))) + ", " + fleet.wheel(c).name;
-    }
+    if (c.is_further || wheel++ != least.wheel) continue;
+    summary_.least_wheel_force_time = least.time;
+    summary_.least_wheel = "vehicle " + std::to_string(fleet.member(static_cast<int>(i))) + ", " + fleet.wheel(c).name;
   }
 }
 
@@ -211,9 +217,9 @@ const Peaks& Watch::finished_peaks() {
 }
 
 const results::Summary& Watch::finished_extremes() {
-  summary_.greatest_wheel_force = std::max(summary_.greatest_wheel_force, finished_peaks().largest(wheel_force).value);
+  finished_peaks();
+  note_wheels();
   note_separations();
-  if (system_.fleet().wheels.empty()) summary_.least_wheel_force = 0.0;
   return summary_;
 }
 

@@ -22,27 +22,34 @@ void add_points(const std::vector<PointFoundation>& list, Direction direction, c
 
 void add_bed(const Bed& bed, Direction direction, const Line& bridge, int e, std::vector<NonlinearPoint>& points) {
   const Element& element = bridge.mesh.element(e);
+  for (const auto& [left, right] : bed_pieces(bed, element)) {
+    const double middle = 0.5 * (left + right);
+    integrate(1.0, left, right, [&](double x, double length) {
+      FoundationLaw law = bed.law;
+      law.cubic *= length;
+      const Station at{e, (x - element.x) / element.length};
+      points.push_back(
+          {direction, true, element.span, x, at, length * bed.k.at(x, middle), length * bed.c.at(x, middle), law});
+    });
+  }
+}
+
+}  // namespace
+
+std::vector<std::pair<double, double>> bed_pieces(const Bed& bed, const Element& element) {
   const double end = element.x + element.length;
   std::vector<double> ends = bed.k.breaks(element.x, end);
   for (double x : bed.c.breaks(element.x, end)) ends.push_back(x);
   ends.push_back(end);
   std::sort(ends.begin(), ends.end());
+  std::vector<std::pair<double, double>> pieces;
   double left = element.x;
   for (double right : ends) {
-    const double middle = 0.5 * (left + right);
-    if (right > left)
-      integrate(1.0, left, right, [&](double x, double length) {
-        FoundationLaw law = bed.law;
-        law.cubic *= length;
-        const Station at{e, (x - element.x) / element.length};
-        points.push_back(
-            {direction, true, element.span, x, at, length * bed.k.at(x, middle), length * bed.c.at(x, middle), law});
-      });
+    if (right > left) pieces.emplace_back(left, right);
     left = right;
   }
+  return pieces;
 }
-
-}  // namespace
 
 std::vector<NonlinearPoint> nonlinear_points(const Line& bridge, int first, int past) {
   const Foundation& f = bridge.model.foundation;

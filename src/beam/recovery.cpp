@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "assembly.hpp"
 #include "gauss.hpp"
+#include "held_element.hpp"
 #include "layered_track.hpp"
 #include "section.hpp"
+#include "traverse/beam/nonlinear_points.hpp"
 #include "traverse/beam/shape.hpp"
 
 namespace traverse::beam {
@@ -16,8 +19,12 @@ struct Recovery::Section {
   Section(const Line& line, double x);
 
   void add_foundation(const Line& line);
+  void hold(const BeamModel& model, const std::vector<InnerSpring>& springs, const std::vector<InnerSpring>& dampers);
+  template <class Sum>
+  void along_held(const Distribution& density, Sum sum) const;
   void note_riders(const Beam& beam);
   void add_weight(const BeamModel& model, double gravity);
+  void add_weight_at_points(const Bed& bed, const Distribution& mass_per_length, double gravity);
   void add_load(const ElementLoad& load, Response& r) const;
 
   /// A sleeper of a layered track on this element.
@@ -35,6 +42,10 @@ struct Recovery::Section {
   SectionForms bending;                   // K_e of the beam, for nodal values less the element's rigid motion
   SectionForms stiffness, damping, mass;  // K_e and C_e of the foundation, M_e
   Response weight;                        // of the beam's own weight: deflection, moment and shear
+  /// Where a foundation acts inside the element: the deflection that the shape functions leave out, under loads, and
+  /// under what the foundation and inertia do to the beam as it moves by them.
+  std::optional<HeldElement> held;
+  std::array<double, 4> held_by_stiffness{}, held_by_damping{}, held_by_mass{};
   std::vector<Rider> riders;
 };
 
@@ -78,7 +89,8 @@ void Recovery::Section::note_riders(const Beam& beam) {
 void Recovery::Section::add_foundation(const Line& line) {
   const BeamModel& model = line.model;
   const Foundation& f = model.foundation;
-  const auto add_points = [&](const std::vector<PointFoundation>& points, auto add) {
+  std::vector<InnerSpring> springs, dampers;
+  const auto add_points = [&](const std::vector<PointFoundation>& points, auto add, auto note) {
     for (const PointFoundation& p : points) {
       if (p.law.nonlinear()) continue;  // a load
       // locate() is the judge, as in the assembly; a glance at x spares most of the calls.
@@ -87,6 +99,7 @@ void Recovery::Section::add_foundation(const Line& line) {
       if (s.element != at.element) continue;
       (stiffness.*add)(p.k, s.xi);
       (damping.*add)(p.c, s.xi);
+      note(p, s.xi);
     }
   };
   const auto add_beds = [&](const Bed& bed, auto matrix, auto add) {
@@ -95,14 +108,61 @@ void Recovery::Section::add_foundation(const Line& line) {
     (stiffness.*add)(bed.k);
     (damping.*add)(bed.c);
   };
-  add_points(f.vertical, &SectionForms::add_vertical_spring);
-  add_points(f.rotational, &SectionForms::add_rotational_spring);
-  if (f.vertical_bed && !f.vertical_bed->law.nonlinear())
-    add_beds(*f.vertical_bed, transverse_bed, &SectionForms::add_transverse_density);
+  const auto bends = [&](bool rotational) {
+    return [&, rotational](const PointFoundation& p, double xi) {
+      if (xi <= 0.0 || xi >= 1.0) return;  // at a node
+      springs.push_back({xi, p.k, rotational});
+      dampers.push_back({xi, p.c, rotational});
+    };
+  };
+  add_points(f.vertical, &SectionForms::add_vertical_spring, bends(false));
+  add_points(f.rotational, &SectionForms::add_rotational_spring, bends(true));
+  const bool bedded = f.vertical_bed && !f.vertical_bed->law.nonlinear();
+  if (bedded) add_beds(*f.vertical_bed, transverse_bed, &SectionForms::add_transverse_density);
+  if (bedded || !springs.empty()) hold(model, springs, dampers);
   if (!model.axial) return;
-  add_points(f.longitudinal, &SectionForms::add_longitudinal_spring);
+  const auto stretches = [](const PointFoundation&, double) {};
+  add_points(f.longitudinal, &SectionForms::add_longitudinal_spring, stretches);
   if (f.longitudinal_bed && !f.longitudinal_bed->law.nonlinear())
     add_beds(*f.longitudinal_bed, axial_bed, &SectionForms::add_axial_density);
+}
+
+/// Integrates over the held element: calls sum(s, weight*density(s)*G(s)), where G is its line.
+template <class Sum>
+void Recovery::Section::along_held(const Distribution& density, Sum sum) const {
+  const std::vector<double> ends = held->ends();
+  const double h = element.length, x = element.x;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+    integrate(density, x + h * ends[i], x + h * ends[i + 1],
+              [&](double s, double piece) { sum((s - x) / h, piece * held->by_force((s - x) / h)); });
+}
+
+void Recovery::Section::hold(const BeamModel& model, const std::vector<InnerSpring>& springs,
+                             const std::vector<InnerSpring>& dampers) {
+  const Bed* bed = model.foundation.vertical_bed ? &*model.foundation.vertical_bed : nullptr;
+  if (bed != nullptr && bed->law.nonlinear()) bed = nullptr;
+  const double h = element.length;
+  double mean = 0.0;
+  if (bed != nullptr) integrate(bed->k, element.x, element.x + h, [&](double, double piece) { mean += piece / h; });
+  held.emplace(at.xi, h, EI, mean, springs);
+  const auto add = [&](const Distribution& density, std::array<double, 4>& form) {
+    along_held(density, [&](double s, double line) {
+      const auto value = hermite(s, h).value;
+      for (std::size_t i = 0; i < 4; ++i) form[i] -= line * value[i];
+    });
+  };
+  const auto add_points = [&](const std::vector<InnerSpring>& points, std::array<double, 4>& form) {
+    for (const InnerSpring& p : points) {
+      const Hermite s = hermite(p.xi, h);
+      const double line = p.k * (p.rotational ? held->by_moment(p.xi) : held->by_force(p.xi));
+      for (std::size_t i = 0; i < 4; ++i) form[i] -= line * (p.rotational ? s.slope[i] : s.value[i]);
+    }
+  };
+  add(model.mass, held_by_mass);
+  if (bed != nullptr) add(bed->k, held_by_stiffness);
+  if (bed != nullptr) add(bed->c, held_by_damping);
+  add_points(springs, held_by_stiffness);
+  add_points(dampers, held_by_damping);
 }
 
 void Recovery::Section::add_weight(const BeamModel& model, double gravity) {
@@ -110,12 +170,31 @@ void Recovery::Section::add_weight(const BeamModel& model, double gravity) {
   const auto end = transverse_load(model.mass, element);
   weight.shear = gravity * end[0];
   weight.moment = gravity * (x * end[0] - end[1]);
-  integrate(model.mass, element.x, element.x + x, [&](double s, double weight_of_piece) {
-    weight.shear -= gravity * weight_of_piece;
-    weight.moment -= gravity * weight_of_piece * (element.x + x - s);
+  const std::optional<Bed>& bed = model.foundation.vertical_bed;
+  if (bed && bed->law.nonlinear()) return add_weight_at_points(*bed, model.mass, gravity);
+  integrate(model.mass, element.x, element.x + x, [&](double s, double piece) {
+    weight.shear -= gravity * piece;
+    weight.moment -= gravity * piece * (element.x + x - s);
   });
+  if (held) {
+    along_held(model.mass, [&](double, double line) { weight.deflection -= gravity * line; });
+    return;
+  }
   const double bubble = at.xi * (1.0 - at.xi) * h * h, middle = element.x + 0.5 * h;
   weight.deflection = -gravity * model.mass.at(middle, element.x) * bubble * bubble / (24.0 * EI);
+}
+
+/// Where a bed pushes at its points of integration the weight acts there too: it cancels where the beam rests.
+void Recovery::Section::add_weight_at_points(const Bed& bed, const Distribution& mass_per_length, double gravity) {
+  for (const auto& [left, right] : bed_pieces(bed, element)) {
+    integrate(mass_per_length, left, right, [&](double s, double piece) {
+      const double xi = (s - element.x) / element.length, force = gravity * piece;
+      weight.deflection -= force * (held ? held->by_force(xi) : fixed_end_by_force(at.xi, xi, element.length, EI));
+      if (!is_left(xi, at.xi)) return;
+      weight.shear -= force;
+      weight.moment -= force * (at.xi - xi) * element.length;
+    });
+  }
 }
 
 void Recovery::Section::add_load(const ElementLoad& load, Response& r) const {
@@ -125,8 +204,12 @@ void Recovery::Section::add_load(const ElementLoad& load, Response& r) const {
   const double m1 = -load.fy * s.value[1] - load.moment * s.slope[1];
   r.shear += f1;
   r.moment += f1 * x - m1;
-  r.deflection +=
-      load.fy * fixed_end_by_force(at.xi, load.xi, h, EI) + load.moment * fixed_end_by_moment(at.xi, load.xi, h, EI);
+  if (held)
+    r.deflection +=
+        load.fy * held->by_force(load.xi) + (load.moment == 0.0 ? 0.0 : load.moment * held->by_moment(load.xi));
+  else
+    r.deflection +=
+        load.fy * fixed_end_by_force(at.xi, load.xi, h, EI) + load.moment * fixed_end_by_moment(at.xi, load.xi, h, EI);
   const bool left = is_left(load.xi, at.xi);
   if (left) {
     r.shear += load.fy;
@@ -216,6 +299,9 @@ Response Recovery::respond(const Section& s, const Values& v, const Values& w, c
 
   Response r = s.weight;
   r.deflection += transverse(s.psi.value, v);
+  if (s.held)
+    r.deflection +=
+        transverse(s.held_by_stiffness, v) + transverse(s.held_by_damping, w) + transverse(s.held_by_mass, inertial);
   r.velocity = transverse(s.psi.value, w);
   r.acceleration = transverse(s.psi.value, a);
   r.nodal_moment = transverse(s.bending.moment(), bent);

@@ -84,6 +84,11 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
   return false;
 }
 
+std::size_t ContactNewton::worst_vehicle() const {
+  const auto less = [](const VehicleWork& a, const VehicleWork& b) { return a.change < b.change; };
+  return static_cast<std::size_t>(std::max_element(work_.begin(), work_.end(), less) - work_.begin());
+}
+
 // What this rank's vehicles have at their contacts.
 unsigned ContactNewton::condense_own(Fleet& fleet, const StageData& s, int i) {
   unsigned signs = 0;

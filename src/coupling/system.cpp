@@ -348,7 +348,7 @@ bool System::stage_of_fleet(const StageTime& at, const FreeResponse& response, c
     fleet_.place_wheels();
     gather(response);
     if (beam_ != nullptr && !fleet_.elements().empty())
-      compliance_->prepare(at.shift, at.shift2, added, fleet_.elements());
+      compliance_->prepare(at.shift, at.shift == 0.0 ? 0.0 : at.shift2, added, fleet_.elements());
     const StageData stage{at.t,
                           at.shift,
                           at.shift2,

@@ -18,7 +18,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
     find_equilibrium(y);
   } else if (input_.self_weight && beam_ != nullptr) {
     std::copy(dead_load_.begin(), dead_load_.end(), nodal_.begin());
-    settle(true, Part::beam);
+    if (const Solution found = settle(true, Part::beam); found != Solution::found) refuse_start(found);
     std::copy(nodal_.begin(), nodal_.end(), y);
   }
   for (MovingVehicle& vehicle : fleet_.vehicles)
@@ -43,47 +43,6 @@ void System::let_wheels_roll() {
   }
 }
 
-// The stage problem at shift 0 with every drive standing still: K v = P + contacts, vehicles at rest.
-void System::find_equilibrium(double* v) {
-  Fleet moving = std::move(fleet_);
-  fleet_ = Fleet(input_.types, input_.train, input_.gravity, true, line_ != nullptr ? &line_->mesh : nullptr,
-                 &input_.profile, surface_height());
-  fleet_.partition(0.0);
-  const int f = fleet_.freedom();
-  p_.assign(2 * static_cast<std::size_t>(f), 0.0);
-  for (std::vector<double>* still : {&p_still_, &pd_still_, &x_}) still->assign(f, 0.0);
-
-  if (beam_ != nullptr) {
-    external_load(0.0, nodal_.data());
-    fleet_.place_wheels();
-  }
-  settle(input_.self_weight || !loads_.empty(), Part::all);
-  std::copy(nodal_.begin(), nodal_.end(), v);
-  fleet_.set(0.0, p_.data(), pd_still_.data());
-  for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
-  for (int i = 0; i < moving.contacts(); ++i) moving.contact(i).kinematics = fleet_.contact(i).kinematics;
-  fleet_ = std::move(moving);
-}
-
-// Statics under the load in nodal_: the deflection there, and p.
-void System::settle(bool loaded, Part part) {
-  release_held(nodal_.data());
-  for (std::vector<double>* still : {&v_still_, &w_still_}) std::fill(still->begin(), still->end(), 0.0);
-  if (nonlinear_) nonlinear_->begin(0.0, nullptr, nullptr, nullptr);
-  const Solution found = solve_coupled({}, part, loaded);
-  if (found == Solution::found) return;
-  if (found == Solution::foundation_unsettled)
-    throw SolverError(
-        "no static equilibrium found to start from: the foundation that is one-sided, has a gap or a "
-        "cubic term does not settle, worst " +
-        nonlinear_->worst_point() + "; does the beam rest on it, and what else holds the beam?");
-  throw SolverError("no static equilibrium found to start from (forces out of balance by " +
-                    std::to_string(newton_.last_change()) +
-                    " of a vehicle's weight): is every body held by joints, springs or wheels, also against "
-                    "actuators, and every wheel stiff enough to carry its load within its radius? scene_start: given "
-                    "starts from the positions as written");
-}
-
 void System::note_weights() {
   weights_.clear();
   fleet_.contact_forces();
@@ -100,14 +59,17 @@ void System::add_flats(const WheelContact& c, double end, std::vector<double>& e
   for (double angle : track::flat_ends(wheel.shape, wheel.radius, turning * end)) events.push_back(angle / turning);
 }
 
+std::vector<double> System::corners() const {
+  std::vector<double> corners = input_.profile.kinks();
+  if (beam_ != nullptr) corners.insert(corners.end(), line_->mesh.kinks().begin(), line_->mesh.kinks().end());
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
 std::vector<double> System::known_events(double end, bool all_kinks) const {
   std::vector<double> kinks;
-  if (all_kinks) kinks = input_.profile.kinks();
+  if (all_kinks) kinks = corners();
   if (beam_ != nullptr && !all_kinks) kinks = {line_->mesh.start(), line_->mesh.end()};
-  if (beam_ != nullptr && all_kinks) {
-    const std::vector<double>& ends = line_->mesh.kinks();
-    kinks.insert(kinks.end(), ends.begin(), ends.end());
-  }
   std::vector<double> events;
   auto add = [&](double x, double speed) {
     if (speed <= 0.0) return;

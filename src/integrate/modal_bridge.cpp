@@ -140,7 +140,11 @@ void ModalBridge::note_forms(beam::Recovery& recovery) {
       probes_.moment.push_back(r.moment);
     }
     recovery.evaluate(zero.data(), zero.data(), shape(i), {}, seen);
-    for (const beam::Response& r : seen) probes_.moment_by_acceleration.push_back(r.moment);
+    const double squared = basis_.omega[i] * basis_.omega[i];  // the mode's own shape where a foundation bends it
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+      probes_.deflection[i * probes_.count + p] -= squared * seen[p].deflection;
+      probes_.moment_by_acceleration.push_back(seen[p].moment);
+    }
     recovery.evaluate(zero.data(), shape(i), zero.data(), {}, seen);
     for (const beam::Response& r : seen) {
       const std::size_t at = probes_.moment_by_rate.size();

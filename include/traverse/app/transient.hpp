@@ -7,6 +7,7 @@
 #include "traverse/app/peaks.hpp"
 #include "traverse/app/plan.hpp"
 #include "traverse/app/scene.hpp"
+#include "traverse/app/wheel_extremes.hpp"
 #include "traverse/app/worst_shape.hpp"
 #include "traverse/beam/ground_forces.hpp"
 #include "traverse/beam/recovery.hpp"
@@ -24,6 +25,7 @@ class Watch {
   Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder);
 
   void sample(const integrate::Instant& instant);
+  /// At the end of every step; a sample is one too.
   void step(double t);
   /// Collective. The summary so far, and the shape at the worst instant into the recorder.
   results::Summary finish();
@@ -40,6 +42,7 @@ class Watch {
   void fill_fields(const double* v, const double* w);
   void drag(const double* drag);
   void note_separations();
+  void note_wheels();
   void store(const double* v, const double* w, bool end);
   void note_peaks(const double* v, const double* w);
   void note_energy();
@@ -53,6 +56,7 @@ class Watch {
   std::optional<beam::GroundForces> ground_;
   std::vector<beam::Response> rail_, dragged_;
   Peaks peaks_;
+  WheelExtremes wheels_;
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;
   bool finished_ = false;

@@ -5,6 +5,7 @@
 // of the length that it stands for, so that an element may have lifted off in part.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "traverse/beam/line.hpp"
@@ -25,6 +26,9 @@ struct NonlinearPoint {
 
 /// Those on the elements [first, past) of the bridge: the points of the lists, then the beds, element by element.
 std::vector<NonlinearPoint> nonlinear_points(const Line& bridge, int first, int past);
+
+/// The pieces of an element between whose ends a bed's tables have no break, each integrated by itself.
+std::vector<std::pair<double, double>> bed_pieces(const Bed& bed, const Element& element);
 
 /// The displacement at a point is the sum of shape*unknown: four terms, of a longitudinal one two (-1: none).
 struct PointShape {

@@ -49,8 +49,9 @@ class Recovery {
   /// on every rank), the response at every station, complete on every rank.
   /// Moment and shear follow from the element's end forces K_e v + C_e w + M_e a - P_e and the loads and inertia
   /// inside the element, less the part b*K_e w that is damping, not bending. The deflection has the element's own
-  /// fixed-end deflection under the loads added, which the cubic shape functions leave out; velocity and
-  /// acceleration have not.
+  /// deflection between held ends added, which the cubic shape functions leave out: under concentrated loads and the
+  /// beam's weight and, where a foundation acts inside the element, on that foundation and with what it and inertia
+  /// do to the beam. Velocity and acceleration have not.
   void evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
                 std::vector<Response>& out);
 

@@ -50,6 +50,8 @@ class ContactNewton {
   const std::vector<double>& element_loads() const { return loads_; }
   /// Residual and change of force of the last iteration over the train's weight, for messages.
   double last_change() const { return change_; }
+  /// The vehicle of the largest of these.
+  std::size_t worst_vehicle() const;
 
  private:
   using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

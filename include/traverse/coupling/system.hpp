@@ -166,6 +166,8 @@ class System {
   /// `kinks`, for a prescribed speed, also those at which a wheel or force passes a kink of the running surface or the
   /// end of its own flat.
   std::vector<double> known_events(double end, bool kinks = true) const;
+  /// Ascending stations at which the running surface may have a corner: of the profile, and span ends.
+  std::vector<double> corners() const;
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
   double leaving_time() const;
   /// Collective. Largest magnitude of the static deflection at a station while the train and the forces pass with
@@ -208,14 +210,19 @@ class System {
     double energy_scale = 0.0;  // J, of the structure's errors
     std::vector<double> rate;   // of restarts
   };
-  /// Shifts of a stage: w = shift*v + ..., w' = shift2*v + ...; 0: statics.
+  /// Shifts of a stage: w = shift*v + ..., w' = shift2*v + ...; 0: statics, of the beam also with shift alone 0.
   struct StageTime {
     double t = 0.0, shift = 0.0, shift2 = 0.0;
   };
 
+  enum class Solution { found, fleet_unsettled, foundation_unsettled };
+
   void find_equilibrium(double* v);
   void let_wheels_roll();
-  void settle(bool loaded, Part part);
+  void stand_still();
+  void go_on_from(std::vector<double> p);
+  bool note_lost(const std::vector<Eigen::VectorXd>& start);
+  [[noreturn]] void refuse_start(Solution found) const;
   void add_flats(const WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
   void note_weights();
@@ -227,8 +234,9 @@ class System {
   double note_contacts(double t);
   void share_coordinates(const double* y);
   void gather(const FreeResponse& response);
-  enum class Solution { found, fleet_unsettled, foundation_unsettled };
   void load_of_stills(double t);
+  Solution settle(bool loaded, Part part, double tie = 0.0);
+  Solution settle_slowly(const std::vector<double>& load, bool loaded);
   Solution solve_coupled(const StageTime& at, Part part, bool loaded);
   bool stage_of_fleet(const StageTime& at, const FreeResponse& response, const AddedSprings* added);
   void add_contact_response(double factor, double* z);
@@ -283,6 +291,7 @@ class System {
   std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
   std::vector<char> on_beam_;                       // of each moving force, during the step under way
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
+  std::string nothing_holds_;                       // why there is no static equilibrium, where that is known
   double influence_of_weight_ = 0.0;                // deflection of the influence line's station under self-weight, m
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
   std::vector<double> p_still_, pd_still_, x_;      // p and p' at zero acceleration, and the stage's change of p

@@ -1,0 +1,43 @@
+// The least and the greatest normal force of all wheels, looked for at every step and between steps by parabolas.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace traverse::app {
+
+struct WheelExtreme {
+  double force = 0.0;  // N
+  double time = 0.0;   // s
+  int wheel = -1;      // in the order of the fleet; -1: none has been seen
+};
+
+class WheelExtremes {
+ public:
+  WheelExtremes() = default;
+  /// kinks: ascending stations at which the track or the bridge has a corner, where a force has one too.
+  WheelExtremes(std::size_t wheels, std::vector<double> kinks);
+
+  /// The next instant of a wheel whose centre is at x.
+  void add(std::size_t wheel, double t, double x, double force);
+
+  const WheelExtreme& least() const { return least_; }
+  const WheelExtreme& greatest() const { return greatest_; }
+
+ private:
+  /// The latest instants of a wheel, the last one at the end.
+  struct Seen {
+    std::array<double, 3> time{}, x{}, force{};
+    int count = 0;
+  };
+  void note(double force, double time, std::size_t wheel);
+  void look_between(const Seen& seen, std::size_t wheel);
+
+  std::vector<Seen> seen_;
+  std::vector<double> kinks_;
+  WheelExtreme least_{std::numeric_limits<double>::infinity()}, greatest_{-std::numeric_limits<double>::infinity()};
+};
+
+}  // namespace traverse::app

@@ -1,0 +1,142 @@
+// The static equilibrium that a run starts from.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+// Of the way to rest where Newton finds none at once: all masses are tied to where they are by springs whose frequency
+// squared, 1/s2, falls from step to step, and the ties follow. What nothing carries yet goes down until something does.
+constexpr double first_tie = 1e3, last_tie = 1e-2;
+constexpr double softer = 0.5, stiffer = 8.0;  // after a step, and after one that has no solution
+constexpr int most_ties = 200;
+constexpr double nearly_at_rest = 0.02;  // of gravity: what the ties still hold
+constexpr double farthest = 100.0;       // m: what goes farther is held by nothing
+
+}  // namespace
+
+// The stage problem at shift 0 with every drive standing still: K v = P + contacts, vehicles at rest.
+void System::find_equilibrium(double* v) {
+  Fleet moving = std::move(fleet_);
+  stand_still();
+  const std::vector<double> load = nodal_;
+  const bool loaded = input_.self_weight || !loads_.empty();
+  Solution found = settle(loaded, Part::all);
+  if (found == Solution::fleet_unsettled) {
+    stand_still();
+    found = settle_slowly(load, loaded);
+  }
+  if (found != Solution::found) refuse_start(found);
+  std::copy(nodal_.begin(), nodal_.end(), v);
+  fleet_.set(0.0, p_.data(), pd_still_.data());
+  for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
+  for (int i = 0; i < moving.contacts(); ++i) moving.contact(i).kinematics = fleet_.contact(i).kinematics;
+  fleet_ = std::move(moving);
+}
+
+// Every drive stands still, every body is where the scene puts it; the beam's load in nodal_.
+void System::stand_still() {
+  fleet_ = Fleet(input_.types, input_.train, input_.gravity, true, line_ != nullptr ? &line_->mesh : nullptr,
+                 &input_.profile, surface_height());
+  fleet_.partition(0.0);
+  const int f = fleet_.freedom();
+  p_.assign(2 * static_cast<std::size_t>(f), 0.0);
+  for (std::vector<double>* still : {&p_still_, &pd_still_, &x_}) still->assign(f, 0.0);
+  if (beam_ == nullptr) return;
+  external_load(0.0, nodal_.data());
+  fleet_.place_wheels();
+}
+
+// Statics under the load in nodal_: the deflection there, and p. `tie`: what holds all masses where they are, 1/s2.
+System::Solution System::settle(bool loaded, Part part, double tie) {
+  release_held(nodal_.data());
+  for (std::vector<double>* still : {&v_still_, &w_still_}) std::fill(still->begin(), still->end(), 0.0);
+  if (nonlinear_) nonlinear_->begin(0.0, nullptr, nullptr, nullptr);
+  return solve_coupled({0.0, 0.0, tie}, part, loaded);
+}
+
+// Newton does not come from a spring that is loose, or a contact that is apart, to where it carries: the force has no
+// slope to follow.
+System::Solution System::settle_slowly(const std::vector<double>& load, bool loaded) {
+  std::vector<Eigen::VectorXd> start;
+  for (const MovingVehicle& vehicle : fleet_.vehicles) start.push_back(vehicle.state.q);
+  Solution found = Solution::fleet_unsettled;
+  double tie = first_tie;
+  for (int i = 0; i < most_ties && tie >= last_tie; ++i) {
+    nodal_ = load;
+    found = settle(loaded, Part::all, tie);
+    if (found == Solution::foundation_unsettled) return found;
+    if (found == Solution::fleet_unsettled) {
+      if ((tie *= stiffer) > first_tie * stiffer) return found;
+      go_on_from(p_still_);
+      continue;
+    }
+    double held = 0.0;
+    for (const double x : x_) held = std::max(held, tie * std::abs(x));
+    go_on_from(p_);
+    if (note_lost(start)) return Solution::fleet_unsettled;
+    tie *= softer;
+    if (held > nearly_at_rest * std::max(input_.gravity, 1.0)) continue;
+    nodal_ = load;
+    const std::vector<double> here = p_still_;
+    if (settle(loaded, Part::all) == Solution::found) return Solution::found;
+    go_on_from(here);
+  }
+  return Solution::fleet_unsettled;
+}
+
+// The fleet to the positions p, by coordinates that serve there.
+void System::go_on_from(std::vector<double> p) {
+  const auto f = static_cast<std::ptrdiff_t>(fleet_.freedom());
+  std::copy_n(p.begin(), f, p_still_.begin());
+  std::fill(x_.begin(), x_.end(), 0.0);
+  if (!fleet_.set(0.0, p_still_.data(), pd_still_.data()) || !fleet_.worn() || !fleet_.accept()) return;
+  fleet_.number(0.0);
+  std::fill(p_still_.begin(), p_still_.end(), 0.0);
+}
+
+// The body that has gone farthest from its start, if that is too far: why there is no equilibrium.
+bool System::note_lost(const std::vector<Eigen::VectorXd>& start) {
+  double far = farthest;
+  for (std::size_t k = 0; k < start.size(); ++k) {
+    const MovingVehicle& vehicle = fleet_.vehicles[k];
+    const multibody::MechanismModel& model = vehicle.mechanism.model();
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      const auto at = 3 * static_cast<Eigen::Index>(b);
+      const double gone = (vehicle.state.q - start[k]).segment<2>(at).norm();
+      if (gone <= far) continue;
+      far = gone;
+      nothing_holds_ = fmt::format("nothing holds body '{}' of vehicle '{}'", model.bodies[b].name, model.name);
+      for (std::size_t s = 0; s < model.springs.size(); ++s) {
+        const multibody::Spring& spring = model.springs[s];
+        const bool on_it = spring.bodies[0] == static_cast<int>(b) || spring.bodies[1] == static_cast<int>(b);
+        if (on_it && vehicle.mechanism.spring_force(vehicle.state, static_cast<int>(s)) == 0.0)
+          nothing_holds_ += fmt::format(", its spring '{}' stays loose", spring.name);
+      }
+    }
+  }
+  return !nothing_holds_.empty();
+}
+
+void System::refuse_start(Solution found) const {
+  if (found == Solution::foundation_unsettled)
+    throw SolverError(
+        "no static equilibrium found to start from: the foundation that is one-sided, has a gap or a "
+        "cubic term does not settle, worst " +
+        nonlinear_->worst_point() + "; does the beam rest on it, and what else holds the beam?");
+  const std::string advice =
+      "is every body held by joints, springs or wheels, also against actuators, and every wheel stiff enough to carry "
+      "its load within its radius? scene_start: given starts from the positions as written";
+  if (!nothing_holds_.empty())
+    throw SolverError("no static equilibrium found to start from: " + nothing_holds_ + "; " + advice);
+  throw SolverError(
+      fmt::format("no static equilibrium found to start from (forces out of balance by {:g} of a "
+                  "vehicle's weight, worst in vehicle '{}'): {}",
+                  newton_.last_change(), fleet_.vehicles[newton_.worst_vehicle()].mechanism.model().name, advice));
+}
+
+}  // namespace traverse::coupling
