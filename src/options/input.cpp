@@ -131,6 +131,7 @@ bool speaks_of(const std::string& message, const std::string& value) {
   }
   std::istringstream words(text);
   for (std::string word; words >> word;) {
+    if (word.back() == '.' || word.back() == ':') word.pop_back();
     if (word == value || (number && parse_number(word, found) && found == wanted)) return true;
   }
   return false;
@@ -138,14 +139,14 @@ bool speaks_of(const std::string& message, const std::string& value) {
 
 /// "PETSc error 86: what such errors are: what this one is", without all that is said of every such error.
 std::string specific_part(const std::string& message) {
-  int code = 0;
+  int code = 0, length = 0;
   const char* general = nullptr;
-  if (std::sscanf(message.c_str(), "PETSc error %d", &code) != 1 || PetscErrorMessage(code, &general, nullptr) != 0 ||
-      general == nullptr)
-    return message;
-  const std::size_t at = message.find(general);
-  const std::size_t begin = at == std::string::npos ? at : at + std::string_view(general).size() + 2;
-  return begin < message.size() ? message.substr(begin) : message;
+  if (std::sscanf(message.c_str(), "PETSc error %d: %n", &code, &length) != 1 || length == 0) return message;
+  const std::string reason = message.substr(static_cast<std::size_t>(length));
+  if (PetscErrorMessage(code, &general, nullptr) != 0 || general == nullptr || !reason.starts_with(general))
+    return reason;
+  const std::size_t begin = std::string_view(general).size() + 2;
+  return begin < reason.size() ? reason.substr(begin) : reason;
 }
 
 }  // namespace

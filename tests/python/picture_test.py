@@ -71,6 +71,12 @@ class PictureTest(unittest.TestCase):
         self.assertGreater(width, 1000)
         return height
 
+    def test_a_name_may_hold_what_looks_like_mathematics(self):
+        write_run(self.file)
+        with h5py.File(self.file, "r+") as file:
+            file.attrs["scene"] = r"a$\foo$b"
+        self.assert_drawn()
+
     def test_whole_run(self):
         write_run(self.file)
         whole = self.assert_drawn()

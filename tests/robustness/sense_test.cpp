@@ -85,6 +85,9 @@ TEST(PetscOptions, ValuesThatItRefusesAreNamed) {
   }
   expect_refusal(workplace, workplace.run({"-ts_adapt_clip", "5", "-ksp_rtol", "1e-3"}),
                  {"traverse: ts_adapt_clip = 5"});
+  const Outcome outcome = workplace.run({"-ts_type", "rk", "-ts_rk_type", "nonsense"});
+  expect_refusal(workplace, outcome,
+                 {"traverse: ts_rk_type = nonsense (command line): PETSc does not allow it: Unknown"});
 }
 
 TEST(PetscOptions, StepsAreCountedFromOne) {
