@@ -6,14 +6,17 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "process.hpp"
+#include "signals.hpp"
 #include "traverse/app/accuracy.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/app/study.hpp"
 #include "traverse/app/transient.hpp"
 #include "traverse/modes/modes.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/results/stage.hpp"
 #include "trials.hpp"
 
 namespace traverse::app {
@@ -28,9 +31,15 @@ int run_modes(MPI_Comm comm, const Scene& scene, Structure& structure, std::vect
   const beam::Rayleigh ab = structure.rayleigh;
   options::check_all_used(options::in_force());
   print_notes(comm, notes);
-  const modes::Modes found = modes::natural_modes(beam, scene.mode_count, true);
+  const modes::Modes found = [&] {
+    const results::Stage stage("computation of the natural modes");
+    return modes::natural_modes(beam, scene.mode_count, true);
+  }();
   const bool damping = modes::damped(beam);
-  const modes::DampedModes damped = damping ? modes::damped_modes(beam, scene.mode_count, true) : modes::DampedModes();
+  const modes::DampedModes damped = [&] {
+    const results::Stage stage("computation of the damped modes");
+    return damping ? modes::damped_modes(beam, scene.mode_count, true) : modes::DampedModes();
+  }();
   results::Layout layout;
   layout.supports = beam.mesh().span_ends();
   for (int i = 0; i < beam.mesh().nodes(); ++i) layout.nodes.push_back(beam.mesh().x(i));
@@ -42,6 +51,7 @@ int run_modes(MPI_Comm comm, const Scene& scene, Structure& structure, std::vect
         "  damped modes are listed below |lambda| = 1/b = {:.6g} rad/s: above it the elements decide, not the beam\n",
         1.0 / std::abs(ab.b));
   if (scene.output.file.empty()) return 0;
+  const SignalsNoted noted;  // a moment, and the file is complete
   results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);
   if (damping) recorder.damped_modes(damped);
@@ -70,7 +80,11 @@ double total(MPI_Comm comm, double share) {
 /// The promise against what a refined run gives. False where it is broken.
 bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const Peaks& peaks) {
   const Scene fine = refined(scene);
-  const Peaks truth = peaks_of(comm, fine);
+  const Peaks truth = [&] {
+    const results::Stage stage("the refined run of -accuracy_report");
+    const options::WithoutMonitors without_monitors;
+    return peaks_of(comm, fine).peaks;
+  }();
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   bool all_kept = true;
@@ -119,6 +133,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
                     system.static_error()));
   print_notes(comm, notes);
 
+  std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
   results::Recorder recorder(comm, scene.output.file, layout_of(scene, system, beam), attributes(comm, scene),
                              scene.options);
   store_modes(structure, recorder);
@@ -128,7 +143,10 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
   const auto begin = std::chrono::steady_clock::now();
   auto summarise = [&](const std::string& ended) {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    results::Summary summary = watch.finish();
+    results::Summary summary = [&] {
+      const results::Stage stage("summary");
+      return watch.finish();
+    }();
     summary.steps = passage.steps();
     summary.rejected_steps = passage.rejected();
     summary.solves = system.beam_solves();
@@ -145,10 +163,12 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
   };
   int stopped = 0;
   try {
+    const results::Stage stage("time steps");
     passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
                 [&](double t, long steps) {
                   watch.step(t);
                   progress.update(t, steps);
+                  results::Stage::advance(t / passage.plan().end_time);
                   stopped = signal_on_any(comm);
                   return stopped == 0;
                 });
@@ -173,6 +193,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
         "deepest carried\n",
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
+  noted.reset();
   check_balance(scene, summary);
   if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
       !report(comm, scene, accuracy, watch.finished_peaks()))
@@ -185,7 +206,9 @@ int run_transient(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, S
 }  // namespace
 
 int run(MPI_Comm comm, const Scene& given) {
-  catch_signals();
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  const results::Heartbeat heartbeat(given.quiet || rank != 0);
   if (given.sweep) return run_sweep(comm, given);
   Scene scene = given;
   std::vector<std::string> notes;

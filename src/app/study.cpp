@@ -13,8 +13,10 @@
 #include "deal.hpp"
 #include "modes_choice.hpp"
 #include "process.hpp"
+#include "signals.hpp"
 #include "traverse/app/accuracy.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/results/stage.hpp"
 #include "traverse/results/sweep.hpp"
 #include "traverse/results/terminal.hpp"
 #include "trials.hpp"
@@ -133,11 +135,13 @@ Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal
       }
     } catch (const Error& error) {
       fail(error.status(), error.what());
-    } catch (const std::exception& error) {
-      fail(70, error.what());
+    } catch (const std::exception& failed) {
+      const Error error = as_error(failed);
+      fail(error.status(), error.what());
     }
     if (caught_signal() != 0) deal.stop();
     progress.runs(deal.taken());
+    results::Stage::advance(static_cast<double>(deal.taken()) / static_cast<double>(cases.size()));
   }
   return failure;
 }
@@ -202,6 +206,7 @@ int run_sweep(MPI_Comm comm, const Scene& given) {
     notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
   print_notes(comm, notes);
 
+  const SignalsNoted noted;
   results::Layout layout;
   layout.probes = scene.output.probes;
   results::Recorder recorder(comm, scene.output.file, layout, attributes(comm, scene), scene.options);
@@ -211,6 +216,7 @@ int run_sweep(MPI_Comm comm, const Scene& given) {
   long done[2] = {0, 0};  // runs, the signal that came
   Failure failure;
   {
+    const results::Stage stage("runs of the sweep");
     Deal deal(comm, cases.size());
     failure = run_share(cases, runner, deal, progress, sweep, done[0]);
     done[1] = caught_signal();

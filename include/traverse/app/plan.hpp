@@ -13,7 +13,7 @@ struct Plan {
   double end_time = 0.0;   // s
   double time_step = 0.0;  // s
   double interval = 0.0;   // s between samples
-  int stored = 1;          // every so many samples one is stored
+  long stored = 1;         // every so many samples one is stored
 };
 
 /// Fills in what the user left open and says so in `notes`. first_period: of the beam (s), 0 where not known.
