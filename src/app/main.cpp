@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 #include <slepceps.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
 #include "process.hpp"
@@ -31,9 +34,11 @@ void start_lightly() {
 }
 
 bool first_rank() {
-  int started = 0, rank = 0;
+  int started = 0, ended = 0;
+  static int rank = 0;  // MPI does not tell it any more when it has ended
   MPI_Initialized(&started);
-  if (started != 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Finalized(&ended);
+  if (started != 0 && ended == 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   return rank == 0;
 }
 
@@ -55,9 +60,10 @@ int run(traverse::options::Input& input) {
 
 /// The status of the program, which is no success where its output was lost.
 int after_output(int status) {
-  const std::string lost = traverse::app::lost_output();
-  if (status != 0 || lost.empty()) return status;
-  return complain(traverse::FileError("standard output could not be written: " + lost +
+  const int lost = traverse::app::lost_output();
+  if (status != 0 || lost == 0) return status;
+  if (lost == EPIPE) return 128 + SIGPIPE;  // nobody reads any more: no harm, and nothing to say
+  return complain(traverse::FileError(std::string("standard output could not be written: ") + std::strerror(lost) +
                                       "; the results file, if one was asked for, is complete"));
 }
 

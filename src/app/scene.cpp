@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "limits.hpp"
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
@@ -154,6 +155,7 @@ Scene read_scene(Options o) {
   read_output(o, scene);
   read_modal(o, scene);
   check_scene(o, scene);
+  check_size(o, scene);
   scene.options = o.all();
   return scene;
 }

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 
 namespace traverse::app {
 namespace {
@@ -35,9 +34,9 @@ void guard_standard_output() {
   stdout = guarded;
 }
 
-std::string lost_output() {
+int lost_output() {
   std::fflush(stdout);
-  return reason == 0 ? "" : std::strerror(reason);
+  return reason;
 }
 
 }  // namespace traverse::app

@@ -18,9 +18,10 @@ constexpr double roughness = 1.3;        // times the work on vehicles on a roug
 constexpr double rounding = 1e-9;
 constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;
-constexpr double solves_a_step = 5.0;       // of the beam, by the default method
-constexpr std::size_t crossed_in_full = 3;  // spans
-constexpr double behind = 1.1;              // spans, until what the last wheel does as it leaves is seen
+constexpr double solves_a_step = 5.0;           // of the beam, by the default method
+constexpr double steps_a_factorisation = 10.0;  // that would cost as much as a step of a new length
+constexpr std::size_t crossed_in_full = 3;      // spans
+constexpr double behind = 1.1;                  // spans, until what the last wheel does as it leaves is seen
 
 bool is_node(const beam::BeamModel& beam, double x) {
   double left = 0.0;
@@ -150,7 +151,8 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
   RunPeaks result;
   const auto steps_so_far = [&] {
     const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_a_step;
-    return std::max(static_cast<double>(passage.steps()), by_solves);
+    return std::max(static_cast<double>(passage.steps()), by_solves) +
+           steps_a_factorisation * static_cast<double>(passage.system().factorisations());
   };
   const results::Stage stage("time steps");
   passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },

@@ -14,6 +14,7 @@ namespace traverse::options {
 namespace {
 
 constexpr int deepest_include = 8;
+constexpr std::size_t most_characters = 16 << 20;  // of a file, and of what its anchors make of it
 
 std::string at(const std::string& file, int line) { return fmt::format("{}:{}: ", file, line); }
 
@@ -59,10 +60,19 @@ class Flattener {
     if (node.IsMap()) {
       map(node, name + "_");
     } else if (node.IsSequence()) {
-      entries_.push_back({name, list(node, name), file_, line});
+      note({name, list(node, name), file_, line});
     } else {
-      entries_.push_back({name, node.IsNull() ? "" : node.Scalar(), file_, line});
+      note({name, node.IsNull() ? "" : node.Scalar(), file_, line});
     }
+  }
+
+  /// An anchor that stands for a block of anchors, and so on, may stand for more than any memory holds.
+  void note(Entry entry) {
+    characters_ += entry.name.size() + entry.value.size();
+    if (characters_ > most_characters)
+      throw InputError(
+          fmt::format("{}its anchors make more than {} characters of it", at(file_, entry.line), most_characters));
+    entries_.push_back(std::move(entry));
   }
 
   std::string list(const YAML::Node& node, const std::string& name) const {
@@ -79,6 +89,7 @@ class Flattener {
 
   const std::string& file_;
   std::vector<Entry>& entries_;
+  std::size_t characters_ = 0;
 };
 
 /// Splits a line into words; "..." and '...' hold blanks together, # starts a comment.
@@ -117,9 +128,13 @@ std::string text_of(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw InputError("options_file = " + path + ": is a folder, not a file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError("options_file = " + path + ": there is no such file, or it cannot be read");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  std::string text(most_characters + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > most_characters)
+    throw InputError(
+        fmt::format("options_file = {}: longer than {} characters: this is no options file", path, most_characters));
+  return text;
 }
 
 bool is_yaml(const std::string& path) { return path.ends_with(".yml") || path.ends_with(".yaml"); }
