@@ -54,7 +54,7 @@ double elements_of(const beam::BeamModel& beam) {
 std::string option_of_mesh(const options::Options& o, const Scene& scene) {
   if (!scene.beam->track) return o.has("beam_elements_per_span") ? "beam_elements_per_span" : "beam_spans";
   if (o.has("track_elements_per_bay")) return "track_elements_per_bay";
-  return o.has("track_approach") ? "track_approach" : "track_spacing";
+  return scene.beam->track->approach > scene.beam->length() ? "track_approach" : "track_spacing";
 }
 
 Need mesh(const options::Options& o, const Scene& scene) {
