@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "traverse/app/plan.hpp"
+#include "traverse/base/error.hpp"
 #include "traverse/base/whole.hpp"
 
 namespace traverse::app {
@@ -38,6 +39,13 @@ int first_mesh(const Scene& scene) {
   if (bed == 0.0) return wanted;
   const double wave = std::pow(4.0 * beam.EI.minimum() / bed, 0.25);
   const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
+  if (elements_a_wave * longest / wave > most_elements)
+    throw InputError(
+        fmt::format("foundation_vertical: on its bed the beam bends within {:.3g} m, which {:g} elements in the span "
+                    "of {:g} m do not "
+                    "resolve; a softer foundation, a stiffer beam_EI or a shorter span is meant, or "
+                    "beam_elements_per_span is given",
+                    wave, static_cast<double>(most_elements), longest));
   return std::max(wanted, 4 * base::whole(std::ceil(0.25 * elements_a_wave * longest / wave), most_elements / 4));
 }
 

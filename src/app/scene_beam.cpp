@@ -35,7 +35,7 @@ void read_mesh(const Options& o, Scene& scene) {
   }
   if (std::accumulate(beam.elements.begin(), beam.elements.end(), 0.0) > most_elements) {
     o.refuse(o.has("beam_elements_per_span") ? "beam_elements_per_span" : "beam_spans",
-             fmt::format("more than {:g} elements in all", most_elements));
+             fmt::format("more than {0:g} elements in all; allowed: at most {0:g}", most_elements));
   }
 }
 

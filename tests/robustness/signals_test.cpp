@@ -11,7 +11,8 @@ namespace {
 
 constexpr double long_enough = 300.0;  // s, on a machine that has much else to do
 
-const std::string endless = small_scene() + "ts_max_time: 1.0e5\nts_dt: 1.0e-3\noutput: {file: r.h5, interval: 0.01}\n";
+const std::string endless =
+    std::string(two_spans) + quarter_car + "ts_max_time: 1.0e5\nts_dt: 1.0e-3\noutput: {file: r.h5, interval: 0.01}\n";
 
 // Progress is shown after some seconds of steps, so that by then there are samples.
 const char* const progress = "t = ";
