@@ -9,6 +9,7 @@
 #include "first_guess.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/results/stage.hpp"
 
 namespace traverse::app {
 namespace {
@@ -17,19 +18,18 @@ constexpr double some_step = 1e-6;             // s, to look at a scene before i
 constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
 constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
 
-bool is_asked_for(const char* prefix) {
-  return std::any_of(options::in_force().begin(), options::in_force().end(),
-                     [&](const options::Entry& entry) { return entry.name.starts_with(prefix); });
+/// The option that makes the integrator choose its steps by a measure of its own, or treat contacts apart; null: none.
+const options::Entry* own_measure() {
+  const options::Entry* control = options::in_force().find("ts_adapt_type");
+  if (control != nullptr && control->value != "none") return control;
+  return options::in_force().find("ts_arkimex_fully_implicit");
 }
 
-/// Whether there is something to choose, and something moves that it can be chosen by. What PETSc is asked to show or
-/// to stop at is meant for the run alone; a step control has its own measure.
+/// Whether there is something to choose, and something moves that it can be chosen by.
 bool chooses(const Scene& scene) {
   const bool open = scene.mesh_open || !scene.time_step;
   const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
-  return open && moves && scene.beam && scene.analysis == Analysis::transient && scene.model_modes == 0 &&
-         !is_asked_for("ts_max_steps") && !is_asked_for("ts_monitor") && !is_asked_for("ts_adapt_type") &&
-         !is_asked_for("ts_arkimex_fully_implicit");
+  return open && moves && scene.beam && scene.analysis == Analysis::transient && scene.model_modes == 0;
 }
 
 void leave_out_rest(Scene& scene) {
@@ -70,6 +70,13 @@ std::vector<std::pair<std::string, double>> Accuracy::expected() const {
 Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   Accuracy result;
   if (!chooses(scene)) return result;
+  if (const options::Entry* option = own_measure()) {
+    notes.push_back(fmt::format("accuracy {:g} is not searched for by trial runs and nothing is promised: {}",
+                                scene.accuracy, option->given()));
+    return result;
+  }
+  const results::Stage stage("trial runs");
+  const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
   std::vector<std::string> ignored;
   if (scene.mesh_open)

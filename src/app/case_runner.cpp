@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "process.hpp"
+#include "signals.hpp"
 #include "traverse/app/transient.hpp"
 
 namespace traverse::app {
@@ -112,7 +112,11 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
   result.longest_loss = extremes.longest_loss;
   std::vector<double>& at_rest = static_deflection_[train];
   if (at_rest.empty())
-    for (const double x : scene.output.probes) at_rest.push_back(passage.system().static_peak(x));
+    for (const double x : scene.output.probes) {
+      if (caught_signal() != 0) break;
+      at_rest.push_back(passage.system().static_peak(x));
+    }
+  result.ended = caught_signal() == 0;
   result.static_deflection = at_rest;
   return result;
 }
@@ -125,10 +129,10 @@ CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
     static_deflection_[train] = integrate::static_peaks(bridge, place->second);
   }
   CaseResult result;
-  result.peaks =
-      integrate::modal_peaks(bridge, place->second, speed, scene_.start == Start::equilibrium, duration(train, speed));
+  result.peaks = integrate::modal_peaks(bridge, place->second, speed, scene_.start == Start::equilibrium,
+                                        duration(train, speed), [] { return caught_signal() == 0; });
   result.static_deflection = static_deflection_[train];
-  result.ended = true;
+  result.ended = caught_signal() == 0;
   return result;
 }
 

@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "first_guess.hpp"
-#include "process.hpp"
 #include "traverse/app/plan.hpp"
+#include "traverse/base/whole.hpp"
 
 namespace traverse::app {
 namespace {
@@ -58,6 +59,7 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const Structure& str
   const double omega = structure.omega ? structure.omega->first : 0.0;
   const FirstSteps steps = first_steps(scene, omega, horizon_);
   longest_step_ = steps.longest;
+  shortest_ = open_step_ ? steps.why : "the step is given";
   first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.time_step;
   const double decay = 0.5 * (structure.rayleigh.a + structure.rayleigh.b * omega * omega);
   growth_ = std::clamp(std::min(end, decay > 0.0 ? 1.0 / decay : end) / horizon_, 1.0, most_growth);
@@ -71,13 +73,35 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const Structure& str
 }
 
 void ErrorSearch::run() {
-  refine();
-  coarsen();
+  search();
   refuse_what_is_given();
 }
 
+// Where trial runs become too many, what was measured has to do.
+void ErrorSearch::search() {
+  try {
+    refine();
+    coarsen();
+  } catch (const TooMuchWork&) {
+    if (!measured_) refuse_scene();
+    std::tie(step_, mesh_) = *measured_;
+    refuse_what_is_far();
+  }
+}
+
+void ErrorSearch::refuse_scene() const {
+  throw InputError(
+      fmt::format("accuracy = {:g}: the trial runs that find mesh and step would take {:.1g} steps of {:.1g} s with {} "
+                  "elements a {} "
+                  "and more ({}), which is beyond what they may take; look at the masses, stiffnesses and lengths of "
+                  "the scene, or give ts_dt and {}, "
+                  "which need no trial runs",
+                  scene_.accuracy, horizon_ / step_, step_, mesh_, unit_of_mesh(), shortest_,
+                  scene_.beam->track ? "track_elements_per_bay" : "beam_elements_per_span"));
+}
+
 void ErrorSearch::refine() {
-  for (int round = 0; round < most_rounds && signal_on_any(comm_) == 0; ++round) {
+  for (int round = 0; round < most_rounds; ++round) {
     measure();
     refuse_what_does_not_settle();
     const bool finer = open_step_ && !within_reach(time_), denser = open_mesh_ && !within_reach(space_);
@@ -94,7 +118,7 @@ void ErrorSearch::coarsen() {
   if (!open_step_) return;
   const double fine = step_;
   const Errors errors = time_;
-  for (double step = 2.0 * fine; step <= longest_step_ && signal_on_any(comm_) == 0; step *= 2.0) {
+  for (double step = 2.0 * fine; step <= longest_step_; step *= 2.0) {
     if (trials_.run(mesh_, step).failed()) return;  // and nothing is known of steps between
     Errors longer = errors;
     for (std::size_t q = 0; q < quantities; ++q)
@@ -126,9 +150,9 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
   const double longer = factor_of_step(), fewer = factor_of_elements();
   const double step = open_step_ ? two_digits(step_ * longer) : step_;
   int mesh = mesh_;
-  if (open_mesh_ && scene.beam->track) mesh = static_cast<int>(std::ceil(mesh_ / fewer));
+  if (open_mesh_ && scene.beam->track) mesh = base::whole(std::ceil(mesh_ / fewer));
   if (open_mesh_ && !scene.beam->track)
-    mesh = aligned_mesh(scene_, std::max(4, 2 * static_cast<int>(std::ceil(0.5 * mesh_ / fewer))));
+    mesh = aligned_mesh(scene_, std::max(4, 2 * base::whole(std::ceil(0.5 * mesh_ / fewer))));
   set_mesh(scene, mesh);
   scene.time_step = step;
   scene.step_probes = true;
@@ -147,12 +171,16 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
 // Those of a given mesh or step too, where there are coarser ones to compare with.
 void ErrorSearch::measure() {
   const Peaks& fine = trials_.run(mesh_, step_);
+  Errors time = time_, space = space_;
   for (std::size_t i = 0; i < quantities; ++i) {
     const auto q = static_cast<Quantity>(i);
     promises_[q].present = fine.failed() || fine.largest(q).value != 0.0;
-    if (open_step_ || step_ <= longest_step_) time_[q] = error_in_time(q);
-    if (mesh_ % 2 == 0) space_[q] = error_in_space(q);
+    if (open_step_ || step_ <= longest_step_) time[q] = error_in_time(q);
+    if (mesh_ % 2 == 0) space[q] = error_in_space(q);
   }
+  time_ = time;
+  space_ = space;
+  measured_ = {step_, mesh_};
 }
 
 Error ErrorSearch::error_in_time(Quantity q) {
@@ -270,7 +298,7 @@ void ErrorSearch::refuse_what_is_given() {
 // Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.
 bool ErrorSearch::worth_it(double step, int mesh) const {
   const auto guess = [&](const Errors& errors) { return std::clamp(room(errors), 1.0 / farthest_guess, 1.0); };
-  const double run = trials_.seconds(static_cast<int>(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
+  const double run = trials_.seconds(base::whole(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
   return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, trials_of_run * run);
 }
 

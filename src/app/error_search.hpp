@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "error_law.hpp"
 #include "traverse/app/accuracy.hpp"
@@ -30,6 +31,8 @@ class ErrorSearch {
   using Errors = std::array<Error, quantities>;
 
   void refine();
+  void search();
+  [[noreturn]] void refuse_scene() const;
   void coarsen();
   void measure();
   double excess(const Errors& errors) const;
@@ -62,7 +65,9 @@ class ErrorSearch {
   std::array<bool, quantities> tried_{};  // refused by the search, with an error as small as it could be made
   std::array<int, quantities> crawls_{};  // halvings of the step in a row that have changed little
   Errors time_{}, space_{};
-  std::optional<Errors> coarser_;  // in time, of twice the step, where that is too long
+  std::optional<std::pair<double, int>> measured_;  // step and mesh that the errors belong to
+  std::string shortest_;                            // what asks for the shortest steps, in words
+  std::optional<Errors> coarser_;                   // in time, of twice the step, where that is too long
 };
 
 }  // namespace traverse::app

@@ -1,15 +1,20 @@
 #include "first_guess.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "traverse/app/plan.hpp"
+#include "traverse/base/error.hpp"
+#include "traverse/base/whole.hpp"
 
 namespace traverse::app {
 namespace {
 
 constexpr int first_bay = 2;
+constexpr int most_in_a_span = 100000;   // a span, as beam_elements_per_span allows
 constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 EI/k)^(1/4)
 constexpr double trial_steps_a_period = 12.0, steps_a_crossing = 24.0, trial_steps_a_wave = 20.0, steps_a_sleeper = 8.0;
 constexpr double part_of_run = 1e-2;
@@ -34,7 +39,14 @@ int first_mesh(const Scene& scene) {
   if (bed == 0.0) return wanted;
   const double wave = std::pow(4.0 * beam.EI.minimum() / bed, 0.25);
   const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
-  return std::max(wanted, 4 * static_cast<int>(std::ceil(0.25 * elements_a_wave * longest / wave)));
+  if (elements_a_wave * longest / wave > most_in_a_span)
+    throw InputError(
+        fmt::format("foundation_vertical: on its bed the beam bends within {:.3g} m, which {:g} elements in the span "
+                    "of {:g} m do not "
+                    "resolve; a softer foundation, a stiffer beam_EI or a shorter span is meant, or "
+                    "beam_elements_per_span is given",
+                    wave, static_cast<double>(most_in_a_span), longest));
+  return std::max(wanted, 4 * base::whole(std::ceil(0.25 * elements_a_wave * longest / wave), most_in_a_span / 4));
 }
 
 double contact_frequency(const Scene& scene) {
@@ -56,20 +68,36 @@ double contact_frequency(const Scene& scene) {
 
 FirstSteps first_steps(const Scene& scene, double omega, double duration) {
   double step = part_of_run * duration;
-  if (omega > 0.0) step = std::min(step, 2.0 * std::numbers::pi / omega / trial_steps_a_period);
+  std::string why = "a part of the run";
+  const auto no_longer_than = [&](double most, double what, const char* text) {
+    if (most >= step) return;
+    step = most;
+    why = fmt::format("{} {:.3g} s", text, what);
+  };
+  if (omega > 0.0) {
+    const double period = 2.0 * std::numbers::pi / omega;
+    no_longer_than(period / trial_steps_a_period, period, "the first period of the beam is");
+  }
   if (const double speed = greatest_speed(scene); speed > 0.0) {
     const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
-    step = std::min({step, span / speed / steps_a_crossing, shortest_wave(scene) / speed / trial_steps_a_wave});
+    const double wave = shortest_wave(scene);
+    no_longer_than(span / speed / steps_a_crossing, span / speed, "the shortest span is crossed in");
+    no_longer_than(wave / speed / trial_steps_a_wave, wave / speed,
+                   "the shortest wave of track and wheels is passed in");
   }
-  if (scene.output.interval) step = std::min(step, *scene.output.interval);
+  if (scene.output.interval) no_longer_than(*scene.output.interval, *scene.output.interval, "output_interval is");
   const double contact = contact_frequency(scene);
   // On a track the rail goes on over the bridge's ends: nothing stirs the contacts there.
   if (scene.beam->track && greatest_speed(scene) > 0.0) {
     const double sleeper = scene.beam->track->spacing / greatest_speed(scene) / steps_a_sleeper;
-    if (contact == 0.0 || scene.accuracy >= coarse) return {std::min(step, sleeper), step};
+    if (contact == 0.0 || scene.accuracy >= coarse)
+      return {std::min(step, sleeper), step, sleeper < step ? "the sleepers are passed so fast" : why};
   }
-  if (contact == 0.0) return {step, step};
-  return {std::min(step, std::max(contact_angle_of(scene.accuracy) / contact, step / finest)), step};
+  if (contact == 0.0) return {step, step, why};
+  const double vibration = std::max(contact_angle_of(scene.accuracy) / contact, step / finest);
+  if (vibration >= step) return {step, step, why};
+  return {vibration, step,
+          fmt::format("wheels vibrate on their contacts at {:.3g} Hz", contact / (2.0 * std::numbers::pi))};
 }
 
 bool follows_contacts(const Scene& scene, double step) {

@@ -1,6 +1,8 @@
 // Mesh and step that trial runs begin with: from the periods, waves and contacts of the scene.
 #pragma once
 
+#include <string>
+
 #include "traverse/app/scene.hpp"
 
 namespace traverse::app {
@@ -16,6 +18,7 @@ double contact_frequency(const Scene& scene);
 struct FirstSteps {
   double first = 0.0;    // where the contacts' vibration is resolved as far as the accuracy wants
   double longest = 0.0;  // where all the rest is, and no stored sample is stepped over
+  std::string why;       // what asks for the first one, in words
 };
 /// omega: the first frequency of the beam, rad/s; 0: not known. duration: of a trial run, s.
 FirstSteps first_steps(const Scene& scene, double omega, double duration);

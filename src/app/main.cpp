@@ -2,10 +2,16 @@
 #include <fmt/format.h>
 #include <slepceps.h>
 
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 
+#include "process.hpp"
+#include "signals.hpp"
+#include "standard_output.hpp"
 #include "traverse/app/run.hpp"
 #include "traverse/app/scene.hpp"
 #include "traverse/base/error.hpp"
@@ -28,9 +34,11 @@ void start_lightly() {
 }
 
 bool first_rank() {
-  int started = 0, rank = 0;
+  int started = 0, ended = 0;
+  static int rank = 0;  // MPI does not tell it any more when it has ended
   MPI_Initialized(&started);
-  if (started != 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  MPI_Finalized(&ended);
+  if (started != 0 && ended == 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   return rank == 0;
 }
 
@@ -45,28 +53,43 @@ int run(traverse::options::Input& input) {
     return traverse::app::run(PETSC_COMM_WORLD, traverse::app::read_scene());
   } catch (const traverse::Error& error) {
     return complain(error);
-  } catch (const std::exception& error) {
-    return complain(traverse::Error(std::string("internal error, please report it: ") + error.what(), 70));
+  } catch (const std::exception& failure) {  // perhaps of this rank alone, and others wait for it
+    traverse::app::leave_together(PETSC_COMM_WORLD, traverse::app::as_error(failure));
   }
+}
+
+/// The status of the program, which is no success where its output was lost.
+int after_output(int status) {
+  const int lost = traverse::app::lost_output();
+  if (status != 0 || lost == 0) return status;
+  if (lost == EPIPE) return 128 + SIGPIPE;  // nobody reads any more: no harm, and nothing to say
+  return complain(traverse::FileError(std::string("standard output could not be written: ") + std::strerror(lost) +
+                                      "; the results file, if one was asked for, is complete"));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
+  traverse::app::guard_standard_output();
+  traverse::app::take_signals();
   start_lightly();
   try {
     traverse::options::Input input = traverse::options::read_input(argc, argv);
-    if (input.help) return std::fputs(traverse::options::help_text().c_str(), stdout) < 0 ? EXIT_FAILURE : 0;
-    if (input.version) return std::puts("traverse " TRAVERSE_VERSION) < 0 ? EXIT_FAILURE : 0;
+    if (input.help) return after_output(std::fputs(traverse::options::help_text().c_str(), stdout) < 0 ? 1 : 0);
+    if (input.version) return after_output(std::puts("traverse " TRAVERSE_VERSION) < 0 ? 1 : 0);
     traverse::options::Arguments words(input.petsc_words);
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
     unsetenv(no_session_folder);  // mpirun started from here would fail with it
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    traverse::app::take_signals();  // from PETSc
+    traverse::app::speak_of_signals(first_rank());
     const int status = run(input);
     SlepcFinalize();
-    return status;
+    return after_output(status);
   } catch (const traverse::Error& error) {  // before MPI has started: every rank would say it
     const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
     return rank == nullptr || *rank == '0' ? complain(error) : error.status();
+  } catch (const std::exception& failure) {
+    return complain(traverse::app::as_error(failure));
   }
 }

@@ -9,6 +9,7 @@
 #include "case_runner.hpp"
 #include "traverse/modes/modes.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/results/stage.hpp"
 
 namespace traverse::app {
 namespace {
@@ -54,7 +55,7 @@ struct Sample {
   CaseResult result;
 };
 
-/// Runs by elements of all trains in turn, from the slowest to the fastest; SolverError where a signal came.
+/// Runs by elements of all trains in turn, from the slowest to the fastest.
 std::vector<Sample> some_runs(CaseRunner& elements) {
   const std::vector<double>& speeds = elements.speeds();
   const std::size_t count = std::min(most_samples, speeds.size() * elements.trains() / runs_a_sample);
@@ -62,7 +63,6 @@ std::vector<Sample> some_runs(CaseRunner& elements) {
   for (std::size_t i = 0; i < count; ++i) {
     const double speed = speeds[i * (speeds.size() - 1) / (count - 1)];
     samples.push_back({i % elements.trains(), speed, elements.run(i % elements.trains(), speed)});
-    if (!samples.back().result.ended) throw SolverError("ended by a signal");
   }
   return samples;
 }
@@ -84,6 +84,8 @@ QuickerModes counted_modes(const beam::Beam& beam) {
 
 ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vector<std::string>& notes) {
   if (!worth_trying(scene, accuracy)) return {};
+  const options::WithoutMonitors without_monitors;
+  const results::Stage stage("trial runs by modes and by elements");
   try {
     std::vector<std::string> ignored;
     CaseRunner elements(scene, ignored);

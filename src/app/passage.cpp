@@ -6,6 +6,7 @@
 
 #include "traverse/app/peaks.hpp"
 #include "traverse/app/resolution.hpp"
+#include "traverse/results/stage.hpp"
 
 namespace traverse::app {
 namespace {
@@ -61,7 +62,7 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
                               system_.fleet().members.size(), system_.freedom(), scene.load.forces.size()));
   if (!still_)
     notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s{}", method, plan_.end_time,
-                                plan_.interval * plan_.stored,
+                                plan_.interval * static_cast<double>(plan_.stored),
                                 plan_.ends_at_sample() || scene.sweep ? "" : ", the end's own apart under /end"));
 }
 
@@ -79,6 +80,7 @@ void Passage::leave_out_rest(std::vector<std::string>& notes) {
 }
 
 void Passage::start(std::vector<std::string>& notes) {
+  const results::Stage stage("search for the static equilibrium");
   if (modal_) {  // the modes have their start; the system notes the weights
     std::vector<double> y(static_cast<std::size_t>(system_.local_size()));
     system_.start(scene_.start == Start::equilibrium, y.data());

@@ -76,7 +76,8 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
 
 // The motion between samples is known: they are as far apart as a curve needs.
 void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector<std::string>& notes) {
-  plan.interval = plan.time_step = scene.output.interval.value_or(round_down(first_period / samples_a_period));
+  plan.interval = plan.time_step =
+      std::min(plan.end_time, scene.output.interval.value_or(round_down(first_period / samples_a_period)));
   if (!scene.output.interval)
     notes.push_back(
         fmt::format("samples every {:g} s: from the first period; output_interval changes it, which "
@@ -131,18 +132,21 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
     return plan;
   }
   check_step(scene, plan);
+  if (scene.output.interval && *scene.output.interval > plan.end_time)
+    notes.push_back(fmt::format("output_interval {:g} s is longer than the run: its start and its end are stored",
+                                *scene.output.interval));
   if (scene.output.interval) {
-    plan.interval = *scene.output.interval;
-    if (scene.step_probes) {
-      plan.stored = static_cast<int>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
-      plan.interval /= plan.stored;
+    plan.interval = std::min(*scene.output.interval, plan.end_time);
+    if (scene.step_probes) {  // fewer than most_steps
+      plan.stored = static_cast<long>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
+      plan.interval /= static_cast<double>(plan.stored);
     }
-    if (plan.interval * plan.stored < plan.time_step * (1.0 - 1e-9))
+    if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
     const double steps = std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples));
-    plan.stored = scene.step_probes ? static_cast<int>(steps) : 1;
+    plan.stored = scene.step_probes ? static_cast<long>(steps) : 1;
     plan.interval = plan.time_step * (scene.step_probes ? 1.0 : steps);
   }
   move_end_to_sample(plan);

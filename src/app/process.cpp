@@ -3,34 +3,14 @@
 #include <fmt/format.h>
 #include <petscversion.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <new>
+#include <stdexcept>
 
 #include "traverse/results/terminal.hpp"
 
 namespace traverse::app {
-namespace {
-
-std::atomic<int> caught{0};
-void catch_signal(int signal) { caught = signal; }
-
-}  // namespace
-
-void catch_signals() {
-  std::signal(SIGINT, catch_signal);
-  std::signal(SIGTERM, catch_signal);
-}
-
-int caught_signal() { return caught; }
-
-int signal_on_any(MPI_Comm comm) {
-  int ranks = 1, signal = caught_signal();
-  MPI_Comm_size(comm, &ranks);
-  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &signal, 1, MPI_INT, MPI_MAX, comm);
-  return signal;
-}
 
 std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene) {
   int ranks = 1;
@@ -48,13 +28,26 @@ void print_notes(MPI_Comm comm, const std::vector<std::string>& notes) {
   if (rank == 0) results::print_modelled(notes);
 }
 
-void leave_together(MPI_Comm comm, const FileError& error) {
+void leave_together(MPI_Comm comm, const Error& error) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
   fmt::print(stderr, "traverse: {}\n", error.what());
   if (ranks > 1) MPI_Abort(comm, error.status());
   std::fflush(nullptr);
   std::_Exit(error.status());  // HDF5 may not survive closing what it could not write
+}
+
+Error as_error(const std::exception& failure) {
+  if (const auto* error = dynamic_cast<const Error*>(&failure)) return *error;
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ||
+                      dynamic_cast<const std::length_error*>(&failure) != nullptr;
+  if (memory)
+    return {
+        "there is not enough memory for this scene; make it smaller: fewer elements (beam_elements_per_span, "
+        "track_elements_per_bay, track_approach), probes (output_probes), vehicles, forces, modes (modes_count, "
+        "model_modes) or runs of a sweep",
+        5};
+  return {std::string("internal error, please report it: ") + failure.what(), 70};
 }
 
 }  // namespace traverse::app

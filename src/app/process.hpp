@@ -1,8 +1,9 @@
-// What runs and sweeps share towards the world outside: signals, the file's attributes, a disk that is full.
+// What runs and sweeps share towards the world outside: the file's attributes, a disk or a memory that is full.
 #pragma once
 
 #include <mpi.h>
 
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,17 +13,13 @@
 
 namespace traverse::app {
 
-/// From now on SIGINT and SIGTERM are kept for `caught_signal`.
-void catch_signals();
-/// The signal that asks the run to end, or 0.
-int caught_signal();
-/// Collective. The signal of any rank of comm.
-int signal_on_any(MPI_Comm comm);
-
 std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene);
 /// Rank 0 of comm says what was modelled.
 void print_notes(MPI_Comm comm, const std::vector<std::string>& notes);
 /// A file that cannot grow, which the writing rank alone knows: the others are not to wait for it.
-[[noreturn]] void leave_together(MPI_Comm comm, const FileError& error);
+[[noreturn]] void leave_together(MPI_Comm comm, const Error& error);
+
+/// Any failure as one that ends the program with a message: of memory, what to make smaller.
+Error as_error(const std::exception& failure);
 
 }  // namespace traverse::app

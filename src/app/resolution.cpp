@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "traverse/base/error.hpp"
+#include "traverse/base/whole.hpp"
 
 namespace traverse::app {
 namespace {
@@ -92,7 +93,7 @@ void check_bed(const beam::BeamModel& beam, std::vector<std::string>& notes) {
   double left = 0.0;
   for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
     const double span = beam.spans[i], lambda = bending_on_bed(beam, left, span, beam.elements[i]);
-    const auto elements = [&](double length) { return static_cast<int>(std::ceil(lambda * span / length)); };
+    const auto elements = [&](double length) { return base::whole(std::ceil(lambda * span / length)); };
     if (beam.elements[i] < elements(longest_on_bed))
       throw InputError(
           fmt::format("beam_elements_per_span = {}: the beam bends within 1/lambda = {:.3g} m of a wheel on "

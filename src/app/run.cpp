@@ -6,15 +6,18 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "deflection_check.hpp"
 #include "process.hpp"
-#include "size_check.hpp"
+#include "signals.hpp"
 #include "traverse/app/accuracy.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/app/study.hpp"
 #include "traverse/app/transient.hpp"
 #include "traverse/modes/modes.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/results/stage.hpp"
 #include "trials.hpp"
 
 namespace traverse::app {
@@ -31,10 +34,15 @@ int run_modes(MPI_Comm comm, const Scene& scene, results::Place place, Structure
   options::check_all_used(options::in_force());
   print_notes(comm, notes);
   const beam::ShapePoints points(beam.mesh());
-  const modes::Modes found = modes::natural_modes(beam, scene.mode_count, points);
+  const modes::Modes found = [&] {
+    const results::Stage stage("computation of the natural modes");
+    return modes::natural_modes(beam, scene.mode_count, points);
+  }();
   const bool damping = modes::damped(beam);
-  const modes::DampedModes damped =
-      damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
+  const modes::DampedModes damped = [&] {
+    const results::Stage stage("computation of the damped modes");
+    return damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
+  }();
   results::Layout layout;
   layout.supports = beam.mesh().span_ends();
   int rank = 0;
@@ -45,6 +53,7 @@ int run_modes(MPI_Comm comm, const Scene& scene, results::Place place, Structure
         "  damped modes are listed below |lambda| = 1/b = {:.6g} rad/s: above it the elements decide, not the beam\n",
         1.0 / std::abs(ab.b));
   if (scene.output.file.empty()) return 0;
+  const SignalsNoted noted;  // a moment, and the file is complete
   results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);
   if (damping) recorder.damped_modes(damped);
@@ -72,7 +81,11 @@ double total(MPI_Comm comm, double share) {
 /// The promise against what a refined run gives. False where it is broken.
 bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const Peaks& peaks) {
   const Scene fine = refined(scene);
-  const Peaks truth = peaks_of(comm, fine);
+  const Peaks truth = [&] {
+    const results::Stage stage("the refined run of -accuracy_report");
+    const options::WithoutMonitors without_monitors;
+    return peaks_of(comm, fine).peaks;
+  }();
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   bool all_kept = true;
@@ -121,8 +134,9 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
                     system.static_error()));
   print_notes(comm, notes);
 
+  std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
   results::Layout layout = layout_of(scene, system, beam);
-  if (!still) layout.interval = passage.plan().interval * passage.plan().stored;
+  if (!still) layout.interval = passage.plan().interval * static_cast<double>(passage.plan().stored);
   results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
   store_modes(structure, recorder);
   if (structure.beam) structure.beam->release_matrices();
@@ -132,7 +146,10 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
   double reached = 0.0;
   auto summarise = [&](const std::string& ended) {
     const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    results::Summary summary = watch.finish();
+    results::Summary summary = [&] {
+      const results::Stage stage("summary");
+      return watch.finish();
+    }();
     summary.end_time = reached;
     summary.steps = passage.steps();
     summary.rejected_steps = passage.rejected();
@@ -150,11 +167,13 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
   };
   int stopped = 0;
   try {
+    const results::Stage stage("time steps");
     passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
                 [&](double t, long steps) {
                   watch.step(t);
                   reached = t;
                   progress.update(t, steps);
+                  results::Stage::advance(t / passage.plan().end_time);
                   stopped = signal_on_any(comm);
                   return stopped == 0;
                 });
@@ -179,8 +198,9 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
         "deepest carried\n",
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
+  noted.reset();
   check_balance(scene, summary);
-  check_size(comm, scene, summary.deflection.value);
+  check_deflection(comm, scene, summary.deflection.value);
   if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
       !report(comm, scene, accuracy, watch.finished_peaks()))
     throw SolverError(
@@ -192,7 +212,9 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
 }  // namespace
 
 int run(MPI_Comm comm, const Scene& given) {
-  catch_signals();
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  const results::Heartbeat heartbeat(given.quiet || rank != 0);
   results::Place place = results::claim_place(comm, given.output.file);
   if (given.sweep) return run_sweep(comm, given, std::move(place));
   Scene scene = given;

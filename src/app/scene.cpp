@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "limits.hpp"
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
@@ -169,6 +170,7 @@ Scene read_scene(Options o) {
   read_modal(o, scene);
   check_scene(o, scene);
   check_sense(o, vehicles, scene);
+  check_size(o, scene);
   scene.options = o.all();
   return scene;
 }

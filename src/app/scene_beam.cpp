@@ -13,7 +13,8 @@ namespace {
 
 using options::Options;
 
-constexpr double most_elements = 1e8;
+constexpr double most_stations = 1e6;  // of springs at equal distances
+constexpr double most_elements = 2e7;  // see limits.cpp
 
 /// Even, so that midspan is a node; the error of deflections falls with the fourth power of the element's length.
 int elements_from_accuracy(double accuracy) {
@@ -34,7 +35,7 @@ void read_mesh(const Options& o, Scene& scene) {
   }
   if (std::accumulate(beam.elements.begin(), beam.elements.end(), 0.0) > most_elements) {
     o.refuse(o.has("beam_elements_per_span") ? "beam_elements_per_span" : "beam_spans",
-             fmt::format("more than {:g} elements in all", most_elements));
+             fmt::format("more than {0:g} elements in all; allowed: at most {0:g}", most_elements));
   }
 }
 
@@ -118,7 +119,9 @@ std::vector<double> read_stations(const Options& o, const std::string& name) {
   if (!o.has(name + "_spacing")) return x;
   if (x.size() != 2 || !(x[1] > x[0])) o.refuse(name + "_x", "with a spacing: the first and the last station");
   const double spacing = o.number(name + "_spacing"), bays = std::round((x[1] - x[0]) / spacing);
-  if (bays > most_elements || std::abs(x[0] + bays * spacing - x[1]) > 1e-6 * spacing)
+  if (bays > most_stations)
+    o.refuse(name + "_spacing", fmt::format("{:.3g} stations; allowed: at most {:g}", bays, most_stations));
+  if (std::abs(x[0] + bays * spacing - x[1]) > 1e-6 * spacing)
     o.refuse(name + "_spacing", fmt::format("does not divide the distance from {:g} to {:g} m", x[0], x[1]));
   std::vector<double> all;
   for (int i = 0; i <= static_cast<int>(bays); ++i) all.push_back(x[0] + i * spacing);

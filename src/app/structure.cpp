@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "traverse/modes/modes.hpp"
+#include "traverse/results/stage.hpp"
 
 namespace traverse::app {
 namespace {
@@ -29,6 +30,7 @@ std::string what_beam(const beam::Beam& beam) {
 
 Structure::Structure(MPI_Comm communicator, const Scene& scene, std::vector<std::string>& notes) : comm(communicator) {
   if (!scene.beam) return;
+  const results::Stage stage("assembly of the beam");
   const std::string floating = scene.analysis == Analysis::modes ? "" : beam::floating_motion(*scene.beam);
   if (!floating.empty())
     throw InputError("support_types: the beam can float away (" + floating +
@@ -44,6 +46,7 @@ Structure::Structure(MPI_Comm communicator, const Scene& scene, std::vector<std:
 }
 
 void Structure::damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
+  const results::Stage stage("search for the first frequencies");
   const Damping& damping = scene.damping;
   if (damping.frequencies)
     omega = {2.0 * std::numbers::pi * damping.frequencies->first, 2.0 * std::numbers::pi * damping.frequencies->second};
@@ -63,6 +66,7 @@ void Structure::damp(const Scene& scene, bool frequencies_wanted, std::vector<st
 
 void Structure::prepare(const Scene& scene, std::vector<std::string>& notes) {
   if (!beam) return;
+  const results::Stage stage(scene.model_modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
   statics = std::make_shared<coupling::BeamOperator>(*beam);
   if (scene.model_modes == 0) return;
   modal.emplace(*beam, *statics, scene.model_modes, scene.damping_of_modes);

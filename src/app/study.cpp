@@ -10,11 +10,13 @@
 
 #include "case_runner.hpp"
 #include "deal.hpp"
+#include "deflection_check.hpp"
 #include "modes_choice.hpp"
 #include "process.hpp"
-#include "size_check.hpp"
+#include "signals.hpp"
 #include "sweep_choice.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/results/stage.hpp"
 #include "traverse/results/sweep.hpp"
 #include "traverse/results/terminal.hpp"
 
@@ -178,11 +180,13 @@ Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal
       }
     } catch (const Error& error) {
       fail(error.status(), error.what());
-    } catch (const std::exception& error) {
-      fail(70, error.what());
+    } catch (const std::exception& failed) {
+      const Error error = as_error(failed);
+      fail(error.status(), error.what());
     }
     if (caught_signal() != 0) deal.stop();
     course.show(deal.taken(), 0.0);
+    results::Stage::advance(static_cast<double>(deal.taken()) / static_cast<double>(cases.size()));
   }
   return failure;
 }
@@ -226,6 +230,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   announce(scene, runner, choice.model, ranks, notes);
   print_notes(comm, notes);
 
+  const SignalsNoted noted;
   results::Layout layout;
   layout.probes = scene.output.probes;
   layout.supports = span_ends(*scene.beam);
@@ -236,6 +241,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   long done[2] = {0, 0};  // runs, the signal that came
   Failure failure;
   {
+    const results::Stage stage("runs of the sweep");
     Deal deal(comm, cases.size());
     failure = run_share(cases, runner, deal, course, sweep, done[0]);
     done[1] = caught_signal();
@@ -266,8 +272,9 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   }
   if (failure.run != nobody) throw Error(failure.message, failure.status);
   const std::vector<double>& peaks = sweep.deflection.value;  // std::fmax passes over runs without one
-  check_size(comm, scene,
-             std::accumulate(peaks.begin(), peaks.end(), 0.0, [](double a, double b) { return std::fmax(a, b); }));
+  check_deflection(comm, scene, std::accumulate(peaks.begin(), peaks.end(), 0.0, [](double a, double b) {
+                     return std::fmax(a, b);
+                   }));
   return done[1] == 0 ? 0 : 128 + static_cast<int>(done[1]);
 }
 

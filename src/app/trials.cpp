@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "process.hpp"
 #include "traverse/app/passage.hpp"
 #include "traverse/app/transient.hpp"
+#include "traverse/base/whole.hpp"
+#include "traverse/results/stage.hpp"
 
 namespace traverse::app {
 namespace {
@@ -17,8 +18,10 @@ constexpr double roughness = 1.3;        // times the work on vehicles on a roug
 constexpr double same_node = 1e-9;
 constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;
-constexpr std::size_t crossed_in_full = 3;  // spans
-constexpr double behind = 1.1;              // spans, until what the last wheel does as it leaves is seen
+constexpr double solves_a_step = 5.0;           // of the beam, by the default method
+constexpr double steps_a_factorisation = 10.0;  // that would cost as much as a step of a new length
+constexpr std::size_t crossed_in_full = 3;      // spans
+constexpr double behind = 1.1;                  // spans, until what the last wheel does as it leaves is seen
 
 bool is_node(const beam::BeamModel& beam, double x) {
   double left = 0.0;
@@ -87,7 +90,7 @@ void set_mesh(Scene& scene, int elements) {
     beam.elements[i] = elements == 1
                            ? 1
                            : std::max(std::min(elements, least_elements),
-                                      2 * static_cast<int>(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
+                                      2 * base::whole(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
 }
 
 int aligned_mesh(const Scene& scene, int elements) {
@@ -135,7 +138,7 @@ Scene shortened(const Scene& scene, double end) {
   return part;
 }
 
-Peaks peaks_of(MPI_Comm comm, const Scene& scene) {
+RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
   std::vector<std::string> ignored;
   Structure structure(comm, scene, ignored);
   structure.damp(scene, false, ignored);
@@ -145,15 +148,27 @@ Peaks peaks_of(MPI_Comm comm, const Scene& scene) {
   structure.beam->release_matrices();
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
   Watch watch(scene, passage.system(), structure.bridge(), none);
+  RunPeaks result;
+  const auto steps_so_far = [&] {
+    const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_a_step;
+    return std::max(static_cast<double>(passage.steps()), by_solves) +
+           steps_a_factorisation * static_cast<double>(passage.system().factorisations());
+  };
+  const results::Stage stage("time steps");
   passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
               [&](double t, long) {
                 watch.step(t);
-                return signal_on_any(comm) == 0;
+                results::Stage::advance(t / passage.plan().end_time);
+                result.complete = steps_so_far() <= most_steps;
+                return result.complete;
               });
-  return watch.finished_peaks();
+  result.steps = steps_so_far();
+  result.peaks = watch.finished_peaks();
+  return result;
 }
 
-double Trials::seconds(int elements, double step) const {
+// A step with every part of the scene; where contacts change, steps are many more than the run's length asks for.
+double Trials::seconds_a_step(int elements) const {
   const beam::BeamModel& beam = *scene_.beam;
   const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
   double bodies = 0.0;
@@ -162,9 +177,11 @@ double Trials::seconds(int elements, double step) const {
   if (std::isfinite(scene_.profile.shortest_wave())) bodies *= roughness;
   const double along = beam.track ? (beam.length() + 2.0 * beam.track->approach) / beam.track->spacing * elements
                                   : beam.length() / longest * elements;
-  const double a_step = 5e-6 + 5e-6 * bodies + along * (beam.track ? 1e-6 : 1e-7);
-  return *scene_.end_time / step * a_step;
+  const double probes = static_cast<double>(scene_.output.probes.size());
+  return 5e-6 + 5e-6 * bodies + 1e-7 * probes + along * (beam.track ? 1e-6 : 1e-7);
 }
+
+double Trials::seconds(int elements, double step) const { return *scene_.end_time / step * seconds_a_step(elements); }
 
 double Trials::seconds() const {
   double sum = 0.0;
@@ -178,14 +195,17 @@ const Peaks& Trials::run(int elements, double step) {
   set_mesh(scene, elements);
   scene.time_step = step;
   scene.output.interval = steps_a_check * step;
-  const auto peaks = [&] {
-    try {
-      return peaks_of(comm_, scene);
-    } catch (const SolverError&) {
-      return Peaks::of_failure();  // too long a step, most likely
-    }
-  };
-  return kept_.emplace(std::pair{elements, step}, peaks()).first->second;
+  const double a_step = seconds_a_step(elements), most_steps = (most_seconds - spent_) / a_step;
+  RunPeaks result;
+  try {
+    if (*scene_.end_time / step > most_steps) throw TooMuchWork();
+    result = peaks_of(comm_, scene, most_steps);
+  } catch (const SolverError&) {
+    result.peaks = Peaks::of_failure();  // too long a step, most likely
+  }
+  spent_ += result.steps * a_step;
+  if (!result.complete) throw TooMuchWork();
+  return kept_.emplace(std::pair{elements, step}, std::move(result.peaks)).first->second;
 }
 
 }  // namespace traverse::app

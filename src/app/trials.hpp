@@ -3,6 +3,7 @@
 
 #include <mpi.h>
 
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -25,14 +26,26 @@ double beginning(const Scene& scene, double end);
 /// are left out.
 Scene shortened(const Scene& scene, double end);
 
-/// Collective. The peaks of a run of the scene, whose step is given, sampled at every step.
-Peaks peaks_of(MPI_Comm comm, const Scene& scene);
+/// What is left of a run of which only the peaks are wanted.
+struct RunPeaks {
+  Peaks peaks;
+  double steps = 0.0;    // taken, those that were taken again for a contact's change too
+  bool complete = true;  // false: ended at the limit of its steps
+};
+
+/// Collective. A run of the scene, whose step is given, sampled at every step.
+RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps = std::numeric_limits<double>::infinity());
+
+/// Trial runs would take more steps than they may: by counting, so that the same scene ends so everywhere.
+struct TooMuchWork {};
 
 class Trials {
  public:
   Trials(MPI_Comm comm, Scene scene) : comm_(comm), scene_(std::move(scene)) {}
 
-  /// Collective. The peaks of a run; kept.
+  static constexpr double most_seconds = 200.0;  // of all trial runs of a scene, as `seconds` estimates them
+
+  /// Collective. The peaks of a run; kept. TooMuchWork where it would exceed what all runs may take.
   const Peaks& run(int elements, double step);
   bool has(int elements, double step) const { return kept_.contains({elements, step}); }
   std::size_t count() const { return kept_.size(); }
@@ -42,9 +55,12 @@ class Trials {
   double seconds() const;
 
  private:
+  double seconds_a_step(int elements) const;
+
   MPI_Comm comm_;
   Scene scene_;
   std::map<std::pair<int, double>, Peaks> kept_;
+  double spent_ = 0.0;  // s, estimated from the steps that were taken
 };
 
 }  // namespace traverse::app

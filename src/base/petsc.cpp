@@ -1,5 +1,6 @@
 #include "traverse/base/petsc.hpp"
 
+#include <new>
 #include <string>
 
 namespace traverse::base {
@@ -15,6 +16,7 @@ PetscErrorCode keep_exception() noexcept {
 void check(PetscErrorCode code) {
   if (code == 0) return;
   if (kept) std::rethrow_exception(std::exchange(kept, nullptr));
+  if (code == PETSC_ERR_MEM) throw std::bad_alloc();
   const char* text = nullptr;
   char* specific = nullptr;
   (void)PetscErrorMessage(code, &text, &specific);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "traverse/base/whole.hpp"
+
 namespace traverse::beam {
 
 Mesh::Mesh(const BeamModel& model) {
@@ -40,7 +42,7 @@ Station Mesh::locate(double x, bool from_left) const {
   const auto piece = std::min<std::size_t>(after - piece_ends_.begin() - 1, piece_ends_.size() - 2);
   const int first = first_element_[piece], last = first_element_[piece + 1] - 1;
   const double h = elements_[first].length;
-  int e = std::clamp(first + static_cast<int>((x - piece_ends_[piece]) / h), first, last);
+  int e = std::clamp(first + base::whole((x - piece_ends_[piece]) / h, last - first + 1), first, last);
   // The division may have rounded across a node.
   if (e < last && x >= elements_[e + 1].x) ++e;
   if (e > first && x < elements_[e].x) --e;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traverse/base/whole.hpp"
 #include "traverse/beam/model.hpp"
 
 namespace traverse::beam {
@@ -45,7 +46,7 @@ void follow_rail(const RailMesh& rail, std::vector<Piece>& pieces) {
 }  // namespace
 
 int RailMesh::first_from(double station) const {
-  return static_cast<int>(std::ceil((station - start) / element - rounding));
+  return base::whole(std::ceil((station - start) / element - rounding));
 }
 
 RailMesh rail_mesh(const BeamModel& model) {
@@ -54,7 +55,7 @@ RailMesh rail_mesh(const BeamModel& model) {
   const double first = std::floor(bays(model.start - track.approach) + rounding);
   const double last = std::ceil(bays(model.end() + track.approach) - rounding);
   return {track.offset + first * track.spacing, track.spacing / track.elements_per_bay,
-          static_cast<int>(last - first) * track.elements_per_bay};
+          base::whole((last - first) * track.elements_per_bay)};
 }
 
 BeamModel bridge_alone(const BeamModel& model) {
@@ -89,7 +90,7 @@ std::vector<Piece> pieces_of(const BeamModel& model) {
   // A span's elements are shared among its pieces by length, at least one each.
   for (Piece& piece : pieces) {
     const double share = (piece.right - piece.left) / model.spans[piece.span];
-    piece.elements = std::max(1, static_cast<int>(std::lround(model.elements[piece.span] * share)));
+    piece.elements = std::max(1, base::whole(std::round(model.elements[piece.span] * share)));
   }
   return pieces;
 }

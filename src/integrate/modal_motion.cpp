@@ -112,16 +112,16 @@ void ModalMotion::move(double dt) {
 // The powers g q' and 2 sigma q'^2 are integrated by Gauss' formula, on the exact motion.
 void ModalMotion::move_counting(double dt) {
   const double begin = speed_ > 0.0 ? history_.start[interval_] / speed_ : 0.0;
-  const auto parts = static_cast<int>(std::ceil(highest_ * dt / counted_phase));
-  const double h = dt / parts;
+  const auto parts = static_cast<long>(std::ceil(highest_ * dt / counted_phase));  // see ModalStepper: not many
+  const double h = dt / static_cast<double>(parts);
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const double omega = bridge_.omega()[i], sigma = bridge_.sigma()[i];
     const auto& p = modes_[i].particular;
     std::array<Propagator, points.size()> inner{};
     for (std::size_t k = 0; k < points.size(); ++k) inner[k] = propagator(omega, sigma, points[k] * h);
     const Propagator step = propagator(omega, sigma, h);
-    for (int part = 0; part < parts; ++part) {
-      const double from = time_ - begin + part * h;
+    for (long part = 0; part < parts; ++part) {
+      const double from = time_ - begin + static_cast<double>(part) * h;
       const double u = modes_[i].u, w = modes_[i].w;
       for (std::size_t k = 0; k < points.size(); ++k) {
         const double t = from + points[k] * h;

@@ -9,6 +9,7 @@ namespace traverse::integrate {
 namespace {
 
 constexpr double instants_a_period = 20.0;  // of the fastest mode
+constexpr long instants_unasked = 4096;     // between two questions whether to go on
 
 /// The vertex of the parabola through three instants, where the middle one is the largest.
 Peak vertex(const std::array<double, 3>& t, const std::array<double, 3>& y) {
@@ -84,7 +85,7 @@ void see(const ModalBridge& bridge, const ModalMotion& motion, std::vector<doubl
 }  // namespace
 
 std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistory& history, double speed,
-                                    bool equilibrium, double end_time) {
+                                    bool equilibrium, double end_time, const std::function<bool()>& going) {
   ModalMotion motion(bridge, history, speed, equilibrium);
   const double fastest = *std::max_element(bridge.omega().begin(), bridge.omega().end());
   const double interval = 2.0 * std::numbers::pi / fastest / instants_a_period;
@@ -100,8 +101,9 @@ std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistor
     // Instants count from the last event: steps of the expected length cost least.
     const double event = std::min(motion.next_event(), end_time);
     const double from = motion.time();
-    for (int i = 1; from + i * interval < event; ++i) {
-      motion.advance(from + i * interval);
+    for (long i = 1; from + static_cast<double>(i) * interval < event; ++i) {
+      if (i % instants_unasked == 0 && !going()) return {};
+      motion.advance(from + static_cast<double>(i) * interval);
       look();
     }
     motion.advance(event);

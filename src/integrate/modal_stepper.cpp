@@ -1,5 +1,7 @@
 #include "traverse/integrate/modal_stepper.hpp"
 
+#include <petsc/private/tsimpl.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +12,8 @@
 namespace traverse::integrate {
 namespace {
 constexpr double just_before = 1e-12;  // of the run: at a jump the samples show what was there before
-}
+constexpr double phase_at_once = 1e5;  // rad of the highest mode between looks at whether the run is to go on
+}  // namespace
 
 ModalStepper::ModalStepper(coupling::System& system, const ModalBridge& bridge, coupling::BeamOperator& statics,
                            const coupling::SystemInput& input, bool equilibrium, double end_time, double interval)
@@ -34,6 +37,7 @@ ModalStepper::ModalStepper(coupling::System& system, const ModalBridge& bridge, 
   ydot_.assign(y_.size(), 0.0);
   force_.assign(n, 0.0);
   drag_.assign(n, 0.0);
+  most_at_once_ = phase_at_once / *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
   dragged_ = *std::max_element(bridge_.own_drag().begin(), bridge_.own_drag().end()) > 0.0;
   motion_.count_energy();
   ts_ = make_modal_ts(motion_);
@@ -47,19 +51,32 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
                          const std::function<bool(double, long)>& step) {
   const double slack = 1e-3 * std::min(interval_, end_time_);
   system_.begin_step(0.0, 0.0);
+  show_to_monitors();
   sample_now(sample, Purpose::sample);
   for (bool going = true; going && motion_.time() < end_time_ - slack;) {
     double t = static_cast<double>(steps_ + 1) * interval_;
     const bool beyond = t > end_time_ + slack;  // the end is no multiple of the interval
     if (t > end_time_ - slack) t = end_time_;
-    base::check(TSSetTimeStep(ts_, t - motion_.time()));
-    base::check(TSStep(ts_));
+    for (bool there = false; going && !there;) {
+      const double left = t - motion_.time();
+      there = left <= most_at_once_;
+      base::check(TSSetTimeStep(ts_, there ? left : most_at_once_));
+      base::check(TSStep(ts_));
+      if (!there) going = step(motion_.time(), steps_);
+    }
+    if (!going) break;
     system_.begin_step(t - 2.0 * just_before * end_time_, t);
     ++steps_;
+    show_to_monitors();
     sample_now(sample, beyond ? Purpose::end : Purpose::sample);
     going = step(t, steps_) && !stopped_at_limit();
   }
   return motion_.time();
+}
+
+void ModalStepper::show_to_monitors() {
+  TS ts = ts_;
+  if (ts->numbermonitors > 0) base::check(TSMonitor(ts, static_cast<PetscInt>(steps_), motion_.time(), ts->vec_sol));
 }
 
 // This rank's nodal forces; at a jump those before it.

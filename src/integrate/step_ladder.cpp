@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traverse/base/whole.hpp"
+
 namespace traverse::integrate {
 namespace {
 
+constexpr int most_rungs = 1000;    // shorter steps than the last one are none
 constexpr int lowest = 16;          // rung that errors lead to
 constexpr int most_fallen = 4;      // rungs at once
 constexpr double growth = 16.0;     // of the error from a rung to the next: local errors of order 4
@@ -24,8 +27,8 @@ double StepLadder::length(int rung) const { return std::ldexp(longest_, -rung); 
 
 // The first rung that is not longer.
 int StepLadder::rung_within(double most) const {
-  return std::isfinite(most) ? std::max(0, static_cast<int>(std::ceil(std::log2(longest_ / most * (1.0 - rounding)))))
-                             : 0;
+  if (!std::isfinite(most)) return 0;
+  return std::max(0, base::whole(std::ceil(std::log2(longest_ / most * (1.0 - rounding))), most_rungs));
 }
 
 bool StepLadder::judge(double h, double error) {

@@ -1,5 +1,7 @@
 #include "traverse/integrate/stepper.hpp"
 
+#include <petsc/private/tsimpl.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,6 +65,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
     options::refuse_by_petsc(error.what());
   }
   check(TSGetMaxSteps(ts_, &most_steps_));
+  monitored_ = static_cast<TS>(ts_)->numbermonitors > 0;
   check(TSSetMaxSteps(ts_, no_limit));
   // Time and step are the scene's; TS takes one step at a time and never looks ahead to an end.
   check(TSSetTime(ts_, 0.0));
@@ -156,6 +159,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
     Array y(y_);
     system_.accept(t, y.data);
   }
+  show_to_monitors(t);
   while (going && t < settings_.end_time - slack) {
     double next_sample = static_cast<double>(samples + 1) * settings_.interval;
     const bool beyond = next_sample > settings_.end_time + slack;  // the end is no multiple of the interval
@@ -180,6 +184,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       const bool rewritten = system_.accept(t, y.data);
       if (rewritten) check(TSRestartStep(ts_));
       if (steps_ % steps_unseen == 0) check_bounds(t, y.data, nullptr);
+      show_to_monitors(t);
       going = step(t, steps_) && !stopped_at_limit();
     }
     if (t == next_sample) {
@@ -190,6 +195,11 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
     }
   }
   return t;
+}
+
+// TS takes single steps here, in which it calls none.
+void Stepper::show_to_monitors(double t) {
+  if (monitored_) check(TSMonitor(ts_, static_cast<PetscInt>(steps_), t, y_));
 }
 
 // What comes next on the way to a target `left` s away: a rung of the ladder, or what is left shared evenly among the

@@ -13,6 +13,8 @@
 namespace traverse::options {
 namespace {
 
+constexpr int longest_line = 4096, most_lines = 5'000'000;
+
 std::vector<double> numbers_of(std::string line, const std::string& where) {
   line.resize(std::min(line.find('#'), line.size()));
   for (char& c : line) {
@@ -27,6 +29,15 @@ std::vector<double> numbers_of(std::string line, const std::string& where) {
     numbers.push_back(number);
   }
   return numbers;
+}
+
+/// False at the end. A line without end, as of /dev/zero, is no text.
+bool read_line(std::istream& file, std::string& line, const std::string& path) {
+  char text[longest_line];
+  if (!file.getline(text, longest_line) && file.gcount() == longest_line - 1)
+    throw InputError(fmt::format("{}: a line is longer than {} characters: this is no table", path, longest_line));
+  line.assign(text);
+  return static_cast<bool>(file);
 }
 
 }  // namespace
@@ -49,8 +60,10 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
   if (!file || std::filesystem::is_directory(path)) throw InputError(path + ": the file cannot be read");
   std::vector<std::vector<double>> columns;
   int number = 0;
-  for (std::string line; std::getline(file, line);) {
+  for (std::string line; read_line(file, line, path);) {
     const std::string where = fmt::format("{}:{}: ", path, ++number);
+    if (number > most_lines)
+      throw InputError(fmt::format("{}: has too many lines; allowed: at most {}", path, most_lines));
     const std::vector<double> row = numbers_of(line, where);
     if (row.empty()) continue;
     if (columns.empty()) columns.resize(row.size());

@@ -197,6 +197,21 @@ void put_into_petsc(Input& input) {
   check_asked_at_start(last_put);
 }
 
+WithoutMonitors::WithoutMonitors() {
+  static constexpr std::array prefixes = {"ts_monitor",       "ts_view",   "ts_max_steps",
+                                          "ts_adapt_monitor", "ts_save",   "ts_trajectory",
+                                          "snes_monitor",     "snes_view", "snes_converged_reason"};
+  for (const Entry& entry : last_put)
+    if (starts_with_one_of(entry.name, prefixes)) aside_.push_back(entry);
+  for (const Entry& entry : aside_) base::check(PetscOptionsClearValue(nullptr, ("-" + entry.name).c_str()));
+}
+
+WithoutMonitors::~WithoutMonitors() {
+  for (const Entry& entry : aside_)
+    (void)PetscOptionsSetValue(nullptr, ("-" + entry.name).c_str(),
+                               entry.value.empty() ? nullptr : entry.value.c_str());
+}
+
 const Entries& in_force() { return last_put; }
 
 std::vector<std::string> check_all_used(const Entries& entries) {

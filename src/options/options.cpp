@@ -10,12 +10,14 @@
 
 #include "traverse/base/error.hpp"
 #include "traverse/options/data_file.hpp"
+#include "traverse/options/limits.hpp"
 #include "traverse/options/read_file.hpp"
 
 namespace traverse::options {
 namespace {
 
-constexpr std::size_t longest_list = 10'000'000;
+constexpr double least_number = 1e-50,
+                 greatest_number = 1e50;  // products and powers of SI units stay far from overflow
 
 std::string trim(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";  // YAML's text blocks end with a line break
@@ -185,6 +187,7 @@ std::string Options::value_or_default(std::string_view name) const {
 std::vector<std::string> Options::list(std::string_view name) const {
   const Row& known = row(name);
   const Entry* entry = entries_.find(name);
+  const std::size_t most = most_entries(name, known);
   std::vector<std::string> expanded;
   for (const std::string& word : split(entry != nullptr ? entry->value : value_or_default(name))) {
     const std::size_t star = word.rfind('*');
@@ -192,15 +195,16 @@ std::vector<std::string> Options::list(std::string_view name) const {
     if (star != std::string::npos) {
       const std::string digits = trim(word.substr(star + 1));
       const auto [stop, code] = std::from_chars(digits.data(), digits.data() + digits.size(), count);
-      if (code != std::errc() || stop != digits.data() + digits.size() || count < 1 || digits.empty()) {
+      if (code == std::errc::result_out_of_range) count = std::numeric_limits<std::size_t>::max();
+      if ((code != std::errc() && code != std::errc::result_out_of_range) || stop != digits.data() + digits.size() ||
+          count < 1 || digits.empty()) {
         refuse(name, fmt::format("'{}': after * comes a whole number, how often the value is repeated", word));
       }
     }
     const std::string value = trim(word.substr(0, star));
     if (value.empty()) refuse(name, "has an empty entry; wanted: " + allowed(known));
-    if (count > longest_list || expanded.size() + count > longest_list) {
-      refuse(name, fmt::format("a list has at most {} entries", longest_list));
-    }
+    if (count > most || expanded.size() + count > most)
+      refuse(name, fmt::format("has too many entries; allowed: at most {}", most));
     expanded.insert(expanded.end(), count, value);
   }
   return expanded;

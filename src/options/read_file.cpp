@@ -15,6 +15,7 @@ namespace traverse::options {
 namespace {
 
 constexpr int deepest_include = 8;
+constexpr std::size_t most_characters = 16 << 20;  // of a file, and of what its anchors make of it
 
 std::string at(const std::string& file, int line) { return fmt::format("{}:{}: ", file, line); }
 
@@ -72,8 +73,13 @@ class Flattener {
     }
   }
 
-  /// One file gives an option once: `beam: {mass: 1}` and `beam_mass: 2` are the same one.
+  /// One file gives an option once: `beam: {mass: 1}` and `beam_mass: 2` are the same one. An anchor that stands for a
+  /// block of anchors, and so on, may stand for more than any memory holds.
   void add(const std::string& name, std::string text, int line, bool merged) {
+    characters_ += name.size() + text.size();
+    if (characters_ > most_characters)
+      throw InputError(
+          fmt::format("{}its anchors make more than {} characters of it", at(file_, line), most_characters));
     const auto [first, is_new] = given_.try_emplace(name, line);
     if (!is_new && merged) return;
     if (!is_new) refuse_second(name, line, first->second);
@@ -101,6 +107,7 @@ class Flattener {
   const std::string& file_;
   std::vector<Entry>& entries_;
   std::unordered_map<std::string, int> given_;  // option: its line
+  std::size_t characters_ = 0;
 };
 
 /// Splits a line into words; "..." and '...' hold blanks together, # starts a comment.
@@ -150,9 +157,13 @@ std::string text_of(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw InputError("options_file = " + path + ": is a folder, not a file");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw InputError("options_file = " + path + ": there is no such file, or it cannot be read");
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
+  std::string text(most_characters + 1, '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file.gcount()));
+  if (text.size() > most_characters)
+    throw InputError(
+        fmt::format("options_file = {}: longer than {} characters: this is no options file", path, most_characters));
+  return text;
 }
 
 bool is_yaml(const std::string& path) { return path.ends_with(".yml") || path.ends_with(".yaml"); }

@@ -37,7 +37,7 @@ std::string duration_text(double s) {
   if (s < 0.9995) return fmt::format("{:.3g} ms", 1e3 * s);
   if (s < 9.995) return fmt::format("{:.3g} s", s);
   if (s < 59.5) return fmt::format("{:.0f} s", s);
-  const long whole = std::lround(s);
+  const long whole = std::lround(std::min(s, 1e12));
   if (whole < 3600) return fmt::format("{} min {:02d} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02d} min", whole / 3600, whole % 3600 / 60);
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "traverse/base/whole.hpp"
+
 namespace traverse::track {
 namespace {
 
@@ -62,7 +64,7 @@ class Scan {
   template <class Visit>
   void over_stations(Visit&& visit) const {
     const double first = x_ - half_, last = x_ + half_;
-    const int steps = std::clamp(static_cast<int>(std::ceil(2.0 * half_ / profile_.resolution())), 4, most_stations);
+    const int steps = std::clamp(base::whole(std::ceil(2.0 * half_ / profile_.resolution())), 4, most_stations);
     double before = first;
     visit(first);
     for (int i = 1; i <= steps; ++i) {

@@ -13,6 +13,7 @@ namespace traverse::track {
 namespace {
 
 constexpr double table_stations_a_wave = 96.0;
+constexpr double farthest = 1e15;   // stations, beyond which there is nothing between two of them
 constexpr std::size_t kept = 4096;  // stations, a power of two
 
 using Lanes = Eigen::Array<double, Waves::lanes, 1>;
@@ -73,7 +74,8 @@ const Height& Waves::station(std::int64_t number) const {
 }
 
 Height Waves::at(double s) const {
-  const double place = s / spacing_, left = std::floor(place), t = place - left, h = spacing_;
+  const double place = std::clamp(s / spacing_, -farthest, farthest), left = std::floor(place);
+  const double t = place - left, h = spacing_;
   const auto number = static_cast<std::int64_t>(left);
   const Height a = station(number), b = station(number + 1);
   // a.value + c1 t + c2 t^2 + ... + c5 t^5 with b's value and derivatives at t = 1

@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 
+#include "traverse/base/error.hpp"
 #include "two_pi.hpp"
 
 namespace traverse::track {
+namespace {
+
+constexpr double most_turns = 1e6;  // of a wheel with a flat: each is an event of the run
+
+}  // namespace
+
 double flat_depth(double length, double radius) { return length * length / (16.0 * radius); }
 
 RadiusGain radius_gain(const WheelShape& shape, double radius, double angle) {
@@ -33,6 +41,10 @@ RadiusGain radius_gain(const WheelShape& shape, double radius, double angle) {
 std::vector<double> flat_ends(const WheelShape& shape, double radius, double last) {
   std::vector<double> angles;
   if (!(shape.flat_length > 0.0)) return angles;
+  if (last / two_pi > most_turns)
+    throw InputError("a wheel with a flat and a radius of " + std::to_string(radius) + " m turns " +
+                     std::to_string(last / two_pi) + " times in this run; allowed: " + std::to_string(most_turns) +
+                     ", with a shorter run or a larger radius");
   const double half = 0.5 * shape.flat_length / radius;
   for (double end : {shape.flat_angle - half, shape.flat_angle + half})
     for (double turn = std::floor(-end / two_pi); end + two_pi * turn < last; turn += 1.0)

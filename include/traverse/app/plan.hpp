@@ -13,7 +13,7 @@ struct Plan {
   double end_time = 0.0;   // s
   double time_step = 0.0;  // s
   double interval = 0.0;   // s between samples
-  int stored = 1;          // every so many samples one is stored
+  long stored = 1;         // every so many samples one is stored
 
   /// Whether the end is a multiple of the interval between stored samples.
   bool ends_at_sample() const;

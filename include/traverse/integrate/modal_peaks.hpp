@@ -1,6 +1,7 @@
 // A passage of moving forces by modes where only the peaks at the probes are wanted: what a sweep is made of.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "traverse/integrate/modal_motion.hpp"
@@ -20,9 +21,10 @@ struct ProbePeaks {
 };
 
 /// From t = 0 to end_time, at every probe of the bridge. Looked for at instants a twentieth of the shortest period
-/// apart and wherever a force passes a node or a probe, and between them by parabolas.
+/// apart and wherever a force passes a node or a probe, and between them by parabolas. `going` is asked now and then;
+/// where it says no, there are no peaks.
 std::vector<ProbePeaks> modal_peaks(const ModalBridge& bridge, const ForceHistory& history, double speed,
-                                    bool equilibrium, double end_time);
+                                    bool equilibrium, double end_time, const std::function<bool()>& going);
 
 /// m: the largest deflection of each probe while the forces pass at rest.
 std::vector<double> static_peaks(const ModalBridge& bridge, const ForceHistory& history);

@@ -24,6 +24,7 @@ class ModalStepper {
   std::string method() const;
 
  private:
+  void show_to_monitors();
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void load_now(double* nodal) const;
 
@@ -35,6 +36,7 @@ class ModalStepper {
   ModalMotion motion_;
   base::Handle<TS> ts_;  // of type modal, which moves it
   PetscInt most_steps_ = 0;
+  double most_at_once_ = 0.0;  // s
   double end_time_, interval_;
   std::vector<double> sagging_;                  // m, of this rank's unknowns: of the beam's own weight
   std::vector<double> y_, ydot_, drag_, force_;  // as Instant has them; nodal forces and what they do at rest

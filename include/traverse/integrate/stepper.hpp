@@ -24,7 +24,7 @@ struct Settings {
   std::vector<double> events{};    // ascending times at which a step has to end
   double contact_tolerance = 0.0;  // s: steps end so close behind the loss or gain of a contact; 0: wherever
   std::vector<double> passages{};  // ascending times at which a step has to end and a sample is due, not to be stored
-  int stored = 1;                  // every so many of the other samples is to be stored
+  long stored = 1;                 // every so many of the other samples is to be stored
 };
 
 /// What an instant is for: one of the evenly spaced samples, a look at peaks between them, or the end of the run where
@@ -72,6 +72,7 @@ class Stepper {
   void set_up_type();
   void advance(double target);
   double next_step(double from, double left) const;
+  void show_to_monitors(double t);
   void take_step(double left);
   double step_to(double end);
   void locate_contact_change(double from);
@@ -96,6 +97,7 @@ class Stepper {
   Request request_;
   coupling::Part implicit_part_ = coupling::Part::all;
   bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false;
+  bool monitored_ = false;            // by -ts_monitor and its like
   std::optional<StepLadder> ladder_;  // of adaptive steps of an own type
   double next_step_ = 0.0;            // what the step control wants
   double last_step_ = 0.0;

@@ -50,6 +50,19 @@ class Arguments {
 /// not asked for and that are no common name.
 void put_into_petsc(Input& input);
 
+/// While it lives PETSc does not see those options that show what its solvers do or that end a run early: they are
+/// meant for the run that the user asked for, not for trial runs.
+class WithoutMonitors {
+ public:
+  WithoutMonitors();
+  ~WithoutMonitors();
+  WithoutMonitors(const WithoutMonitors&) = delete;
+  WithoutMonitors& operator=(const WithoutMonitors&) = delete;
+
+ private:
+  std::vector<Entry> aside_;
+};
+
 /// The entries that put_into_petsc saw last.
 const Entries& in_force();
 

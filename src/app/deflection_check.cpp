@@ -1,4 +1,4 @@
-#include "size_check.hpp"
+#include "deflection_check.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ constexpr double absurd = 100.0;  // of it
 
 }  // namespace
 
-void check_size(MPI_Comm comm, const Scene& scene, double deflection) {
+void check_deflection(MPI_Comm comm, const Scene& scene, double deflection) {
   if (!scene.beam) return;
   const double span = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end());
   const double size = std::abs(deflection);

@@ -1,0 +1,29 @@
+// Signals that ask the program to end. Before anything is stored they end it at once, whatever it computes; while
+// results are being written they are only noted, and the run that writes them ends in order.
+#pragma once
+
+#include <mpi.h>
+
+namespace traverse::app {
+
+/// Takes over SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE: at the start, and again after a library has set handlers
+/// of its own. A signal that was ignored when the program started (nohup) stays ignored.
+void take_signals();
+/// Only one rank of several tells the user of a signal.
+void speak_of_signals(bool speaks);
+
+/// While one lives signals are noted for `caught_signal`, whose owner has to ask for it after every step.
+class SignalsNoted {
+ public:
+  SignalsNoted();
+  ~SignalsNoted();
+  SignalsNoted(const SignalsNoted&) = delete;
+  SignalsNoted& operator=(const SignalsNoted&) = delete;
+};
+
+/// The signal that asks the run to end, or 0.
+int caught_signal();
+/// Collective. The signal of any rank of comm.
+int signal_on_any(MPI_Comm comm);
+
+}  // namespace traverse::app

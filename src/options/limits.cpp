@@ -1,0 +1,30 @@
+#include "traverse/options/limits.hpp"
+
+#include <array>
+#include <utility>
+
+namespace traverse::options {
+namespace {
+
+constexpr std::size_t of_any_list = 1'000'000;
+constexpr std::size_t of_parts = 1'000;  // of a vehicle or a train, by name: their matrices are dense
+
+constexpr std::array<std::pair<std::string_view, std::size_t>, 7> limits = {{
+    {"output_probes", 100'000},
+    {"train_vehicles", 2'000},
+    {"train_positions", 2'000},
+    {"train_spacing", 2'000},
+    {"load_forces", 100'000},
+    {"load_positions", 100'000},
+    {"sweep_hslm_a", 10},
+}};
+
+}  // namespace
+
+std::size_t most_entries(std::string_view name, const Row& row) {
+  for (const auto& [limited, most] : limits)
+    if (limited == name) return most;
+  return row.kind == Kind::texts ? of_parts : of_any_list;
+}
+
+}  // namespace traverse::options
