@@ -72,7 +72,8 @@ class Model:
             raise SystemExit("scaling.py: step_parts.csv in OUT_FOLDER has no line of 10,000 unknowns; remove it, and it "
                              "is measured again")
         steps = [float(at_10000[name]["seconds"]) for name in ("esdirk4 step", "esdirk4 step without vehicles")]
-        self.coach = (steps[0] - steps[1]) / int(at_10000["esdirk4 step"]["coaches"])
+        # On a busy machine the step with coaches may have been measured shorter than the one without.
+        self.coach = max(0.0, steps[0] - steps[1]) / int(at_10000["esdirk4 step"]["coaches"])
 
     def curve(self, part, bridge, unknowns):
         """Seconds of a part at this many unknowns, between those measured; beyond them in proportion."""

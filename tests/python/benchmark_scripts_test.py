@@ -116,6 +116,20 @@ class Scripts(InAFolder):
         self.assert_picture("times.png")
 
 
+class ScalingModel(unittest.TestCase):
+    def test_a_coach_never_takes_less_than_nothing(self):
+        scaling = importlib.import_module("scaling")
+        machine = [{}, {"message of 8 B": 1e-6, "bandwidth of 8 MB messages": 1e9, "memory of each rank": 1e10}]
+        for laden, coach in ((5e-3, 5e-4), (0.9e-3, 0.0)):
+            seconds = {"bare solve": 1e-5, "esdirk4 step without vehicles": 1e-3, "esdirk4 step": laden}
+            parts = [{"bridge": "continuous", "unknowns": "10002", "coaches": "8", "part": part, "seconds": str(s)}
+                     for part, s in seconds.items()]
+            model = scaling.Model(parts, machine)
+            self.assertAlmostEqual(model.coach, coach)
+            for ranks in (1, 2, 1000):
+                self.assertGreater(sum(model.step(10_000, "continuous", 8, ranks).values()), 0.0)
+
+
 class Arguments(InAFolder):
     def test_every_script_has_its_test(self):
         scripts = {path.stem for path in (SOURCE / "benchmarks").glob("*.py")} - PARTS - set(WITH_PROGRAMS)
