@@ -51,7 +51,7 @@ std::vector<Complex> roots(double omega, const beam::Rayleigh& ab) {
 }
 
 /// The modes of one segment.
-std::vector<DampedPair> modes_of(const Segment& s, const beam::Rayleigh& ab, int count) {
+std::vector<DampedPair> damped_modes_of(const Segment& s, const beam::Rayleigh& ab, int count) {
   const auto own = proportional(s, ab);
   if (!own) return lowest_damped(s, ab, count);
   std::vector<DampedPair> modes;
@@ -67,7 +67,7 @@ std::vector<DampedMode> lowest_damped(const std::vector<Segment>& segments, cons
   std::vector<DampedMode> modes;
   for (const Segment& s : segments) {
     const int equal = static_cast<int>(s.offsets.size());
-    for (const DampedPair& pair : modes_of(s, ab, (count + equal - 1) / equal)) {
+    for (const DampedPair& pair : damped_modes_of(s, ab, (count + equal - 1) / equal)) {
       for (int offset : s.offsets) modes.push_back({pair.lambda, &s, offset, pair.shape});
     }
   }
@@ -79,7 +79,7 @@ std::vector<DampedMode> lowest_damped(const std::vector<Segment>& segments, cons
   return modes;
 }
 
-DampedModes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* points) {
+DampedModes damped_modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* points) {
   auto segments = transverse_segments(beam, Damping::included);
   for (Segment& s : axial_segments(beam, Damping::included)) segments.push_back(std::move(s));
   DampedModes result;
@@ -94,12 +94,12 @@ DampedModes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints*
 }  // namespace
 
 DampedModes damped_modes(const beam::Beam& beam, int count, bool shapes) {
-  if (!shapes) return modes_of(beam, count, nullptr);
+  if (!shapes) return damped_modes_of(beam, count, nullptr);
   return damped_modes(beam, count, beam::ShapePoints::at_nodes(beam.mesh()));
 }
 
 DampedModes damped_modes(const beam::Beam& beam, int count, const beam::ShapePoints& points) {
-  return modes_of(beam, count, &points);
+  return damped_modes_of(beam, count, &points);
 }
 
 bool damped(const beam::Beam& beam) {
