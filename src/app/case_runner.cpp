@@ -94,8 +94,11 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed) {
   }
   result.least_wheel_force = watch.least_wheel_force();
   std::vector<double>& at_rest = static_deflection_[train];
-  if (at_rest.empty())
-    for (const double x : scene.output.probes) at_rest.push_back(passage.system().static_peak(x));
+  if (at_rest.empty() || !passage.system().pass_together(watch.paths())) {
+    at_rest.clear();
+    for (const double x : scene.output.probes)
+      at_rest.push_back(passage.system().static_peak(x, watch.paths(), watch.last().time));
+  }
   result.static_deflection = at_rest;
   return result;
 }

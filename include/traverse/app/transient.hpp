@@ -33,6 +33,7 @@ class Watch {
   const results::Summary& extremes() const { return summary_; }
   /// N, so far; 0 without wheels.
   double least_wheel_force() const;
+  const coupling::WheelPaths& paths() const { return paths_; }
   /// The extremes so far, after the last sample.
   const Peaks& finished_peaks();
 
@@ -56,6 +57,7 @@ class Watch {
   std::vector<beam::Response> rail_, dragged_;
   Peaks peaks_;
   WheelExtremes wheels_;
+  coupling::WheelPaths paths_;  // where wheels are free to change their distances
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;
   bool finished_ = false;
