@@ -59,6 +59,7 @@ void Watch::sample(const integrate::Instant& instant) {
   fill_vehicles(sample_);
   step(instant.time);  // the first instant is no step's end
   note_peaks(v, w);
+  if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
   if (instant.purpose != integrate::Purpose::look) store(v, w, instant.purpose == integrate::Purpose::end);
 }
 
@@ -240,7 +241,7 @@ results::Summary Watch::finish() {
   MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
   if (some == 0) return summary_;
   if (scene_.analysis == Analysis::transient)
-    summary_.static_deflection = system_.static_peak(summary_.deflection.place);
+    summary_.static_deflection = system_.static_peak(summary_.deflection.place, paths_, sample_.time);
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
   recorder_.shape(shape_of(*beam_, scene_, worst_));

@@ -260,6 +260,24 @@ Forces Recovery::inside(std::size_t station, double x, ElementLoad load) const {
   return {added.moment, added.shear, added.axial_force};
 }
 
+double Recovery::deflection_inside(std::size_t station, const ElementLoad& load) const {
+  const Section& s = sections_[station];
+  if (load.element != s.at.element) return 0.0;
+  Response added;
+  s.add_load(load, added);
+  return added.deflection;
+}
+
+double Recovery::add_deflection_form(std::size_t station, double factor, double* forces) const {
+  const Section& s = sections_[station];
+  constexpr std::array<std::size_t, 4> transverse = {1, 2, 4, 5};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const int local = beam_.local(s.unknowns[transverse[i]]);
+    if (local >= 0) forces[local] += factor * (s.psi.value[i] + s.held_by_stiffness[i]);
+  }
+  return s.weight.deflection;
+}
+
 void Recovery::gather(const double* v, const double* w, const double* a) {
   std::size_t at = 0;
   const auto take = [&](const double* vector, int unknown) {

@@ -3,17 +3,16 @@
 #include <cmath>
 #include <limits>
 
-#include "traverse/beam/shape.hpp"
 #include "traverse/coupling/system.hpp"
 
 namespace traverse::coupling {
 namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr int static_positions = 2000;  // of the train along its way, for the static peak
 }  // namespace
 
 std::vector<std::string> System::start(bool equilibrium, double* y) {
   std::fill_n(y, local_size(), 0.0);
+  const bool weighed = !equilibrium && weigh_at_rest();
   if (equilibrium) {
     find_equilibrium(y);
   } else if (input_.self_weight && beam_ != nullptr) {
@@ -28,8 +27,25 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
   std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
   fleet_.start_rolling();
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
-  note_weights();
+  if (!weighed) note_weights();
   return notes;
+}
+
+// What the wheels weigh, whatever state the scene gives them to start with. False where they find no rest.
+bool System::weigh_at_rest() {
+  if (beam_ == nullptr || fleet_.wheels.empty()) return false;
+  Fleet given = fleet_;
+  std::vector<double> deflection(static_cast<std::size_t>(n_));
+  bool found = true;
+  try {
+    find_equilibrium(deflection.data());
+    note_weights();
+  } catch (const SolverError&) {
+    found = false;
+    nothing_holds_.clear();
+  }
+  fleet_ = std::move(given);
+  return found;
 }
 
 // A wheel with friction that can turn freely begins without sliding, unless its turning speed is given.
@@ -104,80 +120,6 @@ double System::leaving_time() const {
   for (const WheelContact& c : fleet_.wheels) leave(fleet_.coordinates(c).x(), input_.train.speed);
   for (double x : input_.load.positions) leave(x, input_.load.speed);
   return last;
-}
-
-// Deflection and rotation at every node of the line that wheels run on under a unit downward force on the bridge at
-// `station`, complete on every rank: what that force's place deflects by when the unit force travels.
-std::vector<double> System::influence_line(double station) {
-  std::fill(nodal_.begin(), nodal_.end(), 0.0);
-  const beam::Station s = beam_->mesh().locate(station);
-  add_point_load(beam_->bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
-  release_held(nodal_.data());
-  operator_->solve_static(nodal_.data());
-  influence_of_weight_ = 0.0;
-  for (int i = 0; i < n_; ++i) influence_of_weight_ -= nodal_[i] * dead_load_[i];
-  MPI_Allreduce(MPI_IN_PLACE, &influence_of_weight_, 1, MPI_DOUBLE, MPI_SUM, comm_);
-  std::vector<double> line(4 * static_cast<std::size_t>(line_->mesh.elements()), 0.0);
-  for (int e = 0; e < line_->mesh.elements(); ++e) {
-    const auto unknowns = line_->transverse(e);
-    for (int i = 0; i < 4; ++i) {
-      const int local = beam_->local(unknowns[i]);
-      if (local >= 0) line[4 * static_cast<std::size_t>(e) + i] = nodal_[local];
-    }
-  }
-  MPI_Allreduce(MPI_IN_PLACE, line.data(), static_cast<int>(line.size()), MPI_DOUBLE, MPI_SUM, comm_);
-  return line;
-}
-
-double System::ordinate(const std::vector<double>& line, double x) const {
-  const beam::Mesh& mesh = line_->mesh;
-  if (x < mesh.start() || x > mesh.end()) return 0.0;
-  const beam::Station s = mesh.locate(x);
-  const beam::Hermite psi = beam::hermite(s.xi, mesh.element(s.element).length);
-  double sum = 0.0;
-  for (int i = 0; i < 4; ++i) sum += psi.value[i] * line[4 * static_cast<std::size_t>(s.element) + i];
-  return sum;
-}
-
-// Whether one influence line serves for all weights at once.
-bool System::passes_together() const {
-  if (beam_ == nullptr || weights_.empty() || nonlinear_) return false;  // without superposition there is none
-  const bool apart = input_.train.speed != input_.load.speed;            // train and forces pass each other
-  return !apart || fleet_.wheels.empty() || input_.load.forces.empty();
-}
-
-double System::static_peak(double station) {
-  if (!passes_together()) return 0.0;
-  const std::vector<double> line = influence_line(station);
-  return peak_of_weights(line, station, influence_of_weight_);
-}
-
-// What a single load does that deflects the station at most as the passing weights do, J; 0: there is none.
-double System::static_energy(double station) {
-  if (!passes_together()) return 0.0;
-  const std::vector<double> line = influence_line(station);
-  const double deflection = peak_of_weights(line, station, 0.0), compliance = std::abs(ordinate(line, station));
-  return compliance > 0.0 ? 0.5 * deflection * deflection / compliance : 0.0;
-}
-
-// Of the station, the constant added.
-double System::peak_of_weights(const std::vector<double>& line, double station, double constant) const {
-  const beam::Mesh& mesh = line_->mesh;
-  double front = -infinite, rear = infinite;
-  for (const auto& [x, force] : weights_) {
-    front = std::max(front, x);
-    rear = std::min(rear, x);
-  }
-  // Every weight over the station in turn (where the line peaks), and evenly along the whole way.
-  double peak = 0.0;
-  auto try_shift = [&](double shift) {
-    double sum = constant;
-    for (const auto& [x, force] : weights_) sum += force * ordinate(line, x + shift);
-    peak = std::max(peak, std::abs(sum));
-  };
-  for (const auto& [x, force] : weights_) try_shift(station - x);
-  for (int i = 0; i <= static_positions; ++i) try_shift(-front + (mesh.end() + front - rear) * i / static_positions);
-  return peak;
 }
 
 }  // namespace traverse::coupling

@@ -65,6 +65,11 @@ class Recovery {
   }
   /// What a load adds to the forces by acting inside the station's element, if it stood at x: none elsewhere.
   Forces inside(std::size_t station, double x, ElementLoad load) const;
+  /// And to its deflection, m.
+  double deflection_inside(std::size_t station, const ElementLoad& load) const;
+  /// Adds `factor` times the deflection of a station on the bridge, as a form of this rank's nodal displacements, to
+  /// `forces`. Returns what the beam's weight adds to the deflection between nodes, m.
+  double add_deflection_form(std::size_t station, double factor, double* forces) const;
 
  private:
   struct Section;  // what is known of a station beforehand

@@ -31,6 +31,7 @@
 #include "traverse/coupling/rest_window.hpp"
 #include "traverse/coupling/separations.hpp"
 #include "traverse/coupling/vehicle_share.hpp"
+#include "traverse/coupling/wheel_paths.hpp"
 
 namespace traverse::coupling {
 
@@ -170,10 +171,12 @@ class System {
   std::vector<double> corners() const;
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
   double leaving_time() const;
-  /// Collective. Largest magnitude of the static deflection at a station while the train and the forces pass with
-  /// their weights at rest, the beam's own weight included where it acts: the influence line of that station (0 when
-  /// there is none, or the foundation not linear).
-  double static_peak(double station);
+  /// Collective. Largest magnitude of the static deflection at a station under the weights of the whole train and all
+  /// forces, the beam's own weight included where it acts: where they keep their distances, placed wherever it is
+  /// worst; where they do not, as they were along `paths` until `end`, s. 0 where the foundation is not linear.
+  double static_peak(double station, const WheelPaths& paths, double end);
+  /// Whether they keep them.
+  bool pass_together(const WheelPaths& paths) const;
 
   /// Estimated relative error of static solutions so far, from rounding.
   double static_error() const { return operator_ ? operator_->static_error() : 0.0; }
@@ -218,6 +221,7 @@ class System {
   enum class Solution { found, fleet_unsettled, foundation_unsettled };
 
   void find_equilibrium(double* v);
+  bool weigh_at_rest();
   void let_wheels_roll();
   void stand_still();
   void go_on_from(std::vector<double> p);
@@ -226,10 +230,10 @@ class System {
   void add_flats(const WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
   void note_weights();
-  std::vector<double> influence_line(double station);
-  double ordinate(const std::vector<double>& influence_line, double x) const;
-  double peak_of_weights(const std::vector<double>& influence_line, double station, double constant) const;
-  bool passes_together() const;
+  struct InfluenceLine;
+  InfluenceLine influence_line(double station);
+  double peak_of_train(const InfluenceLine& line, double constant) const;
+  double peak_on_the_way(const InfluenceLine& line, const WheelPaths& paths, double end) const;
   double static_energy(double station);
   double note_contacts(double t);
   void share_coordinates(const double* y);
@@ -292,7 +296,6 @@ class System {
   std::vector<char> on_beam_;                       // of each moving force, during the step under way
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
   std::string nothing_holds_;                       // why there is no static equilibrium, where that is known
-  double influence_of_weight_ = 0.0;                // deflection of the influence line's station under self-weight, m
   std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
   std::vector<double> p_still_, pd_still_, x_;      // p and p' at zero acceleration, and the stage's change of p
   std::vector<double> evaluated_;                   // p of the state that the fleet was last set to

@@ -1,0 +1,137 @@
+// The largest static deflection of a station under the weights that pass: what dynamic amplification is measured by.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "traverse/beam/shape.hpp"
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr int positions = 2000;   // of the weights along their way
+constexpr double together = 0.5;  // m: weights whose distances change by less pass as one train
+
+}  // namespace
+
+// The deflection of a station under a unit downward force on the line that wheels run on, over the force's place. What
+// the nodal values of the station's element give is a load on the structure, whose deflections are that line (Maxwell
+// and Betti); a force on that element deflects it between its nodes besides.
+struct System::InfluenceLine {
+  double station = 0.0;
+  std::vector<double> nodal;             // deflection and rotation at both ends of every element, on every rank
+  std::optional<beam::Recovery> inside;  // of the station; none where wheels run on a rail
+  double of_weight = 0.0;                // m: what the beam's own weight adds
+
+  double at(const beam::Mesh& mesh, double x) const {
+    if (x < mesh.start() || x > mesh.end()) return 0.0;
+    const beam::Station s = mesh.locate(x);
+    const beam::Hermite psi = beam::hermite(s.xi, mesh.element(s.element).length);
+    double sum = inside ? inside->deflection_inside(0, {s.element, s.xi, 0.0, -1.0, 0.0}) : 0.0;
+    for (int i = 0; i < 4; ++i) sum += psi.value[i] * nodal[4 * static_cast<std::size_t>(s.element) + i];
+    return sum;
+  }
+};
+
+System::InfluenceLine System::influence_line(double station) {
+  InfluenceLine line{station, std::vector<double>(4 * static_cast<std::size_t>(line_->mesh.elements()), 0.0), {}, 0.0};
+  std::fill(nodal_.begin(), nodal_.end(), 0.0);
+  const beam::Station s = beam_->mesh().locate(station);
+  if (beam_->rail() != nullptr) {
+    add_point_load(beam_->bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
+  } else {
+    line.inside.emplace(*beam_, std::vector<double>{station}, input_.self_weight ? input_.gravity : 0.0);
+    line.of_weight = line.inside->add_deflection_form(0, -1.0, nodal_.data());
+  }
+  release_held(nodal_.data());
+  operator_->solve_static(nodal_.data());
+  double of_weight = 0.0;
+  for (int i = 0; i < n_; ++i) of_weight -= nodal_[i] * dead_load_[i];
+  MPI_Allreduce(MPI_IN_PLACE, &of_weight, 1, MPI_DOUBLE, MPI_SUM, comm_);
+  line.of_weight += of_weight;
+  for (int e = 0; e < line_->mesh.elements(); ++e) {
+    const auto unknowns = line_->transverse(e);
+    for (int i = 0; i < 4; ++i) {
+      const int local = beam_->local(unknowns[i]);
+      if (local >= 0) line.nodal[4 * static_cast<std::size_t>(e) + i] = nodal_[local];
+    }
+  }
+  MPI_Allreduce(MPI_IN_PLACE, line.nodal.data(), static_cast<int>(line.nodal.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  return line;
+}
+
+// Whether all weights keep their distances: then the train is placed wherever it is worst.
+bool System::pass_together(const WheelPaths& paths) const {
+  const bool apart = !fleet_.wheels.empty() && !input_.load.forces.empty() && input_.train.speed != input_.load.speed;
+  return !apart && paths.drift() < together;
+}
+
+double System::static_peak(double station, const WheelPaths& paths, double end) {
+  if (beam_ == nullptr || weights_.empty() || nonlinear_) return 0.0;  // without superposition there is none
+  const InfluenceLine line = influence_line(station);
+  return pass_together(paths) ? peak_of_train(line, line.of_weight) : peak_on_the_way(line, paths, end);
+}
+
+// What a single load does that deflects the station at most as the passing weights do, J; 0: there is none.
+double System::static_energy(double station) {
+  if (beam_ == nullptr || weights_.empty() || nonlinear_ || !pass_together({})) return 0.0;
+  const InfluenceLine line = influence_line(station);
+  const double deflection = peak_of_train(line, 0.0), compliance = std::abs(line.at(line_->mesh, station));
+  return compliance > 0.0 ? 0.5 * deflection * deflection / compliance : 0.0;
+}
+
+// Every weight over the station in turn (where the line peaks), and evenly along the whole way; the constant added.
+double System::peak_of_train(const InfluenceLine& line, double constant) const {
+  const beam::Mesh& mesh = line_->mesh;
+  double front = -infinite, rear = infinite;
+  for (const auto& [x, force] : weights_) {
+    front = std::max(front, x);
+    rear = std::min(rear, x);
+  }
+  double peak = 0.0;
+  auto try_shift = [&](double shift) {
+    double sum = constant;
+    for (const auto& [x, force] : weights_) sum += force * line.at(mesh, x + shift);
+    peak = std::max(peak, std::abs(sum));
+  };
+  for (const auto& [x, force] : weights_) try_shift(line.station - x);
+  for (int i = 0; i <= positions; ++i)
+    try_shift(mesh.start() - front + (mesh.end() - mesh.start() + front - rear) * i / positions);
+  return peak;
+}
+
+// Where the weights are at the same time, from t = 0 to the end: whenever one is over the station, and evenly.
+double System::peak_on_the_way(const InfluenceLine& line, const WheelPaths& paths, double end) const {
+  const std::size_t wheels = fleet_.wheels.size(), known = paths.instants();
+  const auto place = [&](std::size_t i, std::size_t instant, double t) {
+    if (i < wheels && known > 1) return paths.x(instant, i);
+    return weights_[i].first + t * (i < wheels ? input_.train.speed : input_.load.speed);
+  };
+  std::vector<double> from(weights_.size()), way(weights_.size());
+  double peak = 0.0;
+  const auto try_part = [&](double part) {
+    double sum = line.of_weight;
+    for (std::size_t i = 0; i < weights_.size(); ++i)
+      sum += weights_[i].second * line.at(line_->mesh, from[i] + part * way[i]);
+    peak = std::max(peak, std::abs(sum));
+  };
+  const std::size_t stretches = known > 1 ? known - 1 : 1;
+  const int parts = std::max(1, positions / static_cast<int>(stretches));
+  for (std::size_t k = 0; k < stretches; ++k) {
+    const double begin = known > 1 ? paths.time(k) : 0.0, next = known > 1 ? paths.time(k + 1) : end;
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      from[i] = place(i, k, begin);
+      way[i] = place(i, k + 1, next) - from[i];
+    }
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      const double part = (line.station - from[i]) / way[i];
+      if (part >= 0.0 && part <= 1.0) try_part(part);
+    }
+    for (int i = 0; i <= parts; ++i) try_part(static_cast<double>(i) / parts);
+  }
+  return peak;
+}
+
+}  // namespace traverse::coupling
