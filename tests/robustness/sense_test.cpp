@@ -117,11 +117,11 @@ TEST(Quantities, BelowAnyBeam) {
 // Stiffnesses below PETSc's idea of a pivot that is zero: a matter of units. f1 = pi/(2 L^2) sqrt(EI/m).
 TEST(Quantities, WeakBeamsHaveFrequencies) {
   const Workplace workplace(
-      "beam: {spans: 25.0, EI: 1.0e-6, mass: 2303.0}\nsupport: {types: [pinned, roller]}\n"
+      "beam: {spans: 1.0e6, EI: 1.0e-6, mass: 2303.0}\nsupport: {types: [pinned, roller]}\n"
       "scene: {analysis: modes}\nmodes: {count: 3}\noutput: {file: none}\n");
   const Outcome outcome = workplace.run({"-beam_elements_per_span", "40"});
   expect_success(outcome);
-  EXPECT_NE(outcome.out.find("5.2371"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("3.273"), std::string::npos) << outcome.out;
 }
 
 TEST(Quantities, DeflectionsBeyondAnyBeam) {
