@@ -14,8 +14,8 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t runs_a_sample = 10, most_samples = 9, least_runs = 2 * runs_a_sample;
-constexpr double share = 0.25;                              // of the wanted error: other runs may be off by more
+constexpr std::size_t runs_a_sample = 10, most_sampled_runs = 9, least_runs = 2 * runs_a_sample;
+constexpr double share_of_modes = 0.25;                     // of the wanted error: other runs may be off by more
 constexpr double code_frequency = 30.0, code_factor = 1.5;  // Hz; times the first one
 constexpr std::size_t code_modes = 3;
 constexpr int most_counted = 64, nodes_for_a_question = 1000;
@@ -58,7 +58,7 @@ struct Sample {
 /// Runs by elements of all trains in turn, from the slowest to the fastest.
 std::vector<Sample> some_runs(CaseRunner& elements) {
   const std::vector<double>& speeds = elements.speeds();
-  const std::size_t count = std::min(most_samples, speeds.size() * elements.trains() / runs_a_sample);
+  const std::size_t count = std::min(most_sampled_runs, speeds.size() * elements.trains() / runs_a_sample);
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < count; ++i) {
     const double speed = speeds[i * (speeds.size() - 1) / (count - 1)];
@@ -97,7 +97,7 @@ ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vec
       if (modes.cost() > elements.cost()) return {};
       double worst = 0.0;
       for (const Sample& s : samples) worst = std::max(worst, difference(modes.run(s.train, s.speed), s.result));
-      if (worst > share * scene.accuracy) continue;
+      if (worst > share_of_modes * scene.accuracy) continue;
       notes.push_back(fmt::format(
           "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "
           "-model_modes 0 keeps the elements",

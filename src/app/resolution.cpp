@@ -29,7 +29,7 @@ constexpr double least_steps_a_wave = 8.0, good_steps_a_wave = 20.0;
 // Sleepers and contacts that oscillate stir wheel forces less: a part of what varies is lost.
 constexpr double steps_a_sleeper = 4.0, steps_an_oscillation = 10.0;
 
-constexpr double most_samples = 1e10;
+constexpr double most_stored_samples = 1e10;
 constexpr double shortest_run = 1e-12;  // s
 
 bool loaded(const Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
@@ -125,9 +125,9 @@ void check_times(const Plan& plan) {
   if (plan.end_time < shortest_run)
     throw InputError(fmt::format("ts_max_time = {:g}: too short a run for rounding; allowed: at least {:g} s",
                                  plan.end_time, shortest_run));
-  if (!(plan.end_time / plan.interval < most_samples))
+  if (!(plan.end_time / plan.interval < most_stored_samples))
     throw InputError(fmt::format("output_interval = {:g}: too many samples to the end at {:g} s; allowed: above {:g} s",
-                                 plan.interval, plan.end_time, plan.end_time / most_samples));
+                                 plan.interval, plan.end_time, plan.end_time / most_stored_samples));
 }
 
 void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
