@@ -19,7 +19,7 @@ constexpr double same_node = 1e-9;
 constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;
 constexpr double solves_a_step = 5.0;           // of the beam, by the default method
-constexpr double steps_a_factorisation = 10.0;  // that would cost as much as a step of a new length
+constexpr double steps_a_factorisation = 30.0;  // that would cost as much as a step of a new length
 constexpr std::size_t crossed_in_full = 3;      // spans
 constexpr double behind = 1.1;                  // spans, until what the last wheel does as it leaves is seen
 

@@ -43,7 +43,7 @@ class Trials {
  public:
   Trials(MPI_Comm comm, Scene scene) : comm_(comm), scene_(std::move(scene)) {}
 
-  static constexpr double most_seconds = 200.0;  // of all trial runs of a scene, as `seconds` estimates them
+  static constexpr double most_seconds = 150.0;  // of all trial runs of a scene, as `seconds` estimates them
 
   /// Collective. The peaks of a run; kept. TooMuchWork where it would exceed what all runs may take.
   const Peaks& run(int elements, double step);
