@@ -88,7 +88,7 @@ class Failed(RuntimeError):
 
 
 class Run:
-    """One run: seconds of its time loop and of the whole process, steps, unknowns, and the results file."""
+    """One run: seconds of its time loop and of the whole process, unknowns, the results file, and steps unless it sweeps."""
 
     def __init__(self, build, options, file, ranks=1):
         command = on_ranks(ranks) + [traverse(build)]
@@ -103,7 +103,7 @@ class Run:
         self.file = file
         with h5py.File(file) as results:
             self.seconds = float(results.attrs["wall_seconds"])
-            self.steps = int(results.attrs["steps"])
+            self.steps = int(results.attrs.get("steps", 0))
 
 
 def unknowns(text):

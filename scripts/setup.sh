@@ -104,4 +104,5 @@ export OMPI_MCA_rmaps_base_oversubscribe="${OMPI_MCA_rmaps_base_oversubscribe:-1
 export PRTE_MCA_rmaps_default_mapping_policy="${PRTE_MCA_rmaps_default_mapping_policy:-:oversubscribe}"
 # No process reads another's memory, which containers forbid.
 export OMPI_MCA_btl_vader_single_copy_mechanism="${OMPI_MCA_btl_vader_single_copy_mechanism:-none}"
+export UCX_LOG_LEVEL="${UCX_LOG_LEVEL:-fatal}"  # of a transport that is not used
 export HWLOC_COMPONENTS="${HWLOC_COMPONENTS:--gl,-opencl}" HWLOC_HIDE_ERRORS="${HWLOC_HIDE_ERRORS:-2}"

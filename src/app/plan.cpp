@@ -133,11 +133,11 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   }
   check_step(scene, plan);
   if (scene.output.interval && *scene.output.interval > plan.end_time)
-    notes.push_back(fmt::format("output_interval {:g} s is longer than the run: its start and its end are stored",
+    notes.push_back(fmt::format("output_interval {:g} s is longer than the run: of its series only the start is stored",
                                 *scene.output.interval));
   if (scene.output.interval) {
-    plan.interval = std::min(*scene.output.interval, plan.end_time);
-    if (scene.step_probes) {  // fewer than most_steps
+    plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
+    if (scene.step_probes) {
       plan.stored = static_cast<long>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
       plan.interval /= static_cast<double>(plan.stored);
     }

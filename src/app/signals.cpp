@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstring>
 
+#include "traverse/results/place.hpp"
 #include "traverse/results/stage.hpp"
 
 namespace traverse::app {
@@ -39,6 +40,7 @@ std::atomic<bool> speaking{true};
     say(results::Stage::now());
     say("\n");
   }
+  results::remove_made_place();
   _exit(128 + number);
 }
 

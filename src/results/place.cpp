@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -19,6 +20,10 @@ namespace traverse::results {
 namespace {
 
 namespace fs = std::filesystem;
+
+// What a signal that ends the program at once has to remove: the file, then its folders, the innermost first.
+std::vector<std::string> made_names;
+std::atomic<bool> made_something{false};
 
 constexpr const char* hdf5_locks = "HDF5_USE_FILE_LOCKING";
 
@@ -108,10 +113,15 @@ void Place::claim() {
   if (::fstat(descriptor_, &status) != 0) fail(path_, std::strerror(errno));
   if (status.st_size > 0 && !is_results_file(path_))
     fail(path_, "it is there already and is no results file of Traverse; name another file with -output_file");
+  if (!made_) return;
+  made_names = {path_};
+  made_names.insert(made_names.end(), folders_.rbegin(), folders_.rend());
+  made_something = true;
 }
 
 void Place::give_up() noexcept {
   std::error_code ignored;
+  if (made_) made_something = false;
   if (made_) fs::remove(path_, ignored);
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) fs::remove(*folder, ignored);
   if (descriptor_ >= 0) ::close(descriptor_);
@@ -121,8 +131,15 @@ void Place::give_up() noexcept {
 }
 
 void Place::keep() {
+  made_something = false;
   made_ = false;
   folders_.clear();
+}
+
+void remove_made_place() noexcept {
+  if (!made_something) return;
+  for (const std::string& name : made_names)
+    if (::unlink(name.c_str()) != 0) (void)::rmdir(name.c_str());
 }
 
 Place claim_place(MPI_Comm comm, const std::string& path) {

@@ -32,7 +32,7 @@ class BenchmarkRuns(unittest.TestCase):
 
     def test_layered_track(self):
         run = self.run_scene("r8_ballasted_bridge", {"ts_dt": 1e-2, "output_interval": 1e-2, "ts_max_steps": 2,
-                                                     "track_approach": 57.6})
+                                                     "track_approach": 57.6, "track_elements_per_bay": 2})
         # 276 bays: rail of two elements a bay, sleepers, bridge of 166 elements, ballast beside its 83 bays, the coach.
         self.assertEqual(run.unknowns, 2 * 553 + 277 + 2 * 167 + (276 - 83) + 10)
 

@@ -198,8 +198,8 @@ TEST(TrackStep, IsHitFast) {
   const TemporaryFolder folder;
   const std::string file = step_file(folder);
   const auto hit = [&](const char* step) {
-    return run_yaml(std::string(quarter_car) + "train_speed: 10.0\nts_max_time: 0.01\noutput: {interval: 2.0e-4}\n",
-                    {{"track_profile", file}, {"train_positions", "-0.05"}, {"ts_dt", step}});
+    return run_yaml(std::string(quarter_car) + "ts_max_time: 0.01\noutput: {interval: 2.0e-4}\n",
+                    {{"track_profile", file}, {"train_speed", "10.0"}, {"train_positions", "-0.05"}, {"ts_dt", step}});
   };
   Results run = hit("4e-5"), fine = hit("4e-6");
   EXPECT_GT(highest(fine(wheel_force)), 3.0 * quarter_car_weight);

@@ -39,6 +39,9 @@ class Place {
 /// Collective: rank 0 claims the place, the others hold none. The same FileError on every rank.
 Place claim_place(MPI_Comm comm, const std::string& path);
 
+/// Removes what a place that is not kept has made; only calls what a signal handler may call.
+void remove_made_place() noexcept;
+
 /// Collective: a failure on rank 0, empty when there is none, becomes the same FileError on every rank.
 void share_failure(MPI_Comm comm, std::string failure);
 
