@@ -14,6 +14,7 @@
 // Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
 #pragma once
 
+#include <array>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -169,6 +170,21 @@ class System {
   std::vector<double> known_events(double end, bool kinks = true) const;
   /// Ascending stations at which the running surface may have a corner: of the profile, and span ends.
   std::vector<double> corners() const;
+  /// A wheel begins or ends to turn about a corner of the bridge's surface: when, and how exactly a step has to end
+  /// there.
+  struct Turn {
+    double time = 0.0, tolerance = 0.0;  // s
+    std::size_t corner = 0;
+    int end = 0;
+  };
+  /// Before the first step, the longest one: such corners until `end` are to be looked for, where the speed is
+  /// prescribed.
+  void expect_corners(double end, double step);
+  /// Collective. The first such time within h s from the accepted state y at t, as it lets it be expected.
+  std::optional<Turn> next_turn(double t, double h, const double* y);
+  /// Collective. The same as it is found at the end of a step, where the vehicles are.
+  double time_of(const Turn& turn, double t, const double* y) const;
+
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
   double leaving_time() const;
   /// Collective. Largest magnitude of the static deflection at a station under the weights of the whole train and all
@@ -230,6 +246,14 @@ class System {
   void add_flats(const WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
   void note_weights();
+  /// A wheel's centre passes a corner of the surface.
+  struct Corner {
+    double time = 0.0;  // s
+    int wheel = 0;      // of the fleet's
+    double x = 0.0;     // m
+  };
+  double longest_turn(const Corner& corner) const;
+  std::array<double, 2> turning_times(const Corner& corner, double t, const double* y) const;
   struct InfluenceLine;
   InfluenceLine influence_line(double station);
   double peak_of_train(const InfluenceLine& line, double constant) const;
@@ -295,10 +319,13 @@ class System {
   std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
   std::vector<char> on_beam_;                       // of each moving force, during the step under way
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
-  std::string nothing_holds_;                       // why there is no static equilibrium, where that is known
-  std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
-  std::vector<double> p_still_, pd_still_, x_;      // p and p' at zero acceleration, and the stage's change of p
-  std::vector<double> evaluated_;                   // p of the state that the fleet was last set to
+  std::vector<Corner> corners_;                     // ascending in time
+  double longest_step_ = 0.0;
+  std::size_t next_corner_ = 0;                 // the first that may not have been turned
+  std::string nothing_holds_;                   // why there is no static equilibrium, where that is known
+  std::vector<double> p_, c_p_, pdd_;           // p, p' and their c, p'', the same on all ranks
+  std::vector<double> p_still_, pd_still_, x_;  // p and p' at zero acceleration, and the stage's change of p
+  std::vector<double> evaluated_;               // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
   unsigned signs_ = 0;         // VehicleShare's of that state or, after a step, of its end
   std::vector<double> v_, w_;  // of the elements in touch, 2*per_node each

@@ -24,6 +24,7 @@ struct Settings {
   std::vector<double> events{};    // ascending times at which a step has to end
   double contact_tolerance = 0.0;  // s: steps end so close behind the loss or gain of a contact; 0: wherever
   std::vector<double> passages{};  // ascending times at which a step has to end and a sample is due, not to be stored
+  bool corners = false;            // steps end where wheels turn about corners of the bridge's surface
   long stored = 1;                 // every so many of the other samples is to be stored
 };
 
@@ -75,7 +76,11 @@ class Stepper {
   void show_to_monitors(double t);
   void take_step(double left);
   double step_to(double end);
+  std::optional<coupling::System::Turn> next_turn(double from, double left);
+  double arrive();
+  double step_again(double from, double end);
   void locate_contact_change(double from);
+  double end_at_turn(double from, const coupling::System::Turn& turn);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y, const double* ydot) const;
   void rate(double t, Vec y, Vec ydot, coupling::Part part);
