@@ -18,7 +18,9 @@ namespace {
 constexpr double steepest = 0.05;  // slopes of beams are smaller by far
 constexpr double shortest = 1e-6;  // of a step: what a change of sides is given at least
 constexpr double slight = 1e-9;    // of a step: a corner that is turned faster is none
-constexpr double passed = 1e-5;    // of the time it takes to turn about the corner
+// Of the time it takes to turn about the corner: how far outside of it steps end, so that none ends on its wrong side,
+// and within which an end is where it was expected.
+constexpr double margin = 0.1, passed = 0.05;
 
 }  // namespace
 
@@ -72,7 +74,7 @@ std::array<double, 2> System::turning_times(const Corner& corner, double t, cons
   std::array<double, 2> times = {turned(seen[left], seen[left_rate], -far), turned(seen[right], seen[right_rate], far)};
   if (std::abs(times[1] - times[0]) < slight * longest_step_) return {far, far};
   const double middle = 0.5 * (times[0] + times[1]), half = 0.5 * (times[1] - times[0]);
-  const double wide = std::max(half, shortest * longest_step_);  // half is below 0 in a valley
+  const double wide = (1.0 + margin) * std::max(half, shortest * longest_step_);  // half is below 0 in a valley
   return {middle - wide, middle + wide};
 }
 
@@ -87,6 +89,7 @@ std::optional<System::Turn> System::next_turn(double t, double h, const double* 
     const double gap = passed * (times[1] - times[0]);
     for (int end = 0; end < 2; ++end) {
       const double at = times[static_cast<std::size_t>(end)];
+      if (std::abs(at - corners_[i].time) < 2.0 * gap) continue;  // where a step ends anyhow
       if (at > t + gap && at < t + h - gap && (!next || at < next->time)) next = Turn{at, gap, i, end};
     }
   }

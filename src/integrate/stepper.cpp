@@ -214,9 +214,9 @@ double Stepper::next_step(double from, double left) const {
 }
 
 // When the next wheel turns about a corner of the surface, if it does so within `left` s. A multistep method is started
-// anew by a short step, which costs it more.
+// anew by a short step, which costs it more; the ladder sees the corner's error, and keeps to the steps it has factors of.
 std::optional<coupling::System::Turn> Stepper::next_turn(double from, double left) {
-  if (!settings_.corners || multistep_) return std::nullopt;
+  if (!settings_.corners || multistep_ || ladder_) return std::nullopt;
   ReadArray y(y_);
   return system_.next_turn(from, left, y.data);
 }
