@@ -16,11 +16,12 @@ namespace traverse::coupling {
 namespace {
 
 constexpr double steepest = 0.05;  // slopes of beams are smaller by far
-constexpr double shortest = 1e-6;  // of a step: what a change of sides is given at least
-constexpr double slight = 1e-9;    // of a step: a corner that is turned faster is none
+// Of a step: what a change of sides is given at least; less costs digits of accelerations.
+constexpr double shortest = 1e-5;
+constexpr double slight = 1e-9;  // of a step: a corner that is turned faster is none
 // Of the time it takes to turn about the corner: how far outside of it steps end, so that none ends on its wrong side,
 // and within which an end is where it was expected.
-constexpr double margin = 0.1, passed = 0.05;
+constexpr double margin = 0.02, passed = 0.01;
 
 }  // namespace
 

@@ -24,8 +24,6 @@ using coupling::Part;
 constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS wants some bound
 constexpr int most_rejections = 12;                                      // of one step, each a quarter as long
 constexpr double near_event = 1e-3;     // of a step: events closer than this share the end of a step
-constexpr int most_trials = 40;         // of a step's end at the change of a contact
-constexpr int most_turn_trials = 3;     // of a step's end where a wheel turns about a corner
 constexpr double restart_growth = 2.0;  // steps of a multistep method may not grow faster
 constexpr long steps_unseen = 16;       // between two looks at the bounds of the motion, which cost a pass over it
 
@@ -213,14 +211,6 @@ double Stepper::next_step(double from, double left) const {
   return shared_evenly(left, wanted);
 }
 
-// When the next wheel turns about a corner of the surface, if it does so within `left` s. A multistep method is started
-// anew by a short step, which costs it more; the ladder sees the corner's error, and keeps to the steps it has factors of.
-std::optional<coupling::System::Turn> Stepper::next_turn(double from, double left) {
-  if (!settings_.corners || multistep_ || ladder_) return std::nullopt;
-  ReadArray y(y_);
-  return system_.next_turn(from, left, y.data);
-}
-
 // One step no longer than what is left to the next target.
 void Stepper::take_step(double left) {
   PetscReal from = 0.0;
@@ -266,60 +256,6 @@ double Stepper::step_to(double end) {
     throw SolverError("the step of " + std::to_string(h) + " s at t = " + std::to_string(t) +
                       " s could not be taken, not even shortened: " + system_.trouble());
   return t;
-}
-
-// Sets the vehicles to where the step has led. Returns the time.
-double Stepper::arrive() {
-  PetscReal t = 0.0;
-  check(TSGetTime(ts_, &t));
-  ReadArray y(y_);
-  system_.arrive(t, y.data);
-  return t;
-}
-
-// Takes the step from `from` again, to another end. Returns the time reached.
-double Stepper::step_again(double from, double end) {
-  if (second_order_) {
-    Array y(y_);
-    system_.take_back_step(y.data);
-  } else {
-    check(VecCopy(before_, y_));
-  }
-  check(TSSetTime(ts_, from));
-  check(TSRestartStep(ts_));
-  known_ = false;
-  step_to(end);
-  return arrive();
-}
-
-// Takes the step from `from` again, shorter, where a contact is lost or gained in it: until it ends just behind the
-// first loss, or just before the first gain, since a stiff contact must not be met in a long step.
-void Stepper::locate_contact_change(double from) {
-  const double full = arrive();
-  auto change = system_.contact_change(full, settings_.contact_tolerance);
-  if (!change) return;
-  coupling::ChangeBracket bracket(system_, *change, from, full, settings_.contact_tolerance);
-  double at = full;
-  for (int i = 0; i < most_trials && !bracket.found(); ++i) {
-    at = step_again(from, bracket.trial());
-    bracket.tried(at, system_.contact_change(at, settings_.contact_tolerance));
-  }
-  if (at != bracket.end()) step_again(from, bracket.end());
-}
-
-// Takes the step from `from` again where the wheel turns about its corner at another time than was expected.
-double Stepper::end_at_turn(double from, const coupling::System::Turn& turn) {
-  double at = arrive();
-  for (int i = 0; i < most_turn_trials; ++i) {
-    double found = 0.0;
-    {
-      ReadArray y(y_);
-      found = system_.time_of(turn, at, y.data);
-    }
-    if (!(std::abs(found - at) > turn.tolerance) || !(found > from) || !std::isfinite(found)) break;
-    at = step_again(from, found);
-  }
-  return at;
 }
 
 void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
