@@ -19,7 +19,7 @@ constexpr double steepest = 0.05;  // slopes of beams are smaller by far
 constexpr double shortest =
     1e-5;  // of a step: what a change of sides is given at least; less costs digits of accelerations
 constexpr double slight = 1e-9;  // of a step: a corner that is turned faster is none
-constexpr double passed = 1e-5;  // of the time it takes to turn about the corner
+constexpr double passed = 1e-3;  // of the time it takes to turn about the corner
 
 }  // namespace
 
