@@ -3,11 +3,13 @@
 #include <slepceps.h>
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
+#include <thread>
 
 #include "process.hpp"
 #include "signals.hpp"
@@ -29,7 +31,7 @@ void start_lightly() {
   if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) return;
   setenv(no_session_folder, "0", 0);
   setenv("OMPI_MCA_pml", "ob1", 0);
-  setenv("OMPI_MCA_btl", "self,vader", 0);
+  setenv("OMPI_MCA_btl", "self", 1);  // no memory is shared
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
 }
 
@@ -88,7 +90,10 @@ int main(int argc, char** argv) {
     return after_output(status);
   } catch (const traverse::Error& error) {  // before MPI has started: every rank would say it
     const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
-    return rank == nullptr || *rank == '0' ? complain(error) : error.status();
+    const bool first = rank == nullptr || *rank == '0';
+    if (!first)
+      std::this_thread::sleep_for(std::chrono::seconds(10));  // mpirun ends it when the first rank has said it
+    return complain(error);
   } catch (const std::exception& failure) {
     return complain(traverse::app::as_error(failure));
   }

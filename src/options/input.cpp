@@ -193,6 +193,12 @@ void put_into_petsc(Input& input) {
     PetscBool found = PETSC_FALSE;  // asking marks it as used, for -options_left
     base::check(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &found));
   }
+  PetscBool said = PETSC_FALSE;  // what is left is our own affair: check_all_used
+  base::check(PetscOptionsHasName(nullptr, nullptr, "-options_left", &said));
+  if (said == PETSC_FALSE) {
+    base::check(PetscOptionsSetValue(nullptr, "-options_left", "no"));
+    base::check(PetscOptionsHasName(nullptr, nullptr, "-options_left", &said));
+  }
   last_put = input.entries;
   check_asked_at_start(last_put);
 }

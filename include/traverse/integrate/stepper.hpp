@@ -67,7 +67,8 @@ class Stepper {
   struct Request {  // what TS asks of a stage
     double t = 0.0;
     double shift = 0.0;
-    bool recording = false;
+    Vec unknown = nullptr;  // of the stage
+    bool recording = false, start = false;
   };
 
   void set_up_type();
