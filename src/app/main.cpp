@@ -90,10 +90,10 @@ int main(int argc, char** argv) {
     return after_output(status);
   } catch (const traverse::Error& error) {  // before MPI has started: every rank would say it
     const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
-    const bool first = rank == nullptr || *rank == '0';
-    if (!first)
-      std::this_thread::sleep_for(std::chrono::seconds(10));  // mpirun ends it when the first rank has said it
-    return complain(error);
+    if (rank == nullptr || *rank == '0') return complain(error);
+    std::this_thread::sleep_for(
+        std::chrono::seconds(1));  // Open MPI 5 ends the first rank, which says it, with this one
+    return error.status();
   } catch (const std::exception& failure) {
     return complain(traverse::app::as_error(failure));
   }
