@@ -91,8 +91,8 @@ int main(int argc, char** argv) {
   } catch (const traverse::Error& error) {  // before MPI has started: every rank would say it
     const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
     if (rank == nullptr || *rank == '0') return complain(error);
-    std::this_thread::sleep_for(
-        std::chrono::seconds(1));  // Open MPI 5 ends the first rank, which says it, with this one
+    // Open MPI 5 ends all ranks when one ends: the first one shall have said it.
+    std::this_thread::sleep_for(std::chrono::seconds(1));
     return error.status();
   } catch (const std::exception& failure) {
     return complain(traverse::app::as_error(failure));
