@@ -35,9 +35,13 @@ void start_lightly() {
   setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
 }
 
+/// Open MPI's mpirun tells the ranks their number before MPI has started.
 bool first_rank() {
   int started = 0, ended = 0;
-  static int rank = 0;  // MPI does not tell it any more when it has ended
+  static int rank = [] {  // MPI does not tell it any more when it has ended
+    const char* told = std::getenv("OMPI_COMM_WORLD_RANK");
+    return told == nullptr ? 0 : std::atoi(told);
+  }();
   MPI_Initialized(&started);
   MPI_Finalized(&ended);
   if (started != 0 && ended == 0) MPI_Comm_rank(MPI_COMM_WORLD, &rank);
@@ -74,6 +78,7 @@ int after_output(int status) {
 int main(int argc, char** argv) {
   traverse::app::guard_standard_output();
   traverse::app::take_signals();
+  traverse::app::speak_of_signals(first_rank());
   start_lightly();
   try {
     traverse::options::Input input = traverse::options::read_input(argc, argv);
@@ -88,12 +93,10 @@ int main(int argc, char** argv) {
     const int status = run(input);
     SlepcFinalize();
     return after_output(status);
-  } catch (const traverse::Error& error) {  // before MPI has started: every rank would say it
-    const char* rank = std::getenv("OMPI_COMM_WORLD_RANK");
-    if (rank == nullptr || *rank == '0') return complain(error);
+  } catch (const traverse::Error& error) {  // before MPI has started
     // Open MPI 5 ends all ranks when one ends: the first one shall have said it.
-    std::this_thread::sleep_for(std::chrono::seconds(1));
-    return error.status();
+    if (!first_rank()) std::this_thread::sleep_for(std::chrono::seconds(1));
+    return complain(error);
   } catch (const std::exception& failure) {
     return complain(traverse::app::as_error(failure));
   }
