@@ -22,6 +22,9 @@
 
 namespace {
 
+// The system calls what stands here before it sets up the libraries.
+[[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = traverse::app::look_at_ignored_signals;
+
 constexpr const char* no_session_folder = "OMPI_MCA_orte_create_session_dirs";
 
 // Open MPI's start-up without mpirun takes 0.3 s unless told that one process is all there is; programs that start

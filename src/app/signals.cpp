@@ -24,7 +24,6 @@ std::array<Taken, 5> signals = {{{SIGINT, "2", false},
                                  {SIGHUP, "1", false},
                                  {SIGQUIT, "3", false},
                                  {SIGPIPE, "13", false}}};
-bool looked = false;  // at what is ignored
 
 std::atomic<int> caught{0}, noting{0};
 std::atomic<bool> speaking{true};
@@ -51,17 +50,21 @@ void take(int number) {
 
 }  // namespace
 
-void take_signals() {
+void look_at_ignored_signals() {
   for (Taken& taken : signals) {
     struct sigaction action = {};
-    if (!looked && sigaction(taken.number, nullptr, &action) == 0) taken.ignored = action.sa_handler == SIG_IGN;
-    action = {};
+    if (sigaction(taken.number, nullptr, &action) == 0) taken.ignored = action.sa_handler == SIG_IGN;
+  }
+}
+
+void take_signals() {
+  for (const Taken& taken : signals) {
+    struct sigaction action = {};
     action.sa_handler = taken.ignored ? SIG_IGN : take;
     action.sa_flags = SA_RESTART;
     sigemptyset(&action.sa_mask);
     sigaction(taken.number, &action, nullptr);
   }
-  looked = true;
 }
 
 void speak_of_signals(bool speaks) { speaking = speaks; }

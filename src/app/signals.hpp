@@ -6,8 +6,10 @@
 
 namespace traverse::app {
 
+/// Those that are ignored (nohup) stay so. Called before libraries are set up: UCX takes SIGHUP while it is loaded.
+void look_at_ignored_signals();
 /// Takes over SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE: at the start, and again after a library has set handlers
-/// of its own. A signal that was ignored when the program started (nohup) stays ignored.
+/// of its own.
 void take_signals();
 /// Only one rank of several tells the user of a signal.
 void speak_of_signals(bool speaks);
