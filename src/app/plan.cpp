@@ -86,7 +86,7 @@ void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector
 }
 
 double sample_next_to_end(const Plan& plan) {
-  const double interval = plan.interval * plan.stored;
+  const double interval = plan.interval * static_cast<double>(plan.stored);
   return std::round(plan.end_time / interval) * interval;
 }
 
