@@ -114,7 +114,7 @@ class Ride {
     std::vector<double> y(static_cast<std::size_t>(system_->local_size()));
     system_->start(true, y.data());
     fleet_ = system_->fleet();
-    const std::size_t n = static_cast<std::size_t>(system_->beam_unknowns());
+    const std::size_t n = static_cast<std::size_t>(system_->structure_unknowns());
     const auto f = static_cast<std::size_t>(fleet_.freedom());
     const auto part = [&](std::size_t from, std::size_t size) {
       const auto begin = y.begin() + static_cast<std::ptrdiff_t>(from);

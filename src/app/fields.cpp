@@ -125,7 +125,7 @@ void fill_balance(const GroundForces& forces, const coupling::Observation& obser
   const auto add = [](const std::vector<double>& more, double& sum) {
     sum = std::accumulate(more.begin(), more.end(), sum);
   };
-  const coupling::NonlinearForces& other = observation.foundation;
+  const coupling::NonlinearForces& other = observation.beam.foundation;
   for (const auto* along : {&other.longitudinal, &other.longitudinal_bed}) add(*along, foundation[0]);
   for (const auto* up : {&other.vertical, &other.vertical_bed}) add(*up, foundation[1]);
   const auto inertia = forces.inertia(), drag = forces.drag();

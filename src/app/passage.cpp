@@ -6,6 +6,7 @@
 
 #include "traverse/app/peaks.hpp"
 #include "traverse/app/resolution.hpp"
+#include "traverse/coupling/rest_window.hpp"
 #include "traverse/results/stage.hpp"
 
 namespace traverse::app {
@@ -37,7 +38,7 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
     : scene_(scene),
       still_(scene.analysis == Analysis::static_response),
       input_(system_input(scene, still_)),
-      system_(structure.comm, structure.bridge(), input_, structure.statics) {
+      system_(structure.comm, coupling::by_elements(structure.bridge(), input_, structure.statics), input_) {
   check_mesh(scene, notes);
   if (!still_) plan_ = make_plan(scene, system_, structure.first_period(), notes);
   std::string method;

@@ -156,7 +156,8 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
     summary.solves = system.beam_solves();
     summary.factorisations = system.factorisations();
     summary.wall_seconds = wall;
-    if (system.window() != nullptr) summary.energy_left = total(comm, system.window()->energy_left());
+    if (system.structure() != nullptr && system.structure()->energy_left())
+      summary.energy_left = total(comm, *system.structure()->energy_left());
     summary.static_error = system.static_error();
     summary.expected_errors = accuracy.expected();
     summary.ended = ended;

@@ -47,28 +47,28 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
 
 void Watch::sample(const integrate::Instant& instant) {
   system_.observe(instant.time, instant.y, instant.ydot, observation_);
-  const double* v = instant.y;
-  const double* w = instant.y + system_.beam_unknowns();
+  const coupling::NodalMotion& beam = observation_.beam;
   sample_.time = instant.time;
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
-    recovery_->evaluate(v, w, observation_.a.data(), observation_.bridge_loads, sample_.probes);
+    recovery_->evaluate(beam.v, beam.w, beam.a.data(), observation_.bridge_loads, sample_.probes);
     if (lag_) lag_->apply(instant.time, observation_.bridge_loads, sample_.probes);
     for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   fill_vehicles(sample_);
   step(instant.time);  // the first instant is no step's end
-  note_peaks(v, w);
+  note_peaks();
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
-  if (instant.purpose != integrate::Purpose::look) store(v, w, instant.purpose == integrate::Purpose::end);
+  if (instant.purpose != integrate::Purpose::look) store(instant.purpose == integrate::Purpose::end);
 }
 
-void Watch::store(const double* v, const double* w, bool end) {
+void Watch::store(bool end) {
   if (beam_ != nullptr) {
-    if (rail_recovery_) rail_recovery_->evaluate(v, w, observation_.a.data(), observation_.loads, rail_);
-    beam_->reactions(v, w, observation_.a.data(), observation_.P.data(), sample_.supports);
+    const coupling::NodalMotion& beam = observation_.beam;
+    if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a.data(), observation_.loads, rail_);
+    beam_->reactions(beam.v, beam.w, beam.a.data(), beam.P.data(), sample_.supports);
   }
-  fill_fields(v, w);
+  fill_fields();
   note_energy();
   if (end)
     recorder_.end(sample_);
@@ -83,9 +83,10 @@ void Watch::store(const double* v, const double* w, bool end) {
 
 // Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
 void Watch::drag(const double* drag) {
-  const std::vector<double> still(observation_.a.size(), 0.0);
+  std::vector<double>& a = observation_.beam.a;
+  const std::vector<double> still(a.size(), 0.0);
   recovery_->evaluate(still.data(), still.data(), drag, {}, dragged_);
-  for (std::size_t i = 0; i < observation_.a.size(); ++i) observation_.a[i] += drag[i];
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += drag[i];
 }
 
 void Watch::fill_vehicles(results::Sample& sample) const {
@@ -127,18 +128,19 @@ void Watch::fill_vehicles(results::Sample& sample) const {
 }
 
 // In the order of layout_of.
-void Watch::fill_fields(const double* v, const double* w) {
+void Watch::fill_fields() {
   Fields fields(sample_.fields);
   fill_couplers(system_.fleet(), scene_.train, fields);
   if (beam_ == nullptr) return;
-  ground_->evaluate(v, w, observation_.a.data());
-  fill_foundation(*beam_, *ground_, observation_.foundation, fields);
+  const coupling::NodalMotion& beam = observation_.beam;
+  ground_->evaluate(beam.v, beam.w, beam.a.data());
+  fill_foundation(*beam_, *ground_, beam.foundation, fields);
   fill_balance(*ground_, observation_, sample_.supports, scene_.self_weight ? scene_.gravity * ground_->mass() : 0.0,
                beam_->model().axial, fields);
   if (rail_recovery_) fill_rail(rail_, fields);
 }
 
-void Watch::note_peaks(const double* v, const double* w) {
+void Watch::note_peaks() {
   wheel_forces_.clear();
   for (std::size_t k = 0; k < sample_.vehicles.size(); ++k)
     for (std::size_t i = 0; i < system_.fleet().members[k].type->wheels.size(); ++i)
@@ -149,9 +151,10 @@ void Watch::note_peaks(const double* v, const double* w) {
   if (deflected > most_deflected_) {
     most_deflected_ = deflected;
     worst_.time = sample_.time;
-    worst_.v.assign(v, v + system_.beam_unknowns());
-    worst_.w.assign(w, w + system_.beam_unknowns());
-    worst_.a = observation_.a;
+    const coupling::NodalMotion& beam = observation_.beam;
+    worst_.v.assign(beam.v, beam.v + beam.a.size());
+    worst_.w.assign(beam.w, beam.w + beam.a.size());
+    worst_.a = beam.a;
     worst_.loads = observation_.bridge_loads;
   }
 }
@@ -237,7 +240,7 @@ results::Summary Watch::finish() {
   }
   finished_extremes();
   if (beam_ == nullptr) return summary_;
-  int some = worst_.v.empty() && system_.beam_unknowns() > 0 ? 0 : 1;
+  int some = worst_.v.empty() && beam_->local_unknowns() > 0 ? 0 : 1;
   MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
   if (some == 0) return summary_;
   if (scene_.analysis == Analysis::transient)

@@ -15,7 +15,11 @@ constexpr int short_part = 100;                            // columns: statics l
 }  // namespace
 
 Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
-    : beam_(beam), operator_(op), line_(beam.running()), m_(2 * line_.per_node), margin_(least_margin) {
+    : ElementCompliance(beam.running().per_node),
+      beam_(beam),
+      operator_(op),
+      line_(beam.running()),
+      margin_(least_margin) {
   std::size_t slots = static_cast<std::size_t>(line_.mesh.elements());
   if (const solve::Parts* parts = op.parts(); parts != nullptr) {
     slots = 0;

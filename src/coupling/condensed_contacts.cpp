@@ -66,7 +66,7 @@ bool CondensedContacts::moved() {
 
 // W, between all rows on elements that respond to each other.
 template <int m>
-void CondensedContacts::respond(const Compliance& compliance) {
+void CondensedContacts::respond(const ElementCompliance& compliance) {
   using Vector = Eigen::Matrix<double, m, 1>;
   int slots = 0;
   for (const Row& row : rows_) slots = std::max(slots, row.slot + 1);
@@ -80,7 +80,7 @@ void CondensedContacts::respond(const Compliance& compliance) {
 
   for (int b = 0; b < size(); ++b) {
     if (rows_[b].slot < 0) continue;
-    const Compliance::Response& reach = compliance.response(rows_[b].slot);
+    const ElementCompliance::Response& reach = compliance.response(rows_[b].slot);
     const Eigen::Map<const Vector> from(direction_on_beam(rows_[b]));
     for (int s = reach.first; s < std::min(reach.last, slots); ++s) {
       if (slot_begin_[s] == slot_begin_[s + 1]) continue;
@@ -94,7 +94,7 @@ void CondensedContacts::respond(const Compliance& compliance) {
   }
 }
 
-void CondensedContacts::couple(const Compliance* compliance, int per_node) {
+void CondensedContacts::couple(const ElementCompliance* compliance, int per_node) {
   responses_.clear();
   if (compliance != nullptr) per_node == 2 ? respond<4>(*compliance) : respond<6>(*compliance);
   const bool plain = std::all_of(yield_.begin(), yield_.end(), [](const VehicleYield& y) { return y.P.size() == 0; });

@@ -6,13 +6,13 @@ namespace {
 
 // v += the beam's response to loads on the elements.
 template <int m>
-void respond(const Compliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
+void respond(const ElementCompliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
   using Vector = Eigen::Matrix<double, m, 1>;
   const int elements = static_cast<int>(loads.size()) / m;
   for (int b = 0; b < elements; ++b) {
     const Eigen::Map<const Vector> f(&loads[static_cast<std::size_t>(b) * m]);
     if (f.isZero(0.0)) continue;
-    const Compliance::Response& reach = compliance.response(b);
+    const ElementCompliance::Response& reach = compliance.response(b);
     for (int a = reach.first; a < reach.last; ++a)
       Eigen::Map<Vector>(&v[static_cast<std::size_t>(a) * m]) +=
           Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;

@@ -36,26 +36,33 @@ struct System::InfluenceLine {
 };
 
 System::InfluenceLine System::influence_line(double station) {
+  const beam::Beam& beam = structure_->beam();
   InfluenceLine line{station, std::vector<double>(4 * static_cast<std::size_t>(line_->mesh.elements()), 0.0), {}, 0.0};
-  std::fill(nodal_.begin(), nodal_.end(), 0.0);
-  const beam::Station s = beam_->mesh().locate(station);
-  if (beam_->rail() != nullptr) {
-    add_point_load(beam_->bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal_.data());
+  std::vector<double> nodal(structure_->dead_load().size(), 0.0);
+  const beam::Station s = beam.mesh().locate(station);
+  if (beam.rail() != nullptr) {
+    const beam::Line& bridge = beam.bridge();
+    const beam::Hermite psi = beam::hermite(s.xi, bridge.mesh.element(s.element).length);
+    const auto unknowns = bridge.transverse(s.element);
+    for (int i = 0; i < 4; ++i) {
+      const int local = beam.local(unknowns[i]);
+      if (local >= 0) nodal[local] -= psi.value[i];
+    }
   } else {
-    line.inside.emplace(*beam_, std::vector<double>{station}, input_.self_weight ? input_.gravity : 0.0);
-    line.of_weight = line.inside->add_deflection_form(0, -1.0, nodal_.data());
+    line.inside.emplace(beam, std::vector<double>{station}, input_.self_weight ? input_.gravity : 0.0);
+    line.of_weight = line.inside->add_deflection_form(0, -1.0, nodal.data());
   }
-  release_held(nodal_.data());
-  operator_->solve_static(nodal_.data());
+  structure_->release_held(nodal.data());
+  structure_->statics().solve_static(nodal.data());
   double of_weight = 0.0;
-  for (int i = 0; i < n_; ++i) of_weight -= nodal_[i] * dead_load_[i];
+  for (std::size_t i = 0; i < nodal.size(); ++i) of_weight -= nodal[i] * structure_->dead_load()[i];
   MPI_Allreduce(MPI_IN_PLACE, &of_weight, 1, MPI_DOUBLE, MPI_SUM, comm_);
   line.of_weight += of_weight;
   for (int e = 0; e < line_->mesh.elements(); ++e) {
     const auto unknowns = line_->transverse(e);
     for (int i = 0; i < 4; ++i) {
-      const int local = beam_->local(unknowns[i]);
-      if (local >= 0) line.nodal[4 * static_cast<std::size_t>(e) + i] = nodal_[local];
+      const int local = beam.local(unknowns[i]);
+      if (local >= 0) line.nodal[4 * static_cast<std::size_t>(e) + i] = nodal[local];
     }
   }
   MPI_Allreduce(MPI_IN_PLACE, line.nodal.data(), static_cast<int>(line.nodal.size()), MPI_DOUBLE, MPI_SUM, comm_);
@@ -69,14 +76,14 @@ bool System::pass_together(const WheelPaths& paths) const {
 }
 
 double System::static_peak(double station, const WheelPaths& paths, double end) {
-  if (beam_ == nullptr || weights_.empty() || nonlinear_) return 0.0;  // without superposition there is none
+  if (!structure_ || weights_.empty() || !structure_->linear()) return 0.0;  // without superposition there is none
   const InfluenceLine line = influence_line(station);
   return pass_together(paths) ? peak_of_train(line, line.of_weight) : peak_on_the_way(line, paths, end);
 }
 
 // What a single load does that deflects the station at most as the passing weights do, J; 0: there is none.
 double System::static_energy(double station) {
-  if (beam_ == nullptr || weights_.empty() || nonlinear_ || !pass_together({})) return 0.0;
+  if (!structure_ || weights_.empty() || !structure_->linear() || !pass_together({})) return 0.0;
   const InfluenceLine line = influence_line(station);
   const double deflection = peak_of_train(line, 0.0), compliance = std::abs(line.at(line_->mesh, station));
   return compliance > 0.0 ? 0.5 * deflection * deflection / compliance : 0.0;

@@ -31,10 +31,9 @@ double vehicle_error(const MovingVehicle& vehicle, const double* off, const doub
 }  // namespace
 
 void System::measure_errors() {
-  Motion& m = *motion_;
-  m.measures_errors = true;
-  if (beam_ == nullptr) return;
-  const beam::Mesh& mesh = beam_->mesh();
+  if (!structure_) return;
+  structure_->measure_errors();
+  const beam::Mesh& mesh = beam()->mesh();
   const std::vector<double>& ends = mesh.span_ends();
   double station = 0.0, longest = 0.0;
   for (std::size_t i = 1; i < ends.size(); ++i)
@@ -42,8 +41,8 @@ void System::measure_errors() {
       longest = ends[i] - ends[i - 1];
       station = 0.5 * (ends[i] + ends[i - 1]);
     }
-  m.energy_scale = static_energy(station);
-  if (m.energy_scale == 0.0)
+  motion_->energy_scale = static_energy(station);
+  if (motion_->energy_scale == 0.0)
     throw InputError(
         "ts_adapt_type = ladder: the structure's errors are measured by its deflection at rest under the weights, and "
         "there is none (no weights, a foundation that is not linear, train and forces of different speeds); allowed: "
@@ -61,28 +60,16 @@ double System::step_error(const double* y) {
   double worst = 0.0;
   for (const MovingVehicle& vehicle : fleet_.own())
     worst = std::max(worst, vehicle_error(vehicle, &x_[vehicle.offset], &m.pdd[rule.known - 1][vehicle.offset]));
-  if (beam_ != nullptr) worst = std::max(worst, structure_error(y));
+  if (structure_) worst = std::max(worst, structure_error(y));
   if (!std::isfinite(worst)) worst = std::numeric_limits<double>::max();
   if (ranks_ > 1) MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, comm_);
   return worst;
 }
 
 double System::structure_error(const double* y) {
-  Motion& m = *motion_;
-  double energy = 0.0;
-  if (m.beam->fused()) {
-    energy = m.beam->error_energy();
-  } else {
-    double* const v = v_still_.data();
-    double* const w = w_still_.data();
-    m.beam->error(y, y + n_, v, w);
-    operator_->multiply(1.0, nullptr, nullptr, v, work_.data());
-    for (int i = 0; i < n_; ++i) energy += 0.5 * v[i] * work_[i];
-    operator_->multiply(1.0, w, nullptr, nullptr, work_.data());
-    for (int i = 0; i < n_; ++i) energy += 0.5 * w[i] * work_[i];
-  }
+  double energy = structure_->error_energy(y, y + n_);
   if (ranks_ > 1) MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPI_DOUBLE, MPI_SUM, comm_);
-  return std::sqrt(energy / m.energy_scale);
+  return std::sqrt(energy / motion_->energy_scale);
 }
 
 }  // namespace traverse::coupling

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traverse/coupling/element_structure.hpp"
+
 namespace traverse::coupling {
 namespace {
 
@@ -10,23 +12,20 @@ constexpr int most_placements = 4;  // of the wheels on elements within one stag
 
 }  // namespace
 
-System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input, std::shared_ptr<BeamOperator> shared)
-    : comm_(comm), beam_(beam), input_(std::move(input)) {
+std::unique_ptr<Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
+                                       std::shared_ptr<BeamOperator> shared) {
+  if (beam == nullptr) return nullptr;
+  return std::make_unique<ElementStructure>(*beam, input.self_weight ? input.gravity : 0.0, std::move(shared));
+}
+
+System::System(MPI_Comm comm, std::unique_ptr<Structure> structure, SystemInput input)
+    : comm_(comm),
+      structure_(std::move(structure)),
+      line_(structure_ ? &structure_->line() : nullptr),
+      n_(structure_ ? structure_->unknowns() : 0),
+      input_(std::move(input)) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &ranks_);
-  if (beam_ != nullptr) {
-    operator_ = shared ? std::move(shared) : std::make_shared<BeamOperator>(*beam_);
-    compliance_.emplace(*beam_, *operator_);
-    line_ = &beam_->running();
-    per_node_ = line_->per_node;
-    n_ = beam_->local_unknowns();
-    dead_load_.assign(n_, 0.0);
-    if (input_.self_weight) beam_->add_self_weight(input_.gravity, dead_load_.data());
-  }
-  nodal_.resize(n_);
-  work_.resize(n_);
-  v_still_.resize(n_);
-  w_still_.resize(n_);
   for (const Vehicle& type : input_.types)
     for (const Wheel& wheel : type.wheels)
       if (track::too_rough(input_.profile, wheel.radius))
@@ -41,13 +40,12 @@ System::System(MPI_Comm comm, const beam::Beam* beam, SystemInput input, std::sh
   fleet_.start_rolling();
   on_beam_.assign(input_.load.forces.size(), 0);
   begin_step(0.0, 0.0);
-  note_foundation();
+  if (structure_) expect_weights();
 }
 
-void System::note_foundation() {
-  if (beam_ == nullptr || !beam_->model().foundation.nonlinear()) return;
+void System::expect_weights() {
   double load = 0.0, greatest = 0.0;
-  for (double weight : dead_load_) load += std::abs(weight);
+  for (double weight : structure_->dead_load()) load += std::abs(weight);
   MPI_Allreduce(MPI_IN_PLACE, &load, 1, MPI_DOUBLE, MPI_SUM, comm_);
   const auto add = [&](double force) {
     load += force;
@@ -55,13 +53,12 @@ void System::note_foundation() {
   };
   for (const MovingVehicle& vehicle : fleet_.vehicles) add(vehicle.weight);
   for (double force : input_.load.forces) add(std::abs(force));
-  nonlinear_.emplace(*beam_, *operator_, load, greatest);
-  stage_load_.resize(n_);
+  structure_->expect_weights(load, greatest);
 }
 
 // Of the beam's surface above its axis; a rail's is its axis.
 double System::surface_height() const {
-  return beam_ != nullptr && beam_->rail() == nullptr ? beam_->model().surface_height : 0.0;
+  return structure_ && beam()->rail() == nullptr ? beam()->model().surface_height : 0.0;
 }
 
 int System::local_size() const { return 2 * n_ + (rank_ == 0 ? 2 * fleet_.freedom() + 2 : 0); }
@@ -73,46 +70,6 @@ void System::share_coordinates(const double* y) {
   p_.resize(2 * static_cast<std::size_t>(f));
   if (rank_ == 0) std::copy_n(y + 2 * n_, 2 * f, p_.begin());
   MPI_Bcast(p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
-}
-
-namespace {
-
-struct NodalFields final : FreeResponse {
-  const double *v, *w;
-  NodalFields(const double* first, const double* second) : v(first), w(second) {}
-  std::pair<double, double> at(int unknown) const override { return {v[unknown], w[unknown]}; }
-};
-
-// v = v~ + z, w = w~ + shift*z.
-struct ResponseToStills final : FreeResponse {
-  const double *v_still, *w_still, *z;
-  double shift;
-  ResponseToStills(const double* v, const double* w, const double* change, double s)
-      : v_still(v), w_still(w), z(change), shift(s) {}
-  std::pair<double, double> at(int unknown) const override {
-    return {v_still[unknown] + z[unknown], w_still[unknown] + shift * z[unknown]};
-  }
-};
-
-}  // namespace
-
-// The beam's v and w at the elements in touch, on all ranks.
-void System::gather(const FreeResponse& response) {
-  const std::size_t m = 2 * static_cast<std::size_t>(per_node_);
-  const std::size_t count = fleet_.elements().size() * m;
-  std::vector<double>& both = element_work_;
-  both.assign(2 * std::max(count, m), 0.0);
-  for (std::size_t a = 0; a < fleet_.elements().size(); ++a) {
-    const auto unknowns = line_->unknowns(fleet_.elements()[a]);
-    for (std::size_t i = 0; i < m; ++i) {
-      const int local = beam_->local(unknowns[i]);
-      if (local >= 0) std::tie(both[a * m + i], both[count + a * m + i]) = response.at(local);
-    }
-  }
-  if (count > 0 && ranks_ > 1)
-    MPI_Allreduce(MPI_IN_PLACE, both.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, comm_);
-  v_.assign(both.begin(), both.begin() + static_cast<std::ptrdiff_t>(std::max(count, m)));
-  w_.assign(both.begin() + static_cast<std::ptrdiff_t>(count), both.end());
 }
 
 // --- the right-hand side -------------------------------------------------------------------------------------------
@@ -129,21 +86,14 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
       std::copy_n(pdd_.data(), f, ydot + 2 * n_ + f);
     }
   }
-  if (beam_ != nullptr) {
-    double* acceleration = ydot + n_;
-    if (part != Part::contact) {
+  if (structure_) {
+    const bool own = part != Part::contact;
+    if (own) {
       std::copy_n(w, n_, ydot);
-      operator_->multiply(-1.0, nullptr, w, v, acceleration);
-      external_load(t, nodal_.data());
-      for (int i = 0; i < n_; ++i) acceleration[i] += nodal_[i];
-      if (nonlinear_) {
-        nonlinear_->evaluate(v, w);
-        nonlinear_->add_forces(acceleration);
-      }
+      load_structure(t);
     }
-    if (part != Part::beam) add_contact_load(acceleration);
-    release_held(acceleration);
-    operator_->solve_mass(acceleration);
+    const ElementLoads contacts = contact_loads();
+    structure_->accelerations(v, w, own, part != Part::beam ? &contacts : nullptr, ydot + n_);
   }
   double dissipation = 0.0, work = 0.0;
   powers(w, part, dissipation, work);
@@ -161,8 +111,8 @@ void System::evaluate_fleet(double t, const double* y) {
   if ((share_.places(fleet_, set ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0)
     throw SolverError("at t = " + std::to_string(t) + " s " + trouble());
   fleet_.place_wheels();
-  gather(NodalFields(y, y + n_));
-  const bool touched = fleet_.touch(per_node_, v_.data(), w_.data());
+  if (structure_) structure_->gather(fleet_.elements(), y, y + n_, v_, w_);
+  const bool touched = fleet_.touch(per_node(), v_.data(), w_.data());
   if ((share_.exchange(touched ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0)
     throw SolverError("a wheel has fallen below the running surface, or a body been driven through another, at t = " +
                       std::to_string(t) +
@@ -186,21 +136,17 @@ void System::evaluate_fleet(double t, const double* y) {
   note_touched();
 }
 
-// Rates of D and W for the state that fleet, moving loads and foundation were last set to.
+// Rates of D and W for the state that fleet and structure were last set to.
 void System::powers(const double* w, Part part, double& dissipation, double& work) {
   dissipation = work = 0.0;
-  if (beam_ != nullptr && part != Part::contact) {
-    dissipation = beam_dissipation(w);
-    list_nodal_loads();
-    for (const NodalLoad& load : nodal_loads_) work += load.force * w[load.unknown];
-    double sums[2] = {dissipation, work};
-    MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
+  if (structure_ && part != Part::contact) {
+    std::array<double, 2> sums = structure_->powers(w);
+    MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
     dissipation = sums[0];
     work = sums[1];
   }
   if (part == Part::beam) return;
-  Motion::Powers fleet;
-  fleet_powers(fleet);
+  Powers fleet = fleet_powers();
   double sums[2] = {fleet.dissipation, fleet.work};
   if (share_.dealt()) MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
   dissipation += sums[0];
@@ -208,40 +154,22 @@ void System::powers(const double* w, Part part, double& dissipation, double& wor
 }
 
 // Of this rank's vehicles and contacts at the state that they were last set to.
-void System::fleet_powers(Motion::Powers& powers) const {
-  powers.dissipation = fleet_.contact_dissipation();
-  powers.work = 0.0;
+System::Powers System::fleet_powers() const {
+  Powers powers{fleet_.contact_dissipation(), 0.0};
   for (const MovingVehicle& vehicle : fleet_.own()) {
     const multibody::MechanismPowers e = vehicle.mechanism.powers(vehicle.state);
     powers.dissipation += e.dissipation;
     powers.work += e.work;
   }
-}
-
-// Power lost in the beam's damping and its foundation's, this rank's share.
-double System::beam_dissipation(const double* w) {
-  double sum = 0.0;
-  if (operator_->damped()) {
-    operator_->multiply(1.0, nullptr, w, nullptr, work_.data());
-    for (int i = 0; i < n_; ++i) sum += w[i] * work_[i];
-  }
-  return nonlinear_ ? sum + nonlinear_->dissipation() : sum;
+  return powers;
 }
 
 // --- implicit stages -----------------------------------------------------------------------------------------------
 
-// The beam's unknown is the change z of v against v~ = v at zero acceleration: v = v~ + z, w = w~ + s z, w' = s^2 z.
-// Being small it keeps the digits that a solve for v itself would lose in w and w'.
 bool System::solve_stage(double t, double shift, const double* c, double* y, Part part) {
-  const double* c_v = c;
-  const double* c_w = c + n_;
-  if (beam_ != nullptr) {
-    for (int i = 0; i < n_; ++i) {
-      w_still_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
-      v_still_[i] = shift > 0.0 ? (w_still_[i] - c_v[i]) / shift : 0.0;
-    }
-    if (nonlinear_) nonlinear_->begin(shift, v_still_.data(), w_still_.data(), y + n_);
-    load_of_stills(t);
+  if (structure_) {
+    load_structure(t);
+    structure_->begin_stage(shift, c, c + n_, y + n_);
   }
   const int f = fleet_.freedom();
   if (part == Part::all) {
@@ -261,11 +189,8 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
       }
     }
   }
-  if (solve_coupled({t, shift, shift * shift}, part, true) != Solution::found) return false;
-  for (int i = 0; i < n_; ++i) {
-    y[i] = v_still_[i] + nodal_[i];
-    y[n_ + i] = w_still_[i] + shift * nodal_[i];
-  }
+  if (solve_coupled({t, shift, shift * shift}, part) != Solution::found) return false;
+  if (structure_) structure_->end_stage(y, y + n_);
   if (shift == 0.0) {
     if (rank_ == 0) std::copy_n(p_.data(), f, y + 2 * n_);
     return true;
@@ -283,56 +208,22 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
   return true;
 }
 
-// The beam's load at zero acceleration, into nodal_.
-void System::load_of_stills(double t) {
-  operator_->multiply(-1.0, nullptr, w_still_.data(), v_still_.data(), nodal_.data());
-  external_load(t, work_.data());
-  for (int i = 0; i < n_; ++i) nodal_[i] += work_[i];
-  release_held(nodal_.data());
-}
-
-// From the beam's load in nodal_ to its z there, and the fleet's p: with a foundation that is not linear, as often as
-// it takes until its forces agree.
-System::Solution System::solve_coupled(const StageTime& at, Part part, bool loaded) {
-  const AddedSprings* added = nullptr;
-  if (nonlinear_) std::copy(nodal_.begin(), nodal_.end(), stage_load_.begin());
+// The stage that the structure has begun, and the fleet's p: as often as it takes until the structure's own forces
+// agree.
+System::Solution System::solve_coupled(const StageTime& at, Part part) {
   for (;;) {
-    if (nonlinear_) {
-      added = &nonlinear_->linearise();
-      std::copy(stage_load_.begin(), stage_load_.end(), nodal_.begin());
-      nonlinear_->add_linearised(nodal_.data());
-      release_held(nodal_.data());
-    }
-    if (beam_ != nullptr && (loaded || nonlinear_)) {
-      if (at.shift == 0.0) {
-        operator_->solve_static(nodal_.data(), added);
-      } else {
-        operator_->factored(at.shift, at.shift2, added).solve(nodal_.data());
-        ++operator_->solves;
-      }
-    }
-    if (part == Part::all) {
-      const ResponseToStills response(v_still_.data(), w_still_.data(), nodal_.data(), at.shift);
-      if (!stage_of_fleet(at, response, added)) return Solution::fleet_unsettled;
-      add_contact_response(1.0, nodal_.data());
-    }
-    if (!nonlinear_) return Solution::found;
-    const NonlinearFoundation::Verdict verdict = nonlinear_->judge(nodal_.data());
-    if (verdict == NonlinearFoundation::Verdict::settled) return Solution::found;
-    if (verdict == NonlinearFoundation::Verdict::failed) return Solution::foundation_unsettled;
+    if (structure_) structure_->solve_free();
+    if (part == Part::all && !stage_of_fleet(at)) return Solution::fleet_unsettled;
+    if (!structure_) return Solution::found;
+    if (part == Part::all && !fleet_.elements().empty()) structure_->take(newton_.element_loads());
+    const Structure::Verdict verdict = structure_->judge();
+    if (verdict == Structure::Verdict::settled) return Solution::found;
+    if (verdict == Structure::Verdict::failed) return Solution::structure_unsettled;
   }
 }
 
-// What the contacts' forces do to the beam, times a factor.
-void System::add_contact_response(double factor, double* z) {
-  if (beam_ == nullptr || fleet_.elements().empty()) return;
-  element_work_ = newton_.element_loads();
-  for (double& load : element_work_) load *= factor;
-  compliance_->add_response(element_work_, z);
-}
-
 // From p_still_, pd_still_ and a guess in x_ to x_.
-bool System::stage_of_fleet(const StageTime& at, const FreeResponse& response, const AddedSprings* added) {
+bool System::stage_of_fleet(const StageTime& at) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   const auto [first, past] = fleet_.own_coordinates();
   evaluated_time_ = at.t;
@@ -346,19 +237,13 @@ bool System::stage_of_fleet(const StageTime& at, const FreeResponse& response, c
   if ((share_.places(fleet_, set ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
-    gather(response);
-    if (beam_ != nullptr && !fleet_.elements().empty())
-      compliance_->prepare(at.shift, at.shift == 0.0 ? 0.0 : at.shift2, added, fleet_.elements());
-    const StageData stage{at.t,
-                          at.shift,
-                          at.shift2,
-                          p_still_.data(),
-                          pd_still_.data(),
-                          &v_,
-                          &w_,
-                          compliance_ ? &*compliance_ : nullptr,
-                          per_node_,
-                          &share_};
+    const ElementCompliance* compliance = nullptr;
+    if (structure_) {
+      structure_->gather_free(fleet_.elements(), v_, w_);
+      compliance = &structure_->yield(fleet_.elements());
+    }
+    const StageData stage{at.t, at.shift, at.shift2,  p_still_.data(), pd_still_.data(),
+                          &v_,  &w_,      compliance, per_node(),      &share_};
     if (!newton_.solve(fleet_, stage, x_.data())) return false;
     if (newton_.in_place()) break;  // else a wheel has left its element: once more from there
   }

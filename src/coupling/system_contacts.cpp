@@ -34,7 +34,7 @@ void System::arrive(double t, const double* y) {
 }
 
 bool System::accept(double t, double* y) {
-  if (motion_) complete_step(y);
+  if (motion_ && structure_) structure_->complete_step(y, y + n_);
   if (fleet_.vehicles.empty()) return false;
   arrive(t, y);
   const double lost = note_contacts(t);

@@ -29,7 +29,7 @@ void System::expect_corners(double end, double step) {
   longest_step_ = step;
   corners_.clear();
   next_corner_ = 0;
-  if (beam_ == nullptr || input_.train.drive != Drive::constant || !(input_.train.speed > 0.0)) return;
+  if (!structure_ || input_.train.drive != Drive::constant || !(input_.train.speed > 0.0)) return;
   for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
     const WheelContact& c = fleet_.wheels[i];
     if (c.is_further || c.further > 0) continue;  // located by its points
@@ -46,19 +46,11 @@ double System::longest_turn(const Corner& corner) const {
 }
 
 // Both times, the earlier one first, as the state y at t lets them be expected.
-std::array<double, 2> System::turning_times(const Corner& corner, double t, const double* y) const {
+std::array<double, 2> System::turning_times(const Corner& corner, double t, const double* y) {
   const beam::Mesh& mesh = line_->mesh;
   const WheelContact& c = fleet_.wheels[corner.wheel];
-  enum { left, left_rate, right, right_rate, x, speed, radius, numbers };
+  enum { x, speed, radius, numbers };
   std::array<double, numbers> seen{};
-  const auto see = [&](std::size_t at, int unknown) {
-    const int local = beam_->local(unknown);
-    if (local < 0) return;
-    seen[at] = y[local];
-    seen[at + 1] = y[n_ + local];
-  };
-  if (corner.x > mesh.start()) see(left, line_->transverse(mesh.locate(corner.x, true).element)[3]);
-  if (corner.x < mesh.end()) see(right, line_->transverse(mesh.locate(corner.x, false).element)[1]);
   if (share_.dealt() ? fleet_.owns(c) : rank_ == 0) {
     seen[x] = fleet_.coordinates(c).x();
     seen[speed] = fleet_.velocities(c).x();
@@ -68,11 +60,18 @@ std::array<double, 2> System::turning_times(const Corner& corner, double t, cons
   const double far = std::numeric_limits<double>::infinity();
   if (!(seen[speed] > 0.0) || seen[radius] == 0.0) return {far, far};  // in flight
   const double straight = t + (corner.x - seen[x]) / seen[speed];      // the centre over the corner
-  const auto turned = [&](double slope, double rate, double aside) {
-    const double there = slope + rate * (straight - t) + input_.profile.at(std::nextafter(corner.x, aside)).slope;
+  // The rotations at the end of the element on the left and at the start of that on the right.
+  turned_elements_ = {mesh.locate(corner.x, true).element, mesh.locate(corner.x, false).element};
+  structure_->gather(turned_elements_, y, y + n_, v_, w_);
+  const std::size_t left = 2 * static_cast<std::size_t>(per_node()) - 1,
+                    right = left + static_cast<std::size_t>(per_node());
+  const auto turned = [&](bool on_beam, std::size_t rotation, double aside) {
+    const double bend = on_beam ? v_[rotation] + w_[rotation] * (straight - t) : 0.0;
+    const double there = bend + input_.profile.at(std::nextafter(corner.x, aside)).slope;
     return straight - seen[radius] * there / std::hypot(1.0, there) / seen[speed];
   };
-  std::array<double, 2> times = {turned(seen[left], seen[left_rate], -far), turned(seen[right], seen[right_rate], far)};
+  std::array<double, 2> times = {turned(corner.x > mesh.start(), left, -far),
+                                 turned(corner.x < mesh.end(), right, far)};
   if (std::abs(times[1] - times[0]) < slight * longest_step_) return {far, far};
   const double middle = 0.5 * (times[0] + times[1]), half = 0.5 * (times[1] - times[0]);
   const double wide = (1.0 + margin) * std::max(half, shortest * longest_step_);  // half is below 0 in a valley
@@ -97,7 +96,7 @@ std::optional<System::Turn> System::next_turn(double t, double h, const double* 
   return next;
 }
 
-double System::time_of(const Turn& turn, double t, const double* y) const {
+double System::time_of(const Turn& turn, double t, const double* y) {
   return turning_times(corners_[turn.corner], t, y)[static_cast<std::size_t>(turn.end)];
 }
 

@@ -19,26 +19,25 @@ constexpr double farthest = 100.0;       // m: what goes farther is held by noth
 
 }  // namespace
 
-// The stage problem at shift 0 with every drive standing still: K v = P + contacts, vehicles at rest.
-void System::find_equilibrium(double* v) {
+// The stage problem at shift 0 with every drive standing still: the structure and the vehicles at rest.
+void System::find_equilibrium(double* y) {
   Fleet moving = std::move(fleet_);
   stand_still();
-  const std::vector<double> load = nodal_;
-  const bool loaded = input_.self_weight || !loads_.empty();
-  Solution found = settle(loaded, Part::all);
+  if (structure_) load_structure(0.0);
+  Solution found = settle(Part::all);
   if (found == Solution::fleet_unsettled) {
     stand_still();
-    found = settle_slowly(load, loaded);
+    found = settle_slowly();
   }
   if (found != Solution::found) refuse_start(found);
-  std::copy(nodal_.begin(), nodal_.end(), v);
+  if (structure_) structure_->end_stage(y, y + n_);
   fleet_.set(0.0, p_.data(), pd_still_.data());
   for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
   for (int i = 0; i < moving.contacts(); ++i) moving.contact(i).kinematics = fleet_.contact(i).kinematics;
   fleet_ = std::move(moving);
 }
 
-// Every drive stands still, every body is where the scene puts it; the beam's load in nodal_.
+// Every drive stands still, every body is where the scene puts it.
 void System::stand_still() {
   fleet_ = Fleet(input_.types, input_.train, input_.gravity, true, line_ != nullptr ? &line_->mesh : nullptr,
                  &input_.profile, surface_height());
@@ -46,30 +45,25 @@ void System::stand_still() {
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
   for (std::vector<double>* still : {&p_still_, &pd_still_, &x_}) still->assign(f, 0.0);
-  if (beam_ == nullptr) return;
-  external_load(0.0, nodal_.data());
-  fleet_.place_wheels();
+  if (structure_) fleet_.place_wheels();
 }
 
-// Statics under the load in nodal_: the deflection there, and p. `tie`: what holds all masses where they are, 1/s2.
-System::Solution System::settle(bool loaded, Part part, double tie) {
-  release_held(nodal_.data());
-  for (std::vector<double>* still : {&v_still_, &w_still_}) std::fill(still->begin(), still->end(), 0.0);
-  if (nonlinear_) nonlinear_->begin(0.0, nullptr, nullptr, nullptr);
-  return solve_coupled({0.0, 0.0, tie}, part, loaded);
+// Statics, from p_still_. `tie`: what holds all masses where they are, 1/s2.
+System::Solution System::settle(Part part, double tie) {
+  if (structure_) structure_->begin_statics(input_.self_weight || !loads_.empty());
+  return solve_coupled({0.0, 0.0, tie}, part);
 }
 
 // Newton does not come from a spring that is loose, or a contact that is apart, to where it carries: the force has no
 // slope to follow.
-System::Solution System::settle_slowly(const std::vector<double>& load, bool loaded) {
+System::Solution System::settle_slowly() {
   std::vector<Eigen::VectorXd> start;
   for (const MovingVehicle& vehicle : fleet_.vehicles) start.push_back(vehicle.state.q);
   Solution found = Solution::fleet_unsettled;
   double tie = first_tie;
   for (int i = 0; i < most_ties && tie >= last_tie; ++i) {
-    nodal_ = load;
-    found = settle(loaded, Part::all, tie);
-    if (found == Solution::foundation_unsettled) return found;
+    found = settle(Part::all, tie);
+    if (found == Solution::structure_unsettled) return found;
     if (found == Solution::fleet_unsettled) {
       if ((tie *= stiffer) > first_tie * stiffer) return found;
       go_on_from(p_still_);
@@ -81,9 +75,8 @@ System::Solution System::settle_slowly(const std::vector<double>& load, bool loa
     if (note_lost(start)) return Solution::fleet_unsettled;
     tie *= softer;
     if (held > nearly_at_rest * std::max(input_.gravity, 1.0)) continue;
-    nodal_ = load;
     const std::vector<double> here = p_still_;
-    if (settle(loaded, Part::all) == Solution::found) return Solution::found;
+    if (settle(Part::all) == Solution::found) return Solution::found;
     go_on_from(here);
   }
   return Solution::fleet_unsettled;
@@ -123,11 +116,11 @@ bool System::note_lost(const std::vector<Eigen::VectorXd>& start) {
 }
 
 void System::refuse_start(Solution found) const {
-  if (found == Solution::foundation_unsettled)
+  if (found == Solution::structure_unsettled)
     throw SolverError(
         "no static equilibrium found to start from: the foundation that is one-sided, has a gap or a "
         "cubic term does not settle, worst " +
-        nonlinear_->worst_point() + "; does the beam rest on it, and what else holds the beam?");
+        structure_->trouble() + "; does the beam rest on it, and what else holds the beam?");
   const std::string advice =
       "is every body held by joints, springs or wheels, also against actuators, and every wheel stiff enough to carry "
       "its load within its radius? scene_start: given starts from the positions as written";

@@ -15,10 +15,10 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
   const bool weighed = !equilibrium && weigh_at_rest();
   if (equilibrium) {
     find_equilibrium(y);
-  } else if (input_.self_weight && beam_ != nullptr) {
-    std::copy(dead_load_.begin(), dead_load_.end(), nodal_.begin());
-    if (const Solution found = settle(true, Part::beam); found != Solution::found) refuse_start(found);
-    std::copy(nodal_.begin(), nodal_.end(), y);
+  } else if (input_.self_weight && structure_) {
+    structure_->load({});
+    if (const Solution found = settle(Part::beam); found != Solution::found) refuse_start(found);
+    structure_->end_stage(y, y + n_);
   }
   for (MovingVehicle& vehicle : fleet_.vehicles)
     for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
@@ -33,12 +33,12 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
 
 // What the wheels weigh, whatever state the scene gives them to start with. False where they find no rest.
 bool System::weigh_at_rest() {
-  if (beam_ == nullptr || fleet_.wheels.empty()) return false;
+  if (!structure_ || fleet_.wheels.empty()) return false;
   Fleet given = fleet_;
-  std::vector<double> deflection(static_cast<std::size_t>(n_));
+  std::vector<double> at_rest(2 * static_cast<std::size_t>(n_));
   bool found = true;
   try {
-    find_equilibrium(deflection.data());
+    find_equilibrium(at_rest.data());
     note_weights();
   } catch (const SolverError&) {
     found = false;
@@ -77,7 +77,7 @@ void System::add_flats(const WheelContact& c, double end, std::vector<double>& e
 
 std::vector<double> System::corners() const {
   std::vector<double> corners = input_.profile.kinks();
-  if (beam_ != nullptr) corners.insert(corners.end(), line_->mesh.kinks().begin(), line_->mesh.kinks().end());
+  if (line_ != nullptr) corners.insert(corners.end(), line_->mesh.kinks().begin(), line_->mesh.kinks().end());
   std::sort(corners.begin(), corners.end());
   return corners;
 }
@@ -85,7 +85,7 @@ std::vector<double> System::corners() const {
 std::vector<double> System::known_events(double end, bool all_kinks) const {
   std::vector<double> kinks;
   if (all_kinks) kinks = corners();
-  if (beam_ != nullptr && !all_kinks) kinks = {line_->mesh.start(), line_->mesh.end()};
+  if (line_ != nullptr && !all_kinks) kinks = {line_->mesh.start(), line_->mesh.end()};
   std::vector<double> events;
   auto add = [&](double x, double speed) {
     if (speed <= 0.0) return;
@@ -111,8 +111,8 @@ std::vector<double> System::known_events(double end, bool all_kinks) const {
 }
 
 double System::leaving_time() const {
-  if (beam_ == nullptr || (fleet_.wheels.empty() && input_.load.forces.empty())) return infinite;
-  const double length = beam_->mesh().end();
+  if (!structure_ || (fleet_.wheels.empty() && input_.load.forces.empty())) return infinite;
+  const double length = beam()->mesh().end();
   double last = 0.0;
   auto leave = [&](double x, double speed) {
     if (x < length) last = std::max(last, speed > 0.0 ? (length - x) / speed : infinite);

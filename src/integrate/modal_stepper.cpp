@@ -25,7 +25,7 @@ ModalStepper::ModalStepper(coupling::System& system, const ModalBridge& bridge, 
       motion_(bridge, history_, input.load.speed, equilibrium),
       end_time_(end_time),
       interval_(interval) {
-  const auto n = static_cast<std::size_t>(system_.beam_unknowns());
+  const auto n = static_cast<std::size_t>(system_.structure_unknowns());
   sagging_.assign(n, 0.0);
   if (input.self_weight) {
     bridge_.beam().add_self_weight(input.gravity, sagging_.data());

@@ -280,7 +280,7 @@ void Stepper::check_bounds(double t, const double* y, const double* ydot) const 
   double bounds[2] = {0.0, 0.0};  // of the sum of all entries, of the beam's displacements
   for (int i = 0; i < n; ++i) bounds[0] += std::abs(y[i]);
   for (int i = 0; i < n && ydot != nullptr; ++i) bounds[0] += std::abs(ydot[i]);
-  for (int i = 0; i < system_.beam_unknowns(); ++i) bounds[1] = std::max(bounds[1], std::abs(y[i]));
+  for (int i = 0; i < system_.structure_unknowns(); ++i) bounds[1] = std::max(bounds[1], std::abs(y[i]));
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, system_.comm());
   const bool off = system_.beam() != nullptr && bounds[1] > system_.beam()->model().length();
   if (t == 0.0 && off)

@@ -243,7 +243,7 @@ void run_from(const beam::BeamModel& model, const Set& set, int which, double st
       if (local >= 0) y[offset + local] = value;
     };
   };
-  set(writer(0, which), writer(system.beam_unknowns(), which));
+  set(writer(0, which), writer(system.structure_unknowns(), which));
   stepper.restore_state(&y);
   coupling::Observation seen;
   stepper.run(

@@ -40,12 +40,12 @@ class Watch {
 
  private:
   void fill_vehicles(results::Sample& sample) const;
-  void fill_fields(const double* v, const double* w);
+  void fill_fields();
   void drag(const double* drag);
   void note_separations();
   void note_wheels();
-  void store(const double* v, const double* w, bool end);
-  void note_peaks(const double* v, const double* w);
+  void store(bool end);
+  void note_peaks();
   void note_energy();
 
   const Scene& scene_;

@@ -10,7 +10,31 @@
 
 namespace traverse::coupling {
 
-class Compliance {
+/// How elements yield to forces on each other.
+class ElementCompliance {
+ public:
+  /// The elements that respond to a load on one of them: [first, last) of their list.
+  struct Response {
+    int first = 0, last = 0;
+    std::size_t begin = 0;  // of their blocks
+  };
+  const Response& response(int b) const { return responses_[b]; }
+  /// Displacement of unknown i of the element a from a unit load on unknown j of the element b, at (i, j) of a matrix
+  /// of 2*per_node rows stored by columns; a in the response to b.
+  const double* block(int a, int b) const {
+    const Response& r = responses_[b];
+    return &blocks_[r.begin + static_cast<std::size_t>(a - r.first) * m_ * m_];
+  }
+
+ protected:
+  explicit ElementCompliance(int per_node) : m_(2 * per_node) {}
+
+  int m_;  // 2*per_node
+  std::vector<Response> responses_;
+  std::vector<double> blocks_;  // by the element loaded, then by the one that responds
+};
+
+class Compliance final : public ElementCompliance {
  public:
   Compliance(const beam::Beam& beam, BeamOperator& op);
 
@@ -21,19 +45,6 @@ class Compliance {
   /// Collective. Columns of the beam beyond which nothing is left of a response, for these shifts; 0 where parts of the
   /// beam do not touch: it ends with the part.
   int reach(double shift, double shift2);
-
-  /// The elements of the last prepare that respond to a load on one of them: [first, last) of their list.
-  struct Response {
-    int first = 0, last = 0;
-    std::size_t begin = 0;  // of their blocks
-  };
-  const Response& response(int b) const { return responses_[b]; }
-  /// Displacement of unknown i of elements[a] from a unit load on unknown j of elements[b], at (i, j) of a matrix of
-  /// 2*per_node rows stored by columns; a in the response to b.
-  const double* block(int a, int b) const {
-    const Response& r = responses_[b];
-    return &blocks_[r.begin + static_cast<std::size_t>(a - r.first) * m_ * m_];
-  }
 
   /// v += A^-1 loads, where loads holds 2*per_node nodal values an element of the last prepare. This rank's slice.
   void add_response(const std::vector<double>& loads, double* v) const;
@@ -66,7 +77,6 @@ class Compliance {
   const beam::Beam& beam_;
   BeamOperator& operator_;
   const beam::Line& line_;
-  int m_;                                             // 2*per_node
   bool short_parts_ = false;                          // statics part by part lose no digits
   std::vector<std::size_t> kind_slot_;                // of the first element of each kind of part
   std::list<Column> columns_;                         // most recent first
@@ -81,9 +91,7 @@ class Compliance {
   std::vector<int> elements_;
   long stamp_ = -1, reach_stamp_ = -1;
   std::ptrdiff_t margin_;  // nodes on either side of an element within which its response dies out, as found last
-  std::vector<Response> responses_;
-  std::vector<double> blocks_;  // by the element loaded, then by the one that responds
-  struct {                      // the same of the prepare before
+  struct {                 // of the prepare before
     std::vector<int> elements;
     std::vector<Response> responses;
     std::vector<double> blocks;

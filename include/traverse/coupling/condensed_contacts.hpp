@@ -47,7 +47,7 @@ class CondensedContacts {
 
   VehicleYield& yield(int vehicle) { return yield_[vehicle]; }
   /// A from the vehicles' H and P and from the beam (null: none).
-  void couple(const Compliance* compliance, int per_node);
+  void couple(const ElementCompliance* compliance, int per_node);
 
   /// Newton from the kinematics held in the contacts, which take those found and their forces. loaded: the geometry
   /// has the beam under the forces held, else under none. Returns what is left over a vehicle's weight: the law's
@@ -65,7 +65,7 @@ class CondensedContacts {
     double value;
   };
   template <int m>
-  void respond(const Compliance& compliance);
+  void respond(const ElementCompliance& compliance);
   void find_band(bool whole);
   void fill();
   double& A(int i, int j) { return A_(band_ + i - j, j); }

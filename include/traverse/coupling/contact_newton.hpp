@@ -34,7 +34,7 @@ struct StageData {
   const double* pd_still = nullptr;
   const std::vector<double>* v0 = nullptr;  // free response at the elements in touch, 2*per_node each
   const std::vector<double>* w0 = nullptr;  // its rate
-  const Compliance* compliance = nullptr;   // null without a beam
+  const ElementCompliance* compliance = nullptr;   // null without a beam
   int per_node = 2;
   VehicleShare* share = nullptr;  // null: this rank has all vehicles
 };

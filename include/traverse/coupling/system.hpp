@@ -1,17 +1,25 @@
 // The combined system of the paper's section 5 as an ordinary differential equation y' = G(t, y), the
 // GCP-projected right-hand side, with y = (v, w, p, p', D, W):
 //
-//   v' = w,  M w' = P + S f_n + T f_t - C* w - K* v       the beam, cut over ranks by nodes
-//   p'' from B^T (N (B p'' + d) - g - Q) = 0              the vehicles' independent coordinates, on rank 0
+//   v' = w,  w' from the structure's equations under P + S f_n + T f_t   the structure (structure.hpp), cut over ranks
+//   p'' from B^T (N (B p'' + d) - g - Q) = 0                             the vehicles' coordinates, on rank 0
 //   D' = power lost in dampers and contacts, W' = power of loads, actuators and drivers
 //
-// A contact's beam values come from the rank that owns them by one reduction. Every rank holds all vehicles; in steps
-// in second-order form it moves and evaluates its share of them (VehicleShare), and only what is observed is complete.
+// Every rank holds all vehicles; in steps in second-order form it moves and evaluates its share of them (VehicleShare),
+// and only what is observed is complete.
 //
-// Implicit time integrators ask for y with G(t, y) = s y + c. `solve_stage` eliminates the beam: one solve with
-// A = s^2 M + s C* + K* gives its free response, the columns of A^-1 at the elements under the wheels its
-// compliance, and Newton (ContactNewton) runs on the vehicles and the contact kinematics alone. Around this goes a
-// Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
+// A step in second-order form, as Stepper has it taken:
+//
+//   step_motion            load_structure, Structure::begin_step
+//     stage_of_motion      once a stage: what v, w and p would be at zero acceleration
+//       solve_coupled      Structure::solve_free, stage_of_fleet, Structure::take; again until Structure::judge agrees
+//         stage_of_fleet   wheels placed on elements, Structure::gather_free and yield, ContactNewton::solve
+//       Structure::end_stage
+//     finish_step          Structure::finish_step, p and p' of all vehicles on all ranks
+//   accept                 Structure::complete_step, contacts lost and gained, worn coordinates chosen anew
+//   observe                forces, accelerations, energies: of samples alone
+//
+// PETSc's own implicit integrators ask for y with G(t, y) = s y + c: `solve_stage` does the same once.
 #pragma once
 
 #include <array>
@@ -23,14 +31,11 @@
 #include <vector>
 
 #include "traverse/beam/recovery.hpp"
-#include "traverse/coupling/beam_motion.hpp"
-#include "traverse/coupling/beam_operator.hpp"
-#include "traverse/coupling/compliance.hpp"
 #include "traverse/coupling/contact_newton.hpp"
 #include "traverse/coupling/fleet.hpp"
-#include "traverse/coupling/nonlinear_foundation.hpp"
-#include "traverse/coupling/rest_window.hpp"
+#include "traverse/coupling/motion.hpp"
 #include "traverse/coupling/separations.hpp"
+#include "traverse/coupling/structure.hpp"
 #include "traverse/coupling/vehicle_share.hpp"
 #include "traverse/coupling/wheel_paths.hpp"
 
@@ -57,38 +62,36 @@ struct Energy {
   double structure = 0.0;  // kinetic and strain energy of the structure alone
 };
 
-/// An accepted instant; complete on every rank except the nodal slices.
+/// An accepted instant; complete on every rank except the nodal values.
 struct Observation {
-  std::vector<double> a;                 // nodal accelerations, this rank
-  std::vector<double> P;                 // nodal loads, on held unknowns too, this rank
-  std::vector<beam::ElementLoad> loads;  // of wheels and forces, on the beam that they run on
+  NodalMotion beam;
+  std::vector<beam::ElementLoad> loads;  // of wheels and forces, on the line that they run on
   /// All concentrated loads on the bridge: these where they run on it, and the foundation that is not linear. Inside an
   /// element a bed counts by its points of integration.
   std::vector<beam::ElementLoad> bridge_loads;
-  NonlinearForces foundation;
   Energy energy;
 };
 
-/// Where the beam would be, without the contacts' forces, at an unknown of this rank's: v and w.
-struct FreeResponse {
-  virtual std::pair<double, double> at(int unknown) const = 0;
-
- protected:
-  ~FreeResponse() = default;
-};
+/// The structure by its elements, carrying what the scene says; null without a beam. `shared`: the beam's operator
+/// where there is one already, with its factorisations.
+std::unique_ptr<Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
+                                       std::shared_ptr<BeamOperator> shared = nullptr);
 
 class System {
  public:
-  /// beam may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel
-  /// that would touch the profile at more points than are modelled.
-  /// `shared`: the beam's operator where there is one already, with its factorisations.
-  System(MPI_Comm comm, const beam::Beam* beam, SystemInput input, std::shared_ptr<BeamOperator> shared = nullptr);
+  /// structure may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel that
+  /// would touch the profile at more points than are modelled.
+  System(MPI_Comm comm, std::unique_ptr<Structure> structure, SystemInput input);
+  /// The same with a structure by_elements.
+  System(MPI_Comm comm, const beam::Beam* beam, const SystemInput& input)
+      : System(comm, by_elements(beam, input), input) {}
 
   MPI_Comm comm() const { return comm_; }
-  const beam::Beam* beam() const { return beam_; }
+  const Structure* structure() const { return structure_.get(); }  // null: none
+  const beam::Beam* beam() const { return structure_ ? &structure_->beam() : nullptr; }
   const Fleet& fleet() const { return fleet_; }
-  int local_size() const;                   // entries of y on this rank
-  int beam_unknowns() const { return n_; }  // on this rank: v at y, w at y + beam_unknowns()
+  int local_size() const;                        // entries of y on this rank
+  int structure_unknowns() const { return n_; }  // on this rank: v at y, w behind it
   int freedom() const { return fleet_.freedom(); }
 
   /// Writes the start: static equilibrium at t = 0 with the drives at rest (the beam deflected under the train),
@@ -104,11 +107,10 @@ class System {
 
   // In second-order form, without a PETSc stage: what an own integrator takes steps with.
 
-  /// Leaves out of the steps what moves less than `tolerance` of the largest motion (rest_window.hpp); before
-  /// begin_motion. Probes' stations rest only when really quiet.
-  void leave_out_rest(double tolerance, const std::vector<double>& probes);
-  /// Null where everything is stepped.
-  const RestWindow* window() const { return motion_ && motion_->window ? &*motion_->window : nullptr; }
+  /// Structure::leave_out_rest, before begin_motion.
+  void leave_out_rest(double tolerance, const std::vector<double>& probes) {
+    if (structure_) structure_->leave_out_rest(tolerance, probes);
+  }
   /// Collective. The method of the steps to come, for steps of 1 s.
   void begin_motion(const Method& method);
   /// Whether the last step can be taken back.
@@ -183,7 +185,7 @@ class System {
   /// Collective. The first such time within h s from the accepted state y at t, as it lets it be expected.
   std::optional<Turn> next_turn(double t, double h, const double* y);
   /// Collective. The same as it is found at the end of a step, where the vehicles are.
-  double time_of(const Turn& turn, double t, const double* y) const;
+  double time_of(const Turn& turn, double t, const double* y);
 
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
   double leaving_time() const;
@@ -195,48 +197,40 @@ class System {
   bool pass_together(const WheelPaths& paths) const;
 
   /// Estimated relative error of static solutions so far, from rounding.
-  double static_error() const { return operator_ ? operator_->static_error() : 0.0; }
-  long beam_solves() const { return operator_ ? operator_->solves : 0; }
-  long factorisations() const { return operator_ ? operator_->factorisations() : 0; }
+  double static_error() const { return structure_ ? structure_->statics().static_error() : 0.0; }
+  long beam_solves() const { return structure_ ? structure_->statics().solves : 0; }
+  long factorisations() const { return structure_ ? structure_->statics().factorisations() : 0; }
 
  private:
-  /// A second-order integration under way.
+  struct Powers {  // W; this rank's share
+    double dissipation = 0.0, work = 0.0;
+  };
+  /// A second-order integration under way: of the vehicles.
   struct Motion {
     Method unit, method;  // for steps of 1, for steps of `length`
     double length = 0.0;
-    std::optional<BeamMotion> beam;
-    std::optional<RestWindow> window;
-    std::array<std::vector<double>, most_accelerations> pdd;  // the vehicles' p'' at the stages
+    std::array<std::vector<double>, most_accelerations> pdd;  // p'' at the stages
     std::vector<double> p, pd;                                // at the start of the step
-    struct Powers {                                           // W; this rank's share
-      double beam = 0.0, loads = 0.0, dissipation = 0.0, work = 0.0;
-    };
-    std::array<Powers, most_accelerations> powers;  // at the stages
-    /// This rank's share of D and W. Of the fused beam D is known up to `unmeasured` s ago, when its dissipation was
-    /// `measured`.
-    double dissipated = 0.0, worked = 0.0, unmeasured = 0.0;
-    BeamMotion::Dissipation measured;
-    bool measuring = false, to_measure = true;
+    std::array<Powers, most_accelerations> powers;            // at the stages
+    double dissipated = 0.0, worked = 0.0;                    // J, this rank's share
     struct {
       double dissipated = 0.0, worked = 0.0;
-      int first = 0, past = 0;      // of the beam's unknowns, [first, past)
-      std::vector<double> v, w, p;  // there, and y behind the beam's
+      std::vector<double> p;  // y behind the structure's
     } before;
-    std::array<std::pair<int, int>, 2> free{};  // nodes of parts that nothing loads during the step: [first, past)
-    bool stepped = false;                       // since the last restart
-    bool incomplete = false;                    // these are still at the start of the last step
-    bool measures_errors = false;
     double energy_scale = 0.0;  // J, of the structure's errors
     std::vector<double> rate;   // of restarts
   };
-  /// Shifts of a stage: w = shift*v + ..., w' = shift2*v + ...; 0: statics, of the beam also with shift alone 0.
+  /// Shifts of a stage: w = shift*v + ..., w' = shift2*v + ...; shift 0: statics, where shift2 ties masses to where
+  /// they are.
   struct StageTime {
     double t = 0.0, shift = 0.0, shift2 = 0.0;
   };
 
-  enum class Solution { found, fleet_unsettled, foundation_unsettled };
+  enum class Solution { found, fleet_unsettled, structure_unsettled };
 
-  void find_equilibrium(double* v);
+  int per_node() const { return structure_ ? structure_->per_node() : 2; }
+  void expect_weights();
+  void find_equilibrium(double* y);
   bool weigh_at_rest();
   void let_wheels_roll();
   void stand_still();
@@ -253,7 +247,7 @@ class System {
     double x = 0.0;     // m
   };
   double longest_turn(const Corner& corner) const;
-  std::array<double, 2> turning_times(const Corner& corner, double t, const double* y) const;
+  std::array<double, 2> turning_times(const Corner& corner, double t, const double* y);
   struct InfluenceLine;
   InfluenceLine influence_line(double station);
   double peak_of_train(const InfluenceLine& line, double constant) const;
@@ -261,48 +255,31 @@ class System {
   double static_energy(double station);
   double note_contacts(double t);
   void share_coordinates(const double* y);
-  void gather(const FreeResponse& response);
-  void load_of_stills(double t);
-  Solution settle(bool loaded, Part part, double tie = 0.0);
-  Solution settle_slowly(const std::vector<double>& load, bool loaded);
-  Solution solve_coupled(const StageTime& at, Part part, bool loaded);
-  bool stage_of_fleet(const StageTime& at, const FreeResponse& response, const AddedSprings* added);
-  void add_contact_response(double factor, double* z);
-  bool stage_of_motion(double t, const StageRule& rule, const double* v, const double* w);
-  std::pair<int, int> loaded_columns(double t, double h) const;
-  void set_ranges(double t, double h);
-  void complete_step(double* y);
-  double dissipated_until(const BeamMotion::Dissipation& now) const;
-  void add_dissipation(const BeamMotion::Dissipation& now);
-  BeamMotion::Dissipation measure_dissipation(const double* w);
+  Solution settle(Part part, double tie = 0.0);
+  Solution settle_slowly();
+  Solution solve_coupled(const StageTime& at, Part part);
+  bool stage_of_fleet(const StageTime& at);
+  bool stage_of_motion(double t, std::size_t stage, const double* v, const double* w);
+  const std::vector<Reach>& loaded(double t, double h);
   void finish_step(double* y);
   double structure_error(const double* y);
-  void list_nodal_loads();
-  void note_foundation();
-  void moving_loads(double t);
-  void external_load(double t, double* nodal);
-  void add_contact_load(double* nodal);
-  void add_point_load(const beam::Line& line, const beam::ElementLoad& load, double* nodal) const;
-  void release_held(double* nodal) const;
+  void load_structure(double t);
+  ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
   void share_step();
   std::string trouble_of_own() const;
   void note_impacts(double t);
   void note_touched();
   void powers(const double* w, Part part, double& dissipation, double& work);
-  void fleet_powers(Motion::Powers& powers) const;
-  double beam_dissipation(const double* w);
+  Powers fleet_powers() const;
   Energy energy(const double* y);
 
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
-  const beam::Beam* beam_;
-  const beam::Line* line_ = nullptr;  // that wheels and forces run on; null without a beam
-  int per_node_ = 2;                  // its unknowns a node
+  std::unique_ptr<Structure> structure_;  // null: none
+  const beam::Line* line_;                // that wheels and forces run on; null without a structure
+  int n_;                                 // the structure's unknowns on this rank
   SystemInput input_;
-  std::shared_ptr<BeamOperator> operator_;
-  std::optional<Compliance> compliance_;
-  std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
   Fleet fleet_;
   VehicleShare share_;
   Separations separations_;
@@ -313,9 +290,7 @@ class System {
   std::vector<Impact> impacts_;  // of every contact
   std::vector<double> impact_durations_;
   ContactNewton newton_;
-  int n_ = 0;  // beam unknowns on this rank
 
-  std::vector<double> dead_load_;                   // of self-weight, this rank
   std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
   std::vector<char> on_beam_;                       // of each moving force, during the step under way
   std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
@@ -328,14 +303,11 @@ class System {
   std::vector<double> evaluated_;               // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
   unsigned signs_ = 0;         // VehicleShare's of that state or, after a step, of its end
-  std::vector<double> v_, w_;  // of the elements in touch, 2*per_node each
-  std::vector<double> element_work_;
-  std::vector<double> nodal_, work_, v_still_, w_still_, stage_load_;  // this rank's unknowns
-  std::vector<NodalLoad> nodal_loads_;                                 // of the moving forces, ascending unknowns
+  std::vector<double> v_, w_;  // of elements, 2*per_node each
+  std::vector<double> element_loads_;
+  std::vector<Reach> reaches_;
+  std::vector<int> turned_elements_;  // on either side of a corner
   std::optional<Motion> motion_;
-  double rest_tolerance_ = 0.0;  // 0: everything is stepped
-  std::vector<int> watched_;     // columns of probes
-  std::vector<double> rest_;     // deflections under the dead load alone; empty: none
   bool keep_steps_ = false;
 };
 
