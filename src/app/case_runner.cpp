@@ -25,7 +25,8 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
   if (loads_.empty()) loads_ = {scene.load};
   structure_.damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
   structure_.prepare(scene_, notes);
-  if (structure_.modal) structure_.modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
+  if (scene_.exact_in_time())
+    structure_.modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
   std::vector<std::string> ignored;
   for (std::size_t train = 0; train < trains(); ++train) {
     for (const double speed : {speeds_.front(), speeds_.back()})
@@ -51,7 +52,7 @@ double CaseRunner::duration(std::size_t train, double speed) const {
 }
 
 double CaseRunner::cost() const {
-  if (structure_.modal) {
+  if (scene_.exact_in_time()) {
     const std::vector<double>& omega = structure_.modal->omega();
     return seconds_a_mode * instants_a_period * omega.back() / (2.0 * std::numbers::pi) *
            static_cast<double>(omega.size());
@@ -72,7 +73,7 @@ double CaseRunner::cost_of_all() const {
 }
 
 CaseResult CaseRunner::run(std::size_t train, double speed, const std::function<void(double)>& reached) {
-  return structure_.modal ? run_by_modes(train, speed) : run_by_elements(train, speed, reached);
+  return scene_.exact_in_time() ? run_by_modes(train, speed) : run_by_elements(train, speed, reached);
 }
 
 CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached) {
@@ -124,7 +125,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
 }
 
 CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
-  const integrate::ModalBridge& bridge = *structure_.modal;
+  const coupling::ModalBridge& bridge = *structure_.modal;
   auto place = histories_.find(train);
   if (place == histories_.end()) {
     place = histories_.emplace(train, integrate::ForceHistory(bridge.influence(), scene_of(train, speed).load)).first;

@@ -6,6 +6,7 @@
 
 #include "traverse/app/peaks.hpp"
 #include "traverse/app/resolution.hpp"
+#include "traverse/coupling/modal_structure.hpp"
 #include "traverse/coupling/rest_window.hpp"
 #include "traverse/results/stage.hpp"
 
@@ -19,6 +20,15 @@ coupling::SystemInput system_input(const Scene& scene, bool still) {
                                  scene.gravity,  scene.self_weight, scene.impact_steps};
   if (still) input.train.speed = input.load.speed = 0.0;
   return input;
+}
+
+/// The bridge by its modes where vehicles run on these; else by its elements, or none.
+std::unique_ptr<coupling::Structure> carrier(const Scene& scene, const Structure& structure,
+                                             const coupling::SystemInput& input) {
+  if (!structure.modal || scene.exact_in_time())
+    return coupling::by_elements(structure.bridge(), input, structure.statics);
+  return std::make_unique<coupling::ModalStructure>(*structure.modal, input.self_weight ? input.gravity : 0.0,
+                                                    structure.statics);
 }
 
 /// When something passes a probe, as long as that is rare among the steps.
@@ -38,11 +48,11 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
     : scene_(scene),
       still_(scene.analysis == Analysis::static_response),
       input_(system_input(scene, still_)),
-      system_(structure.comm, coupling::by_elements(structure.bridge(), input_, structure.statics), input_) {
+      system_(structure.comm, carrier(scene, structure, input_), input_) {
   check_mesh(scene, notes);
   if (!still_) plan_ = make_plan(scene, system_, structure.first_period(), notes);
   std::string method;
-  if (structure.modal) {
+  if (scene.exact_in_time()) {
     modal_.emplace(system_, *structure.modal, *structure.statics, input_, scene.start == Start::equilibrium,
                    plan_.end_time, plan_.interval);
     method = modal_->method();
@@ -70,7 +80,7 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
 
 void Passage::leave_out_rest(std::vector<std::string>& notes) {
   const beam::Beam* beam = system_.beam();
-  if (still_ || beam == nullptr) return;
+  if (still_ || beam == nullptr || scene_.model_modes > 0) return;
   const bool apart = beam->parts().size() > 2;
   const double tolerance = scene_.rest_tolerance >= 0.0 ? scene_.rest_tolerance
                            : apart                      ? coupling::RestWindow::quiet

@@ -120,13 +120,13 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
                std::vector<std::string>& notes) {
   Plan plan;
   plan.end_time = end_of(scene, system);
-  if (scene.model_modes == 0)
+  if (!scene.exact_in_time())
     plan.time_step = scene.time_step ? *scene.time_step : chosen_step(scene, first_period, notes);
   if (plan.end_time <= 0.0)
     throw InputError(
         "scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
         "or ts_max_time in s above 0");
-  if (scene.model_modes > 0) {
+  if (scene.exact_in_time()) {
     plan_modal(scene, first_period, plan, notes);
     move_end_to_sample(plan);
     return plan;

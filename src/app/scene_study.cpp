@@ -59,13 +59,14 @@ void read_modal(const Options& o, Scene& scene) {
     scene.notes.emplace_back("model_modes has no effect: it is for transient runs");
     return;
   }
-  if (!scene.vehicles.empty()) o.refuse("model_modes", "with vehicles: not there yet; allowed: auto or 0");
-  if (scene.load.forces.empty()) o.refuse("model_modes", "needs moving forces (load_forces or load_hslm_a)");
+  if (scene.vehicles.empty() && scene.load.forces.empty())
+    o.refuse("model_modes", "needs vehicles (train_vehicles) or moving forces (load_forces or load_hslm_a)");
   if (scene.beam->track) o.refuse("model_modes", "with a layered track: not there yet; allowed: auto or 0");
   if (scene.beam->foundation.nonlinear())
     o.refuse("model_modes", "the foundation is one-sided, has a gap or a cubic term; allowed: auto or 0");
-  if (const options::Entry* type = o.entries().find("ts_type"); type != nullptr && type->value != "modal")
-    o.refuse("ts_type", "with model_modes the motion is exact in time; allowed: modal, or left out");
+  if (const options::Entry* type = o.entries().find("ts_type");
+      scene.vehicles.empty() && type != nullptr && type->value != "modal")
+    o.refuse("ts_type", "with model_modes and forces alone the motion is exact in time; allowed: modal, or left out");
   scene.model_modes = static_cast<int>(modes);
   if (!o.has("model_damping_ratios")) return;
   if (scene.damping.rayleigh || scene.damping.ratios)

@@ -71,7 +71,7 @@ results::Sweep::Model model_of(const Scene& scene) {
   model.modes = scene.model_modes;
   model.elements = mesh_of(scene);
   model.in_bays = scene.beam->track.has_value();
-  if (scene.model_modes == 0) model.time_step = scene.time_step.value_or(0.0);
+  if (!scene.exact_in_time()) model.time_step = scene.time_step.value_or(0.0);
   return model;
 }
 

@@ -51,6 +51,7 @@ void Watch::sample(const integrate::Instant& instant) {
   sample_.time = instant.time;
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
+    if (!beam.drag.empty()) drag(beam.drag.data());
     recovery_->evaluate(beam.v, beam.w, beam.a.data(), observation_.bridge_loads, sample_.probes);
     if (lag_) lag_->apply(instant.time, observation_.bridge_loads, sample_.probes);
     for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;

@@ -60,7 +60,7 @@ TEST(ModalMotion, OneModeInClosedForm) {
   beam::Beam beam(PETSC_COMM_SELF, one_span(40));
   beam.set_rayleigh({});
   coupling::BeamOperator statics(beam);
-  integrate::ModalBridge bridge(beam, statics, 1, {});
+  coupling::ModalBridge bridge(beam, statics, 1, {});
   bridge.add_probes({0.5 * length}, 0.0);
   const double alpha = 0.617, speed = speed_for(alpha), omega = bridge.omega()[0], drive = pi * speed / length;
   const coupling::MovingLoad load{{1e5}, {0.0}, speed};
@@ -89,7 +89,7 @@ TEST(ModalMotion, ManyStepsAndOneAgree) {
   beam::Beam beam(PETSC_COMM_SELF, one_span(8));
   beam.set_rayleigh({1.0, 2e-3});
   coupling::BeamOperator statics(beam);
-  const integrate::ModalBridge bridge(beam, statics, 6, {});
+  const coupling::ModalBridge bridge(beam, statics, 6, {});
   ASSERT_GT(bridge.sigma()[5], bridge.omega()[5]);
   ASSERT_LT(bridge.sigma()[0], bridge.omega()[0]);
   const coupling::MovingLoad load{{1e5, 2e5}, {0.0, -3.0}, 40.0};

@@ -75,6 +75,9 @@ struct Scene {
   bool quiet = false;                                        // -output_quiet: no progress
   std::vector<std::string> notes;                            // what was chosen and why, one line each
   std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
+
+  /// Modes under moving forces alone, whose motion is known exactly.
+  bool exact_in_time() const { return model_modes > 0 && vehicles.empty(); }
 };
 
 /// x of the wheels of vehicle `i` of the train at t = 0, in m.

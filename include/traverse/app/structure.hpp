@@ -9,7 +9,7 @@
 
 #include "traverse/app/scene.hpp"
 #include "traverse/coupling/beam_operator.hpp"
-#include "traverse/integrate/modal_bridge.hpp"
+#include "traverse/coupling/modal_bridge.hpp"
 
 namespace traverse::app {
 
@@ -33,7 +33,7 @@ struct Structure {
   std::optional<std::pair<double, double>> omega;  // rad/s, the first two distinct frequencies
   beam::Rayleigh rayleigh;
   std::shared_ptr<coupling::BeamOperator> statics;  // with the factorisations so far
-  std::optional<integrate::ModalBridge> modal;      // with model_modes
+  std::optional<coupling::ModalBridge> modal;      // with model_modes
 };
 
 }  // namespace traverse::app

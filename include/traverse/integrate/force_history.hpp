@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "traverse/coupling/vehicle.hpp"
-#include "traverse/integrate/modal_bridge.hpp"
+#include "traverse/coupling/modal_bridge.hpp"
 
 namespace traverse::integrate {
 
@@ -12,7 +12,7 @@ namespace traverse::integrate {
 /// passes a break. The last interval has no end.
 struct ForceHistory {
   /// InputError where it would not fit into memory.
-  ForceHistory(const PiecewiseCubic& influence, const coupling::MovingLoad& load);
+  ForceHistory(const coupling::PiecewiseCubic& influence, const coupling::MovingLoad& load);
 
   std::vector<double> start;  // of each interval, m travelled since t = 0; the first is 0
   std::size_t channels = 0;

@@ -12,7 +12,7 @@ namespace traverse::integrate {
 class ModalStepper {
  public:
   /// Collective. `system` holds the same beam under the same load, without vehicles.
-  ModalStepper(coupling::System& system, const ModalBridge& bridge, coupling::BeamOperator& statics,
+  ModalStepper(coupling::System& system, const coupling::ModalBridge& bridge, coupling::BeamOperator& statics,
                const coupling::SystemInput& input, bool equilibrium, double end_time, double interval);
 
   /// As Stepper::run; a step is what lies between two samples. The nodal displacements are those of the modes and, with
@@ -29,7 +29,7 @@ class ModalStepper {
   void load_now(double* nodal) const;
 
   coupling::System& system_;
-  const ModalBridge& bridge_;
+  const coupling::ModalBridge& bridge_;
   coupling::BeamOperator& statics_;
   coupling::MovingLoad load_;
   ForceHistory history_;

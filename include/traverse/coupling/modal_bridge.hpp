@@ -13,7 +13,7 @@
 #include "traverse/coupling/beam_operator.hpp"
 #include "traverse/modes/modes.hpp"
 
-namespace traverse::integrate {
+namespace traverse::coupling {
 
 /// Several quantities along x, each a cubic polynomial between neighbouring breaks.
 struct PiecewiseCubic {
@@ -37,7 +37,7 @@ class ModalBridge {
   /// Collective. The `count` lowest modes of bending with all copies of the last frequency. `ratios`: damping ratios of
   /// each mode, the last one for all further modes; empty: the beam's Rayleigh damping. InputError where dampers or
   /// springs of the foundation make C* couple the modes. The operator may be used further; the beam must stay.
-  ModalBridge(const beam::Beam& beam, coupling::BeamOperator& statics, int count, const std::vector<double>& ratios);
+  ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios);
 
   /// Collective. Adds the response at stations to the forms, and its static correction to the influence. gravity: 0
   /// without self-weight.
@@ -75,11 +75,11 @@ class ModalBridge {
   std::vector<double> static_solution(const std::vector<double>& load);
 
   const beam::Beam& beam_;
-  coupling::BeamOperator& statics_;
+  BeamOperator& statics_;
   modes::Basis basis_;
   std::vector<double> sigma_, own_drag_;
   ModalProbes probes_;
   PiecewiseCubic influence_;
 };
 
-}  // namespace traverse::integrate
+}  // namespace traverse::coupling

@@ -1,4 +1,4 @@
-#include "traverse/integrate/modal_bridge.hpp"
+#include "traverse/coupling/modal_bridge.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -8,29 +8,29 @@
 
 #include "traverse/beam/shape.hpp"
 
-namespace traverse::integrate {
+namespace traverse::coupling {
 namespace {
 
 using base::check;
-using Cubic = std::array<double, 4>;  // by powers
+using Polynomial = std::array<double, 4>;  // by powers
 
 constexpr double diagonal = 1e-6;  // relative coupling of modes that is none
 
 /// The polynomial of x - d.
-Cubic shifted(const Cubic& c, double d) {
+Polynomial shifted(const Polynomial& c, double d) {
   return {c[0] + d * (c[1] + d * (c[2] + d * c[3])), c[1] + d * (2.0 * c[2] + 3.0 * d * c[3]), c[2] + 3.0 * d * c[3],
           c[3]};
 }
 
 /// From the values and slopes at both ends of an element of length h.
-Cubic hermite_cubic(const std::array<double, 4>& end, double h) {
+Polynomial hermite_cubic(const std::array<double, 4>& end, double h) {
   const double rise = (end[2] - end[0]) / h;
   return {end[0], end[1], (3.0 * rise - 2.0 * end[1] - end[3]) / h, (end[1] + end[3] - 2.0 * rise) / (h * h)};
 }
 
 /// Through four points inside a piece of length h, at whose ends a response may jump.
 template <class Response>
-Cubic cubic_through(double h, Response response) {
+Polynomial cubic_through(double h, Response response) {
   Eigen::Matrix4d powers;
   Eigen::Vector4d values;
   for (int i = 0; i < 4; ++i) {
@@ -50,7 +50,7 @@ base::Handle<Vec> vector(MPI_Comm comm, const double* local, int size) {
 
 }  // namespace
 
-ModalBridge::ModalBridge(const beam::Beam& beam, coupling::BeamOperator& statics, int count,
+ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count,
                          const std::vector<double>& ratios)
     : beam_(beam), statics_(statics), basis_(modes::bending_basis(beam, count)) {
   set_damping(ratios);
@@ -212,9 +212,9 @@ void ModalBridge::set_influence(const std::vector<Line>& lines, const std::vecto
         const Line& line = lines[channel];
         std::array<double, 4> nodal{};
         for (std::size_t k = 0; k < 4; ++k) nodal[k] = line.nodal[static_cast<std::size_t>(unknowns[k])];
-        Cubic cubic = shifted(hermite_cubic(nodal, element.length), left);
+        Polynomial cubic = shifted(hermite_cubic(nodal, element.length), left);
         if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
-          const Cubic more = cubic_through(right - left, [&](double x) {
+          const Polynomial more = cubic_through(right - left, [&](double x) {
             std::vector<beam::Response> seen;
             recoveries[line.probe].evaluate(zero.data(), zero.data(), zero.data(),
                                             {{e, (left + x) / element.length, 0.0, -1.0, 0.0}}, seen);
@@ -229,4 +229,4 @@ void ModalBridge::set_influence(const std::vector<Line>& lines, const std::vecto
   }
 }
 
-}  // namespace traverse::integrate
+}  // namespace traverse::coupling
