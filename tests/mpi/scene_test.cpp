@@ -224,6 +224,18 @@ TEST(Ranks, SharedVehiclesPartlyCoupled) {
                            100);
 }
 
+TEST(Ranks, TrainOnABridgeByItsModes) {
+  expect_same_on_all_ranks("three_span_train",
+                           {{"train_vehicles", "coach*3"},
+                            {"beam_elements_per_span", "10"},
+                            {"beam_self_weight", "true"},
+                            {"model_modes", "12"},
+                            {"ts_dt", "2e-3"},
+                            {"ts_max_time", "1.2"},
+                            {"output_interval", "0.02"}},
+                           35);
+}
+
 TEST(Ranks, MovingForces) {
   expect_same_on_all_ranks("r6_three_spans",
                            {{"load_forces", "1e4,2e4,-5e3"},
