@@ -59,6 +59,7 @@ void read_modal(const Options& o, Scene& scene) {
     scene.notes.emplace_back("model_modes has no effect: it is for transient runs");
     return;
   }
+  if (!scene.beam) o.refuse("model_modes", "needs a beam (beam_spans), whose modes these are");
   if (scene.vehicles.empty() && scene.load.forces.empty())
     o.refuse("model_modes", "needs vehicles (train_vehicles) or moving forces (load_forces or load_hslm_a)");
   if (scene.beam->track) o.refuse("model_modes", "with a layered track: not there yet; allowed: auto or 0");

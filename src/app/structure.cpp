@@ -71,8 +71,8 @@ void Structure::prepare(const Scene& scene, std::vector<std::string>& notes) {
   if (scene.model_modes == 0) return;
   modal.emplace(*beam, *statics, scene.model_modes, scene.damping_of_modes);
   const auto hertz = [&](double value) { return value / (2.0 * std::numbers::pi); };
-  notes.push_back(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}",
-                              modal->modes(), hertz(modal->omega().back()), scene.exact_in_time() ? ", exact in time" : "",
+  notes.push_back(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}", modal->modes(),
+                              hertz(modal->omega().back()), scene.exact_in_time() ? ", exact in time" : "",
                               static_cast<int>(modal->modes()) > scene.model_modes
                                   ? fmt::format(" ({} asked for: all copies of the last frequency)", scene.model_modes)
                                   : ""));

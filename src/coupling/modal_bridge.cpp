@@ -50,8 +50,7 @@ base::Handle<Vec> vector(MPI_Comm comm, const double* local, int size) {
 
 }  // namespace
 
-ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count,
-                         const std::vector<double>& ratios)
+ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios)
     : beam_(beam), statics_(statics), basis_(modes::bending_basis(beam, count)) {
   set_damping(ratios);
   set_influence(lines_of_modes(), {});

@@ -91,8 +91,8 @@ double ModalStructure::damping(const double* w) const {
 
 std::array<double, 2> ModalStructure::powers(const double* w) { return {damping(w), work_rate(w)}; }
 
-void ModalStructure::add_values(const std::vector<int>& elements, const double* v, const double* w,
-                                double* v_elements, double* w_elements) const {
+void ModalStructure::add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
+                                double* w_elements) const {
   if (n_ == 0) return;
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   for (std::size_t a = 0; a < elements.size(); ++a) {

@@ -15,8 +15,9 @@ constexpr double just_before = 1e-12;  // of the run: at a jump the samples show
 constexpr double phase_at_once = 1e5;  // rad of the highest mode between looks at whether the run is to go on
 }  // namespace
 
-ModalStepper::ModalStepper(coupling::System& system, const coupling::ModalBridge& bridge, coupling::BeamOperator& statics,
-                           const coupling::SystemInput& input, bool equilibrium, double end_time, double interval)
+ModalStepper::ModalStepper(coupling::System& system, const coupling::ModalBridge& bridge,
+                           coupling::BeamOperator& statics, const coupling::SystemInput& input, bool equilibrium,
+                           double end_time, double interval)
     : system_(system),
       bridge_(bridge),
       statics_(statics),

@@ -219,9 +219,11 @@ TEST(SceneModel, AxialOnlyWhereItMatters) {
   EXPECT_PRED2(any_contains, scene_with({}).notes, "axial unknowns: none");
 }
 
-TEST(SceneModel, WhatIsNotThereYetIsRefused) {
-  EXPECT_PRED2(contains, refused_with("model_modes", "5"), "with vehicles: not there yet");
-  EXPECT_NO_THROW(scene_with({{"model_modes", "0"}}));
+TEST(SceneModel, ModesUnderVehicles) {
+  EXPECT_EQ(scene_with({{"model_modes", "5"}}).model_modes, 5);
+  EXPECT_FALSE(scene_with({{"model_modes", "5"}}).exact_in_time());
+  EXPECT_NO_THROW(scene_with({{"model_modes", "5"}, {"ts_type", "genalpha"}}));
+  EXPECT_PRED2(contains, refused(vehicle_yaml + train_yaml + "ts_max_time: 1\nmodel_modes: 5\n"), "needs a beam");
 }
 
 TEST(SceneModel, Window) {
@@ -261,7 +263,8 @@ TEST(SceneSweep, BridgesByModes) {
   EXPECT_PRED2(contains, refused(moving + "model: {modes: 3, damping_ratios: [0.01, 0.02]}\n"), "2 ratios for 3 modes");
   EXPECT_PRED2(contains, refused(moving + "model_damping_ratios: 0.01\n"), "needs model_modes");
   EXPECT_PRED2(contains, refused(moving + "model_modes: 3\nts_type: cn\n"), "exact in time");
-  EXPECT_PRED2(contains, refused(beam_yaml + "ts_max_time: 1\nmodel_modes: 3\n"), "needs moving forces");
+  EXPECT_PRED2(contains, refused(beam_yaml + "ts_max_time: 1\nmodel_modes: 3\n"),
+               "needs vehicles (train_vehicles) or moving forces");
   EXPECT_PRED2(contains, refused(moving + "model_modes: 3\nfoundation_vertical: {x: 5, k: 1e6, gap: 1e-3}\n"), "gap");
 }
 

@@ -33,7 +33,7 @@ struct Structure {
   std::optional<std::pair<double, double>> omega;  // rad/s, the first two distinct frequencies
   beam::Rayleigh rayleigh;
   std::shared_ptr<coupling::BeamOperator> statics;  // with the factorisations so far
-  std::optional<coupling::ModalBridge> modal;      // with model_modes
+  std::optional<coupling::ModalBridge> modal;       // with model_modes
 };
 
 }  // namespace traverse::app

@@ -32,9 +32,9 @@ struct StageData {
   double shift2 = 0.0;  // dp''/dp, 1/s2: shift*shift for Runge-Kutta types
   const double* p_still = nullptr;
   const double* pd_still = nullptr;
-  const std::vector<double>* v0 = nullptr;  // free response at the elements in touch, 2*per_node each
-  const std::vector<double>* w0 = nullptr;  // its rate
-  const ElementCompliance* compliance = nullptr;   // null without a beam
+  const std::vector<double>* v0 = nullptr;        // free response at the elements in touch, 2*per_node each
+  const std::vector<double>* w0 = nullptr;        // its rate
+  const ElementCompliance* compliance = nullptr;  // null without a beam
   int per_node = 2;
   VehicleShare* share = nullptr;  // null: this rank has all vehicles
 };

@@ -1,11 +1,11 @@
-// The structure by its natural modes, mass-normalised: nodal values v = v_0 + sum phi_i q_i with v_0 under its own weight
-// alone, and
+// The structure by its natural modes, mass-normalised: nodal values v = v_0 + sum phi_i q_i with v_0 under its own
+// weight alone, and
 //
 //   q_i'' + 2 sigma_i q_i' + omega_i^2 q_i = phi_i^T (moving forces + contacts)
 //
 // The contacts feel what the modes yield. What is seen of the bridge carries, besides, what all other modes deflect by
-// as they would at rest (static correction), so that reactions and moments balance the loads exactly. The state is q and
-// q', on the first rank; shapes are on all.
+// as they would at rest (static correction), so that reactions and moments balance the loads exactly. The state is q
+// and q', on the first rank; shapes are on all.
 #pragma once
 
 #include <array>
@@ -78,16 +78,16 @@ class ModalStructure final : public Structure {
 
   const ModalBridge& bridge_;
   std::size_t modes_;
-  std::vector<double> by_unknown_;              // [unknown][mode]
-  std::vector<double> sag_;                     // v_0, of all ranks' unknowns
-  std::vector<double> weight_;                  // phi^T of its own weight, N
-  double sag_work_ = 0.0;                       // J, its own weight times v_0
-  std::vector<beam::ElementLoad> forces_;       // the moving ones
-  std::vector<double> modal_force_;             // of these
-  std::vector<double> stiffness_;               // of the stage
-  double shift_ = 0.0, shift2_ = 0.0;           // of the stage
-  std::vector<double> v_still_, w_still_, z_;   // as in ElementStructure
-  std::vector<int> elements_;                   // of the last yield
+  std::vector<double> by_unknown_;             // [unknown][mode]
+  std::vector<double> sag_;                    // v_0, of all ranks' unknowns
+  std::vector<double> weight_;                 // phi^T of its own weight, N
+  double sag_work_ = 0.0;                      // J, its own weight times v_0
+  std::vector<beam::ElementLoad> forces_;      // the moving ones
+  std::vector<double> modal_force_;            // of these
+  std::vector<double> stiffness_;              // of the stage
+  double shift_ = 0.0, shift2_ = 0.0;          // of the stage
+  std::vector<double> v_still_, w_still_, z_;  // as in ElementStructure
+  std::vector<int> elements_;                  // of the last yield
   Yield yield_;
   Method method_;
   std::array<std::vector<double>, most_accelerations> kept_;  // q'' at the start of the step and at its stages
@@ -97,7 +97,7 @@ class ModalStructure final : public Structure {
     double dissipated = 0.0, worked = 0.0;
     std::vector<double> v, w;
   } before_;
-  std::vector<double> q_;                   // of take
+  std::vector<double> q_;  // of take
   // What is seen: nodal values, the static solution; q, q', q'' and the modes' share of that.
   std::vector<double> v_nodal_, w_nodal_, rest_, seen_, share_;
 };

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "traverse/coupling/vehicle.hpp"
 #include "traverse/coupling/modal_bridge.hpp"
+#include "traverse/coupling/vehicle.hpp"
 
 namespace traverse::integrate {
 

@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
-#include "traverse/integrate/force_history.hpp"
 #include "traverse/coupling/modal_bridge.hpp"
+#include "traverse/integrate/force_history.hpp"
 
 namespace traverse::integrate {
 
