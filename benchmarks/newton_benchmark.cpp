@@ -35,8 +35,8 @@ double clock_cost() {
   return (processor_time() - begin) / readings;
 }
 
-coupling::Vehicle quarter_car() {
-  coupling::Vehicle vehicle;
+train::Vehicle quarter_car() {
+  train::Vehicle vehicle;
   vehicle.name = "quarter";
   multibody::Body wheel, body;
   wheel.name = "wheel";
@@ -70,7 +70,7 @@ coupling::Vehicle quarter_car() {
   vehicle.mechanism.joints = {guide};
   vehicle.mechanism.drivers = {level};
   vehicle.mechanism.springs = {spring};
-  coupling::Wheel contact;
+  train::Wheel contact;
   contact.name = "wheel";
   contact.radius = 0.46;
   contact.law.stiffness = 8.6e10;
@@ -105,8 +105,8 @@ class Ride {
       input.types[0].mechanism.gravity = scene.gravity;
     }
     system_ = std::make_unique<coupling::System>(PETSC_COMM_WORLD, beam_.get(), std::move(input));
-    operator_ = std::make_unique<coupling::BeamOperator>(*beam_);
-    compliance_ = std::make_unique<coupling::Compliance>(*beam_, *operator_);
+    operator_ = std::make_unique<structure::BeamOperator>(*beam_);
+    compliance_ = std::make_unique<structure::Compliance>(*beam_, *operator_);
     begin();
   }
 
@@ -204,9 +204,9 @@ class Ride {
   double step_, t_ = 0.0, front_ = 0.0;
   std::unique_ptr<beam::Beam> beam_;
   std::unique_ptr<coupling::System> system_;
-  std::unique_ptr<coupling::BeamOperator> operator_;
-  std::unique_ptr<coupling::Compliance> compliance_;
-  coupling::Fleet fleet_;
+  std::unique_ptr<structure::BeamOperator> operator_;
+  std::unique_ptr<structure::Compliance> compliance_;
+  train::Fleet fleet_;
   coupling::ContactNewton newton_;
   Motion beam_motion_, train_motion_;
   std::vector<double> v0_, w0_;

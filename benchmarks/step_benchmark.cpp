@@ -59,7 +59,7 @@ void per_unknown(benchmark::State& state, const Setup& s) {
 
 void beam_solve(benchmark::State& state) {
   Setup s(static_cast<int>(state.range(0)), 1);
-  coupling::BeamOperator op(*s.beam);
+  structure::BeamOperator op(*s.beam);
   std::vector<double> x(static_cast<std::size_t>(op.unknowns()), 1.0);
   const auto& factor = op.factored(s.shift, s.shift * s.shift);
   for (auto _ : state) factor.solve(x.data());
@@ -68,7 +68,7 @@ void beam_solve(benchmark::State& state) {
 
 void beam_product(benchmark::State& state) {
   Setup s(static_cast<int>(state.range(0)), 1);
-  coupling::BeamOperator op(*s.beam);
+  structure::BeamOperator op(*s.beam);
   std::vector<double> x(static_cast<std::size_t>(op.unknowns()), 1.0), r(x.size());
   for (auto _ : state) op.multiply(-1.0, x.data(), x.data(), nullptr, r.data());
   per_unknown(state, s);

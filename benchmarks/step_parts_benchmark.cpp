@@ -15,8 +15,8 @@
 #include <string_view>
 
 #include "step_scene.hpp"
-#include "traverse/coupling/beam_motion.hpp"
-#include "traverse/coupling/motion.hpp"
+#include "traverse/structure/beam_motion.hpp"
+#include "traverse/structure/one_step_methods.hpp"
 
 namespace {
 
@@ -33,20 +33,20 @@ struct Part {
 
 struct Integrator {
   const char* name;
-  coupling::Method method;
+  structure::Method method;
 };
 
 std::vector<Integrator> integrators() {
-  return {{"esdirk4", coupling::esdirk4()}, {"genalpha", coupling::generalised_alpha(0.9)}};
+  return {{"esdirk4", structure::esdirk4()}, {"genalpha", structure::generalised_alpha(0.9)}};
 }
 
 /// The beam's stages and the step's end, apart from the system around them.
 struct Stages {
-  coupling::BeamMotion motion;
-  coupling::Method method;
+  structure::BeamMotion motion;
+  structure::Method method;
   std::vector<double> v, w;
 
-  Stages(const beam::Beam& beam, coupling::BeamOperator& op, const coupling::Method& unit)
+  Stages(const beam::Beam& beam, structure::BeamOperator& op, const structure::Method& unit)
       : motion(beam, op, nullptr), method(unit), v(static_cast<std::size_t>(op.unknowns()), 1e-3), w(v) {
     method.scale_to(step);
     motion.begin(method);
@@ -63,7 +63,7 @@ struct Steps {
   std::vector<double> start, y;
   double t = 0.0;
 
-  Steps(int unknowns, bool continuous, int coaches, const coupling::Method& method)
+  Steps(int unknowns, bool continuous, int coaches, const structure::Method& method)
       : scene(unknowns, continuous, coaches), start(static_cast<std::size_t>(scene.system->local_size())) {
     scene.system->start(true, start.data());
     scene.system->begin_motion(method);
@@ -89,7 +89,7 @@ struct Steps {
 /// One kind of bridge at one size: lines of the table.
 void measure(int size, bool continuous, int rounds, std::ofstream& table) {
   const StepScene bridge(size, continuous, 0);
-  coupling::BeamOperator op(*bridge.beam);
+  structure::BeamOperator op(*bridge.beam);
   const int unknowns = bridge.unknowns(), coaches = size < 1000 ? 1 : 8;
   const int solves = std::clamp(500'000 / unknowns, 3, 5'000), steps = std::clamp(100'000 / unknowns, 3, 100);
   std::vector<double> x(static_cast<std::size_t>(op.unknowns()), 1.0);
@@ -134,7 +134,7 @@ double resident() {
 void measure_memory(int size, bool continuous, std::ofstream& table) {
   malloc_trim(0);  // what was freed before would serve again, unseen
   const double before = resident();
-  Steps steps(size, continuous, 8, coupling::esdirk4());
+  Steps steps(size, continuous, 8, structure::esdirk4());
   const int unknowns = steps.scene.unknowns(), few = size <= 100'000 ? 100 : 10;
   const auto bytes = [&] { return (resident() - before) * ranks() / unknowns; };
   const double built = bytes();

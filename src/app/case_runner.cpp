@@ -125,7 +125,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
 }
 
 CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
-  const coupling::ModalBridge& bridge = *structure_.modal;
+  const structure::ModalBridge& bridge = *structure_.modal;
   auto place = histories_.find(train);
   if (place == histories_.end()) {
     place = histories_.emplace(train, integrate::ForceHistory(bridge.influence(), scene_of(train, speed).load)).first;

@@ -19,30 +19,30 @@ struct PointKind {
   const char* unit;
   std::vector<PointFoundation> beam::Foundation::*points;
   const double* (GroundForces::*force)() const;
-  std::vector<double> coupling::NonlinearForces::*other;
+  std::vector<double> structure::NonlinearForces::*other;
   bool axial;
 };
 constexpr PointKind point_kinds[] = {
     {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical,
-     &coupling::NonlinearForces::vertical, false},
+     &structure::NonlinearForces::vertical, false},
     {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal,
-     &coupling::NonlinearForces::longitudinal, true},
+     &structure::NonlinearForces::longitudinal, true},
     {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational,
-     &coupling::NonlinearForces::rotational, false},
+     &structure::NonlinearForces::rotational, false},
 };
 
 struct BedKind {
   const char* name;
   std::optional<beam::Bed> beam::Foundation::*bed;
   const double* (GroundForces::*force)() const;
-  std::vector<double> coupling::NonlinearForces::*other;
+  std::vector<double> structure::NonlinearForces::*other;
   bool axial;
 };
 constexpr BedKind bed_kinds[] = {
     {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed,
-     &coupling::NonlinearForces::vertical_bed, false},
+     &structure::NonlinearForces::vertical_bed, false},
     {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed,
-     &coupling::NonlinearForces::longitudinal_bed, true},
+     &structure::NonlinearForces::longitudinal_bed, true},
 };
 
 /// Calls use(kind, count) for what the beam has and what is stored.
@@ -92,7 +92,7 @@ void describe_foundation(const beam::Beam& beam, results::Layout& layout) {
   });
 }
 
-void fill_foundation(const beam::Beam& beam, const GroundForces& linear, const coupling::NonlinearForces& other,
+void fill_foundation(const beam::Beam& beam, const GroundForces& linear, const structure::NonlinearForces& other,
                      Fields& fields) {
   const auto fill = [&](const auto& kind, std::size_t count) {
     const double* first = (linear.*kind.force)();
@@ -125,7 +125,7 @@ void fill_balance(const GroundForces& forces, const coupling::Observation& obser
   const auto add = [](const std::vector<double>& more, double& sum) {
     sum = std::accumulate(more.begin(), more.end(), sum);
   };
-  const coupling::NonlinearForces& other = observation.beam.foundation;
+  const structure::NonlinearForces& other = observation.beam.foundation;
   for (const auto* along : {&other.longitudinal, &other.longitudinal_bed}) add(*along, foundation[0]);
   for (const auto* up : {&other.vertical, &other.vertical_bed}) add(*up, foundation[1]);
   const auto inertia = forces.inertia(), drag = forces.drag();
@@ -146,8 +146,8 @@ void fill_rail(const std::vector<beam::Response>& rail, Fields& fields) {
   }
 }
 
-void describe_couplers(const coupling::Train& train, results::Layout& layout) {
-  for (const coupling::Coupler& c : train.couplers) {
+void describe_couplers(const train::Train& train, results::Layout& layout) {
+  for (const train::Coupler& c : train.couplers) {
     const std::string group = "/couplers/" + c.name + "/";
     layout.constants.push_back({group + "gap", {c.gaps.begin(), c.gaps.end()}, "1"});
     if (!c.joint) layout.fields.push_back({group + "force", c.gaps.size(), "N"});
@@ -158,15 +158,15 @@ void describe_couplers(const coupling::Train& train, results::Layout& layout) {
   }
 }
 
-void fill_couplers(const coupling::Fleet& fleet, const coupling::Train& train, Fields& fields) {
+void fill_couplers(const train::Fleet& fleet, const train::Train& train, Fields& fields) {
   auto part = fleet.couplers.begin();
-  for (const coupling::Coupler& c : train.couplers) {
+  for (const train::Coupler& c : train.couplers) {
     const auto first = part;
     part += static_cast<std::ptrdiff_t>(c.gaps.size());
     for (int component = 0; component < (c.joint ? 3 : 1); ++component) {
       std::vector<double>& field = fields.next();
       for (auto gap = first; gap != part; ++gap) {
-        const coupling::MovingVehicle& unit = fleet.vehicles[gap->unit];
+        const train::MovingVehicle& unit = fleet.vehicles[gap->unit];
         field.push_back(c.joint ? unit.mechanism.joint_reaction(unit.state, gap->part)[component]
                                 : unit.mechanism.spring_force(unit.state, gap->part));
       }
@@ -184,11 +184,11 @@ results::Layout layout_of(const Scene& scene, const coupling::System& system, co
     describe_balance(layout);
     if (beam->rail() != nullptr) describe_rail(scene.output.probes, layout);
   }
-  for (const coupling::Member& member : system.fleet().members) {
+  for (const train::Member& member : system.fleet().members) {
     results::Layout::VehicleNames names;
-    const coupling::Vehicle& type = *member.type;
+    const train::Vehicle& type = *member.type;
     for (const multibody::Body& b : type.mechanism.bodies) names.bodies.push_back(b.name);
-    for (const coupling::Wheel& w : type.wheels) names.wheels.push_back(w.name);
+    for (const train::Wheel& w : type.wheels) names.wheels.push_back(w.name);
     for (const contact::BodyContact& c : type.contacts) names.wheels.push_back(c.name);
     for (const multibody::Joint& j : type.mechanism.joints) names.joints.push_back(j.name);
     for (const multibody::Spring& s : type.mechanism.springs) names.springs.push_back(s.name);

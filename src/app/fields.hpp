@@ -29,11 +29,11 @@ class Fields {
 };
 
 /// Forces of couplers: fx, fy, moment of a joint on the vehicle behind, or the tension of a spring.
-void describe_couplers(const coupling::Train& train, results::Layout& layout);
-void fill_couplers(const coupling::Fleet& fleet, const coupling::Train& train, Fields& fields);
+void describe_couplers(const train::Train& train, results::Layout& layout);
+void fill_couplers(const train::Fleet& fleet, const train::Train& train, Fields& fields);
 
 void describe_foundation(const beam::Beam& beam, results::Layout& layout);
-void fill_foundation(const beam::Beam& beam, const beam::GroundForces& linear, const coupling::NonlinearForces& other,
+void fill_foundation(const beam::Beam& beam, const beam::GroundForces& linear, const structure::NonlinearForces& other,
                      Fields& fields);
 
 /// Resultants {x, y} of everything that acts on the structure, and what is left of their sum; those along x are zero

@@ -6,9 +6,9 @@
 
 #include "traverse/app/peaks.hpp"
 #include "traverse/app/resolution.hpp"
-#include "traverse/coupling/modal_structure.hpp"
-#include "traverse/coupling/rest_window.hpp"
 #include "traverse/results/stage.hpp"
+#include "traverse/structure/modal_structure.hpp"
+#include "traverse/structure/rest_window.hpp"
 
 namespace traverse::app {
 namespace {
@@ -23,12 +23,12 @@ coupling::SystemInput system_input(const Scene& scene, bool still) {
 }
 
 /// The bridge by its modes where vehicles run on these; else by its elements, or none.
-std::unique_ptr<coupling::Structure> carrier(const Scene& scene, const Structure& structure,
-                                             const coupling::SystemInput& input) {
+std::unique_ptr<structure::Structure> carrier(const Scene& scene, const Structure& structure,
+                                              const coupling::SystemInput& input) {
   if (!structure.modal || scene.exact_in_time())
     return coupling::by_elements(structure.bridge(), input, structure.statics);
-  return std::make_unique<coupling::ModalStructure>(*structure.modal, input.self_weight ? input.gravity : 0.0,
-                                                    structure.statics);
+  return std::make_unique<structure::ModalStructure>(*structure.modal, input.self_weight ? input.gravity : 0.0,
+                                                     structure.statics);
 }
 
 /// When something passes a probe, as long as that is rare among the steps.
@@ -83,7 +83,7 @@ void Passage::leave_out_rest(std::vector<std::string>& notes) {
   if (still_ || beam == nullptr || scene_.model_modes > 0) return;
   const bool apart = beam->parts().size() > 2;
   const double tolerance = scene_.rest_tolerance >= 0.0 ? scene_.rest_tolerance
-                           : apart                      ? coupling::RestWindow::quiet
+                           : apart                      ? structure::RestWindow::quiet
                                                         : 0.0;
   if (tolerance == 0.0) return;
   system_.leave_out_rest(tolerance, scene_.output.probes);

@@ -150,7 +150,7 @@ std::vector<std::vector<double>> passages_of(const Scene& scene) {
   std::vector<std::vector<double>> passages(scene.output.probes.size());
   if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return passages;
   std::vector<std::pair<double, double>> starts;  // x at t = 0 and speed
-  if (scene.train.drive == coupling::Drive::constant && scene.train.speed > 0.0)
+  if (scene.train.drive == train::Drive::constant && scene.train.speed > 0.0)
     for (const double x : wheels_at_start(scene)) starts.emplace_back(x, scene.train.speed);
   if (scene.load.speed > 0.0)
     for (const double x : scene.load.positions) starts.emplace_back(x, scene.load.speed);

@@ -139,11 +139,10 @@ void check_steps(const Scene& scene, const Plan& plan, double first_period, bool
   check_periods(scene, step, first_period, high_order, notes);
 }
 
-void check_contacts(const Scene& scene, const Plan& plan, const coupling::Fleet& fleet,
-                    std::vector<std::string>& notes) {
+void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fleet, std::vector<std::string>& notes) {
   double period = std::numeric_limits<double>::infinity();
-  for (const coupling::WheelContact& c : fleet.wheels) {
-    const coupling::Wheel& wheel = fleet.wheel(c);
+  for (const train::WheelContact& c : fleet.wheels) {
+    const train::Wheel& wheel = fleet.wheel(c);
     const bool round = wheel.shape.flat_length <= 0.0 && wheel.shape.polygon_amplitude <= 0.0;
     if (scene.profile.level() && round) continue;
     const double stiffness = contact::force(c.law, c.kinematics, 0.0).normal_by_penetration;

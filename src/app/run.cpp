@@ -193,7 +193,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
     leave_together(comm, error);
   }
   if (const auto& crowded = system.fleet().crowded(); crowded.contact >= 0 && rank == 0) {
-    const coupling::WheelContact& c = system.fleet().wheels[static_cast<std::size_t>(crowded.contact)];
+    const train::WheelContact& c = system.fleet().wheels[static_cast<std::size_t>(crowded.contact)];
     fmt::print(
         "  note: {} of vehicle {} overlapped the track's profile at more than {} points (first at x = {:g} m): the {} "
         "deepest carried\n",

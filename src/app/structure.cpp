@@ -67,7 +67,7 @@ void Structure::damp(const Scene& scene, bool frequencies_wanted, std::vector<st
 void Structure::prepare(const Scene& scene, std::vector<std::string>& notes) {
   if (!beam) return;
   const results::Stage stage(scene.model_modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
-  statics = std::make_shared<coupling::BeamOperator>(*beam);
+  statics = std::make_shared<structure::BeamOperator>(*beam);
   if (scene.model_modes == 0) return;
   modal.emplace(*beam, *statics, scene.model_modes, scene.damping_of_modes);
   const auto hertz = [&](double value) { return value / (2.0 * std::numbers::pi); };

@@ -48,7 +48,7 @@ double last_to_watch(const Scene& scene) {
 
 void leave_out_vehicles(Scene& scene, double end) {
   Train& train = scene.train;
-  if (train.drive != coupling::Drive::constant || !train.couplers.empty()) return;
+  if (train.drive != train::Drive::constant || !train.couplers.empty()) return;
   std::size_t count = 1;
   for (std::size_t i = 1; i < train.vehicles.size(); ++i)
     if (foremost(scene, i) + train.speed * end > 0.0) count = i + 1;
@@ -63,7 +63,7 @@ void leave_out_spans(Scene& scene, double end) {
   const bool founded =
       f.vertical_bed || f.longitudinal_bed || !f.vertical.empty() || !f.longitudinal.empty() || !f.rotational.empty();
   const bool plain = !founded && !beam.track && beam.hinges.empty();
-  if (!plain || beam.spans.size() <= few_spans || scene.train.drive != coupling::Drive::constant) return;
+  if (!plain || beam.spans.size() <= few_spans || scene.train.drive != train::Drive::constant) return;
   double front = scene.output.probes.empty() ? 0.0 : scene.output.probes.front();
   if (!scene.train.vehicles.empty()) front = std::max(front, foremost(scene, 0) + scene.train.speed * end);
   for (const double x : scene.load.positions) front = std::max(front, x + scene.load.speed * end);
@@ -119,7 +119,7 @@ double beginning(const Scene& scene, double end) {
   const auto crossing = [&](double rear, double speed) { return speed > 0.0 ? (reach - rear) / speed : end; };
   double until = 0.0;
   if (!scene.train.vehicles.empty())
-    until = scene.train.drive == coupling::Drive::constant ? crossing(last_to_watch(scene), scene.train.speed) : end;
+    until = scene.train.drive == train::Drive::constant ? crossing(last_to_watch(scene), scene.train.speed) : end;
   if (!scene.load.forces.empty()) {
     std::vector<double> positions = scene.load.positions;
     std::sort(positions.begin(), positions.end(), std::greater<>());

@@ -38,7 +38,7 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
     ground_.emplace(*beam);
     if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
   }
-  for (const coupling::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
+  for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
   const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
   peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
@@ -47,7 +47,7 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
 
 void Watch::sample(const integrate::Instant& instant) {
   system_.observe(instant.time, instant.y, instant.ydot, observation_);
-  const coupling::NodalMotion& beam = observation_.beam;
+  const structure::NodalMotion& beam = observation_.beam;
   sample_.time = instant.time;
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
@@ -65,7 +65,7 @@ void Watch::sample(const integrate::Instant& instant) {
 
 void Watch::store(bool end) {
   if (beam_ != nullptr) {
-    const coupling::NodalMotion& beam = observation_.beam;
+    const structure::NodalMotion& beam = observation_.beam;
     if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a.data(), observation_.loads, rail_);
     beam_->reactions(beam.v, beam.w, beam.a.data(), beam.P.data(), sample_.supports);
   }
@@ -91,11 +91,11 @@ void Watch::drag(const double* drag) {
 }
 
 void Watch::fill_vehicles(results::Sample& sample) const {
-  const coupling::Fleet& fleet = system_.fleet();
+  const train::Fleet& fleet = system_.fleet();
   sample.vehicles.resize(fleet.members.size());
   for (std::size_t k = 0; k < fleet.members.size(); ++k) {
-    const coupling::Member& member = fleet.members[k];
-    const coupling::MovingVehicle& vehicle = fleet.vehicles[member.unit];
+    const train::Member& member = fleet.members[k];
+    const train::MovingVehicle& vehicle = fleet.vehicles[member.unit];
     const multibody::MechanismModel& model = member.type->mechanism;
     results::Sample::Vehicle& out = sample.vehicles[k];
     out.bodies.resize(model.bodies.size());
@@ -105,11 +105,11 @@ void Watch::fill_vehicles(results::Sample& sample) const {
     }
     out.wheels.clear();
     for (std::size_t i = 0; i < member.type->wheels.size(); ++i) {
-      const coupling::WheelLoad load = fleet.load(fleet.wheels[vehicle.first_wheel + member.first_wheel + i]);
+      const train::WheelLoad load = fleet.load(fleet.wheels[vehicle.first_wheel + member.first_wheel + i]);
       out.wheels.push_back({load.normal, load.tangential, load.penetration});
     }
     for (std::size_t i = 0; i < member.type->contacts.size(); ++i) {
-      const coupling::Contact& c = fleet.pairs[vehicle.first_pair + member.first_contact + i];
+      const train::Contact& c = fleet.pairs[vehicle.first_pair + member.first_contact + i];
       out.wheels.push_back({c.force.normal, c.force.tangential, c.kinematics.penetration});
     }
     out.joints.resize(model.joints.size());
@@ -133,7 +133,7 @@ void Watch::fill_fields() {
   Fields fields(sample_.fields);
   fill_couplers(system_.fleet(), scene_.train, fields);
   if (beam_ == nullptr) return;
-  const coupling::NodalMotion& beam = observation_.beam;
+  const structure::NodalMotion& beam = observation_.beam;
   ground_->evaluate(beam.v, beam.w, beam.a.data());
   fill_foundation(*beam_, *ground_, beam.foundation, fields);
   fill_balance(*ground_, observation_, sample_.supports, scene_.self_weight ? scene_.gravity * ground_->mass() : 0.0,
@@ -152,7 +152,7 @@ void Watch::note_peaks() {
   if (deflected > most_deflected_) {
     most_deflected_ = deflected;
     worst_.time = sample_.time;
-    const coupling::NodalMotion& beam = observation_.beam;
+    const structure::NodalMotion& beam = observation_.beam;
     worst_.v.assign(beam.v, beam.v + beam.a.size());
     worst_.w.assign(beam.w, beam.w + beam.a.size());
     worst_.a = beam.a;
@@ -180,21 +180,21 @@ void Watch::note_energy() {
 }
 
 void Watch::step(double t) {
-  const coupling::Fleet& fleet = system_.fleet();
+  const train::Fleet& fleet = system_.fleet();
   std::size_t wheel = 0;
-  for (const coupling::WheelContact& c : fleet.wheels)
+  for (const train::WheelContact& c : fleet.wheels)
     if (!c.is_further) wheels_.add(wheel++, t, fleet.coordinates(c).x(), fleet.load(c).normal);
 }
 
 void Watch::note_wheels() {
-  const coupling::Fleet& fleet = system_.fleet();
+  const train::Fleet& fleet = system_.fleet();
   summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.least().force;
   summary_.greatest_wheel_force =
       std::max({summary_.greatest_wheel_force, peaks_.largest(wheel_force).value, wheels_.greatest().force});
   const WheelExtreme& least = wheels_.least();
   int wheel = 0;
   for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
-    const coupling::WheelContact& c = fleet.wheels[i];
+    const train::WheelContact& c = fleet.wheels[i];
     if (c.is_further || wheel++ != least.wheel) continue;
     summary_.least_wheel_force_time = least.time;
     summary_.least_wheel = "vehicle " + std::to_string(fleet.member(static_cast<int>(i))) + ", " + fleet.wheel(c).name;
@@ -202,9 +202,9 @@ void Watch::note_wheels() {
 }
 
 void Watch::note_separations() {
-  const coupling::Fleet& fleet = system_.fleet();
+  const train::Fleet& fleet = system_.fleet();
   std::vector<results::Separation> list;
-  for (const coupling::Separation& s : system_.separations().list()) {
+  for (const train::Separation& s : system_.separations().list()) {
     const double duration = s.duration >= 0.0 ? s.duration : system_.separations().time() - s.start;
     list.push_back({std::to_string(fleet.member(s.contact)), fleet.name(s.contact), s.x, s.start, duration,
                     s.approach_speed, s.impact_force});

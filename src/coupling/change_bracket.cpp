@@ -4,7 +4,8 @@
 
 namespace traverse::coupling {
 
-ChangeBracket::ChangeBracket(const System& system, const Change& change, double from, double to, double tolerance)
+ChangeBracket::ChangeBracket(const System& system, const train::Change& change, double from, double to,
+                             double tolerance)
     : system_(system),
       change_(change),
       from_(from),
@@ -38,7 +39,7 @@ void ChangeBracket::end_at(double end) {
   end_ = end;
 }
 
-void ChangeBracket::tried(double at, const std::optional<Change>& change) {
+void ChangeBracket::tried(double at, const std::optional<train::Change>& change) {
   const double width = high_ - low_;
   if (change) {
     const bool other = change->contact != change_.contact;

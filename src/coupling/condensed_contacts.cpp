@@ -12,7 +12,7 @@ constexpr double rough = 1e-6;       // of the weight: deviation above which the
 constexpr double negligible = 1e-9;  // response at another row over that at their own ones: left to the next evaluation
 
 // What the linearised law gives at the geometry's kinematics, less the force at the kinematics held.
-double force_correction(const Contact& c, bool normal) {
+double force_correction(const train::Contact& c, bool normal) {
   const double a = c.touch.kinematics.penetration - c.kinematics.penetration;
   const double r = c.touch.kinematics.penetration_rate - c.kinematics.penetration_rate;
   if (normal) return c.force.normal_by_penetration * a + c.force.normal_by_rate * r;
@@ -37,15 +37,15 @@ Eigen::Matrix2d contact_tangent(const contact::Force& f, double shift) {
   return D;
 }
 
-void CondensedContacts::list(Fleet& fleet) {
+void CondensedContacts::list(train::Fleet& fleet) {
   rows_.clear();
   first_.clear();
   yield_.resize(fleet.vehicles.size());
   for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
-    const MovingVehicle& vehicle = fleet.vehicles[k];
+    const train::MovingVehicle& vehicle = fleet.vehicles[k];
     first_.push_back(size());
     for (const int i : vehicle.touching) {
-      Contact& c = fleet.contact(i);
+      train::Contact& c = fleet.contact(i);
       rows_.push_back({&c, vehicle.scale, static_cast<int>(k), true, c.slot()});
       if (c.law.friction > 0.0) rows_.push_back({&c, vehicle.scale, static_cast<int>(k), false, c.slot()});
     }
@@ -66,7 +66,7 @@ bool CondensedContacts::moved() {
 
 // W, between all rows on elements that respond to each other.
 template <int m>
-void CondensedContacts::respond(const ElementCompliance& compliance) {
+void CondensedContacts::respond(const structure::ElementCompliance& compliance) {
   using Vector = Eigen::Matrix<double, m, 1>;
   int slots = 0;
   for (const Row& row : rows_) slots = std::max(slots, row.slot + 1);
@@ -80,7 +80,7 @@ void CondensedContacts::respond(const ElementCompliance& compliance) {
 
   for (int b = 0; b < size(); ++b) {
     if (rows_[b].slot < 0) continue;
-    const ElementCompliance::Response& reach = compliance.response(rows_[b].slot);
+    const structure::ElementCompliance::Response& reach = compliance.response(rows_[b].slot);
     const Eigen::Map<const Vector> from(direction_on_beam(rows_[b]));
     for (int s = reach.first; s < std::min(reach.last, slots); ++s) {
       if (slot_begin_[s] == slot_begin_[s + 1]) continue;
@@ -94,7 +94,7 @@ void CondensedContacts::respond(const ElementCompliance& compliance) {
   }
 }
 
-void CondensedContacts::couple(const ElementCompliance* compliance, int per_node) {
+void CondensedContacts::couple(const structure::ElementCompliance* compliance, int per_node) {
   responses_.clear();
   if (compliance != nullptr) per_node == 2 ? respond<4>(*compliance) : respond<6>(*compliance);
   const bool plain = std::all_of(yield_.begin(), yield_.end(), [](const VehicleYield& y) { return y.P.size() == 0; });
@@ -182,7 +182,7 @@ void CondensedContacts::subtract_A_times(const Eigen::VectorXd& x, Eigen::Vector
 double CondensedContacts::move_contacts(double shift) {
   double greatest = 0.0;
   for (int i = 0; i < size(); ++i) {
-    Contact& c = *rows_[i].contact;
+    train::Contact& c = *rows_[i].contact;
     if (rows_[i].normal) {
       c.kinematics.penetration = c.touch.kinematics.penetration + delta_[i];
       c.kinematics.penetration_rate = c.touch.kinematics.penetration_rate + shift * delta_[i];

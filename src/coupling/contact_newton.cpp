@@ -25,14 +25,14 @@ constexpr double rounding = 1e-9;    // of the weight: below this a change that 
 
 }  // namespace
 
-bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
+bool ContactNewton::solve(train::Fleet& fleet, const StageData& s, double* x) {
   work_.resize(fleet.vehicles.size());
   for (std::vector<double>* v : {&p_, &pd_, &pdd_, &moved_}) v->resize(static_cast<std::size_t>(fleet.freedom()));
   tolerance_ = smooth_tolerance;
   for (int i = 0; i < fleet.contacts(); ++i)
     if (fleet.contact(i).law.friction > 0.0) tolerance_ = rubbing_tolerance;
   const bool found = iterate(fleet, s, x);
-  for (MovingVehicle& vehicle : fleet.vehicles) vehicle.rests = false;
+  for (train::MovingVehicle& vehicle : fleet.vehicles) vehicle.rests = false;
   if (!found) return false;
   if (s.shift2 > 0.0) fleet.shift(moved_.data(), s.shift);
   bool touched = true;
@@ -41,14 +41,15 @@ bool ContactNewton::solve(Fleet& fleet, const StageData& s, double* x) {
     touched = fleet.touch(s.per_node, v_.data(), w_.data());
   }
   const unsigned signs = share_contacts(
-      s, fleet, (touched ? 0U : VehicleShare::failed) | (fleet.wheels_in_place() ? 0U : VehicleShare::misplaced));
-  if ((signs & VehicleShare::failed) != 0) return false;
-  in_place_ = (signs & VehicleShare::misplaced) == 0;
+      s, fleet,
+      (touched ? 0U : train::VehicleShare::failed) | (fleet.wheels_in_place() ? 0U : train::VehicleShare::misplaced));
+  if ((signs & train::VehicleShare::failed) != 0) return false;
+  in_place_ = (signs & train::VehicleShare::misplaced) == 0;
   fleet.element_loads(s.per_node, loads_);
   return true;
 }
 
-bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
+bool ContactNewton::iterate(train::Fleet& fleet, const StageData& s, double* x) {
   fleet.contact_forces();
   const bool statics = s.shift2 == 0.0;
   bool kept = true;
@@ -57,9 +58,9 @@ bool ContactNewton::iterate(Fleet& fleet, const StageData& s, double* x) {
     const bool reached = evaluate(fleet, s, x, loads);
     if (i == 0) contacts_.list(fleet);
     const unsigned signs =
-        share_contacts(s, fleet, reached ? condense_own(fleet, s, i) : unsigned{VehicleShare::failed});
-    if ((signs & VehicleShare::failed) != 0) return false;
-    const bool renewed = (signs & VehicleShare::renewed) != 0;
+        share_contacts(s, fleet, reached ? condense_own(fleet, s, i) : unsigned{train::VehicleShare::failed});
+    if ((signs & train::VehicleShare::failed) != 0) return false;
+    const bool renewed = (signs & train::VehicleShare::renewed) != 0;
     if (renewed) share_matrices(s);
     kept = kept && !renewed;
     if (loads != Loads::none && s.compliance != nullptr) follow_loads(s, fleet);
@@ -90,22 +91,22 @@ std::size_t ContactNewton::worst_vehicle() const {
 }
 
 // What this rank's vehicles have at their contacts.
-unsigned ContactNewton::condense_own(Fleet& fleet, const StageData& s, int i) {
+unsigned ContactNewton::condense_own(train::Fleet& fleet, const StageData& s, int i) {
   unsigned signs = 0;
   for (int k = fleet.first_own(); k < fleet.past_own(); ++k) {
-    MovingVehicle& vehicle = fleet.vehicles[k];
+    train::MovingVehicle& vehicle = fleet.vehicles[k];
     VehicleWork& w = work_[k];
     const double before = w.residual;
     if (vehicle.rests)
       rest(k);
     else
       find_residual(vehicle, w);
-    if (vehicle.state.friction.jammed) return VehicleShare::failed;
+    if (vehicle.state.friction.jammed) return train::VehicleShare::failed;
     const bool poor = i >= kept_iterations || (i > 1 && !vehicle.rests && contraction_ > poor_ratio) ||
                       (i > 1 && w.residual > poor_ratio * before && w.residual > tolerance_);
     if (poor || !serves(vehicle, w, s, i > 0)) {
       renew(vehicle, k, s, s.shift2 == 0.0 || i > 0);
-      signs |= VehicleShare::renewed;
+      signs |= train::VehicleShare::renewed;
     }
     condense(w, contacts_.yield(k));
   }
@@ -145,9 +146,9 @@ void ContactNewton::SecondChange::note(int contacts, double change, double next)
 }
 
 // The contacts that carry force; no number where a wheel near a kink may touch on either side of it, or one rubs.
-int ContactNewton::carrying(const Fleet& fleet) {
+int ContactNewton::carrying(const train::Fleet& fleet) {
   int count = 0;
-  for (const WheelContact& c : fleet.wheels) {
+  for (const train::WheelContact& c : fleet.wheels) {
     if (c.candidates > 1 || c.further > 0 || c.law.friction > 0.0) return not_alike;
     if (c.force.normal != 0.0) ++count;
   }
@@ -156,7 +157,7 @@ int ContactNewton::carrying(const Fleet& fleet) {
 
 // Vehicles at p_still + x, the beam under the forces of the kinematics held, the geometry at all of it. At first where
 // these forces act is not known quite; but without them the beam's slope would turn the forces on the vehicles by 1e-6.
-bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x, Loads loads) {
+bool ContactNewton::evaluate(train::Fleet& fleet, const StageData& s, const double* x, Loads loads) {
   const auto [first, past] = fleet.own_coordinates();
   for (int i = first; i < past; ++i) {
     p_[i] = s.p_still[i] + x[i];
@@ -170,7 +171,7 @@ bool ContactNewton::evaluate(Fleet& fleet, const StageData& s, const double* x, 
 
 // Whether what is kept of a vehicle belongs to this stage. Nothing is kept where bodies touch each other: their
 // contacts turn with them.
-bool ContactNewton::serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved) {
+bool ContactNewton::serves(const train::MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved) {
   const auto same = [](double a, double b) { return std::abs(a - b) <= same_shift * b; };
   return s.shift2 > 0.0 && !vehicle.mechanism.rubs() && vehicle.contacts.empty() &&
          w.partition_version == vehicle.state.partition_version && (w.curved || !curved) && same(w.shift, s.shift) &&
@@ -193,20 +194,20 @@ void ContactNewton::rest(int k) {
   w.R.setZero();
   w.residual = 0.0;
   for (int i = contacts_.first(k); i < contacts_.first(k + 1); ++i) {
-    Contact& c = *contacts_.row(i).contact;
+    train::Contact& c = *contacts_.row(i).contact;
     c.touch.kinematics = c.kinematics;
   }
 }
 
 // R = B^T (N q'' - g - Q) at the contact forces held.
-void ContactNewton::find_residual(MovingVehicle& vehicle, VehicleWork& w) const {
+void ContactNewton::find_residual(train::MovingVehicle& vehicle, VehicleWork& w) const {
   multibody::MechanismState& state = vehicle.state;
   const multibody::Mechanism& mechanism = vehicle.mechanism;
   const int k = static_cast<int>(&w - work_.data());
   vehicle.Q.setZero();
   for (int i = contacts_.first(k); i < contacts_.first(k) + contacts_.rows(k); ++i) {
-    const Contact& c = *contacts_.row(i).contact;
-    if (contacts_.row(i).normal) Fleet::add_load(c, c.force.normal, c.force.tangential, vehicle.Q);
+    const train::Contact& c = *contacts_.row(i).contact;
+    if (contacts_.row(i).normal) train::Fleet::add_load(c, c.force.normal, c.force.tangential, vehicle.Q);
   }
   const double* pdd = pdd_.data() + vehicle.offset;
   w.r = state.d;
@@ -227,7 +228,7 @@ void ContactNewton::contact_directions(int k, const std::vector<multibody::Colum
   G.setZero(contacts_.rows(k), B.cols());
   for (int i = 0; i < G.rows(); ++i) {
     const auto& row = contacts_.row(contacts_.first(k) + i);
-    const Contact& c = *row.contact;
+    const train::Contact& c = *row.contact;
     const auto add = [&](int body, const Eigen::Vector3d& direction) {
       const auto [first, last] = columns[body];
       G.row(i).segment(first, last - first).noalias() +=
@@ -240,7 +241,7 @@ void ContactNewton::contact_directions(int k, const std::vector<multibody::Colum
 }
 
 // A vehicle's Newton matrix and what it makes of its contacts, at the state last evaluated.
-void ContactNewton::renew(MovingVehicle& vehicle, int k, const StageData& s, bool with_curvature) {
+void ContactNewton::renew(train::MovingVehicle& vehicle, int k, const StageData& s, bool with_curvature) {
   multibody::MechanismState& state = vehicle.state;
   const multibody::Mechanism& mechanism = vehicle.mechanism;
   VehicleWork& w = work_[k];
@@ -274,7 +275,7 @@ void ContactNewton::renew(MovingVehicle& vehicle, int k, const StageData& s, boo
   }
   w.range.resize(static_cast<std::size_t>(rows));
   for (int i = 0; i < rows; ++i) {
-    const Contact& c = *contacts_.row(contacts_.first(k) + i).contact;
+    const train::Contact& c = *contacts_.row(contacts_.first(k) + i).contact;
     w.range[i] = state.columns[c.body];
     if (c.other_body == multibody::ground) continue;
     const multibody::ColumnRange other = state.columns[c.other_body];
@@ -326,7 +327,7 @@ void ContactNewton::add_contacts(VehicleWork& w, int k, const RowMatrix& left) {
 }
 
 // Applies the step to x. Returns the largest residual or change of force over the vehicle's weight.
-double ContactNewton::update(Fleet& fleet, double* x) {
+double ContactNewton::update(train::Fleet& fleet, double* x) {
   double change = 0.0;
   for (int k = 0; k < static_cast<int>(work_.size()); ++k) {
     VehicleWork& w = work_[k];
@@ -337,7 +338,7 @@ double ContactNewton::update(Fleet& fleet, double* x) {
   }
   for (int k = fleet.first_own(); k < fleet.past_own(); ++k) {
     VehicleWork& w = work_[k];
-    const MovingVehicle& vehicle = fleet.vehicles[k];
+    const train::MovingVehicle& vehicle = fleet.vehicles[k];
     const int from = contacts_.first(k);
     const bool statics = w.shift2 == 0.0;
     for (int i = 0; i < contacts_.rows(k); ++i) {

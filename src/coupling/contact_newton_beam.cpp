@@ -6,13 +6,13 @@ namespace {
 
 // v += the beam's response to loads on the elements.
 template <int m>
-void respond(const ElementCompliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
+void respond(const structure::ElementCompliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
   using Vector = Eigen::Matrix<double, m, 1>;
   const int elements = static_cast<int>(loads.size()) / m;
   for (int b = 0; b < elements; ++b) {
     const Eigen::Map<const Vector> f(&loads[static_cast<std::size_t>(b) * m]);
     if (f.isZero(0.0)) continue;
-    const ElementCompliance::Response& reach = compliance.response(b);
+    const structure::ElementCompliance::Response& reach = compliance.response(b);
     for (int a = reach.first; a < reach.last; ++a)
       Eigen::Map<Vector>(&v[static_cast<std::size_t>(a) * m]) +=
           Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;
@@ -25,7 +25,7 @@ void respond(const StageData& s, const std::vector<double>& loads, std::vector<d
 
 }  // namespace
 
-void ContactNewton::beam_field(const StageData& s, const Fleet& fleet, Loads loads) {
+void ContactNewton::beam_field(const StageData& s, const train::Fleet& fleet, Loads loads) {
   if (loads == Loads::none || s.compliance == nullptr || fleet.elements().empty()) {
     v_ = *s.v0;
     w_ = *s.w0;
@@ -46,14 +46,14 @@ void ContactNewton::beam_field(const StageData& s, const Fleet& fleet, Loads loa
 
 // The geometry found shows where the forces act, not quite where they did when the beam was put under them: it moves by
 // the difference.
-void ContactNewton::follow_loads(const StageData& s, Fleet& fleet) {
+void ContactNewton::follow_loads(const StageData& s, train::Fleet& fleet) {
   const std::size_t m = 2 * static_cast<std::size_t>(s.per_node);
   before_.swap(loads_);
   fleet.element_loads(s.per_node, loads_);
   for (std::size_t i = 0; i < loads_.size(); ++i) before_[i] = loads_[i] - before_[i];
   v_.assign(v_.size(), 0.0);
   respond(s, before_, v_);
-  for (WheelContact& c : fleet.wheels) {
+  for (train::WheelContact& c : fleet.wheels) {
     if (c.slot() < 0 || fleet.vehicles[c.vehicle].rests) continue;
     const double* z = &v_[m * static_cast<std::size_t>(c.slot())];
     double normal = 0.0, tangential = 0.0;

@@ -6,10 +6,10 @@
 namespace traverse::coupling {
 
 // Residuals, the contacts' geometry, and where the vehicles go by themselves.
-unsigned ContactNewton::share_contacts(const StageData& s, Fleet& fleet, unsigned signs) {
+unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, unsigned signs) {
   if (s.share == nullptr) return signs;
   const int m = s.compliance != nullptr ? 2 * s.per_node : 0;
-  const auto numbers = [m](const Contact& c) { return 6 + (c.law.friction > 0.0 ? 2 * m : m); };
+  const auto numbers = [m](const train::Contact& c) { return 6 + (c.law.friction > 0.0 ? 2 * m : m); };
   const auto each = [&](int k, auto number) {
     VehicleWork& w = work_[k];
     number(w.residual);
@@ -17,7 +17,7 @@ unsigned ContactNewton::share_contacts(const StageData& s, Fleet& fleet, unsigne
     own.resize(contacts_.rows(k));
     for (int i = 0; i < own.size(); ++i) number(own[i]);
     for (const int i : fleet.vehicles[k].touching) {
-      Contact& c = fleet.contact(i);
+      train::Contact& c = fleet.contact(i);
       auto& [penetration, rate, sliding] = c.touch.kinematics;
       for (double* value : {&penetration, &rate, &sliding}) number(*value);
       multibody::MechanismState& state = fleet.vehicles[k].state;

@@ -70,12 +70,12 @@ System::InfluenceLine System::influence_line(double station) {
 }
 
 // Whether all weights keep their distances: then the train is placed wherever it is worst.
-bool System::pass_together(const WheelPaths& paths) const {
+bool System::pass_together(const train::WheelPaths& paths) const {
   const bool apart = !fleet_.wheels.empty() && !input_.load.forces.empty() && input_.train.speed != input_.load.speed;
   return !apart && paths.drift() < together;
 }
 
-double System::static_peak(double station, const WheelPaths& paths, double end) {
+double System::static_peak(double station, const train::WheelPaths& paths, double end) {
   if (!structure_ || weights_.empty() || !structure_->linear()) return 0.0;  // without superposition there is none
   const InfluenceLine line = influence_line(station);
   return pass_together(paths) ? peak_of_train(line, line.of_weight) : peak_on_the_way(line, paths, end);
@@ -110,7 +110,7 @@ double System::peak_of_train(const InfluenceLine& line, double constant) const {
 }
 
 // Where the weights are at the same time, from t = 0 to the end: whenever one is over the station, and evenly.
-double System::peak_on_the_way(const InfluenceLine& line, const WheelPaths& paths, double end) const {
+double System::peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const {
   const std::size_t wheels = fleet_.wheels.size(), known = paths.instants();
   const auto place = [&](std::size_t i, std::size_t instant, double t) {
     if (i < wheels && known > 1) return paths.x(instant, i);

@@ -11,7 +11,7 @@ namespace traverse::coupling {
 namespace {
 
 /// From p'' at the end of the step and its error, one a coordinate.
-double vehicle_error(const MovingVehicle& vehicle, const double* off, const double* pdd) {
+double vehicle_error(const train::MovingVehicle& vehicle, const double* off, const double* pdd) {
   const Eigen::MatrixXd& B = vehicle.state.B;
   const Eigen::VectorXd& mass = vehicle.mechanism.mass_diagonal();
   double error = 0.0, motion = 0.0, total = 0.0;  // sums of masses times squares of accelerations; kg
@@ -51,14 +51,14 @@ void System::measure_errors() {
 
 double System::step_error(const double* y) {
   const Motion& m = *motion_;
-  const StepRule& rule = m.method.step;
+  const structure::StepRule& rule = m.method.step;
   const auto [first, past] = fleet_.own_coordinates();
   for (int i = first; i < past; ++i) {
     x_[i] = 0.0;
     for (int j = 0; j < rule.known; ++j) x_[i] += rule.error_in_a[j] * m.pdd[j][i];
   }
   double worst = 0.0;
-  for (const MovingVehicle& vehicle : fleet_.own())
+  for (const train::MovingVehicle& vehicle : fleet_.own())
     worst = std::max(worst, vehicle_error(vehicle, &x_[vehicle.offset], &m.pdd[rule.known - 1][vehicle.offset]));
   if (structure_) worst = std::max(worst, structure_error(y));
   if (!std::isfinite(worst)) worst = std::numeric_limits<double>::max();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "traverse/coupling/element_structure.hpp"
+#include "traverse/structure/element_structure.hpp"
 
 namespace traverse::coupling {
 namespace {
@@ -12,13 +12,14 @@ constexpr int most_placements = 4;  // of the wheels on elements within one stag
 
 }  // namespace
 
-std::unique_ptr<Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
-                                       std::shared_ptr<BeamOperator> shared) {
+std::unique_ptr<structure::Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
+                                                  std::shared_ptr<structure::BeamOperator> shared) {
   if (beam == nullptr) return nullptr;
-  return std::make_unique<ElementStructure>(*beam, input.self_weight ? input.gravity : 0.0, std::move(shared));
+  return std::make_unique<structure::ElementStructure>(*beam, input.self_weight ? input.gravity : 0.0,
+                                                       std::move(shared));
 }
 
-System::System(MPI_Comm comm, std::unique_ptr<Structure> structure, SystemInput input)
+System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, SystemInput input)
     : comm_(comm),
       structure_(std::move(structure)),
       line_(structure_ ? &structure_->line() : nullptr),
@@ -26,16 +27,16 @@ System::System(MPI_Comm comm, std::unique_ptr<Structure> structure, SystemInput 
       input_(std::move(input)) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &ranks_);
-  for (const Vehicle& type : input_.types)
-    for (const Wheel& wheel : type.wheels)
+  for (const train::Vehicle& type : input_.types)
+    for (const train::Wheel& wheel : type.wheels)
       if (track::too_rough(input_.profile, wheel.radius))
         throw InputError(
             "vehicle_" + type.name + "_" + wheel.name + "_radius " + std::to_string(wheel.radius) +
             ": the wheel would touch the track's profile, whose shortest wave is " +
             std::to_string(input_.profile.shortest_wave()) + " m, at more than " + std::to_string(track::most_points) +
             " points at a time; take a smoother track, longer waves (track_wavelengths) or a smaller wheel");
-  fleet_ = Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
-                 &input_.profile, surface_height());
+  fleet_ = train::Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
+                        &input_.profile, surface_height());
   fleet_.partition(0.0);
   fleet_.start_rolling();
   on_beam_.assign(input_.load.forces.size(), 0);
@@ -51,7 +52,7 @@ void System::expect_weights() {
     load += force;
     greatest = std::max(greatest, force);
   };
-  for (const MovingVehicle& vehicle : fleet_.vehicles) add(vehicle.weight);
+  for (const train::MovingVehicle& vehicle : fleet_.vehicles) add(vehicle.weight);
   for (double force : input_.load.forces) add(std::abs(force));
   structure_->expect_weights(load, greatest);
 }
@@ -92,7 +93,7 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
       std::copy_n(w, n_, ydot);
       load_structure(t);
     }
-    const ElementLoads contacts = contact_loads();
+    const structure::ElementLoads contacts = contact_loads();
     structure_->accelerations(v, w, own, part != Part::beam ? &contacts : nullptr, ydot + n_);
   }
   double dissipation = 0.0, work = 0.0;
@@ -108,12 +109,12 @@ void System::evaluate_fleet(double t, const double* y) {
   share_coordinates(y);
   evaluated_time_ = t;
   const bool set = fleet_.set(t, p_.data(), p_.data() + fleet_.freedom());
-  if ((share_.places(fleet_, set ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0)
+  if ((share_.places(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
     throw SolverError("at t = " + std::to_string(t) + " s " + trouble());
   fleet_.place_wheels();
   if (structure_) structure_->gather(fleet_.elements(), y, y + n_, v_, w_);
   const bool touched = fleet_.touch(per_node(), v_.data(), w_.data());
-  if ((share_.exchange(touched ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0)
+  if ((share_.exchange(touched ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
     throw SolverError("a wheel has fallen below the running surface, or a body been driven through another, at t = " +
                       std::to_string(t) +
                       " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too "
@@ -122,15 +123,16 @@ void System::evaluate_fleet(double t, const double* y) {
   fleet_.contact_forces();
   fleet_.contact_loads();
   pdd_.resize(fleet_.freedom());
-  signs_ = fleet_.worn() ? VehicleShare::worn : 0U;
+  signs_ = fleet_.worn() ? train::VehicleShare::worn : 0U;
   try {
-    for (MovingVehicle& vehicle : fleet_.own())
+    for (train::MovingVehicle& vehicle : fleet_.own())
       vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
   } catch (const SolverError&) {  // a joint is jammed, which all have to know
-    signs_ |= VehicleShare::failed;
+    signs_ |= train::VehicleShare::failed;
   }
   signs_ = share_.exchange(signs_);
-  if ((signs_ & VehicleShare::failed) != 0) throw SolverError(trouble() + " (at t = " + std::to_string(t) + " s)");
+  if ((signs_ & train::VehicleShare::failed) != 0)
+    throw SolverError(trouble() + " (at t = " + std::to_string(t) + " s)");
   share_.states(fleet_);
   share_.coordinates(fleet_, pdd_);
   note_touched();
@@ -156,7 +158,7 @@ void System::powers(const double* w, Part part, double& dissipation, double& wor
 // Of this rank's vehicles and contacts at the state that they were last set to.
 System::Powers System::fleet_powers() const {
   Powers powers{fleet_.contact_dissipation(), 0.0};
-  for (const MovingVehicle& vehicle : fleet_.own()) {
+  for (const train::MovingVehicle& vehicle : fleet_.own()) {
     const multibody::MechanismPowers e = vehicle.mechanism.powers(vehicle.state);
     powers.dissipation += e.dissipation;
     powers.work += e.work;
@@ -216,9 +218,9 @@ System::Solution System::solve_coupled(const StageTime& at, Part part) {
     if (part == Part::all && !stage_of_fleet(at)) return Solution::fleet_unsettled;
     if (!structure_) return Solution::found;
     if (part == Part::all && !fleet_.elements().empty()) structure_->take(newton_.element_loads());
-    const Structure::Verdict verdict = structure_->judge();
-    if (verdict == Structure::Verdict::settled) return Solution::found;
-    if (verdict == Structure::Verdict::failed) return Solution::structure_unsettled;
+    const structure::Structure::Verdict verdict = structure_->judge();
+    if (verdict == structure::Structure::Verdict::settled) return Solution::found;
+    if (verdict == structure::Structure::Verdict::failed) return Solution::structure_unsettled;
   }
 }
 
@@ -234,10 +236,10 @@ bool System::stage_of_fleet(const StageTime& at) {
     pdd_[i] = pd_still_[i] + at.shift * x_[i];
   }
   const bool set = fleet_.set(at.t, p_.data(), pdd_.data());
-  if ((share_.places(fleet_, set ? 0U : VehicleShare::failed) & VehicleShare::failed) != 0) return false;
+  if ((share_.places(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();
-    const ElementCompliance* compliance = nullptr;
+    const structure::ElementCompliance* compliance = nullptr;
     if (structure_) {
       structure_->gather_free(fleet_.elements(), v_, w_);
       compliance = &structure_->yield(fleet_.elements());
@@ -253,7 +255,7 @@ bool System::stage_of_fleet(const StageTime& at) {
   }
   note_touched();
   fleet_.contact_loads();
-  for (MovingVehicle& vehicle : fleet_.own())
+  for (train::MovingVehicle& vehicle : fleet_.own())
     vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
   return true;
 }

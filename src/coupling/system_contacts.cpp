@@ -24,7 +24,7 @@ void System::note_touched() {
 
 void System::arrive(double t, const double* y) {
   const int f = fleet_.freedom();
-  bool moved = (signs_ & VehicleShare::moved) != 0;
+  bool moved = (signs_ & train::VehicleShare::moved) != 0;
   if (!motion_) {
     evaluated_.assign(p_.begin(), p_.begin() + f);
     share_coordinates(y);
@@ -38,11 +38,11 @@ bool System::accept(double t, double* y) {
   if (fleet_.vehicles.empty()) return false;
   arrive(t, y);
   const double lost = note_contacts(t);
-  const bool worn = share_.dealt() ? (signs_ & VehicleShare::worn) != 0 : fleet_.worn();
+  const bool worn = share_.dealt() ? (signs_ & train::VehicleShare::worn) != 0 : fleet_.worn();
   if (worn) evaluate_fleet(t, y);
   bool renewed = fleet_.accept();
   if (worn && share_.dealt()) {
-    renewed = share_.exchange(renewed ? VehicleShare::renewed : 0U) != 0;
+    renewed = share_.exchange(renewed ? train::VehicleShare::renewed : 0U) != 0;
     if (renewed) share_.partitions(fleet_);
   }
   if (renewed) fleet_.number(t);
@@ -58,7 +58,7 @@ double System::note_contacts(double t) {
   double lost = 0.0;
   for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
     if (fleet_.has_points(i)) continue;
-    Contact& c = fleet_.contact(i);
+    train::Contact& c = fleet_.contact(i);
     const bool touches = fleet_.touches(i);
     const double stored = contact::potential(c.law, c.kinematics.penetration);
     if (separations_.touching(i) && !touches) {
@@ -80,7 +80,7 @@ void System::note_impacts(double t) {
   impact_durations_.assign(impacts_.size(), 0.0);
   bool any = false;
   for (int i = 0; i < fleet_.contacts(); ++i) {
-    Contact& c = fleet_.contact(i);
+    train::Contact& c = fleet_.contact(i);
     if (separations_.touching(i) && !separations_.met(i)) continue;
     c.approach_speed = std::max(c.kinematics.penetration_rate, 0.0);
     impacts_[i] = {};
@@ -98,14 +98,14 @@ void System::note_impacts(double t) {
   }
 }
 
-std::optional<Change> System::contact_change(double t, double tolerance) const {
+std::optional<train::Change> System::contact_change(double t, double tolerance) const {
   return separations_.change(
       fleet_, t, [&](int i) { return separations_.time_to_touch(i) <= 2.0 * change_tolerance(i, tolerance); });
 }
 
 // A damper comes on with a jump, which must lie at a step's border; an elastic force grows from nothing.
 double System::change_tolerance(int contact, double tolerance) const {
-  const Contact& c = fleet_.contact(contact);
+  const train::Contact& c = fleet_.contact(contact);
   const double step = impacts_[contact].step;
   if (c.law.hysteresis || c.law.damping == 0.0) return std::min(tolerance, 0.1 * step);
   // a step of twice as much leads from this side of the damper's ramp beyond it
@@ -147,9 +147,9 @@ std::string System::trouble() const {
 
 // Of this rank's vehicles; empty: none.
 std::string System::trouble_of_own() const {
-  for (const MovingVehicle& vehicle : fleet_.own())
+  for (const train::MovingVehicle& vehicle : fleet_.own())
     if (vehicle.state.friction.jammed) return vehicle.mechanism.jam(vehicle.state);
-  const MovingVehicle* stuck = fleet_.stuck();
+  const train::MovingVehicle* stuck = fleet_.stuck();
   if (stuck == nullptr) return {};
   const multibody::Mechanism& mechanism = stuck->mechanism;
   return "vehicle '" + mechanism.model().name + "' is locked: " + mechanism.worst_row(stuck->state) +

@@ -29,9 +29,9 @@ void System::expect_corners(double end, double step) {
   longest_step_ = step;
   corners_.clear();
   next_corner_ = 0;
-  if (!structure_ || input_.train.drive != Drive::constant || !(input_.train.speed > 0.0)) return;
+  if (!structure_ || input_.train.drive != train::Drive::constant || !(input_.train.speed > 0.0)) return;
   for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
-    const WheelContact& c = fleet_.wheels[i];
+    const train::WheelContact& c = fleet_.wheels[i];
     if (c.is_further || c.further > 0) continue;  // located by its points
     for (const double x : line_->mesh.kinks()) {
       const double t = (x - fleet_.coordinates(c).x()) / input_.train.speed;
@@ -48,7 +48,7 @@ double System::longest_turn(const Corner& corner) const {
 // Both times, the earlier one first, as the state y at t lets them be expected.
 std::array<double, 2> System::turning_times(const Corner& corner, double t, const double* y) {
   const beam::Mesh& mesh = line_->mesh;
-  const WheelContact& c = fleet_.wheels[corner.wheel];
+  const train::WheelContact& c = fleet_.wheels[corner.wheel];
   enum { x, speed, radius, numbers };
   std::array<double, numbers> seen{};
   if (share_.dealt() ? fleet_.owns(c) : rank_ == 0) {

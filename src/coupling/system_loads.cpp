@@ -14,7 +14,7 @@ void System::load_structure(double t) {
   structure_->load(loads_);
 }
 
-ElementLoads System::contact_loads() {
+structure::ElementLoads System::contact_loads() {
   fleet_.element_loads(per_node(), element_loads_);
   return {fleet_.elements(), element_loads_};
 }

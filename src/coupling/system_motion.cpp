@@ -11,7 +11,7 @@ constexpr double same_position = 1e-9;  // m or rad: a step's last stage is its 
 
 }  // namespace
 
-void System::begin_motion(const Method& method) {
+void System::begin_motion(const structure::Method& method) {
   Motion& m = motion_.emplace();
   m.unit = method;
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
@@ -22,12 +22,12 @@ void System::begin_motion(const Method& method) {
 }
 
 // Where wheels and forces are during a step.
-const std::vector<Reach>& System::loaded(double t, double h) {
+const std::vector<structure::Reach>& System::loaded(double t, double h) {
   reaches_.clear();
   const auto add = [&](double from, double to, double width) {
     reaches_.push_back({std::min(from, to) - width, std::max(from, to) + width});
   };
-  for (const WheelContact& c : fleet_.wheels) {
+  for (const train::WheelContact& c : fleet_.wheels) {
     if (c.is_further) continue;
     const double x = fleet_.coordinates(c).x(), way = fleet_.velocities(c).x() * h;
     add(x, x + 2.0 * way, 0.1 * fleet_.wheel(c).radius);  // a wheel touches beside its centre
@@ -92,7 +92,7 @@ bool System::step_motion(double t, double h, double* y, const std::function<bool
 
 bool System::stage_of_motion(double t, std::size_t stage, const double* v, const double* w) {
   Motion& m = *motion_;
-  const StageRule& rule = m.method.stages[stage];
+  const structure::StageRule& rule = m.method.stages[stage];
   const double shift = rule.rate / rule.displacement, shift2 = 1.0 / rule.displacement;
   for (std::vector<double>* x : {&p_still_, &pd_still_, &x_}) x->resize(m.p.size());
   const auto [first, past] = fleet_.own_coordinates();
@@ -118,9 +118,9 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
 
 void System::finish_step(double* y) {
   Motion& m = *motion_;
-  const StepRule& rule = m.method.step;
+  const structure::StepRule& rule = m.method.step;
   const auto [first, past] = fleet_.own_coordinates();
-  signs_ = fleet_.worn() ? VehicleShare::worn : 0U;
+  signs_ = fleet_.worn() ? train::VehicleShare::worn : 0U;
   for (int i = first; i < past; ++i) {
     m.p[i] += rule.w_in_v * m.pd[i];
     for (int j = 0; j < rule.known; ++j) {
@@ -130,7 +130,7 @@ void System::finish_step(double* y) {
     double next = 0.0;
     for (int j = 0; j < rule.known; ++j) next += rule.a_next[j] * m.pdd[j][i];
     m.pdd[0][i] = next;
-    if (std::abs(m.p[i] - p_[i]) > same_position) signs_ |= VehicleShare::moved;
+    if (std::abs(m.p[i] - p_[i]) > same_position) signs_ |= train::VehicleShare::moved;
   }
   if (share_.dealt() || rank_ == 0) {  // else another rank counts the vehicles and contacts
     for (int j = 0; j < rule.known; ++j) {

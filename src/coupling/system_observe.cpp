@@ -12,7 +12,7 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
   if (structure_) {
     load_structure(t);
     out.loads = loads_;
-    for (const WheelContact& c : fleet_.wheels) {
+    for (const train::WheelContact& c : fleet_.wheels) {
       if (c.slot() < 0 || c.force.normal == 0.0) continue;
       const Eigen::Vector3d f = c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
       const double speed = fleet_.vehicles[c.vehicle].state.qd[3 * static_cast<Eigen::Index>(c.body)];
@@ -26,7 +26,7 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
 }
 
 Energy System::energy(const double* y) {
-  StructureEnergy s;
+  structure::StructureEnergy s;
   if (structure_) s = structure_->energy(y, y + n_);
   if (motion_) {
     s.dissipated += motion_->dissipated;
@@ -39,7 +39,7 @@ Energy System::energy(const double* y) {
   double sums[5] = {s.kinetic, s.strain, s.potential, s.dissipated, s.work};
   MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, comm_);
   Energy e{sums[0], sums[1], sums[2], sums[3], sums[4], sums[0] + sums[1]};
-  for (const MovingVehicle& vehicle : fleet_.vehicles) {
+  for (const train::MovingVehicle& vehicle : fleet_.vehicles) {
     const multibody::MechanismEnergy m = vehicle.mechanism.energy(vehicle.state);
     e.kinetic += m.kinetic;
     e.strain += m.strain;

@@ -21,7 +21,7 @@ constexpr double farthest = 100.0;       // m: what goes farther is held by noth
 
 // The stage problem at shift 0 with every drive standing still: the structure and the vehicles at rest.
 void System::find_equilibrium(double* y) {
-  Fleet moving = std::move(fleet_);
+  train::Fleet moving = std::move(fleet_);
   stand_still();
   if (structure_) load_structure(0.0);
   Solution found = settle(Part::all);
@@ -39,8 +39,8 @@ void System::find_equilibrium(double* y) {
 
 // Every drive stands still, every body is where the scene puts it.
 void System::stand_still() {
-  fleet_ = Fleet(input_.types, input_.train, input_.gravity, true, line_ != nullptr ? &line_->mesh : nullptr,
-                 &input_.profile, surface_height());
+  fleet_ = train::Fleet(input_.types, input_.train, input_.gravity, true, line_ != nullptr ? &line_->mesh : nullptr,
+                        &input_.profile, surface_height());
   fleet_.partition(0.0);
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
@@ -58,7 +58,7 @@ System::Solution System::settle(Part part, double tie) {
 // slope to follow.
 System::Solution System::settle_slowly() {
   std::vector<Eigen::VectorXd> start;
-  for (const MovingVehicle& vehicle : fleet_.vehicles) start.push_back(vehicle.state.q);
+  for (const train::MovingVehicle& vehicle : fleet_.vehicles) start.push_back(vehicle.state.q);
   Solution found = Solution::fleet_unsettled;
   double tie = first_tie;
   for (int i = 0; i < most_ties && tie >= last_tie; ++i) {
@@ -96,7 +96,7 @@ void System::go_on_from(std::vector<double> p) {
 bool System::note_lost(const std::vector<Eigen::VectorXd>& start) {
   double far = farthest;
   for (std::size_t k = 0; k < start.size(); ++k) {
-    const MovingVehicle& vehicle = fleet_.vehicles[k];
+    const train::MovingVehicle& vehicle = fleet_.vehicles[k];
     const multibody::MechanismModel& model = vehicle.mechanism.model();
     for (std::size_t b = 0; b < model.bodies.size(); ++b) {
       const auto at = 3 * static_cast<Eigen::Index>(b);

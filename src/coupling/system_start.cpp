@@ -20,7 +20,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
     if (const Solution found = settle(Part::beam); found != Solution::found) refuse_start(found);
     structure_->end_stage(y, y + n_);
   }
-  for (MovingVehicle& vehicle : fleet_.vehicles)
+  for (train::MovingVehicle& vehicle : fleet_.vehicles)
     for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
       vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
   if (equilibrium) let_wheels_roll();
@@ -34,7 +34,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
 // What the wheels weigh, whatever state the scene gives them to start with. False where they find no rest.
 bool System::weigh_at_rest() {
   if (!structure_ || fleet_.wheels.empty()) return false;
-  Fleet given = fleet_;
+  train::Fleet given = fleet_;
   std::vector<double> at_rest(2 * static_cast<std::size_t>(n_));
   bool found = true;
   try {
@@ -50,9 +50,9 @@ bool System::weigh_at_rest() {
 
 // A wheel with friction that can turn freely begins without sliding, unless its turning speed is given.
 void System::let_wheels_roll() {
-  for (const WheelContact& c : fleet_.wheels) {
+  for (const train::WheelContact& c : fleet_.wheels) {
     if (c.is_further) continue;
-    MovingVehicle& vehicle = fleet_.vehicles[c.vehicle];
+    train::MovingVehicle& vehicle = fleet_.vehicles[c.vehicle];
     const int turn = 3 * c.body + 2;
     if (fleet_.held(c) || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
     vehicle.state.qd[turn] = -fleet_.velocities(c).x() / (fleet_.wheel(c).radius - c.kinematics.penetration);
@@ -62,14 +62,14 @@ void System::let_wheels_roll() {
 void System::note_weights() {
   weights_.clear();
   fleet_.contact_forces();
-  for (const WheelContact& c : fleet_.wheels) weights_.emplace_back(fleet_.coordinates(c).x(), c.force.normal);
+  for (const train::WheelContact& c : fleet_.wheels) weights_.emplace_back(fleet_.coordinates(c).x(), c.force.normal);
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i)
     weights_.emplace_back(input_.load.positions[i], input_.load.forces[i]);
 }
 
 // When the ends of a wheel's flat meet the rail, where it rolls as its x is prescribed.
-void System::add_flats(const WheelContact& c, double end, std::vector<double>& events) const {
-  const Wheel& wheel = fleet_.wheel(c);
+void System::add_flats(const train::WheelContact& c, double end, std::vector<double>& events) const {
+  const train::Wheel& wheel = fleet_.wheel(c);
   if (c.turns || input_.train.speed <= 0.0) return;
   const double turning = input_.train.speed / wheel.radius;
   for (double angle : track::flat_ends(wheel.shape, wheel.radius, turning * end)) events.push_back(angle / turning);
@@ -94,14 +94,14 @@ std::vector<double> System::known_events(double end, bool all_kinks) const {
       if (t > 0.0 && t < end) events.push_back(t);
     }
   };
-  if (input_.train.drive == Drive::constant && all_kinks)
-    for (const WheelContact& c : fleet_.wheels) {
+  if (input_.train.drive == train::Drive::constant && all_kinks)
+    for (const train::WheelContact& c : fleet_.wheels) {
       if (c.is_further) continue;
       add(fleet_.coordinates(c).x(), input_.train.speed);
       add_flats(c, end, events);
     }
   for (double x : input_.load.positions) add(x, input_.load.speed);
-  for (const MovingVehicle& vehicle : fleet_.vehicles)
+  for (const train::MovingVehicle& vehicle : fleet_.vehicles)
     for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)
       for (const base::TimeFunction& f : actuator.action)
         for (double t : f.kinks())
@@ -117,7 +117,7 @@ double System::leaving_time() const {
   auto leave = [&](double x, double speed) {
     if (x < length) last = std::max(last, speed > 0.0 ? (length - x) / speed : infinite);
   };
-  for (const WheelContact& c : fleet_.wheels) leave(fleet_.coordinates(c).x(), input_.train.speed);
+  for (const train::WheelContact& c : fleet_.wheels) leave(fleet_.coordinates(c).x(), input_.train.speed);
   for (double x : input_.load.positions) leave(x, input_.load.speed);
   return last;
 }

@@ -21,7 +21,7 @@ void ContactNewton::Inverse::compute(const Eigen::MatrixXd& J, bool singular) {
     whole_ = factors_.permutationP();
     factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(whole_);
     factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(whole_);
-  } else if (const int band = half_bandwidth(J); 3 * band < f) {
+  } else if (const int band = solve::half_bandwidth(J); 3 * band < f) {
     form_ = Form::band;
     band_.compute(J, band);
   } else {

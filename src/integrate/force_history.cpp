@@ -10,7 +10,7 @@ constexpr double most_numbers = 2e8;     // 1.6 GB
 constexpr double same_distance = 1e-12;  // of the bridge: distances that are one
 
 /// Adds force*influence at x, as a polynomial of a distance that adds to x.
-void add(const coupling::PiecewiseCubic& influence, std::size_t piece, double force, double x, double* sum) {
+void add(const structure::PiecewiseCubic& influence, std::size_t piece, double force, double x, double* sum) {
   const std::size_t n = influence.channels;
   const double* c = &influence.coefficients[4 * n * piece];
   const double d = x - influence.breaks[piece];
@@ -25,7 +25,7 @@ void add(const coupling::PiecewiseCubic& influence, std::size_t piece, double fo
 
 }  // namespace
 
-ForceHistory::ForceHistory(const coupling::PiecewiseCubic& influence, const coupling::MovingLoad& load)
+ForceHistory::ForceHistory(const structure::PiecewiseCubic& influence, const train::MovingLoad& load)
     : start{0.0}, channels(influence.channels) {
   const std::vector<double>& breaks = influence.breaks;
   const double length = breaks.back() - breaks.front();

@@ -21,7 +21,7 @@ constexpr double counted_phase = 0.5;  // rad of the fastest mode between which 
 
 }  // namespace
 
-ModalMotion::ModalMotion(const coupling::ModalBridge& bridge, const ForceHistory& history, double speed,
+ModalMotion::ModalMotion(const structure::ModalBridge& bridge, const ForceHistory& history, double speed,
                          bool equilibrium)
     : bridge_(bridge), history_(history), speed_(speed), modes_(bridge.modes()) {
   q_.assign(modes_.size(), 0.0);

@@ -61,8 +61,8 @@ class Curves {
 };
 
 /// The deflections of all probes at one instant, their accelerations, their moments.
-void see(const coupling::ModalBridge& bridge, const ModalMotion& motion, std::vector<double>& seen) {
-  const coupling::ModalProbes& probes = bridge.probes();
+void see(const structure::ModalBridge& bridge, const ModalMotion& motion, std::vector<double>& seen) {
+  const structure::ModalProbes& probes = bridge.probes();
   const std::size_t n = probes.count;
   double *deflections = seen.data(), *accelerations = deflections + n, *moments = accelerations + n;
   std::copy(probes.weight_deflection.begin(), probes.weight_deflection.end(), deflections);
@@ -84,7 +84,7 @@ void see(const coupling::ModalBridge& bridge, const ModalMotion& motion, std::ve
 
 }  // namespace
 
-std::vector<ProbePeaks> modal_peaks(const coupling::ModalBridge& bridge, const ForceHistory& history, double speed,
+std::vector<ProbePeaks> modal_peaks(const structure::ModalBridge& bridge, const ForceHistory& history, double speed,
                                     bool equilibrium, double end_time, const std::function<bool()>& going) {
   ModalMotion motion(bridge, history, speed, equilibrium);
   const double fastest = *std::max_element(bridge.omega().begin(), bridge.omega().end());
@@ -117,9 +117,9 @@ std::vector<ProbePeaks> modal_peaks(const coupling::ModalBridge& bridge, const F
   return peaks;
 }
 
-std::vector<double> static_peaks(const coupling::ModalBridge& bridge, const ForceHistory& history) {
+std::vector<double> static_peaks(const structure::ModalBridge& bridge, const ForceHistory& history) {
   const std::size_t n = history.channels, modes = bridge.modes();
-  const coupling::ModalProbes& probes = bridge.probes();
+  const structure::ModalProbes& probes = bridge.probes();
   std::vector<double> peaks;
   for (std::size_t p = 0; p < probes.count; ++p) {
     double peak = std::abs(probes.weight_deflection[p]);

@@ -15,8 +15,8 @@ constexpr double just_before = 1e-12;  // of the run: at a jump the samples show
 constexpr double phase_at_once = 1e5;  // rad of the highest mode between looks at whether the run is to go on
 }  // namespace
 
-ModalStepper::ModalStepper(coupling::System& system, const coupling::ModalBridge& bridge,
-                           coupling::BeamOperator& statics, const coupling::SystemInput& input, bool equilibrium,
+ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridge& bridge,
+                           structure::BeamOperator& statics, const coupling::SystemInput& input, bool equilibrium,
                            double end_time, double interval)
     : system_(system),
       bridge_(bridge),

@@ -40,7 +40,7 @@ bool is_ladder(TSAdapt adapt) {
 PetscErrorCode set_up(TS ts) {
   return guard([&] {
     Data& data = data_of(ts);
-    data.system->begin_motion(is(ts, esdirk4_type) ? coupling::esdirk4() : coupling::generalised_alpha(data.radius));
+    data.system->begin_motion(is(ts, esdirk4_type) ? structure::esdirk4() : structure::generalised_alpha(data.radius));
     if (is_ladder(ts->adapt)) data.system->measure_errors();
     check(TSAdaptCandidatesClear(ts->adapt));
     check(TSAdaptCandidateAdd(ts->adapt, nullptr, is(ts, esdirk4_type) ? 4 : 2, 1, 1.0, 1.0, PETSC_TRUE));

@@ -23,7 +23,7 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 class Balance {
  public:
   /// driven: its first body's x is prescribed by the train's drive.
-  Balance(Results& run, const coupling::Vehicle& vehicle, const std::string& group, double gravity, bool driven,
+  Balance(Results& run, const train::Vehicle& vehicle, const std::string& group, double gravity, bool driven,
           std::size_t row)
       : run_(run), vehicle_(vehicle), model_(vehicle.mechanism), group_(group), row_(row) {
     const multibody::MechanismModel& model = model_;
@@ -49,7 +49,7 @@ class Balance {
   }
 
   void compare(Imbalance& worst, Imbalance& scale) {
-    for (const coupling::Wheel& wheel : vehicle_.wheels) add(wheel, worst);
+    for (const train::Wheel& wheel : vehicle_.wheels) add(wheel, worst);
     for (std::size_t b = 0; b < sum_.size(); ++b) {
       const multibody::Body& body = model_.bodies[b];
       const Vector3d a = triple(group_ + body.name + "/acceleration");
@@ -90,7 +90,7 @@ class Balance {
 
   /// The track's force on a wheel is known by its parts along normal and tangent, not by its direction: whatever else
   /// is missing must be as great. Friction acts at the surface.
-  void add(const coupling::Wheel& wheel, Imbalance& worst) {
+  void add(const train::Wheel& wheel, Imbalance& worst) {
     const auto value = [&](const char* what) { return run_(group_ + wheel.name + what)[row_]; };
     const std::size_t b = static_cast<std::size_t>(wheel.body);
     const multibody::Body& body = model_.bodies[b];
@@ -114,7 +114,7 @@ class Balance {
   }
 
   Results& run_;
-  const coupling::Vehicle& vehicle_;
+  const train::Vehicle& vehicle_;
   const multibody::MechanismModel& model_;
   std::string group_;
   std::size_t row_;
@@ -127,9 +127,9 @@ class Balance {
 
 Imbalance newton_imbalance(Results& run, int vehicle) {
   const app::Scene scene = app::read_scene();
-  const coupling::Vehicle& type =
+  const train::Vehicle& type =
       scene.vehicles.at(static_cast<std::size_t>(scene.train.vehicles.at(static_cast<std::size_t>(vehicle))));
-  const bool driven = !type.wheels.empty() && scene.train.drive == coupling::Drive::constant;
+  const bool driven = !type.wheels.empty() && scene.train.drive == train::Drive::constant;
   const std::string group = "/vehicles/" + std::to_string(vehicle) + "/";
   Imbalance worst, scale;
   for (std::size_t row = 0; row < run("/time").size(); ++row)

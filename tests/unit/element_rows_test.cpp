@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "traverse/coupling/beam_operator.hpp"
+#include "traverse/structure/beam_operator.hpp"
 
 namespace traverse {
 namespace {
@@ -37,7 +37,7 @@ void expect_same_products(const beam::BeamModel& model) {
   beam.set_rayleigh({0.3, 2e-3});
   ASSERT_TRUE(beam::ElementRows::fit(beam));
   const beam::ElementRows rows(beam);
-  const coupling::BeamOperator op(beam);
+  const structure::BeamOperator op(beam);
   const int nodes = beam.local_columns(), n = op.unknowns();
   std::vector<double> x = numbers(n, 1), y = numbers(n, 2), expected(x.size()), inertia(x.size());
   for (int i = 0; i < n; ++i)
@@ -77,7 +77,7 @@ TEST(SeparateParts, SolveAsTheWhole) {
   beam::BeamModel model = spans({20, 20, 31, 20, 20, 20, 20, 20, 20, 20, 20, 20, 31, 31}, 5, true);
   beam::Beam beam(PETSC_COMM_SELF, model);
   beam.set_rayleigh({0.3, 2e-3});
-  coupling::BeamOperator op(beam);
+  structure::BeamOperator op(beam);
   ASSERT_NE(op.parts(), nullptr);
   EXPECT_EQ(op.parts()->parts.size(), 14u);
   EXPECT_EQ(op.parts()->of_kind.size(), 2u);
@@ -89,7 +89,7 @@ TEST(SeparateParts, SolveAsTheWhole) {
   const std::vector<double> b = numbers(op.unknowns(), 3);
   std::vector<double> x = b, expected = b;
   whole.solve(expected.data());
-  const coupling::BeamFactor& factor = op.factored(200.0, 4e4);
+  const structure::BeamFactor& factor = op.factored(200.0, 4e4);
   factor.solve(x.data());
   double largest = 0.0;
   for (double value : expected) largest = std::max(largest, std::abs(value));

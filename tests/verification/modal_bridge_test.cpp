@@ -59,11 +59,11 @@ beam::BeamModel one_span(int elements) {
 TEST(ModalMotion, OneModeInClosedForm) {
   beam::Beam beam(PETSC_COMM_SELF, one_span(40));
   beam.set_rayleigh({});
-  coupling::BeamOperator statics(beam);
-  coupling::ModalBridge bridge(beam, statics, 1, {});
+  structure::BeamOperator statics(beam);
+  structure::ModalBridge bridge(beam, statics, 1, {});
   bridge.add_probes({0.5 * length}, 0.0);
   const double alpha = 0.617, speed = speed_for(alpha), omega = bridge.omega()[0], drive = pi * speed / length;
-  const coupling::MovingLoad load{{1e5}, {0.0}, speed};
+  const train::MovingLoad load{{1e5}, {0.0}, speed};
   const integrate::ForceHistory history(bridge.influence(), load);
   integrate::ModalMotion motion(bridge, history, speed, true);
   const double leaving = length / speed, scale = 2e5 / (mass * length) / (omega * omega - drive * drive);
@@ -88,11 +88,11 @@ TEST(ModalMotion, OneModeInClosedForm) {
 TEST(ModalMotion, ManyStepsAndOneAgree) {
   beam::Beam beam(PETSC_COMM_SELF, one_span(8));
   beam.set_rayleigh({1.0, 2e-3});
-  coupling::BeamOperator statics(beam);
-  const coupling::ModalBridge bridge(beam, statics, 6, {});
+  structure::BeamOperator statics(beam);
+  const structure::ModalBridge bridge(beam, statics, 6, {});
   ASSERT_GT(bridge.sigma()[5], bridge.omega()[5]);
   ASSERT_LT(bridge.sigma()[0], bridge.omega()[0]);
-  const coupling::MovingLoad load{{1e5, 2e5}, {0.0, -3.0}, 40.0};
+  const train::MovingLoad load{{1e5, 2e5}, {0.0, -3.0}, 40.0};
   const integrate::ForceHistory history(bridge.influence(), load);
   integrate::ModalMotion one(bridge, history, 40.0, true), many(bridge, history, 40.0, true);
   many.expect(1e-3);

@@ -166,14 +166,14 @@ TEST(Flat, EnergyBalances) {
 
 // Steps end where the ends of the flat meet the rail: half a turn from the start, and once a turn from there.
 TEST(Flat, ItsEndsAreKnownEvents) {
-  coupling::Vehicle axle;
+  train::Vehicle axle;
   multibody::Body body;
   body.name = "axle";
   body.mass = mass;
   body.inertia = 100.0;
   body.position = {0.0, R, 0.0};
   axle.mechanism.bodies = {body};
-  coupling::Wheel wheel;
+  train::Wheel wheel;
   wheel.radius = R;
   wheel.law.stiffness = 1e10;
   wheel.shape.flat_length = 0.05;

@@ -24,7 +24,6 @@ void check_steps(const Scene& scene, const Plan& plan, double first_period, bool
 
 /// After the start: in `notes` whether steps pass over the wheels' oscillation on their contacts, where the track or
 /// their shape stirs it.
-void check_contacts(const Scene& scene, const Plan& plan, const coupling::Fleet& fleet,
-                    std::vector<std::string>& notes);
+void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fleet, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -8,21 +8,21 @@
 #include <vector>
 
 #include "traverse/beam/model.hpp"
-#include "traverse/coupling/vehicle.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/track/profile.hpp"
+#include "traverse/train/vehicle.hpp"
 
 namespace traverse::app {
 
 enum class Analysis { transient, modes, static_response };
 enum class Start { equilibrium, given };
 
-using coupling::Coupler;
-using coupling::Drive;
-using coupling::MovingLoad;
-using coupling::Train;
-using coupling::Vehicle;
-using coupling::Wheel;
+using train::Coupler;
+using train::Drive;
+using train::MovingLoad;
+using train::Train;
+using train::Vehicle;
+using train::Wheel;
 
 struct Damping {
   std::optional<std::pair<double, double>> rayleigh;     // a, b given

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "traverse/app/scene.hpp"
-#include "traverse/coupling/beam_operator.hpp"
-#include "traverse/coupling/modal_bridge.hpp"
+#include "traverse/structure/beam_operator.hpp"
+#include "traverse/structure/modal_bridge.hpp"
 
 namespace traverse::app {
 
@@ -32,8 +32,8 @@ struct Structure {
   std::optional<beam::Beam> beam;
   std::optional<std::pair<double, double>> omega;  // rad/s, the first two distinct frequencies
   beam::Rayleigh rayleigh;
-  std::shared_ptr<coupling::BeamOperator> statics;  // with the factorisations so far
-  std::optional<coupling::ModalBridge> modal;       // with model_modes
+  std::shared_ptr<structure::BeamOperator> statics;  // with the factorisations so far
+  std::optional<structure::ModalBridge> modal;       // with model_modes
 };
 
 }  // namespace traverse::app

@@ -34,7 +34,7 @@ class Watch {
   const results::Summary& extremes() const { return summary_; }
   /// Those of wheels and contacts too, after the last sample.
   const results::Summary& finished_extremes();
-  const coupling::WheelPaths& paths() const { return paths_; }
+  const train::WheelPaths& paths() const { return paths_; }
   /// The extremes so far, after the last sample.
   const Peaks& finished_peaks();
 
@@ -58,7 +58,7 @@ class Watch {
   std::vector<beam::Response> rail_, dragged_;
   Peaks peaks_;
   WheelExtremes wheels_;
-  coupling::WheelPaths paths_;  // where wheels are free to change their distances
+  train::WheelPaths paths_;  // where wheels are free to change their distances
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;
   bool finished_ = false;

@@ -10,13 +10,13 @@ namespace traverse::coupling {
 class ChangeBracket {
  public:
   /// `change` happens between `from`, the last accepted instant, and `to`, where the vehicles of the system are now.
-  ChangeBracket(const System& system, const Change& change, double from, double to, double tolerance);
+  ChangeBracket(const System& system, const train::Change& change, double from, double to, double tolerance);
 
   bool found() const { return found_; }
   /// Where the step should end next.
   double trial();
   /// The step was taken to `at`, where the vehicles are now, with this change in it.
-  void tried(double at, const std::optional<Change>& change);
+  void tried(double at, const std::optional<train::Change>& change);
   /// When found, or given up: where the step has to end.
   double end() const;
 
@@ -26,7 +26,7 @@ class ChangeBracket {
   void end_at(double end);
 
   const System& system_;
-  Change change_;
+  train::Change change_;
   double from_, full_;                 // the whole step, its end
   double low_, high_;                  // no change before, a change before
   contact::Kinematics below_, above_;  // of its contact there

@@ -12,9 +12,9 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "traverse/coupling/band_lu.hpp"
-#include "traverse/coupling/compliance.hpp"
-#include "traverse/coupling/fleet.hpp"
+#include "traverse/solve/band_lu.hpp"
+#include "traverse/structure/compliance.hpp"
+#include "traverse/train/fleet.hpp"
 
 namespace traverse::coupling {
 
@@ -30,7 +30,7 @@ struct VehicleYield {
 class CondensedContacts {
  public:
   struct Row {
-    Contact* contact = nullptr;
+    train::Contact* contact = nullptr;
     double scale = 0.0;  // N: its vehicle's
     int vehicle = 0;
     bool normal = true;
@@ -38,7 +38,7 @@ class CondensedContacts {
   };
 
   /// Takes the fleet's contacts, vehicle by vehicle.
-  void list(Fleet& fleet);
+  void list(train::Fleet& fleet);
   int first(int vehicle) const { return first_[vehicle]; }
   int rows(int vehicle) const { return first_[vehicle + 1] - first_[vehicle]; }
   const Row& row(int i) const { return rows_[i]; }
@@ -47,7 +47,7 @@ class CondensedContacts {
 
   VehicleYield& yield(int vehicle) { return yield_[vehicle]; }
   /// A from the vehicles' H and P and from the beam (null: none).
-  void couple(const ElementCompliance* compliance, int per_node);
+  void couple(const structure::ElementCompliance* compliance, int per_node);
 
   /// Newton from the kinematics held in the contacts, which take those found and their forces. loaded: the geometry
   /// has the beam under the forces held, else under none. Returns what is left over a vehicle's weight: the law's
@@ -65,7 +65,7 @@ class CondensedContacts {
     double value;
   };
   template <int m>
-  void respond(const ElementCompliance& compliance);
+  void respond(const structure::ElementCompliance& compliance);
   void find_band(bool whole);
   void fill();
   double& A(int i, int j) { return A_(band_ + i - j, j); }
@@ -85,7 +85,7 @@ class CondensedContacts {
   int band_ = 0;
   Eigen::MatrixXd A_;                           // entry (i, j) at (band + i - j, j)
   Eigen::Matrix<double, Eigen::Dynamic, 2> D_;  // tangent in lu_: by the row before (of a tangential one), by the row
-  BandLu lu_;
+  solve::BandLu lu_;
   bool factored_ = false;
   Eigen::VectorXd held_, delta_, change_, deviation_, right_;
   Eigen::VectorXd beam_;  // displacement of the beam along the rows

@@ -15,11 +15,11 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "traverse/coupling/band_lu.hpp"
-#include "traverse/coupling/compliance.hpp"
 #include "traverse/coupling/condensed_contacts.hpp"
-#include "traverse/coupling/fleet.hpp"
-#include "traverse/coupling/vehicle_share.hpp"
+#include "traverse/solve/band_lu.hpp"
+#include "traverse/structure/compliance.hpp"
+#include "traverse/train/fleet.hpp"
+#include "traverse/train/vehicle_share.hpp"
 
 namespace traverse::coupling {
 
@@ -32,18 +32,18 @@ struct StageData {
   double shift2 = 0.0;  // dp''/dp, 1/s2: shift*shift for Runge-Kutta types
   const double* p_still = nullptr;
   const double* pd_still = nullptr;
-  const std::vector<double>* v0 = nullptr;        // free response at the elements in touch, 2*per_node each
-  const std::vector<double>* w0 = nullptr;        // its rate
-  const ElementCompliance* compliance = nullptr;  // null without a beam
+  const std::vector<double>* v0 = nullptr;                   // free response at the elements in touch, 2*per_node each
+  const std::vector<double>* w0 = nullptr;                   // its rate
+  const structure::ElementCompliance* compliance = nullptr;  // null without a beam
   int per_node = 2;
-  VehicleShare* share = nullptr;  // null: this rank has all vehicles
+  train::VehicleShare* share = nullptr;  // null: this rank has all vehicles
 };
 
 class ContactNewton {
  public:
   /// Collective where vehicles are shared. x (freedom values): in a guess, out the solution, where the vehicles are
   /// moved; of this rank's. False when it does not converge.
-  bool solve(Fleet& fleet, const StageData& stage, double* x);
+  bool solve(train::Fleet& fleet, const StageData& stage, double* x);
   /// Whether all wheels are still on their patches then.
   bool in_place() const { return in_place_; }
   /// Nodal loads on the elements in touch that belong to the solution, 2*per_node each.
@@ -65,7 +65,7 @@ class ContactNewton {
    private:
     enum class Form { whole, band, factors } form_ = Form::whole;
     Eigen::MatrixXd whole_;
-    BandLu band_;
+    solve::BandLu band_;
     Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
   };
   struct VehicleWork {
@@ -88,27 +88,27 @@ class ContactNewton {
     Eigen::Matrix<double, Eigen::Dynamic, 2> D;  // that tangent: by the row before (of a tangential one), by the row
     std::vector<multibody::ColumnRange> everything;
   };
-  bool iterate(Fleet& fleet, const StageData& s, double* x);
+  bool iterate(train::Fleet& fleet, const StageData& s, double* x);
   /// The contacts' forces that the beam is taken under: where the wheels' places let them be expected, or where the
   /// geometry has found them.
   enum class Loads { none, expected, found };
-  bool evaluate(Fleet& fleet, const StageData& s, const double* x, Loads loads);
-  unsigned condense_own(Fleet& fleet, const StageData& s, int iteration);
-  unsigned share_contacts(const StageData& s, Fleet& fleet, unsigned signs);
+  bool evaluate(train::Fleet& fleet, const StageData& s, const double* x, Loads loads);
+  unsigned condense_own(train::Fleet& fleet, const StageData& s, int iteration);
+  unsigned share_contacts(const StageData& s, train::Fleet& fleet, unsigned signs);
   void share_matrices(const StageData& s);
-  void beam_field(const StageData& s, const Fleet& fleet, Loads loads);
-  void follow_loads(const StageData& s, Fleet& fleet);
-  static bool serves(const MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved);
+  void beam_field(const StageData& s, const train::Fleet& fleet, Loads loads);
+  void follow_loads(const StageData& s, train::Fleet& fleet);
+  static bool serves(const train::MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved);
   static void condense(VehicleWork& w, VehicleYield& yield);
   bool settled(bool statics, bool as_before, double before, double left);
-  static int carrying(const Fleet& fleet);
+  static int carrying(const train::Fleet& fleet);
   void rest(int vehicle);
-  void find_residual(MovingVehicle& vehicle, VehicleWork& w) const;
+  void find_residual(train::MovingVehicle& vehicle, VehicleWork& w) const;
   void contact_directions(int vehicle, const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
                           RowMatrix& G) const;
-  void renew(MovingVehicle& vehicle, int k, const StageData& s, bool with_curvature);
+  void renew(train::MovingVehicle& vehicle, int k, const StageData& s, bool with_curvature);
   void add_contacts(VehicleWork& w, int k, const RowMatrix& left);
-  double update(Fleet& fleet, double* x);
+  double update(train::Fleet& fleet, double* x);
 
   std::vector<VehicleWork> work_;
   CondensedContacts contacts_;

@@ -32,20 +32,20 @@
 
 #include "traverse/beam/recovery.hpp"
 #include "traverse/coupling/contact_newton.hpp"
-#include "traverse/coupling/fleet.hpp"
-#include "traverse/coupling/motion.hpp"
-#include "traverse/coupling/separations.hpp"
-#include "traverse/coupling/structure.hpp"
-#include "traverse/coupling/vehicle_share.hpp"
-#include "traverse/coupling/wheel_paths.hpp"
+#include "traverse/structure/one_step_methods.hpp"
+#include "traverse/structure/structure.hpp"
+#include "traverse/train/fleet.hpp"
+#include "traverse/train/separations.hpp"
+#include "traverse/train/vehicle_share.hpp"
+#include "traverse/train/wheel_paths.hpp"
 
 namespace traverse::coupling {
 
 /// What a scene puts together.
 struct SystemInput {
-  std::vector<Vehicle> types;  // Train::vehicles points into it
-  Train train;
-  MovingLoad load;
+  std::vector<train::Vehicle> types;  // Train::vehicles points into it
+  train::Train train;
+  train::MovingLoad load;
   track::Profile profile;
   double gravity = 9.81;
   bool self_weight = false;  // gravity acts on the beam too
@@ -64,7 +64,7 @@ struct Energy {
 
 /// An accepted instant; complete on every rank except the nodal values.
 struct Observation {
-  NodalMotion beam;
+  structure::NodalMotion beam;
   std::vector<beam::ElementLoad> loads;  // of wheels and forces, on the line that they run on
   /// All concentrated loads on the bridge: these where they run on it, and the foundation that is not linear. Inside an
   /// element a bed counts by its points of integration.
@@ -74,22 +74,22 @@ struct Observation {
 
 /// The structure by its elements, carrying what the scene says; null without a beam. `shared`: the beam's operator
 /// where there is one already, with its factorisations.
-std::unique_ptr<Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
-                                       std::shared_ptr<BeamOperator> shared = nullptr);
+std::unique_ptr<structure::Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
+                                                  std::shared_ptr<structure::BeamOperator> shared = nullptr);
 
 class System {
  public:
   /// structure may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel that
   /// would touch the profile at more points than are modelled.
-  System(MPI_Comm comm, std::unique_ptr<Structure> structure, SystemInput input);
+  System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, SystemInput input);
   /// The same with a structure by_elements.
   System(MPI_Comm comm, const beam::Beam* beam, const SystemInput& input)
       : System(comm, by_elements(beam, input), input) {}
 
   MPI_Comm comm() const { return comm_; }
-  const Structure* structure() const { return structure_.get(); }  // null: none
+  const structure::Structure* structure() const { return structure_.get(); }  // null: none
   const beam::Beam* beam() const { return structure_ ? &structure_->beam() : nullptr; }
-  const Fleet& fleet() const { return fleet_; }
+  const train::Fleet& fleet() const { return fleet_; }
   int local_size() const;                        // entries of y on this rank
   int structure_unknowns() const { return n_; }  // on this rank: v at y, w behind it
   int freedom() const { return fleet_.freedom(); }
@@ -112,7 +112,7 @@ class System {
     if (structure_) structure_->leave_out_rest(tolerance, probes);
   }
   /// Collective. The method of the steps to come, for steps of 1 s.
-  void begin_motion(const Method& method);
+  void begin_motion(const structure::Method& method);
   /// Whether the last step can be taken back.
   void keep_steps(bool keep) { keep_steps_ = keep; }
   /// Collective. Before the first step from a state, and where it was changed from outside.
@@ -151,8 +151,8 @@ class System {
   void arrive(double t, const double* y);
   /// When they are there: the first contact lost or gained in the step, but for gains that were to come within the
   /// tolerance (s).
-  std::optional<Change> contact_change(double t, double tolerance) const;
-  const Separations& separations() const { return separations_; }
+  std::optional<train::Change> contact_change(double t, double tolerance) const;
+  const train::Separations& separations() const { return separations_; }
   /// Collective. Notes y as accepted at t and chooses new independent coordinates where the old ones have worn out.
   /// True when y was rewritten for that.
   bool accept(double t, double* y);
@@ -192,9 +192,9 @@ class System {
   /// Collective. Largest magnitude of the static deflection at a station under the weights of the whole train and all
   /// forces, the beam's own weight included where it acts: where they keep their distances, placed wherever it is
   /// worst; where they do not, as they were along `paths` until `end`, s. 0 where the foundation is not linear.
-  double static_peak(double station, const WheelPaths& paths, double end);
+  double static_peak(double station, const train::WheelPaths& paths, double end);
   /// Whether they keep them.
-  bool pass_together(const WheelPaths& paths) const;
+  bool pass_together(const train::WheelPaths& paths) const;
 
   /// Estimated relative error of static solutions so far, from rounding.
   double static_error() const { return structure_ ? structure_->statics().static_error() : 0.0; }
@@ -207,12 +207,12 @@ class System {
   };
   /// A second-order integration under way: of the vehicles.
   struct Motion {
-    Method unit, method;  // for steps of 1, for steps of `length`
+    structure::Method unit, method;  // for steps of 1, for steps of `length`
     double length = 0.0;
-    std::array<std::vector<double>, most_accelerations> pdd;  // p'' at the stages
-    std::vector<double> p, pd;                                // at the start of the step
-    std::array<Powers, most_accelerations> powers;            // at the stages
-    double dissipated = 0.0, worked = 0.0;                    // J, this rank's share
+    std::array<std::vector<double>, structure::most_accelerations> pdd;  // p'' at the stages
+    std::vector<double> p, pd;                                           // at the start of the step
+    std::array<Powers, structure::most_accelerations> powers;            // at the stages
+    double dissipated = 0.0, worked = 0.0;                               // J, this rank's share
     struct {
       double dissipated = 0.0, worked = 0.0;
       std::vector<double> p;  // y behind the structure's
@@ -237,7 +237,7 @@ class System {
   void go_on_from(std::vector<double> p);
   bool note_lost(const std::vector<Eigen::VectorXd>& start);
   [[noreturn]] void refuse_start(Solution found) const;
-  void add_flats(const WheelContact& c, double end, std::vector<double>& events) const;
+  void add_flats(const train::WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
   void note_weights();
   /// A wheel's centre passes a corner of the surface.
@@ -251,7 +251,7 @@ class System {
   struct InfluenceLine;
   InfluenceLine influence_line(double station);
   double peak_of_train(const InfluenceLine& line, double constant) const;
-  double peak_on_the_way(const InfluenceLine& line, const WheelPaths& paths, double end) const;
+  double peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const;
   double static_energy(double station);
   double note_contacts(double t);
   void share_coordinates(const double* y);
@@ -260,11 +260,11 @@ class System {
   Solution solve_coupled(const StageTime& at, Part part);
   bool stage_of_fleet(const StageTime& at);
   bool stage_of_motion(double t, std::size_t stage, const double* v, const double* w);
-  const std::vector<Reach>& loaded(double t, double h);
+  const std::vector<structure::Reach>& loaded(double t, double h);
   void finish_step(double* y);
   double structure_error(const double* y);
   void load_structure(double t);
-  ElementLoads contact_loads();
+  structure::ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
   void share_step();
   std::string trouble_of_own() const;
@@ -276,13 +276,13 @@ class System {
 
   MPI_Comm comm_;
   int rank_ = 0, ranks_ = 1;
-  std::unique_ptr<Structure> structure_;  // null: none
-  const beam::Line* line_;                // that wheels and forces run on; null without a structure
-  int n_;                                 // the structure's unknowns on this rank
+  std::unique_ptr<structure::Structure> structure_;  // null: none
+  const beam::Line* line_;                           // that wheels and forces run on; null without a structure
+  int n_;                                            // the structure's unknowns on this rank
   SystemInput input_;
-  Fleet fleet_;
-  VehicleShare share_;
-  Separations separations_;
+  train::Fleet fleet_;
+  train::VehicleShare share_;
+  train::Separations separations_;
   struct Impact {
     double end = 0.0;                                       // s; past: none
     double step = std::numeric_limits<double>::infinity();  // s, the longest while it goes on
@@ -305,7 +305,7 @@ class System {
   unsigned signs_ = 0;         // VehicleShare's of that state or, after a step, of its end
   std::vector<double> v_, w_;  // of elements, 2*per_node each
   std::vector<double> element_loads_;
-  std::vector<Reach> reaches_;
+  std::vector<structure::Reach> reaches_;
   std::vector<int> turned_elements_;  // on either side of a corner
   std::optional<Motion> motion_;
   bool keep_steps_ = false;

@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "traverse/coupling/modal_bridge.hpp"
-#include "traverse/coupling/vehicle.hpp"
+#include "traverse/structure/modal_bridge.hpp"
+#include "traverse/train/vehicle.hpp"
 
 namespace traverse::integrate {
 
@@ -12,7 +12,7 @@ namespace traverse::integrate {
 /// passes a break. The last interval has no end.
 struct ForceHistory {
   /// InputError where it would not fit into memory.
-  ForceHistory(const coupling::PiecewiseCubic& influence, const coupling::MovingLoad& load);
+  ForceHistory(const structure::PiecewiseCubic& influence, const train::MovingLoad& load);
 
   std::vector<double> start;  // of each interval, m travelled since t = 0; the first is 0
   std::size_t channels = 0;

@@ -7,8 +7,8 @@
 #include <array>
 #include <vector>
 
-#include "traverse/coupling/modal_bridge.hpp"
 #include "traverse/integrate/force_history.hpp"
+#include "traverse/structure/modal_bridge.hpp"
 
 namespace traverse::integrate {
 
@@ -16,7 +16,7 @@ class ModalMotion {
  public:
   /// Starts at t = 0: in static equilibrium under the forces that stand on the bridge then, or undeflected. All three
   /// must outlive it.
-  ModalMotion(const coupling::ModalBridge& bridge, const ForceHistory& history, double speed, bool equilibrium);
+  ModalMotion(const structure::ModalBridge& bridge, const ForceHistory& history, double speed, bool equilibrium);
 
   /// Steps of this length cost less than others.
   void expect(double dt);
@@ -53,7 +53,7 @@ class ModalMotion {
   void move_counting(double dt);
   void see();
 
-  const coupling::ModalBridge& bridge_;
+  const structure::ModalBridge& bridge_;
   const ForceHistory& history_;
   double speed_;
   std::size_t interval_ = 0;

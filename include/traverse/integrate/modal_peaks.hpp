@@ -23,10 +23,10 @@ struct ProbePeaks {
 /// From t = 0 to end_time, at every probe of the bridge. Looked for at instants a twentieth of the shortest period
 /// apart and wherever a force passes a node or a probe, and between them by parabolas. `going` is asked now and then;
 /// where it says no, there are no peaks.
-std::vector<ProbePeaks> modal_peaks(const coupling::ModalBridge& bridge, const ForceHistory& history, double speed,
+std::vector<ProbePeaks> modal_peaks(const structure::ModalBridge& bridge, const ForceHistory& history, double speed,
                                     bool equilibrium, double end_time, const std::function<bool()>& going);
 
 /// m: the largest deflection of each probe while the forces pass at rest.
-std::vector<double> static_peaks(const coupling::ModalBridge& bridge, const ForceHistory& history);
+std::vector<double> static_peaks(const structure::ModalBridge& bridge, const ForceHistory& history);
 
 }  // namespace traverse::integrate

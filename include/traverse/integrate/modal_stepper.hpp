@@ -12,7 +12,7 @@ namespace traverse::integrate {
 class ModalStepper {
  public:
   /// Collective. `system` holds the same beam under the same load, without vehicles.
-  ModalStepper(coupling::System& system, const coupling::ModalBridge& bridge, coupling::BeamOperator& statics,
+  ModalStepper(coupling::System& system, const structure::ModalBridge& bridge, structure::BeamOperator& statics,
                const coupling::SystemInput& input, bool equilibrium, double end_time, double interval);
 
   /// As Stepper::run; a step is what lies between two samples. The nodal displacements are those of the modes and, with
@@ -29,9 +29,9 @@ class ModalStepper {
   void load_now(double* nodal) const;
 
   coupling::System& system_;
-  const coupling::ModalBridge& bridge_;
-  coupling::BeamOperator& statics_;
-  coupling::MovingLoad load_;
+  const structure::ModalBridge& bridge_;
+  structure::BeamOperator& statics_;
+  train::MovingLoad load_;
   ForceHistory history_;
   ModalMotion motion_;
   base::Handle<TS> ts_;  // of type modal, which moves it

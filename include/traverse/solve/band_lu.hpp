@@ -1,0 +1,31 @@
+// LU with partial pivoting of a banded matrix: the Newton matrix of a long train whose vehicles are joined, where each
+// meets its neighbours only. Storage and elimination as in LAPACK's band routines.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace traverse::solve {
+
+/// The greatest distance of a non-zero entry from the diagonal.
+int half_bandwidth(const Eigen::MatrixXd& A);
+
+class BandLu {
+ public:
+  void compute(const Eigen::MatrixXd& A, int half_bandwidth);
+  /// The same in three steps: zeros, the entries (i, j) with |i - j| <= half_bandwidth, the factors.
+  void set_zero(int size, int half_bandwidth);
+  double& entry(int i, int j) { return lu_(2 * band_ + i - j, j); }
+  void factor();
+  void solve_in_place(Eigen::MatrixXd& X) const;
+  void solve_in_place(double* x) const;
+
+ private:
+  int size_ = 0, band_ = 0;
+  int above_ = 0;  // non-zero entries of the upper factor above the diagonal, at most; more where rows were swapped
+  Eigen::MatrixXd lu_;  // entry (i, j) at (2 band + i - j, j)
+  std::vector<double> inverse_pivot_;
+  std::vector<int> pivot_row_;
+};
+
+}  // namespace traverse::solve

@@ -1,0 +1,201 @@
+// Steps of the structure by its elements, in second-order form (motion.hpp).
+#include <algorithm>
+
+#include "traverse/structure/element_structure.hpp"
+
+namespace traverse::structure {
+namespace {
+
+constexpr double measured_steps = 2.0;  // of one stage, from one look at what is lost in damping to the next
+
+}  // namespace
+
+void ElementStructure::leave_out_rest(double tolerance, const std::vector<double>& probes) {
+  rest_tolerance_ = tolerance;
+  watched_.clear();
+  for (double x : probes)
+    watched_.push_back(beam_.bridge().first_column + beam_.mesh().element(beam_.mesh().locate(x).element).left);
+}
+
+void ElementStructure::begin_motion(const Method& method) {
+  method_ = method;
+  const bool heavy = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
+  motion_.emplace(beam_, *statics_, heavy ? dead_load_.data() : nullptr);
+  motion_->begin(method);
+  if (rest_tolerance_ == 0.0 || !motion_->fused()) return;
+  int weighs = heavy ? 1 : 0;
+  MPI_Allreduce(MPI_IN_PLACE, &weighs, 1, MPI_INT, MPI_MAX, beam_.comm());
+  if (weighs != 0) {
+    rest_ = dead_load_;
+    release_held(rest_.data());
+    statics_->solve_static(rest_.data());
+  }
+  window_.emplace(beam_, *statics_, rest_tolerance_, watched_, rest_.empty() ? nullptr : rest_.data());
+}
+
+void ElementStructure::set_method(const Method& method, double h) {
+  method_ = method;
+  length_ = h;
+  motion_->begin(method);
+}
+
+// The columns of the elements under wheels and forces: [first, past); equal: none.
+std::pair<int, int> ElementStructure::loaded_columns(const std::vector<Reach>& loaded) const {
+  const beam::Mesh& mesh = line_.mesh;
+  int low = beam_.columns(), high = 0;
+  for (const Reach& reach : loaded) {
+    if (reach.to < mesh.start() || reach.from > mesh.end()) continue;
+    const int first = mesh.element(mesh.locate(reach.from, true).element).left;
+    const int last = mesh.element(mesh.locate(reach.to).element).left;
+    low = std::min(low, line_.first_column + std::max(0, first - 1));
+    high = std::max(high, line_.first_column + std::min(mesh.nodes(), last + 3));
+  }
+  if (low >= high) return {0, 0};
+  if (statics_->parts() != nullptr) {
+    const std::vector<int>& parts = beam_.parts();
+    const auto part_of = [&](int column) { return std::upper_bound(parts.begin(), parts.end(), column) - 1; };
+    low = *part_of(low);
+    high = part_of(high - 1)[1];
+  }
+  return {low, high};
+}
+
+// What the stages of the coming step are solved for, and what moves freely during it.
+void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
+  const auto [low, high] = loaded_columns(loaded);
+  const auto local = [&](int column) { return std::clamp(column - beam_.first_column(), 0, beam_.local_columns()); };
+  const bool parts = statics_->parts() != nullptr;
+  int first = 0, past = beam_.columns();
+  if (window_) {
+    const StageRule& rule = method_.stages.front();
+    window_->open(low, high, compliance_.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
+    first = window_->first();
+    past = window_->past();
+  }
+  free_ = {};
+  if (parts && measures_errors_) {  // a step is judged by all that moves
+    motion_->set_range(local(first), local(past));
+  } else if (parts) {
+    free_ = {{{local(first), local(low < high ? low : past)}, {local(low < high ? high : past), local(past)}}};
+    motion_->set_range(local(low), local(high));
+  } else if (window_) {
+    motion_->set_range(local(first), local(past));
+  }
+}
+
+void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) {
+  if (fused()) {
+    set_ranges(loaded);
+    const double interval = method_.stages.size() == 1 ? measured_steps * length_ : 0.0;
+    measuring_ = statics_->damped() && (to_measure_ || unmeasured_ > 0.999 * interval);
+    motion_->measure(measuring_);
+  }
+  before_.dissipated = dissipated_;
+  before_.worked = worked_;
+  if (keep) {
+    before_.first = fused() ? 2 * motion_->first() : 0;
+    before_.past = fused() ? 2 * motion_->past() : n_;
+    before_.v.assign(v + before_.first, v + before_.past);
+    before_.w.assign(w + before_.first, w + before_.past);
+  }
+  powers_[0].forces = 0.0;
+  for (const NodalLoad& force : nodal_forces_) powers_[0].forces += force.force * w[force.unknown];
+}
+
+void ElementStructure::end_stage(std::size_t i, const double* v, const double* w) {
+  Powers& powers = powers_[i + 1];
+  powers = {};
+  if (!fused()) {
+    double* a = motion_->kept(i);
+    for (int k = 0; k < n_; ++k) a[k] = stage_.shift2 * z_[k];
+    for (int k = 0; k < n_; ++k) w_still_[k] += method_.stages[i].rate * a[k];
+    powers.beam = dissipation(w_still_.data());
+  }
+  for (const NodalLoad& force : nodal_forces_)
+    powers.forces += force.force * motion_->state(i, v, w, force.unknown).second;
+}
+
+void ElementStructure::finish_step(double* v, double* w) {
+  const StepRule& rule = method_.step;
+  for (int j = 0; j < rule.known; ++j) {
+    dissipated_ += rule.power[j] * powers_[j].beam;
+    worked_ += rule.power[j] * powers_[j].forces;
+  }
+  powers_[0] = powers_[rule.known - 1];
+  stepped_ = incomplete_ = true;
+  motion_->finish(v, w);
+}
+
+void ElementStructure::complete_step(double* v, double* w) {
+  if (!incomplete_) return;
+  incomplete_ = false;
+  if (!fused()) return;
+  BeamMotion::Dissipation dissipation = motion_->dissipation();
+  for (const auto& [first, past] : free_) motion_->step_free(first, past, v, w, dissipation);
+  if (measuring_) {
+    add_dissipation(dissipation);
+    measuring_ = to_measure_ = false;
+  }
+  unmeasured_ += length_;
+  if (window_) window_->close(*motion_, v, w);
+}
+
+void ElementStructure::take_back_step(double* v, double* w) {
+  dissipated_ = before_.dissipated;
+  worked_ = before_.worked;
+  stepped_ = incomplete_ = false;
+  std::copy(before_.v.begin(), before_.v.end(), v + before_.first);
+  std::copy(before_.w.begin(), before_.w.end(), w + before_.first);
+}
+
+void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) {
+  if (fused() && stepped_) add_dissipation(measure_dissipation(w));
+  std::copy_n(a, n_, motion_->start_acceleration());
+  powers_[0] = {};
+  if (!fused()) powers_[0].beam = dissipation(w);
+  if (fused() && unmeasured_ > 0.0) add_dissipation(measure_dissipation(w));
+  to_measure_ = true;
+  stepped_ = false;
+  if (!window_) return;
+  const auto [low, high] = loaded_columns(loaded);
+  window_->begin(*motion_, v, w, low, high);
+}
+
+// What is lost until a state where that is known: the trapezoidal rule with its correction by the rates, of order 4.
+double ElementStructure::dissipated_until(const BeamMotion::Dissipation& now) const {
+  return dissipated_ + 0.5 * unmeasured_ * (measured_.power + now.power) +
+         unmeasured_ * unmeasured_ / 12.0 * (measured_.rate - now.rate);
+}
+
+void ElementStructure::add_dissipation(const BeamMotion::Dissipation& now) {
+  dissipated_ = dissipated_until(now);
+  measured_ = now;
+  unmeasured_ = 0.0;
+}
+
+BeamMotion::Dissipation ElementStructure::measure_dissipation(const double* w) {
+  BeamMotion::Dissipation d;
+  if (!statics_->damped()) return d;
+  statics_->multiply(1.0, nullptr, w, nullptr, work_.data());
+  const double* a = motion_->start_acceleration();
+  for (int i = 0; i < n_; ++i) {
+    d.power += w[i] * work_[i];
+    d.rate += 2.0 * a[i] * work_[i];
+  }
+  return d;
+}
+
+double ElementStructure::error_energy(const double* v, const double* w) {
+  if (fused()) return motion_->error_energy();
+  double* const v_off = v_still_.data();
+  double* const w_off = w_still_.data();
+  motion_->error(v, w, v_off, w_off);
+  double energy = 0.0;
+  statics_->multiply(1.0, nullptr, nullptr, v_off, work_.data());
+  for (int i = 0; i < n_; ++i) energy += 0.5 * v_off[i] * work_[i];
+  statics_->multiply(1.0, w_off, nullptr, nullptr, work_.data());
+  for (int i = 0; i < n_; ++i) energy += 0.5 * w_off[i] * work_[i];
+  return energy;
+}
+
+}  // namespace traverse::structure

@@ -1,0 +1,227 @@
+#include "traverse/structure/element_structure.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::structure {
+
+ElementStructure::ElementStructure(const beam::Beam& beam, double gravity, std::shared_ptr<BeamOperator> op)
+    : Structure(beam, std::move(op), gravity), compliance_(beam, *statics_) {
+  for (std::vector<double>* x : {&z_, &v_still_, &w_still_, &work_}) x->resize(static_cast<std::size_t>(n_));
+}
+
+void ElementStructure::expect_weights(double sum, double greatest) {
+  if (!beam_.model().foundation.nonlinear()) return;
+  nonlinear_.emplace(beam_, *statics_, sum, greatest);
+  stage_load_.resize(static_cast<std::size_t>(n_));
+}
+
+// --- loads ---------------------------------------------------------------------------------------------------------
+
+void ElementStructure::load(const std::vector<beam::ElementLoad>& forces) {
+  nodal_forces_.clear();
+  for (const beam::ElementLoad& force : forces) {
+    const beam::Hermite psi = beam::hermite(force.xi, line_.mesh.element(force.element).length);
+    const auto unknowns = line_.transverse(force.element);
+    for (int i = 0; i < 4; ++i) {
+      const int local = beam_.local(unknowns[i]);
+      if (local >= 0) nodal_forces_.push_back({local, force.fy * psi.value[i]});
+    }
+  }
+  std::sort(nodal_forces_.begin(), nodal_forces_.end(),
+            [](const NodalLoad& a, const NodalLoad& b) { return a.unknown < b.unknown; });
+}
+
+// All but the contacts: its own weight and the moving forces.
+void ElementStructure::external_load(double* nodal) const {
+  std::copy(dead_load_.begin(), dead_load_.end(), nodal);
+  for (const NodalLoad& force : nodal_forces_) nodal[force.unknown] += force.force;
+}
+
+// --- at a state ----------------------------------------------------------------------------------------------------
+
+void ElementStructure::accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts,
+                                     double* a) {
+  if (own) {
+    statics_->multiply(-1.0, nullptr, w, v, a);
+    external_load(work_.data());
+    for (int i = 0; i < n_; ++i) a[i] += work_[i];
+    if (nonlinear_) {
+      nonlinear_->evaluate(v, w);
+      nonlinear_->add_forces(a);
+    }
+  } else {
+    std::fill_n(a, n_, 0.0);
+  }
+  if (contacts != nullptr) add_contacts(*contacts, a);
+  release_held(a);
+  statics_->solve_mass(a);
+}
+
+std::array<double, 2> ElementStructure::powers(const double* w) {
+  double work = 0.0;
+  for (const NodalLoad& force : nodal_forces_) work += force.force * w[force.unknown];
+  return {dissipation(w), work};
+}
+
+// Power lost in the beam's damping and its foundation's, this rank's share.
+double ElementStructure::dissipation(const double* w) {
+  double sum = 0.0;
+  if (statics_->damped()) {
+    statics_->multiply(1.0, nullptr, w, nullptr, work_.data());
+    for (int i = 0; i < n_; ++i) sum += w[i] * work_[i];
+  }
+  return nonlinear_ ? sum + nonlinear_->dissipation() : sum;
+}
+
+void ElementStructure::add_values(const std::vector<int>& elements, const double* v, const double* w,
+                                  double* v_elements, double* w_elements) const {
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node());
+  const auto value_at = [&](int i) -> std::pair<double, double> {
+    if (v != nullptr) return {v[i], w[i]};
+    if (stage_.kind == Kind::fused) return motion_->state(stage_.number, stage_.v, stage_.w, i);
+    return {v_still_[i] + z_[i], w_still_[i] + stage_.shift * z_[i]};
+  };
+  for (std::size_t a = 0; a < elements.size(); ++a) {
+    const auto unknowns = line_.unknowns(elements[a]);
+    for (std::size_t i = 0; i < m; ++i) {
+      const int local = beam_.local(unknowns[i]);
+      if (local >= 0) std::tie(v_elements[a * m + i], w_elements[a * m + i]) = value_at(local);
+    }
+  }
+}
+
+// --- stages --------------------------------------------------------------------------------------------------------
+
+void ElementStructure::begin_statics(bool loaded) {
+  stage_ = {};
+  stage_.loaded = loaded;
+  for (std::vector<double>* still : {&v_still_, &w_still_}) std::fill(still->begin(), still->end(), 0.0);
+  if (nonlinear_) nonlinear_->begin(0.0, nullptr, nullptr, nullptr);
+  external_load(z_.data());
+  release_held(z_.data());
+  if (nonlinear_) stage_load_ = z_;
+}
+
+void ElementStructure::begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) {
+  stage_ = {};
+  stage_.kind = Kind::state;
+  stage_.shift = shift;
+  stage_.shift2 = shift * shift;
+  for (int i = 0; i < n_; ++i) {
+    w_still_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
+    v_still_[i] = shift > 0.0 ? (w_still_[i] - c_v[i]) / shift : 0.0;
+  }
+  if (nonlinear_) nonlinear_->begin(shift, v_still_.data(), w_still_.data(), w_guess);
+  load_of_stills();
+}
+
+void ElementStructure::begin_stage(std::size_t i, const double* v, const double* w) {
+  const StageRule& rule = method_.stages[i];
+  stage_ = {};
+  stage_.kind = fused() ? Kind::fused : Kind::step;
+  stage_.shift = rule.rate / rule.displacement;
+  stage_.shift2 = 1.0 / rule.displacement;
+  stage_.number = i;
+  stage_.v = v;
+  stage_.w = w;
+  if (fused()) return;
+  motion_->still(i, v, w, v_still_.data(), w_still_.data());
+  if (nonlinear_) nonlinear_->begin(stage_.shift, v_still_.data(), w_still_.data(), w);
+  load_of_stills();
+}
+
+// The load at zero acceleration, into z_.
+void ElementStructure::load_of_stills() {
+  stage_.loaded = true;
+  statics_->multiply(-1.0, nullptr, w_still_.data(), v_still_.data(), z_.data());
+  external_load(work_.data());
+  for (int i = 0; i < n_; ++i) z_[i] += work_[i];
+  release_held(z_.data());
+  if (nonlinear_) stage_load_ = z_;
+}
+
+void ElementStructure::solve_free() {
+  if (stage_.kind == Kind::fused) return motion_->solve(stage_.number, stage_.v, stage_.w, nodal_forces_);
+  if (nonlinear_) {
+    stage_.added = &nonlinear_->linearise();
+    z_ = stage_load_;
+    nonlinear_->add_linearised(z_.data());
+    release_held(z_.data());
+  }
+  if (!stage_.loaded && !nonlinear_) return;
+  if (stage_.shift == 0.0) return statics_->solve_static(z_.data(), stage_.added);
+  statics_->factored(stage_.shift, stage_.shift2, stage_.added).solve(z_.data());
+  ++statics_->solves;
+}
+
+const ElementCompliance& ElementStructure::yield(const std::vector<int>& elements) {
+  if (!elements.empty()) compliance_.prepare(stage_.shift, stage_.shift2, stage_.added, elements);
+  return compliance_;
+}
+
+void ElementStructure::take(const std::vector<double>& loads) {
+  if (stage_.kind != Kind::fused) return compliance_.add_response(loads, z_.data());
+  element_work_ = loads;
+  for (double& load : element_work_) load *= stage_.shift2;
+  compliance_.add_response(element_work_, motion_->kept(stage_.number));
+}
+
+Structure::Verdict ElementStructure::judge() {
+  if (!nonlinear_ || stage_.kind == Kind::fused) return Verdict::settled;
+  switch (nonlinear_->judge(z_.data())) {
+    case NonlinearFoundation::Verdict::settled:
+      return Verdict::settled;
+    case NonlinearFoundation::Verdict::again:
+      return Verdict::again;
+    default:
+      return Verdict::failed;
+  }
+}
+
+void ElementStructure::end_stage(double* v, double* w) {
+  for (int i = 0; i < n_; ++i) {
+    v[i] = v_still_[i] + z_[i];
+    w[i] = w_still_[i] + stage_.shift * z_[i];
+  }
+}
+
+std::string ElementStructure::trouble() const { return nonlinear_ ? nonlinear_->worst_point() : std::string(); }
+
+// --- what is seen --------------------------------------------------------------------------------------------------
+
+StructureEnergy ElementStructure::energy(const double* v, const double* w) {
+  StructureEnergy e;
+  statics_->multiply(1.0, w, nullptr, nullptr, work_.data());
+  for (int i = 0; i < n_; ++i) e.kinetic += 0.5 * w[i] * work_[i];
+  statics_->multiply(1.0, nullptr, nullptr, v, work_.data());
+  for (int i = 0; i < n_; ++i) {
+    e.strain += 0.5 * v[i] * work_[i];
+    e.potential -= v[i] * dead_load_[i];
+  }
+  if (nonlinear_) e.strain += nonlinear_->energy();
+  if (!motion_) return e;
+  e.dissipated = fused() ? dissipated_until(measure_dissipation(w)) : dissipated_;
+  if (window_) e.dissipated += window_->energy_left();
+  e.work = worked_;
+  return e;
+}
+
+void ElementStructure::observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
+                               NodalMotion& out) {
+  out.v = v;
+  out.w = w;
+  out.a.assign(a, a + n_);
+  out.P.resize(static_cast<std::size_t>(n_));
+  external_load(out.P.data());
+  add_contacts(contacts, out.P.data());
+  out.foundation_loads.clear();
+  if (!nonlinear_) return;
+  nonlinear_->evaluate(v, w);
+  nonlinear_->add_forces(out.P.data());
+  nonlinear_->report(out.foundation, out.foundation_loads);
+}
+
+}  // namespace traverse::structure

@@ -1,0 +1,231 @@
+#include "traverse/structure/modal_bridge.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::structure {
+namespace {
+
+using base::check;
+using Polynomial = std::array<double, 4>;  // by powers
+
+constexpr double diagonal = 1e-6;  // relative coupling of modes that is none
+
+/// The polynomial of x - d.
+Polynomial shifted(const Polynomial& c, double d) {
+  return {c[0] + d * (c[1] + d * (c[2] + d * c[3])), c[1] + d * (2.0 * c[2] + 3.0 * d * c[3]), c[2] + 3.0 * d * c[3],
+          c[3]};
+}
+
+/// From the values and slopes at both ends of an element of length h.
+Polynomial hermite_cubic(const std::array<double, 4>& end, double h) {
+  const double rise = (end[2] - end[0]) / h;
+  return {end[0], end[1], (3.0 * rise - 2.0 * end[1] - end[3]) / h, (end[1] + end[3] - 2.0 * rise) / (h * h)};
+}
+
+/// Through four points inside a piece of length h, at whose ends a response may jump.
+template <class Response>
+Polynomial cubic_through(double h, Response response) {
+  Eigen::Matrix4d powers;
+  Eigen::Vector4d values;
+  for (int i = 0; i < 4; ++i) {
+    const double xi = (2.0 * i + 1.0) / 8.0;
+    powers.row(i) << 1.0, xi, xi * xi, xi * xi * xi;
+    values[i] = response(xi * h);
+  }
+  const Eigen::Vector4d c = powers.partialPivLu().solve(values);
+  return {c[0], c[1] / h, c[2] / (h * h), c[3] / (h * h * h)};
+}
+
+base::Handle<Vec> vector(MPI_Comm comm, const double* local, int size) {
+  base::Handle<Vec> v;
+  check(VecCreateMPIWithArray(comm, 1, size, PETSC_DETERMINE, local, v.out()));
+  return v;
+}
+
+}  // namespace
+
+ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios)
+    : beam_(beam), statics_(statics), basis_(modes::bending_basis(beam, count)) {
+  set_damping(ratios);
+  set_influence(lines_of_modes(), {});
+}
+
+std::vector<ModalBridge::Line> ModalBridge::lines_of_modes() const {
+  std::vector<Line> lines;
+  for (const auto& shape : basis_.shape) {
+    lines.emplace_back().nodal = shape;
+    for (double& value : lines.back().nodal) value = -value;
+  }
+  return lines;
+}
+
+const double* ModalBridge::shape(std::size_t mode) const {
+  return basis_.shape[mode].data() + static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
+}
+
+/// kappa of A phi = kappa M phi.
+double ModalBridge::share_of_mass(Mat matrix, std::size_t mode, const char* what) const {
+  const base::Handle<Vec> phi = vector(beam_.comm(), shape(mode), beam_.local_unknowns());
+  base::Handle<Vec> force, inertia;
+  check(VecDuplicate(phi, force.out()));
+  check(VecDuplicate(phi, inertia.out()));
+  check(MatMult(matrix, phi, force));
+  check(MatMult(beam_.mass(), phi, inertia));
+  PetscScalar kappa = 0.0;
+  PetscReal before = 0.0, after = 0.0;
+  check(VecDot(phi, force, &kappa));
+  check(VecNorm(force, NORM_2, &before));
+  check(VecAXPY(force, -kappa, inertia));
+  check(VecNorm(force, NORM_2, &after));
+  if (after > diagonal * before)
+    throw InputError(std::string("model_modes: ") + what +
+                     ": the modes are coupled; allowed: dampers and springs spread like the beam's mass, "
+                     "model_damping_ratios instead of Rayleigh damping where there are springs, or the full model "
+                     "(model_modes: 0)");
+  return kappa;
+}
+
+void ModalBridge::set_damping(const std::vector<double>& ratios) {
+  const beam::Rayleigh ab = beam_.rayleigh();
+  for (std::size_t i = 0; i < modes(); ++i) {
+    const double omega = basis_.omega[i];
+    if (omega <= 0.0) throw InputError("model_modes: the beam floats; hold it with supports or a foundation");
+    double c = ab.a + ab.b * omega * omega;
+    if (beam_.springs() != nullptr && ab.b != 0.0)
+      c -= ab.b * share_of_mass(beam_.springs(), i, "Rayleigh's b damps the beam, but not the foundation's springs");
+    if (beam_.dampers() != nullptr)
+      c += share_of_mass(beam_.dampers(), i, "the foundation has dampers that Rayleigh damping does not cover");
+    own_drag_.push_back(ratios.empty() ? 0.0 : 2.0 * ratios[std::min(i, ratios.size() - 1)] * omega);
+    sigma_.push_back(0.5 * (c + own_drag_.back()));
+  }
+}
+
+std::vector<double> ModalBridge::static_solution(const std::vector<double>& load) {
+  const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
+  std::vector<double> all(load.size(), 0.0);
+  for (int i = 0; i < beam_.local_unknowns(); ++i)
+    all[static_cast<std::size_t>(begin + i)] = beam_.fixed()[i] != 0 ? 0.0 : load[static_cast<std::size_t>(begin + i)];
+  statics_.solve_static(all.data() + begin);
+  MPI_Allreduce(MPI_IN_PLACE, all.data(), static_cast<int>(all.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+  return all;
+}
+
+void ModalBridge::add_probes(const std::vector<double>& stations, double gravity) {
+  probes_ = {};
+  probes_.count = stations.size();
+  beam::Recovery recovery(beam_, stations, 0.0);
+  note_forms(recovery);
+  beam::Recovery heavy(beam_, stations, gravity);
+  note_weight(heavy, gravity);
+  std::vector<Line> lines = lines_of_modes();
+  for (const auto quantity : {&beam::Response::deflection, &beam::Response::moment})
+    for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
+  set_influence(lines, stations);
+}
+
+void ModalBridge::note_forms(beam::Recovery& recovery) {
+  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> seen;
+  for (std::size_t i = 0; i < modes(); ++i) {
+    recovery.evaluate(shape(i), zero.data(), zero.data(), {}, seen);
+    for (const beam::Response& r : seen) {
+      probes_.deflection.push_back(r.deflection);
+      probes_.moment.push_back(r.moment);
+    }
+    recovery.evaluate(zero.data(), zero.data(), shape(i), {}, seen);
+    const double squared = basis_.omega[i] * basis_.omega[i];  // the mode's own shape where a foundation bends it
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+      probes_.deflection[i * probes_.count + p] -= squared * seen[p].deflection;
+      probes_.moment_by_acceleration.push_back(seen[p].moment);
+    }
+    recovery.evaluate(zero.data(), shape(i), zero.data(), {}, seen);
+    for (const beam::Response& r : seen) {
+      const std::size_t at = probes_.moment_by_rate.size();
+      probes_.moment_by_rate.push_back(r.moment + own_drag_[i] * probes_.moment_by_acceleration[at]);
+    }
+  }
+}
+
+void ModalBridge::note_weight(beam::Recovery& recovery, double gravity) {
+  const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
+  std::vector<double> weight(basis_.shape.front().size(), 0.0);
+  beam_.add_self_weight(gravity, weight.data() + begin);
+  const std::vector<double> sagging = static_solution(weight), zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> seen;
+  recovery.evaluate(sagging.data() + begin, zero.data(), zero.data(), {}, seen);
+  for (const beam::Response& r : seen) {
+    probes_.weight_deflection.push_back(r.deflection);
+    probes_.weight_moment.push_back(r.moment);
+  }
+}
+
+/// The influence line of a response at a probe, less the modes' share. What the nodal values of the probe's element
+/// give is a load on the structure, whose deflections are that line (Maxwell and Betti).
+ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size_t p,
+                                             double beam::Response::*quantity) {
+  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> seen;
+  std::vector<double> load(basis_.shape.front().size(), 0.0);
+  for (const int unknown : beam_.bridge().transverse(beam_.mesh().locate(recovery.stations()[p]).element)) {
+    std::vector<double> unit = zero;
+    if (beam_.local(unknown) >= 0) unit[static_cast<std::size_t>(beam_.local(unknown))] = 1.0;
+    recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, seen);
+    load[static_cast<std::size_t>(unknown)] = seen[p].*quantity;
+  }
+  Line line{static_solution(load), p, quantity};
+  for (double& value : line.nodal) value = -value;
+  const std::vector<double>& form = quantity == &beam::Response::deflection ? probes_.deflection : probes_.moment;
+  for (std::size_t i = 0; i < modes(); ++i) {
+    const double share = form[i * probes_.count + p] / (basis_.omega[i] * basis_.omega[i]);
+    for (std::size_t k = 0; k < line.nodal.size(); ++k) line.nodal[k] += share * basis_.shape[i][k];
+  }
+  return line;
+}
+
+void ModalBridge::set_influence(const std::vector<Line>& lines, const std::vector<double>& stations) {
+  const beam::Mesh& mesh = beam_.mesh();
+  std::vector<beam::Recovery> recoveries;
+  for (const double x : stations) recoveries.emplace_back(beam_, std::vector<double>{x}, 0.0);
+  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
+  influence_ = {{mesh.start()}, lines.size(), {}};
+  for (int e = 0; e < mesh.elements(); ++e) {
+    const beam::Element& element = mesh.element(e);
+    std::vector<double> ends = {element.length};  // of the pieces, from the element's left end
+    for (const double x : stations)
+      if (x > element.x && x < element.x + element.length) ends.push_back(x - element.x);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    const auto unknowns = beam_.bridge().transverse(e);
+    double left = 0.0;
+    for (const double right : ends) {
+      const std::size_t piece = influence_.coefficients.size();
+      influence_.breaks.push_back(right == element.length ? mesh.x(element.left + 1) : element.x + right);
+      influence_.coefficients.resize(piece + 4 * lines.size());
+      for (std::size_t channel = 0; channel < lines.size(); ++channel) {
+        const Line& line = lines[channel];
+        std::array<double, 4> nodal{};
+        for (std::size_t k = 0; k < 4; ++k) nodal[k] = line.nodal[static_cast<std::size_t>(unknowns[k])];
+        Polynomial cubic = shifted(hermite_cubic(nodal, element.length), left);
+        if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
+          const Polynomial more = cubic_through(right - left, [&](double x) {
+            std::vector<beam::Response> seen;
+            recoveries[line.probe].evaluate(zero.data(), zero.data(), zero.data(),
+                                            {{e, (left + x) / element.length, 0.0, -1.0, 0.0}}, seen);
+            return seen.front().*line.direct;
+          });
+          for (std::size_t k = 0; k < 4; ++k) cubic[k] += more[k];
+        }
+        for (std::size_t k = 0; k < 4; ++k) influence_.coefficients[piece + k * lines.size() + channel] = cubic[k];
+      }
+      left = right;
+    }
+  }
+}
+
+}  // namespace traverse::structure

@@ -1,0 +1,371 @@
+#include "traverse/structure/modal_structure.hpp"
+
+#include <algorithm>
+
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::structure {
+
+ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics)
+    : Structure(bridge.beam(), std::move(statics), gravity), bridge_(bridge), modes_(bridge.modes()), yield_(*this) {
+  int rank = 0;
+  MPI_Comm_rank(beam_.comm(), &rank);
+  n_ = rank == 0 ? static_cast<int>(modes_) : 0;
+  const std::vector<std::vector<double>>& shape = bridge_.basis().shape;
+  by_unknown_.resize(modes_ * shape.front().size());
+  for (std::size_t i = 0; i < modes_; ++i)
+    for (std::size_t u = 0; u < shape[i].size(); ++u) by_unknown_[u * modes_ + i] = shape[i][u];
+
+  sag_.assign(shape.front().size(), 0.0);
+  weight_.assign(modes_, 0.0);
+  const auto first = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
+  if (gravity != 0.0) {
+    double* own = sag_.data() + first;
+    std::copy(dead_load_.begin(), dead_load_.end(), own);
+    release_held(own);
+    statics_->solve_static(own);
+    for (std::size_t k = 0; k < dead_load_.size(); ++k) {
+      sag_work_ += dead_load_[k] * own[k];
+      const double* phi = shapes(static_cast<int>(first) + static_cast<int>(k));
+      for (std::size_t i = 0; i < modes_; ++i) weight_[i] += phi[i] * dead_load_[k];
+    }
+    const auto add_up = [&](double* x, std::size_t count) {
+      MPI_Allreduce(MPI_IN_PLACE, x, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, beam_.comm());
+    };
+    add_up(sag_.data(), sag_.size());
+    add_up(weight_.data(), modes_);
+    add_up(&sag_work_, 1);
+  }
+  for (std::vector<double>* x : {&modal_force_, &stiffness_, &v_still_, &w_still_, &z_, &q_}) x->assign(modes_, 0.0);
+}
+
+// --- loads and states ----------------------------------------------------------------------------------------------
+
+void ModalStructure::load(const std::vector<beam::ElementLoad>& forces) {
+  forces_ = forces;
+  std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
+  for (const beam::ElementLoad& force : forces_) {
+    const beam::Hermite psi = beam::hermite(force.xi, line_.mesh.element(force.element).length);
+    const auto unknowns = line_.transverse(force.element);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double* phi = shapes(unknowns[k]);
+      for (std::size_t i = 0; i < modes_; ++i) modal_force_[i] += phi[i] * psi.value[k] * force.fy;
+    }
+  }
+}
+
+void ModalStructure::add_modal_forces(const ElementLoads& contacts, double* to) const {
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node());
+  for (std::size_t a = 0; a < contacts.elements.size(); ++a) {
+    const auto unknowns = line_.unknowns(contacts.elements[a]);
+    for (std::size_t k = 0; k < m; ++k) {
+      const double* phi = shapes(unknowns[k]);
+      const double force = contacts.values[a * m + k];
+      for (std::size_t i = 0; i < modes_; ++i) to[i] += phi[i] * force;
+    }
+  }
+}
+
+void ModalStructure::accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts,
+                                   double* a) {
+  if (n_ == 0) return;
+  std::fill_n(a, n_, 0.0);
+  for (int i = 0; own && i < n_; ++i) {
+    const double omega = bridge_.omega()[i];
+    a[i] = modal_force_[i] - 2.0 * bridge_.sigma()[i] * w[i] - omega * omega * v[i];
+  }
+  if (contacts != nullptr) add_modal_forces(*contacts, a);
+}
+
+double ModalStructure::work_rate(const double* w) const {
+  double work = 0.0;
+  for (int i = 0; i < n_; ++i) work += modal_force_[i] * w[i];
+  return work;
+}
+
+double ModalStructure::damping(const double* w) const {
+  double lost = 0.0;
+  for (int i = 0; i < n_; ++i) lost += 2.0 * bridge_.sigma()[i] * w[i] * w[i];
+  return lost;
+}
+
+std::array<double, 2> ModalStructure::powers(const double* w) { return {damping(w), work_rate(w)}; }
+
+void ModalStructure::add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
+                                double* w_elements) const {
+  if (n_ == 0) return;
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node());
+  for (std::size_t a = 0; a < elements.size(); ++a) {
+    const auto unknowns = line_.unknowns(elements[a]);
+    for (std::size_t k = 0; k < m; ++k) {
+      const double* phi = shapes(unknowns[k]);
+      double value = sag_[static_cast<std::size_t>(unknowns[k])], rate = 0.0;
+      for (std::size_t i = 0; i < modes_; ++i) {
+        value += phi[i] * (v != nullptr ? v[i] : v_still_[i] + z_[i]);
+        rate += phi[i] * (v != nullptr ? w[i] : w_still_[i] + shift_ * z_[i]);
+      }
+      v_elements[a * m + k] = value;
+      w_elements[a * m + k] = rate;
+    }
+  }
+}
+
+// --- stages --------------------------------------------------------------------------------------------------------
+
+void ModalStructure::note_stiffness() {
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const double omega = bridge_.omega()[i];
+    stiffness_[i] = shift2_ + 2.0 * bridge_.sigma()[i] * shift_ + omega * omega;
+  }
+}
+
+void ModalStructure::begin_statics(bool /*loaded*/) {
+  shift_ = shift2_ = 0.0;
+  std::fill(v_still_.begin(), v_still_.end(), 0.0);
+  std::fill(w_still_.begin(), w_still_.end(), 0.0);
+  note_stiffness();
+}
+
+void ModalStructure::begin_stage(double shift, const double* c_v, const double* c_w, const double* /*w_guess*/) {
+  shift_ = shift;
+  shift2_ = shift * shift;
+  for (int i = 0; i < n_; ++i) {
+    w_still_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
+    v_still_[i] = shift > 0.0 ? (w_still_[i] - c_v[i]) / shift : 0.0;
+  }
+  note_stiffness();
+}
+
+void ModalStructure::begin_stage(std::size_t stage, const double* v, const double* w) {
+  const StageRule& rule = method_.stages[stage];
+  shift_ = rule.rate / rule.displacement;
+  shift2_ = 1.0 / rule.displacement;
+  for (int i = 0; i < n_; ++i) {
+    v_still_[i] = v[i] + rule.w_in_v * w[i];
+    w_still_[i] = w[i];
+    for (int j = 0; j < rule.known; ++j) {
+      v_still_[i] += rule.a_in_v[j] * kept_[j][i];
+      w_still_[i] += rule.a_in_w[j] * kept_[j][i];
+    }
+  }
+  note_stiffness();
+}
+
+void ModalStructure::solve_free() {
+  for (int i = 0; i < n_; ++i) {
+    const double omega = bridge_.omega()[i];
+    z_[i] = (modal_force_[i] - 2.0 * bridge_.sigma()[i] * w_still_[i] - omega * omega * v_still_[i]) / stiffness_[i];
+  }
+}
+
+const ElementCompliance& ModalStructure::yield(const std::vector<int>& elements) {
+  elements_ = elements;
+  yield_.prepare(elements, stiffness_);
+  return yield_;
+}
+
+void ModalStructure::Yield::prepare(const std::vector<int>& elements, const std::vector<double>& stiffness) {
+  const bool same = stiffness == stiffness_;
+  if (same && elements == elements_) return;
+  std::swap(elements_, elements_before_);
+  std::swap(blocks_, blocks_before_);
+  elements_ = elements;
+  stiffness_ = stiffness;
+  const int count = static_cast<int>(elements_.size()), before = static_cast<int>(elements_before_.size());
+  const std::size_t size = static_cast<std::size_t>(m_) * static_cast<std::size_t>(m_);
+  known_as_.assign(elements_.size(), -1);
+  for (std::size_t a = 0; same && a < elements_.size(); ++a) {
+    const auto at = std::find(elements_before_.begin(), elements_before_.end(), elements_[a]);
+    if (at != elements_before_.end()) known_as_[a] = static_cast<int>(at - elements_before_.begin());
+  }
+  blocks_.resize(elements_.size() * elements_.size() * size);
+  responses_.resize(elements_.size());
+  const auto block_at = [&](int a, int b, int of) {
+    return static_cast<std::ptrdiff_t>(static_cast<std::size_t>(b * of + a) * size);
+  };
+  over_.resize(static_cast<std::size_t>(m_) * structure_.modes_);
+  for (int b = 0; b < count; ++b) {
+    responses_[b] = {0, count, static_cast<std::size_t>(b) * elements_.size() * size};
+    const auto unknowns = structure_.line_.unknowns(elements_[b]);
+    for (int k = 0; k < m_; ++k)
+      for (std::size_t i = 0; i < structure_.modes_; ++i)
+        over_[static_cast<std::size_t>(k) * structure_.modes_ + i] = structure_.shapes(unknowns[k])[i] / stiffness_[i];
+    for (int a = 0; a < count; ++a) {
+      double* to = blocks_.data() + block_at(a, b, count);
+      if (known_as_[a] >= 0 && known_as_[b] >= 0)
+        std::copy_n(blocks_before_.data() + block_at(known_as_[a], known_as_[b], before), size, to);
+      else
+        fill(a, to);
+    }
+  }
+}
+
+void ModalStructure::Yield::fill(int a, double* to) const {
+  const auto unknowns = structure_.line_.unknowns(elements_[a]);
+  for (int j = 0; j < m_; ++j) {
+    const double* loaded = &over_[static_cast<std::size_t>(j) * structure_.modes_];
+    for (int k = 0; k < m_; ++k) {
+      const double* phi = structure_.shapes(unknowns[k]);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < structure_.modes_; ++i) sum += phi[i] * loaded[i];
+      to[j * m_ + k] = sum;
+    }
+  }
+}
+
+void ModalStructure::take(const std::vector<double>& loads) {
+  std::fill(q_.begin(), q_.end(), 0.0);
+  add_modal_forces({elements_, loads}, q_.data());
+  for (int i = 0; i < n_; ++i) z_[i] += q_[i] / stiffness_[i];
+}
+
+void ModalStructure::end_stage(double* v, double* w) {
+  for (int i = 0; i < n_; ++i) {
+    v[i] = v_still_[i] + z_[i];
+    w[i] = w_still_[i] + shift_ * z_[i];
+  }
+}
+
+void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const double* /*w*/) {
+  for (int i = 0; i < n_; ++i) {
+    kept_[stage + 1][i] = shift2_ * z_[i];
+    w_still_[i] += shift_ * z_[i];
+  }
+  powers_[stage + 1] = {damping(w_still_.data()), work_rate(w_still_.data())};
+}
+
+// --- steps ---------------------------------------------------------------------------------------------------------
+
+void ModalStructure::begin_motion(const Method& method) {
+  method_ = method;
+  for (int j = 0; j < method.step.known; ++j) kept_[j].assign(static_cast<std::size_t>(n_), 0.0);
+}
+
+void ModalStructure::set_method(const Method& method, double /*h*/) { method_ = method; }
+
+void ModalStructure::restart(const std::vector<Reach>& /*loaded*/, double* /*v*/, double* w, const double* a) {
+  std::copy_n(a, n_, kept_[0].begin());
+  powers_[0].damping = damping(w);
+}
+
+void ModalStructure::begin_step(const std::vector<Reach>& /*loaded*/, const double* v, const double* w, bool keep) {
+  before_.dissipated = dissipated_;
+  before_.worked = worked_;
+  if (keep) {
+    before_.v.assign(v, v + n_);
+    before_.w.assign(w, w + n_);
+  }
+  powers_[0].forces = work_rate(w);
+}
+
+void ModalStructure::finish_step(double* v, double* w) {
+  const StepRule& rule = method_.step;
+  for (int i = 0; i < n_; ++i) {
+    v[i] += rule.w_in_v * w[i];
+    double next = 0.0;
+    for (int j = 0; j < rule.known; ++j) {
+      v[i] += rule.a_in_v[j] * kept_[j][i];
+      w[i] += rule.a_in_w[j] * kept_[j][i];
+      next += rule.a_next[j] * kept_[j][i];
+    }
+    kept_[0][i] = next;
+  }
+  for (int j = 0; j < rule.known; ++j) {
+    dissipated_ += rule.power[j] * powers_[j].damping;
+    worked_ += rule.power[j] * powers_[j].forces;
+  }
+  powers_[0] = powers_[rule.known - 1];
+}
+
+void ModalStructure::take_back_step(double* v, double* w) {
+  dissipated_ = before_.dissipated;
+  worked_ = before_.worked;
+  std::copy(before_.v.begin(), before_.v.end(), v);
+  std::copy(before_.w.begin(), before_.w.end(), w);
+}
+
+double ModalStructure::error_energy(const double* /*v*/, const double* /*w*/) {
+  const StepRule& rule = method_.step;
+  double energy = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    double v_off = 0.0, w_off = 0.0;
+    for (int j = 0; j < rule.known; ++j) {
+      v_off += rule.error_in_v[j] * kept_[j][i];
+      w_off += rule.error_in_w[j] * kept_[j][i];
+    }
+    const double omega = bridge_.omega()[i];
+    energy += 0.5 * (omega * omega * v_off * v_off + w_off * w_off);
+  }
+  return energy;
+}
+
+// --- what is seen --------------------------------------------------------------------------------------------------
+
+// Of the modes: what the static correction stores is left out, as is the work that goes there.
+StructureEnergy ModalStructure::energy(const double* v, const double* w) {
+  StructureEnergy e;
+  if (n_ == 0) return e;
+  e.strain = 0.5 * sag_work_;
+  e.potential = -sag_work_;
+  for (int i = 0; i < n_; ++i) {
+    const double omega = bridge_.omega()[i];
+    e.kinetic += 0.5 * w[i] * w[i];
+    e.strain += 0.5 * omega * omega * v[i] * v[i] + weight_[i] * v[i];
+    e.potential -= weight_[i] * v[i];
+  }
+  e.dissipated = dissipated_;
+  e.work = worked_;
+  return e;
+}
+
+void ModalStructure::observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
+                             NodalMotion& out) {
+  const auto size = static_cast<std::size_t>(beam_.local_unknowns());
+  const auto first = static_cast<std::size_t>(beam_.first_column()) * static_cast<std::size_t>(beam_.block());
+  std::vector<double>&q = seen_, &share = share_;
+  q.assign(3 * modes_, 0.0);
+  share.assign(modes_, 0.0);
+  if (n_ > 0) {
+    std::copy_n(v, n_, q.begin());
+    std::copy_n(w, n_, q.begin() + n_);
+    std::copy_n(a, n_, q.begin() + 2 * n_);
+  }
+  MPI_Bcast(q.data(), static_cast<int>(q.size()), MPI_DOUBLE, 0, beam_.comm());
+
+  // Forces but its own weight, and their deflection at rest less the modes' share of it.
+  out.P.assign(size, 0.0);
+  add_contacts(contacts, out.P.data());
+  for (const beam::ElementLoad& force : forces_) {
+    const beam::Hermite psi = beam::hermite(force.xi, line_.mesh.element(force.element).length);
+    const auto unknowns = line_.transverse(force.element);
+    for (std::size_t k = 0; k < 4; ++k)
+      if (const int local = beam_.local(unknowns[k]); local >= 0) out.P[local] += force.fy * psi.value[k];
+  }
+  rest_ = out.P;
+  release_held(rest_.data());
+  for (std::size_t k = 0; k < size; ++k)
+    for (std::size_t i = 0; i < modes_; ++i) share[i] += by_unknown_[(first + k) * modes_ + i] * rest_[k];
+  MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(modes_), MPI_DOUBLE, MPI_SUM, beam_.comm());
+  statics_->solve_static(rest_.data());
+  for (std::size_t i = 0; i < modes_; ++i) share[i] /= bridge_.omega()[i] * bridge_.omega()[i];
+
+  v_nodal_.assign(size, 0.0);
+  w_nodal_.assign(size, 0.0);
+  out.a.assign(size, 0.0);
+  out.drag.assign(size, 0.0);
+  for (std::size_t k = 0; k < size; ++k) {
+    const double* phi = &by_unknown_[(first + k) * modes_];
+    v_nodal_[k] = sag_[first + k] + rest_[k];
+    for (std::size_t i = 0; i < modes_; ++i) {
+      v_nodal_[k] += phi[i] * (q[i] - share[i]);
+      w_nodal_[k] += phi[i] * q[modes_ + i];
+      out.a[k] += phi[i] * q[2 * modes_ + i];
+      out.drag[k] += phi[i] * bridge_.own_drag()[i] * q[modes_ + i];
+    }
+    out.P[k] += dead_load_[k];
+  }
+  out.v = v_nodal_.data();
+  out.w = w_nodal_.data();
+}
+
+}  // namespace traverse::structure

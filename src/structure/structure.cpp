@@ -1,0 +1,49 @@
+#include "traverse/structure/structure.hpp"
+
+#include <algorithm>
+
+namespace traverse::structure {
+
+Structure::Structure(const beam::Beam& beam, std::shared_ptr<BeamOperator> statics, double gravity)
+    : beam_(beam),
+      line_(beam.running()),
+      statics_(statics ? std::move(statics) : std::make_shared<BeamOperator>(beam)),
+      dead_load_(static_cast<std::size_t>(beam.local_unknowns()), 0.0),
+      n_(beam.local_unknowns()) {
+  MPI_Comm_size(beam.comm(), &ranks_);
+  if (gravity != 0.0) beam_.add_self_weight(gravity, dead_load_.data());
+}
+
+void Structure::release_held(double* nodal) const {
+  const std::vector<char>& fixed = beam_.fixed();
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (fixed[i] != 0) nodal[i] = 0.0;
+}
+
+void Structure::gather(const std::vector<int>& elements, const double* v, const double* w,
+                       std::vector<double>& v_elements, std::vector<double>& w_elements) {
+  const std::size_t least = 2 * static_cast<std::size_t>(per_node()), count = elements.size() * least;
+  both_.assign(2 * std::max(count, least), 0.0);
+  add_values(elements, v, w, both_.data(), both_.data() + count);
+  if (count > 0 && ranks_ > 1)
+    MPI_Allreduce(MPI_IN_PLACE, both_.data(), static_cast<int>(2 * count), MPI_DOUBLE, MPI_SUM, beam_.comm());
+  v_elements.assign(both_.begin(), both_.begin() + static_cast<std::ptrdiff_t>(std::max(count, least)));
+  w_elements.assign(both_.begin() + static_cast<std::ptrdiff_t>(count), both_.end());
+}
+
+void Structure::gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w) {
+  gather(elements, nullptr, nullptr, v, w);
+}
+
+void Structure::add_contacts(const ElementLoads& contacts, double* nodal) const {
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node());
+  for (std::size_t a = 0; a < contacts.elements.size(); ++a) {
+    const auto unknowns = line_.unknowns(contacts.elements[a]);
+    for (std::size_t i = 0; i < m; ++i) {
+      const int local = beam_.local(unknowns[i]);
+      if (local >= 0) nodal[local] += contacts.values[a * m + i];
+    }
+  }
+}
+
+}  // namespace traverse::structure

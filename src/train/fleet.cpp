@@ -1,0 +1,238 @@
+#include "traverse/train/fleet.hpp"
+
+#include <algorithm>
+
+namespace traverse::train {
+namespace {
+
+constexpr double free_to_turn = 1e-9;  // m: arm of a joint about the wheel's centre
+
+}  // namespace
+
+MovingVehicle::MovingVehicle(Unit unit)
+    : mechanism(std::move(unit.mechanism)),
+      state(mechanism.make_state()),
+      wheels(std::move(unit.wheels)),
+      contacts(std::move(unit.contacts)) {
+  Q.setZero(mechanism.coordinates());
+  double mass = 0.0;
+  for (const multibody::Body& b : mechanism.model().bodies) mass += b.mass;
+  weight = mass * mechanism.model().gravity;
+  scale = mass * std::max(1.0, mechanism.model().gravity);
+}
+
+Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
+             const track::Profile* profile, double surface_height)
+    : mesh_(mesh),
+      profile_(profile),
+      speed_(frozen ? 0.0 : train.speed),
+      frozen_(frozen),
+      surface_height_(surface_height) {
+  AssembledTrain assembled = assemble(types, train, gravity, frozen);
+  members = std::move(assembled.members);
+  couplers = std::move(assembled.couplers);
+  for (std::size_t k = 0; k < assembled.units.size(); ++k) {
+    vehicles.emplace_back(std::move(assembled.units[k]));
+    MovingVehicle& vehicle = vehicles.back();
+    vehicle.first_wheel = static_cast<int>(wheels.size());
+    const double share = vehicle.wheels.empty() ? 0.0 : vehicle.weight / static_cast<double>(vehicle.wheels.size());
+    for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
+      WheelContact c;
+      c.vehicle = static_cast<int>(k);
+      c.wheel = static_cast<int>(i);
+      c.body = vehicle.wheels[i].body;
+      c.law = vehicle.wheels[i].law;
+      c.kinematics.penetration = contact::penetration_at_rest(vehicle.wheels[i].law, share);
+      wheels.push_back(c);
+    }
+    for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
+      if (!track::is_sharp(*profile_, vehicle.wheels[i].radius)) continue;
+      WheelContact c;
+      c.vehicle = static_cast<int>(k);
+      c.wheel = static_cast<int>(i);
+      c.body = vehicle.wheels[i].body;
+      c.law = vehicle.wheels[i].law;
+      c.is_further = true;
+      take_away(c);
+      wheels[static_cast<std::size_t>(vehicle.first_wheel) + i].further = static_cast<int>(wheels.size());
+      wheels.insert(wheels.end(), track::most_points - 1, c);
+      c.sign = -1.0;
+      wheels.insert(wheels.end(), track::most_points - 1, c);
+    }
+    add_pairs(static_cast<int>(k));
+  }
+  for (std::size_t k = 0; k < vehicles.size(); ++k) {
+    MovingVehicle& vehicle = vehicles[k];
+    for (int i = 0; i < contacts(); ++i)
+      if (contact(i).vehicle == static_cast<int>(k)) vehicle.touching.push_back(i);
+  }
+  take(0, static_cast<int>(vehicles.size()));
+  start_rolling();
+}
+
+void Fleet::take(int first, int past) {
+  first_own_ = first;
+  past_own_ = past;
+  is_set_ = false;
+}
+
+std::pair<int, int> Fleet::own_coordinates() const {
+  const auto offset = [this](int k) { return k < static_cast<int>(vehicles.size()) ? vehicles[k].offset : freedom_; };
+  return {offset(first_own_), offset(past_own_)};
+}
+
+void Fleet::add_pairs(int k) {
+  MovingVehicle& vehicle = vehicles[k];
+  vehicle.first_pair = static_cast<int>(pairs.size());
+  const std::vector<multibody::Frame>& frames = vehicle.state.frames;  // the ground's first
+  for (const contact::BodyContact& contact : vehicle.contacts) {
+    PairContact c;
+    c.vehicle = k;
+    c.body = contact.bodies[0];
+    c.other_body = contact.bodies[1];
+    c.law = contact.law;
+    c.geometry = contact::pair_geometry(contact, frames[c.body + 1], frames[c.other_body + 1]);
+    pairs.push_back(c);
+  }
+}
+
+int Fleet::member(int i) const {
+  const Contact& c = contact(i);
+  const auto begins_behind = [](const std::pair<int, int>& place, const Member& member) {
+    return place < std::pair(member.unit, member.first_body);
+  };
+  const auto next = std::upper_bound(members.begin(), members.end(), std::pair(c.vehicle, c.body), begins_behind);
+  return static_cast<int>(next - members.begin()) - 1;
+}
+
+const std::string& Fleet::name(int i) const {
+  const std::size_t k = static_cast<std::size_t>(i);
+  if (k < wheels.size()) return wheel(wheels[k]).name;
+  const PairContact& c = pairs[k - wheels.size()];
+  const MovingVehicle& vehicle = vehicles[c.vehicle];
+  return vehicle.contacts[k - wheels.size() - static_cast<std::size_t>(vehicle.first_pair)].name;
+}
+
+Eigen::Vector3d Fleet::coordinates(const Contact& c) const {
+  return vehicles[c.vehicle].state.q.segment<3>(3 * c.body);
+}
+
+Eigen::Vector3d Fleet::velocities(const Contact& c) const {
+  return vehicles[c.vehicle].state.qd.segment<3>(3 * c.body);
+}
+
+bool Fleet::held(const WheelContact& c) const {
+  const Eigen::MatrixXd& Phi_q = vehicles[c.vehicle].state.Phi_q;
+  return Phi_q.rows() > 0 && Phi_q.col(3 * c.body + 2).lpNorm<Eigen::Infinity>() > free_to_turn;
+}
+
+void Fleet::start_rolling() {
+  for (WheelContact& c : wheels) {
+    c.turns = !frozen_ && !held(c) && (wheel(c).law.friction > 0.0 || velocities(c).z() != 0.0);
+    c.home = c.turns ? coordinates(c).z() : coordinates(c).x();
+  }
+}
+
+double Fleet::rolled_angle(const WheelContact& c) const {
+  return c.turns ? c.home - coordinates(c).z() : (coordinates(c).x() - c.home) / wheel(c).radius;
+}
+
+// What a wheel out of round adds to its contact: alpha = R + dr(a) - distance, with a of the body's angle or of x.
+void Fleet::add_shape(WheelContact& c) const {
+  const Wheel& w = wheel(c);
+  if (w.shape.round()) return;
+  const track::RadiusGain gain = track::radius_gain(w.shape, w.radius, rolled_angle(c));
+  const int along = c.turns ? 2 : 0;
+  const double slope = c.turns ? -gain.slope : gain.slope / w.radius;
+  c.touch.kinematics.penetration += gain.value;
+  c.touch.kinematics.penetration_rate += slope * velocities(c)[along];
+  c.touch.normal_on_body[along] += slope;
+}
+
+std::vector<std::string> Fleet::partition(double t) {
+  std::vector<std::string> notes;
+  for (MovingVehicle& vehicle : vehicles)
+    for (const std::string& joint : vehicle.mechanism.choose_partition(vehicle.state, t))
+      notes.push_back(vehicle.mechanism.model().name + ": " + joint + " has redundant equations, dropped");
+  number(t);
+  return notes;
+}
+
+bool Fleet::worn() const {
+  const auto vehicles_here = own();
+  return std::any_of(vehicles_here.begin(), vehicles_here.end(),
+                     [](const MovingVehicle& v) { return v.mechanism.worn(v.state); });
+}
+
+bool Fleet::accept() {
+  bool renewed = false;
+  for (MovingVehicle& vehicle : own()) {
+    renewed = vehicle.mechanism.renew_partition(vehicle.state) || renewed;
+    vehicle.mechanism.accept(vehicle.state);
+  }
+  return renewed;
+}
+
+void Fleet::number(double t) {
+  home_.clear();
+  cruise_.clear();
+  freedom_ = 0;
+  for (MovingVehicle& vehicle : vehicles) {
+    vehicle.offset = freedom_;
+    freedom_ += vehicle.mechanism.freedom();
+    for (int i : vehicle.mechanism.partition().independent) {
+      const bool rolls = i % 3 == 2 && !frozen_;
+      cruise_.push_back(vehicle.wheels.empty() ? 0.0 : i % 3 == 0 ? speed_ : rolls ? vehicle.state.qd[i] : 0.0);
+      home_.push_back(vehicle.state.q[i] - cruise_.back() * t);
+    }
+  }
+  position_.resize(home_.size());
+  velocity_.resize(home_.size());
+  is_set_ = false;
+}
+
+bool Fleet::set(double t, const double* p, const double* pd) {
+  bool there = is_set_ && t == time_;
+  const auto [first, past] = own_coordinates();
+  for (int i = first; i < past; ++i) {
+    const double position = home_[i] + cruise_[i] * t + p[i], velocity = cruise_[i] + pd[i];
+    there = there && position == position_[i] && velocity == velocity_[i];
+    position_[i] = position;
+    velocity_[i] = velocity;
+  }
+  if (there) return true;
+  time_ = t;
+  is_set_ = false;
+  bool all = true;
+  for (MovingVehicle& vehicle : own()) {
+    all = all && !vehicle.rests;
+    if (vehicle.rests) continue;
+    if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) {
+      stuck_ = static_cast<int>(&vehicle - vehicles.data());
+      return false;
+    }
+    vehicle.mechanism.set_velocities(vehicle.state, t, velocity_.data() + vehicle.offset);
+    vehicle.mechanism.compute_forces(vehicle.state);
+  }
+  stuck_ = -1;
+  is_set_ = all;
+  return true;
+}
+
+void Fleet::shift(const double* change, double rate) {
+  for (MovingVehicle& vehicle : own()) vehicle.mechanism.shift(vehicle.state, change + vehicle.offset, rate);
+  is_set_ = false;
+}
+
+void Fleet::coordinates_of_state(double t, double* p, double* pd) const {
+  for (const MovingVehicle& vehicle : vehicles) {
+    int at = vehicle.offset;
+    for (int i : vehicle.mechanism.partition().independent) {
+      p[at] = vehicle.state.q[i] - home_[at] - cruise_[at] * t;
+      pd[at] = vehicle.state.qd[i] - cruise_[at];
+      ++at;
+    }
+  }
+}
+
+}  // namespace traverse::train

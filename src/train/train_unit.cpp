@@ -1,0 +1,187 @@
+#include "traverse/train/train_unit.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace traverse::train {
+namespace {
+
+using multibody::MechanismModel;
+
+base::TimeFunction frozen_function(const base::TimeFunction& f) { return {f.value(0.0), 0.0}; }
+
+bool drives_x(const MechanismModel& model) {
+  return std::any_of(model.drivers.begin(), model.drivers.end(),
+                     [](const multibody::Driver& d) { return d.coordinate == 0; });
+}
+
+bool has_gap(const Coupler& coupler, int gap) {
+  return std::find(coupler.gaps.begin(), coupler.gaps.end(), gap) != coupler.gaps.end();
+}
+
+/// Puts parts of a vehicle at x into a unit, their bodies counted from `first_body`.
+class Placing {
+ public:
+  Placing(double x, int first_body, std::string prefix) : x_(x), first_(first_body), prefix_(std::move(prefix)) {}
+
+  void name(std::string& text) const { text = prefix_ + text; }
+  void body(int& index) const {
+    if (index != multibody::ground) index += first_;
+  }
+  template <class Pair>
+  void bodies(Pair& pair) const {
+    for (int& index : pair) body(index);
+  }
+  void point(Eigen::Vector2d& p) const { p.x() += x_; }
+  double x() const { return x_; }
+
+ private:
+  double x_;
+  int first_;
+  std::string prefix_;
+};
+
+void add_vehicle(const Vehicle& type, const Placing& to, double speed, Unit& unit) {
+  MechanismModel& all = unit.mechanism;
+  for (multibody::Body b : type.mechanism.bodies) {
+    to.name(b.name);
+    b.position.x() += to.x();
+    b.velocity.x() += speed;
+    all.bodies.push_back(std::move(b));
+  }
+  for (multibody::Joint j : type.mechanism.joints) {
+    to.name(j.name);
+    to.bodies(j.bodies);
+    for (Eigen::Vector2d* p : {&j.point, &j.from, &j.to}) to.point(*p);
+    all.joints.push_back(std::move(j));
+  }
+  for (multibody::Spring s : type.mechanism.springs) {
+    to.name(s.name);
+    to.bodies(s.bodies);
+    to.point(s.from);
+    to.point(s.to);
+    all.springs.push_back(std::move(s));
+  }
+  for (multibody::TorsionSpring s : type.mechanism.torsion_springs) {
+    to.name(s.name);
+    to.bodies(s.bodies);
+    all.torsion_springs.push_back(std::move(s));
+  }
+  for (multibody::Actuator a : type.mechanism.actuators) {
+    to.name(a.name);
+    to.body(a.body);
+    to.body(a.reaction_body);
+    all.actuators.push_back(std::move(a));
+  }
+  for (multibody::Driver d : type.mechanism.drivers) {
+    to.name(d.name);
+    to.body(d.body);
+    if (d.coordinate == 0) d.value.shift(to.x());
+    all.drivers.push_back(std::move(d));
+  }
+  for (Wheel w : type.wheels) {
+    to.body(w.body);
+    unit.wheels.push_back(std::move(w));
+  }
+  for (contact::BodyContact c : type.contacts) {
+    to.bodies(c.bodies);
+    for (std::size_t i = 0; i < 2; ++i) {
+      to.point(c.centres[i]);
+      to.point(c.line[i]);
+    }
+    unit.contacts.push_back(std::move(c));
+  }
+}
+
+/// The driving constraint of a train at prescribed speed: x of a vehicle's first body.
+void add_drive(const Placing& to, double speed, MechanismModel& model) {
+  multibody::Driver drive{"drive", 0, 0, {}};
+  to.name(drive.name);
+  to.body(drive.body);
+  drive.value = base::TimeFunction(model.bodies[static_cast<std::size_t>(drive.body)].position.x(), speed);
+  model.drivers.push_back(drive);
+}
+
+Member next_member(const Vehicle& type, int number, const Unit& unit) {
+  const auto size = [](const auto& list) { return static_cast<int>(list.size()); };
+  const MechanismModel& m = unit.mechanism;
+  return {&type,
+          number,
+          size(m.bodies),
+          size(m.joints),
+          size(m.springs),
+          size(m.torsion_springs),
+          size(unit.wheels),
+          size(unit.contacts)};
+}
+
+int body_named(const Vehicle& type, const std::string& name) {
+  const auto& bodies = type.mechanism.bodies;
+  const auto same = [&](const multibody::Body& b) { return b.name == name; };
+  return static_cast<int>(std::find_if(bodies.begin(), bodies.end(), same) - bodies.begin());
+}
+
+/// A coupler's part between two neighbours; its points count from the front one's origin, `to` from the rear one's.
+template <class Part>
+Part placed(Part part, const Coupler& coupler, const std::array<const Member*, 2>& ends, double front, double rear) {
+  for (std::size_t i = 0; i < 2; ++i)
+    part.bodies[i] = ends[i]->first_body + body_named(*ends[i]->type, coupler.bodies[i]);
+  part.from.x() += front;
+  part.to.x() += rear;
+  return part;
+}
+
+}  // namespace
+
+AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen) {
+  AssembledTrain all;
+  const int count = static_cast<int>(train.vehicles.size());
+  const auto joined = [&](int gap) {
+    return std::any_of(train.couplers.begin(), train.couplers.end(), [&](const Coupler& c) { return has_gap(c, gap); });
+  };
+  const auto follows = [&](int k) {  // its place along the track is its neighbour's
+    return std::any_of(train.couplers.begin(), train.couplers.end(),
+                       [&](const Coupler& c) { return c.joint && has_gap(c, k - 1); });
+  };
+  for (int k = 0; k < count; ++k) {
+    const Vehicle& type = types[static_cast<std::size_t>(train.vehicles[k])];
+    const bool begins = k == 0 || !joined(k - 1);
+    if (begins) {
+      Unit unit;
+      unit.mechanism.name = type.mechanism.name;
+      unit.mechanism.gravity = gravity;
+      all.units.push_back(std::move(unit));
+    }
+    Unit& unit = all.units.back();
+    const bool alone = begins && (k + 1 == count || !joined(k));
+    if (!alone) unit.mechanism.name = "train";
+    const Member member = next_member(type, static_cast<int>(all.units.size()) - 1, unit);
+    const Placing to(train.positions[k], member.first_body, alone ? "" : std::to_string(k) + ".");
+    add_vehicle(type, to, train.speed, unit);
+    const bool rolls = !type.wheels.empty() && !drives_x(type.mechanism) && !follows(k);
+    if (rolls && (frozen || train.drive == Drive::constant)) add_drive(to, train.speed, unit.mechanism);
+    all.members.push_back(member);
+  }
+  for (std::size_t i = 0; i < train.couplers.size(); ++i) {
+    const Coupler& coupler = train.couplers[i];
+    for (const int gap : coupler.gaps) {
+      const std::array<const Member*, 2> ends = {&all.members[gap], &all.members[gap + 1]};
+      MechanismModel& model = all.units[ends[0]->unit].mechanism;
+      const double front = train.positions[gap], rear = train.positions[gap + 1];
+      const int part = static_cast<int>(coupler.joint ? model.joints.size() : model.springs.size());
+      if (coupler.joint) {
+        model.joints.push_back(placed(*coupler.joint, coupler, ends, front, rear));
+        model.joints.back().point.x() += front;
+      } else {
+        model.springs.push_back(placed(coupler.spring, coupler, ends, front, rear));
+      }
+      all.couplers.push_back({static_cast<int>(i), ends[0]->unit, part});
+    }
+  }
+  if (frozen)
+    for (Unit& unit : all.units)
+      for (multibody::Driver& d : unit.mechanism.drivers) d.value = frozen_function(d.value);
+  return all;
+}
+
+}  // namespace traverse::train

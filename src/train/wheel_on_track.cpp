@@ -1,0 +1,143 @@
+#include "traverse/train/wheel_on_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::train {
+namespace {
+
+// The surface point that belongs to the material station x, and how it changes along x. At a height e above the
+// neutral axis it moves by -e v' along x, as the plane sections turn.
+struct SurfacePoint {
+  Eigen::Vector2d P, P_x, P_xx;
+};
+
+struct Surface {
+  const Patch& patch;
+  const track::Profile& profile;
+  int block;
+  const double* v;
+  double per_length = 0.0;
+  std::array<double, 4> deflection{};  // of the element: coefficients of the powers of xi
+
+  Surface(const Patch& patch_, const track::Profile& profile_, int block_, const double* v_)
+      : patch(patch_), profile(profile_), block(block_), v(v_) {
+    if (patch.element < 0) return;
+    per_length = 1.0 / patch.length;
+    const int o = block - 2;  // where v stands among a node's unknowns
+    const double difference = v[block + o] - v[o];
+    const double left = patch.length * v[o + 1], right = patch.length * v[block + o + 1];
+    deflection = {v[o], left, 3.0 * difference - 2.0 * left - right, left + right - 2.0 * difference};
+  }
+
+  SurfacePoint at(double x) const {
+    const track::Height h = profile.at(x);
+    SurfacePoint s{{x, h.value}, {1.0, h.slope}, {0.0, h.curvature}};
+    if (patch.element < 0) return s;
+    const double xi = (x - patch.x) * per_length;
+    const auto [c0, c1, c2, c3] = deflection;
+    const double slope = (c1 + xi * (2.0 * c2 + xi * 3.0 * c3)) * per_length;
+    const double curvature = (2.0 * c2 + xi * 6.0 * c3) * per_length * per_length;
+    const double third = 6.0 * c3 * per_length * per_length * per_length;
+    s.P += Eigen::Vector2d(-patch.height * slope, c0 + xi * (c1 + xi * (c2 + xi * c3)));
+    s.P_x += Eigen::Vector2d(-patch.height * curvature, slope);
+    s.P_xx += Eigen::Vector2d(-patch.height * third, curvature);
+    if (block == 3) {
+      s.P.x() += (1.0 - xi) * v[0] + xi * v[3];
+      s.P_x.x() += (v[3] - v[0]) * per_length;
+    }
+    return s;
+  }
+};
+
+// Station of the point s closest to the centre c: (c - P).P_x = 0, by Newton.
+double closest_station(const Surface& surface, const Eigen::Vector2d& c, double start, SurfacePoint& s) {
+  const double low = surface.patch.low, high = surface.patch.high;
+  double x = std::clamp(start, low, high);
+  for (int i = 0; i < 20; ++i) {
+    s = surface.at(x);
+    const Eigen::Vector2d d = c - s.P;
+    const double step = d.dot(s.P_x) / (s.P_x.squaredNorm() - d.dot(s.P_xx));
+    const double next = std::clamp(x + step, low, high);
+    if (std::abs(next - x) <= 1e-15 * (1.0 + std::abs(next))) return x;
+    x = next;
+  }
+  s = surface.at(x);
+  return x;
+}
+
+// The station between low and high where the distance to c is least (sign 1) or greatest (sign -1), from the start on:
+// Newton, kept in the right direction by bisection, which ends at low or high where there is none.
+double station_within(const Surface& surface, const Eigen::Vector2d& c, double sign) {
+  double low = surface.patch.low, high = surface.patch.high;
+  double x = std::clamp(surface.patch.start, low, high);
+  for (int i = 0; i < 100; ++i) {
+    const SurfacePoint s = surface.at(x);
+    const Eigen::Vector2d d = c - s.P;
+    const double f = sign * d.dot(s.P_x);  // above 0: it lies to the right
+    const double f_x = sign * (d.dot(s.P_xx) - s.P_x.squaredNorm());
+    const double tiny = 1e-15 * (1.0 + std::abs(x));
+    (f > 0.0 ? low : high) = x;
+    if (high - low <= tiny || (f_x < 0.0 && std::abs(f) <= -f_x * tiny)) break;
+    const double newton = f_x < 0.0 ? x - f / f_x : low;
+    x = newton > low && newton < high ? newton : 0.5 * (low + high);
+  }
+  return x;
+}
+
+}  // namespace
+
+bool touch(const Patch& patch, const track::Profile& profile, double radius, const Eigen::Vector3d& q,
+           const Eigen::Vector3d& qd, int block, const double* v, const double* w, Touch& out, Find find) {
+  const Surface surface(patch, profile, block, v);
+  const Eigen::Vector2d c = q.head<2>();
+  SurfacePoint s;
+  double x = 0.0;
+  if (find == Find::closest) {
+    x = closest_station(surface, c, c.x() + out.ahead, s);
+  } else {
+    x = station_within(surface, c, find == Find::closest_within ? 1.0 : -1.0);
+    s = surface.at(x);
+  }
+  const Eigen::Vector2d from_surface = c - s.P;
+  const double distance = from_surface.norm();
+  if (!(from_surface.y() > 0.0) || !std::isfinite(distance)) return false;
+  const Eigen::Vector2d n = from_surface / distance;
+  const Eigen::Vector2d tau(n.y(), -n.x());
+
+  Eigen::Vector2d relative = qd.head<2>();  // of the centre against the surface's material
+  out.xi = 0.0;
+  out.station = x;
+  out.ahead = x - c.x();
+  if (patch.element >= 0) {
+    out.xi = (x - patch.x) * surface.per_length;
+    const beam::Hermite psi = beam::hermite(out.xi, patch.length);
+    const int o = block - 2;
+    const std::array<int, 4> place = {o, o + 1, block + o, block + o + 1};
+    for (int i = 0; i < 4; ++i) {
+      const double along = -patch.height * psi.slope[i];
+      out.normal_on_beam[place[i]] = n.y() * psi.value[i] + n.x() * along;
+      out.tangent_on_beam[place[i]] = -tau.y() * psi.value[i] - tau.x() * along;
+      relative.y() -= psi.value[i] * w[place[i]];
+      relative.x() -= along * w[place[i]];
+    }
+    if (block == 3) {
+      const std::array<double, 2> phi = beam::linear(out.xi);
+      for (int i = 0; i < 2; ++i) {
+        out.normal_on_beam[3 * i] = n.x() * phi[i];
+        out.tangent_on_beam[3 * i] = -tau.x() * phi[i];
+        relative.x() -= phi[i] * w[3 * i];
+      }
+    }
+  }
+  out.normal_on_body = {-n.x(), -n.y(), 0.0};
+  out.tangent_on_body = {tau.x(), tau.y(), distance};
+  out.kinematics.penetration = radius - distance;
+  out.kinematics.penetration_rate = -n.dot(relative);
+  out.kinematics.sliding_speed = tau.dot(relative) + distance * qd.z();
+  return true;
+}
+
+}  // namespace traverse::train
