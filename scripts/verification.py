@@ -17,7 +17,7 @@ import re
 import sys
 
 import measured
-from verification_rows import SECTIONS
+from verification_rows import HEAD, SECTIONS
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 NUMBER = r"([0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?)"
@@ -111,7 +111,7 @@ def asserted_and_measured(sources, figures, test, check):
 
 def page(root, figures):
     sources = Sources(root)
-    lines = (pathlib.Path(__file__).with_name("verification_head.md")).read_text().rstrip().splitlines()
+    lines = HEAD.splitlines()
     for title, rows in SECTIONS:
         lines += ["", f"## {title}", "", "| case | reference | asserted | measured | test |",
                   "| --- | --- | --- | --- | --- |"]

@@ -3,6 +3,25 @@
 import math
 from typing import Callable, NamedTuple, Optional, Union
 
+HEAD = """# Verification
+
+What the program is checked against. Each row names the case, where its reference comes from, the bound that the test
+asserts, the largest error that the test measured, and the test. Errors are relative to the peak or to the exact value
+unless a unit stands beside them. "Asserted only" means that the test compares and does not record.
+
+This page is written by `scripts/verification.py`. Bounds are read from the tests' sources, measured errors from
+`doc/verification_figures.csv`, which holds what the tests recorded when they were last run for this page:
+
+    /usr/bin/python3 scripts/verification.py --measure    # after ./test.sh: measures anew and writes the page
+    /usr/bin/python3 scripts/measured.py build '*R1*'     # what some of the tests record, without writing anything
+
+A row is run by `./test.sh -R NAME`, with the name in its last column; rows of `tests/mpi` by
+`mpirun -n 2 build/tests/mpi_tests --gtest_filter='NAME'`. Measured errors near rounding differ from machine to machine.
+
+The references are Fryba's moving force (closed-form series), the beam of Yang and Yau 1997, the example of VBI-2D, the IVP
+test set, textbook formulas and independent modal or Runge-Kutta computations. No reference is an earlier output of this
+program."""
+
 
 class Check(NamedTuple):
     """One assertion. {} in `assertion` is the bound; `figure` a pattern of recorded figures, or a function of them."""
