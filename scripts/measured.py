@@ -4,16 +4,35 @@ import subprocess
 import sys
 import tempfile
 
-build = sys.argv[1] if len(sys.argv) > 1 else "build"
-chosen = sys.argv[2] if len(sys.argv) > 2 else "*"
-standard = {"name", "file", "line", "status", "result", "timestamp", "time", "classname", "value_param", "failures"}
+STANDARD = {"name", "file", "line", "status", "result", "timestamp", "time", "classname", "value_param", "failures"}
 
-with tempfile.NamedTemporaryFile(suffix=".json") as report:
-    run = subprocess.run([build + "/tests/verification_tests", "--gtest_brief=1", "--gtest_filter=" + chosen,
-                          "--gtest_output=json:" + report.name], stdout=subprocess.DEVNULL)
-    for suite in json.load(report)["testsuites"]:
+
+def run_tests(build, chosen="*"):
+    """Runs the chosen verification tests. Returns {test: {figure: text}} without the suites' prefixes, and the status."""
+    with tempfile.NamedTemporaryFile(suffix=".json") as report:
+        run = subprocess.run([build + "/tests/verification_tests", "--gtest_brief=1", "--gtest_filter=" + chosen,
+                              "--gtest_output=json:" + report.name], stdout=subprocess.DEVNULL)
+        return figures_of(json.load(report)), run.returncode
+
+
+def figures_of(report):
+    """{test: {figure: text}} of a report that GoogleTest has written as JSON."""
+    found = {}
+    for suite in report["testsuites"]:
         for test in suite["testsuite"]:
-            figures = [f"{name} {value}" for name, value in test.items() if name not in standard]
+            figures = {name: str(value) for name, value in test.items() if name not in STANDARD}
             if figures:
-                print(f"{suite['name'].split('/')[-1]}.{test['name']:<40} {'; '.join(figures)}")
-sys.exit(run.returncode)
+                found[f"{suite['name'].split('/')[-1]}.{test['name']}"] = figures
+    return found
+
+
+def main():
+    build = sys.argv[1] if len(sys.argv) > 1 else "build"
+    found, status = run_tests(build, sys.argv[2] if len(sys.argv) > 2 else "*")
+    for test, figures in found.items():
+        print(f"{test:<60} {'; '.join(f'{name} {value}' for name, value in figures.items())}")
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,4 +1,4 @@
-// Steps of the structure by its elements, in second-order form (motion.hpp).
+// Steps of the structure by its elements, in second-order form (one_step_methods.hpp).
 #include <algorithm>
 
 #include "traverse/structure/element_structure.hpp"

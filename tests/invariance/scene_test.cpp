@@ -40,7 +40,6 @@ double difference(const Matrix& a, const Matrix& b, double factor = 1.0) {
 }
 
 // --- left and right
-// -----------------------------------------------------------------------------------------------------
 
 // A half car, rubbing on its wheels, dropped on a bridge with nothing symmetric about it; `side` is 1 or -1.
 std::string dropped_car(int side, double friction) {
@@ -125,7 +124,6 @@ TEST_P(Mirror, LeftIsRight) {
 }
 
 // --- at rest
-// --------------------------------------------------------------------------------------------------------------
 
 constexpr const char* standing_wheel = R"(
 beam: {elements_per_span: 4, EI: 8.0e9, mass: 2000.0, damping_ratios: [0.01, 0.01]}
@@ -219,7 +217,6 @@ TEST(Standing, UnderItsOwnWeight) {
 }
 
 // --- where x and t begin
-// ------------------------------------------------------------------------------------------------
 
 // Without friction: wheels that do not turn would begin to rub at t = 0, and the car to pitch.
 TEST(Origin, LongerApproach) {
@@ -258,7 +255,6 @@ TEST(Origin, TailOfNoLength) {
 }
 
 // --- sums
-// -----------------------------------------------------------------------------------------------------------------
 
 constexpr const char* two_forces = R"(
 beam: {spans: [20.0, 25.0], elements_per_span: 5, EI: 8.33e9, mass: 2303.0, damping_ratios: [0.01, 0.02]}
@@ -294,7 +290,6 @@ TEST(Superposition, IsolatedSpansAreSingleSpans) {
 }
 
 // --- how it is written
-// ------------------------------------------------------------------------------------------------------
 
 void expect_same(Results& a, Results& b, double tolerance) {
   for (const char* name : {"/probes/deflection", "/probes/acceleration", "/probes/moment", "/supports/reaction"})

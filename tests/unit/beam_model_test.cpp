@@ -17,7 +17,7 @@ using beam::Distribution;
 using beam::Support;
 using test::model_of;
 
-// ---------------------------------------------------------------------------------------------- shape functions
+// --- shape functions
 
 TEST(Shape, NodalConditionsOfEquation3) {
   const double h = 2.5;
@@ -41,7 +41,7 @@ TEST(Shape, DerivativesAgainstDifferences) {
   }
 }
 
-// ------------------------------------------------------------------------------------------------ distributions
+// --- distributions
 
 TEST(Distributions, TableWithAStep) {
   const Distribution d({0, 10, 10, 20}, {1, 3, 7, 5}, "beam_EI");
@@ -71,7 +71,7 @@ TEST(Distributions, BadTables) {
   }
 }
 
-// --------------------------------------------------------------------------------------------- element matrices
+// --- element matrices
 
 /// Integral over an element by a rule so fine that it knows nothing of steps and kinks.
 template <class F>
@@ -122,7 +122,7 @@ TEST(ElementMatrices, ClosedFormIsTheIntegral) {
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(a.axial_stiffness[i], b.axial_stiffness[i], 1e-13 * 1e10);
 }
 
-// -------------------------------------------------------------------------------------------------------- mesh
+// --- mesh
 
 TEST(Mesh, LocateAtNodes) {
   auto m = model_of({0.3, 0.7, 1.1}, 7);
@@ -160,7 +160,7 @@ TEST(Mesh, IsolatedSpansHaveTwoNodesAtInnerEnds) {
   EXPECT_EQ(mesh.element(4).span, 1);
 }
 
-// ------------------------------------------------------------------------------------------------------ checks
+// --- checks
 
 TEST(Checks, MessagesNameTheOption) {
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();

@@ -19,7 +19,7 @@ using beam::Distribution;
 using beam::Support;
 using test::model_of;
 
-// ---------------------------------------------------------------------------------------------------- assembly
+// --- assembly
 
 double form(const std::vector<std::vector<double>>& A, const std::vector<double>& x, const std::vector<double>& y) {
   double sum = 0.0;
@@ -170,7 +170,7 @@ TEST(Assembly, IsolatedSpansDoNotCouple) {
   EXPECT_TRUE(spring.fixed()[18]);
 }
 
-// --------------------------------------------------------------------------------------------------- reactions
+// --- reactions
 
 TEST(Reactions, AreTheRowsOfTheFullMatrices) {
   auto m = model_of({10, 20, 15}, 3);

@@ -27,7 +27,7 @@ modes::DampedModes damped(const BeamModel& model, int count, beam::Rayleigh ab =
   return modes::damped_modes(beam, count, true);
 }
 
-// ------------------------------------------------------------------------------------------- exact eigenvalues
+// --- exact eigenvalues
 
 using Equation = std::function<Complex(Complex lambda)>;  // entire, real for real lambda
 
@@ -98,7 +98,7 @@ Equation damper_at_free_end(double c) {
   };
 }
 
-// --------------------------------------------------------------------------------------------- beams with a damper
+// --- beams with a damper
 
 constexpr int coarse = 24, fine = 48;  // elements, even: x = L/2 and L/4 are nodes
 constexpr int looked_at = 5;           // modes, apart from the rigid ones
@@ -201,7 +201,7 @@ TEST(DampedModes, DamperWithinAnElementThirdOrder) {
   EXPECT_NEAR(e1, missing / whole, 0.1 * e1);
 }
 
-// --------------------------------------------------------------------------------------------- bars with a damper
+// --- bars with a damper
 
 /// A bar held at x = 0 with a damper at x = L: Z cosh s + c sinh s = 0, s = lambda L/speed, Z = sqrt(EA m). From
 /// there exp(2 s) = (c - Z)/(c + Z).
@@ -236,7 +236,7 @@ TEST(DampedModes, BarWithEndDamperSecondOrder) {
   }
 }
 
-// ------------------------------------------------------------------------------------------------- analytic answers
+// --- analytic answers
 
 constexpr double free_beta_L[] = {0.0, 0.0, 4.730040744862704, 7.853204624095838};  // Blevins 1979
 
@@ -298,7 +298,7 @@ TEST(DampedModes, RayleighAlone) {
   }
 }
 
-// ---------------------------------------------------------------------------------------------- what must not matter
+// --- what must not matter
 
 TEST(DampedModes, FewAtATimeAreThoseOfAllAtOnce) {
   BeamModel model = span(Support::free, Support::free, 50);  // 102 unknowns

@@ -159,7 +159,6 @@ TEST(Energy, PassageOverBothEnds) {
 }
 
 // --- Newton's law
-// -------------------------------------------------------------------------------------------------------
 
 struct Force {
   double x = 0.0, y = 0.0, moment = 0.0;  // about the body's centre of mass

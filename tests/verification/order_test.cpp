@@ -11,7 +11,6 @@ namespace traverse::test {
 namespace {
 
 // --- in time
-// -----------------------------------------------------------------------------------------------------------
 
 // A half car on Hertz contact. It starts on the bridge from equilibrium and stays within one element, where the
 // running surface is smooth: a wheel that passes a kink, or even a node (where the curvature jumps), would pull every
@@ -114,7 +113,6 @@ TEST_P(OrderInTime, AsItsAuthorsSay) {
 }
 
 // --- in space
-// ----------------------------------------------------------------------------------------------------------
 
 // Cubic elements have order 4 for smooth loads; a concentrated force inside an element leaves out that element's own
 // fixed-end deflection, F h^3 xi^3 (1 - xi)^3/(3 EI), which makes it 3. How far the wheel stands from a node at the

@@ -63,7 +63,6 @@ TEST(R1, CurveAtHalfTheCriticalSpeed) {
 }
 
 // --- R2, R3: a sprung mass
-// ---------------------------------------------------------------------------------------------
 
 const Values fine = {{"beam_elements_per_span", "24"}, {"ts_dt", "1e-3"}, {"output_interval", "1e-3"}};
 
@@ -97,7 +96,6 @@ TEST(R3, Peak) {
 }
 
 // --- R4: a wheel by Hertz
-// ----------------------------------------------------------------------------------------------
 
 TEST(R4, PeaksAndCurves) {
   // The wheel on its contact rings at 820 rad/s, and its force shows every element under it.
@@ -127,7 +125,6 @@ TEST(R4, PeaksAndCurves) {
 }
 
 // --- R5: a moving mass
-// -------------------------------------------------------------------------------------------------
 
 // Peak midspan deflection over static for a mass held on the beam, all convective terms, 30 modes. The wheel is the
 // mass; a stiff linear contact holds it as long as the contact is closed.
@@ -172,7 +169,6 @@ train: {vehicles: moving_mass, positions: 0.0}
 }
 
 // --- R6: a force on three spans
-// ----------------------------------------------------------------------------------------
 
 TEST(R6, Frequencies) {
   Results run = run_scene("r6_three_spans",

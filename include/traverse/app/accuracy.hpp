@@ -26,7 +26,7 @@ struct Promise {
 struct Accuracy {
   bool measured = false;  // false: nothing was open, or there is nothing to measure
   std::array<Promise, quantities> promises;
-  /// Of what is promised: name in the results file and expected error.
+  /// Name in the results file and expected error of each quantity that is promised.
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took
 };

@@ -1,6 +1,6 @@
-// Extremes of sampled curves, of whose errors `accuracy` speaks. Between samples they are those of parabolas. Where a
-// wheel passes a probe the moment has a kink, at a sample of its own (option step_probes); with damping b K it relaxes
-// behind it, within times of b, which may be much shorter than a step.
+// Extremes (peaks) of sampled curves; `accuracy` promises their errors. Between samples a curve is taken for a
+// parabola. Where a wheel passes a probe the moment has a kink, which gets a sample of its own (option step_probes).
+// With damping b K the moment relaxes behind the kink within a time of b, which may be much shorter than a step.
 #pragma once
 
 #include <array>
@@ -67,13 +67,13 @@ class Peaks {
 
   void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
   void finish();
-  /// There are none: the run failed.
+  /// The peaks of a run that failed: there are none.
   static Peaks of_failure();
   bool failed() const { return failed_; }
 
   const std::vector<Peak>& of(Quantity q) const { return found_[q]; }
   const Peak& largest(Quantity q) const { return largest_[q]; }
-  /// Of each probe or wheel.
+  /// The largest extreme of each probe or wheel.
   const std::vector<Peak>& largest_of_each(Quantity q) const { return each_[q]; }
 
  private:
@@ -81,7 +81,7 @@ class Peaks {
 
   std::vector<std::vector<double>> passages_;
   double lag_ = 0.0;
-  std::vector<RelaxingCurve> moments_;  // instead, where they lag
+  std::vector<RelaxingCurve> moments_;  // of the probes' moments where these lag; otherwise they are in probes_
   std::vector<std::array<Curve, wheel_force>> probes_;
   std::vector<Curve> wheels_;
   std::array<std::vector<Peak>, quantities> found_;
@@ -90,16 +90,17 @@ class Peaks {
   std::array<std::vector<Peak>, quantities> each_;
 };
 
-/// What the largest extremes of two runs differ by, relative to them: or what those near them (above 0.9; of wheel
-/// forces, of what they vary by) that lie in both within `reach` s of each other let expect, where the largest ones
-/// agree by chance. 0 where there are none, 1 where a run failed.
+/// The relative difference of the largest extremes of two runs, or, where that is larger, twice the root mean square of
+/// the differences of all extremes above 0.6 of the largest one that both runs have within `reach` s of each other: the
+/// largest two may agree by chance. Wheel forces are compared by how they vary about the weight. 0 where there are no
+/// extremes, 1 where a run failed.
 double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reach);
 
-/// What the largest ones alone differ by.
+/// The relative difference of the largest extremes alone.
 double peak_difference(const Peaks& rough, const Peaks& fine, Quantity q);
 
-/// When wheels and forces pass each probe of the scene, where their x is known beforehand and the beam carries them
-/// itself; else none.
+/// For each probe of the scene the times at which wheels and forces pass it, s. Empty where x of the wheels is not
+/// known beforehand, or where they run on the rail of a layered track.
 std::vector<std::vector<double>> passages_of(const Scene& scene);
 
 }  // namespace traverse::app

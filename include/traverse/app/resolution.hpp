@@ -10,15 +10,16 @@
 
 namespace traverse::app {
 
-/// InputError where elements are longer than the waves in which the beam bends on its bed; in `notes` what comes out
-/// roughly.
+/// InputError where elements are longer than the waves in which the beam bends on its bed. Where they are merely so
+/// long that results are rough, a line in `notes` says so.
 void check_mesh(const Scene& scene, std::vector<std::string>& notes);
 
 /// InputError where rounding hides the run's end or its samples.
 void check_times(const Plan& plan);
 
-/// InputError where a given step passes over periods of the bridge or waves of the track; in `notes` what comes out
-/// roughly. first_period: of the beam, s, 0 where not known; high_order: the integrator's is above 2.
+/// InputError where a given step passes over periods of the bridge or waves of the track. Where it is merely so long
+/// that results are rough, a line in `notes` says so. first_period: of the beam, s, 0 where not known; high_order:
+/// whether the integrator's order is above 2.
 void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
                  std::vector<std::string>& notes);
 

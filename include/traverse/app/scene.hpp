@@ -61,7 +61,7 @@ struct Scene {
   int mode_count = 10;
   int model_modes = 0;                   // the bridge by so many modes; 0: by its elements
   bool modes_open = false;               // a sweep may take modes where these do as well
-  std::vector<double> damping_of_modes;  // ratio of each of these modes, the last one of all further; empty: Rayleigh's
+  std::vector<double> damping_of_modes;  // ratio of each mode, the last one for all further modes; empty: Rayleigh's
   std::optional<Sweep> sweep;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
@@ -82,12 +82,12 @@ struct Scene {
 
 /// x of the wheels of vehicle `i` of the train at t = 0, in m.
 std::vector<double> wheels_at_start(const Scene& scene, std::size_t i);
-/// Of all vehicles.
+/// x of the wheels of all vehicles of the train at t = 0, in m.
 std::vector<double> wheels_at_start(const Scene& scene);
 
 /// Reads and checks all options and the vehicle files they name. Throws InputError with one line.
 Scene read_scene(options::Options options);
-/// Of the options in force: those that put_into_petsc saw last.
+/// The scene of the options in force, which are those that put_into_petsc saw last.
 Scene read_scene();
 
 }  // namespace traverse::app

@@ -19,10 +19,10 @@ struct Structure {
   Structure(const Structure&) = delete;
   Structure& operator=(const Structure&) = delete;
 
-  /// Collective, once. Rayleigh damping as the scene has it, from the frequencies that belong to it; these alone where
-  /// they are wanted for something else.
+  /// Collective, once. Sets the scene's Rayleigh damping. Finds the first two distinct frequencies where damping ratios
+  /// need them or frequencies_wanted is true.
   void damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes);
-  /// Collective, after damp. What transient and static runs need.
+  /// Collective, after damp. Prepares what transient and static runs need.
   void prepare(const Scene& scene, std::vector<std::string>& notes);
 
   const beam::Beam* bridge() const { return beam ? &*beam : nullptr; }

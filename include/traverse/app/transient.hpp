@@ -25,14 +25,14 @@ class Watch {
   Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder);
 
   void sample(const integrate::Instant& instant);
-  /// At the end of every step; a sample is one too.
+  /// To be called at the end of every step, also of one that ends at a sample.
   void step(double t);
   /// Collective. The summary so far, and the shape at the worst instant into the recorder.
   results::Summary finish();
-  /// What was seen last.
+  /// The latest instant that was seen.
   const results::Sample& last() const { return sample_; }
   const results::Summary& extremes() const { return summary_; }
-  /// Those of wheels and contacts too, after the last sample.
+  /// The peaks, those of wheels and contacts included; after the last sample.
   const results::Summary& finished_extremes();
   const train::WheelPaths& paths() const { return paths_; }
   /// The extremes so far, after the last sample.
@@ -71,7 +71,7 @@ class Watch {
   bool first_ = true;
 };
 
-/// SolverError where so much energy is missing that the answer is none.
+/// SolverError where so much energy does not balance that the result is meaningless.
 void check_balance(const Scene& scene, const results::Summary& summary);
 
 /// The recorder's layout for a scene.

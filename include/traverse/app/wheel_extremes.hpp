@@ -17,7 +17,7 @@ struct WheelExtreme {
 class WheelExtremes {
  public:
   WheelExtremes() = default;
-  /// kinks: ascending stations at which the track or the bridge has a corner, where a force has one too.
+  /// kinks: ascending stations at which the track or the bridge has a corner, so that a force over time has a kink.
   WheelExtremes(std::size_t wheels, std::vector<double> kinks);
 
   /// The next instant of a wheel whose centre is at x.

@@ -60,7 +60,7 @@ class Beam {
     const int i = unknown - first_ * block();
     return i >= 0 && i < local_unknowns() ? i : -1;
   }
-  /// One entry a local unknown: non-zero where it stays zero.
+  /// One entry for each local unknown: 1 where the unknown is held at zero, 0 where it is free.
   const std::vector<char>& fixed() const { return fixed_; }
 
   /// Collective; must be called once before damping() and reactions() are used.
@@ -77,8 +77,8 @@ class Beam {
   Mat beam_mass() const { return beam_mass_; }            // of the bridge alone
   Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
   Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
-  /// The foundation's own matrices, stiffness and damping of each kind of section 3, for who wants to look.
-  /// (kept only where the kind is present; null otherwise)
+  /// Stiffness and damping matrix of each kind of foundation of section 3 by itself; null where the scene has no such
+  /// kind.
   struct FoundationMats {
     base::Handle<Mat> vertical_discrete[2], vertical_continuous[2], longitudinal_discrete[2],
         longitudinal_continuous[2], rotational_discrete[2];  // [0] stiffness, [1] damping
@@ -91,7 +91,8 @@ class Beam {
   void add_self_weight(double gravity, double* P) const;
 
   /// Collective. Forces and moment of the supports ON the beam at every span end, {fx, fy, moment} each, on all
-  /// ranks (eq. 18 as corrected: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal vectors.
+  /// ranks (eq. 18 as corrected in doc/theory.md: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal
+  /// vectors.
   /// P must hold the load on held unknowns too. Where spans are separate both spans' parts are added.
   void reactions(const double* v, const double* w, const double* a, const double* P,
                  std::vector<std::array<double, 3>>& out) const;
@@ -125,7 +126,7 @@ class Beam {
   Rayleigh rayleigh_;
   base::Handle<Mat> mass_, beam_mass_, beam_stiffness_, springs_, stiffness_, damping_;
   base::Handle<Mat> foundation_damping_;  // of all kinds together, with the pattern of the mass; null without any
-  std::vector<double> weight_;            // of one m/s2 downward, this rank
+  std::vector<double> weight_;            // nodal forces of self-weight for a gravity of 1 m/s2, this rank
   FoundationMats foundation_;
   std::vector<ReactionTerm> reaction_terms_;
   std::vector<HeldLoad> held_loads_;

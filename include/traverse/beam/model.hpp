@@ -149,7 +149,8 @@ struct RailMesh {
 };
 RailMesh rail_mesh(const BeamModel& model);
 
-/// The bridge without its track, whose masses ride on it smeared: its frequencies are those of damping ratios.
+/// The bridge without its layered track, whose masses that ride on the bridge are spread over its length. Damping
+/// ratios refer to the frequencies of this beam.
 BeamModel bridge_alone(const BeamModel& model);
 
 /// With every foundation linear, as it acts about rest under load: without a gap by its k and c, with one not at all.
@@ -184,7 +185,7 @@ struct RigidMotion {
 std::vector<RigidMotion> rigid_motions(const BeamModel& model);
 
 /// The first motion that nothing at all resists, in words, or empty. A foundation that is one-sided or has a gap
-/// counts as resisting: whether it does, statics finds out.
+/// counts as resisting; the static solution finds out whether it does.
 std::string floating_motion(const BeamModel& model);
 
 }  // namespace traverse::beam

@@ -51,7 +51,7 @@ class Recovery {
   /// inside the element, less the part b*K_e w that is damping, not bending. The deflection has the element's own
   /// deflection between held ends added, which the cubic shape functions leave out: under concentrated loads and the
   /// beam's weight and, where a foundation acts inside the element, on that foundation and with what it and inertia
-  /// do to the beam. Velocity and acceleration have not.
+  /// do to the beam. Nothing is added to velocity and acceleration.
   void evaluate(const double* v, const double* w, const double* a, const std::vector<ElementLoad>& loads,
                 std::vector<Response>& out);
 
@@ -65,7 +65,7 @@ class Recovery {
   }
   /// What a load adds to the forces by acting inside the station's element, if it stood at x: none elsewhere.
   Forces inside(std::size_t station, double x, ElementLoad load) const;
-  /// And to its deflection, m.
+  /// What such a load adds to the station's deflection, m.
   double deflection_inside(std::size_t station, const ElementLoad& load) const;
   /// Adds `factor` times the deflection of a station on the bridge, as a form of this rank's nodal displacements, to
   /// `forces`. Returns what the beam's weight adds to the deflection between nodes, m.

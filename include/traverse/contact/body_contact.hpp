@@ -1,7 +1,7 @@
-// Contact of two bodies, arc on arc or arc on straight line (the paper's eqs. 45-50 as corrected, figures 7 and 8): the
-// penetration, its rate and the sliding speed, with the directions in which they change. The force pair acts along
-// exactly these directions through one common point, so that action and reaction, their moments and their power cancel
-// to rounding.
+// Contact of two bodies, arc on arc or arc on straight line (the paper's eqs. 45-50 as corrected in doc/theory.md, and
+// its figures 7 and 8): the penetration, its rate and the sliding speed, with the directions in which they change. The
+// force pair acts along exactly these directions through one common point, so that action and reaction, their moments
+// and their power cancel to rounding.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,7 +30,7 @@ struct BodyContact {
 /// R_i R_j/(R_i + R_j) of eq. 48; the arc's radius on a line.
 double effective_radius(const BodyContact& contact);
 
-/// In body-fixed terms.
+/// A contact pair in body-fixed terms.
 struct PairGeometry {
   PairType type = PairType::arc_arc;
   double radius_sum = 0.0;                               // R_i + R_j

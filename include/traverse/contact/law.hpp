@@ -1,5 +1,5 @@
 // Contact forces between a wheel and its running surface, or between two bodies: Hertz or linear law, damping, tanh
-// friction (the paper's eqs. 45, 48, 49 as corrected).
+// friction (the paper's eqs. 45, 48, 49 as corrected in doc/theory.md).
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@ namespace traverse::contact {
 
 enum class LawKind { hertz, linear };
 
-/// m of penetration over which a damper comes on: a stage of an implicit method that ends just where it does would have
-/// no solution if it came at once.
+/// Penetration over which a damper comes on, m. If it came on at once, a stage of an implicit method that ends just
+/// there would have no solution.
 constexpr double damper_ramp = 1e-9;
 
 /// Normal force k*alpha^n + c*alpha_rate, n = 1.5 (hertz) or 1 (linear), never below zero, zero when apart.

@@ -20,13 +20,14 @@ class ModalMotion {
 
   /// Steps of this length cost less than others.
   void expect(double dt);
-  /// Counts what forces put in and dampers take out, from now on: it costs as much again and more.
+  /// From now on counts the work of the forces and what dampers take, which more than doubles the cost.
   void count_energy() { counting_ = true; }
-  /// To a time not before the last one; what jumps there has its value before. Then q, ... are those of t.
+  /// Moves on to a time t not before the last one; q, ... are then those of t, and where something jumps at t those
+  /// just before it.
   void advance(double t);
   /// The next time at which a force passes a break; infinite after the last one.
   double next_event() const;
-  /// At the time of an event: from here on what is there after it.
+  /// At the time of an event: q, ... become those just after it.
   void pass_event();
   double time() const { return time_; }
 

@@ -11,7 +11,7 @@ class StepLadder {
  public:
   explicit StepLadder(double longest) : longest_(longest) {}
 
-  /// s: what the errors so far allow.
+  /// The longest step that the errors so far allow, s.
   double wanted() const { return length(rung_); }
   double length(int rung) const;
 
@@ -19,7 +19,7 @@ class StepLadder {
   /// where not. On the lowest rung all are: shorter ones would not make a jump smaller.
   bool judge(double h, double error);
   /// The step to take when there are `left` (s) until the next one has to end, no longer than wanted and `most` (s).
-  /// Only the last ones before an end that is off the ladder are no rung of it.
+  /// All steps are rungs of the ladder, but for the last ones before an end that is off the ladder.
   double towards(double left, double most) const;
 
  private:

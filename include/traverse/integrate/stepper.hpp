@@ -1,6 +1,6 @@
 // Time integration of the combined system by PETSc TS: own types in second-order form (second_order.hpp), or PETSc's.
-// Its implicit types meet the stage problem through a SNESSHELL
-// that hands (t, shift, c) to System::solve_stage; explicit ones evaluate System::rate. Steps end exactly at stored
+// PETSc's implicit types solve their stages through a SNESSHELL that hands (t, shift, c) to System::solve_stage; its
+// explicit ones evaluate System::rate. Steps end exactly at stored
 // samples and where wheels pass kinks of the running surface, since unaligned kinks pull every method down to
 // order two.
 #pragma once
@@ -22,10 +22,10 @@ struct Settings {
   double time_step = 0.0;          // s, the longest
   double interval = 0.0;           // s between samples
   std::vector<double> events{};    // ascending times at which a step has to end
-  double contact_tolerance = 0.0;  // s: steps end so close behind the loss or gain of a contact; 0: wherever
+  double contact_tolerance = 0.0;  // s: how close behind the loss or gain of a contact steps end; 0: not located
   std::vector<double> passages{};  // ascending times at which a step has to end and a sample is due, not to be stored
   bool corners = false;            // steps end where wheels turn about corners of the bridge's surface
-  long stored = 1;                 // every so many of the other samples is to be stored
+  long stored = 1;                 // one in so many of the samples at the interval is stored
 };
 
 /// What an instant is for: one of the evenly spaced samples, a look at peaks between them, or the end of the run where
@@ -37,7 +37,7 @@ struct Instant {
   double time;
   const double* y;
   const double* ydot;
-  const double* drag = nullptr;  // what modal damping forces are over the mass, this rank's beam; null: none
+  const double* drag = nullptr;  // modal damping forces over the mass, m/s2, of this rank's beam; null: none
   Purpose purpose = Purpose::sample;
 };
 
@@ -59,7 +59,7 @@ class Stepper {
   long rejected() const;                                           // steps tried in vain
   bool stopped_at_limit() const { return steps_ >= most_steps_; }  // of -ts_max_steps
   std::string method() const;                                      // e.g. "ARKIMEX 4, implicit"
-  /// Implicit, with steps of one length: nothing shows by itself that they are too long.
+  /// Whether steps that are too long would go unnoticed: those of an implicit method with one length.
   bool hides_long_steps() const { return implicit_ && !adaptive_; }
   bool high_order() const;  // above 2
 

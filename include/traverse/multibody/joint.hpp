@@ -46,7 +46,7 @@ JointGeometry joint_geometry(const Joint& joint, const Frame& first, const Frame
 void joint_residual(const JointGeometry& joint, const Frame& first, const Frame& second, double* Phi);
 /// Phi_q of the joint.
 void joint_jacobian(const JointGeometry& joint, const Frame& first, const Frame& second, JointJacobian& Phi_q);
-/// gamma = -(Phi_q q')_q q' of the joint (eq. 44 as mended; joints do not depend on time).
+/// gamma = -(Phi_q q')_q q' of the joint (eq. 44 as corrected in doc/theory.md; joints do not depend on time).
 void joint_gamma(const JointGeometry& joint, const Frame& first, const Frame& second, double* gamma);
 /// d(Phi_q^T lambda)/dq at fixed lambda (joint_rows values); symmetric.
 void joint_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, const double* lambda,

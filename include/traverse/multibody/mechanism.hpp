@@ -21,7 +21,7 @@
 
 namespace traverse::multibody {
 
-/// What was at an accepted instant: from there the motion is continued by Taylor's series where a guess is needed.
+/// The motion at an accepted instant. Where a guess is needed it is continued from there by Taylor's series.
 struct Instant {
   double time = 0.0;
   int partition_version = 0;   // 0: none
@@ -78,7 +78,7 @@ struct MechanismState {
   int partition_version = 0;         // which partition the workspaces belong to
   bool factored = false;             // dependent_block holds a factorisation of Phi_q near the current q
   bool factors_belong = false;       // that factorisation is of Phi_q as it is
-  bool sensitivity_belongs = false;  // and the sensitivity and B with it
+  bool sensitivity_belongs = false;  // the sensitivity and B are those of Phi_q as it is
   bool velocities_set = false;       // dependent_block holds the sensitivity at the last velocities
   bool mass_factored = false;        // reduced_mass belongs to B
   long corrections = 0;              // Newton steps on positions so far
@@ -129,14 +129,15 @@ class Mechanism {
 
   /// Whether coordinates have come to depend strongly on the independent ones, or Phi_u is nearly singular.
   bool worn(const MechanismState& s) const;
-  /// Chooses the partition anew at the consistent state s where it is worn and another choice serves better. A position
-  /// in which all choices are singular is passed with the old one. False when the old one stays.
+  /// Chooses another partition at the consistent state s where the present one has become poor and another is better.
+  /// Where all choices are singular the present one is kept to pass that position. False when it is kept.
   bool renew_partition(MechanismState& s);
   /// Takes a partition that was chosen elsewhere at the same q and q', which s holds, unless it is the one there.
   void adopt_partition(MechanismState& s, const Partition& partition);
 
-  /// A number in (0, 1]: 1 when no dependent coordinate moves more than an independent one that moves it, q for 1/q
-  /// times as much (angles at a typical arm); it tends to 0 where the partition wears out. With velocities set.
+  /// The quality of the partition, in (0, 1]: one over the largest ratio in which a dependent coordinate moves with an
+  /// independent one (angles count by a typical arm), at most 1. It tends to 0 where Phi_u becomes singular. Velocities
+  /// must be set.
   double partition_quality(const MechanismState& s) const;
 
   /// Sets the independent coordinates to p and solves Phi = 0 for the others by Newton, from where the last accepted
@@ -146,14 +147,14 @@ class Mechanism {
   /// After set_positions has failed: which joint or driver is not met, and by how much.
   std::string worst_row(const MechanismState& s) const;
 
-  /// With positions set: q' from p', and B, b, d.
+  /// Computes q' from p', and B, b, d. Positions must be set.
   void set_velocities(MechanismState& s, double t, const double* pd) const;
 
-  /// With positions and velocities set: g, and what dampers lose.
+  /// Computes g and the power that dampers take. Positions and velocities must be set.
   void compute_forces(MechanismState& s) const;
 
-  /// With all of that set: moves on by a small change of p, and rate times it of p'. Positions and velocities follow to
-  /// first order, g with them; B, b and d stay.
+  /// Changes p by a small amount and p' by `rate` times that. Positions, velocities and g follow to first order; B, b
+  /// and d stay as they are. Positions, velocities and forces must be set.
   void shift(MechanismState& s, const double* change, double rate) const;
 
   /// p'' from the projected equations with external forces Q (n); also q'' and lambda. Throws SolverError where
@@ -169,7 +170,7 @@ class Mechanism {
   /// After recover: which matrix takes the place of B in the projection B^T r of a change r of the equations' residual
   /// at fixed lambda, so that the changes of lambda it causes drop out where friction goes with them (n x f).
   void friction_projector(const MechanismState& s, Eigen::MatrixXd& projector) const;
-  /// Why s.friction.jammed, in words.
+  /// Says in words why s.friction.jammed is set.
   std::string jam(const MechanismState& s) const;
 
   /// (by_q dg/dq + by_qd dg/dq' + by_lambda d(Phi_q^T lambda)/dq) B into product (n x f), at fixed lambda. Here g
@@ -257,7 +258,7 @@ class Mechanism {
   Eigen::VectorXd mass_;
   std::vector<JointGeometry> joints_;
   std::vector<int> rubbing_;  // joints that slide with friction
-  bool presses_ = false;      // and one of them with a coefficient
+  bool presses_ = false;      // one of them rubs in proportion to its normal force
   std::vector<SpringGeometry> springs_;
   std::vector<TorsionGeometry> torsion_springs_;
   int joint_row_count_ = 0;    // rows of Phi: first the joints', then one a driver

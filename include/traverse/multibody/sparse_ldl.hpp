@@ -28,7 +28,7 @@ class SparseLdl {
   void set_zero();
   /// Entry (i, j) of the matrix, to be added to; call it for one of (i, j) and (j, i) only, whichever.
   double& entry(int i, int j) { return entries_[where(i, j)]; }
-  /// The same in two steps: where it stands, which stays, and what stands there.
+  /// The same in two steps: the entry's place, which stays the same, and the entry at a place.
   int where(int i, int j) const {
     const int a = place_[i], b = place_[j];
     return a < b ? a * size() + b : b * size() + a;

@@ -23,9 +23,9 @@ class Options {
   static Options from_yaml(const std::string& text, const std::string& name = "scene.yml");
 
   const Entries& entries() const { return entries_; }
-  /// Given, and not an empty list.
+  /// Whether the option is given and no empty list.
   bool has(std::string_view name) const;
-  /// Is any option given whose name starts so?
+  /// Whether any option is given whose name starts with this.
   const Entry* first_with_prefix(std::string_view prefix) const;
 
   /// Adds options that count unless they are given already: those of a vehicle's file.
@@ -56,7 +56,7 @@ class Options {
   std::vector<int> integers(std::string_view name, std::size_t count, std::string_view what) const;
   std::vector<std::string> texts(std::string_view name, std::size_t count, std::string_view what) const;
 
-  /// Is the value of a number_or_file option a number?
+  /// Whether the value of a number_or_file option is a number.
   bool is_number(std::string_view name) const;
   /// The file that an option names, found beside the file that names it or from the working directory.
   std::string path(std::string_view name) const;

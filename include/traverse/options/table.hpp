@@ -65,7 +65,8 @@ std::span<const Row> coupler_rows();
 
 const Row* find_row(std::span<const Row> rows, std::string_view name);
 
-/// Does PETSc or SLEPc own this name? Ours that PETSc shares (-ts_dt) are theirs, too.
+/// Whether PETSc or SLEPc own this name. Options that PETSc and this program both read, such as -ts_dt, count as
+/// theirs.
 bool owned_by_petsc(std::string_view name);
 /// The PETSc and SLEPc options that a user is likely to mean.
 std::span<const std::string_view> common_petsc_names();

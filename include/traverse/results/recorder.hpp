@@ -99,7 +99,7 @@ struct Summary {
   double energy_residual = 0.0;   // largest |residual|, J
   double structure_energy = 0.0;  // largest, kinetic and strain, J
   double energy_left = 0.0;       // put to rest outside the window of what is stepped, J
-  /// What that is of the structure's motion: the root of its part in the energy.
+  /// The same relative to the structure's motion: the root of energy_left over structure_energy.
   double rest_error() const;
   double energy_scale = 0.0;    // largest term, J, less what was stored and a driven train's going forward at the start
   double largest_energy = 0.0;  // largest term that is stored, J
@@ -111,11 +111,11 @@ struct Summary {
   double end_time = 0.0;      // s, how far the run has come
   double wall_seconds = 0.0;  // of the time loop
   std::string ended;          // "reached its end", or why it stopped
-  /// Relative, of the peaks whose accuracy is promised: name of the quantity and what is expected.
+  /// Name and expected relative error of each peak whose accuracy is promised.
   std::vector<std::pair<std::string, double>> expected_errors;
 };
 
-/// Of a group or dataset.
+/// An attribute of a group or dataset.
 struct Attribute {
   std::string name;
   std::variant<double, long, std::string> value;
@@ -128,7 +128,7 @@ class Recorder {
   Recorder(MPI_Comm comm, Place place, const Layout& layout,
            const std::vector<std::pair<std::string, std::string>>& attributes,
            const std::vector<std::pair<std::string, std::string>>& options);
-  /// The same, with its place claimed now.
+  /// The same, but the place is claimed only now.
   Recorder(MPI_Comm comm, const std::string& file, const Layout& layout,
            const std::vector<std::pair<std::string, std::string>>& attributes,
            const std::vector<std::pair<std::string, std::string>>& options);
@@ -143,7 +143,7 @@ class Recorder {
   void shape(const Shape& shape);
   /// /separations/contact ([m,2]: vehicle, name), x, start, duration, approach_speed, impact_force ([m]).
   void separations(const std::vector<Separation>& list);
-  /// What is complete, with its unit.
+  /// A dataset that is written at once, with its unit.
   struct Dataset {
     std::string name;  // its path in the file
     std::vector<std::size_t> shape;
@@ -151,7 +151,7 @@ class Recorder {
     std::string unit;
   };
   void datasets(const std::vector<Dataset>& sets);
-  /// Of a group that is there.
+  /// Adds an attribute to a group that is there.
   void attributes(const std::string& group, const std::vector<Attribute>& list);
   /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.
   void finish(const Summary& summary);

@@ -1,4 +1,4 @@
-// What the program does just now, for a user who waits: nothing runs for a minute without a word.
+// What the program is doing, shown to a user who waits: at least one line a minute.
 #pragma once
 
 #include <condition_variable>

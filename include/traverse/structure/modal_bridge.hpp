@@ -47,7 +47,7 @@ class ModalBridge {
   const modes::Basis& basis() const { return basis_; }
   const std::vector<double>& omega() const { return basis_.omega; }  // rad/s
   const std::vector<double>& sigma() const { return sigma_; }        // 1/s: decay rates
-  /// 1/s: damping given by ratio; its forces are those of an acceleration own_drag q'.
+  /// Damping given by ratios, 1/s: its forces are the mass times an acceleration own_drag q'.
   const std::vector<double>& own_drag() const { return own_drag_; }
   const ModalProbes& probes() const { return probes_; }
   /// Of a unit downward force at x: the modal forces; then the deflections of all probes, then their moments,

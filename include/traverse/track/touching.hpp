@@ -39,10 +39,11 @@ struct TouchingPoints {
 /// Half the length of track that a wheel can touch: where the profile is nowhere steeper than its greatest slope.
 double reach(const Profile& profile, double radius);
 
-/// Can a wheel of this radius touch at more than one point?
+/// Whether a wheel of this radius can touch at more than one point.
 inline bool is_sharp(const Profile& profile, double radius) { return radius * profile.greatest_valley() >= 1.0; }
 
-/// Would it often touch roughness at more than `most_points`? Where that many of its shortest waves lie within reach.
+/// Whether a wheel would often touch roughness at more than `most_points`: where that many of its shortest waves lie
+/// within the wheel's reach.
 bool too_rough(const Profile& profile, double radius);
 
 /// The local minima of the distance for a centre at x.
