@@ -168,7 +168,7 @@ TEST(Checks, MessagesNameTheOption) {
     auto m = model_of({10, 20}, 4);
     change(m);
     try {
-      Beam(PETSC_COMM_SELF, m);
+      const Beam beam(PETSC_COMM_SELF, m);
       ADD_FAILURE() << option << " was not refused";
     } catch (const InputError& e) {
       EXPECT_EQ(std::string(e.what()).rfind(option, 0), 0u) << e.what();
