@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include "step_scene.hpp"
 #include "traverse/structure/beam_motion.hpp"
@@ -46,8 +47,8 @@ struct Stages {
   structure::Method method;
   std::vector<double> v, w;
 
-  Stages(const beam::Beam& beam, structure::BeamOperator& op, const structure::Method& unit)
-      : motion(beam, op, nullptr), method(unit), v(static_cast<std::size_t>(op.unknowns()), 1e-3), w(v) {
+  Stages(const beam::Beam& beam, structure::BeamOperator& op, structure::Method unit)
+      : motion(beam, op, nullptr), method(std::move(unit)), v(static_cast<std::size_t>(op.unknowns()), 1e-3), w(v) {
     method.scale_to(step);
     motion.begin(method);
   }

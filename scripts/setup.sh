@@ -11,6 +11,7 @@ program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-re
   libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev python3-h5py python3-matplotlib)
 test_packages=(libgtest-dev)
 benchmark_packages=(libbenchmark-dev)
+check_packages=(clang-format clang-tidy)
 
 # One line that says what stopped, with what the log says of the first error: CMake says it on the lines that follow.
 fail() {
@@ -89,6 +90,24 @@ set_up_tests() { install_packages "${program_packages[@]}" "${test_packages[@]}"
 set_up_benchmarks() {
   install_packages "${program_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}" &&
     build all -DTRAVERSE_TESTS=ON -DTRAVERSE_BENCHMARKS=ON
+}
+
+# What scripts/tidy.py needs: how each file is compiled, one by one and without precompiled headers, which are g++'s own,
+# as are some of the options for this machine.
+set_up_checks() {
+  install_packages "${program_packages[@]}" "${test_packages[@]}" "${benchmark_packages[@]}" "${check_packages[@]}" &&
+    cmake -G Ninja -S . -B build-checks -DCMAKE_BUILD_TYPE=Release -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
+      -DTRAVERSE_NATIVE=OFF -DTRAVERSE_TESTS=ON -DTRAVERSE_BENCHMARKS=ON >"$setup_log" 2>&1 ||
+    fail "CMake could not configure the checks."
+}
+
+# The unit and robustness tests, and the program that the latter run, with sanitizers in build-sanitizers/.
+set_up_sanitizers() {
+  install_packages "${program_packages[@]}" "${test_packages[@]}" &&
+    cmake --preset sanitizers >"$setup_log" 2>&1 || fail "CMake could not configure the sanitizers' build."
+  echo "Building with sanitizers, log in $setup_log" >&2
+  cmake --build build-sanitizers --target traverse unit_mechanics unit_tests robustness_tests >"$setup_log" 2>&1 ||
+    fail "Traverse could not be built with sanitizers."
 }
 
 # locked FUNCTION: two calls at once build one after the other.

@@ -1,4 +1,5 @@
-// The system stepped in second-order form (one_step_methods.hpp): stages of the structure, and Newton on vehicles and contacts.
+// The system stepped in second-order form (one_step_methods.hpp): stages of the structure, and Newton on vehicles and
+// contacts.
 #include <algorithm>
 #include <cmath>
 

@@ -142,7 +142,7 @@ std::string specific_part(const std::string& message) {
   int code = 0, length = 0;
   const char* general = nullptr;
   if (std::sscanf(message.c_str(), "PETSc error %d: %n", &code, &length) != 1 || length == 0) return message;
-  const std::string reason = message.substr(static_cast<std::size_t>(length));
+  std::string reason = message.substr(static_cast<std::size_t>(length));
   if (PetscErrorMessage(code, &general, nullptr) != 0 || general == nullptr || !reason.starts_with(general))
     return reason;
   const std::size_t begin = std::string_view(general).size() + 2;

@@ -150,7 +150,7 @@ void Bundle<B>::solve_middle(const Columns& x, std::size_t part, const ChainBord
 template <int B>
 template <int C, bool Packed>
 TRAVERSE_FLATTEN void Bundle<B>::solve_alone(double* x, std::ptrdiff_t stride) const {
-  const std::ptrdiff_t step = block_.size() * (Packed ? C : 1);
+  const std::ptrdiff_t step = block_.size() * (Packed ? C : 1);  // NOLINT(bugprone-branch-clone): alike for C = 1
   const Factors all = factors(0);
   const std::ptrdiff_t longer = chain(0).count;
   const std::ptrdiff_t shorter = chain(1).count;

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "support/curve.hpp"
@@ -23,14 +25,13 @@ double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 class Balance {
  public:
   /// driven: its first body's x is prescribed by the train's drive.
-  Balance(Results& run, const train::Vehicle& vehicle, const std::string& group, double gravity, bool driven,
-          std::size_t row)
-      : run_(run), vehicle_(vehicle), model_(vehicle.mechanism), group_(group), row_(row) {
+  Balance(Results& run, const train::Vehicle& vehicle, std::string group, double gravity, bool driven, std::size_t row)
+      : run_(run), vehicle_(vehicle), model_(vehicle.mechanism), group_(std::move(group)), row_(row) {
     const multibody::MechanismModel& model = model_;
     for (const multibody::Body& body : model.bodies) {
       position_.push_back(triple(group_ + body.name + "/position"));
       sum_.emplace_back(0.0, -body.mass * gravity, 0.0);
-      free_.push_back(Vector3d::Ones());
+      free_.emplace_back(Vector3d::Ones());
     }
     if (driven) free_[0].x() = 0.0;
     for (const multibody::Driver& d : model.drivers) free_[static_cast<std::size_t>(d.body)][d.coordinate] = 0.0;

@@ -29,7 +29,8 @@ inline Joint make_joint(const std::string& name, JointType type, int first, int 
   return joint;
 }
 
-inline Joint make_distance(const std::string& name, int first, int second, Eigen::Vector2d from, Eigen::Vector2d to) {
+inline Joint make_distance(const std::string& name, int first, int second, const Eigen::Vector2d& from,
+                           const Eigen::Vector2d& to) {
   Joint joint;
   joint.name = name;
   joint.type = JointType::distance;
@@ -43,8 +44,8 @@ inline Driver make_driver(const std::string& name, int body, int coordinate, dou
   return {name, body, coordinate, base::TimeFunction(value, rate)};
 }
 
-inline Spring make_spring(const std::string& name, int first, int second, Eigen::Vector2d from, Eigen::Vector2d to,
-                          double stiffness, double damping = 0.0) {
+inline Spring make_spring(const std::string& name, int first, int second, const Eigen::Vector2d& from,
+                          const Eigen::Vector2d& to, double stiffness, double damping = 0.0) {
   Spring spring;
   spring.name = name;
   spring.bodies = {first, second};

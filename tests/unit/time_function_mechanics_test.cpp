@@ -25,11 +25,11 @@ TEST(TimeFunction, SplinePassesThroughItsTableAndIsTwiceSmooth) {
   const std::vector<double> t = {0.0, 0.7, 1.0, 2.5, 3.0}, y = {1.0, -1.0, 0.5, 2.0, 0.0};
   const TimeFunction f(t, y);
   for (std::size_t i = 0; i < t.size(); ++i) EXPECT_NEAR(f.value(t[i]), y[i], 1e-15);
-  for (std::size_t i = 0; i < t.size(); ++i) {
+  for (const double at : t) {
     const double h = 1e-9;
-    EXPECT_NEAR(f.value(t[i] - h), f.value(t[i] + h), 1e-7);
-    EXPECT_NEAR(f.rate(t[i] - h), f.rate(t[i] + h), 1e-6);
-    EXPECT_NEAR(f.acceleration(t[i] - h), f.acceleration(t[i] + h), 1e-5);
+    EXPECT_NEAR(f.value(at - h), f.value(at + h), 1e-7);
+    EXPECT_NEAR(f.rate(at - h), f.rate(at + h), 1e-6);
+    EXPECT_NEAR(f.acceleration(at - h), f.acceleration(at + h), 1e-5);
   }
   EXPECT_EQ(f.acceleration(0.0), 0.0);  // natural ends
   EXPECT_EQ(f.acceleration(3.0), 0.0);

@@ -1,0 +1,51 @@
+// A beam's matrices and answers without any of the solvers: dense, for small beams on one rank.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <vector>
+
+#include "support/rows.hpp"
+#include "traverse/beam/beam.hpp"
+#include "traverse/beam/nonlinear_points.hpp"
+
+namespace traverse::test {
+
+inline Eigen::MatrixXd dense(Mat matrix) {
+  const std::vector<std::vector<double>> rows = local_rows(matrix);
+  Eigen::MatrixXd A(rows.size(), rows.size());
+  for (Eigen::Index i = 0; i < A.rows(); ++i) A.row(i) = Eigen::Map<const Eigen::RowVectorXd>(rows[i].data(), A.cols());
+  return A;
+}
+
+/// shift2 M + shift C* + K*; the rows and columns of held unknowns are empty.
+inline Eigen::MatrixXd dense_operator(const beam::Beam& beam, double shift, double shift2) {
+  return shift2 * dense(beam.mass()) + shift * dense(beam.damping()) + dense(beam.stiffness());
+}
+
+/// Its inverse between the unknowns that are free, 0 elsewhere.
+inline Eigen::MatrixXd dense_inverse(const beam::Beam& beam, Eigen::MatrixXd A) {
+  const Eigen::VectorXd scale = A.diagonal().unaryExpr([](double d) { return d > 0.0 ? 1.0 / std::sqrt(d) : 0.0; });
+  for (Eigen::Index i = 0; i < A.rows(); ++i)
+    if (beam.fixed()[i] != 0) A(i, i) = 1.0;
+  const Eigen::VectorXd s = scale.unaryExpr([](double d) { return d > 0.0 ? d : 1.0; });
+  Eigen::MatrixXd inverse = (s.asDiagonal() * A * s.asDiagonal()).inverse();
+  inverse = s.asDiagonal() * inverse * s.asDiagonal();
+  for (Eigen::Index i = 0; i < A.rows(); ++i) {
+    if (beam.fixed()[i] == 0) continue;
+    inverse.row(i).setZero();
+    inverse.col(i).setZero();
+  }
+  return inverse;
+}
+
+/// The displacement at a point of the foundation is this times the unknowns.
+inline Eigen::VectorXd dense_shape(const beam::Beam& beam, const beam::NonlinearPoint& point) {
+  Eigen::VectorXd N = Eigen::VectorXd::Zero(beam.local_unknowns());
+  const beam::PointShape shape = beam::shape_of(beam.bridge(), point);
+  for (std::size_t i = 0; i < 4; ++i)
+    if (shape.unknown[i] >= 0) N[shape.unknown[i]] += shape.shape[i];
+  return N;
+}
+
+}  // namespace traverse::test

@@ -1,0 +1,320 @@
+// RestWindow: what it opens and closes, what that takes away, and the motion within it against that of the whole beam.
+#include "traverse/structure/rest_window.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "support/beam_model.hpp"
+#include "support/dense.hpp"
+#include "traverse/beam/shape.hpp"
+#include "traverse/structure/compliance.hpp"
+
+namespace traverse::structure {
+namespace {
+
+using Vector = Eigen::VectorXd;
+
+/// A beam of bending alone with its state.
+struct Moving {
+  explicit Moving(beam::BeamModel model, bool own_weight = false)
+      : beam(MPI_COMM_SELF, std::move(model)),
+        op(damped(beam)),
+        dead(Vector::Zero(beam.local_unknowns())),
+        rest(dead),
+        motion(beam, op, own_weight ? dead.data() : nullptr),
+        compliance(beam, op) {
+    if (own_weight) {
+      beam.add_self_weight(9.81, dead.data());
+      rest = dead;
+      for (Eigen::Index i = 0; i < rest.size(); ++i)
+        if (beam.fixed()[i] != 0) rest[i] = 0.0;
+      op.solve_static(rest.data());
+    }
+    v = rest;
+    w = Vector::Zero(rest.size());
+    Method method = esdirk4();
+    method.scale_to(h);
+    rule = method.stages.front();
+    stages = method.stages.size();
+    motion.begin(method);
+  }
+  static beam::Beam& damped(beam::Beam& beam) {
+    beam.set_rayleigh({20.0, 1e-4});
+    return beam;
+  }
+
+  int columns() const { return beam.columns(); }
+  /// A smooth bump of deflection, rotation and their rates on the columns (first, past).
+  void add_bump(int first, int past, double size) {
+    for (int c = first; c < past; ++c) {
+      const double phase = M_PI * (c - first + 0.5) / (past - first);
+      v[2 * c] += size * std::sin(phase);
+      v[2 * c + 1] += 0.3 * size * std::cos(phase);
+      w[2 * c] += 20.0 * size * std::sin(phase);
+      w[2 * c + 1] -= 6.0 * size * std::cos(phase);
+    }
+    for (int i = 2 * first; i < 2 * past; ++i)
+      if (beam.fixed()[i] != 0) v[i] = w[i] = 0.0;
+  }
+  /// Of what stands on these columns alone, J.
+  double energy(int first, int past) const {
+    Vector dv = Vector::Zero(v.size()), dw = dv;
+    dv.segment(2 * first, 2 * (past - first)) = (v - rest).segment(2 * first, 2 * (past - first));
+    dw.segment(2 * first, 2 * (past - first)) = w.segment(2 * first, 2 * (past - first));
+    return 0.5 * (dv.dot(test::dense(beam.beam_stiffness()) * dv) + dw.dot(test::dense(beam.mass()) * dw));
+  }
+  bool at_rest(int first, int past) const {
+    const int from = 2 * first, count = 2 * (past - first);
+    return v.segment(from, count) == rest.segment(from, count) && w.segment(from, count).isZero(0.0) &&
+           Eigen::Map<const Vector>(motion.start_acceleration() + from, count).isZero(0.0);
+  }
+
+  /// The columns of the element under a force, or of its span where spans do not touch; none beside the beam.
+  std::pair<int, int> columns_under(double x) const {
+    if (x < 0.0 || x > beam.mesh().end()) return {0, 0};
+    const int left = beam.mesh().element(beam.mesh().locate(x).element).left;
+    if (op.parts() == nullptr) return {left, left + 2};
+    const auto end = std::upper_bound(beam.parts().begin(), beam.parts().end(), left);
+    return {end[-1], end[0]};
+  }
+  /// A step under a force that moves; with the window, of what moves.
+  void step(double x, double speed, RestWindow* window) {
+    if (window != nullptr) {
+      const auto [low, high] = columns_under(x);
+      const auto [low_end, high_end] = columns_under(x + speed * h);
+      const bool both = low < high && low_end < high_end;
+      window->open(both ? low : std::max(low, low_end), std::max(high, high_end),
+                   compliance.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
+      motion.set_range(window->first(), window->past());
+    }
+    Method method = esdirk4();
+    method.scale_to(h);
+    for (std::size_t i = 0; i < stages; ++i)
+      motion.solve(i, v.data(), w.data(), loads(x + speed * method.stages[i].time));
+    motion.finish(v.data(), w.data());
+    if (window != nullptr) window->close(motion, v.data(), w.data());
+  }
+  std::vector<NodalLoad> loads(double x) const {
+    std::vector<NodalLoad> list;
+    if (x < 0.0 || x > beam.mesh().end()) return list;
+    const beam::Station at = beam.mesh().locate(x);
+    const auto shape = beam::hermite(at.xi, beam.mesh().element(at.element).length);
+    const auto unknowns = beam.bridge().transverse(at.element);
+    for (int i = 0; i < 4; ++i)
+      if (beam.fixed()[unknowns[i]] == 0) list.push_back({unknowns[i], -1e5 * shape.value[i]});
+    return list;
+  }
+
+  static constexpr double h = 5e-3;
+  beam::Beam beam;
+  BeamOperator op;
+  Vector dead, rest;
+  BeamMotion motion;
+  Compliance compliance;
+  StageRule rule;
+  std::size_t stages = 0;
+  Vector v, w;
+};
+
+beam::BeamModel continuous() { return test::model_of(std::vector<double>(40, 20.0), 10, false); }
+
+beam::BeamModel separate() {
+  beam::BeamModel model = test::model_of(std::vector<double>(20, 20.0), 10, false);
+  model.joints.assign(1, beam::Joint::separate);
+  return model;
+}
+
+// ------------------------------------------------------------------------------------------------- what it closes
+
+TEST(RestWindow, ClosesAroundWhatMoves) {
+  Moving m(continuous());
+  m.add_bump(83, 97, 1e-3);
+  RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+  window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
+  EXPECT_EQ(window.first(), 83);
+  EXPECT_EQ(window.past(), 97);
+  EXPECT_EQ(window.energy_left(), 0.0);
+  EXPECT_EQ(window.tolerance(), 1e-4);
+}
+
+TEST(RestWindow, PutsToRestWhatIsBelowItsTolerance) {
+  for (double tolerance : {1e-4, 1e-6}) {
+    Moving m(continuous());
+    m.add_bump(83, 97, 1e-3);
+    m.add_bump(32, 38, 1e-8);
+    m.add_bump(152, 158, 2e-8);
+    const double left = m.energy(32, 38) + m.energy(152, 158);
+    RestWindow window(m.beam, m.op, tolerance, {}, nullptr);
+    window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
+    if (tolerance == 1e-6) {
+      EXPECT_EQ(window.first(), 32);
+      EXPECT_EQ(window.past(), 158);
+      EXPECT_EQ(window.energy_left(), 0.0);
+      continue;
+    }
+    EXPECT_EQ(window.first(), 83);
+    EXPECT_EQ(window.past(), 97);
+    EXPECT_NEAR(window.energy_left(), left, 1e-9 * left);
+    EXPECT_TRUE(m.at_rest(0, 83));
+    EXPECT_TRUE(m.at_rest(97, m.columns()));
+    EXPECT_GT(m.energy(83, 97), 1e6 * left);
+  }
+}
+
+// Deflections, rotations and their rates each count for themselves.
+TEST(RestWindow, LooksAtEveryKind) {
+  for (int kind = 0; kind < 4; ++kind) {
+    SCOPED_TRACE(kind);
+    Moving m(continuous());
+    m.add_bump(83, 97, 1e-3);
+    Vector& x = kind < 2 ? m.v : m.w;
+    double largest = 0.0;
+    for (int c = 0; c < m.columns(); ++c) largest = std::max(largest, std::abs(x[2 * c + kind % 2]));
+    x[2 * 44 + kind % 2] = 1.01e-4 * largest;
+    x[2 * 131 + kind % 2] = -0.99e-4 * largest;
+    RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+    window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
+    EXPECT_EQ(window.first(), 44);
+    EXPECT_EQ(window.past(), 97);
+  }
+}
+
+TEST(RestWindow, KeepsWhatIsLoadedOrWatched) {
+  Moving m(continuous());
+  m.add_bump(83, 97, 1e-3);
+  m.add_bump(32, 38, 1e-8);
+  m.add_bump(152, 158, 1e-14);
+  RestWindow loaded(m.beam, m.op, 1e-4, {}, nullptr);
+  loaded.begin(m.motion, m.v.data(), m.w.data(), 60, 120);
+  EXPECT_EQ(loaded.first(), 60);
+  EXPECT_EQ(loaded.past(), 120);
+  EXPECT_TRUE(m.at_rest(0, 60));
+
+  m.add_bump(32, 38, 1e-8);
+  RestWindow watching(m.beam, m.op, 1e-4, {155, 35}, nullptr);  // what is there counts down to 1e-9
+  watching.begin(m.motion, m.v.data(), m.w.data(), 60, 120);
+  EXPECT_EQ(watching.first(), 35);
+  EXPECT_EQ(watching.past(), 120);
+}
+
+TEST(RestWindow, ClosesWholeSpansThatDoNotTouch) {
+  Moving m(separate());
+  ASSERT_NE(m.op.parts(), nullptr);
+  const int span = m.beam.parts()[1];
+  m.add_bump(5 * span + 3, 5 * span + 7, 1e-3);
+  m.add_bump(7 * span + 3, 7 * span + 7, 1e-3);
+  m.add_bump(9 * span + 2, 9 * span + 5, 1e-9);
+  const double left = m.energy(9 * span, 10 * span);
+  RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+  window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
+  EXPECT_EQ(window.first(), 5 * span);
+  EXPECT_EQ(window.past(), 8 * span);
+  EXPECT_NEAR(window.energy_left(), left, 1e-9 * left);
+}
+
+// Under its own weight a beam at rest is deflected.
+TEST(RestWindow, RestsUnderItsOwnWeight) {
+  Moving m(continuous(), true);
+  ASSERT_LT(m.rest.minCoeff(), -1e-4);
+  m.add_bump(83, 97, 1e-3);
+  m.add_bump(32, 38, 1e-8);
+  const double left = m.energy(32, 38);
+  RestWindow window(m.beam, m.op, 1e-4, {}, m.rest.data());
+  window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
+  EXPECT_EQ(window.first(), 83);
+  EXPECT_EQ(window.past(), 97);
+  EXPECT_NEAR(window.energy_left(), left, 1e-6 * left);  // of what rounding leaves of the deflection
+  EXPECT_TRUE(m.at_rest(0, 83));
+}
+
+// -------------------------------------------------------------------------------------------------- what it opens
+
+TEST(RestWindow, OpensByTheReachOfTheLoads) {
+  Moving m(continuous());
+  RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+  window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
+  EXPECT_GE(window.first(), window.past());  // nothing moves
+  window.open(60, 62, 10);
+  EXPECT_EQ(window.first(), 50);
+  EXPECT_EQ(window.past(), 72);
+  window.open(64, 66, 10);  // what moves spreads, too
+  EXPECT_EQ(window.first(), 40);
+  EXPECT_EQ(window.past(), 82);
+  window.open(0, 0, 10);  // no loads
+  EXPECT_EQ(window.first(), 30);
+  EXPECT_EQ(window.past(), 92);
+  window.open(390, 395, 400);
+  EXPECT_EQ(window.first(), 0);
+  EXPECT_EQ(window.past(), m.columns());
+}
+
+// --------------------------------------------------------------------------------------------- against all of it
+
+/// How far the motion in the window is from that of the whole beam under a force that crosses it, over the peak.
+struct Comparison {
+  double difference = 0.0, energy_left = 0.0;
+  int least_first = 0, greatest_past = 0, widest = 0;
+  int last_first = 0;  // when the force has left
+};
+
+Comparison compare(const beam::BeamModel& model, double tolerance, bool own_weight = false) {
+  constexpr double speed = 90.0;
+  const int steps = static_cast<int>(1.05 * model.length() / (speed * Moving::h));
+  Moving whole(model, own_weight), part(model, own_weight);
+  RestWindow window(part.beam, part.op, tolerance, {}, own_weight ? part.rest.data() : nullptr);
+  window.begin(part.motion, part.v.data(), part.w.data(), 0, 0);
+  Comparison result;
+  double peak = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double x = speed * Moving::h * i - 1.0;
+    whole.step(x, speed, nullptr);
+    part.step(x, speed, &window);
+    const auto [low, high] = part.columns_under(x + speed * Moving::h);
+    if (low < high) {
+      EXPECT_LE(window.first(), low);
+      EXPECT_GE(window.past(), high);
+    }
+    if (window.first() < window.past()) {
+      EXPECT_TRUE(part.at_rest(0, window.first())) << i;
+      EXPECT_TRUE(part.at_rest(window.past(), part.columns())) << i;
+      result.widest = std::max(result.widest, window.past() - window.first());
+    }
+    if (i == 100) result.greatest_past = window.past();
+    peak = std::max(peak, (whole.v - whole.rest).cwiseAbs().maxCoeff());
+    result.difference = std::max(result.difference, (part.v - whole.v).cwiseAbs().maxCoeff());
+  }
+  result.difference /= peak;
+  result.last_first = window.first();
+  result.energy_left = window.energy_left();
+  return result;
+}
+
+TEST(RestWindow, OfAContinuousBeamKeepsItsTolerance) {
+  double energy = 0.0;
+  for (double tolerance : {1e-7, 1e-5, 1e-3}) {
+    SCOPED_TRACE(tolerance);
+    const Comparison c = compare(continuous(), tolerance);
+    EXPECT_LT(c.difference, 2.0 * tolerance);
+    EXPECT_GT(c.difference, 0.0);
+    EXPECT_LT(c.greatest_past, 401);
+    EXPECT_GT(c.last_first, 0);
+    EXPECT_GT(c.energy_left, energy);
+    energy = c.energy_left;
+  }
+}
+
+TEST(RestWindow, OfSeparateSpansKeepsItsTolerance) {
+  for (bool own_weight : {false, true}) {
+    const Comparison c = compare(separate(), 1e-6, own_weight);
+    EXPECT_LT(c.difference, 2e-6);
+    EXPECT_LT(c.widest, 220);
+    EXPECT_EQ(c.greatest_past % 11, 0);
+    EXPECT_LT(c.greatest_past, 220);
+  }
+}
+
+}  // namespace
+}  // namespace traverse::structure
