@@ -10,9 +10,9 @@
 #include <memory>
 #include <string>
 
-#include "traverse/app/scene.hpp"
 #include "traverse/coupling/system.hpp"
 #include "traverse/options/options.hpp"
+#include "traverse/scene/scene.hpp"
 
 namespace {
 

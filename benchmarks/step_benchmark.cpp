@@ -8,9 +8,9 @@
 #include <memory>
 #include <string>
 
-#include "traverse/app/scene.hpp"
 #include "traverse/integrate/stepper.hpp"
 #include "traverse/options/options.hpp"
+#include "traverse/scene/scene.hpp"
 
 namespace {
 

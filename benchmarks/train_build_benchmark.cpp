@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "traverse/app/scene.hpp"
 #include "traverse/coupling/system.hpp"
 #include "traverse/options/options.hpp"
+#include "traverse/scene/scene.hpp"
 
 namespace {
 

@@ -8,17 +8,17 @@
 #include <numbers>
 #include <optional>
 
-#include "deflection_check.hpp"
-#include "process.hpp"
-#include "signals.hpp"
-#include "traverse/app/accuracy.hpp"
-#include "traverse/app/passage.hpp"
-#include "traverse/app/study.hpp"
-#include "traverse/app/transient.hpp"
+#include "traverse/accuracy/accuracy.hpp"
+#include "traverse/accuracy/trials.hpp"
 #include "traverse/modes/modes.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/results/stage.hpp"
-#include "trials.hpp"
+#include "traverse/run/deflection_check.hpp"
+#include "traverse/run/passage.hpp"
+#include "traverse/run/process.hpp"
+#include "traverse/run/signals.hpp"
+#include "traverse/run/watch.hpp"
+#include "traverse/study/study.hpp"
 
 namespace traverse::app {
 namespace {

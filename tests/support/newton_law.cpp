@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "support/curve.hpp"
-#include "traverse/app/scene.hpp"
+#include "traverse/scene/scene.hpp"
 
 namespace traverse::test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-namespace traverse::coupling {
+namespace traverse::solve {
 namespace {
 
 Eigen::MatrixXd banded(int size, int band) {
@@ -40,4 +40,4 @@ TEST(BandLu, FindsTheBandOfWhatIsNotZero) {
 }
 
 }  // namespace
-}  // namespace traverse::coupling
+}  // namespace traverse::solve

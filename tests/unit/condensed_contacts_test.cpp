@@ -32,7 +32,7 @@ class Contacts : public testing::Test {
 
   /// A vehicle with a contact on each of the elements (of the list that is prepared; -1: rigid ground).
   void add_vehicle(const std::vector<int>& slots, contact::LawKind kind, double friction, bool with_P = false) {
-    Unit unit;
+    train::Unit unit;
     unit.mechanism.bodies.resize(1);
     unit.mechanism.bodies[0].name = "body";
     unit.mechanism.bodies[0].mass = 1.0;

@@ -1,5 +1,5 @@
 // What halvings of a step tell of the error.
-#include "../../src/app/error_law.hpp"
+#include "../../src/accuracy/error_law.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,9 +10,9 @@ namespace traverse::app {
 namespace {
 
 /// The error found with steps h, of a method whose peak is off by c h^order.
-Error found(double c, double order, double h) {
+ErrorLaw found(double c, double order, double h) {
   const auto peak = [&](double step) { return c * std::pow(step, order); };
-  const Error first = error_from(peak(4.0 * h) - peak(2.0 * h), 2.0 * h, {});
+  const ErrorLaw first = error_from(peak(4.0 * h) - peak(2.0 * h), 2.0 * h, {});
   return error_from(peak(2.0 * h) - peak(h), h, first);
 }
 
@@ -21,7 +21,7 @@ INSTANTIATE_TEST_SUITE_P(ErrorLaw, Orders, testing::Values(1.0, 1.5, 2.0, 3.0, 4
 
 TEST_P(Orders, AreMeasuredWithTheError) {
   const double order = GetParam(), h = 1e-3, c = 5.0;
-  const Error error = found(c, order, h);
+  const ErrorLaw error = found(c, order, h);
   EXPECT_TRUE(error.known);
   EXPECT_NEAR(error.order, order, 1e-9);
   const double cautious = (std::exp2(order) - 1.0) / (std::exp2(std::min(order, 3.0)) - 1.0);
@@ -33,26 +33,26 @@ TEST_P(Orders, AreMeasuredWithTheError) {
 
 // Halving is never supposed to gain more than the third power.
 TEST(ErrorLaw, IsCautiousTowardsShorterSteps) {
-  const Error error = found(5.0, 4.0, 1e-3);
+  const ErrorLaw error = found(5.0, 4.0, 1e-3);
   EXPECT_NEAR(error.at(0.5), error.value / 8.0, 1e-9 * error.value);
   EXPECT_NEAR(error.room(error.value / 8.0), 0.5, 1e-9);
 }
 
 // Without a second halving the order is a supposed one.
 TEST(ErrorLaw, FirstHalving) {
-  const Error error = error_from(3e-3, 1e-3, {});
+  const ErrorLaw error = error_from(3e-3, 1e-3, {});
   EXPECT_FALSE(error.known);
   EXPECT_DOUBLE_EQ(error.value, 1e-3);
 }
 
 // Two runs that agree by chance do not make an error vanish.
 TEST(ErrorLaw, ChanceIsNotBelieved) {
-  const Error first = error_from(1e-2, 2e-3, {}), second = error_from(1e-12, 1e-3, first);
+  const ErrorLaw first = error_from(1e-2, 2e-3, {}), second = error_from(1e-12, 1e-3, first);
   EXPECT_GT(second.value, 1e-2 / 32.0 / 16.0);
 }
 
 TEST(ErrorLaw, WhatDoesNotSettleKeepsItsError) {
-  const Error first = error_from(1e-2, 2e-3, {}), second = error_from(1.1e-2, 1e-3, first);
+  const ErrorLaw first = error_from(1e-2, 2e-3, {}), second = error_from(1.1e-2, 1e-3, first);
   EXPECT_LT(second.order, 0.0);
   EXPECT_DOUBLE_EQ(second.value, 1.1e-2);
 }

@@ -1,5 +1,5 @@
 // Extremes of sampled curves.
-#include "traverse/app/peaks.hpp"
+#include "traverse/run/peaks.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "support/message.hpp"
-#include "traverse/app/scene.hpp"
 #include "traverse/options/read_file.hpp"
+#include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
 

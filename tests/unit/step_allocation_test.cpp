@@ -7,10 +7,10 @@
 
 #include "support/counted_memory.hpp"
 #include "support/paths.hpp"
-#include "traverse/app/scene.hpp"
 #include "traverse/base/petsc.hpp"
 #include "traverse/integrate/stepper.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/scene/scene.hpp"
 
 #ifdef TRAVERSE_COUNTS_MEMORY
 

@@ -1,5 +1,5 @@
 // The least and the greatest of the wheels' forces, step by step.
-#include "traverse/app/wheel_extremes.hpp"
+#include "traverse/run/wheel_extremes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "traverse/coupling/system.hpp"
 
-namespace traverse::coupling {
+namespace traverse::train {
 namespace {
 
 constexpr double R = 0.46, mass = 1000.0, g = 9.81;
@@ -195,12 +195,12 @@ double angle_of_contact() {
 }
 
 TEST(WheelContacts, AtRestInAValley) {
-  SystemInput input;
+  coupling::SystemInput input;
   input.types = {wheelset(1e11, contact::LawKind::linear)};
   input.train.vehicles = {0};
   input.train.positions = {0.0};
   input.profile = valley();
-  System system(MPI_COMM_SELF, nullptr, input);
+  coupling::System system(MPI_COMM_SELF, nullptr, input);
   std::vector<double> y(static_cast<std::size_t>(system.local_size()));
   system.start(true, y.data());
   const Fleet& fleet = system.fleet();
@@ -217,13 +217,13 @@ TEST(WheelContacts, AtRestInAValley) {
 }
 
 TEST(WheelContacts, RoughnessForMorePointsIsRefused) {
-  SystemInput input;
+  coupling::SystemInput input;
   input.types = {wheelset(1e9, contact::LawKind::linear)};
   input.train.vehicles = {0};
   input.train.positions = {0.0};
   input.profile = track::Profile::rough(track::iso8608('E'), 0.0, 1);
   try {
-    System system(MPI_COMM_SELF, nullptr, input);
+    coupling::System system(MPI_COMM_SELF, nullptr, input);
     FAIL();
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("vehicle_axle_wheel_radius"), std::string::npos);
@@ -232,4 +232,4 @@ TEST(WheelContacts, RoughnessForMorePointsIsRefused) {
 }
 
 }  // namespace
-}  // namespace traverse::coupling
+}  // namespace traverse::train

@@ -8,7 +8,7 @@
 
 #include "support/curve.hpp"
 #include "support/separations.hpp"
-#include "traverse/app/scene.hpp"
+#include "traverse/scene/scene.hpp"
 
 namespace traverse::test {
 namespace {

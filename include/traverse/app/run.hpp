@@ -3,7 +3,7 @@
 
 #include <mpi.h>
 
-#include "traverse/app/scene.hpp"
+#include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
 

@@ -1,0 +1,39 @@
+// What runs of a scene have in common, however many there are: the beam with its damping, its operator, its modes.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "traverse/scene/scene.hpp"
+#include "traverse/structure/beam_operator.hpp"
+#include "traverse/structure/modal_bridge.hpp"
+
+namespace traverse::app {
+
+struct Structure {
+  /// Collective. Checks and assembles the beam, if there is one. Says in `notes` what was modelled.
+  Structure(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
+  Structure(const Structure&) = delete;
+  Structure& operator=(const Structure&) = delete;
+
+  /// Collective, once. Sets the scene's Rayleigh damping. Finds the first two distinct frequencies where damping ratios
+  /// need them or frequencies_wanted is true.
+  void damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes);
+  /// Collective, after damp. Prepares what transient and static runs need.
+  void prepare(const Scene& scene, std::vector<std::string>& notes);
+
+  const beam::Beam* bridge() const { return beam ? &*beam : nullptr; }
+  double first_period() const;  // s; 0: not known
+
+  MPI_Comm comm;
+  std::optional<beam::Beam> beam;
+  std::optional<std::pair<double, double>> omega;  // rad/s, the first two distinct frequencies
+  beam::Rayleigh rayleigh;
+  std::shared_ptr<structure::BeamOperator> statics;  // with the factorisations so far
+  std::optional<structure::ModalBridge> modal;       // with model_modes
+};
+
+}  // namespace traverse::app

@@ -1,0 +1,99 @@
+// A scene as the user wrote it, checked and with every default filled in. Built by read_scene, the only reader of
+// options; the physics sees nothing but these structures.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "traverse/beam/model.hpp"
+#include "traverse/options/options.hpp"
+#include "traverse/track/profile.hpp"
+#include "traverse/train/vehicle.hpp"
+
+namespace traverse::app {
+
+enum class Analysis { transient, modes, static_response };
+enum class Start { equilibrium, given };
+
+using train::Coupler;
+using train::Drive;
+using train::MovingLoad;
+using train::Train;
+using train::Vehicle;
+using train::Wheel;
+
+struct Damping {
+  std::optional<std::pair<double, double>> rayleigh;     // a, b given
+  std::optional<std::pair<double, double>> ratios;       // zeta1, zeta2
+  std::optional<std::pair<double, double>> frequencies;  // Hz, the pair that the ratios belong to, when named
+};
+
+struct Output {
+  std::string file;                // HDF5; empty: none
+  std::optional<double> interval;  // s; left out: chosen with the step
+  std::vector<double> probes;      // stations; default: the middle of every span (of the first 200)
+};
+
+/// Runs of one scene at many speeds, with many trains of forces, or both.
+struct Sweep {
+  std::vector<double> speeds;     // m/s; empty: that of the scene
+  std::vector<int> trains;        // HSLM-A, 1 to 10; empty: what the scene holds
+  std::vector<MovingLoad> loads;  // of each of these trains, at the scene's speed
+};
+
+struct Scene {
+  std::string name;                     // of the options file, for messages and default file names
+  std::optional<beam::BeamModel> beam;  // absent: a mechanism on its own, or on rigid ground
+  Damping damping;
+  bool self_weight = false;
+  std::vector<Vehicle> vehicles;  // types in use
+  Train train;
+  MovingLoad load;
+  track::Profile profile;
+  double gravity = 9.81;
+  Analysis analysis = Analysis::transient;
+  Start start = Start::equilibrium;
+  std::optional<double> tail;       // s after the last wheel has left
+  std::optional<double> end_time;   // -ts_max_time
+  std::optional<double> time_step;  // -ts_dt
+  int mode_count = 10;
+  int model_modes = 0;                   // the bridge by so many modes; 0: by its elements
+  bool modes_open = false;               // a sweep may take modes where these do as well
+  std::vector<double> damping_of_modes;  // ratio of each mode, the last one for all further modes; empty: Rayleigh's
+  std::optional<Sweep> sweep;
+  std::optional<double> contact_tolerance;  // s
+  int impact_steps = 20;
+  bool step_kinks = true;        // steps end where wheels pass kinks
+  bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
+  double rest_tolerance = -1.0;  // model_window; -1: auto
+  double accuracy = 1e-3;
+  bool mesh_open = false;        // its elements are chosen from the accuracy
+  bool accuracy_report = false;  // a refined run at the end shows the true errors
+  Output output;
+  bool quiet = false;                                        // -output_quiet: no progress
+  std::vector<std::string> notes;                            // what was chosen and why, one line each
+  std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
+
+  /// Modes under moving forces alone, whose motion is known exactly.
+  bool exact_in_time() const { return model_modes > 0 && vehicles.empty(); }
+};
+
+/// x of the wheels of vehicle `i` of the train at t = 0, in m.
+std::vector<double> wheels_at_start(const Scene& scene, std::size_t i);
+/// x of the wheels of all vehicles of the train at t = 0, in m.
+std::vector<double> wheels_at_start(const Scene& scene);
+
+/// The greater of the train's and the forces' speed, m/s; 0 where there are neither.
+double greatest_speed(const Scene& scene);
+
+/// The shortest wave of the track or of a wheel out of round, m; infinite where all is smooth.
+double shortest_wave(const Scene& scene);
+
+/// Reads and checks all options and the vehicle files they name. Throws InputError with one line.
+Scene read_scene(options::Options options);
+/// The scene of the options in force, which are those that put_into_petsc saw last.
+Scene read_scene();
+
+}  // namespace traverse::app

@@ -1,0 +1,113 @@
+#include "traverse/accuracy/accuracy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "error_search.hpp"
+#include "first_guess.hpp"
+#include "traverse/options/input.hpp"
+#include "traverse/results/stage.hpp"
+#include "traverse/run/passage.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double some_step = 1e-6;             // s, to look at a scene before it has a step
+constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
+constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
+
+/// The option that makes the integrator choose its steps by a measure of its own, or treat contacts apart; null: none.
+const options::Entry* own_measure() {
+  const options::Entry* control = options::in_force().find("ts_adapt_type");
+  if (control != nullptr && control->value != "none") return control;
+  return options::in_force().find("ts_arkimex_fully_implicit");
+}
+
+/// Whether there is something to choose, and something moves that it can be chosen by.
+bool chooses(const Scene& scene) {
+  const bool open = scene.mesh_open || !scene.time_step;
+  const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
+  return open && moves && scene.beam && scene.analysis == Analysis::transient && scene.model_modes == 0;
+}
+
+void leave_out_rest(Scene& scene) {
+  const beam::BeamModel& beam = *scene.beam;
+  if (scene.rest_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= continuous_spans)
+    scene.rest_tolerance = part_for_rest * scene.accuracy;
+}
+
+void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, std::vector<std::string>& notes) {
+  notes.push_back(
+      fmt::format("accuracy {:g}: {} elements a {}, steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
+                  scene.accuracy, mesh_of(scene), scene.beam->track ? "sleeper bay" : "span", *scene.time_step,
+                  search.trials(), search.horizon(), result.seconds));
+  std::string expected;
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (result.promises[q].present && result.promises[q].kept)
+      expected +=
+          fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity_names[q], result.promises[q].expected);
+  if (!expected.empty()) notes.push_back("expected errors of the peaks: " + expected);
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (result.promises[q].present && !result.promises[q].kept)
+      notes.push_back(fmt::format("not promised: {}: {}", quantity_names[q], result.promises[q].why_not));
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, double>> Accuracy::expected() const {
+  std::vector<std::pair<std::string, double>> list;
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (!measured || !promises[q].present || !promises[q].kept) continue;
+    std::string name = quantity_names[q];
+    std::replace(name.begin(), name.end(), ' ', '_');
+    list.emplace_back(name, promises[q].expected);
+  }
+  return list;
+}
+
+Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+  Accuracy result;
+  if (!chooses(scene)) return result;
+  if (const options::Entry* option = own_measure()) {
+    notes.push_back(fmt::format("accuracy {:g} is not searched for by trial runs and nothing is promised: {}",
+                                scene.accuracy, option->given()));
+    return result;
+  }
+  const results::Stage stage("trial runs");
+  const options::WithoutMonitors without_monitors;
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<std::string> ignored;
+  if (scene.mesh_open)
+    set_mesh(scene, scene.beam->track ? first_mesh(scene) : 2 * aligned_mesh(scene, first_mesh(scene) / 2));
+  Structure structure(comm, scene, ignored);
+  structure.damp(scene, true, ignored);
+  structure.prepare(scene, ignored);
+  Scene known = scene;
+  known.damping.ratios.reset();
+  known.damping.rayleigh = {structure.rayleigh.a, structure.rayleigh.b};
+  Scene timed = known;
+  if (!timed.time_step) timed.time_step = some_step;
+  const double end = Passage(timed, structure, ignored).plan().end_time;
+  ErrorSearch search(comm, known, structure, end);
+  search.run();
+  search.apply(scene, result);
+  leave_out_rest(scene);
+  result.measured = true;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  say(scene, search, result, notes);
+  return result;
+}
+
+Scene refined(const Scene& scene) {
+  Scene fine = scene;
+  if (fine.beam->track)
+    fine.beam->track->elements_per_bay *= 2;
+  else
+    for (int& elements : fine.beam->elements) elements *= 2;
+  fine.time_step = 0.5 * *scene.time_step;
+  return fine;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,33 @@
+// How the error of a peak depends on the step or on the length of elements, from what halving them changed.
+#pragma once
+
+#include <cstddef>
+
+namespace traverse::app {
+
+inline constexpr double highest_order = 4.0;  // of the default integrator and of the elements
+
+/// The error of a run, relative to the peak: value * (size/size_of_run)^power.
+struct ErrorLaw {
+  double value = 0.0;
+  double order = 2.0;  // measured where `known`, else supposed
+  bool known = false;
+  double change = 0.0;  // what halving changed
+  double size = 0.0;    // the step (s), or the length of elements (in spans)
+
+  /// The power law to go by towards longer steps or elements.
+  double power() const;
+  /// Towards shorter ones, and from a change to the error: errors are not supposed to fall as fast as integrators
+  /// promise.
+  double power_refining() const;
+  /// Times the size that would leave the error `wanted`.
+  double room(double wanted) const;
+  /// Of a size `times` as large.
+  double at(double times) const;
+};
+
+/// From what halving the size to `size` changed, and what was known before of another size. Where the change is so much
+/// smaller than before that it must be chance, less is believed. most: the highest order there can be.
+ErrorLaw error_from(double change, double size, const ErrorLaw& before, double most = highest_order);
+
+}  // namespace traverse::app

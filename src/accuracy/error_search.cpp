@@ -1,0 +1,307 @@
+#include "error_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <tuple>
+
+#include "first_guess.hpp"
+#include "traverse/base/whole.hpp"
+#include "traverse/run/plan.hpp"
+
+namespace traverse::app {
+namespace {
+
+// Of the wanted error, for the step and for the mesh each; less where errors fall too slowly to be told well.
+constexpr double usual_share = 0.4, small_share = 0.25, small_error = 3e-5;
+// Times a measured size that an error is extrapolated to: by a measured order, by a supposed one, and where measuring
+// would cost more than it is worth.
+constexpr double farthest = 2.2, supposed = 1.5, at_most = 2.5;
+constexpr double best_effort = 10.0;                  // times the wanted error, of what is refused
+constexpr double unsettled_order = 0.5, slow = 0.75;  // orders below which an error does not fall
+constexpr int most_rounds = 14;
+constexpr double finest_factor = 32.0;   // times the first step
+constexpr double hardly_anything = 1.5;  // s of trial runs, estimated
+constexpr double trials_of_run = 0.7;    // for trial runs
+constexpr double farthest_guess = 8.0;   // of the run's mesh and step, for that
+constexpr double passed_over = 2.0;      // times the wanted error, on the way to longer steps
+constexpr double share_between = 0.5;    // of the wanted error, where it is only known for shorter and longer steps
+constexpr double most_growth = 4.0;
+constexpr int most_elements_a_bay = 8, most_elements_in_all = 1200;
+
+/// The largest number of two digits that does not exceed x.
+double two_digits(double x) {
+  const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
+  return std::floor(x / unit * (1.0 + 1e-9)) * unit;
+}
+
+int most_trial_elements(const Scene& scene) {
+  const int dense = most_elements_in_all / static_cast<int>(std::min<std::size_t>(scene.beam->spans.size(), 1000));
+  return std::max(scene.beam->track ? most_elements_a_bay : std::clamp(dense, 32, 256), 4 * mesh_of(scene));
+}
+
+}  // namespace
+
+ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const Structure& structure, double end)
+    : comm_(comm),
+      scene_(scene),
+      end_(end),
+      horizon_(beginning(scene, end)),
+      trials_(comm, shortened(scene, horizon_)),
+      open_mesh_(scene.mesh_open),
+      open_step_(!scene.time_step),
+      wanted_((scene.accuracy > small_error ? usual_share : small_share) * scene.accuracy),
+      mesh_(mesh_of(scene)),
+      most_elements_(most_trial_elements(scene)) {
+  for (Promise& p : promises_) p.present = p.kept = true;
+  const double omega = structure.omega ? structure.omega->first : 0.0;
+  const FirstSteps steps = first_steps(scene, omega, horizon_);
+  longest_step_ = steps.longest;
+  shortest_ = open_step_ ? steps.why : "the step is given";
+  first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.time_step;
+  const double decay = 0.5 * (structure.rayleigh.a + structure.rayleigh.b * omega * omega);
+  growth_ = std::clamp(std::min(end, decay > 0.0 ? 1.0 / decay : end) / horizon_, 1.0, most_growth);
+  if (!follows_contacts(scene, step_))
+    refuse(wheel_force, fmt::format("the contact vibrates at {:.3g} Hz, which steps of {:.2g} s do not follow",
+                                    contact_frequency(scene) / (2.0 * std::numbers::pi), step_));
+  // A force that comes onto a beam starts all its modes, the nth with an acceleration like 1/n.
+  undamped_ = structure.rayleigh.b <= 0.0 && !scene.beam->track;
+  if (undamped_)
+    refuse(acceleration, "without damping that grows with the frequency the accelerations of all modes have no sum");
+}
+
+void ErrorSearch::run() {
+  search();
+  refuse_what_is_given();
+}
+
+// Where trial runs become too many, what was measured has to do.
+void ErrorSearch::search() {
+  try {
+    refine();
+    coarsen();
+  } catch (const TooMuchWork&) {
+    if (!measured_) refuse_scene();
+    std::tie(step_, mesh_) = *measured_;
+    refuse_what_is_far();
+  }
+}
+
+void ErrorSearch::refuse_scene() const {
+  throw InputError(
+      fmt::format("accuracy = {:g}: the trial runs that find mesh and step would take {:.1g} steps of {:.1g} s with {} "
+                  "elements a {} "
+                  "and more ({}), which is beyond what they may take; look at the masses, stiffnesses and lengths of "
+                  "the scene, or give ts_dt and {}, "
+                  "which need no trial runs",
+                  scene_.accuracy, horizon_ / step_, step_, mesh_, unit_of_mesh(), shortest_,
+                  scene_.beam->track ? "track_elements_per_bay" : "beam_elements_per_span"));
+}
+
+void ErrorSearch::refine() {
+  for (int round = 0; round < most_rounds; ++round) {
+    measure();
+    refuse_what_does_not_settle();
+    const bool finer = open_step_ && !within_reach(time_), denser = open_mesh_ && !within_reach(space_);
+    if (!finer && !denser) return;
+    if (!worth_it(finer ? 0.5 * step_ : step_, denser ? 2 * mesh_ : mesh_)) return refuse_what_is_far();
+    if (finer) step_ *= 0.5;
+    if (denser) mesh_ *= 2;
+  }
+}
+
+// Longer steps against the finest one. What is only a little too large between may be passed over: where the contacts'
+// vibration is half resolved errors are larger than where it is not at all.
+void ErrorSearch::coarsen() {
+  if (!open_step_) return;
+  const double fine = step_;
+  const Errors errors = time_;
+  for (double step = 2.0 * fine; step <= longest_step_; step *= 2.0) {
+    if (trials_.run(mesh_, step).failed()) return;  // and nothing is known of steps between
+    Errors longer = errors;
+    for (std::size_t q = 0; q < quantities; ++q)
+      longer[q].value += growth_ * difference(trials_.run(mesh_, step), trials_.run(mesh_, fine),
+                                              static_cast<Quantity>(q), 3.0 * step);
+    if (excess(longer) <= 1.0) {
+      step_ = step;
+      time_ = longer;
+      coarser_.reset();
+    } else if (step == 2.0 * step_) {
+      coarser_ = longer;
+    }
+    if (excess(longer) > passed_over) return;
+  }
+}
+
+/// What the errors are of those wanted, at most.
+double ErrorSearch::excess(const Errors& errors) const {
+  double most = 0.0;
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (promised(q)) most = std::max(most, errors[q].value / wanted_);
+    if (promises_[q].present && tried_[q])
+      most = std::max(most, errors[q].value / std::max(best_effort * wanted_, time_[q].value));
+  }
+  return most;
+}
+
+void ErrorSearch::apply(Scene& scene, Accuracy& result) {
+  const double longer = factor_of_step(), fewer = factor_of_elements();
+  const double step = open_step_ ? two_digits(step_ * longer) : step_;
+  int mesh = mesh_;
+  if (open_mesh_ && scene.beam->track) mesh = base::whole(std::ceil(mesh_ / fewer));
+  if (open_mesh_ && !scene.beam->track)
+    mesh = aligned_mesh(scene_, std::max(4, 2 * base::whole(std::ceil(0.5 * mesh_ / fewer))));
+  set_mesh(scene, mesh);
+  scene.time_step = step;
+  scene.step_probes = true;
+  for (std::size_t q = 0; q < quantities; ++q) {
+    const double ratio = step / step_;
+    double in_time = time_[q].at(ratio);
+    if (coarser_ && ratio > 1.0 && time_[q].value > 0.0)  // between two that are measured
+      in_time = time_[q].value * std::pow((*coarser_)[q].value / time_[q].value, std::log2(ratio));
+    result.promises[q] = promises_[q];
+    result.promises[q].expected = in_time + space_[q].at(static_cast<double>(mesh_) / mesh);
+  }
+}
+
+// --- errors --------------------------------------------------------------------------------------------------------
+
+// Those of a given mesh or step too, where there are coarser ones to compare with.
+void ErrorSearch::measure() {
+  const Peaks& fine = trials_.run(mesh_, step_);
+  Errors time = time_, space = space_;
+  for (std::size_t i = 0; i < quantities; ++i) {
+    const auto q = static_cast<Quantity>(i);
+    promises_[q].present = fine.failed() || fine.largest(q).value != 0.0;
+    if (open_step_ || step_ <= longest_step_) time[q] = error_in_time(q);
+    if (mesh_ % 2 == 0) space[q] = error_in_space(q);
+  }
+  time_ = time;
+  space_ = space;
+  measured_ = {step_, mesh_};
+}
+
+ErrorLaw ErrorSearch::error_in_time(Quantity q) {
+  const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
+  // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
+  const double most = q != moment || !undamped_ ? highest_order : time_[q].size > 0.0 ? 2.0 : 1.0;
+  return error_from(growth_ * change, step_, time_[q], most);
+}
+
+// With twice the step, at half the cost: runs that the error in time asks for too. Steps over more than an element
+// would hide what elements do.
+ErrorLaw ErrorSearch::error_in_space(Quantity q) {
+  const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
+  const double step = open_step_ && 2.0 * step_ * greatest_speed(scene_) < element ? 2.0 * step_ : step_;
+  const double change = difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
+  return error_from(std::pow(growth_, 0.75) * change, 1.0 / mesh_, space_[q]);
+}
+
+/// Times the step (or the element) at which all that is promised keeps its share.
+double ErrorSearch::room(const Errors& errors) const {
+  double least = at_most * farthest_guess;
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (promised(q)) least = std::min(least, errors[q].room(wanted_));
+  return least;
+}
+
+/// What could not be promised is not to become much worse than it was.
+double ErrorSearch::room_to_coarsen(const Errors& errors) const {
+  double least = room(errors);
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (promises_[q].present && tried_[q])
+      least = std::min(least, std::max(1.0, errors[q].room(best_effort * wanted_)));
+  return least;
+}
+
+bool ErrorSearch::within_reach(const Errors& errors) const {
+  for (std::size_t q = 0; q < quantities; ++q) {
+    const ErrorLaw& e = errors[q];
+    if (!promised(q) || e.room(wanted_) >= 1.0) continue;
+    if ((e.known && e.order < 1.0) || e.room(wanted_) < 1.0 / (e.known ? farthest : supposed)) return false;
+  }
+  return true;
+}
+
+// Longer steps only between two that are measured.
+double ErrorSearch::factor_of_step() const {
+  const double factor = std::clamp(room(time_), 1.0 / at_most, 1.0);
+  if (factor < 1.0 || !coarser_) return factor;
+  double least = std::min(2.0, room_to_coarsen(time_));
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (!promised(q) || time_[q].value == 0.0) continue;
+    const double growth = (*coarser_)[q].value / time_[q].value, allowed = share_between * wanted_ / time_[q].value;
+    if (growth > allowed) least = std::min(least, std::exp2(std::log(allowed) / std::log(growth)));
+  }
+  return std::max(least, 1.0);
+}
+
+double ErrorSearch::factor_of_elements() const {
+  return std::clamp(room(space_) < 1.0 ? room(space_) : room_to_coarsen(space_), 1.0 / at_most, 2.0);
+}
+
+// --- what is not promised ------------------------------------------------------------------------------------------
+
+void ErrorSearch::refuse(std::size_t q, std::string why) {
+  if (!promised(q)) return;
+  promises_[q].kept = false;
+  promises_[q].why_not = std::move(why);
+}
+
+void ErrorSearch::refuse_what_does_not_settle() {
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (!promised(q)) continue;
+    const ErrorLaw &t = time_[q], &s = space_[q];
+    const bool long_step = open_step_ && t.room(wanted_) < 1.0, long_element = open_mesh_ && s.room(wanted_) < 1.0;
+    crawls_[q] = t.known && t.order < slow && 4.0 * step_ <= first_step_ ? crawls_[q] + 1 : 0;
+    if (long_step && step_ <= first_step_ / finest_factor)
+      refuse(q, fmt::format("steps of {:.2g} s still leave an error of {:.1g}", step_, t.value));
+    else if (long_step && crawls_[q] > 1)
+      refuse(q, fmt::format("it does not settle as steps are halved ({:.1g} with {:.2g} s)", t.value, step_));
+    else if (long_element && s.known && s.order < unsettled_order && 4 * mesh_ > most_elements_)
+      refuse(q, fmt::format("it does not settle as elements are halved ({:.1g} with {} a {})", s.value, mesh_,
+                            unit_of_mesh()));
+    else if (long_element && s.room(wanted_) < 1.0 / farthest && 2 * mesh_ > most_elements_)
+      refuse(q, fmt::format("{} elements a {} still leave an error of {:.1g}", mesh_, unit_of_mesh(), s.value));
+    tried_[q] = !promises_[q].kept;
+  }
+}
+
+// Errors farther off than can be told from what was measured, where no more is measured.
+void ErrorSearch::refuse_what_is_far() {
+  const auto far = [&](const ErrorLaw& e) {
+    return e.room(wanted_) < (e.known && e.order < 1.0 ? 1.0 : 1.0 / at_most);
+  };
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (!promised(q)) continue;
+    if (open_step_ && far(time_[q]))
+      refuse(q, fmt::format(
+                    "steps of {:.2g} s leave an error of {:.1g} and trying shorter ones would cost more than the run",
+                    step_, time_[q].value));
+    else if (open_mesh_ && far(space_[q]))
+      refuse(q, fmt::format("{} elements a {} leave an error of {:.1g} and trying more would cost more than the run",
+                            mesh_, unit_of_mesh(), space_[q].value));
+    tried_[q] = !promises_[q].kept;
+  }
+}
+
+void ErrorSearch::refuse_what_is_given() {
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (!open_step_ && time_[q].value > scene_.accuracy)
+      refuse(q, fmt::format("the step of {:g} s, which is given, leaves an error of {:.1g}", step_, time_[q].value));
+    if (!open_mesh_ && space_[q].value > scene_.accuracy)
+      refuse(q, fmt::format("the {} elements a {}, which are given, leave an error of {:.1g}", mesh_, unit_of_mesh(),
+                            space_[q].value));
+  }
+}
+
+// Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.
+bool ErrorSearch::worth_it(double step, int mesh) const {
+  const auto guess = [&](const Errors& errors) { return std::clamp(room(errors), 1.0 / farthest_guess, 1.0); };
+  const double run = trials_.seconds(base::whole(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
+  return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, trials_of_run * run);
+}
+
+}  // namespace traverse::app

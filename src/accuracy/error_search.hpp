@@ -1,0 +1,73 @@
+// The search for mesh and step by trial runs: each is halved until what that changes tells the errors and how fast they
+// fall; what lies near enough is extrapolated.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "error_law.hpp"
+#include "traverse/accuracy/accuracy.hpp"
+#include "traverse/accuracy/trials.hpp"
+#include "traverse/run/structure.hpp"
+
+namespace traverse::app {
+
+class ErrorSearch {
+ public:
+  /// The scene with its Rayleigh damping as a and b; both must outlive it. end: of the run, s.
+  ErrorSearch(MPI_Comm comm, const Scene& scene, const Structure& structure, double end);
+
+  /// Collective.
+  void run();
+  /// Mesh and step of the scene, where they are open, and what they promise.
+  void apply(Scene& scene, Accuracy& result);
+
+  double horizon() const { return horizon_; }  // s, of a trial run
+  std::size_t trials() const { return trials_.count(); }
+
+ private:
+  using Errors = std::array<ErrorLaw, quantities>;
+
+  void refine();
+  void search();
+  [[noreturn]] void refuse_scene() const;
+  void coarsen();
+  void measure();
+  double excess(const Errors& errors) const;
+  ErrorLaw error_in_time(Quantity q);
+  ErrorLaw error_in_space(Quantity q);
+  void refuse(std::size_t q, std::string why);
+  void refuse_what_does_not_settle();
+  void refuse_what_is_far();
+  void refuse_what_is_given();
+  bool promised(std::size_t q) const { return promises_[q].present && promises_[q].kept; }
+  bool within_reach(const Errors& errors) const;
+  bool worth_it(double step, int mesh) const;
+  double room(const Errors& errors) const;
+  double room_to_coarsen(const Errors& errors) const;
+  double factor_of_step() const;
+  double factor_of_elements() const;
+  const char* unit_of_mesh() const { return scene_.beam->track ? "sleeper bay" : "span"; }
+
+  MPI_Comm comm_;
+  const Scene& scene_;
+  double end_, horizon_;  // s, of the run and of trials
+  Trials trials_;
+  bool open_mesh_, open_step_;
+  bool undamped_ = false;  // no damping grows with the frequency
+  double wanted_;          // error of the step, and of the mesh
+  int mesh_, most_elements_;
+  double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s
+  double growth_ = 1.0;  // of errors in free oscillations until these have died away, for runs longer than the trials
+  std::array<Promise, quantities> promises_{};
+  std::array<bool, quantities> tried_{};  // refused by the search, with an error as small as it could be made
+  std::array<int, quantities> crawls_{};  // halvings of the step in a row that have changed little
+  Errors time_{}, space_{};
+  std::optional<std::pair<double, int>> measured_;  // step and mesh that the errors belong to
+  std::string shortest_;                            // what asks for the shortest steps, in words
+  std::optional<Errors> coarser_;                   // in time, of twice the step, where that is too long
+};
+
+}  // namespace traverse::app

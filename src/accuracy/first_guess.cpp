@@ -1,0 +1,107 @@
+#include "first_guess.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "traverse/base/error.hpp"
+#include "traverse/base/whole.hpp"
+#include "traverse/run/plan.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr int first_bay = 2;
+constexpr int most_in_a_span = 100000;   // a span, as beam_elements_per_span allows
+constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 EI/k)^(1/4)
+constexpr double trial_steps_a_period = 12.0, steps_a_crossing = 24.0, trial_steps_a_wave = 20.0, steps_a_sleeper = 8.0;
+constexpr double part_of_run = 1e-2;
+// Step times frequency of the contacts, rad, at an accuracy of 1e-2 and at the finest; it falls as accuracy^0.22, which
+// is what coaches on Hertz wheels were found to need.
+constexpr double contact_angle = 1.0, least_contact_angle = 0.15, contact_power = 0.22;
+constexpr double coarse = 5e-3;  // from which on the vibration on a track hardly counts
+constexpr double finest = 64.0;  // times what all the rest needs
+
+double contact_angle_of(double accuracy) {
+  return contact_angle * std::clamp(std::pow(accuracy / 1e-2, contact_power), least_contact_angle, 1.0);
+}
+
+}  // namespace
+
+int first_mesh(const Scene& scene) {
+  const beam::BeamModel& beam = *scene.beam;
+  if (beam.track) return first_bay;
+  double bed = beam.foundation.vertical_bed ? beam.foundation.vertical_bed->k.maximum() : 0.0;
+  for (const beam::PointFoundation& point : beam.foundation.vertical) bed += point.k / beam.length();
+  const int wanted = scene.accuracy >= 3e-3 ? 8 : scene.accuracy >= 3e-4 ? 16 : 32;
+  if (bed == 0.0) return wanted;
+  const double wave = std::pow(4.0 * beam.EI.minimum() / bed, 0.25);
+  const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
+  if (elements_a_wave * longest / wave > most_in_a_span)
+    throw InputError(
+        fmt::format("foundation_vertical: on its bed the beam bends within {:.3g} m, which {:g} elements in the span "
+                    "of {:g} m do not "
+                    "resolve; a softer foundation, a stiffer beam_EI or a shorter span is meant, or "
+                    "beam_elements_per_span is given",
+                    wave, static_cast<double>(most_in_a_span), longest));
+  return std::max(wanted, 4 * base::whole(std::ceil(0.25 * elements_a_wave * longest / wave), most_in_a_span / 4));
+}
+
+double contact_frequency(const Scene& scene) {
+  double highest = 0.0;
+  for (const int index : scene.train.vehicles) {
+    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(index)];
+    double mass = 0.0;
+    for (const multibody::Body& body : vehicle.mechanism.bodies) mass += body.mass;
+    for (const Wheel& wheel : vehicle.wheels) {
+      const double weight = mass * scene.gravity / static_cast<double>(vehicle.wheels.size());
+      const double stiffness = wheel.law.kind == contact::LawKind::hertz
+                                   ? 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2))
+                                   : wheel.law.stiffness;
+      highest = std::max(highest, stiffness / vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].mass);
+    }
+  }
+  return std::sqrt(highest);
+}
+
+FirstSteps first_steps(const Scene& scene, double omega, double duration) {
+  double step = part_of_run * duration;
+  std::string why = "a part of the run";
+  const auto no_longer_than = [&](double most, double what, const char* text) {
+    if (most >= step) return;
+    step = most;
+    why = fmt::format("{} {:.3g} s", text, what);
+  };
+  if (omega > 0.0) {
+    const double period = 2.0 * std::numbers::pi / omega;
+    no_longer_than(period / trial_steps_a_period, period, "the first period of the beam is");
+  }
+  if (const double speed = greatest_speed(scene); speed > 0.0) {
+    const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
+    const double wave = shortest_wave(scene);
+    no_longer_than(span / speed / steps_a_crossing, span / speed, "the shortest span is crossed in");
+    no_longer_than(wave / speed / trial_steps_a_wave, wave / speed,
+                   "the shortest wave of track and wheels is passed in");
+  }
+  if (scene.output.interval) no_longer_than(*scene.output.interval, *scene.output.interval, "output_interval is");
+  const double contact = contact_frequency(scene);
+  // On a track the rail goes on over the bridge's ends: nothing stirs the contacts there.
+  if (scene.beam->track && greatest_speed(scene) > 0.0) {
+    const double sleeper = scene.beam->track->spacing / greatest_speed(scene) / steps_a_sleeper;
+    if (contact == 0.0 || scene.accuracy >= coarse)
+      return {std::min(step, sleeper), step, sleeper < step ? "the sleepers are passed so fast" : why};
+  }
+  if (contact == 0.0) return {step, step, why};
+  const double vibration = std::max(contact_angle_of(scene.accuracy) / contact, step / finest);
+  if (vibration >= step) return {step, step, why};
+  return {vibration, step,
+          fmt::format("wheels vibrate on their contacts at {:.3g} Hz", contact / (2.0 * std::numbers::pi))};
+}
+
+bool follows_contacts(const Scene& scene, double step) {
+  return contact_frequency(scene) * step <= 2.0 * contact_angle || (scene.beam->track && scene.accuracy >= coarse);
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,29 @@
+// Mesh and step that trial runs begin with: from the periods, waves and contacts of the scene.
+#pragma once
+
+#include <string>
+
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// Elements of the longest span; with a layered track elements of the rail a sleeper bay.
+int first_mesh(const Scene& scene);
+
+/// The highest frequency at which a wheel vibrates on its contact under its share of the vehicle's weight, rad/s; 0
+/// without wheels.
+double contact_frequency(const Scene& scene);
+
+/// s.
+struct FirstSteps {
+  double first = 0.0;    // where the contacts' vibration is resolved as far as the accuracy wants
+  double longest = 0.0;  // where all the rest is, and no stored sample is stepped over
+  std::string why;       // what asks for the first one, in words
+};
+/// omega: the first frequency of the beam, rad/s; 0: not known. duration: of a trial run, s.
+FirstSteps first_steps(const Scene& scene, double omega, double duration);
+
+/// Whether steps follow the contacts' vibration so far that its forces are told.
+bool follows_contacts(const Scene& scene, double step);
+
+}  // namespace traverse::app

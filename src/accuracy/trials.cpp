@@ -1,0 +1,211 @@
+#include "traverse/accuracy/trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/base/whole.hpp"
+#include "traverse/results/stage.hpp"
+#include "traverse/run/passage.hpp"
+#include "traverse/run/watch.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
+constexpr std::size_t few_spans = 24;    // are all kept
+constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
+constexpr double roughness = 1.3;        // times the work on vehicles on a rough track
+constexpr double same_node = 1e-9;
+constexpr std::size_t few_stations = 100;
+constexpr int least_elements = 4;
+constexpr double solves_a_step = 5.0;           // of the beam, by the default method
+constexpr double steps_a_factorisation = 30.0;  // that would cost as much as a step of a new length
+constexpr std::size_t crossed_in_full = 3;      // spans
+constexpr double behind = 1.1;                  // spans, until what the last wheel does as it leaves is seen
+
+bool is_node(const beam::BeamModel& beam, double x) {
+  double left = 0.0;
+  for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
+    const double node = (x - left) / beam.spans[i] * beam.elements[i];
+    if (x <= left + beam.spans[i] * (1.0 + same_node))
+      return std::abs(node - std::round(node)) < same_node * beam.elements[i];
+  }
+  return false;
+}
+
+double foremost(const Scene& scene, std::size_t vehicle) {
+  const std::vector<double> wheels = wheels_at_start(scene, vehicle);
+  return wheels.empty() ? 0.0 : *std::max_element(wheels.begin(), wheels.end());
+}
+
+/// x at t = 0 of what of the first vehicle has to have crossed: its last wheel, in a train its middle.
+double last_to_watch(const Scene& scene) {
+  const std::vector<double> wheels = wheels_at_start(scene, 0);
+  if (wheels.empty()) return 0.0;
+  const auto [rear, front] = std::minmax_element(wheels.begin(), wheels.end());
+  return scene.train.vehicles.size() < 3 ? *rear : 0.5 * (*front + *rear);
+}
+
+void leave_out_vehicles(Scene& scene, double end) {
+  Train& train = scene.train;
+  if (train.drive != train::Drive::constant || !train.couplers.empty()) return;
+  std::size_t count = 1;
+  for (std::size_t i = 1; i < train.vehicles.size(); ++i)
+    if (foremost(scene, i) + train.speed * end > 0.0) count = i + 1;
+  count = std::min(count, train.vehicles.size());
+  train.vehicles.resize(count);
+  train.positions.resize(count);
+}
+
+void leave_out_spans(Scene& scene, double end) {
+  beam::BeamModel& beam = *scene.beam;
+  const beam::Foundation& f = beam.foundation;
+  const bool founded =
+      f.vertical_bed || f.longitudinal_bed || !f.vertical.empty() || !f.longitudinal.empty() || !f.rotational.empty();
+  const bool plain = !founded && !beam.track && beam.hinges.empty();
+  if (!plain || beam.spans.size() <= few_spans || scene.train.drive != train::Drive::constant) return;
+  double front = scene.output.probes.empty() ? 0.0 : scene.output.probes.front();
+  if (!scene.train.vehicles.empty()) front = std::max(front, foremost(scene, 0) + scene.train.speed * end);
+  for (const double x : scene.load.positions) front = std::max(front, x + scene.load.speed * end);
+  std::size_t count = 0;
+  for (double x = 0.0; count < beam.spans.size() && x < front; ++count) x += beam.spans[count];
+  count = std::min(beam.spans.size(), count + margin_spans);
+  beam.spans.resize(count);
+  beam.elements.resize(count);
+  beam.supports.resize(count + 1);
+  if (beam.joints.size() > 1) beam.joints.resize(count - 1);
+  std::erase_if(scene.output.probes, [&](double x) { return x > beam.length(); });
+}
+
+}  // namespace
+
+void set_mesh(Scene& scene, int elements) {
+  beam::BeamModel& beam = *scene.beam;
+  if (beam.track) {
+    beam.track->elements_per_bay = elements;
+    return;
+  }
+  const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
+  for (std::size_t i = 0; i < beam.spans.size(); ++i)
+    beam.elements[i] = elements == 1
+                           ? 1
+                           : std::max(std::min(elements, least_elements),
+                                      2 * base::whole(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
+}
+
+int aligned_mesh(const Scene& scene, int elements) {
+  if (scene.beam->track) return elements;
+  std::vector<double> stations = scene.output.probes;
+  for (const auto* points :
+       {&scene.beam->foundation.vertical, &scene.beam->foundation.longitudinal, &scene.beam->foundation.rotational})
+    for (const beam::PointFoundation& point : *points) stations.push_back(point.x);
+  if (stations.size() > few_stations) return elements;
+  Scene tried = scene;
+  for (int count = elements; 2 * count <= 3 * elements; count += 2) {
+    set_mesh(tried, count);
+    if (std::all_of(stations.begin(), stations.end(), [&](double x) { return is_node(*tried.beam, x); })) return count;
+  }
+  return elements;
+}
+
+int mesh_of(const Scene& scene) {
+  return scene.beam->track ? scene.beam->track->elements_per_bay
+                           : *std::max_element(scene.beam->elements.begin(), scene.beam->elements.end());
+}
+
+double beginning(const Scene& scene, double end) {
+  const std::vector<double>& spans = scene.beam->spans;
+  const double reach = behind * (spans.size() <= crossed_in_full ? scene.beam->length() : spans[0]);
+  const auto crossing = [&](double rear, double speed) { return speed > 0.0 ? (reach - rear) / speed : end; };
+  double until = 0.0;
+  if (!scene.train.vehicles.empty())
+    until = scene.train.drive == train::Drive::constant ? crossing(last_to_watch(scene), scene.train.speed) : end;
+  if (!scene.load.forces.empty()) {
+    std::vector<double> positions = scene.load.positions;
+    std::sort(positions.begin(), positions.end(), std::greater<>());
+    until = std::max(until, crossing(positions[std::min<std::size_t>(3, positions.size() - 1)], scene.load.speed));
+  }
+  return until > 0.0 && until < end ? until : end;
+}
+
+Scene shortened(const Scene& scene, double end) {
+  Scene part = scene;
+  part.end_time = end;
+  part.quiet = true;
+  part.step_probes = true;
+  leave_out_vehicles(part, end);
+  leave_out_spans(part, end);
+  return part;
+}
+
+RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
+  std::vector<std::string> ignored;
+  Structure structure(comm, scene, ignored);
+  structure.damp(scene, false, ignored);
+  structure.prepare(scene, ignored);
+  Passage passage(scene, structure, ignored);
+  passage.start(ignored);
+  structure.beam->release_matrices();
+  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
+  Watch watch(scene, passage.system(), structure.bridge(), none);
+  RunPeaks result;
+  const auto steps_so_far = [&] {
+    const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_a_step;
+    return std::max(static_cast<double>(passage.steps()), by_solves) +
+           steps_a_factorisation * static_cast<double>(passage.system().factorisations());
+  };
+  const results::Stage stage("time steps");
+  passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
+              [&](double t, long) {
+                watch.step(t);
+                results::Stage::advance(t / passage.plan().end_time);
+                result.complete = steps_so_far() <= most_steps;
+                return result.complete;
+              });
+  result.steps = steps_so_far();
+  result.peaks = watch.finished_peaks();
+  return result;
+}
+
+// A step with every part of the scene; where contacts change, steps are many more than the run's length asks for.
+double Trials::seconds_a_step(int elements) const {
+  const beam::BeamModel& beam = *scene_.beam;
+  const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
+  double bodies = 0.0;
+  for (const int type : scene_.train.vehicles)
+    bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
+  if (std::isfinite(scene_.profile.shortest_wave())) bodies *= roughness;
+  const double along = beam.track ? (beam.length() + 2.0 * beam.track->approach) / beam.track->spacing * elements
+                                  : beam.length() / longest * elements;
+  const double probes = static_cast<double>(scene_.output.probes.size());
+  return 5e-6 + 5e-6 * bodies + 1e-7 * probes + along * (beam.track ? 1e-6 : 1e-7);
+}
+
+double Trials::seconds(int elements, double step) const { return *scene_.end_time / step * seconds_a_step(elements); }
+
+double Trials::seconds() const {
+  double sum = 0.0;
+  for (const auto& [mesh_and_step, peaks] : kept_) sum += seconds(mesh_and_step.first, mesh_and_step.second);
+  return sum;
+}
+
+const Peaks& Trials::run(int elements, double step) {
+  if (const auto known = kept_.find({elements, step}); known != kept_.end()) return known->second;
+  Scene scene = scene_;
+  set_mesh(scene, elements);
+  scene.time_step = step;
+  scene.output.interval = steps_a_check * step;
+  const double a_step = seconds_a_step(elements), most_steps = (most_seconds - spent_) / a_step;
+  RunPeaks result;
+  try {
+    if (*scene_.end_time / step > most_steps) throw TooMuchWork();
+    result = peaks_of(comm_, scene, most_steps);
+  } catch (const SolverError&) {
+    result.peaks = Peaks::of_failure();  // too long a step, most likely
+  }
+  spent_ += result.steps * a_step;
+  if (!result.complete) throw TooMuchWork();
+  return kept_.emplace(std::pair{elements, step}, std::move(result.peaks)).first->second;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,36 @@
+#include "traverse/run/deflection_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double large = 0.1;     // of the longest span
+constexpr double absurd = 100.0;  // of it
+
+}  // namespace
+
+void check_deflection(MPI_Comm comm, const Scene& scene, double deflection) {
+  if (!scene.beam) return;
+  const double span = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end());
+  const double size = std::abs(deflection);
+  if (size > absurd * span)
+    throw SolverError(
+        fmt::format("the bridge deflects by {:.3g} m, its longest span is {:g} m: no beam does; check the units of "
+                    "beam_EI, beam_mass, loads and speed (N, m, kg, s)",
+                    size, span));
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (size > large * span && rank == 0)
+    fmt::print(
+        "  note: the bridge deflects by {:.3g} m, more than a tenth of its longest span of {:g} m: the theory of small "
+        "displacements does not hold there\n",
+        size, span);
+}
+
+}  // namespace traverse::app

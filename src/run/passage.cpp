@@ -1,0 +1,116 @@
+#include "traverse/run/passage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "traverse/results/stage.hpp"
+#include "traverse/run/peaks.hpp"
+#include "traverse/run/resolution.hpp"
+#include "traverse/structure/modal_structure.hpp"
+#include "traverse/structure/rest_window.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double rare = 5.0;  // steps for each
+
+coupling::SystemInput system_input(const Scene& scene, bool still) {
+  coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,        scene.profile,
+                                 scene.gravity,  scene.self_weight, scene.impact_steps};
+  if (still) input.train.speed = input.load.speed = 0.0;
+  return input;
+}
+
+/// The bridge by its modes where vehicles run on these; else by its elements, or none.
+std::unique_ptr<structure::Structure> carrier(const Scene& scene, const Structure& structure,
+                                              const coupling::SystemInput& input) {
+  if (!structure.modal || scene.exact_in_time())
+    return coupling::by_elements(structure.bridge(), input, structure.statics);
+  return std::make_unique<structure::ModalStructure>(*structure.modal, input.self_weight ? input.gravity : 0.0,
+                                                     structure.statics);
+}
+
+/// When something passes a probe, as long as that is rare among the steps.
+std::vector<double> passages(const Scene& scene, const Plan& plan) {
+  std::vector<double> times;
+  for (const std::vector<double>& one : passages_of(scene)) times.insert(times.end(), one.begin(), one.end());
+  std::erase_if(times, [&](double t) { return t >= plan.end_time; });
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  if (static_cast<double>(times.size()) * rare > plan.end_time / plan.time_step) times.clear();
+  return times;
+}
+
+}  // namespace
+
+Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std::string>& notes)
+    : scene_(scene),
+      still_(scene.analysis == Analysis::static_response),
+      input_(system_input(scene, still_)),
+      system_(structure.comm, carrier(scene, structure, input_), input_) {
+  check_mesh(scene, notes);
+  if (!still_) plan_ = make_plan(scene, system_, structure.first_period(), notes);
+  std::string method;
+  if (scene.exact_in_time()) {
+    modal_.emplace(system_, *structure.modal, *structure.statics, input_, scene.start == Start::equilibrium,
+                   plan_.end_time, plan_.interval);
+    method = modal_->method();
+  } else {
+    leave_out_rest(notes);
+    integrate::Settings settings{plan_.end_time, plan_.time_step, plan_.interval,
+                                 system_.known_events(plan_.end_time, scene.step_kinks),
+                                 scene.contact_tolerance.value_or(1e-3 * plan_.time_step)};
+    if (scene.step_probes) settings.passages = passages(scene, plan_);
+    settings.stored = plan_.stored;
+    settings.corners = scene.step_kinks && !still_;
+    stepper_.emplace(system_, std::move(settings));
+    if (!still_) check_times(plan_);
+    if (!still_ && stepper_->hides_long_steps())
+      check_steps(scene, plan_, structure.first_period(), stepper_->high_order(), notes);
+    method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
+  }
+  notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",
+                              system_.fleet().members.size(), system_.freedom(), scene.load.forces.size()));
+  if (!still_)
+    notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s{}", method, plan_.end_time,
+                                plan_.interval * static_cast<double>(plan_.stored),
+                                plan_.ends_at_sample() || scene.sweep ? "" : ", the end's own apart under /end"));
+}
+
+void Passage::leave_out_rest(std::vector<std::string>& notes) {
+  const beam::Beam* beam = system_.beam();
+  if (still_ || beam == nullptr || scene_.model_modes > 0) return;
+  const bool apart = beam->parts().size() > 2;
+  const double tolerance = scene_.rest_tolerance >= 0.0 ? scene_.rest_tolerance
+                           : apart                      ? structure::RestWindow::quiet
+                                                        : 0.0;
+  if (tolerance == 0.0) return;
+  system_.leave_out_rest(tolerance, scene_.output.probes);
+  notes.push_back(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",
+                              tolerance, scene_.rest_tolerance >= 0.0 ? "" : "; -model_window 0 steps all"));
+}
+
+void Passage::start(std::vector<std::string>& notes) {
+  const results::Stage stage("search for the static equilibrium");
+  if (modal_) {  // the modes have their start; the system notes the weights
+    std::vector<double> y(static_cast<std::size_t>(system_.local_size()));
+    system_.start(scene_.start == Start::equilibrium, y.data());
+    return;
+  }
+  double* y = stepper_->state();
+  for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y)) notes.push_back(line);
+  if (!still_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
+  stepper_->restore_state(&y);
+}
+
+void Passage::run(const std::function<void(const integrate::Instant&)>& sample,
+                  const std::function<bool(double, long)>& step) {
+  if (modal_) {
+    modal_->run(sample, step);
+  } else {
+    stepper_->run(sample, step);
+  }
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,167 @@
+#include "traverse/run/peaks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace traverse::app {
+namespace {
+
+constexpr double kept = 0.5;      // of the largest extreme so far
+constexpr double compared = 0.6;  // of the largest one
+constexpr double likely = 2.0;    // times the root mean square: what an extreme's error hardly exceeds
+constexpr int bisections = 40;
+constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
+
+bool between(const std::vector<double>& times, double from, double to) {
+  const auto next = std::lower_bound(times.begin(), times.end(), from);
+  return next != times.end() && *next <= to;
+}
+
+}  // namespace
+
+template <class Note>
+void Curve::add(double t, double value, const std::vector<double>& kinks, Note&& note) {
+  time_ = {time_[1], time_[2], t};
+  value_ = {value_[1], value_[2], value};
+  if (++count_ == 1) return note(value, t);
+  if (count_ < 3 || std::abs(value_[1]) < std::abs(value_[0]) || std::abs(value_[1]) <= std::abs(value_[2])) return;
+  if (between(kinks, time_[0], time_[2])) return note(value_[1], time_[1]);
+  const double before = time_[1] - time_[0], after = time_[2] - time_[1];
+  const double rise = (value_[1] - value_[0]) / before, fall = (value_[2] - value_[1]) / after;
+  const double slope = (rise * after + fall * before) / (before + after), bend = (fall - rise) / (before + after);
+  const double shift = value_[0] * value_[2] > 0.0 ? -0.5 * slope / bend : 0.0;
+  note(value_[1] + 0.5 * slope * shift, time_[1] + shift);
+}
+
+template <class Note>
+void RelaxingCurve::add(double t, double value, double rate, double b, Note&& note) {
+  const double h = t - time_, before = rate_, start = value_;
+  if (!known_) note(value, t);
+  if (known_ && h > 0.0 && before * rate < 0.0 && before * start > 0.0) {
+    // start + p s + q s^2 + k b (exp(-s/b) - 1) with both values and both rates
+    const double lag = std::min(b, 100.0 * h), decay = std::exp(-h / lag), decayed = 1.0 - decay;
+    const double k = (value - start - 0.5 * h * (before + rate)) / (0.5 * h * (1.0 + decay) - lag * decayed);
+    const double p = before + k, q = 0.5 * (rate - before - k * decayed) / h;
+    double from = 0.0, to = h;
+    for (int i = 0; i < bisections; ++i) {
+      const double s = 0.5 * (from + to);
+      ((p + 2.0 * q * s - k * std::exp(-s / lag)) * before > 0.0 ? from : to) = s;
+    }
+    note(start + from * (p + q * from) - k * lag * (1.0 - std::exp(-from / lag)), time_ + from);
+  }
+  time_ = t;
+  value_ = value;
+  rate_ = rate;
+  known_ = true;
+}
+
+Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag)
+    : passages_(std::move(passages)),
+      lag_(lag),
+      moments_(lag > 0.0 ? passages_.size() : 0),
+      probes_(passages_.size()),
+      wheels_(wheels) {
+  for (std::size_t q = 0; q < quantities; ++q) each_[q].resize(q == wheel_force ? wheels : passages_.size());
+}
+
+Peaks Peaks::of_failure() {
+  Peaks none;
+  none.failed_ = true;
+  return none;
+}
+
+void Peaks::note(Quantity q, std::size_t place, double value, double time) {
+  const Peak peak{value, time, static_cast<int>(place)};
+  if (std::abs(value) > std::abs(each_[q][place].value)) each_[q][place] = peak;
+  if (std::abs(value) > std::abs(largest_[q].value)) largest_[q] = peak;
+  if (std::abs(value) < kept * std::abs(largest_[q].value) || value == 0.0) return;
+  std::vector<Peak>& found = found_[q];
+  found.push_back(peak);
+  if (found.size() < most) return;
+  std::erase_if(found, [&](const Peak& p) { return std::abs(p.value) < compared * std::abs(largest_[q].value); });
+  if (found.size() > most / 2) found.erase(found.begin(), found.end() - most / 2);
+}
+
+void Peaks::add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces) {
+  static const std::vector<double> smooth;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].moment};
+    const auto note_of = [&](std::size_t q) {
+      return [this, q, i](double value, double at) { note(static_cast<Quantity>(q), i, value, at); };
+    };
+    for (std::size_t q = 0; q < values.size(); ++q)
+      if (q == moment && lag_ > 0.0)
+        moments_[i].add(t, values[q], probes[i].moment_rate, lag_, note_of(q));
+      else
+        probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth, note_of(q));
+  }
+  for (std::size_t i = 0; i < wheel_forces.size(); ++i)
+    wheels_[i].add(t, wheel_forces[i], smooth, [&](double value, double at) { note(wheel_force, i, value, at); });
+}
+
+void Peaks::finish() {
+  for (std::size_t i = 0; i < probes_.size(); ++i)
+    for (std::size_t q = 0; q < wheel_force; ++q)
+      probes_[i][q].finish([&](double value, double at) { note(static_cast<Quantity>(q), i, value, at); });
+  for (std::size_t i = 0; i < moments_.size(); ++i)
+    moments_[i].finish([&](double value, double at) { note(moment, i, value, at); });
+  for (std::size_t i = 0; i < wheels_.size(); ++i)
+    wheels_[i].finish([&](double value, double at) { note(wheel_force, i, value, at); });
+}
+
+double peak_difference(const Peaks& rough, const Peaks& fine, Quantity q) {
+  const double largest = std::abs(fine.largest(q).value);
+  return largest == 0.0 ? 0.0 : std::abs(std::abs(rough.largest(q).value) - largest) / largest;
+}
+
+double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reach) {
+  const double largest = std::abs(fine.largest(q).value);
+  if (rough.failed() || fine.failed()) return 1.0;
+  if (largest == 0.0) return 0.0;
+  // Wheel forces vary about the weight: what is near the largest one is seen by that.
+  const double rest = q == wheel_force && !fine.of(q).empty() ? std::abs(fine.of(q).front().value) : 0.0;
+  const double least = rest < largest ? rest + compared * (largest - rest) : compared * largest;
+  double squares = 0.0;
+  int count = 0;
+  const auto earlier = [](const Peak& a, const Peak& b) {
+    return a.place != b.place ? a.place < b.place : a.time < b.time;
+  };
+  std::vector<Peak> others = rough.of(q);
+  std::sort(others.begin(), others.end(), earlier);
+  for (const Peak& peak : fine.of(q)) {
+    if (std::abs(peak.value) < least) continue;
+    double nearest = reach, off = -1.0;
+    for (auto other = std::lower_bound(others.begin(), others.end(), Peak{0.0, peak.time - reach, peak.place}, earlier);
+         other != others.end() && other->place == peak.place && other->time <= peak.time + reach; ++other) {
+      const double apart = std::abs(other->time - peak.time);
+      if (apart > nearest || other->value * peak.value < 0.0) continue;
+      nearest = apart;
+      off = std::abs(other->value - peak.value);
+    }
+    if (off < 0.0) continue;
+    squares += off * off;
+    ++count;
+  }
+  const double spread = count > 0 ? std::sqrt(squares / count) / largest : 0.0;
+  return std::max(peak_difference(rough, fine, q), likely * spread);
+}
+
+std::vector<std::vector<double>> passages_of(const Scene& scene) {
+  std::vector<std::vector<double>> passages(scene.output.probes.size());
+  if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return passages;
+  std::vector<std::pair<double, double>> starts;  // x at t = 0 and speed
+  if (scene.train.drive == train::Drive::constant && scene.train.speed > 0.0)
+    for (const double x : wheels_at_start(scene)) starts.emplace_back(x, scene.train.speed);
+  if (scene.load.speed > 0.0)
+    for (const double x : scene.load.positions) starts.emplace_back(x, scene.load.speed);
+  for (std::size_t p = 0; p < passages.size(); ++p) {
+    for (const auto& [x, speed] : starts) {
+      const double t = (scene.output.probes[p] - x) / speed;
+      if (t > 0.0) passages[p].push_back(t);
+    }
+    std::sort(passages[p].begin(), passages[p].end());
+  }
+  return passages;
+}
+
+}  // namespace traverse::app

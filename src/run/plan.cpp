@@ -1,0 +1,140 @@
+#include "traverse/run/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace traverse::app {
+namespace {
+
+constexpr double first_steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
+constexpr double steps_a_wave = 20.0;           // of the track or of a wheel out of round, at that accuracy
+constexpr double samples_a_period = 20.0;       // of a bridge by its modes, where the interval is left open
+constexpr double mechanism_step = 1e-3;         // s, where there is no beam to judge by
+constexpr double least_steps_a_span = 10.0;
+constexpr double most_steps = 1e10;
+constexpr double stored_samples = 2000.0;  // at most, where the interval is left open
+constexpr double at_a_sample = 1e-3;       // of a step: an end so close to a multiple of the interval is moved there
+
+// The largest of 1, 2, 5 times a power of ten that does not exceed x.
+double round_down(double x) {
+  const double power = std::pow(10.0, std::floor(std::log10(x)));
+  const double digits = x / power * (1.0 + 1e-12);
+  return power * (digits >= 5.0 ? 5.0 : digits >= 2.0 ? 2.0 : 1.0);
+}
+
+double end_of(const Scene& scene, const coupling::System& system) {
+  if (scene.end_time) return *scene.end_time;
+  const double leaving = system.leaving_time();
+  if (!std::isfinite(leaving))
+    throw InputError(
+        "ts_max_time is missing: nothing leaves the beam in this scene, so it has no end of its own; "
+        "allowed: a time in s above 0");
+  return leaving + scene.tail.value_or(0.0);
+}
+
+// A step that the scene cannot be resolved with gives a wrong answer without any other sign.
+void check_step(const Scene& scene, const Plan& plan) {
+  if (!(plan.end_time / plan.time_step < most_steps))
+    throw InputError(fmt::format("ts_dt = {:g}: too many steps to the end at {:g} s; allowed: above {:g} s",
+                                 plan.time_step, plan.end_time, plan.end_time / most_steps));
+  const double speed = greatest_speed(scene);
+  if (!scene.beam || speed <= 0.0) return;
+  const double crossing = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end()) / speed;
+  if (plan.time_step > crossing / least_steps_a_span)
+    throw InputError(fmt::format("ts_dt = {:g}: the longest span is crossed in {:g} s; allowed: at most {:g} s",
+                                 plan.time_step, crossing, crossing / least_steps_a_span));
+}
+
+double chosen_step(const Scene& scene, double first_period, std::vector<std::string>& notes) {
+  const double finer = std::pow(scene.accuracy / 1e-3, 0.25);
+  const double wave_step = round_down(std::min(shortest_wave(scene) / scene.train.speed, 1e6) / steps_a_wave * finer);
+  const auto by_waves = [&] {
+    notes.push_back(
+        fmt::format("time step {:g} s: from accuracy {:g} and the shortest wave of track and wheels; -ts_dt changes it",
+                    wave_step, scene.accuracy));
+    return wave_step;
+  };
+  if (!scene.beam) {
+    if (wave_step < mechanism_step) return by_waves();
+    notes.push_back(fmt::format("time step {:g} s: no beam to judge by; -ts_dt changes it", mechanism_step));
+    return mechanism_step;
+  }
+  double scale = first_period > 0.0 ? first_period : 1.0;
+  const double speed = greatest_speed(scene);
+  const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
+  if (speed > 0.0) scale = std::min(scale, span / speed);
+  const double step = round_down(scale / first_steps_a_period * finer);
+  if (wave_step < step) return by_waves();
+  notes.push_back(fmt::format(
+      "time step {:g} s: from accuracy {:g}, the first period and the crossing of a span; -ts_dt changes it", step,
+      scene.accuracy));
+  return step;
+}
+
+// The motion between samples is known: they are as far apart as a curve needs.
+void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector<std::string>& notes) {
+  plan.interval = plan.time_step =
+      std::min(plan.end_time, scene.output.interval.value_or(round_down(first_period / samples_a_period)));
+  if (!scene.output.interval)
+    notes.push_back(
+        fmt::format("samples every {:g} s: from the first period; output_interval changes it, which "
+                    "changes nothing in the motion",
+                    plan.interval));
+}
+
+double sample_next_to_end(const Plan& plan) {
+  const double interval = plan.interval * static_cast<double>(plan.stored);
+  return std::round(plan.end_time / interval) * interval;
+}
+
+// Leaving times are known to rounding, and a step to an end just behind the last sample would be far too short.
+void move_end_to_sample(Plan& plan) {
+  const double near = at_a_sample * std::min({plan.time_step, plan.interval, plan.end_time});
+  if (std::abs(sample_next_to_end(plan) - plan.end_time) < near) plan.end_time = sample_next_to_end(plan);
+}
+
+}  // namespace
+
+bool Plan::ends_at_sample() const { return end_time == sample_next_to_end(*this); }
+
+Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
+               std::vector<std::string>& notes) {
+  Plan plan;
+  plan.end_time = end_of(scene, system);
+  if (!scene.exact_in_time())
+    plan.time_step = scene.time_step ? *scene.time_step : chosen_step(scene, first_period, notes);
+  if (plan.end_time <= 0.0)
+    throw InputError(
+        "scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
+        "or ts_max_time in s above 0");
+  if (scene.exact_in_time()) {
+    plan_modal(scene, first_period, plan, notes);
+    move_end_to_sample(plan);
+    return plan;
+  }
+  check_step(scene, plan);
+  if (scene.output.interval && *scene.output.interval > plan.end_time)
+    notes.push_back(fmt::format("output_interval {:g} s is longer than the run: of its series only the start is stored",
+                                *scene.output.interval));
+  if (scene.output.interval) {
+    plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
+    if (scene.step_probes) {
+      plan.stored = static_cast<long>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
+      plan.interval /= static_cast<double>(plan.stored);
+    }
+    if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
+      notes.push_back(
+          fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
+  } else {
+    const double steps = std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples));
+    plan.stored = scene.step_probes ? static_cast<long>(steps) : 1;
+    plan.interval = plan.time_step * (scene.step_probes ? 1.0 : steps);
+  }
+  move_end_to_sample(plan);
+  return plan;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,53 @@
+#include "traverse/run/process.hpp"
+
+#include <fmt/format.h>
+#include <petscversion.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <new>
+#include <stdexcept>
+
+#include "traverse/results/terminal.hpp"
+
+namespace traverse::app {
+
+std::vector<std::pair<std::string, std::string>> attributes(MPI_Comm comm, const Scene& scene) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  return {{"program", "traverse"},
+          {"version", TRAVERSE_VERSION},
+          {"petsc_version", fmt::format("{}.{}.{}", PETSC_VERSION_MAJOR, PETSC_VERSION_MINOR, PETSC_VERSION_SUBMINOR)},
+          {"ranks", std::to_string(ranks)},
+          {"scene", scene.name}};
+}
+
+void print_notes(MPI_Comm comm, const std::vector<std::string>& notes) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (rank == 0) results::print_modelled(notes);
+}
+
+void leave_together(MPI_Comm comm, const Error& error) {
+  int ranks = 1;
+  MPI_Comm_size(comm, &ranks);
+  fmt::print(stderr, "traverse: {}\n", error.what());
+  if (ranks > 1) MPI_Abort(comm, error.status());
+  std::fflush(nullptr);
+  std::_Exit(error.status());  // HDF5 may not survive closing what it could not write
+}
+
+Error as_error(const std::exception& failure) {
+  if (const auto* error = dynamic_cast<const Error*>(&failure)) return *error;
+  const bool memory = dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ||
+                      dynamic_cast<const std::length_error*>(&failure) != nullptr;
+  if (memory)
+    return {
+        "there is not enough memory for this scene; make it smaller: fewer elements (beam_elements_per_span, "
+        "track_elements_per_bay, track_approach), probes (output_probes), vehicles, forces, modes (modes_count, "
+        "model_modes) or runs of a sweep",
+        5};
+  return {std::string("internal error, please report it: ") + failure.what(), 70};
+}
+
+}  // namespace traverse::app

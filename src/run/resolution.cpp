@@ -1,0 +1,160 @@
+#include "traverse/run/resolution.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "traverse/base/error.hpp"
+#include "traverse/base/whole.hpp"
+
+namespace traverse::app {
+namespace {
+
+// Deflection under a force on a bed, of an element as long as so many 1/lambda, lambda = (k/4EI)^(1/4): 2 % off at 1,
+// a fifth at 2, a factor of three at 4.
+constexpr double rough_on_bed = 1.0, longest_on_bed = 2.0;
+
+// Peaks of a bridge of three spans under a moving force (R6): esdirk4 is 3e-3 off at 12 steps a first period, 5e-3 at
+// 7, 3 % at 5 and 5 % at 4; the second-order genalpha 1 % at 36 and 5 % at 12. One span under a sprung mass (R3) is
+// right to 2e-4 at 5.
+constexpr double least_steps_a_period = 4.0, good_steps_a_period = 8.0, second_order_steps_a_period = 40.0;
+// A bridge that is crossed in so many first periods deflects as at rest, to a hundredth, whatever the step.
+constexpr double periods_of_a_slow_crossing = 50.0;
+
+// Wheel forces over a bump of 2 m: a hundredth off at 20 steps, a tenth at 8, nearly half at 4.
+constexpr double least_steps_a_wave = 8.0, good_steps_a_wave = 20.0;
+// Sleepers and contacts that oscillate stir wheel forces less: a part of what varies is lost.
+constexpr double steps_a_sleeper = 4.0, steps_an_oscillation = 10.0;
+
+constexpr double most_stored_samples = 1e10;
+constexpr double shortest_run = 1e-12;  // s
+
+bool loaded(const Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
+
+void check_waves(const Scene& scene, double step, std::vector<std::string>& notes) {
+  const double wave = scene.profile.shortest_wave();
+  if (scene.train.vehicles.empty() || scene.train.speed <= 0.0 || !std::isfinite(wave)) return;
+  const double passage = wave / scene.train.speed;
+  if (step > passage / least_steps_a_wave)
+    throw InputError(
+        fmt::format("ts_dt = {:g}: the track's shortest wave, {:g} m, is passed in {:g} s; allowed: at most {:g} s, or "
+                    "leave ts_dt out",
+                    step, wave, passage, passage / least_steps_a_wave));
+  if (step > passage / good_steps_a_wave)
+    notes.push_back(fmt::format(
+        "steps of {:g} s are long for the track's shortest wave, {:g} m, passed in {:g} s: wheel forces are rough; "
+        "-ts_dt {:.2g} resolves it",
+        step, wave, passage, passage / good_steps_a_wave));
+}
+
+// The bridge does not notice single sleepers, wheels do.
+void check_sleepers(const Scene& scene, double step, std::vector<std::string>& notes) {
+  if (!scene.beam || !scene.beam->track || greatest_speed(scene) <= 0.0) return;
+  const double passage = scene.beam->track->spacing / greatest_speed(scene);
+  if (step > passage / steps_a_sleeper)
+    notes.push_back(
+        fmt::format("steps of {:g} s are long for the sleepers, each passed in {:g} s: forces of wheels and rail are "
+                    "rough; -ts_dt {:.2g} resolves them",
+                    step, passage, passage / steps_an_oscillation));
+}
+
+void check_periods(const Scene& scene, double step, double period, bool high_order, std::vector<std::string>& notes) {
+  const double speed = greatest_speed(scene);
+  if (!scene.beam || period <= 0.0 || speed <= 0.0) return;
+  const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
+  if (span / speed > periods_of_a_slow_crossing * period) return;
+  if (step > period / least_steps_a_period)
+    throw InputError(fmt::format(
+        "ts_dt = {:g}: the first period of the beam is {:g} s, which the load excites; allowed: at most {:g} s, or "
+        "leave ts_dt out",
+        step, period, period / least_steps_a_period));
+  const double good = period / (high_order ? good_steps_a_period : second_order_steps_a_period);
+  if (step <= good) return;
+  notes.push_back(
+      fmt::format("steps of {:g} s are long for the first period of {:g} s{}: deflections may be some per cent off; "
+                  "take -ts_dt {:.2g}{}",
+                  step, period, high_order ? "" : " and order 2", good, high_order ? "" : " or -ts_type esdirk4"));
+}
+
+/// The greatest lambda in a span, 1/m.
+double bending_on_bed(const beam::BeamModel& beam, double left, double length, int elements) {
+  double lambda = 0.0;
+  for (int i = 0; i < elements; ++i) {
+    const double x = left + (i + 0.5) * length / elements;
+    lambda = std::max(lambda, std::pow(beam.foundation.vertical_bed->k.at(x, x) / (4.0 * beam.EI.at(x, x)), 0.25));
+  }
+  return lambda;
+}
+
+void check_bed(const beam::BeamModel& beam, std::vector<std::string>& notes) {
+  double left = 0.0;
+  for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
+    const double span = beam.spans[i], lambda = bending_on_bed(beam, left, span, beam.elements[i]);
+    const auto elements = [&](double length) { return base::whole(std::ceil(lambda * span / length)); };
+    if (beam.elements[i] < elements(longest_on_bed))
+      throw InputError(
+          fmt::format("beam_elements_per_span = {}: the beam bends within 1/lambda = {:.3g} m of a wheel on "
+                      "its bed; allowed: at least {} in the span of {:g} m, or a softer bed",
+                      beam.elements[i], 1.0 / lambda, elements(longest_on_bed), span));
+    if (beam.elements[i] >= elements(rough_on_bed)) continue;
+    notes.push_back(
+        fmt::format("the beam bends within 1/lambda = {:.3g} m of a wheel on its bed: deflections there are "
+                    "some per cent off; -beam_elements_per_span {} resolves them",
+                    1.0 / lambda, elements(rough_on_bed)));
+    return;
+  }
+}
+
+}  // namespace
+
+void check_mesh(const Scene& scene, std::vector<std::string>& notes) {
+  if (!scene.beam || scene.beam->track || !loaded(scene)) return;
+  const beam::BeamModel& beam = *scene.beam;
+  const bool moves = scene.analysis == Analysis::transient && greatest_speed(scene) > 0.0;
+  if (moves && scene.model_modes == 0 && *std::min_element(beam.elements.begin(), beam.elements.end()) == 1)
+    notes.emplace_back(
+        "one element a span: its first frequency is up to a tenth too high, and so may the response be wrong; "
+        "-beam_elements_per_span 4 keeps a thousandth");
+  if (beam.foundation.vertical_bed) check_bed(beam, notes);
+}
+
+void check_times(const Plan& plan) {
+  if (plan.end_time < shortest_run)
+    throw InputError(fmt::format("ts_max_time = {:g}: too short a run for rounding; allowed: at least {:g} s",
+                                 plan.end_time, shortest_run));
+  if (!(plan.end_time / plan.interval < most_stored_samples))
+    throw InputError(fmt::format("output_interval = {:g}: too many samples to the end at {:g} s; allowed: above {:g} s",
+                                 plan.interval, plan.end_time, plan.end_time / most_stored_samples));
+}
+
+void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
+                 std::vector<std::string>& notes) {
+  if (!scene.time_step) return;
+  const double step = std::min(plan.time_step, plan.interval);
+  check_waves(scene, step, notes);
+  check_sleepers(scene, step, notes);
+  check_periods(scene, step, first_period, high_order, notes);
+}
+
+void check_contacts(const Scene& scene, const Plan& plan, const train::Fleet& fleet, std::vector<std::string>& notes) {
+  double period = std::numeric_limits<double>::infinity();
+  for (const train::WheelContact& c : fleet.wheels) {
+    const train::Wheel& wheel = fleet.wheel(c);
+    const bool round = wheel.shape.flat_length <= 0.0 && wheel.shape.polygon_amplitude <= 0.0;
+    if (scene.profile.level() && round) continue;
+    const double stiffness = contact::force(c.law, c.kinematics, 0.0).normal_by_penetration;
+    const double mass = fleet.vehicles[c.vehicle].mechanism.model().bodies[c.body].mass;
+    if (stiffness > 0.0) period = std::min(period, 2.0 * std::numbers::pi * std::sqrt(mass / stiffness));
+  }
+  const double step = std::min(plan.time_step, plan.interval);
+  if (step > period / steps_an_oscillation)
+    notes.push_back(
+        fmt::format("steps of {:g} s pass over the wheels' oscillation on their contacts, {:.3g} s a period: where the "
+                    "track stirs it, wheel forces are rough; -ts_dt {:.2g} resolves it",
+                    step, period, period / (2.0 * steps_an_oscillation)));
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,83 @@
+#include "traverse/run/structure.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "traverse/modes/modes.hpp"
+#include "traverse/results/stage.hpp"
+
+namespace traverse::app {
+namespace {
+
+std::string what_track(const beam::Beam& beam) {
+  const beam::LayeredTrack& t = *beam.model().track;
+  return fmt::format(
+      "layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}, {} unknowns a column",
+      beam.rail()->mesh.start(), beam.rail()->mesh.end(), beam.rail()->mesh.elements(), t.spacing,
+      t.ballast ? ", ballast" : "", t.subballast ? ", sub-ballast on the ground" : "", beam.block());
+}
+
+std::string what_beam(const beam::Beam& beam) {
+  const beam::BeamModel& m = beam.model();
+  return fmt::format("beam of {:g} m, {} span{}{}, {} elements, {} unknowns a node ({})", m.length(), m.spans.size(),
+                     m.spans.size() == 1 ? "" : "s", m.all_separate() ? " (each of its own)" : "",
+                     beam.mesh().elements(), m.axial ? 3 : 2,
+                     m.axial ? "axial, deflection, rotation" : "deflection, rotation");
+}
+
+}  // namespace
+
+Structure::Structure(MPI_Comm communicator, const Scene& scene, std::vector<std::string>& notes) : comm(communicator) {
+  if (!scene.beam) return;
+  const results::Stage stage("assembly of the beam");
+  const std::string floating = scene.analysis == Analysis::modes ? "" : beam::floating_motion(*scene.beam);
+  if (!floating.empty())
+    throw InputError("support_types: the beam can float away (" + floating +
+                     "); hold it with supports or a foundation");
+  const bool nonlinear = scene.beam->foundation.nonlinear();
+  if (nonlinear)
+    notes.emplace_back(
+        "one-sided foundations and those with a gap or a cubic term are forces; frequencies are those of "
+        "small motions: what has no gap with its k, what has one without");
+  beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
+  notes.push_back(what_beam(*beam));
+  if (beam->rail() != nullptr) notes.push_back(what_track(*beam));
+}
+
+void Structure::damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
+  const results::Stage stage("search for the first frequencies");
+  const Damping& damping = scene.damping;
+  if (damping.frequencies)
+    omega = {2.0 * std::numbers::pi * damping.frequencies->first, 2.0 * std::numbers::pi * damping.frequencies->second};
+  else if (damping.ratios || frequencies_wanted)
+    omega = beam->rail() == nullptr && !beam->model().foundation.nonlinear()
+                ? modes::distinct_pair(*beam)
+                : modes::distinct_pair(beam::Beam(beam->comm(), linearised(bridge_alone(beam->model()))));
+  if (damping.rayleigh) rayleigh = {damping.rayleigh->first, damping.rayleigh->second};
+  if (damping.ratios)
+    rayleigh = modes::rayleigh(omega->first, omega->second, damping.ratios->first, damping.ratios->second);
+  beam->set_rayleigh(rayleigh);
+  if (omega)
+    notes.push_back(fmt::format(
+        "first distinct frequencies {:.6g} and {:.6g} Hz; Rayleigh a = {:.6g} 1/s, b = {:.6g} s",
+        omega->first / (2.0 * std::numbers::pi), omega->second / (2.0 * std::numbers::pi), rayleigh.a, rayleigh.b));
+}
+
+void Structure::prepare(const Scene& scene, std::vector<std::string>& notes) {
+  if (!beam) return;
+  const results::Stage stage(scene.model_modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
+  statics = std::make_shared<structure::BeamOperator>(*beam);
+  if (scene.model_modes == 0) return;
+  modal.emplace(*beam, *statics, scene.model_modes, scene.damping_of_modes);
+  const auto hertz = [&](double value) { return value / (2.0 * std::numbers::pi); };
+  notes.push_back(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}", modal->modes(),
+                              hertz(modal->omega().back()), scene.exact_in_time() ? ", exact in time" : "",
+                              static_cast<int>(modal->modes()) > scene.model_modes
+                                  ? fmt::format(" ({} asked for: all copies of the last frequency)", scene.model_modes)
+                                  : ""));
+}
+
+double Structure::first_period() const { return omega ? 2.0 * std::numbers::pi / omega->first : 0.0; }
+
+}  // namespace traverse::app

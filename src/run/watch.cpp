@@ -1,0 +1,256 @@
+#include "traverse/run/watch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fields.hpp"
+
+namespace traverse::app {
+namespace {
+
+// Of what the energies change by; no answer beyond, whatever it looks like. At 5 % wheel forces are a tenth off; a
+// mechanism on its own loses its phase, and at 0.6 % the four-bars are half a turn away.
+constexpr double unbalanced = 0.05, unbalanced_mechanism = 0.005;
+constexpr double diverged = 1.0;   // the same while the run goes on, when they have changed little as yet
+constexpr double rounding = 1e-9;  // of the energies themselves
+
+std::array<double, 3> triple(const Eigen::VectorXd& x, std::size_t body) {
+  const auto i = 3 * static_cast<Eigen::Index>(body);
+  return {x[i], x[i + 1], x[i + 2]};
+}
+
+}  // namespace
+
+void check_balance(const Scene& scene, const results::Summary& summary) {
+  const double allowed = scene.beam ? unbalanced : unbalanced_mechanism;
+  if (summary.energy_residual > allowed * summary.energy_scale + rounding * summary.largest_energy)
+    throw SolverError(
+        fmt::format("the energy does not balance: {:g} J are missing where the energies change by {:g} J; the step is "
+                    "too long for this integrator, take a smaller -ts_dt or an implicit -ts_type",
+                    summary.energy_residual, summary.energy_scale));
+}
+
+Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
+    : scene_(scene), system_(system), beam_(beam), recorder_(recorder) {
+  if (beam != nullptr) {
+    recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
+    ground_.emplace(*beam);
+    if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
+  }
+  for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
+  const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
+  if (lag > 0.0) lag_.emplace(*recovery_, lag);
+  peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
+  wheels_ = WheelExtremes(wheel_count_, system.corners());
+}
+
+void Watch::sample(const integrate::Instant& instant) {
+  system_.observe(instant.time, instant.y, instant.ydot, observation_);
+  const structure::NodalMotion& beam = observation_.beam;
+  sample_.time = instant.time;
+  if (beam_ != nullptr) {
+    if (instant.drag != nullptr) drag(instant.drag);
+    if (!beam.drag.empty()) drag(beam.drag.data());
+    recovery_->evaluate(beam.v, beam.w, beam.a.data(), observation_.bridge_loads, sample_.probes);
+    if (lag_) lag_->apply(instant.time, observation_.bridge_loads, sample_.probes);
+    for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
+  }
+  fill_vehicles(sample_);
+  step(instant.time);  // the first instant is no step's end
+  note_peaks();
+  if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
+  if (instant.purpose != integrate::Purpose::look) store(instant.purpose == integrate::Purpose::end);
+}
+
+void Watch::store(bool end) {
+  if (beam_ != nullptr) {
+    const structure::NodalMotion& beam = observation_.beam;
+    if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a.data(), observation_.loads, rail_);
+    beam_->reactions(beam.v, beam.w, beam.a.data(), beam.P.data(), sample_.supports);
+  }
+  fill_fields();
+  note_energy();
+  if (end)
+    recorder_.end(sample_);
+  else
+    recorder_.add(sample_);
+  if (summary_.energy_residual > diverged * summary_.energy_scale + rounding * summary_.largest_energy)
+    throw SolverError(
+        fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
+                    "integrator, take a smaller -ts_dt or an implicit -ts_type",
+                    sample_.energy.residual, sample_.time));
+}
+
+// Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
+void Watch::drag(const double* drag) {
+  std::vector<double>& a = observation_.beam.a;
+  const std::vector<double> still(a.size(), 0.0);
+  recovery_->evaluate(still.data(), still.data(), drag, {}, dragged_);
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] += drag[i];
+}
+
+void Watch::fill_vehicles(results::Sample& sample) const {
+  const train::Fleet& fleet = system_.fleet();
+  sample.vehicles.resize(fleet.members.size());
+  for (std::size_t k = 0; k < fleet.members.size(); ++k) {
+    const train::Member& member = fleet.members[k];
+    const train::MovingVehicle& vehicle = fleet.vehicles[member.unit];
+    const multibody::MechanismModel& model = member.type->mechanism;
+    results::Sample::Vehicle& out = sample.vehicles[k];
+    out.bodies.resize(model.bodies.size());
+    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
+      const std::size_t b = member.first_body + i;
+      out.bodies[i] = {triple(vehicle.state.q, b), triple(vehicle.state.qd, b), triple(vehicle.state.qdd, b)};
+    }
+    out.wheels.clear();
+    for (std::size_t i = 0; i < member.type->wheels.size(); ++i) {
+      const train::WheelLoad load = fleet.load(fleet.wheels[vehicle.first_wheel + member.first_wheel + i]);
+      out.wheels.push_back({load.normal, load.tangential, load.penetration});
+    }
+    for (std::size_t i = 0; i < member.type->contacts.size(); ++i) {
+      const train::Contact& c = fleet.pairs[vehicle.first_pair + member.first_contact + i];
+      out.wheels.push_back({c.force.normal, c.force.tangential, c.kinematics.penetration});
+    }
+    out.joints.resize(model.joints.size());
+    for (std::size_t i = 0; i < model.joints.size(); ++i) {
+      const int j = member.first_joint + static_cast<int>(i);
+      const Eigen::Vector3d r = vehicle.mechanism.joint_reaction(vehicle.state, j);
+      out.joints[i] = {r.x(), r.y(), r.z()};
+    }
+    out.springs.resize(model.springs.size());
+    for (std::size_t i = 0; i < model.springs.size(); ++i)
+      out.springs[i] = vehicle.mechanism.spring_force(vehicle.state, member.first_spring + static_cast<int>(i));
+    out.torsion_springs.resize(model.torsion_springs.size());
+    for (std::size_t i = 0; i < model.torsion_springs.size(); ++i)
+      out.torsion_springs[i] =
+          vehicle.mechanism.torsion_spring_moment(vehicle.state, member.first_torsion_spring + static_cast<int>(i));
+  }
+}
+
+// In the order of layout_of.
+void Watch::fill_fields() {
+  Fields fields(sample_.fields);
+  fill_couplers(system_.fleet(), scene_.train, fields);
+  if (beam_ == nullptr) return;
+  const structure::NodalMotion& beam = observation_.beam;
+  ground_->evaluate(beam.v, beam.w, beam.a.data());
+  fill_foundation(*beam_, *ground_, beam.foundation, fields);
+  fill_balance(*ground_, observation_, sample_.supports, scene_.self_weight ? scene_.gravity * ground_->mass() : 0.0,
+               beam_->model().axial, fields);
+  if (rail_recovery_) fill_rail(rail_, fields);
+}
+
+void Watch::note_peaks() {
+  wheel_forces_.clear();
+  for (std::size_t k = 0; k < sample_.vehicles.size(); ++k)
+    for (std::size_t i = 0; i < system_.fleet().members[k].type->wheels.size(); ++i)
+      wheel_forces_.push_back(sample_.vehicles[k].wheels[i].normal_force);
+  peaks_.add(sample_.time, sample_.probes, wheel_forces_);
+  double deflected = 0.0;
+  for (const beam::Response& probe : sample_.probes) deflected = std::max(deflected, std::abs(probe.deflection));
+  if (deflected > most_deflected_) {
+    most_deflected_ = deflected;
+    worst_.time = sample_.time;
+    const structure::NodalMotion& beam = observation_.beam;
+    worst_.v.assign(beam.v, beam.v + beam.a.size());
+    worst_.w.assign(beam.w, beam.w + beam.a.size());
+    worst_.a = beam.a;
+    worst_.loads = observation_.bridge_loads;
+  }
+}
+
+void Watch::note_energy() {
+  const coupling::Energy& e = observation_.energy;
+  if (first_) energy_at_start_ = e;
+  first_ = false;
+  const coupling::Energy& start = energy_at_start_;
+  const double stored = (e.kinetic - start.kinetic) + (e.strain - start.strain) + (e.potential - start.potential);
+  sample_.energy = {e.kinetic, e.strain, e.potential, e.dissipated, e.work, stored + e.dissipated - e.work};
+  summary_.structure_energy = std::max(summary_.structure_energy, e.structure);
+  summary_.energy_residual = std::max(summary_.energy_residual, std::abs(sample_.energy.residual));
+  for (double term : {e.kinetic, e.strain, e.potential})
+    summary_.largest_energy = std::max(summary_.largest_energy, std::abs(term));
+  // Where steps do not end at kinks the drive's work is not known so well that it could be judged without.
+  const bool apart = scene_.train.drive == Drive::constant && scene_.step_kinks;
+  const double forward = apart ? start.kinetic : 0.0;
+  for (double change :
+       {e.kinetic - forward, e.strain - start.strain, e.potential - start.potential, e.dissipated, e.work})
+    summary_.energy_scale = std::max(summary_.energy_scale, std::abs(change));
+}
+
+void Watch::step(double t) {
+  const train::Fleet& fleet = system_.fleet();
+  std::size_t wheel = 0;
+  for (const train::WheelContact& c : fleet.wheels)
+    if (!c.is_further) wheels_.add(wheel++, t, fleet.coordinates(c).x(), fleet.load(c).normal);
+}
+
+void Watch::note_wheels() {
+  const train::Fleet& fleet = system_.fleet();
+  summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.least().force;
+  summary_.greatest_wheel_force =
+      std::max({summary_.greatest_wheel_force, peaks_.largest(wheel_force).value, wheels_.greatest().force});
+  const WheelExtreme& least = wheels_.least();
+  int wheel = 0;
+  for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
+    const train::WheelContact& c = fleet.wheels[i];
+    if (c.is_further || wheel++ != least.wheel) continue;
+    summary_.least_wheel_force_time = least.time;
+    summary_.least_wheel = "vehicle " + std::to_string(fleet.member(static_cast<int>(i))) + ", " + fleet.wheel(c).name;
+  }
+}
+
+void Watch::note_separations() {
+  const train::Fleet& fleet = system_.fleet();
+  std::vector<results::Separation> list;
+  for (const train::Separation& s : system_.separations().list()) {
+    const double duration = s.duration >= 0.0 ? s.duration : system_.separations().time() - s.start;
+    list.push_back({std::to_string(fleet.member(s.contact)), fleet.name(s.contact), s.x, s.start, duration,
+                    s.approach_speed, s.impact_force});
+    if (s.from_start || s.contact >= static_cast<int>(fleet.wheels.size())) continue;
+    ++summary_.contact_losses;
+    summary_.longest_loss = std::max(summary_.longest_loss, duration);
+  }
+  recorder_.separations(list);
+}
+
+const Peaks& Watch::finished_peaks() {
+  if (!finished_) peaks_.finish();
+  finished_ = true;
+  return peaks_;
+}
+
+const results::Summary& Watch::finished_extremes() {
+  finished_peaks();
+  note_wheels();
+  note_separations();
+  return summary_;
+}
+
+results::Summary Watch::finish() {
+  const Peaks& peaks = finished_peaks();
+  const auto extreme = [&](Quantity q) {
+    const Peak& peak = peaks.largest(q);
+    return results::Extreme{peak.value, peak.time, scene_.output.probes[static_cast<std::size_t>(peak.place)]};
+  };
+  if (!scene_.output.probes.empty()) {
+    summary_.deflection = extreme(deflection);
+    summary_.acceleration = extreme(acceleration);
+    summary_.moment = extreme(moment);
+  }
+  finished_extremes();
+  if (beam_ == nullptr) return summary_;
+  int some = worst_.v.empty() && beam_->local_unknowns() > 0 ? 0 : 1;
+  MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
+  if (some == 0) return summary_;
+  if (scene_.analysis == Analysis::transient)
+    summary_.static_deflection = system_.static_peak(summary_.deflection.place, paths_, sample_.time);
+  if (summary_.static_deflection > 0.0)
+    summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
+  recorder_.shape(shape_of(*beam_, scene_, worst_));
+  return summary_;
+}
+
+}  // namespace traverse::app

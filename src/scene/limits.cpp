@@ -1,0 +1,132 @@
+#include "limits.hpp"
+
+#include <fmt/format.h>
+#include <mpi.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+
+namespace traverse::app {
+namespace {
+
+// Bytes, as measured on runs of many of each.
+constexpr double a_node = 500.0, a_nodal_unknown = 750.0, a_probe = 2200.0, a_vehicle = 6e4, a_pair_of_vehicles = 1e3,
+                 a_force = 400.0, a_spring = 800.0, a_sweep_peak = 200.0;
+constexpr double most_elements = 2e7;  // whose matrices' entries 32 bits can number
+constexpr double most_peaks = 1e8;     // of a sweep, for the same reason
+constexpr int lapack_copies = 3, few_modes = 2;
+
+/// Something that there may be too much of.
+struct Need {
+  double bytes = 0.0;
+  std::string option, what;  // that asks for it, and in words
+};
+
+double memory_of_machine() {
+  double bytes = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  for (const char* file : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    double limit = 0.0;
+    if (std::ifstream(file) >> limit && limit > 0.0) bytes = std::min(bytes, limit);
+  }
+  return bytes;
+}
+
+int ranks() {
+  int started = 0, count = 1;
+  MPI_Initialized(&started);
+  if (started != 0) MPI_Comm_size(MPI_COMM_WORLD, &count);
+  return count;
+}
+
+double sum(const std::vector<int>& numbers) { return std::accumulate(numbers.begin(), numbers.end(), 0.0); }
+
+/// Of the bridge, or of the rail, which has more.
+double elements_of(const beam::BeamModel& beam) {
+  if (!beam.track) return sum(beam.elements);
+  return (beam.length() + 2.0 * beam.track->approach) / beam.track->spacing * beam.track->elements_per_bay;
+}
+
+std::string option_of_mesh(const options::Options& o, const Scene& scene) {
+  if (!scene.beam->track) return o.has("beam_elements_per_span") ? "beam_elements_per_span" : "beam_spans";
+  if (o.has("track_elements_per_bay")) return "track_elements_per_bay";
+  return scene.beam->track->approach > scene.beam->length() ? "track_approach" : "track_spacing";
+}
+
+Need mesh(const options::Options& o, const Scene& scene) {
+  const beam::BeamModel& beam = *scene.beam;
+  const double elements = elements_of(beam), unknowns = (beam.axial ? 3.0 : 2.0) + (beam.track ? 3.0 : 0.0);
+  if (!(elements <= most_elements))
+    o.refuse(option_of_mesh(o, scene),
+             fmt::format("{:.3g} elements in all; allowed: at most {:g}", elements, most_elements));
+  return {elements * (a_node + a_nodal_unknown * unknowns / ranks()), option_of_mesh(o, scene),
+          fmt::format("{:.3g} elements", elements)};
+}
+
+Need modes(const Scene& scene) {
+  const bool wanted = scene.analysis == Analysis::modes;
+  const double nodes = elements_of(*scene.beam), unknowns = nodes * (scene.beam->axial ? 3.0 : 2.0);
+  const double count = std::min<double>(wanted ? scene.mode_count : scene.model_modes, unknowns);
+  const bool all = count > unknowns / few_modes;
+  const double numbers = all ? lapack_copies * unknowns * unknowns : 6.0 * count * unknowns;
+  return {8.0 * numbers, wanted ? "modes_count" : "model_modes",
+          fmt::format("{:g} modes of {:g} unknowns", count, unknowns)};
+}
+
+Need sweep(const options::Options& o, const Scene& scene) {
+  const double runs = static_cast<double>(std::max<std::size_t>(1, scene.sweep->speeds.size())) *
+                      static_cast<double>(std::max<std::size_t>(1, scene.sweep->loads.size()));
+  const double peaks = runs * static_cast<double>(scene.output.probes.size());
+  const std::string option = scene.sweep->speeds.empty() ? "sweep_hslm_a" : "sweep_speed";
+  if (peaks > most_peaks)
+    o.refuse(option, fmt::format("{:.3g} runs with {} probes each; allowed: at most {:g} of both multiplied", runs,
+                                 scene.output.probes.size(), most_peaks));
+  return {a_sweep_peak * peaks, option,
+          fmt::format("{:.3g} runs with {} probes each", runs, scene.output.probes.size())};
+}
+
+std::vector<Need> needs_of(const options::Options& o, const Scene& scene) {
+  const double vehicles = static_cast<double>(scene.train.vehicles.size());
+  const double forces = static_cast<double>(scene.load.forces.size());
+  const double probes = static_cast<double>(scene.output.probes.size());
+  double wheels = 0.0;
+  for (const int index : scene.train.vehicles)
+    wheels += static_cast<double>(scene.vehicles[static_cast<std::size_t>(index)].wheels.size());
+  std::vector<Need> needs = {{vehicles * (a_vehicle + a_pair_of_vehicles * vehicles), "train_vehicles",
+                              fmt::format("{:g} vehicles", vehicles)},
+                             {forces * a_force, "load_forces", fmt::format("{:g} forces", forces)},
+                             {probes * (a_probe + 8.0 * (wheels + forces)), "output_probes",
+                              fmt::format("{:g} probes and what passes each of them", probes)}};
+  if (!scene.beam) return needs;
+  const beam::Foundation& f = scene.beam->foundation;
+  const auto springs = static_cast<double>(f.vertical.size() + f.longitudinal.size() + f.rotational.size());
+  const double kinks = static_cast<double>(scene.profile.kinks().size() + scene.beam->spans.size());
+  needs.push_back(mesh(o, scene));
+  needs.push_back(
+      {springs * a_spring, "foundation_vertical_x", fmt::format("{:g} springs of the foundation", springs)});
+  needs.push_back({16.0 * (wheels + forces) * kinks, forces > wheels ? "load_forces" : "train_vehicles",
+                   fmt::format("{:g} wheels and forces that pass {:g} kinks of their way", wheels + forces, kinks)});
+  if (scene.analysis == Analysis::modes || scene.model_modes > 0) needs.push_back(modes(scene));
+  if (scene.sweep) needs.push_back(sweep(o, scene));
+  return needs;
+}
+
+}  // namespace
+
+void check_size(const options::Options& o, const Scene& scene) {
+  const std::vector<Need> needs = needs_of(o, scene);
+  const double there = memory_of_machine();
+  const double all = std::accumulate(needs.begin(), needs.end(), 0.0,
+                                     [](double bytes, const Need& need) { return bytes + need.bytes; });
+  if (all <= there) return;
+  const Need& most =
+      *std::max_element(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.bytes < b.bytes; });
+  o.refuse(most.option,
+           fmt::format("the scene needs about {:.2g} GB of memory, {:.2g} GB of it for {}; this machine has "
+                       "{:.2g} GB: make that fewer",
+                       1e-9 * all, 1e-9 * most.bytes, most.what, 1e-9 * there));
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,13 @@
+// What a scene needs of the machine, by counting, before anything of it is made.
+#pragma once
+
+#include "traverse/options/options.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// InputError where the scene needs more memory than this machine has, or counts go beyond what can be numbered: names
+/// the option that asks for most.
+void check_size(const options::Options& options, const Scene& scene);
+
+}  // namespace traverse::app

@@ -1,0 +1,196 @@
+#include "traverse/scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "limits.hpp"
+#include "scene_parts.hpp"
+#include "traverse/base/error.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+
+constexpr std::size_t most_default_probes = 200;
+
+constexpr double most_left_out = 0.1;
+
+// What is left out of the steps: -1 where the run decides.
+double read_window(const Options& o) {
+  const std::string value = o.text("model_window");
+  if (value == "auto") return -1.0;
+  char* end = nullptr;
+  const double part = std::strtod(value.c_str(), &end);
+  if (value.empty() || *end != 0 || !(part >= 0.0 && part <= most_left_out))
+    o.refuse("model_window",
+             fmt::format("allowed: auto, 0, or a part of the largest motion up to {:g}", most_left_out));
+  return part;
+}
+
+void read_run(const Options& o, Scene& scene) {
+  scene.gravity = o.number("gravity");
+  scene.name = o.has("scene_name") ? o.text("scene_name") : "scene";
+  const std::string analysis = o.choice("scene_analysis");
+  scene.analysis = analysis == "modes"    ? Analysis::modes
+                   : analysis == "static" ? Analysis::static_response
+                                          : Analysis::transient;
+  scene.start = o.choice("scene_start") == "given" ? Start::given : Start::equilibrium;
+  scene.tail = o.optional_number("scene_tail");
+  scene.end_time = o.optional_number("ts_max_time");
+  scene.time_step = o.optional_number("ts_dt");
+  scene.mode_count = o.integer("modes_count");
+  scene.contact_tolerance = o.optional_number("contact_tolerance");
+  scene.impact_steps = o.integer("contact_impact_steps");
+  scene.step_kinks = o.flag("step_kinks");
+  scene.step_probes = o.flag("step_probes");
+  scene.rest_tolerance = read_window(o);
+  scene.accuracy = o.number("accuracy");
+  scene.accuracy_report = o.flag("accuracy_report");
+}
+
+void read_probes(const Options& o, Scene& scene) {
+  if (!scene.beam) {
+    if (o.has("output_probes")) o.refuse("output_probes", "there is no beam to probe (beam_spans)");
+    return;
+  }
+  const std::vector<double>& spans = scene.beam->spans;
+  double length = 0.0;
+  for (const double span : spans) {
+    if (!o.has("output_probes") && scene.output.probes.size() < most_default_probes) {
+      scene.output.probes.push_back(length + 0.5 * span);
+    }
+    length += span;
+  }
+  if (!o.has("output_probes")) {
+    if (spans.size() > most_default_probes) {
+      scene.notes.push_back(
+          fmt::format("probes: the middle of the first {} of {} spans", most_default_probes, spans.size()));
+    }
+    return;
+  }
+  scene.output.probes = o.numbers("output_probes");
+  for (double& x : scene.output.probes) {
+    if (x > length * (1.0 + 1e-12)) {
+      o.refuse("output_probes", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x, length));
+    }
+    x = std::min(x, length);
+  }
+}
+
+bool has_control_character(const std::string& text) {
+  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
+}
+
+/// The name is a part of a file's name, which stays in the folder of results.
+void check_name(const Options& o, const std::string& name) {
+  if (name.find('/') != std::string::npos || name == "." || name == ".." || has_control_character(name))
+    o.refuse("scene_name", "allowed: a name without / and line breaks; -output_file takes a path");
+}
+
+void read_output(const Options& o, Scene& scene) {
+  check_name(o, scene.name);
+  if (o.has("output_file") && has_control_character(o.text("output_file")))
+    o.refuse("output_file", "allowed: a path without line breaks and other control characters");
+  scene.output.file = o.has("output_file") ? o.text("output_file") : "results/" + scene.name + ".h5";
+  if (scene.output.file == "none") scene.output.file.clear();
+  scene.output.interval = o.optional_number("output_interval");
+  scene.quiet = o.flag("output_quiet");
+  read_probes(o, scene);
+}
+
+/// A run ends when the last wheel or force has left the beam, or when the user says.
+void check_end(const Options& o, const Scene& scene) {
+  if (scene.analysis != Analysis::transient || scene.end_time) return;
+  const auto rolls = [](const Vehicle& v) { return !v.wheels.empty(); };
+  const bool wheels = std::any_of(scene.vehicles.begin(), scene.vehicles.end(), rolls);
+  const bool forces = !scene.load.forces.empty();
+  const bool leaves =
+      scene.beam && (!wheels || scene.train.speed > 0.0) && (!forces || scene.load.speed > 0.0) && (wheels || forces);
+  if (leaves || (scene.beam && scene.tail)) return;
+  std::string why = "nothing leaves a bridge in this scene, so its end has to be given (s)";
+  if (wheels && scene.train.speed == 0.0) why = "train_speed is 0: the train never leaves; give the end of the run (s)";
+  if (forces && scene.load.speed == 0.0) why = "load_speed is 0: the forces never leave; give the end of the run (s)";
+  o.refuse("ts_max_time", why);
+}
+
+void check_scene(const Options& o, Scene& scene) {
+  if (!scene.beam && scene.vehicles.empty()) {
+    throw InputError("nothing to simulate: neither a beam (beam_spans) nor vehicles (train_vehicles) are given");
+  }
+  if (scene.analysis == Analysis::modes && !scene.beam) o.refuse("scene_analysis", "modes need a beam (beam_spans)");
+  if (scene.vehicles.empty()) {
+    for (const char* name : {"train_positions", "train_spacing", "train_drive"}) {
+      if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: there are no train_vehicles");
+    }
+  }
+  if (scene.load.forces.empty()) {
+    for (const char* name : {"load_positions", "load_speed"}) {
+      if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: there are no load_forces");
+    }
+  }
+  check_end(o, scene);
+}
+
+}  // namespace
+
+double greatest_speed(const Scene& scene) {
+  return std::max(scene.train.vehicles.empty() ? 0.0 : scene.train.speed,
+                  scene.load.forces.empty() ? 0.0 : scene.load.speed);
+}
+
+double shortest_wave(const Scene& scene) {
+  double wave = scene.profile.shortest_wave();
+  for (const int index : scene.train.vehicles)
+    for (const Wheel& wheel : scene.vehicles[static_cast<std::size_t>(index)].wheels) {
+      if (wheel.shape.flat_length > 0.0) wave = std::min(wave, wheel.shape.flat_length);
+      if (wheel.shape.polygon_amplitude > 0.0)
+        wave = std::min(wave, 2.0 * std::numbers::pi * wheel.radius / wheel.shape.polygon_order);
+    }
+  return wave;
+}
+
+std::vector<double> wheels_at_start(const Scene& scene, std::size_t i) {
+  const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])];
+  std::vector<double> x;
+  for (const Wheel& wheel : vehicle.wheels)
+    x.push_back(scene.train.positions[i] + vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].position.x());
+  return x;
+}
+
+std::vector<double> wheels_at_start(const Scene& scene) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    for (const double x : wheels_at_start(scene, i)) all.push_back(x);
+  return all;
+}
+
+Scene read_scene(Options o) {
+  Scene scene;
+  const NamedVehicles vehicles = declare_vehicles(o);
+  declare_couplers(o);
+  o.check_names();
+  o.check_values();
+  read_run(o, scene);
+  read_beam(o, scene);
+  read_sweep(o, scene);
+  read_train(o, vehicles.train, scene);
+  read_load(o, scene);
+  read_track(o, scene);
+  read_layers(o, scene);
+  decide_axial(o, scene);
+  read_output(o, scene);
+  read_modal(o, scene);
+  check_scene(o, scene);
+  check_sense(o, vehicles, scene);
+  check_size(o, scene);
+  scene.options = o.all();
+  return scene;
+}
+
+Scene read_scene() { return read_scene(Options(options::in_force())); }
+
+}  // namespace traverse::app

@@ -1,0 +1,43 @@
+// The readers that read_scene is made of: each fills its part of the scene and checks it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traverse/options/options.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+struct NamedVehicles {
+  std::vector<std::string> train;   // front one first
+  std::vector<std::string> unused;  // defined, and in no train
+};
+
+/// Finds the vehicles of a scene, reads their files and makes the options of their parts known.
+NamedVehicles declare_vehicles(options::Options& options);
+Vehicle read_vehicle(const options::Options& options, const std::string& name);
+
+/// Makes the options of the train's couplers known.
+void declare_couplers(options::Options& options);
+/// Bodies are not yet looked for.
+Coupler read_coupler(const options::Options& options, const std::string& name);
+
+void read_beam(const options::Options& options, Scene& scene);  // beam, supports, damping
+/// Of a beam whose spans and joints are known.
+beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);
+/// A number or a file of x,value, inside the range of its row.
+beam::Distribution read_distribution(const options::Options& options, const std::string& name);
+void read_train(const options::Options& options, const std::vector<std::string>& names, Scene& scene);
+void read_load(const options::Options& options, Scene& scene);
+void read_sweep(const options::Options& options, Scene& scene);  // before train and load: it may give their speed
+/// Train A-N of EN 1991-2 with its first axle at `first`.
+MovingLoad hslm_load(int train, double first);
+void read_modal(const options::Options& options, Scene& scene);    // last: it depends on what moves
+void read_track(const options::Options& options, Scene& scene);    // after train: the roughness begins before it
+void read_layers(const options::Options& options, Scene& scene);   // after train and load: the track is as long
+void decide_axial(const options::Options& options, Scene& scene);  // after beam and train
+/// Refuses what can run but cannot be meant, notes what is possible but unusual. Last.
+void check_sense(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
+
+}  // namespace traverse::app

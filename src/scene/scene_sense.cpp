@@ -1,0 +1,165 @@
+// What a scene can hold without an error and is hardly meant: a train behind the bridge, speeds in km/h, short tables.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "scene_parts.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+
+constexpr double fastest_train = 160.0;  // m/s: the record of a train on rails is 574.8 km/h
+constexpr double far_away = 1000.0;      // m
+constexpr double rounding = 1e-6;        // of a length
+
+/// What moves over the bridge: wheels or forces.
+struct Moving {
+  std::vector<double> x;  // at the start, m
+  double speed = 0.0;
+  bool driven = true;       // goes on at that speed
+  const char* what = "";    // one of them, in words
+  const char* option = "";  // that places them
+};
+
+std::vector<Moving> moving_things(const Scene& scene) {
+  std::vector<Moving> things;
+  if (const auto x = wheels_at_start(scene); !x.empty())
+    things.push_back({x, scene.train.speed, scene.train.drive == Drive::constant, "wheel", "train_positions"});
+  if (!scene.load.positions.empty())
+    things.push_back({scene.load.positions, scene.load.speed, true, "force", "load_positions"});
+  return things;
+}
+
+/// Where the bridge ends, with its track: what starts beyond never loads it.
+double end_of_bridge(const beam::BeamModel& beam) {
+  return std::accumulate(beam.spans.begin(), beam.spans.end(), beam.track ? beam.track->approach : 0.0);
+}
+
+void check_start(const Options& o, const Moving& moving, Scene& scene) {
+  const double end = end_of_bridge(*scene.beam);
+  const double front = *std::max_element(moving.x.begin(), moving.x.end()),
+               rear = *std::min_element(moving.x.begin(), moving.x.end());
+  if (rear > end * (1.0 + rounding)) {
+    const std::string why = fmt::format("every {} starts beyond the bridge, which ends at {:g} m", moving.what, end);
+    if (scene.analysis == Analysis::transient && moving.speed > 0.0 && moving.driven)
+      o.refuse(moving.option, why + ", and moves away from it; allowed: positions before or on the bridge");
+    scene.notes.push_back(fmt::format("{}: {} ({})", moving.option, why, "nothing stands on it"));
+  }
+  if (scene.analysis != Analysis::transient || !(moving.speed > 0.0) || front >= 0.0) return;
+  const double arrival = -front / moving.speed;
+  if (scene.end_time && *scene.end_time < arrival) {
+    scene.notes.push_back(
+        fmt::format("the run ends at {:g} s (ts_max_time), before the first {} comes onto the bridge at {:g} s",
+                    *scene.end_time, moving.what, arrival));
+  } else if (front < -far_away) {
+    scene.notes.push_back(fmt::format("{}: the first {} starts {:g} m before the bridge and reaches it after {:g} s",
+                                      moving.option, moving.what, -front, arrival));
+  }
+}
+
+/// The rearmost and the foremost wheel of a vehicle of the train.
+std::pair<double, double> extent(const Scene& scene, std::size_t vehicle) {
+  const std::vector<double> x = wheels_at_start(scene, vehicle);
+  return {*std::min_element(x.begin(), x.end()), *std::max_element(x.begin(), x.end())};
+}
+
+/// By how much two neighbours stand in each other, m: their wheels, or what their lengths leave between them.
+double overlap(const Options& o, const Scene& scene, std::size_t front, std::size_t rear) {
+  const auto name = [&](std::size_t i) {
+    return scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])].name;
+  };
+  double deepest = extent(scene, rear).second - extent(scene, front).first;
+  const auto length = [&](std::size_t i) { return o.optional_number("vehicle_" + name(i) + "_length"); };
+  if (const auto a = length(front), b = length(rear); a && b)
+    deepest = std::max(deepest, 0.5 * (*a + *b) - (scene.train.positions[front] - scene.train.positions[rear]));
+  return deepest;
+}
+
+void note_overlaps(const Options& o, Scene& scene) {
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
+    if (!wheels_at_start(scene, i).empty()) order.push_back(i);
+  }
+  const std::vector<double>& x = scene.train.positions;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] > x[b]; });
+  std::size_t pairs = 0, first = 0;
+  double deepest = 0.0;
+  for (std::size_t i = 0; i + 1 < order.size(); ++i) {
+    const double by = overlap(o, scene, order[i], order[i + 1]);
+    if (!(by > rounding * (1.0 + std::abs(x[order[i]])))) continue;
+    if (pairs++ == 0) first = i;
+    deepest = std::max(deepest, by);
+  }
+  if (pairs == 0) return;
+  scene.notes.push_back(fmt::format(
+      "vehicles {} and {} of the train overlap{}, by up to {:.3g} m (train_positions, "
+      "train_spacing)",
+      order[first], order[first + 1], pairs > 1 ? fmt::format(" and {} more pairs", pairs - 1) : "", deepest));
+}
+
+void note_speeds(const Options& o, Scene& scene) {
+  const bool swept = scene.sweep && !scene.sweep->speeds.empty();
+  const double speed = swept ? scene.sweep->speeds.back() : greatest_speed(scene);
+  if (!(speed > fastest_train)) return;
+  const char* option = swept ? "sweep_speed" : o.has("train_speed") ? "train_speed" : "load_speed";
+  scene.notes.push_back(fmt::format("{}: {:g} m/s is {:g} km/h, faster than any train has run; speeds are in m/s",
+                                    option, speed, 3.6 * speed));
+}
+
+/// A table that does not reach the ends of the beam is continued by its end values.
+void note_table(const char* option, const beam::Distribution& table, double length, Scene& scene) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const std::vector<double> x = table.breaks(-infinity, infinity);
+  if (x.empty()) return;
+  const double slack = rounding * length;
+  const bool late = x.front() > slack, early = x.back() < length - slack;
+  if (late || early) {
+    scene.notes.push_back(
+        fmt::format("{}: the table goes from {:g} to {:g} m, the beam from 0 to {:g} m: {} holds beyond it", option,
+                    x.front(), x.back(), length,
+                    late && early ? "each end value"
+                    : late        ? "its first value"
+                                  : "its last value"));
+  }
+  if (x.front() < -slack || x.back() > length + slack) {
+    scene.notes.push_back(fmt::format("{}: the table goes from {:g} to {:g} m, beyond the beam from 0 to {:g} m",
+                                      option, x.front(), x.back(), length));
+  }
+}
+
+void note_tables(Scene& scene) {
+  const beam::BeamModel& beam = *scene.beam;
+  const double length = std::accumulate(beam.spans.begin(), beam.spans.end(), 0.0);
+  note_table("beam_EI", beam.EI, length, scene);
+  note_table("beam_EA", beam.EA, length, scene);
+  note_table("beam_mass", beam.mass, length, scene);
+  if (const auto& bed = beam.foundation.vertical_bed) {
+    note_table("foundation_vertical_bed_k", bed->k, length, scene);
+    note_table("foundation_vertical_bed_c", bed->c, length, scene);
+  }
+  if (const auto& bed = beam.foundation.longitudinal_bed) {
+    note_table("foundation_longitudinal_bed_k", bed->k, length, scene);
+    note_table("foundation_longitudinal_bed_c", bed->c, length, scene);
+  }
+}
+
+}  // namespace
+
+void check_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
+  if (!vehicles.unused.empty())
+    scene.notes.push_back(
+        fmt::format("defined, but not in the train (train_vehicles): {}", fmt::join(vehicles.unused, ", ")));
+  note_overlaps(o, scene);
+  note_speeds(o, scene);
+  if (!scene.beam) return;
+  note_tables(scene);
+  if (scene.analysis == Analysis::modes) return;
+  for (const Moving& moving : moving_things(scene)) check_start(o, moving, scene);
+}
+
+}  // namespace traverse::app

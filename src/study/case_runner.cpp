@@ -1,0 +1,142 @@
+#include "case_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "traverse/run/signals.hpp"
+#include "traverse/run/watch.hpp"
+
+namespace traverse::app {
+namespace {
+
+// As measured; peaks by modes are looked for at so many instants a period of the highest mode.
+constexpr double seconds_a_mode = 1.3e-8, instants_a_period = 20.0;
+constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
+
+}  // namespace
+
+CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
+    : scene_(scene),
+      speeds_(scene.sweep->speeds),
+      loads_(scene.sweep->loads),
+      structure_(PETSC_COMM_SELF, scene, notes) {
+  if (speeds_.empty()) speeds_ = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
+  if (loads_.empty()) loads_ = {scene.load};
+  structure_.damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
+  structure_.prepare(scene_, notes);
+  if (scene_.exact_in_time())
+    structure_.modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
+  std::vector<std::string> ignored;
+  for (std::size_t train = 0; train < trains(); ++train) {
+    for (const double speed : {speeds_.front(), speeds_.back()})
+      const Passage checked(scene_of(train, speed), structure_,
+                            train == 0 && speed == speeds_.front() ? notes : ignored);
+  }
+}
+
+const Scene& CaseRunner::scene_of(std::size_t train, double speed) {
+  scene_.load.forces = loads_[train].forces;
+  scene_.load.positions = loads_[train].positions;
+  scene_.load.speed = scene_.load.forces.empty() ? 0.0 : speed;
+  scene_.train.speed = scene_.vehicles.empty() ? 0.0 : speed;
+  return scene_;
+}
+
+double CaseRunner::duration(std::size_t train, double speed) const {
+  if (scene_.end_time) return *scene_.end_time;
+  double last = 0.0;
+  for (const auto* positions : {&loads_[train].positions, &scene_.train.positions})
+    for (const double x : *positions) last = std::min(last, x);
+  return (scene_.beam->length() - last) / speed + scene_.tail.value_or(0.0);
+}
+
+double CaseRunner::cost() const {
+  if (scene_.exact_in_time()) {
+    const std::vector<double>& omega = structure_.modal->omega();
+    return seconds_a_mode * instants_a_period * omega.back() / (2.0 * std::numbers::pi) *
+           static_cast<double>(omega.size());
+  }
+  double bodies = 0.0;
+  for (const int type : scene_.train.vehicles)
+    bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
+  const double a_step =
+      seconds_a_step + seconds_a_body * bodies + seconds_an_element * structure_.beam->mesh().elements();
+  return a_step / scene_.time_step.value_or(1.0);
+}
+
+double CaseRunner::cost_of_all() const {
+  double motion = 0.0;
+  for (std::size_t train = 0; train < trains(); ++train)
+    for (const double speed : speeds_) motion += duration(train, speed);
+  return cost() * motion;
+}
+
+CaseResult CaseRunner::run(std::size_t train, double speed, const std::function<void(double)>& reached) {
+  return scene_.exact_in_time() ? run_by_modes(train, speed) : run_by_elements(train, speed, reached);
+}
+
+CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached) {
+  std::vector<std::string> ignored;
+  const Scene& scene = scene_of(train, speed);
+  // Factorisations of other runs would serve shifts that are equal but for rounding: results would depend on which runs
+  // this rank has had.
+  structure_.statics->forget_steps();
+  Passage passage(scene, structure_, ignored);
+  passage.start(ignored);
+  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
+  Watch watch(scene, passage.system(), structure_.bridge(), none);
+  CaseResult result;
+  result.peaks.resize(scene.output.probes.size());
+  const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
+  const auto step = [&](double t, long) {
+    watch.step(t);
+    if (reached) reached(t);
+    return caught_signal() == 0;
+  };
+  passage.run(sample, step);
+  result.ended = caught_signal() == 0;
+  if (!result.ended) return result;
+  check_balance(scene, watch.extremes());
+  const Peaks& peaks = watch.finished_peaks();
+  for (std::size_t p = 0; p < result.peaks.size(); ++p) {
+    const auto peak = [&](Quantity q) {
+      const Peak& found = peaks.largest_of_each(q)[p];
+      return integrate::Peak{std::abs(found.value), found.time};
+    };
+    result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
+  }
+  const results::Summary& extremes = watch.finished_extremes();
+  result.least_wheel_force = extremes.least_wheel_force;
+  result.greatest_wheel_force = extremes.greatest_wheel_force;
+  result.contact_losses = extremes.contact_losses;
+  result.longest_loss = extremes.longest_loss;
+  std::vector<double>& at_rest = static_deflection_[train];
+  if (at_rest.empty() || !passage.system().pass_together(watch.paths())) {
+    at_rest.clear();
+    for (const double x : scene.output.probes) {
+      if (caught_signal() != 0) break;
+      at_rest.push_back(passage.system().static_peak(x, watch.paths(), watch.last().time));
+    }
+  }
+  result.ended = caught_signal() == 0;
+  result.static_deflection = at_rest;
+  return result;
+}
+
+CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
+  const structure::ModalBridge& bridge = *structure_.modal;
+  auto place = histories_.find(train);
+  if (place == histories_.end()) {
+    place = histories_.emplace(train, integrate::ForceHistory(bridge.influence(), scene_of(train, speed).load)).first;
+    static_deflection_[train] = integrate::static_peaks(bridge, place->second);
+  }
+  CaseResult result;
+  result.peaks = integrate::modal_peaks(bridge, place->second, speed, scene_.start == Start::equilibrium,
+                                        duration(train, speed), [] { return caught_signal() == 0; });
+  result.static_deflection = static_deflection_[train];
+  result.ended = caught_signal() == 0;
+  return result;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,54 @@
+// The runs of a sweep as one rank computes them, each by itself. What does not change from run to run is built once.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "traverse/integrate/modal_peaks.hpp"
+#include "traverse/run/passage.hpp"
+
+namespace traverse::app {
+
+/// What is left of a run.
+struct CaseResult {
+  std::vector<integrate::ProbePeaks> peaks;
+  std::vector<double> static_deflection;                       // m, of each probe; 0: unknown
+  double least_wheel_force = 0.0, greatest_wheel_force = 0.0;  // N
+  double contact_losses = 0.0, longest_loss = 0.0;             // of all wheels; s
+  bool ended = false;                                          // false: a signal came first
+};
+
+class CaseRunner {
+ public:
+  /// Builds structure and damping on this rank alone, and checks the runs at the slowest and the fastest speed. What
+  /// was modelled goes into `notes`.
+  CaseRunner(const Scene& scene, std::vector<std::string>& notes);
+
+  const std::vector<double>& speeds() const { return speeds_; }
+  std::size_t trains() const { return loads_.size(); }
+  /// s from the start to the end, by which runs are dealt.
+  double duration(std::size_t train, double speed) const;
+  /// What a second of motion takes, s: estimated by counting, the same on every rank and machine.
+  double cost() const;
+  /// What all runs take one after another, s, by that estimate.
+  double cost_of_all() const;
+  /// One run. `reached` hears the time of its motion, s, after every step.
+  CaseResult run(std::size_t train, double speed, const std::function<void(double)>& reached = {});
+
+ private:
+  /// The scene of one run.
+  const Scene& scene_of(std::size_t train, double speed);
+  CaseResult run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached);
+  CaseResult run_by_modes(std::size_t train, double speed);
+
+  Scene scene_;
+  std::vector<double> speeds_;
+  std::vector<MovingLoad> loads_;
+  Structure structure_;
+  std::map<std::size_t, std::vector<double>> static_deflection_;  // of each train
+  std::map<std::size_t, integrate::ForceHistory> histories_;
+};
+
+}  // namespace traverse::app

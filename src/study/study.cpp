@@ -1,0 +1,281 @@
+#include "traverse/study/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "case_runner.hpp"
+#include "deal.hpp"
+#include "modes_choice.hpp"
+#include "sweep_choice.hpp"
+#include "traverse/options/input.hpp"
+#include "traverse/results/stage.hpp"
+#include "traverse/results/sweep.hpp"
+#include "traverse/results/terminal.hpp"
+#include "traverse/run/deflection_check.hpp"
+#include "traverse/run/process.hpp"
+#include "traverse/run/signals.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr int nobody = std::numeric_limits<int>::max();
+constexpr double worth_a_word = 10.0;  // s, from which on quicker ways are looked for
+constexpr double quicker_by = 0.2;     // of the time: what modes must do with
+
+/// One run of the sweep.
+struct Case {
+  std::size_t train = 0, speed = 0;  // indices
+};
+
+/// Longest first, so that no rank ends long after the others.
+std::vector<Case> cases_of(const CaseRunner& runner) {
+  std::vector<Case> cases;
+  for (std::size_t train = 0; train < runner.trains(); ++train)
+    for (std::size_t speed = 0; speed < runner.speeds().size(); ++speed) cases.push_back({train, speed});
+  std::stable_sort(cases.begin(), cases.end(), [&](const Case& a, const Case& b) {
+    return runner.duration(a.train, runner.speeds()[a.speed]) > runner.duration(b.train, runner.speeds()[b.speed]);
+  });
+  return cases;
+}
+
+std::vector<double> span_ends(const beam::BeamModel& beam) {
+  std::vector<double> ends = {beam.start};
+  for (const double span : beam.spans) ends.push_back(ends.back() + span);
+  return ends;
+}
+
+results::Sweep empty_sweep(const Scene& scene, const CaseRunner& runner, const results::Sweep::Model& model) {
+  results::Sweep sweep;
+  sweep.model = model;
+  sweep.speed = runner.speeds();
+  sweep.trains = scene.sweep->trains;
+  sweep.probes = scene.output.probes;
+  const std::size_t runs = sweep.rows() * sweep.speed.size();
+  const std::vector<double> none(runs * sweep.probes.size(), results::Sweep::not_run);
+  sweep.deflection = sweep.acceleration = sweep.moment = {none, none};
+  sweep.amplification = none;
+  sweep.static_deflection.assign(sweep.rows() * sweep.probes.size(), results::Sweep::not_run);
+  const auto rolls = [](const Vehicle& v) { return !v.wheels.empty(); };
+  if (std::any_of(scene.vehicles.begin(), scene.vehicles.end(), rolls))
+    for (std::vector<double>* values :
+         {&sweep.least_wheel_force, &sweep.greatest_wheel_force, &sweep.contact_losses, &sweep.longest_loss})
+      values->assign(runs, results::Sweep::not_run);
+  return sweep;
+}
+
+void store(const CaseResult& result, const Case& c, results::Sweep& sweep) {
+  const std::size_t run = c.train * sweep.speed.size() + c.speed;
+  for (std::size_t p = 0; p < sweep.probes.size(); ++p) {
+    const std::size_t at = run * sweep.probes.size() + p;
+    const auto put = [&](const integrate::Peak& peak, results::Sweep::Peaks& into) {
+      into.value[at] = peak.value;
+      into.time[at] = peak.time;
+    };
+    put(result.peaks[p].deflection, sweep.deflection);
+    put(result.peaks[p].acceleration, sweep.acceleration);
+    put(result.peaks[p].moment, sweep.moment);
+    const double rest = result.static_deflection[p];
+    sweep.amplification[at] = rest > 0.0 ? result.peaks[p].deflection.value / rest : 0.0;
+    if (rest > 0.0) sweep.static_deflection[c.train * sweep.probes.size() + p] = rest;
+  }
+  if (sweep.least_wheel_force.empty()) return;
+  sweep.least_wheel_force[run] = result.least_wheel_force;
+  sweep.greatest_wheel_force[run] = result.greatest_wheel_force;
+  sweep.contact_losses[run] = result.contact_losses;
+  sweep.longest_loss[run] = result.longest_loss;
+}
+
+/// What went wrong on this rank, if anything.
+struct Failure {
+  int run = nobody;  // in the order of dealing
+  int status = 0;
+  std::string message;
+};
+
+/// Collective. The failure of the earliest run, the same on every rank.
+Failure first_of(MPI_Comm comm, Failure mine) {
+  int ranks = 1, rank = 0;
+  MPI_Comm_size(comm, &ranks);
+  MPI_Comm_rank(comm, &rank);
+  int place[2] = {mine.run, rank};
+  MPI_Allreduce(MPI_IN_PLACE, place, 1, MPI_2INT, MPI_MINLOC, comm);
+  if (place[0] == nobody) return {};
+  int sizes[2] = {static_cast<int>(mine.message.size()), mine.status};
+  MPI_Bcast(sizes, 2, MPI_INT, place[1], comm);
+  mine.message.resize(static_cast<std::size_t>(sizes[0]));
+  MPI_Bcast(mine.message.data(), sizes[0], MPI_CHAR, place[1], comm);
+  return {place[0], sizes[1], mine.message};
+}
+
+/// Collective. Each run's numbers from the rank that has them.
+void gather(MPI_Comm comm, results::Sweep& sweep) {
+  for (std::vector<double>* values :
+       {&sweep.deflection.value, &sweep.deflection.time, &sweep.acceleration.value, &sweep.acceleration.time,
+        &sweep.moment.value, &sweep.moment.time, &sweep.amplification, &sweep.static_deflection,
+        &sweep.least_wheel_force, &sweep.greatest_wheel_force, &sweep.contact_losses, &sweep.longest_loss}) {
+    std::vector<double> known(*values);
+    for (double& value : known)
+      if (value != value) value = -std::numeric_limits<double>::infinity();
+    MPI_Allreduce(MPI_IN_PLACE, known.data(), static_cast<int>(known.size()), MPI_DOUBLE, MPI_MAX, comm);
+    std::transform(known.begin(), known.end(), values->begin(), [](double value) {
+      return value == -std::numeric_limits<double>::infinity() ? results::Sweep::not_run : value;
+    });
+  }
+}
+
+std::string name_of(const Case& c, const results::Sweep& sweep) {
+  const double speed = sweep.speed[c.speed];
+  const std::string train = sweep.trains.empty() ? "" : fmt::format(" of train A{}", sweep.trains[c.train]);
+  return fmt::format("the run{} at {:g} m/s ({:g} km/h)", train, speed, 3.6 * speed);
+}
+
+/// How far the sweep is, by the time that its runs' motions last: runs are dealt longest first.
+class Course {
+ public:
+  Course(const std::vector<Case>& cases, const CaseRunner& runner, int ranks, bool quiet)
+      : ranks_(static_cast<std::size_t>(ranks)), progress_(0.0, 1.0, quiet) {
+    for (const Case& c : cases) {
+      duration_.push_back(runner.duration(c.train, runner.speeds()[c.speed]));
+      until_.push_back(until_.back() + duration_.back());
+    }
+  }
+
+  /// So many runs are taken; this rank's own has `left` s to go, those of the others half of theirs.
+  void show(std::size_t taken, double left) {
+    if (taken == 0) return;
+    const double others = 0.5 * static_cast<double>(ranks_ - 1) * duration_[taken - 1];
+    const double done = std::max(until_[taken] - left - others, 0.0);
+    progress_.runs(done / until_.back(), taken > ranks_ ? taken - ranks_ : 0, duration_.size());
+  }
+  void done() { progress_.done(); }
+
+ private:
+  std::size_t ranks_;
+  results::Progress progress_;
+  std::vector<double> duration_, until_{0.0};  // s, of each run, and of all before it
+};
+
+/// This rank's share of the runs.
+Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal, Course& course, results::Sweep& sweep,
+                  long& runs) {
+  Failure failure;
+  while (const auto piece = deal.next()) {
+    const Case& c = cases[*piece];
+    const auto fail = [&](int status, const std::string& why) {
+      failure = {static_cast<int>(*piece), status, name_of(c, sweep) + " failed: " + why};
+      deal.stop();
+    };
+    try {
+      const double speed = runner.speeds()[c.speed], duration = runner.duration(c.train, speed);
+      const CaseResult result =
+          runner.run(c.train, speed, [&](double t) { course.show(deal.taken(), std::max(duration - t, 0.0)); });
+      if (result.ended) {
+        store(result, c, sweep);
+        ++runs;
+      }
+    } catch (const Error& error) {
+      fail(error.status(), error.what());
+    } catch (const std::exception& failed) {
+      const Error error = as_error(failed);
+      fail(error.status(), error.what());
+    }
+    if (caught_signal() != 0) deal.stop();
+    course.show(deal.taken(), 0.0);
+    results::Stage::advance(static_cast<double>(deal.taken()) / static_cast<double>(cases.size()));
+  }
+  return failure;
+}
+
+/// How many runs, what they will take and what would be quicker.
+void announce(const Scene& scene, const CaseRunner& runner, const results::Sweep::Model& model, int ranks,
+              std::vector<std::string>& notes) {
+  const auto& speeds = runner.speeds();
+  const double seconds = runner.cost_of_all() / ranks;
+  notes.push_back(fmt::format("sweep of {} runs: {} speed{} from {:g} to {:g} m/s, {} train{}; above for the first one",
+                              speeds.size() * runner.trains(), speeds.size(), speeds.size() == 1 ? "" : "s",
+                              speeds.front(), speeds.back(), runner.trains(), runner.trains() == 1 ? "" : "s"));
+  const bool known = model.modes > 0 || model.time_step > 0.0;
+  notes.push_back(fmt::format("the sweep is {}{}", results::method_of(model),
+                              known ? ", which will take about " + results::duration_text(seconds) : ""));
+  if (ranks > 1)
+    notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
+  if (!known || seconds < worth_a_word) return;
+  const std::optional<QuickerModes> quicker = quicker_modes(scene);
+  if (quicker && quicker->seconds < quicker_by * seconds * ranks)
+    notes.push_back(fmt::format("quicker: -model_modes {} (all modes up to {:.3g} Hz) would take about {}{}",
+                                quicker->modes, quicker->frequency, results::duration_text(quicker->seconds / ranks),
+                                scene.modes_open && model.accuracy == 0.0
+                                    ? "; with ts_dt and the elements left open, modes are taken where they do as well"
+                                    : ""));
+}
+
+}  // namespace
+
+int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
+  int rank = 0, ranks = 1;
+  MPI_Comm_rank(comm, &rank);
+  MPI_Comm_size(comm, &ranks);
+  std::vector<std::string> notes;
+  const SweepChoice choice = choose_for_sweep(given, notes);
+  const Scene& scene = choice.scene;
+  CaseRunner runner(scene, notes);
+  notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+  for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
+  const std::vector<Case> cases = cases_of(runner);
+  announce(scene, runner, choice.model, ranks, notes);
+  print_notes(comm, notes);
+
+  const SignalsNoted noted;
+  results::Layout layout;
+  layout.probes = scene.output.probes;
+  layout.supports = span_ends(*scene.beam);
+  results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
+  results::Sweep sweep = empty_sweep(scene, runner, choice.model);
+  Course course(cases, runner, ranks, scene.quiet || rank != 0);
+  const auto begin = std::chrono::steady_clock::now();
+  long done[2] = {0, 0};  // runs, the signal that came
+  Failure failure;
+  {
+    const results::Stage stage("runs of the sweep");
+    Deal deal(comm, cases.size());
+    failure = run_share(cases, runner, deal, course, sweep, done[0]);
+    done[1] = caught_signal();
+  }
+  course.done();
+  failure = first_of(comm, std::move(failure));
+  MPI_Allreduce(MPI_IN_PLACE, &done[0], 1, MPI_LONG, MPI_SUM, comm);
+  MPI_Allreduce(MPI_IN_PLACE, &done[1], 1, MPI_LONG, MPI_MAX, comm);
+  gather(comm, sweep);
+
+  const results::SweepCourse whole = {done[0], static_cast<long>(cases.size()),
+                                      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
+                                      failure.run != nobody ? failure.message
+                                      : done[1] != 0        ? fmt::format("ended by signal {}", done[1])
+                                                            : "reached its end"};
+  try {
+    results::record(sweep, recorder);
+    recorder.finish_with(results::summary_of(sweep, whole), {"runs", "wall_seconds"});
+  } catch (const FileError& error) {
+    leave_together(comm, error);
+  }
+  if (rank == 0) {
+    if (done[0] > 0) results::print_sweep(sweep);
+    fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], cases.size(),
+               results::method_of(choice.model), whole.wall_seconds,
+               1e3 * whole.wall_seconds / static_cast<double>(std::max(done[0], 1L)), "the sweep", whole.ended,
+               scene.output.file.empty() ? "none" : scene.output.file);
+  }
+  if (failure.run != nobody) throw Error(failure.message, failure.status);
+  const std::vector<double>& peaks = sweep.deflection.value;  // std::fmax passes over runs without one
+  check_deflection(comm, scene, std::accumulate(peaks.begin(), peaks.end(), 0.0, [](double a, double b) {
+                     return std::fmax(a, b);
+                   }));
+  return done[1] == 0 ? 0 : 128 + static_cast<int>(done[1]);
+}
+
+}  // namespace traverse::app

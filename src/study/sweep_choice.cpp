@@ -1,0 +1,94 @@
+#include "sweep_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "modes_choice.hpp"
+#include "traverse/accuracy/accuracy.hpp"
+#include "traverse/accuracy/trials.hpp"
+
+namespace traverse::app {
+namespace {
+
+/// The scene of one run.
+Scene at_speed(const Scene& sweep, double speed) {
+  Scene scene = sweep;
+  if (!sweep.sweep->loads.empty()) scene.load = sweep.sweep->loads.front();
+  scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
+  scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
+  return scene;
+}
+
+/// What is promised of all runs is what both promise, with the larger error.
+void add(const Accuracy& one, std::optional<Accuracy>& all) {
+  if (!all) {
+    all = one;
+    return;
+  }
+  for (std::size_t q = 0; q < quantities; ++q) {
+    all->promises[q].kept &= one.promises[q].kept;
+    all->promises[q].expected = std::max(all->promises[q].expected, one.promises[q].expected);
+  }
+}
+
+void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
+  notes.push_back(fmt::format("all runs: {} elements a {}, steps of {:g} s", mesh_of(scene),
+                              scene.beam->track ? "sleeper bay" : "span", *scene.time_step));
+  std::string expected;
+  for (const auto& [quantity, error] : all.expected())
+    expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity, error);
+  std::replace(expected.begin(), expected.end(), '_', ' ');
+  notes.push_back("expected errors of the peaks of all runs: " + (expected.empty() ? "none promised" : expected));
+}
+
+/// The finest of what some speeds need; nothing where no accuracy was to be chosen by.
+std::optional<Accuracy> choose_at_speeds(const Scene& given, Scene& scene, std::vector<std::string>& notes) {
+  std::vector<double> speeds = given.sweep->speeds;
+  if (speeds.empty()) speeds = {given.vehicles.empty() ? given.load.speed : given.train.speed};
+  std::optional<Accuracy> all;
+  for (const double speed : std::set{speeds.front(), speeds[speeds.size() / 2], speeds.back()}) {
+    Scene one = at_speed(given, speed);
+    std::vector<std::string> own;
+    const Accuracy accuracy = choose(PETSC_COMM_SELF, one, own);
+    if (!accuracy.measured) return std::nullopt;
+    notes.push_back(fmt::format("at {:g} m/s:", speed));
+    notes.insert(notes.end(), own.begin(), own.end());
+    const int mesh = all ? std::max(mesh_of(scene), mesh_of(one)) : mesh_of(one);
+    if (!all || *one.time_step < *scene.time_step) scene.time_step = one.time_step;
+    set_mesh(scene, mesh);
+    scene.rest_tolerance = one.rest_tolerance;
+    scene.step_probes = one.step_probes;
+    add(accuracy, all);
+  }
+  return all;
+}
+
+results::Sweep::Model model_of(const Scene& scene) {
+  results::Sweep::Model model;
+  model.modes = scene.model_modes;
+  model.elements = mesh_of(scene);
+  model.in_bays = scene.beam->track.has_value();
+  if (!scene.exact_in_time()) model.time_step = scene.time_step.value_or(0.0);
+  return model;
+}
+
+}  // namespace
+
+SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes) {
+  SweepChoice choice{given, {}};
+  const std::optional<Accuracy> all = choose_at_speeds(given, choice.scene, notes);
+  if (!all) return {given, model_of(given)};
+  say(choice.scene, *all, notes);
+  const ModesChoice by = modes_that_do(choice.scene, *all, notes);
+  choice.scene.model_modes = by.modes;
+  choice.model = model_of(choice.scene);
+  choice.model.accuracy = given.accuracy;
+  choice.model.expected_errors = all->expected();
+  for (auto& [quantity, error] : choice.model.expected_errors) error += by.error;
+  return choice;
+}
+
+}  // namespace traverse::app

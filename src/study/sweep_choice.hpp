@@ -1,0 +1,22 @@
+// What all runs of a sweep are computed with: mesh, step and modes, as far as the scene leaves them open.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "traverse/results/sweep.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+struct SweepChoice {
+  Scene scene;  // complete
+  results::Sweep::Model model;
+};
+
+/// The finest mesh and step that the slowest, a middle and the fastest run need, or modes; the same on every rank.
+/// What was chosen, and the errors to expect, go into `notes`. InputError as the runs themselves would throw it.
+SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes);
+
+}  // namespace traverse::app
