@@ -81,16 +81,16 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   std::vector<std::string> ignored;
   if (scene.mesh_open)
     set_mesh(scene, scene.beam->track ? first_mesh(scene) : 2 * aligned_mesh(scene, first_mesh(scene) / 2));
-  Structure structure(comm, scene, ignored);
-  structure.damp(scene, true, ignored);
-  structure.prepare(scene, ignored);
+  SharedBeam shared(comm, scene, ignored);
+  shared.damp(scene, true, ignored);
+  shared.prepare(scene, ignored);
   Scene known = scene;
   known.damping.ratios.reset();
-  known.damping.rayleigh = {structure.rayleigh.a, structure.rayleigh.b};
+  known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
   Scene timed = known;
   if (!timed.time_step) timed.time_step = some_step;
-  const double end = Passage(timed, structure, ignored).plan().end_time;
-  ErrorSearch search(comm, known, structure, end);
+  const double end = Passage(timed, shared, ignored).plan().end_time;
+  ErrorSearch search(comm, known, shared, end);
   search.run();
   search.apply(scene, result);
   leave_out_rest(scene);

@@ -44,7 +44,7 @@ int most_trial_elements(const Scene& scene) {
 
 }  // namespace
 
-ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const Structure& structure, double end)
+ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end)
     : comm_(comm),
       scene_(scene),
       end_(end),
@@ -56,18 +56,18 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const Structure& str
       mesh_(mesh_of(scene)),
       most_elements_(most_trial_elements(scene)) {
   for (Promise& p : promises_) p.present = p.kept = true;
-  const double omega = structure.omega ? structure.omega->first : 0.0;
+  const double omega = shared.omega ? shared.omega->first : 0.0;
   const FirstSteps steps = first_steps(scene, omega, horizon_);
   longest_step_ = steps.longest;
   shortest_ = open_step_ ? steps.why : "the step is given";
   first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.time_step;
-  const double decay = 0.5 * (structure.rayleigh.a + structure.rayleigh.b * omega * omega);
+  const double decay = 0.5 * (shared.rayleigh.a + shared.rayleigh.b * omega * omega);
   growth_ = std::clamp(std::min(end, decay > 0.0 ? 1.0 / decay : end) / horizon_, 1.0, most_growth);
   if (!follows_contacts(scene, step_))
     refuse(wheel_force, fmt::format("the contact vibrates at {:.3g} Hz, which steps of {:.2g} s do not follow",
                                     contact_frequency(scene) / (2.0 * std::numbers::pi), step_));
   // A force that comes onto a beam starts all its modes, the nth with an acceleration like 1/n.
-  undamped_ = structure.rayleigh.b <= 0.0 && !scene.beam->track;
+  undamped_ = shared.rayleigh.b <= 0.0 && !scene.beam->track;
   if (undamped_)
     refuse(acceleration, "without damping that grows with the frequency the accelerations of all modes have no sum");
 }

@@ -10,14 +10,14 @@
 #include "error_law.hpp"
 #include "traverse/accuracy/accuracy.hpp"
 #include "traverse/accuracy/trials.hpp"
-#include "traverse/run/structure.hpp"
+#include "traverse/run/shared_beam.hpp"
 
 namespace traverse::app {
 
 class ErrorSearch {
  public:
   /// The scene with its Rayleigh damping as a and b; both must outlive it. end: of the run, s.
-  ErrorSearch(MPI_Comm comm, const Scene& scene, const Structure& structure, double end);
+  ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end);
 
   /// Collective.
   void run();

@@ -140,14 +140,14 @@ Scene shortened(const Scene& scene, double end) {
 
 RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
   std::vector<std::string> ignored;
-  Structure structure(comm, scene, ignored);
-  structure.damp(scene, false, ignored);
-  structure.prepare(scene, ignored);
-  Passage passage(scene, structure, ignored);
+  SharedBeam shared(comm, scene, ignored);
+  shared.damp(scene, false, ignored);
+  shared.prepare(scene, ignored);
+  Passage passage(scene, shared, ignored);
   passage.start(ignored);
-  structure.beam->release_matrices();
+  shared.beam->release_matrices();
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
-  Watch watch(scene, passage.system(), structure.bridge(), none);
+  Watch watch(scene, passage.system(), shared.bridge(), none);
   RunPeaks result;
   const auto steps_so_far = [&] {
     const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_a_step;

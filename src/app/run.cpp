@@ -25,12 +25,12 @@ namespace {
 
 constexpr int nodes_for_a_check = 1000;  // of a given step by the first period: up to here frequencies take no time
 
-int run_modes(MPI_Comm comm, const Scene& scene, results::Place place, Structure& structure,
+int run_modes(MPI_Comm comm, const Scene& scene, results::Place place, SharedBeam& shared,
               std::vector<std::string> notes) {
-  structure.damp(scene, true, notes);
-  const beam::Beam& beam = *structure.beam;
-  const auto [omega1, omega2] = *structure.omega;
-  const beam::Rayleigh ab = structure.rayleigh;
+  shared.damp(scene, true, notes);
+  const beam::Beam& beam = *shared.beam;
+  const auto [omega1, omega2] = *shared.omega;
+  const beam::Rayleigh ab = shared.rayleigh;
   options::check_all_used(options::in_force());
   print_notes(comm, notes);
   const beam::ShapePoints points(beam.mesh());
@@ -63,14 +63,14 @@ int run_modes(MPI_Comm comm, const Scene& scene, results::Place place, Structure
 }
 
 /// The natural frequencies that the run is made of: those of its modes, or the pair that damping was taken from.
-void store_modes(const Structure& structure, results::Recorder& recorder) {
-  if (!structure.omega) return;
-  const auto [omega1, omega2] = *structure.omega;
+void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
+  if (!shared.omega) return;
+  const auto [omega1, omega2] = *shared.omega;
   modes::Modes modes;
   modes.omega = {omega1, omega2};
-  if (structure.modal)
-    modes = modes::as_stored(*structure.beam, structure.modal->basis(), beam::ShapePoints(structure.beam->mesh()));
-  recorder.modes(modes, structure.rayleigh.a, structure.rayleigh.b, omega1, omega2);
+  if (shared.modal)
+    modes = modes::as_stored(*shared.beam, shared.modal->basis(), beam::ShapePoints(shared.beam->mesh()));
+  recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
 }
 
 double total(MPI_Comm comm, double share) {
@@ -110,20 +110,20 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
   return all_kept;
 }
 
-int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const Accuracy& accuracy,
-                  Structure& structure, std::vector<std::string> notes) {
+int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const Accuracy& accuracy, SharedBeam& shared,
+                  std::vector<std::string> notes) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const bool still = scene.analysis == Analysis::static_response;
-  const beam::Beam* beam = structure.bridge();
+  const beam::Beam* beam = shared.bridge();
   if (beam != nullptr) {
     const std::vector<int>& elements = beam->model().elements;  // of which one may have no two frequencies
     const bool cheap =
         beam->mesh().nodes() <= nodes_for_a_check && *std::min_element(elements.begin(), elements.end()) > 1;
-    structure.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
+    shared.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
   }
-  structure.prepare(scene, notes);
-  Passage passage(scene, structure, notes);  // everything is checked before anything is computed
+  shared.prepare(scene, notes);
+  Passage passage(scene, shared, notes);  // everything is checked before anything is computed
   coupling::System& system = passage.system();
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
   passage.start(notes);
@@ -138,8 +138,8 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
   results::Layout layout = layout_of(scene, system, beam);
   if (!still) layout.interval = passage.plan().interval * static_cast<double>(passage.plan().stored);
   results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
-  store_modes(structure, recorder);
-  if (structure.beam) structure.beam->release_matrices();
+  store_modes(shared, recorder);
+  if (shared.beam) shared.beam->release_matrices();
   Watch watch(scene, system, beam, recorder);
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
@@ -221,10 +221,10 @@ int run(MPI_Comm comm, const Scene& given) {
   Scene scene = given;
   std::vector<std::string> notes;
   const Accuracy accuracy = choose(comm, scene, notes);
-  Structure structure(comm, scene, notes);
+  SharedBeam shared(comm, scene, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-  if (scene.analysis == Analysis::modes) return run_modes(comm, scene, std::move(place), structure, std::move(notes));
-  return run_transient(comm, scene, std::move(place), accuracy, structure, std::move(notes));
+  if (scene.analysis == Analysis::modes) return run_modes(comm, scene, std::move(place), shared, std::move(notes));
+  return run_transient(comm, scene, std::move(place), accuracy, shared, std::move(notes));
 }
 
 }  // namespace traverse::app

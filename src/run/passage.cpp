@@ -23,12 +23,11 @@ coupling::SystemInput system_input(const Scene& scene, bool still) {
 }
 
 /// The bridge by its modes where vehicles run on these; else by its elements, or none.
-std::unique_ptr<structure::Structure> carrier(const Scene& scene, const Structure& structure,
+std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
                                               const coupling::SystemInput& input) {
-  if (!structure.modal || scene.exact_in_time())
-    return coupling::by_elements(structure.bridge(), input, structure.statics);
-  return std::make_unique<structure::ModalStructure>(*structure.modal, input.self_weight ? input.gravity : 0.0,
-                                                     structure.statics);
+  if (!shared.modal || scene.exact_in_time()) return coupling::by_elements(shared.bridge(), input, shared.statics);
+  return std::make_unique<structure::ModalStructure>(*shared.modal, input.self_weight ? input.gravity : 0.0,
+                                                     shared.statics);
 }
 
 /// When something passes a probe, as long as that is rare among the steps.
@@ -44,17 +43,17 @@ std::vector<double> passages(const Scene& scene, const Plan& plan) {
 
 }  // namespace
 
-Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std::string>& notes)
+Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes)
     : scene_(scene),
       still_(scene.analysis == Analysis::static_response),
       input_(system_input(scene, still_)),
-      system_(structure.comm, carrier(scene, structure, input_), input_) {
+      system_(shared.comm, carrier(scene, shared, input_), input_) {
   check_mesh(scene, notes);
-  if (!still_) plan_ = make_plan(scene, system_, structure.first_period(), notes);
+  if (!still_) plan_ = make_plan(scene, system_, shared.first_period(), notes);
   std::string method;
   if (scene.exact_in_time()) {
-    modal_.emplace(system_, *structure.modal, *structure.statics, input_, scene.start == Start::equilibrium,
-                   plan_.end_time, plan_.interval);
+    modal_.emplace(system_, *shared.modal, *shared.statics, input_, scene.start == Start::equilibrium, plan_.end_time,
+                   plan_.interval);
     method = modal_->method();
   } else {
     leave_out_rest(notes);
@@ -67,7 +66,7 @@ Passage::Passage(const Scene& scene, const Structure& structure, std::vector<std
     stepper_.emplace(system_, std::move(settings));
     if (!still_) check_times(plan_);
     if (!still_ && stepper_->hides_long_steps())
-      check_steps(scene, plan_, structure.first_period(), stepper_->high_order(), notes);
+      check_steps(scene, plan_, shared.first_period(), stepper_->high_order(), notes);
     method = fmt::format("{}, steps of at most {:g} s", stepper_->method(), plan_.time_step);
   }
   notes.push_back(fmt::format("vehicles {}, their degrees of freedom {}, moving forces {}",

@@ -17,21 +17,17 @@ constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_elemen
 }  // namespace
 
 CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
-    : scene_(scene),
-      speeds_(scene.sweep->speeds),
-      loads_(scene.sweep->loads),
-      structure_(PETSC_COMM_SELF, scene, notes) {
+    : scene_(scene), speeds_(scene.sweep->speeds), loads_(scene.sweep->loads), shared_(PETSC_COMM_SELF, scene, notes) {
   if (speeds_.empty()) speeds_ = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
   if (loads_.empty()) loads_ = {scene.load};
-  structure_.damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
-  structure_.prepare(scene_, notes);
+  shared_.damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
+  shared_.prepare(scene_, notes);
   if (scene_.exact_in_time())
-    structure_.modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
+    shared_.modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
   std::vector<std::string> ignored;
   for (std::size_t train = 0; train < trains(); ++train) {
     for (const double speed : {speeds_.front(), speeds_.back()})
-      const Passage checked(scene_of(train, speed), structure_,
-                            train == 0 && speed == speeds_.front() ? notes : ignored);
+      const Passage checked(scene_of(train, speed), shared_, train == 0 && speed == speeds_.front() ? notes : ignored);
   }
 }
 
@@ -53,15 +49,14 @@ double CaseRunner::duration(std::size_t train, double speed) const {
 
 double CaseRunner::cost() const {
   if (scene_.exact_in_time()) {
-    const std::vector<double>& omega = structure_.modal->omega();
+    const std::vector<double>& omega = shared_.modal->omega();
     return seconds_a_mode * instants_a_period * omega.back() / (2.0 * std::numbers::pi) *
            static_cast<double>(omega.size());
   }
   double bodies = 0.0;
   for (const int type : scene_.train.vehicles)
     bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
-  const double a_step =
-      seconds_a_step + seconds_a_body * bodies + seconds_an_element * structure_.beam->mesh().elements();
+  const double a_step = seconds_a_step + seconds_a_body * bodies + seconds_an_element * shared_.beam->mesh().elements();
   return a_step / scene_.time_step.value_or(1.0);
 }
 
@@ -81,11 +76,11 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
   const Scene& scene = scene_of(train, speed);
   // Factorisations of other runs would serve shifts that are equal but for rounding: results would depend on which runs
   // this rank has had.
-  structure_.statics->forget_steps();
-  Passage passage(scene, structure_, ignored);
+  shared_.statics->forget_steps();
+  Passage passage(scene, shared_, ignored);
   passage.start(ignored);
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
-  Watch watch(scene, passage.system(), structure_.bridge(), none);
+  Watch watch(scene, passage.system(), shared_.bridge(), none);
   CaseResult result;
   result.peaks.resize(scene.output.probes.size());
   const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
@@ -125,7 +120,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
 }
 
 CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
-  const structure::ModalBridge& bridge = *structure_.modal;
+  const structure::ModalBridge& bridge = *shared_.modal;
   auto place = histories_.find(train);
   if (place == histories_.end()) {
     place = histories_.emplace(train, integrate::ForceHistory(bridge.influence(), scene_of(train, speed).load)).first;

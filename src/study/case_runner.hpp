@@ -46,7 +46,7 @@ class CaseRunner {
   Scene scene_;
   std::vector<double> speeds_;
   std::vector<MovingLoad> loads_;
-  Structure structure_;
+  SharedBeam shared_;
   std::map<std::size_t, std::vector<double>> static_deflection_;  // of each train
   std::map<std::size_t, integrate::ForceHistory> histories_;
 };

@@ -114,9 +114,9 @@ std::optional<QuickerModes> quicker_modes(const Scene& scene) {
   if (!allowed(scene) || scene.model_modes > 0) return std::nullopt;
   try {
     std::vector<std::string> ignored;
-    const Structure structure(PETSC_COMM_SELF, scene, ignored);
-    if (structure.beam->mesh().nodes() > nodes_for_a_question) return std::nullopt;
-    const QuickerModes counted = counted_modes(*structure.beam);
+    const SharedBeam shared(PETSC_COMM_SELF, scene, ignored);
+    if (shared.beam->mesh().nodes() > nodes_for_a_question) return std::nullopt;
+    const QuickerModes counted = counted_modes(*shared.beam);
     Scene by_modes = scene;
     by_modes.model_modes = counted.modes;
     const CaseRunner runner(by_modes, ignored);

@@ -9,14 +9,14 @@
 #include "traverse/integrate/modal_stepper.hpp"
 #include "traverse/integrate/stepper.hpp"
 #include "traverse/run/plan.hpp"
-#include "traverse/run/structure.hpp"
+#include "traverse/run/shared_beam.hpp"
 
 namespace traverse::app {
 
 class Passage {
  public:
   /// Collective. InputError for what cannot be run. Scene and structure must outlive it.
-  Passage(const Scene& scene, const Structure& structure, std::vector<std::string>& notes);
+  Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes);
 
   /// Collective. Sets everything to its start; SolverError where there is no equilibrium.
   void start(std::vector<std::string>& notes);

@@ -1,4 +1,4 @@
-// What runs of a scene have in common, however many there are: the beam with its damping, its operator, its modes.
+// What the runs of a scene share, however many there are: the beam with its damping, its operator, its modes.
 #pragma once
 
 #include <memory>
@@ -13,11 +13,11 @@
 
 namespace traverse::app {
 
-struct Structure {
+struct SharedBeam {
   /// Collective. Checks and assembles the beam, if there is one. Says in `notes` what was modelled.
-  Structure(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
-  Structure(const Structure&) = delete;
-  Structure& operator=(const Structure&) = delete;
+  SharedBeam(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
+  SharedBeam(const SharedBeam&) = delete;
+  SharedBeam& operator=(const SharedBeam&) = delete;
 
   /// Collective, once. Sets the scene's Rayleigh damping. Finds the first two distinct frequencies where damping ratios
   /// need them or frequencies_wanted is true.

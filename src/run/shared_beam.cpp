@@ -1,4 +1,4 @@
-#include "traverse/run/structure.hpp"
+#include "traverse/run/shared_beam.hpp"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,8 @@ std::string what_beam(const beam::Beam& beam) {
 
 }  // namespace
 
-Structure::Structure(MPI_Comm communicator, const Scene& scene, std::vector<std::string>& notes) : comm(communicator) {
+SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<std::string>& notes)
+    : comm(communicator) {
   if (!scene.beam) return;
   const results::Stage stage("assembly of the beam");
   const std::string floating = scene.analysis == Analysis::modes ? "" : beam::floating_motion(*scene.beam);
@@ -45,7 +46,7 @@ Structure::Structure(MPI_Comm communicator, const Scene& scene, std::vector<std:
   if (beam->rail() != nullptr) notes.push_back(what_track(*beam));
 }
 
-void Structure::damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
+void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
   const results::Stage stage("search for the first frequencies");
   const Damping& damping = scene.damping;
   if (damping.frequencies)
@@ -64,7 +65,7 @@ void Structure::damp(const Scene& scene, bool frequencies_wanted, std::vector<st
         omega->first / (2.0 * std::numbers::pi), omega->second / (2.0 * std::numbers::pi), rayleigh.a, rayleigh.b));
 }
 
-void Structure::prepare(const Scene& scene, std::vector<std::string>& notes) {
+void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
   if (!beam) return;
   const results::Stage stage(scene.model_modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
   statics = std::make_shared<structure::BeamOperator>(*beam);
@@ -78,6 +79,6 @@ void Structure::prepare(const Scene& scene, std::vector<std::string>& notes) {
                                   : ""));
 }
 
-double Structure::first_period() const { return omega ? 2.0 * std::numbers::pi / omega->first : 0.0; }
+double SharedBeam::first_period() const { return omega ? 2.0 * std::numbers::pi / omega->first : 0.0; }
 
 }  // namespace traverse::app
