@@ -75,11 +75,11 @@ void System::share_coordinates(const double* y) {
 
 // --- the right-hand side -------------------------------------------------------------------------------------------
 
-void System::rate(double t, const double* y, double* ydot, Part part) {
+void System::rate(double t, const double* y, double* ydot, Terms terms) {
   const double* v = y;
   const double* w = y + n_;
   std::fill_n(ydot, local_size(), 0.0);
-  if (part != Part::beam) {
+  if (terms != Terms::beam) {
     evaluate_fleet(t, y);
     const int f = fleet_.freedom();
     if (rank_ == 0) {
@@ -88,16 +88,16 @@ void System::rate(double t, const double* y, double* ydot, Part part) {
     }
   }
   if (structure_) {
-    const bool own = part != Part::contact;
+    const bool own = terms != Terms::contact;
     if (own) {
       std::copy_n(w, n_, ydot);
       load_structure(t);
     }
     const structure::ElementLoads contacts = contact_loads();
-    structure_->accelerations(v, w, own, part != Part::beam ? &contacts : nullptr, ydot + n_);
+    structure_->accelerations(v, w, own, terms != Terms::beam ? &contacts : nullptr, ydot + n_);
   }
   double dissipation = 0.0, work = 0.0;
-  powers(w, part, dissipation, work);
+  powers(w, terms, dissipation, work);
   if (rank_ == 0) {
     ydot[2 * (n_ + fleet_.freedom())] = dissipation;
     ydot[2 * (n_ + fleet_.freedom()) + 1] = work;
@@ -139,15 +139,15 @@ void System::evaluate_fleet(double t, const double* y) {
 }
 
 // Rates of D and W for the state that fleet and structure were last set to.
-void System::powers(const double* w, Part part, double& dissipation, double& work) {
+void System::powers(const double* w, Terms terms, double& dissipation, double& work) {
   dissipation = work = 0.0;
-  if (structure_ && part != Part::contact) {
+  if (structure_ && terms != Terms::contact) {
     std::array<double, 2> sums = structure_->powers(w);
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, comm_);
     dissipation = sums[0];
     work = sums[1];
   }
-  if (part == Part::beam) return;
+  if (terms == Terms::beam) return;
   Powers fleet = fleet_powers();
   double sums[2] = {fleet.dissipation, fleet.work};
   if (share_.dealt()) MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPI_DOUBLE, MPI_SUM, comm_);
@@ -168,13 +168,13 @@ System::Powers System::fleet_powers() const {
 
 // --- implicit stages -----------------------------------------------------------------------------------------------
 
-bool System::solve_stage(double t, double shift, const double* c, double* y, Part part) {
+bool System::solve_stage(double t, double shift, const double* c, double* y, Terms terms) {
   if (structure_) {
     load_structure(t);
     structure_->begin_stage(shift, c, c + n_, y + n_);
   }
   const int f = fleet_.freedom();
-  if (part == Part::all) {
+  if (terms == Terms::all) {
     share_coordinates(y);
     c_p_.resize(2 * static_cast<std::size_t>(f));
     if (rank_ == 0) std::copy_n(c + 2 * n_, 2 * f, c_p_.begin());
@@ -191,19 +191,19 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
       }
     }
   }
-  if (solve_coupled({t, shift, shift * shift}, part) != Solution::found) return false;
+  if (solve_coupled({t, shift, shift * shift}, terms) != Solution::found) return false;
   if (structure_) structure_->end_stage(y, y + n_);
   if (shift == 0.0) {
     if (rank_ == 0) std::copy_n(p_.data(), f, y + 2 * n_);
     return true;
   }
   double dissipation = 0.0, work = 0.0;
-  powers(y + n_, part, dissipation, work);
+  powers(y + n_, terms, dissipation, work);
   if (rank_ != 0) return true;
   double* p = y + 2 * n_;
   for (int i = 0; i < f; ++i) {
-    p[i] = part == Part::all ? p_[i] : -c[2 * n_ + i] / shift;
-    p[f + i] = part == Part::all ? pd_still_[i] + shift * x_[i] : -c[2 * n_ + f + i] / shift;
+    p[i] = terms == Terms::all ? p_[i] : -c[2 * n_ + i] / shift;
+    p[f + i] = terms == Terms::all ? pd_still_[i] + shift * x_[i] : -c[2 * n_ + f + i] / shift;
   }
   p[2 * f] = (dissipation - c[2 * (n_ + f)]) / shift;
   p[2 * f + 1] = (work - c[2 * (n_ + f) + 1]) / shift;
@@ -212,12 +212,12 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Par
 
 // The stage that the structure has begun, and the fleet's p: as often as it takes until the structure's own forces
 // agree.
-System::Solution System::solve_coupled(const StageTime& at, Part part) {
+System::Solution System::solve_coupled(const StageTime& at, Terms terms) {
   for (;;) {
     if (structure_) structure_->solve_free();
-    if (part == Part::all && !stage_of_fleet(at)) return Solution::fleet_unsettled;
+    if (terms == Terms::all && !stage_of_fleet(at)) return Solution::fleet_unsettled;
     if (!structure_) return Solution::found;
-    if (part == Part::all && !fleet_.elements().empty()) structure_->take(newton_.element_loads());
+    if (terms == Terms::all && !fleet_.elements().empty()) structure_->take(newton_.element_loads());
     const structure::Structure::Verdict verdict = structure_->judge();
     if (verdict == structure::Structure::Verdict::settled) return Solution::found;
     if (verdict == structure::Structure::Verdict::failed) return Solution::structure_unsettled;
@@ -229,13 +229,14 @@ bool System::stage_of_fleet(const StageTime& at) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   const auto [first, past] = fleet_.own_coordinates();
   evaluated_time_ = at.t;
+  pd_.resize(f);
   pdd_.resize(f);
   p_.resize(2 * f);
   for (int i = first; i < past; ++i) {
     p_[i] = p_still_[i] + x_[i];
-    pdd_[i] = pd_still_[i] + at.shift * x_[i];
+    pd_[i] = pd_still_[i] + at.shift * x_[i];
   }
-  const bool set = fleet_.set(at.t, p_.data(), pdd_.data());
+  const bool set = fleet_.set(at.t, p_.data(), pd_.data());
   if ((share_.places(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0) return false;
   for (int placement = 0; placement < most_placements; ++placement) {
     fleet_.place_wheels();

@@ -40,7 +40,7 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
 void System::restart_motion(double t, double* y) {
   Motion& m = *motion_;
   m.rate.resize(static_cast<std::size_t>(local_size()));
-  rate(t, y, m.rate.data(), Part::all);
+  rate(t, y, m.rate.data(), Terms::all);
   const int f = fleet_.freedom();
   m.p.assign(p_.begin(), p_.begin() + f);
   m.pd.assign(p_.begin() + f, p_.end());
@@ -110,7 +110,7 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
     load_structure(t);
     structure_->begin_stage(stage, v, w);
   }
-  if (solve_coupled({t, shift, shift2}, Part::all) != Solution::found) return false;
+  if (solve_coupled({t, shift, shift2}, Terms::all) != Solution::found) return false;
   if (structure_) structure_->end_stage(stage, v, w);
   for (int i = first; i < past; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
   m.powers[rule.known] = fleet_powers();

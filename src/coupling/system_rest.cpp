@@ -24,7 +24,7 @@ void System::find_equilibrium(double* y) {
   train::Fleet moving = std::move(fleet_);
   stand_still();
   if (structure_) load_structure(0.0);
-  Solution found = settle(Part::all);
+  Solution found = settle(Terms::all);
   if (found == Solution::fleet_unsettled) {
     stand_still();
     found = settle_slowly();
@@ -49,9 +49,9 @@ void System::stand_still() {
 }
 
 // Statics, from p_still_. `tie`: what holds all masses where they are, 1/s2.
-System::Solution System::settle(Part part, double tie) {
+System::Solution System::settle(Terms terms, double tie) {
   if (structure_) structure_->begin_statics(input_.self_weight || !loads_.empty());
-  return solve_coupled({0.0, 0.0, tie}, part);
+  return solve_coupled({0.0, 0.0, tie}, terms);
 }
 
 // Newton does not come from a spring that is loose, or a contact that is apart, to where it carries: the force has no
@@ -62,7 +62,7 @@ System::Solution System::settle_slowly() {
   Solution found = Solution::fleet_unsettled;
   double tie = first_tie;
   for (int i = 0; i < most_ties && tie >= last_tie; ++i) {
-    found = settle(Part::all, tie);
+    found = settle(Terms::all, tie);
     if (found == Solution::structure_unsettled) return found;
     if (found == Solution::fleet_unsettled) {
       if ((tie *= stiffer) > first_tie * stiffer) return found;
@@ -76,7 +76,7 @@ System::Solution System::settle_slowly() {
     tie *= softer;
     if (held > nearly_at_rest * std::max(input_.gravity, 1.0)) continue;
     const std::vector<double> here = p_still_;
-    if (settle(Part::all) == Solution::found) return Solution::found;
+    if (settle(Terms::all) == Solution::found) return Solution::found;
     go_on_from(here);
   }
   return Solution::fleet_unsettled;

@@ -17,7 +17,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
     find_equilibrium(y);
   } else if (input_.self_weight && structure_) {
     structure_->load({});
-    if (const Solution found = settle(Part::beam); found != Solution::found) refuse_start(found);
+    if (const Solution found = settle(Terms::beam); found != Solution::found) refuse_start(found);
     structure_->end_stage(y, y + n_);
   }
   for (train::MovingVehicle& vehicle : fleet_.vehicles)

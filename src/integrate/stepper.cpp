@@ -19,7 +19,7 @@ namespace {
 
 using base::check;
 using base::guard;
-using coupling::Part;
+using coupling::Terms;
 
 constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS wants some bound
 constexpr int most_rejections = 12;                                      // of one step, each a quarter as long
@@ -97,7 +97,7 @@ void Stepper::set_up_type() {
   }
   if (!implicit_ || imex) check(TSSetRHSFunction(ts_, nullptr, rhs_function, this));
   if (!implicit_) return;
-  implicit_part_ = imex ? Part::beam : Part::all;
+  implicit_terms_ = imex ? Terms::beam : Terms::all;
   check(VecDuplicate(y_, residual_.out()));
   check(VecSet(residual_, 0.0));
   const PetscInt n = system_.local_size();
@@ -125,7 +125,7 @@ std::string Stepper::method() const {
   if (has_type(ts_, TSARKIMEX)) {
     TSARKIMEXType which = nullptr;
     check(TSARKIMEXGetType(ts_, &which));
-    text = std::string("arkimex ") + which + (implicit_part_ == Part::all ? ", implicit" : ", beam implicit");
+    text = std::string("arkimex ") + which + (implicit_terms_ == Terms::all ? ", implicit" : ", beam implicit");
   } else if (multistep_) {
     PetscInt order = 0;
     check(TSBDFGetOrder(ts_, &order));
@@ -266,7 +266,7 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purp
     Array out(rate_);
     system_.rate_of_motion(in.data, out.data);
   } else {
-    rate(t, y_, rate_, Part::all);
+    rate(t, y_, rate_, Terms::all);
   }
   ReadArray y(y_);
   ReadArray ydot(rate_);
@@ -304,13 +304,13 @@ bool Stepper::remembered(double t, const double* y) const {
   return same != 0;
 }
 
-void Stepper::rate(double t, Vec y, Vec ydot, Part part) {
+void Stepper::rate(double t, Vec y, Vec ydot, Terms terms) {
   ReadArray in(y);
   Array out(ydot);
-  if (part == implicit_part_ && remembered(t, in.data))
+  if (terms == implicit_terms_ && remembered(t, in.data))
     std::copy(known_rate_.begin(), known_rate_.end(), out.data);
   else
-    system_.rate(t, in.data, out.data, part);
+    system_.rate(t, in.data, out.data, terms);
 }
 
 // F = y' - G, or, inside a stage solve, only a note of what is asked.
@@ -321,13 +321,13 @@ void Stepper::implicit_residual(double t, Vec y, Vec ydot, Vec residual) {
     if (request_.start) {  // PETSc 3.20 and later: ARKIMEX asks for the y' of its first explicit stage
       PetscReal now = 0.0;
       check(TSGetTime(ts_, &now));
-      return rate(now, y, residual, implicit_part_);
+      return rate(now, y, residual, implicit_terms_);
     }
     ReadArray xdot(ydot);
     std::copy_n(xdot.data, stage_c_.size(), stage_c_.begin());
     return;
   }
-  rate(t, y, residual, implicit_part_);
+  rate(t, y, residual, implicit_terms_);
   check(VecAYPX(residual, -1.0, ydot));
 }
 
@@ -350,7 +350,7 @@ void Stepper::solve_stage(SNES snes, Vec x) {
     ReadArray b(right_side);
     for (std::size_t i = 0; i < n; ++i) stage_c_[i] -= b.data[i];
   }
-  if (!system_.solve_stage(request_.t, request_.shift, stage_c_.data(), y.data, implicit_part_)) {
+  if (!system_.solve_stage(request_.t, request_.shift, stage_c_.data(), y.data, implicit_terms_)) {
     known_ = false;
     check(SNESSetConvergedReason(snes, SNES_DIVERGED_MAX_IT));
     return;
@@ -375,7 +375,7 @@ PetscErrorCode Stepper::ijacobian(TS, PetscReal, Vec, Vec, PetscReal shift, Mat,
 PetscErrorCode Stepper::rhs_function(TS, PetscReal t, Vec y, Vec ydot, void* context) {
   return guard([&] {
     auto& self = *static_cast<Stepper*>(context);
-    self.rate(t, y, ydot, self.implicit_ ? Part::contact : Part::all);
+    self.rate(t, y, ydot, self.implicit_ ? Terms::contact : Terms::all);
   });
 }
 

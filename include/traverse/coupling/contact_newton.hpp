@@ -77,7 +77,7 @@ class ContactNewton {
     double shift = 0.0, shift2 = 0.0;           // that they were computed for; 0: none
     int partition_version = 0;
     bool curved = false;    // with the constraints' curvature
-    double change = 0.0;    // that and the largest change of force
+    double change = 0.0;    // larger of the residual and the largest change of force, over the weight
     double residual = 0.0;  // largest of R over the weight
 
     Eigen::VectorXd R, dx, r, s;

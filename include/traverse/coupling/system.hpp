@@ -54,7 +54,7 @@ struct SystemInput {
 
 /// Which terms of G are meant: all; or, for implicit-explicit integrators, the beam with the moving forces
 /// (implicit), or vehicles and contacts (explicit).
-enum class Part { all, beam, contact };
+enum class Terms { all, beam, contact };
 
 /// Stored energies and the integrals of the powers, J.
 struct Energy {
@@ -100,10 +100,10 @@ class System {
   std::vector<std::string> start(bool equilibrium, double* y);
 
   /// Collective. ydot = G(t, y), or a part of it.
-  void rate(double t, const double* y, double* ydot, Part part);
+  void rate(double t, const double* y, double* ydot, Terms terms);
 
   /// Collective. y with G(t, y) = shift*y + c; y comes in as a guess. False where no solution is found.
-  bool solve_stage(double t, double shift, const double* c, double* y, Part part);
+  bool solve_stage(double t, double shift, const double* c, double* y, Terms terms);
 
   // In second-order form, without a PETSc stage: what an own integrator takes steps with.
 
@@ -156,11 +156,11 @@ class System {
   /// Collective. Notes y as accepted at t and chooses new independent coordinates where the old ones have worn out.
   /// True when y was rewritten for that.
   bool accept(double t, double* y);
-  /// Steps may be no longer than this while an impact goes on, s.
+  /// Longest step while an impact goes on, s.
   double step_limit(double t) const;
-  /// And none may lead further beyond the next impact than within the tolerance, s.
+  /// Longest step that overshoots the next impact by at most `tolerance`, s.
   double time_to_impact(double tolerance) const;
-  /// Of a contact's change: s.
+  /// Time tolerance for locating this contact's gain or loss, s.
   double change_tolerance(int contact, double tolerance) const;
 
   /// Collective. Why the last stage could not be solved, and what to do about it.
@@ -255,9 +255,9 @@ class System {
   double static_energy(double station);
   double note_contacts(double t);
   void share_coordinates(const double* y);
-  Solution settle(Part part, double tie = 0.0);
+  Solution settle(Terms terms, double tie = 0.0);
   Solution settle_slowly();
-  Solution solve_coupled(const StageTime& at, Part part);
+  Solution solve_coupled(const StageTime& at, Terms terms);
   bool stage_of_fleet(const StageTime& at);
   bool stage_of_motion(double t, std::size_t stage, const double* v, const double* w);
   const std::vector<structure::Reach>& loaded(double t, double h);
@@ -270,7 +270,7 @@ class System {
   std::string trouble_of_own() const;
   void note_impacts(double t);
   void note_touched();
-  void powers(const double* w, Part part, double& dissipation, double& work);
+  void powers(const double* w, Terms terms, double& dissipation, double& work);
   Powers fleet_powers() const;
   Energy energy(const double* y);
 
@@ -299,6 +299,7 @@ class System {
   std::size_t next_corner_ = 0;                 // the first that may not have been turned
   std::string nothing_holds_;                   // why there is no static equilibrium, where that is known
   std::vector<double> p_, c_p_, pdd_;           // p, p' and their c, p'', the same on all ranks
+  std::vector<double> pd_;                      // p' that a stage begins its Newton iteration with
   std::vector<double> p_still_, pd_still_, x_;  // p and p' at zero acceleration, and the stage's change of p
   std::vector<double> evaluated_;               // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;

@@ -84,7 +84,7 @@ class Stepper {
   double end_at_turn(double from, const coupling::System::Turn& turn);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y, const double* ydot) const;
-  void rate(double t, Vec y, Vec ydot, coupling::Part part);
+  void rate(double t, Vec y, Vec ydot, coupling::Terms terms);
   bool remembered(double t, const double* y) const;
   void implicit_residual(double t, Vec y, Vec ydot, Vec residual);
   void solve_stage(SNES snes, Vec x);
@@ -101,7 +101,7 @@ class Stepper {
   base::Handle<Vec> before_, residual_;  // y at the start of the step, F; of PETSc's types alone
   base::Handle<Mat> jacobian_;
   Request request_;
-  coupling::Part implicit_part_ = coupling::Part::all;
+  coupling::Terms implicit_terms_ = coupling::Terms::all;
   bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false;
   bool monitored_ = false;            // by -ts_monitor and its like
   std::optional<StepLadder> ladder_;  // of adaptive steps of an own type

@@ -31,7 +31,7 @@ struct MovingVehicle {
   int first_pair = 0;         // in Fleet::pairs
   std::vector<int> touching;  // its wheels and pairs, numbered as Fleet::contact does
   Eigen::VectorXd Q;          // generalized forces of the wheels, n
-  bool rests = false;         // left as it is by Fleet::set and touch: an iteration has done with it
+  bool rests = false;         // converged: Fleet::set and touch skip it
 };
 
 /// A contact at the state last evaluated.
