@@ -13,7 +13,8 @@ constexpr double same_position = 1e-9;  // m or rad: a step's last stage is its 
 }  // namespace
 
 void System::begin_motion(const structure::Method& method) {
-  Motion& m = motion_.emplace();
+  motion_ = std::make_unique<Motion>();
+  Motion& m = *motion_;
   m.unit = method;
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);

@@ -73,12 +73,10 @@ void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
     past = window_->past();
   }
   free_ = {};
-  if (parts && measures_errors_) {  // a step is judged by all that moves
-    motion_->set_range(local(first), local(past));
-  } else if (parts) {
+  if (parts && !measures_errors_) {  // else a step is judged by all that moves
     free_ = {{{local(first), local(low < high ? low : past)}, {local(low < high ? high : past), local(past)}}};
     motion_->set_range(local(low), local(high));
-  } else if (window_) {
+  } else if (parts || window_) {
     motion_->set_range(local(first), local(past));
   }
 }

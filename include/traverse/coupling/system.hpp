@@ -308,7 +308,7 @@ class System {
   std::vector<double> element_loads_;
   std::vector<structure::Reach> reaches_;
   std::vector<int> turned_elements_;  // on either side of a corner
-  std::optional<Motion> motion_;
+  std::unique_ptr<Motion> motion_;    // null before begin_motion
   bool keep_steps_ = false;
 };
 
