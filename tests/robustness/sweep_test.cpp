@@ -34,7 +34,15 @@ TEST(SweepEnds, ByASignalWithWhatItHas) {
   const Workplace workplace(std::string(two_spans) +
                             "load: {forces: 1.0e5}\nsweep: {speed: [20, 60, 0.01]}\nts_dt: 1.0e-4\n");
   Child child(workplace.command({"-output_file", "r.h5"}), workplace.folder());
-  ASSERT_TRUE(child.wait_for(" of 4001 runs   "));  // its progress, once a run has ended
+  const auto a_run_has_ended = [&] {
+    const std::string shown = child.written("out");
+    for (std::size_t at = 0; (at = shown.find(" of 4001 runs   ", at)) != std::string::npos; ++at) {
+      const std::size_t begin = shown.find_last_of(" \n", at - 1) + 1;
+      if (std::atoi(shown.substr(begin, at - begin).c_str()) > 0) return true;
+    }
+    return false;
+  };
+  ASSERT_TRUE(child.wait_until(a_run_has_ended, 300.0));
   child.kill(SIGTERM);
   const Outcome outcome = child.wait();
   EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;

@@ -34,6 +34,8 @@ class Child {
   void kill(int signal) const;
   /// Waits until the process has brought about a state; false when it ends or `seconds` pass before.
   bool wait_until(const std::function<bool()>& state, double seconds = patience);
+  /// What the process has written so far: "out" or "err".
+  std::string written(const std::string& ending) const;
   /// Waits until the process has written `text`.
   bool wait_for(const std::string& text, double seconds = patience);
   /// Waits until the process ends.
@@ -41,7 +43,6 @@ class Child {
 
  private:
   bool ended();
-  std::string written(const std::string& ending) const;
 
   TemporaryFolder streams_;
   pid_t pid_ = -1;
