@@ -41,13 +41,7 @@ System::InfluenceLine System::influence_line(double station) {
   std::vector<double> nodal(structure_->dead_load().size(), 0.0);
   const beam::Station s = beam.mesh().locate(station);
   if (beam.rail() != nullptr) {
-    const beam::Line& bridge = beam.bridge();
-    const beam::Hermite psi = beam::hermite(s.xi, bridge.mesh.element(s.element).length);
-    const auto unknowns = bridge.transverse(s.element);
-    for (int i = 0; i < 4; ++i) {
-      const int local = beam.local(unknowns[i]);
-      if (local >= 0) nodal[local] -= psi.value[i];
-    }
+    structure_->add_force(beam.bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal.data());
   } else {
     line.inside.emplace(beam, std::vector<double>{station}, input_.self_weight ? input_.gravity : 0.0);
     line.of_weight = line.inside->add_deflection_form(0, -1.0, nodal.data());

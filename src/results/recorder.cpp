@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
 #include <numeric>
-#include <stdexcept>
 
-#include "hdf5.hpp"
+#include "recorder_file.hpp"
 #include "summary.hpp"
 #include "traverse/base/error.hpp"
 
@@ -83,33 +81,6 @@ constexpr const char* kReactionUnit = "N, N, N m";
 
 }  // namespace
 
-struct Recorder::Impl {
-  Impl(Place place, const Layout& given, const Pairs& attributes, const Pairs& options, int ranks);
-  ~Impl();
-
-  void add(const Sample& sample);
-  void end(const Sample& sample);
-  void flush();
-  void write(const std::string& object, const Attribute& attribute);
-  /// Runs `write`; a failure leaves in the file what was flushed before, and ends the writing.
-  template <class Write>
-  void attempt(Write&& write);
-
-  hdf5::File file;
-  Layout layout;
-  std::vector<Series> series;  // in the order of `create_series`, which `fill` follows
-  std::size_t block_rows;
-  std::size_t waiting = 0;  // samples in memory
-  Clock::time_point last_flush = Clock::now();
-  double flush_cost = 0.0;  // s, of the last one
-  bool closed = false;
-
- private:
-  /// Under `group`, with buffers of so many rows.
-  std::vector<Series> create_series(const std::string& group, std::size_t rows);
-  static void fill(std::vector<Series>& series, const Sample& sample);
-};
-
 Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, const Pairs& options, int ranks)
     : file(std::move(place)),
       layout(given),
@@ -142,18 +113,6 @@ Recorder::Impl::~Impl() {
       file.close();
     });
   } catch (...) {  // whoever ends a run this way has another error to report
-  }
-}
-
-template <class Write>
-void Recorder::Impl::attempt(Write&& write) {
-  if (closed) throw std::logic_error("the results file " + file.path() + " is closed");
-  try {
-    write();
-  } catch (...) {
-    closed = true;
-    file.abandon();
-    throw;
   }
 }
 
@@ -289,104 +248,6 @@ void Recorder::add(const Sample& sample) {
 void Recorder::end(const Sample& sample) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] { impl_->end(sample); });
-}
-
-void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2) {
-  if (impl_ == nullptr) return;
-  impl_->attempt([&] {
-    auto& file = impl_->file;
-    std::vector<double> frequency;
-    for (const double omega : modes.omega) frequency.push_back(omega / (2.0 * std::numbers::pi));
-    file.dataset("/modes/frequency", {frequency.size()}, frequency, "Hz");
-    if (!modes.axial.empty()) {
-      file.dataset("/modes/axial", {modes.axial.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
-    }
-    if (!modes.shape.empty()) {
-      const std::size_t points = modes.shape.front().size();
-      std::vector<double> shapes;
-      for (const auto& shape : modes.shape) shapes.insert(shapes.end(), shape.begin(), shape.end());
-      file.dataset("/modes/shape", {modes.shape.size(), points}, shapes, "1");
-      if (modes.x.size() == points) file.dataset("/modes/x", {points}, modes.x, "m");
-    }
-    file.attribute("/modes", "rayleigh_a", rayleigh_a);
-    file.attribute("/modes", "rayleigh_b", rayleigh_b);
-    file.attribute("/modes", "omega1", omega1);
-    file.attribute("/modes", "omega2", omega2);
-    file.flush();
-  });
-}
-
-void Recorder::damped_modes(const modes::DampedModes& modes) {
-  if (impl_ == nullptr) return;
-  impl_->attempt([&] {
-    auto& file = impl_->file;
-    std::vector<double> frequency, ratio, decay_rate;
-    for (std::size_t i = 0; i < modes.size(); ++i) {
-      frequency.push_back(modes.damped_omega(i) / (2.0 * std::numbers::pi));
-      ratio.push_back(modes.ratio(i));
-      decay_rate.push_back(modes.decay_rate(i));
-    }
-    file.dataset("/modes/damped_frequency", {modes.size()}, frequency, "Hz");
-    file.dataset("/modes/damping_ratio", {modes.size()}, ratio, "1");
-    file.dataset("/modes/decay_rate", {modes.size()}, decay_rate, "1/s");
-    file.dataset("/modes/damped_axial", {modes.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
-    if (!modes.shape.empty()) {
-      std::vector<double> parts;
-      for (const auto& shape : modes.shape) {
-        for (const auto& value : shape) parts.insert(parts.end(), {value.real(), value.imag()});
-      }
-      file.dataset("/modes/damped_shape", {modes.size(), modes.shape.front().size(), 2}, parts, "1");
-    }
-    file.flush();
-  });
-}
-
-void Recorder::shape(const Shape& shape) {
-  if (impl_ == nullptr) return;
-  impl_->attempt([&] {
-    auto& file = impl_->file;
-    if (shape.deflection.size() != shape.x.size()) throw std::logic_error("a shape with another number of points");
-    file.dataset("/shape/x", {shape.x.size()}, shape.x, "m");
-    file.dataset("/shape/deflection", {shape.x.size()}, shape.deflection, "m");
-    file.attribute("/shape/deflection", "time", shape.time);
-    file.attribute("/shape", "time", shape.time);
-  });
-}
-
-void Recorder::separations(const std::vector<Separation>& list) {
-  if (impl_ == nullptr || list.empty()) return;
-  impl_->attempt([&] {
-    auto& file = impl_->file;
-    Pairs contacts;
-    for (const Separation& s : list) contacts.emplace_back(s.vehicle, s.contact);
-    file.table("/separations/contact", contacts);
-    const auto column = [&](const char* name, double Separation::*member, const char* unit) {
-      std::vector<double> values;
-      for (const Separation& s : list) values.push_back(s.*member);
-      file.dataset(std::string("/separations/") + name, {values.size()}, values, unit);
-    };
-    column("x", &Separation::x, "m");
-    column("start", &Separation::start, "s");
-    column("duration", &Separation::duration, "s");
-    column("approach_speed", &Separation::approach_speed, "m/s");
-    column("impact_force", &Separation::impact_force, "N");
-  });
-}
-
-void Recorder::datasets(const std::vector<Dataset>& sets) {
-  if (impl_ == nullptr) return;
-  impl_->attempt([&] {
-    for (const Dataset& set : sets)
-      impl_->file.dataset(set.name, {set.shape.begin(), set.shape.end()}, set.values, set.unit);
-    impl_->file.flush();
-  });
-}
-
-void Recorder::attributes(const std::string& group, const std::vector<Attribute>& list) {
-  if (impl_ == nullptr) return;
-  impl_->attempt([&] {
-    for (const Attribute& attribute : list) impl_->write(group, attribute);
-  });
 }
 
 void Recorder::finish(const Summary& summary) {

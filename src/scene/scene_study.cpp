@@ -69,6 +69,8 @@ void read_modal(const Options& o, Scene& scene) {
       scene.vehicles.empty() && type != nullptr && type->value != "modal")
     o.refuse("ts_type", "with model_modes and forces alone the motion is exact in time; allowed: modal, or left out");
   scene.model_modes = static_cast<int>(modes);
+  if (scene.rest_tolerance > 0.0)
+    scene.notes.emplace_back("model_window has no effect: a bridge by its modes moves as a whole");
   if (!o.has("model_damping_ratios")) return;
   if (scene.damping.rayleigh || scene.damping.ratios)
     o.refuse("model_damping_ratios", "give either these or Rayleigh damping (beam_damping_ratios, beam_rayleigh)");

@@ -335,12 +335,7 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   // Forces but its own weight, and their deflection at rest less the modes' share of it.
   out.P.assign(size, 0.0);
   add_contacts(contacts, out.P.data());
-  for (const beam::ElementLoad& force : forces_) {
-    const beam::Hermite psi = beam::hermite(force.xi, line_.mesh.element(force.element).length);
-    const auto unknowns = line_.transverse(force.element);
-    for (std::size_t k = 0; k < 4; ++k)
-      if (const int local = beam_.local(unknowns[k]); local >= 0) out.P[local] += force.fy * psi.value[k];
-  }
+  for (const beam::ElementLoad& force : forces_) add_force(line_, force, out.P.data());
   rest_ = out.P;
   release_held(rest_.data());
   for (std::size_t k = 0; k < size; ++k)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "traverse/beam/shape.hpp"
+
 namespace traverse::structure {
 
 Structure::Structure(const beam::Beam& beam, std::shared_ptr<BeamOperator> statics, double gravity)
@@ -18,6 +20,13 @@ void Structure::release_held(double* nodal) const {
   const std::vector<char>& fixed = beam_.fixed();
   for (std::size_t i = 0; i < fixed.size(); ++i)
     if (fixed[i] != 0) nodal[i] = 0.0;
+}
+
+void Structure::add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const {
+  const beam::Hermite psi = beam::hermite(force.xi, line.mesh.element(force.element).length);
+  const auto unknowns = line.transverse(force.element);
+  for (std::size_t i = 0; i < 4; ++i)
+    if (const int local = beam_.local(unknowns[i]); local >= 0) nodal[local] += force.fy * psi.value[i];
 }
 
 void Structure::gather(const std::vector<int>& elements, const double* v, const double* w,

@@ -222,6 +222,10 @@ TEST(SceneModel, AxialOnlyWhereItMatters) {
 TEST(SceneModel, ModesUnderVehicles) {
   EXPECT_EQ(scene_with({{"model_modes", "5"}}).model_modes, 5);
   EXPECT_FALSE(scene_with({{"model_modes", "5"}}).exact_in_time());
+  const std::vector<std::string> notes = scene_with({{"model_modes", "5"}, {"model_window", "1e-3"}}).notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return note == "model_window has no effect: a bridge by its modes moves as a whole";
+  }));
   EXPECT_NO_THROW(scene_with({{"model_modes", "5"}, {"ts_type", "genalpha"}}));
   EXPECT_PRED2(contains, refused(vehicle_yaml + train_yaml + "ts_max_time: 1\nmodel_modes: 5\n"), "needs a beam");
 }

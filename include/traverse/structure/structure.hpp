@@ -70,6 +70,8 @@ class Structure {
   const std::vector<double>& dead_load() const { return dead_load_; }
   /// Sets nodal forces on unknowns that a support holds to zero: they go into the reactions.
   void release_held(double* nodal) const;
+  /// Adds a vertical force (N, upward) inside an element of a line to this rank's nodal forces.
+  void add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const;
   /// Whether the answer to two loads is the sum of the answers.
   virtual bool linear() const { return true; }
   /// All that will weigh on it, and the greatest single force, N: what forces of a foundation are judged by.

@@ -1,0 +1,55 @@
+// The file behind a Recorder: open from the start of a run to its end, written in blocks of samples.
+#pragma once
+
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "hdf5.hpp"
+#include "traverse/results/recorder.hpp"
+
+namespace traverse::results {
+
+struct Recorder::Impl {
+  Impl(Place place, const Layout& given, const std::vector<std::pair<std::string, std::string>>& attributes,
+       const std::vector<std::pair<std::string, std::string>>& options, int ranks);
+  ~Impl();
+
+  void add(const Sample& sample);
+  void end(const Sample& sample);
+  void flush();
+  void write(const std::string& object, const Attribute& attribute);
+  /// Runs `write`; a failure leaves in the file what was flushed before, and ends the writing.
+  template <class Write>
+  void attempt(Write&& write);
+
+  hdf5::File file;
+  Layout layout;
+  std::vector<hdf5::Series> series;  // in the order of `create_series`, which `fill` follows
+  std::size_t block_rows;
+  std::size_t waiting = 0;  // samples in memory
+  std::chrono::steady_clock::time_point last_flush = std::chrono::steady_clock::now();
+  double flush_cost = 0.0;  // s, of the last one
+  bool closed = false;
+
+ private:
+  /// Under `group`, with buffers of so many rows.
+  std::vector<hdf5::Series> create_series(const std::string& group, std::size_t rows);
+  static void fill(std::vector<hdf5::Series>& series, const Sample& sample);
+};
+
+template <class Write>
+void Recorder::Impl::attempt(Write&& write) {
+  if (closed) throw std::logic_error("the results file " + file.path() + " is closed");
+  try {
+    write();
+  } catch (...) {
+    closed = true;
+    file.abandon();
+    throw;
+  }
+}
+
+}  // namespace traverse::results

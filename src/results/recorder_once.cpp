@@ -1,0 +1,106 @@
+// What a results file holds once: natural modes, the worst shape, separations, and the tables of a study.
+#include <numbers>
+
+#include "recorder_file.hpp"
+
+namespace traverse::results {
+
+void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    std::vector<double> frequency;
+    for (const double omega : modes.omega) frequency.push_back(omega / (2.0 * std::numbers::pi));
+    file.dataset("/modes/frequency", {frequency.size()}, frequency, "Hz");
+    if (!modes.axial.empty()) {
+      file.dataset("/modes/axial", {modes.axial.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
+    }
+    if (!modes.shape.empty()) {
+      const std::size_t points = modes.shape.front().size();
+      std::vector<double> shapes;
+      for (const auto& shape : modes.shape) shapes.insert(shapes.end(), shape.begin(), shape.end());
+      file.dataset("/modes/shape", {modes.shape.size(), points}, shapes, "1");
+      if (modes.x.size() == points) file.dataset("/modes/x", {points}, modes.x, "m");
+    }
+    file.attribute("/modes", "rayleigh_a", rayleigh_a);
+    file.attribute("/modes", "rayleigh_b", rayleigh_b);
+    file.attribute("/modes", "omega1", omega1);
+    file.attribute("/modes", "omega2", omega2);
+    file.flush();
+  });
+}
+
+void Recorder::damped_modes(const modes::DampedModes& modes) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    std::vector<double> frequency, ratio, decay_rate;
+    for (std::size_t i = 0; i < modes.size(); ++i) {
+      frequency.push_back(modes.damped_omega(i) / (2.0 * std::numbers::pi));
+      ratio.push_back(modes.ratio(i));
+      decay_rate.push_back(modes.decay_rate(i));
+    }
+    file.dataset("/modes/damped_frequency", {modes.size()}, frequency, "Hz");
+    file.dataset("/modes/damping_ratio", {modes.size()}, ratio, "1");
+    file.dataset("/modes/decay_rate", {modes.size()}, decay_rate, "1/s");
+    file.dataset("/modes/damped_axial", {modes.size()}, {modes.axial.begin(), modes.axial.end()}, "1");
+    if (!modes.shape.empty()) {
+      std::vector<double> parts;
+      for (const auto& shape : modes.shape) {
+        for (const auto& value : shape) parts.insert(parts.end(), {value.real(), value.imag()});
+      }
+      file.dataset("/modes/damped_shape", {modes.size(), modes.shape.front().size(), 2}, parts, "1");
+    }
+    file.flush();
+  });
+}
+
+void Recorder::shape(const Shape& shape) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    if (shape.deflection.size() != shape.x.size()) throw std::logic_error("a shape with another number of points");
+    file.dataset("/shape/x", {shape.x.size()}, shape.x, "m");
+    file.dataset("/shape/deflection", {shape.x.size()}, shape.deflection, "m");
+    file.attribute("/shape/deflection", "time", shape.time);
+    file.attribute("/shape", "time", shape.time);
+  });
+}
+
+void Recorder::separations(const std::vector<Separation>& list) {
+  if (impl_ == nullptr || list.empty()) return;
+  impl_->attempt([&] {
+    auto& file = impl_->file;
+    std::vector<std::pair<std::string, std::string>> contacts;
+    for (const Separation& s : list) contacts.emplace_back(s.vehicle, s.contact);
+    file.table("/separations/contact", contacts);
+    const auto column = [&](const char* name, double Separation::*member, const char* unit) {
+      std::vector<double> values;
+      for (const Separation& s : list) values.push_back(s.*member);
+      file.dataset(std::string("/separations/") + name, {values.size()}, values, unit);
+    };
+    column("x", &Separation::x, "m");
+    column("start", &Separation::start, "s");
+    column("duration", &Separation::duration, "s");
+    column("approach_speed", &Separation::approach_speed, "m/s");
+    column("impact_force", &Separation::impact_force, "N");
+  });
+}
+
+void Recorder::datasets(const std::vector<Dataset>& sets) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const Dataset& set : sets)
+      impl_->file.dataset(set.name, {set.shape.begin(), set.shape.end()}, set.values, set.unit);
+    impl_->file.flush();
+  });
+}
+
+void Recorder::attributes(const std::string& group, const std::vector<Attribute>& list) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const Attribute& attribute : list) impl_->write(group, attribute);
+  });
+}
+
+}  // namespace traverse::results
