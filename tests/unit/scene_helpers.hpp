@@ -45,7 +45,7 @@ inline Scene scene_with(std::initializer_list<std::pair<std::string, std::string
   return read_scene(Options(entries));
 }
 inline std::string refused_with(const std::string& name, const std::string& value) {
-  const std::string message = message_of([&] { scene_with({{name, value}}); });
+  std::string message = message_of([&] { scene_with({{name, value}}); });
   EXPECT_PRED2(contains, message, name);
   return message;
 }
