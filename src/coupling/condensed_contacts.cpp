@@ -20,21 +20,20 @@ double force_correction(const train::Contact& c, bool normal) {
   return c.force.tangential_by_penetration * a + c.force.tangential_by_rate * r + c.force.tangential_by_sliding * s;
 }
 
-double force_of(const CondensedContacts::Row& row) {
+double force_of(const train::ContactRow& row) {
   return row.normal ? row.contact->force.normal : row.contact->force.tangential;
 }
 
-const double* direction_on_beam(const CondensedContacts::Row& row) {
+const double* direction_on_beam(const train::ContactRow& row) {
   return (row.normal ? row.contact->touch.normal_on_beam : row.contact->touch.tangent_on_beam).data();
 }
 
 }  // namespace
 
-Eigen::Matrix2d contact_tangent(const contact::Force& f, double shift) {
-  Eigen::Matrix2d D;
-  D << f.normal_by_penetration + shift * f.normal_by_rate, 0.0,
-      f.tangential_by_penetration + shift * f.tangential_by_rate, shift * f.tangential_by_sliding;
-  return D;
+Eigen::RowVector2d row_tangent(const train::ContactRow& row, double shift) {
+  const contact::Force& f = row.contact->force;
+  if (row.normal) return {0.0, f.normal_by_penetration + shift * f.normal_by_rate};
+  return {f.tangential_by_penetration + shift * f.tangential_by_rate, shift * f.tangential_by_sliding};
 }
 
 void CondensedContacts::list(train::Fleet& fleet) {
@@ -57,7 +56,7 @@ void CondensedContacts::list(train::Fleet& fleet) {
 
 bool CondensedContacts::moved() {
   bool any = false;
-  for (Row& row : rows_) {
+  for (train::ContactRow& row : rows_) {
     any = any || row.slot != row.contact->slot();
     row.slot = row.contact->slot();
   }
@@ -69,9 +68,9 @@ template <int m>
 void CondensedContacts::respond(const structure::ElementCompliance& compliance) {
   using Vector = Eigen::Matrix<double, m, 1>;
   int slots = 0;
-  for (const Row& row : rows_) slots = std::max(slots, row.slot + 1);
+  for (const train::ContactRow& row : rows_) slots = std::max(slots, row.slot + 1);
   slot_begin_.assign(static_cast<std::size_t>(slots) + 1, 0);
-  for (const Row& row : rows_)
+  for (const train::ContactRow& row : rows_)
     if (row.slot >= 0) ++slot_begin_[row.slot];
   for (int s = 0, end = 0; s <= slots; ++s) slot_begin_[s] = end += slot_begin_[s];
   on_slot_.resize(static_cast<std::size_t>(slot_begin_[slots]));
@@ -97,7 +96,8 @@ void CondensedContacts::respond(const structure::ElementCompliance& compliance) 
 void CondensedContacts::couple(const structure::ElementCompliance* compliance, int per_node) {
   responses_.clear();
   if (compliance != nullptr) per_node == 2 ? respond<4>(*compliance) : respond<6>(*compliance);
-  const bool plain = std::all_of(yield_.begin(), yield_.end(), [](const VehicleYield& y) { return y.P.size() == 0; });
+  const bool plain =
+      std::all_of(yield_.begin(), yield_.end(), [](const train::VehicleYield& y) { return y.P.size() == 0; });
   find_band(!plain);
   fill();
   factored_ = false;
@@ -124,7 +124,7 @@ void CondensedContacts::find_band(bool whole) {
   for (const Response& r : responses_)
     if (std::abs(r.a - r.b) > band_ && matters(r.a, r.b, r.value)) band_ = std::abs(r.a - r.b);
   // a tangential row's column adds to that of its normal one beside it
-  if (std::any_of(rows_.begin(), rows_.end(), [](const Row& row) { return !row.normal; }))
+  if (std::any_of(rows_.begin(), rows_.end(), [](const train::ContactRow& row) { return !row.normal; }))
     band_ = std::min(band_ + 1, size() - 1);
   std::erase_if(responses_, [this](const Response& r) { return std::abs(r.a - r.b) > band_; });
 }
@@ -150,16 +150,13 @@ void CondensedContacts::fill() {
 
 // P + A D at the forces held in the contacts.
 void CondensedContacts::factor(double shift) {
-  for (int i = 0; i < size(); ++i) {
-    const Eigen::Matrix2d D = contact_tangent(rows_[i].contact->force, shift);
-    D_.row(i) << (rows_[i].normal ? 0.0 : D(1, 0)), (rows_[i].normal ? D(0, 0) : D(1, 1));
-  }
+  for (int i = 0; i < size(); ++i) D_.row(i) = row_tangent(rows_[i], shift);
   lu_.set_zero(size(), band_);
   for (int j = 0; j < size(); ++j) {
     for (int i = top(j); i <= bottom(j); ++i) lu_.entry(i, j) = A(i, j) * D_(j, 1);
     if (j + 1 < size() && !rows_[j + 1].normal)
       for (int i = std::max(top(j), top(j + 1)); i <= bottom(j); ++i) lu_.entry(i, j) += A(i, j + 1) * D_(j + 1, 0);
-    const VehicleYield& y = yield_[rows_[j].vehicle];
+    const train::VehicleYield& y = yield_[rows_[j].vehicle];
     if (y.P.size() == 0) {
       lu_.entry(j, j) += 1.0;
     } else {
@@ -211,7 +208,7 @@ double CondensedContacts::solve(double shift, bool loaded, int most_iterations) 
   beam_.setZero();
   if (!loaded) deflect(held_);
   for (std::size_t k = 0; k < yield_.size(); ++k) {
-    const VehicleYield& y = yield_[k];
+    const train::VehicleYield& y = yield_[k];
     const auto beam = beam_.segment(first_[k], rows(static_cast<int>(k)));
     auto right = right_.segment(first_[k], rows(static_cast<int>(k)));
     right = y.c;

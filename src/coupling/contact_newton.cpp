@@ -20,8 +20,7 @@ constexpr double measurable = 1e-8;  // of the weight: changes above it tell a r
 constexpr double caution = 0.1;      // of the tolerance: a second change that is foreseen and left out
 constexpr double forgetting = 0.1;   // of the ratio that foresees it, once it has been found smaller
 constexpr int not_alike = -1;
-constexpr double same_shift = 1e-6;  // relative
-constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
+constexpr double rounding = 1e-9;  // of the weight: below this a change that stays is taken as rounding
 
 }  // namespace
 
@@ -95,20 +94,19 @@ unsigned ContactNewton::condense_own(train::Fleet& fleet, const StageData& s, in
   unsigned signs = 0;
   for (int k = fleet.first_own(); k < fleet.past_own(); ++k) {
     train::MovingVehicle& vehicle = fleet.vehicles[k];
-    VehicleWork& w = work_[k];
-    const double before = w.residual;
+    train::VehicleYield& yield = contacts_.yield(k);
+    const double before = yield.residual;
     if (vehicle.rests)
-      rest(k);
-    else
-      find_residual(vehicle, w);
-    if (vehicle.state.friction.jammed) return train::VehicleShare::failed;
+      rest(fleet, k);
+    else if (!find_residual(vehicle, k))
+      return train::VehicleShare::failed;
     const bool poor = i >= kept_iterations || (i > 1 && !vehicle.rests && contraction_ > poor_ratio) ||
-                      (i > 1 && w.residual > poor_ratio * before && w.residual > tolerance_);
-    if (poor || !serves(vehicle, w, s, i > 0)) {
-      renew(vehicle, k, s, s.shift2 == 0.0 || i > 0);
+                      (i > 1 && yield.residual > poor_ratio * before && yield.residual > tolerance_);
+    if (poor || !vehicle.dynamics->serves(vehicle, s.shifts(), i > 0)) {
+      renew(vehicle, k, s, s.shifts().statics() || i > 0);
       signs |= train::VehicleShare::renewed;
     }
-    condense(w, contacts_.yield(k));
+    vehicle.dynamics->go_by_itself(yield);
   }
   return signs;
 }
@@ -169,161 +167,42 @@ bool ContactNewton::evaluate(train::Fleet& fleet, const StageData& s, const doub
   return fleet.touch(s.per_node, v_.data(), w_.data());
 }
 
-// Whether what is kept of a vehicle belongs to this stage. Nothing is kept where bodies touch each other: their
-// contacts turn with them.
-bool ContactNewton::serves(const train::MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved) {
-  const auto same = [](double a, double b) { return std::abs(a - b) <= same_shift * b; };
-  return s.shift2 > 0.0 && !vehicle.mechanism.rubs() && vehicle.contacts.empty() &&
-         w.partition_version == vehicle.state.partition_version && (w.curved || !curved) && same(w.shift, s.shift) &&
-         same(w.shift2, s.shift2);
+// The last iteration has put the vehicle where it belongs: it goes there.
+void ContactNewton::rest(train::Fleet& fleet, int k) {
+  fleet.vehicles[k].dynamics->rest();
+  contacts_.yield(k).residual = 0.0;
+  for (const train::ContactRow& row : contacts_.rows_of(k)) row.contact->touch.kinematics = row.contact->kinematics;
 }
 
-// Where a vehicle goes by itself, and its contacts with it.
-void ContactNewton::condense(VehicleWork& w, VehicleYield& yield) {
-  w.inverse.apply(w.R, w.dx);
-  w.dx = -w.dx;
-  for (int i = 0; i < yield.c.size(); ++i) {
-    const auto [first, last] = w.range[i];
-    yield.c[i] = w.G.row(i).segment(first, last - first).dot(w.dx.segment(first, last - first));
-  }
-}
-
-// An iteration has done with the vehicle: it goes where the last one has put it.
-void ContactNewton::rest(int k) {
-  VehicleWork& w = work_[k];
-  w.R.setZero();
-  w.residual = 0.0;
-  for (int i = contacts_.first(k); i < contacts_.first(k + 1); ++i) {
-    train::Contact& c = *contacts_.row(i).contact;
-    c.touch.kinematics = c.kinematics;
-  }
-}
-
-// R = B^T (N q'' - g - Q) at the contact forces held.
-void ContactNewton::find_residual(train::MovingVehicle& vehicle, VehicleWork& w) const {
-  multibody::MechanismState& state = vehicle.state;
-  const multibody::Mechanism& mechanism = vehicle.mechanism;
-  const int k = static_cast<int>(&w - work_.data());
+// At the contact forces held.
+bool ContactNewton::find_residual(train::MovingVehicle& vehicle, int k) {
   vehicle.Q.setZero();
-  for (int i = contacts_.first(k); i < contacts_.first(k) + contacts_.rows(k); ++i) {
-    const train::Contact& c = *contacts_.row(i).contact;
-    if (contacts_.row(i).normal) train::Fleet::add_load(c, c.force.normal, c.force.tangential, vehicle.Q);
-  }
-  const double* pdd = pdd_.data() + vehicle.offset;
-  w.r = state.d;
-  state.dependent_block.expand(pdd, w.r);
-  w.r = mechanism.mass_diagonal().cwiseProduct(w.r) - state.g - vehicle.Q;
-  if (mechanism.rubs()) {
-    mechanism.recover(state, vehicle.Q, pdd);
-    for (int i = 0; i < state.friction.force.size(); ++i) w.r -= state.friction.force[i] * state.friction.A.col(i);
-  }
-  w.R.resize(mechanism.freedom());
-  state.dependent_block.project(w.r, w.R);
-  w.residual = w.R.size() > 0 ? w.R.lpNorm<Eigen::Infinity>() / vehicle.scale : 0.0;
-}
-
-// Contact directions times B, whose rows of a body reach into the columns given.
-void ContactNewton::contact_directions(int k, const std::vector<multibody::ColumnRange>& columns,
-                                       const Eigen::MatrixXd& B, RowMatrix& G) const {
-  G.setZero(contacts_.rows(k), B.cols());
-  for (int i = 0; i < G.rows(); ++i) {
-    const auto& row = contacts_.row(contacts_.first(k) + i);
+  for (const train::ContactRow& row : contacts_.rows_of(k)) {
     const train::Contact& c = *row.contact;
-    const auto add = [&](int body, const Eigen::Vector3d& direction) {
-      const auto [first, last] = columns[body];
-      G.row(i).segment(first, last - first).noalias() +=
-          direction.transpose() * B.block(3 * static_cast<Eigen::Index>(body), first, 3, last - first);
-    };
-    add(c.body, row.normal ? c.touch.normal_on_body : c.touch.tangent_on_body);
-    if (c.other_body != multibody::ground)
-      add(c.other_body, row.normal ? c.touch.normal_on_other : c.touch.tangent_on_other);
+    if (row.normal) train::Fleet::add_load(c, c.force.normal, c.force.tangential, vehicle.Q);
   }
+  return vehicle.dynamics->find_residual(vehicle, pdd_.data() + vehicle.offset, contacts_.yield(k));
 }
 
-// A vehicle's Newton matrix and what it makes of its contacts, at the state last evaluated.
-void ContactNewton::renew(train::MovingVehicle& vehicle, int k, const StageData& s, bool with_curvature) {
-  multibody::MechanismState& state = vehicle.state;
-  const multibody::Mechanism& mechanism = vehicle.mechanism;
-  VehicleWork& w = work_[k];
-  const int f = mechanism.freedom();
-  const int rows = contacts_.rows(k);
-  const bool rubs = mechanism.rubs();
-  const bool curved = (with_curvature || rubs) && mechanism.constraints() > 0;
-  w.curved = curved || mechanism.constraints() == 0;
-  if (rubs)
-    mechanism.friction_projector(state, w.projector);
-  else if (curved)
-    mechanism.recover(state, vehicle.Q, pdd_.data() + vehicle.offset);
-  mechanism.multiply_tangent(state, -1.0, -s.shift, curved ? 1.0 : 0.0, w.NB);
-  for (std::size_t b = 0; b < state.columns.size(); ++b) {
-    const auto [first, last] = state.columns[b];
-    const Eigen::Index row = 3 * static_cast<Eigen::Index>(b);
-    w.NB.block(row, first, 3, last - first) +=
-        s.shift2 * mechanism.mass_diagonal().segment<3>(row).asDiagonal() * state.B.block(row, first, 3, last - first);
-  }
-  w.J.resize(f, f);
-  if (rubs) {  // whose slope changes too much to be kept
-    w.J.noalias() = w.projector.transpose() * w.NB;
-  } else {
-    for (int j = 0; j < f; ++j) state.dependent_block.project(w.NB.col(j), w.J.col(j));
-  }
-
-  contact_directions(k, state.columns, state.B, w.G);
-  if (rubs) {
-    w.everything.assign(state.columns.size(), {0, f});
-    contact_directions(k, w.everything, w.projector, w.projected);
-  }
-  w.range.resize(static_cast<std::size_t>(rows));
-  for (int i = 0; i < rows; ++i) {
-    const train::Contact& c = *contacts_.row(contacts_.first(k) + i).contact;
-    w.range[i] = state.columns[c.body];
-    if (c.other_body == multibody::ground) continue;
-    const multibody::ColumnRange other = state.columns[c.other_body];
-    w.range[i] = {std::min(w.range[i].first, other.first), std::max(w.range[i].last, other.last)};
-  }
-  const RowMatrix& left = rubs ? w.projected : w.G;
-  const bool statics = s.shift2 == 0.0;
-  if (statics) add_contacts(w, k, left);
-  w.inverse.compute(w.J, statics);
-  w.Y.resize(f, rows);
-  for (int i = 0; i < rows; ++i) {
-    w.s = left.row(i).transpose();
-    w.inverse.apply(w.s, w.dx);
-    w.Y.col(i) = w.dx;
-  }
-  VehicleYield& yield = contacts_.yield(k);
-  yield.H.resize(rows, rows);
-  yield.c.resize(rows);
-  for (int i = 0; i < rows; ++i) {
-    const auto [first, last] = w.range[i];
-    yield.H.row(i).noalias() = w.G.row(i).segment(first, last - first) * w.Y.middleRows(first, last - first);
-  }
+// In statics the contacts' tangent is part of the vehicle's matrix, which may be singular without it.
+void ContactNewton::renew(train::MovingVehicle& vehicle, int k, const StageData& s, bool curved) {
+  const train::ContactRows rows = contacts_.rows_of(k);
+  const auto count = static_cast<Eigen::Index>(rows.size());
+  train::VehicleYield& yield = contacts_.yield(k);
   yield.P.resize(0, 0);
-  if (statics) {
-    yield.P.setIdentity(rows, rows);
-    for (int i = 0; i < rows; ++i) {
-      yield.P.col(i) -= yield.H.col(i) * w.D(i, 1);
-      if (w.D(i, 0) != 0.0) yield.P.col(i - 1) -= yield.H.col(i) * w.D(i, 0);
-    }
+  if (!s.shifts().statics()) {
+    yield.D.resize(0, 2);
+    vehicle.dynamics->renew(vehicle, s.shifts(), curved, rows, yield);
+    return;
   }
-  w.shift = s.shift;
-  w.shift2 = s.shift2;
-  w.partition_version = state.partition_version;
-}
-
-// J += G^T D G.
-void ContactNewton::add_contacts(VehicleWork& w, int k, const RowMatrix& left) {
-  const int rows = contacts_.rows(k);
-  w.D.resize(rows, 2);
-  w.DG.resize(rows, w.G.cols());
-  for (int i = 0; i < rows; ++i) {
-    const auto& row = contacts_.row(contacts_.first(k) + i);
-    const Eigen::Matrix2d D = contact_tangent(row.contact->force, 0.0);
-    w.D.row(i) << (row.normal ? 0.0 : D(1, 0)), (row.normal ? D(0, 0) : D(1, 1));
-    w.DG.row(i) = w.D(i, 1) * w.G.row(i);
-    if (!row.normal) w.DG.row(i) += w.D(i, 0) * w.G.row(i - 1);
+  yield.D.resize(count, 2);
+  for (Eigen::Index i = 0; i < count; ++i) yield.D.row(i) = row_tangent(rows[static_cast<std::size_t>(i)], 0.0);
+  vehicle.dynamics->renew(vehicle, s.shifts(), curved, rows, yield);
+  yield.P.setIdentity(count, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    yield.P.col(i) -= yield.H.col(i) * yield.D(i, 1);
+    if (yield.D(i, 0) != 0.0) yield.P.col(i - 1) -= yield.H.col(i) * yield.D(i, 0);
   }
-  w.J.noalias() += left.transpose() * w.DG;
 }
 
 // Applies the step to x. Returns the largest residual or change of force over the vehicle's weight.
@@ -331,27 +210,27 @@ double ContactNewton::update(train::Fleet& fleet, double* x) {
   double change = 0.0;
   for (int k = 0; k < static_cast<int>(work_.size()); ++k) {
     VehicleWork& w = work_[k];
-    w.change = w.residual;
+    w.change = contacts_.yield(k).residual;
     for (int i = contacts_.first(k); i < contacts_.first(k + 1); ++i)
       w.change = std::max(w.change, std::abs(contacts_.change(i)) / fleet.vehicles[k].scale);
     change = std::max(change, w.change);
   }
   for (int k = fleet.first_own(); k < fleet.past_own(); ++k) {
-    VehicleWork& w = work_[k];
-    const train::MovingVehicle& vehicle = fleet.vehicles[k];
+    train::MovingVehicle& vehicle = fleet.vehicles[k];
+    const train::RowTangent& D = contacts_.yield(k).D;
+    Eigen::VectorXd& forces = work_[k].forces;
     const int from = contacts_.first(k);
-    const bool statics = w.shift2 == 0.0;
-    for (int i = 0; i < contacts_.rows(k); ++i) {
-      double force = contacts_.change(from + i);
-      if (statics) {
-        force -= w.D(i, 1) * contacts_.displacement(from + i);
-        if (!contacts_.row(from + i).normal) force -= w.D(i, 0) * contacts_.displacement(from + i - 1);
-      }
-      w.dx -= force * w.Y.col(i);
+    forces.resize(contacts_.rows(k));
+    for (int i = 0; i < forces.size(); ++i) {
+      forces[i] = contacts_.change(from + i);
+      if (D.size() == 0) continue;
+      forces[i] -= D(i, 1) * contacts_.displacement(from + i);
+      if (D(i, 0) != 0.0) forces[i] -= D(i, 0) * contacts_.displacement(from + i - 1);
     }
-    for (int i = 0; i < w.dx.size(); ++i) {
-      x[vehicle.offset + i] += w.dx[i];
-      moved_[vehicle.offset + i] = w.dx[i] + (vehicle.rests ? moved_[vehicle.offset + i] : 0.0);
+    const Eigen::VectorXd& dx = vehicle.dynamics->take(forces);
+    for (int i = 0; i < dx.size(); ++i) {
+      x[vehicle.offset + i] += dx[i];
+      moved_[vehicle.offset + i] = dx[i] + (vehicle.rests ? moved_[vehicle.offset + i] : 0.0);
     }
   }
   return change;

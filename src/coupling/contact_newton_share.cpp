@@ -11,8 +11,7 @@ unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, 
   const int m = s.compliance != nullptr ? 2 * s.per_node : 0;
   const auto numbers = [m](const train::Contact& c) { return 6 + (c.law.friction > 0.0 ? 2 * m : m); };
   const auto each = [&](int k, auto number) {
-    VehicleWork& w = work_[k];
-    number(w.residual);
+    number(contacts_.yield(k).residual);
     Eigen::VectorXd& own = contacts_.yield(k).c;
     own.resize(contacts_.rows(k));
     for (int i = 0; i < own.size(); ++i) number(own[i]);
@@ -20,9 +19,8 @@ unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, 
       train::Contact& c = fleet.contact(i);
       auto& [penetration, rate, sliding] = c.touch.kinematics;
       for (double* value : {&penetration, &rate, &sliding}) number(*value);
-      multibody::MechanismState& state = fleet.vehicles[k].state;
-      number(state.q[3 * c.body]);
-      number(state.qd[3 * c.body]);
+      number(fleet.x(c));
+      number(fleet.x_rate(c));
       number(c.active);
       for (int j = 0; j < m; ++j) number(c.touch.normal_on_beam[j]);
       for (int j = 0; c.law.friction > 0.0 && j < m; ++j) number(c.touch.tangent_on_beam[j]);

@@ -8,28 +8,6 @@
 #include "traverse/coupling/system.hpp"
 
 namespace traverse::coupling {
-namespace {
-
-/// From p'' at the end of the step and its error, one a coordinate.
-double vehicle_error(const train::MovingVehicle& vehicle, const double* off, const double* pdd) {
-  const Eigen::MatrixXd& B = vehicle.state.B;
-  const Eigen::VectorXd& mass = vehicle.mechanism.mass_diagonal();
-  double error = 0.0, motion = 0.0, total = 0.0;  // sums of masses times squares of accelerations; kg
-  for (Eigen::Index i = 0; i < mass.size(); ++i) {
-    double a_off = 0.0, a = 0.0;
-    for (Eigen::Index k = 0; k < B.cols(); ++k) {
-      a_off += B(i, k) * off[k];
-      a += B(i, k) * pdd[k];
-    }
-    error += mass[i] * a_off * a_off;
-    motion += mass[i] * a * a;
-    if (i % 3 == 0) total += mass[i];
-  }
-  return std::sqrt(error * total) / (vehicle.scale + std::sqrt(motion * total));
-}
-
-}  // namespace
-
 void System::measure_errors() {
   if (!structure_) return;
   structure_->measure_errors();
@@ -59,7 +37,7 @@ double System::step_error(const double* y) {
   }
   double worst = 0.0;
   for (const train::MovingVehicle& vehicle : fleet_.own())
-    worst = std::max(worst, vehicle_error(vehicle, &x_[vehicle.offset], &m.pdd[rule.known - 1][vehicle.offset]));
+    worst = std::max(worst, vehicle.step_error(&x_[vehicle.offset], &m.pdd[rule.known - 1][vehicle.offset]));
   if (structure_) worst = std::max(worst, structure_error(y));
   if (!std::isfinite(worst)) worst = std::numeric_limits<double>::max();
   if (ranks_ > 1) MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE, MPI_MAX, comm_);

@@ -126,7 +126,7 @@ void System::evaluate_fleet(double t, const double* y) {
   signs_ = fleet_.worn() ? train::VehicleShare::worn : 0U;
   try {
     for (train::MovingVehicle& vehicle : fleet_.own())
-      vehicle.mechanism.accelerations(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+      vehicle.dynamics->accelerations(vehicle, pdd_.data() + vehicle.offset);
   } catch (const SolverError&) {  // a joint is jammed, which all have to know
     signs_ |= train::VehicleShare::failed;
   }
@@ -157,13 +157,8 @@ void System::powers(const double* w, Terms terms, double& dissipation, double& w
 
 // Of this rank's vehicles and contacts at the state that they were last set to.
 System::Powers System::fleet_powers() const {
-  Powers powers{fleet_.contact_dissipation(), 0.0};
-  for (const train::MovingVehicle& vehicle : fleet_.own()) {
-    const multibody::MechanismPowers e = vehicle.mechanism.powers(vehicle.state);
-    powers.dissipation += e.dissipation;
-    powers.work += e.work;
-  }
-  return powers;
+  const multibody::MechanismPowers vehicles = fleet_.powers();
+  return {fleet_.contact_dissipation() + vehicles.dissipation, vehicles.work};
 }
 
 // --- implicit stages -----------------------------------------------------------------------------------------------
@@ -256,8 +251,7 @@ bool System::stage_of_fleet(const StageTime& at) {
   }
   note_touched();
   fleet_.contact_loads();
-  for (train::MovingVehicle& vehicle : fleet_.own())
-    vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd_.data() + vehicle.offset);
+  for (train::MovingVehicle& vehicle : fleet_.own()) vehicle.dynamics->recover(vehicle, pdd_.data() + vehicle.offset);
   return true;
 }
 

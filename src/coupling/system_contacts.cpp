@@ -129,7 +129,7 @@ double System::time_to_impact(double tolerance) const {
 }
 
 std::string System::trouble() const {
-  std::string text = trouble_of_own();
+  std::string text = fleet_.trouble();
   if (share_.dealt()) {  // the first rank that has some tells the others
     std::array<int, 2> teller = {text.empty() ? ranks_ : rank_, 0};
     MPI_Allreduce(MPI_IN_PLACE, teller.data(), 1, MPI_INT, MPI_MIN, comm_);
@@ -143,17 +143,6 @@ std::string System::trouble() const {
   if (!text.empty()) return text;
   return "the contact iteration does not converge: try a smaller -ts_dt, softer contacts, or look at the state just "
          "before";
-}
-
-// Of this rank's vehicles; empty: none.
-std::string System::trouble_of_own() const {
-  for (const train::MovingVehicle& vehicle : fleet_.own())
-    if (vehicle.state.friction.jammed) return vehicle.mechanism.jam(vehicle.state);
-  const train::MovingVehicle* stuck = fleet_.stuck();
-  if (stuck == nullptr) return {};
-  const multibody::Mechanism& mechanism = stuck->mechanism;
-  return "vehicle '" + mechanism.model().name + "' is locked: " + mechanism.worst_row(stuck->state) +
-         ", wherever else its bodies go; a driver pulls it beyond its reach or through a dead point";
 }
 
 }  // namespace traverse::coupling

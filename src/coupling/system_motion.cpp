@@ -152,7 +152,7 @@ void System::finish_step(double* y) {
 // p, p' and p'' at the end of the step, of all vehicles.
 void System::share_step() {
   Motion& m = *motion_;
-  const auto freedom = [this](int k) { return fleet_.vehicles[k].mechanism.freedom(); };
+  const auto freedom = [this](int k) { return fleet_.vehicles[k].freedom(); };
   const std::array<std::vector<double>*, 3> all = {&m.p, &m.pd, &m.pdd[0]};
   signs_ = share_.exchange(
       signs_, [&](int k) { return 3 * freedom(k); },

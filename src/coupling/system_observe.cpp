@@ -15,8 +15,8 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
     for (const train::WheelContact& c : fleet_.wheels) {
       if (c.slot() < 0 || c.force.normal == 0.0) continue;
       const Eigen::Vector3d f = c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
-      const double speed = fleet_.vehicles[c.vehicle].state.qd[3 * static_cast<Eigen::Index>(c.body)];
-      out.loads.push_back({c.patches[c.active].element, c.touch.xi, f.x(), f.y(), -surface_height() * f.x(), speed});
+      out.loads.push_back(
+          {c.patches[c.active].element, c.touch.xi, f.x(), f.y(), -surface_height() * f.x(), fleet_.velocities(c).x()});
     }
     structure_->observe(y, y + n_, ydot + n_, contact_loads(), out.beam);
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
@@ -39,13 +39,10 @@ Energy System::energy(const double* y) {
   double sums[5] = {s.kinetic, s.strain, s.potential, s.dissipated, s.work};
   MPI_Allreduce(MPI_IN_PLACE, sums, 5, MPI_DOUBLE, MPI_SUM, comm_);
   Energy e{sums[0], sums[1], sums[2], sums[3], sums[4], sums[0] + sums[1]};
-  for (const train::MovingVehicle& vehicle : fleet_.vehicles) {
-    const multibody::MechanismEnergy m = vehicle.mechanism.energy(vehicle.state);
-    e.kinetic += m.kinetic;
-    e.strain += m.strain;
-    e.potential += m.potential;
-  }
-  e.potential += fleet_.contact_potential();
+  const multibody::MechanismEnergy vehicles = fleet_.energy();
+  e.kinetic += vehicles.kinetic;
+  e.strain += vehicles.strain;
+  e.potential += vehicles.potential + fleet_.contact_potential();
   return e;
 }
 

@@ -15,7 +15,6 @@ constexpr double first_tie = 1e3, last_tie = 1e-2;
 constexpr double softer = 0.5, stiffer = 8.0;  // after a step, and after one that has no solution
 constexpr int most_ties = 200;
 constexpr double nearly_at_rest = 0.02;  // of gravity: what the ties still hold
-constexpr double farthest = 100.0;       // m: what goes farther is held by nothing
 
 }  // namespace
 
@@ -32,8 +31,7 @@ void System::find_equilibrium(double* y) {
   if (found != Solution::found) refuse_start(found);
   if (structure_) structure_->end_stage(y, y + n_);
   fleet_.set(0.0, p_.data(), pd_still_.data());
-  for (std::size_t k = 0; k < moving.vehicles.size(); ++k) moving.vehicles[k].state.q = fleet_.vehicles[k].state.q;
-  for (int i = 0; i < moving.contacts(); ++i) moving.contact(i).kinematics = fleet_.contact(i).kinematics;
+  moving.rest_where(fleet_);
   fleet_ = std::move(moving);
 }
 
@@ -57,8 +55,7 @@ System::Solution System::settle(Terms terms, double tie) {
 // Newton does not come from a spring that is loose, or a contact that is apart, to where it carries: the force has no
 // slope to follow.
 System::Solution System::settle_slowly() {
-  std::vector<Eigen::VectorXd> start;
-  for (const train::MovingVehicle& vehicle : fleet_.vehicles) start.push_back(vehicle.state.q);
+  const train::Fleet start = fleet_;
   Solution found = Solution::fleet_unsettled;
   double tie = first_tie;
   for (int i = 0; i < most_ties && tie >= last_tie; ++i) {
@@ -72,7 +69,8 @@ System::Solution System::settle_slowly() {
     double held = 0.0;
     for (const double x : x_) held = std::max(held, tie * std::abs(x));
     go_on_from(p_);
-    if (note_lost(start)) return Solution::fleet_unsettled;
+    nothing_holds_ = fleet_.lost_since(start);
+    if (!nothing_holds_.empty()) return Solution::fleet_unsettled;
     tie *= softer;
     if (held > nearly_at_rest * std::max(input_.gravity, 1.0)) continue;
     const std::vector<double> here = p_still_;
@@ -92,29 +90,6 @@ void System::go_on_from(std::vector<double> p) {
   std::fill(p_still_.begin(), p_still_.end(), 0.0);
 }
 
-// The body that has gone farthest from its start, if that is too far: why there is no equilibrium.
-bool System::note_lost(const std::vector<Eigen::VectorXd>& start) {
-  double far = farthest;
-  for (std::size_t k = 0; k < start.size(); ++k) {
-    const train::MovingVehicle& vehicle = fleet_.vehicles[k];
-    const multibody::MechanismModel& model = vehicle.mechanism.model();
-    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-      const auto at = 3 * static_cast<Eigen::Index>(b);
-      const double gone = (vehicle.state.q - start[k]).segment<2>(at).norm();
-      if (gone <= far) continue;
-      far = gone;
-      nothing_holds_ = fmt::format("nothing holds body '{}' of vehicle '{}'", model.bodies[b].name, model.name);
-      for (std::size_t s = 0; s < model.springs.size(); ++s) {
-        const multibody::Spring& spring = model.springs[s];
-        const bool on_it = spring.bodies[0] == static_cast<int>(b) || spring.bodies[1] == static_cast<int>(b);
-        if (on_it && vehicle.mechanism.spring_force(vehicle.state, static_cast<int>(s)) == 0.0)
-          nothing_holds_ += fmt::format(", its spring '{}' stays loose", spring.name);
-      }
-    }
-  }
-  return !nothing_holds_.empty();
-}
-
 void System::refuse_start(Solution found) const {
   if (found == Solution::structure_unsettled)
     throw SolverError(
@@ -129,7 +104,7 @@ void System::refuse_start(Solution found) const {
   throw SolverError(
       fmt::format("no static equilibrium found to start from (forces out of balance by {:g} of a "
                   "vehicle's weight, worst in vehicle '{}'): {}",
-                  newton_.last_change(), fleet_.vehicles[newton_.worst_vehicle()].mechanism.model().name, advice));
+                  newton_.last_change(), fleet_.vehicles[newton_.worst_vehicle()].name(), advice));
 }
 
 }  // namespace traverse::coupling

@@ -20,10 +20,8 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
     if (const Solution found = settle(Terms::beam); found != Solution::found) refuse_start(found);
     structure_->end_stage(y, y + n_);
   }
-  for (train::MovingVehicle& vehicle : fleet_.vehicles)
-    for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
-      vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
-  if (equilibrium) let_wheels_roll();
+  fleet_.start_moving();
+  if (equilibrium) fleet_.let_wheels_roll();
   std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
   fleet_.start_rolling();
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
@@ -46,17 +44,6 @@ bool System::weigh_at_rest() {
   }
   fleet_ = std::move(given);
   return found;
-}
-
-// A wheel with friction that can turn freely begins without sliding, unless its turning speed is given.
-void System::let_wheels_roll() {
-  for (const train::WheelContact& c : fleet_.wheels) {
-    if (c.is_further) continue;
-    train::MovingVehicle& vehicle = fleet_.vehicles[c.vehicle];
-    const int turn = 3 * c.body + 2;
-    if (fleet_.held(c) || fleet_.wheel(c).law.friction == 0.0 || vehicle.state.qd[turn] != 0.0) continue;
-    vehicle.state.qd[turn] = -fleet_.velocities(c).x() / (fleet_.wheel(c).radius - c.kinematics.penetration);
-  }
 }
 
 void System::note_weights() {
@@ -101,11 +88,8 @@ std::vector<double> System::known_events(double end, bool all_kinks) const {
       add_flats(c, end, events);
     }
   for (double x : input_.load.positions) add(x, input_.load.speed);
-  for (const train::MovingVehicle& vehicle : fleet_.vehicles)
-    for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)
-      for (const base::TimeFunction& f : actuator.action)
-        for (double t : f.kinks())
-          if (t > 0.0 && t < end) events.push_back(t);
+  for (double t : fleet_.kinks_of_actions())
+    if (t > 0.0 && t < end) events.push_back(t);
   std::sort(events.begin(), events.end());
   return events;
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "multibody_dynamics.hpp"
+
 namespace traverse::train {
 namespace {
 
@@ -12,6 +14,7 @@ constexpr double free_to_turn = 1e-9;  // m: arm of a joint about the wheel's ce
 MovingVehicle::MovingVehicle(Unit unit)
     : mechanism(std::move(unit.mechanism)),
       state(mechanism.make_state()),
+      dynamics(std::make_unique<MultibodyDynamics>()),
       wheels(std::move(unit.wheels)),
       contacts(std::move(unit.contacts)) {
   Q.setZero(mechanism.coordinates());
@@ -207,12 +210,10 @@ bool Fleet::set(double t, const double* p, const double* pd) {
   for (MovingVehicle& vehicle : own()) {
     all = all && !vehicle.rests;
     if (vehicle.rests) continue;
-    if (!vehicle.mechanism.set_positions(vehicle.state, t, position_.data() + vehicle.offset)) {
+    if (!vehicle.dynamics->set(vehicle, t, position_.data() + vehicle.offset, velocity_.data() + vehicle.offset)) {
       stuck_ = static_cast<int>(&vehicle - vehicles.data());
       return false;
     }
-    vehicle.mechanism.set_velocities(vehicle.state, t, velocity_.data() + vehicle.offset);
-    vehicle.mechanism.compute_forces(vehicle.state);
   }
   stuck_ = -1;
   is_set_ = all;
@@ -220,7 +221,7 @@ bool Fleet::set(double t, const double* p, const double* pd) {
 }
 
 void Fleet::shift(const double* change, double rate) {
-  for (MovingVehicle& vehicle : own()) vehicle.mechanism.shift(vehicle.state, change + vehicle.offset, rate);
+  for (MovingVehicle& vehicle : own()) vehicle.dynamics->shift(vehicle, change + vehicle.offset, rate);
   is_set_ = false;
 }
 

@@ -77,7 +77,7 @@ class Contacts : public testing::Test {
     on_beam_ = on_beam;
     for (std::size_t k = 0; k < with_P_.size(); ++k) {
       const int n = contacts_.rows(static_cast<int>(k));
-      VehicleYield& yield = contacts_.yield(static_cast<int>(k));
+      train::VehicleYield& yield = contacts_.yield(static_cast<int>(k));
       yield.H.resize(n, n);
       for (int i = 0; i < n * n; ++i) yield.H.data()[i] = number();
       yield.H = 2e-9 * (yield.H * yield.H.transpose() + Eigen::MatrixXd::Identity(n, n)).eval();
@@ -104,14 +104,14 @@ class Contacts : public testing::Test {
             Eigen::VectorXd::Zero(n)};
     for (int k = 0; k < static_cast<int>(with_P_.size()); ++k) {
       const int from = contacts_.first(k), count = contacts_.rows(k);
-      const VehicleYield& yield = contacts_.yield(k);
+      const train::VehicleYield& yield = contacts_.yield(k);
       d.H.block(from, from, count, count) = yield.H;
       if (yield.P.size() != 0) d.P.block(from, from, count, count) = yield.P;
       d.c.segment(from, count) = yield.c;
     }
     Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(inverse_.rows(), n);
     for (int i = 0; i < n && on_beam_; ++i) {
-      const CondensedContacts::Row& row = contacts_.row(i);
+      const train::ContactRow& row = contacts_.row(i);
       if (row.contact->slot() < 0) continue;
       const auto unknowns = beam_.running().unknowns(elements_[row.contact->slot()]);
       const auto& direction = row.normal ? row.contact->touch.normal_on_beam : row.contact->touch.tangent_on_beam;
@@ -179,7 +179,7 @@ class Contacts : public testing::Test {
     const Dense d = dense();
     Eigen::VectorXd held(rows());
     for (int i = 0; i < rows(); ++i) {
-      const CondensedContacts::Row& row = contacts_.row(i);
+      const train::ContactRow& row = contacts_.row(i);
       held[i] = row.normal ? row.contact->force.normal : row.contact->force.tangential;
     }
     const Eigen::VectorXd delta = newton(d, held, loaded), F = forces(delta);
@@ -191,7 +191,7 @@ class Contacts : public testing::Test {
     const double size = delta.cwiseAbs().maxCoeff(), weight = held.cwiseAbs().maxCoeff();
     for (int i = 0; i < rows(); ++i) {
       SCOPED_TRACE(i);
-      const CondensedContacts::Row& row = contacts_.row(i);
+      const train::ContactRow& row = contacts_.row(i);
       EXPECT_NEAR(row.contact->kinematics.penetration, at[i].penetration, precision * size);
       EXPECT_NEAR(row.contact->kinematics.penetration_rate, at[i].penetration_rate, precision * shift_ * size);
       EXPECT_NEAR(row.contact->kinematics.sliding_speed, at[i].sliding_speed, precision * shift_ * size);

@@ -15,37 +15,29 @@
 #include "traverse/solve/band_lu.hpp"
 #include "traverse/structure/compliance.hpp"
 #include "traverse/train/fleet.hpp"
+#include "traverse/train/vehicle_dynamics.hpp"
 
 namespace traverse::coupling {
 
-/// Derivatives of a contact's forces (normal, tangential) with respect to displacements along its two directions.
-Eigen::Matrix2d contact_tangent(const contact::Force& force, double shift);
-
-/// What a vehicle has on its rows; H and P square.
-struct VehicleYield {
-  Eigen::MatrixXd H, P;  // P is of size 0 where it is the identity
-  Eigen::VectorXd c;
-};
+/// The row of a train::RowTangent: the derivatives of the row's force by the displacement along the row before (of a
+/// tangential row: the normal one) and by that along its own, N/m.
+Eigen::RowVector2d row_tangent(const train::ContactRow& row, double shift);
 
 class CondensedContacts {
  public:
-  struct Row {
-    train::Contact* contact = nullptr;
-    double scale = 0.0;  // N: its vehicle's
-    int vehicle = 0;
-    bool normal = true;
-    int slot = -1;  // element that carries it
-  };
-
   /// Takes the fleet's contacts, vehicle by vehicle.
   void list(train::Fleet& fleet);
   int first(int vehicle) const { return first_[vehicle]; }
   int rows(int vehicle) const { return first_[vehicle + 1] - first_[vehicle]; }
-  const Row& row(int i) const { return rows_[i]; }
+  const train::ContactRow& row(int i) const { return rows_[i]; }
+  train::ContactRows rows_of(int vehicle) const {
+    return train::ContactRows(rows_).subspan(static_cast<std::size_t>(first(vehicle)),
+                                             static_cast<std::size_t>(rows(vehicle)));
+  }
   /// Whether some contact has gone over to another element since it was listed or asked last.
   bool moved();
 
-  VehicleYield& yield(int vehicle) { return yield_[vehicle]; }
+  train::VehicleYield& yield(int vehicle) { return yield_[vehicle]; }
   /// A from the vehicles' H and P and from the beam (null: none).
   void couple(const structure::ElementCompliance* compliance, int per_node);
 
@@ -77,14 +69,14 @@ class CondensedContacts {
   void subtract_A_times(const Eigen::VectorXd& x, Eigen::VectorXd& y) const;
   double move_contacts(double shift);
 
-  std::vector<Row> rows_;
+  std::vector<train::ContactRow> rows_;
   std::vector<int> first_;                 // row of every vehicle, and one past the last
   std::vector<int> on_slot_, slot_begin_;  // rows by the slot that carries them
-  std::vector<VehicleYield> yield_;
+  std::vector<train::VehicleYield> yield_;
   std::vector<Response> responses_;
   int band_ = 0;
-  Eigen::MatrixXd A_;                           // entry (i, j) at (band + i - j, j)
-  Eigen::Matrix<double, Eigen::Dynamic, 2> D_;  // tangent in lu_: by the row before (of a tangential one), by the row
+  Eigen::MatrixXd A_;    // entry (i, j) at (band + i - j, j)
+  train::RowTangent D_;  // in lu_
   solve::BandLu lu_;
   bool factored_ = false;
   Eigen::VectorXd held_, delta_, change_, deviation_, right_;

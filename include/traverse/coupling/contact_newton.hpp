@@ -2,7 +2,7 @@
 // the wheels. Unknowns: the independent coordinates p of every vehicle and the contact kinematics of every wheel
 // (penetration, its rate, sliding speed); the contact law enters as a function of these, which keeps the problem
 // convex in flight and under impact. With the contacts' forces F along their directions G, a vehicle's residual R at
-// the forces held and its own Newton matrix J,
+// the forces held and its own Newton matrix J (train::VehicleDynamics),
 //
 //   J dx = -R - G^T dF
 //
@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "traverse/coupling/condensed_contacts.hpp"
-#include "traverse/solve/band_lu.hpp"
 #include "traverse/structure/compliance.hpp"
 #include "traverse/train/fleet.hpp"
 #include "traverse/train/vehicle_share.hpp"
@@ -30,6 +29,7 @@ struct StageData {
   double t = 0.0;
   double shift = 0.0;   // dp'/dp, 1/s
   double shift2 = 0.0;  // dp''/dp, 1/s2: shift*shift for Runge-Kutta types
+  train::StageShifts shifts() const { return {shift, shift2}; }
   const double* p_still = nullptr;
   const double* pd_still = nullptr;
   const std::vector<double>* v0 = nullptr;                   // free response at the elements in touch, 2*per_node each
@@ -54,39 +54,9 @@ class ContactNewton {
   std::size_t worst_vehicle() const;
 
  private:
-  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  /// The inverse of a vehicle's Newton matrix in the form that suits it.
-  class Inverse {
-   public:
-    /// singular: some coordinates may be neutral.
-    void compute(const Eigen::MatrixXd& J, bool singular);
-    void apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
-
-   private:
-    enum class Form { whole, band, factors } form_ = Form::whole;
-    Eigen::MatrixXd whole_;
-    solve::BandLu band_;
-    Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
-  };
   struct VehicleWork {
-    // kept, with H in VehicleYield
-    Inverse inverse;                            // of J
-    RowMatrix G;                                // contact directions times B
-    Eigen::MatrixXd Y;                          // J^-1 G^T
-    std::vector<multibody::ColumnRange> range;  // of every row of G
-    double shift = 0.0, shift2 = 0.0;           // that they were computed for; 0: none
-    int partition_version = 0;
-    bool curved = false;    // with the constraints' curvature
-    double change = 0.0;    // larger of the residual and the largest change of force, over the weight
-    double residual = 0.0;  // largest of R over the weight
-
-    Eigen::VectorXd R, dx, r, s;
-    Eigen::MatrixXd J, NB;
-    Eigen::MatrixXd projector;                   // in place of B where joints rub
-    RowMatrix projected;                         // directions times projector
-    Eigen::MatrixXd DG;                          // the law's tangent times G
-    Eigen::Matrix<double, Eigen::Dynamic, 2> D;  // that tangent: by the row before (of a tangential one), by the row
-    std::vector<multibody::ColumnRange> everything;
+    double change = 0.0;     // larger of the residual and the largest change of force, over the weight
+    Eigen::VectorXd forces;  // changes of its rows' forces
   };
   bool iterate(train::Fleet& fleet, const StageData& s, double* x);
   /// The contacts' forces that the beam is taken under: where the wheels' places let them be expected, or where the
@@ -98,16 +68,11 @@ class ContactNewton {
   void share_matrices(const StageData& s);
   void beam_field(const StageData& s, const train::Fleet& fleet, Loads loads);
   void follow_loads(const StageData& s, train::Fleet& fleet);
-  static bool serves(const train::MovingVehicle& vehicle, const VehicleWork& w, const StageData& s, bool curved);
-  static void condense(VehicleWork& w, VehicleYield& yield);
   bool settled(bool statics, bool as_before, double before, double left);
   static int carrying(const train::Fleet& fleet);
-  void rest(int vehicle);
-  void find_residual(train::MovingVehicle& vehicle, VehicleWork& w) const;
-  void contact_directions(int vehicle, const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
-                          RowMatrix& G) const;
-  void renew(train::MovingVehicle& vehicle, int k, const StageData& s, bool with_curvature);
-  void add_contacts(VehicleWork& w, int k, const RowMatrix& left);
+  void rest(train::Fleet& fleet, int vehicle);
+  bool find_residual(train::MovingVehicle& vehicle, int k);
+  void renew(train::MovingVehicle& vehicle, int k, const StageData& s, bool curved);
   double update(train::Fleet& fleet, double* x);
 
   std::vector<VehicleWork> work_;

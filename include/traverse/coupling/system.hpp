@@ -232,10 +232,8 @@ class System {
   void expect_weights();
   void find_equilibrium(double* y);
   bool weigh_at_rest();
-  void let_wheels_roll();
   void stand_still();
   void go_on_from(std::vector<double> p);
-  bool note_lost(const std::vector<Eigen::VectorXd>& start);
   [[noreturn]] void refuse_start(Solution found) const;
   void add_flats(const train::WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
@@ -267,7 +265,6 @@ class System {
   structure::ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
   void share_step();
-  std::string trouble_of_own() const;
   void note_impacts(double t);
   void note_touched();
   void powers(const double* w, Terms terms, double& dissipation, double& work);

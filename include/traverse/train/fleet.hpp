@@ -13,6 +13,7 @@
 #include "traverse/track/touching.hpp"
 #include "traverse/train/train_unit.hpp"
 #include "traverse/train/vehicle.hpp"
+#include "traverse/train/vehicle_dynamics.hpp"
 #include "traverse/train/wheel_on_track.hpp"
 
 namespace traverse::train {
@@ -20,8 +21,14 @@ namespace traverse::train {
 /// One vehicle of the train, or several that couplers join.
 struct MovingVehicle {
   explicit MovingVehicle(Unit unit);
+  const std::string& name() const { return mechanism.model().name; }
+  int freedom() const { return mechanism.freedom(); }
+  /// From an error of p'' at the end of a step and p'' itself (freedom values each): the root of the mean square of its
+  /// masses' accelerations' errors, over gravity and what these are.
+  double step_error(const double* off, const double* pdd) const;
   multibody::Mechanism mechanism;
   multibody::MechanismState state;
+  AnyDynamics dynamics;
   std::vector<Wheel> wheels;
   std::vector<contact::BodyContact> contacts;
   double weight = 0.0;        // N
@@ -115,6 +122,9 @@ class Fleet {
   const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
   Eigen::Vector3d coordinates(const Contact& c) const;
   Eigen::Vector3d velocities(const Contact& c) const;
+  /// x of a contact's body and its rate, to be written where another rank tells them.
+  double& x(const Contact& c) { return vehicles[c.vehicle].state.q[3 * static_cast<Eigen::Index>(c.body)]; }
+  double& x_rate(const Contact& c) { return vehicles[c.vehicle].state.qd[3 * static_cast<Eigen::Index>(c.body)]; }
   /// Of a wheel's first entry: what all its points add up to, and the deepest penetration.
   WheelLoad load(const WheelContact& c) const;
   /// The first wheel (by its first entry) that has overlapped the track at more points than are modelled, and where.
@@ -125,6 +135,16 @@ class Fleet {
   const Crowded& crowded() const { return crowded_; }
   /// Does a joint or driver hold the angle of the wheel's body? With a partition chosen.
   bool held(const WheelContact& c) const;
+  /// All bodies and contacts to where they are in another fleet of the same train.
+  void rest_where(const Fleet& other);
+  /// All bodies to the velocities that the scene gives them.
+  void start_moving();
+  /// Lets wheels with friction that can turn freely begin without sliding, but for those whose turning speed is given.
+  void let_wheels_roll();
+  /// The body that has gone farther than anything held would since `start`, in words; empty: none.
+  std::string lost_since(const Fleet& start) const;
+  /// Times at which actuators' tables have kinks, s.
+  std::vector<double> kinks_of_actions() const;
   /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free
   /// to turn, and does (by friction, or as its given speed says), is where its body's angle says; any other one rolls
   /// without sliding, however its body is held.
@@ -149,8 +169,9 @@ class Fleet {
   bool set(double t, const double* p, const double* pd);
   /// Moves this rank's vehicles on by a small change of p (freedom values), and rate times it of p'.
   void shift(const double* change, double rate);
-  /// The vehicle that could not be assembled when set() failed last; null when it did not.
-  const MovingVehicle* stuck() const { return stuck_ < 0 ? nullptr : &vehicles[static_cast<std::size_t>(stuck_)]; }
+  /// Why the last evaluation of this rank's vehicles failed; empty where it did not: a joint jams, or one cannot be
+  /// assembled.
+  std::string trouble() const;
   /// p and p' (freedom values each) of the vehicles' q and q' at t.
   void coordinates_of_state(double t, double* p, double* pd) const;
 
@@ -188,6 +209,10 @@ class Fleet {
   double contact_dissipation() const;
   /// Energy stored in the contacts, J.
   double contact_potential() const;
+  /// Powers of this rank's vehicles, W.
+  multibody::MechanismPowers powers() const;
+  /// Energies of all vehicles, J.
+  multibody::MechanismEnergy energy() const;
 
  private:
   void add_patch(WheelContact& c, int element, double start, double low, double high);

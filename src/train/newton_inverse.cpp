@@ -1,15 +1,13 @@
-// The inverse of a vehicle's Newton matrix, in the form that suits its size.
+#include "newton_inverse.hpp"
 
-#include "traverse/coupling/contact_newton.hpp"
-
-namespace traverse::coupling {
+namespace traverse::train {
 namespace {
 
 constexpr int small_vehicle = 24;  // degrees of freedom up to which its Newton matrix is inverted as a whole
 
 }  // namespace
 
-void ContactNewton::Inverse::compute(const Eigen::MatrixXd& J, bool singular) {
+void NewtonInverse::compute(const Eigen::MatrixXd& J, bool singular) {
   const int f = static_cast<int>(J.rows());
   form_ = Form::whole;
   if (f == 0) {
@@ -30,7 +28,7 @@ void ContactNewton::Inverse::compute(const Eigen::MatrixXd& J, bool singular) {
   }
 }
 
-void ContactNewton::Inverse::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
+void NewtonInverse::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
   switch (form_) {
     case Form::whole:
       x.noalias() = whole_ * b;
@@ -47,4 +45,4 @@ void ContactNewton::Inverse::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x)
   }
 }
 
-}  // namespace traverse::coupling
+}  // namespace traverse::train

@@ -1,0 +1,115 @@
+// What the vehicles of a fleet are in, between steps: how they start, what they store, why they fail.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/train/fleet.hpp"
+
+namespace traverse::train {
+namespace {
+
+constexpr double farthest = 100.0;  // m: what goes farther is held by nothing
+
+}  // namespace
+
+double MovingVehicle::step_error(const double* off, const double* pdd) const {
+  const Eigen::MatrixXd& B = state.B;
+  const Eigen::VectorXd& mass = mechanism.mass_diagonal();
+  double error = 0.0, motion = 0.0, total = 0.0;  // sums of masses times squares of accelerations; kg
+  for (Eigen::Index i = 0; i < mass.size(); ++i) {
+    double a_off = 0.0, a = 0.0;
+    for (Eigen::Index k = 0; k < B.cols(); ++k) {
+      a_off += B(i, k) * off[k];
+      a += B(i, k) * pdd[k];
+    }
+    error += mass[i] * a_off * a_off;
+    motion += mass[i] * a * a;
+    if (i % 3 == 0) total += mass[i];
+  }
+  return std::sqrt(error * total) / (scale + std::sqrt(motion * total));
+}
+
+void Fleet::rest_where(const Fleet& other) {
+  for (std::size_t k = 0; k < vehicles.size(); ++k) vehicles[k].state.q = other.vehicles[k].state.q;
+  for (int i = 0; i < contacts(); ++i) contact(i).kinematics = other.contact(i).kinematics;
+}
+
+void Fleet::start_moving() {
+  for (MovingVehicle& vehicle : vehicles)
+    for (std::size_t b = 0; b < vehicle.mechanism.model().bodies.size(); ++b)
+      vehicle.state.qd.segment<3>(3 * static_cast<Eigen::Index>(b)) = vehicle.mechanism.model().bodies[b].velocity;
+}
+
+void Fleet::let_wheels_roll() {
+  for (const WheelContact& c : wheels) {
+    if (c.is_further) continue;
+    double& turning = vehicles[c.vehicle].state.qd[3 * static_cast<Eigen::Index>(c.body) + 2];
+    if (held(c) || wheel(c).law.friction == 0.0 || turning != 0.0) continue;
+    turning = -velocities(c).x() / (wheel(c).radius - c.kinematics.penetration);
+  }
+}
+
+std::string Fleet::lost_since(const Fleet& start) const {
+  std::string lost;
+  double far = farthest;
+  for (std::size_t k = 0; k < vehicles.size(); ++k) {
+    const MovingVehicle& vehicle = vehicles[k];
+    const multibody::MechanismModel& model = vehicle.mechanism.model();
+    for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+      const auto at = 3 * static_cast<Eigen::Index>(b);
+      const double gone = (vehicle.state.q - start.vehicles[k].state.q).segment<2>(at).norm();
+      if (gone <= far) continue;
+      far = gone;
+      lost = fmt::format("nothing holds body '{}' of vehicle '{}'", model.bodies[b].name, model.name);
+      for (std::size_t s = 0; s < model.springs.size(); ++s) {
+        const multibody::Spring& spring = model.springs[s];
+        const bool on_it = spring.bodies[0] == static_cast<int>(b) || spring.bodies[1] == static_cast<int>(b);
+        if (on_it && vehicle.mechanism.spring_force(vehicle.state, static_cast<int>(s)) == 0.0)
+          lost += fmt::format(", its spring '{}' stays loose", spring.name);
+      }
+    }
+  }
+  return lost;
+}
+
+std::vector<double> Fleet::kinks_of_actions() const {
+  std::vector<double> kinks;
+  for (const MovingVehicle& vehicle : vehicles)
+    for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)
+      for (const base::TimeFunction& f : actuator.action)
+        for (double t : f.kinks()) kinks.push_back(t);
+  return kinks;
+}
+
+multibody::MechanismPowers Fleet::powers() const {
+  multibody::MechanismPowers sum;
+  for (const MovingVehicle& vehicle : own()) {
+    const multibody::MechanismPowers more = vehicle.mechanism.powers(vehicle.state);
+    sum.dissipation += more.dissipation;
+    sum.work += more.work;
+  }
+  return sum;
+}
+
+multibody::MechanismEnergy Fleet::energy() const {
+  multibody::MechanismEnergy sum;
+  for (const MovingVehicle& vehicle : vehicles) {
+    const multibody::MechanismEnergy more = vehicle.mechanism.energy(vehicle.state);
+    sum.kinetic += more.kinetic;
+    sum.strain += more.strain;
+    sum.potential += more.potential;
+  }
+  return sum;
+}
+
+std::string Fleet::trouble() const {
+  for (const MovingVehicle& vehicle : own())
+    if (vehicle.state.friction.jammed) return vehicle.mechanism.jam(vehicle.state);
+  if (stuck_ < 0) return {};
+  const MovingVehicle& stuck = vehicles[static_cast<std::size_t>(stuck_)];
+  return "vehicle '" + stuck.name() + "' is locked: " + stuck.mechanism.worst_row(stuck.state) +
+         ", wherever else its bodies go; a driver pulls it beyond its reach or through a dead point";
+}
+
+}  // namespace traverse::train

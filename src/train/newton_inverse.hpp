@@ -1,0 +1,23 @@
+// The inverse of a vehicle's Newton matrix, in the form that suits its size.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include "traverse/solve/band_lu.hpp"
+
+namespace traverse::train {
+
+class NewtonInverse {
+ public:
+  /// singular: some coordinates may be neutral.
+  void compute(const Eigen::MatrixXd& J, bool singular);
+  void apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const;
+
+ private:
+  enum class Form { whole, band, factors } form_ = Form::whole;
+  Eigen::MatrixXd whole_;
+  solve::BandLu band_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> factors_;
+};
+
+}  // namespace traverse::train
