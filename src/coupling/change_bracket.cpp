@@ -12,10 +12,10 @@ ChangeBracket::ChangeBracket(const System& system, const train::Change& change, 
       full_(to),
       low_(from),
       high_(to),
-      below_(system.separations().kinematics(change.contact)),
+      below_(system.contacts().separations().kinematics(change.contact)),
       above_(now()),
       tolerance_(tolerance),
-      wanted_(system.change_tolerance(change.contact, tolerance)),
+      wanted_(system.contacts().tolerance_of(change.contact, tolerance)),
       end_(to) {
   if (!change.gain && !change.hidden && to - change.time <= wanted_) found_ = true;
 }
@@ -46,10 +46,10 @@ void ChangeBracket::tried(double at, const std::optional<train::Change>& change)
     const bool was_hidden = change_.hidden;
     high_ = at;
     change_ = *change;
-    wanted_ = system_.change_tolerance(change_.contact, tolerance_);
+    wanted_ = system_.contacts().tolerance_of(change_.contact, tolerance_);
     above_ = now();
-    if (other) low_ = system_.separations().time();
-    if (other) below_ = system_.separations().kinematics(change_.contact);
+    if (other) low_ = system_.contacts().separations().time();
+    if (other) below_ = system_.contacts().separations().kinematics(change_.contact);
     if (!change_.gain && !change_.hidden && at - change_.time <= wanted_) return end_at(at);
     // a gain met in a step that was not short enough: what comes after the impact says little of when it was
     const bool slow = high_ - low_ > 0.5 * width;
@@ -61,8 +61,8 @@ void ChangeBracket::tried(double at, const std::optional<train::Change>& change)
     if (cut) return end_at(at);
     if (!change_.gain) {
       if (change_.hidden) return end_at(full_);  // it only seemed so
-      change_.time =
-          system_.separations().change_between(system_.fleet(), change_.contact, low_, below_, high_, above_);
+      change_.time = system_.contacts().separations().change_between(system_.fleet(), change_.contact, low_, below_,
+                                                                     high_, above_);
     } else {
       const bool approaches = below_.penetration_rate > 0.0;
       if (!approaches && change_.hidden && !change_.seen) return end_at(full_);

@@ -19,7 +19,7 @@ void System::measure_errors() {
       longest = ends[i] - ends[i - 1];
       station = 0.5 * (ends[i] + ends[i - 1]);
     }
-  motion_->energy_scale = static_energy(station);
+  motion_->energy_scale = weights_.static_energy(station);
   if (motion_->energy_scale == 0.0)
     throw InputError(
         "ts_adapt_type = ladder: the structure's errors are measured by its deflection at rest under the weights, and "

@@ -24,7 +24,10 @@ System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, S
       structure_(std::move(structure)),
       line_(structure_ ? &structure_->line() : nullptr),
       n_(structure_ ? structure_->unknowns() : 0),
-      input_(std::move(input)) {
+      input_(std::move(input)),
+      events_(comm, fleet_, share_, input_.impact_steps),
+      corners_(comm, structure_.get(), fleet_, share_, input_.profile),
+      weights_(comm, structure_.get(), input_.self_weight ? input_.gravity : 0.0) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &ranks_);
   for (const train::Vehicle& type : input_.types)

@@ -47,11 +47,13 @@ bool System::weigh_at_rest() {
 }
 
 void System::note_weights() {
-  weights_.clear();
+  std::vector<PassingWeight> weights;
   fleet_.contact_forces();
-  for (const train::WheelContact& c : fleet_.wheels) weights_.emplace_back(fleet_.coordinates(c).x(), c.force.normal);
+  for (const train::WheelContact& c : fleet_.wheels)
+    weights.push_back({fleet_.coordinates(c).x(), c.force.normal, input_.train.speed});
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i)
-    weights_.emplace_back(input_.load.positions[i], input_.load.forces[i]);
+    weights.push_back({input_.load.positions[i], input_.load.forces[i], input_.load.speed});
+  weights_.set(std::move(weights), fleet_.wheels.size());
 }
 
 // When the ends of a wheel's flat meet the rail, where it rolls as its x is prescribed.

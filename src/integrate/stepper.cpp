@@ -205,7 +205,8 @@ void Stepper::show_to_monitors(double t) {
 // What comes next on the way to a target `left` s away: a rung of the ladder, or what is left shared evenly among the
 // steps that it takes.
 double Stepper::next_step(double from, double left) const {
-  const double limit = system_.step_limit(from), impact = system_.time_to_impact(settings_.contact_tolerance);
+  const double limit = system_.contacts().step_limit(from),
+               impact = system_.contacts().time_to_impact(settings_.contact_tolerance);
   if (ladder_) return std::min(ladder_->towards(left, limit), impact);
   const double wanted = std::min({adaptive_ ? next_step_ : settings_.time_step, limit, impact});
   return shared_evenly(left, wanted);

@@ -18,7 +18,7 @@ constexpr int most_turn_trials = 3;  // and where a wheel turns about a corner
 // When the next wheel turns about a corner of the surface, if it does so within `left` s. A multistep method is started
 // anew by a short step, which costs it more; the ladder sees the corner's error, and keeps to the steps it has factors
 // of.
-std::optional<coupling::System::Turn> Stepper::next_turn(double from, double left) {
+std::optional<coupling::CornerEvents::Turn> Stepper::next_turn(double from, double left) {
   if (!settings_.corners || multistep_ || ladder_) return std::nullopt;
   ReadArray y(y_);
   return system_.next_turn(from, left, y.data);
@@ -52,19 +52,19 @@ double Stepper::step_again(double from, double end) {
 // first loss, or just before the first gain, since a stiff contact must not be met in a long step.
 void Stepper::locate_contact_change(double from) {
   const double full = arrive();
-  auto change = system_.contact_change(full, settings_.contact_tolerance);
+  auto change = system_.contacts().change(full, settings_.contact_tolerance);
   if (!change) return;
   coupling::ChangeBracket bracket(system_, *change, from, full, settings_.contact_tolerance);
   double at = full;
   for (int i = 0; i < most_trials && !bracket.found(); ++i) {
     at = step_again(from, bracket.trial());
-    bracket.tried(at, system_.contact_change(at, settings_.contact_tolerance));
+    bracket.tried(at, system_.contacts().change(at, settings_.contact_tolerance));
   }
   if (at != bracket.end()) step_again(from, bracket.end());
 }
 
 // Takes the step from `from` again where the wheel turns about its corner at another time than was expected.
-double Stepper::end_at_turn(double from, const coupling::System::Turn& turn) {
+double Stepper::end_at_turn(double from, const coupling::CornerEvents::Turn& turn) {
   double at = arrive();
   for (int i = 0; i < most_turn_trials; ++i) {
     double found = 0.0;

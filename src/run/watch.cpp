@@ -205,8 +205,8 @@ void Watch::note_wheels() {
 void Watch::note_separations() {
   const train::Fleet& fleet = system_.fleet();
   std::vector<results::Separation> list;
-  for (const train::Separation& s : system_.separations().list()) {
-    const double duration = s.duration >= 0.0 ? s.duration : system_.separations().time() - s.start;
+  for (const train::Separation& s : system_.contacts().separations().list()) {
+    const double duration = s.duration >= 0.0 ? s.duration : system_.contacts().separations().time() - s.start;
     list.push_back({std::to_string(fleet.member(s.contact)), fleet.name(s.contact), s.x, s.start, duration,
                     s.approach_speed, s.impact_force});
     if (s.from_start || s.contact >= static_cast<int>(fleet.wheels.size())) continue;
@@ -246,7 +246,7 @@ results::Summary Watch::finish() {
   MPI_Allreduce(MPI_IN_PLACE, &some, 1, MPI_INT, MPI_MIN, beam_->comm());
   if (some == 0) return summary_;
   if (scene_.analysis == Analysis::transient)
-    summary_.static_deflection = system_.static_peak(summary_.deflection.place, paths_, sample_.time);
+    summary_.static_deflection = system_.weights().static_peak(summary_.deflection.place, paths_, sample_.time);
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
   recorder_.shape(shape_of(*beam_, scene_, worst_));

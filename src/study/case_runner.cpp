@@ -107,11 +107,11 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
   result.contact_losses = extremes.contact_losses;
   result.longest_loss = extremes.longest_loss;
   std::vector<double>& at_rest = static_deflection_[train];
-  if (at_rest.empty() || !passage.system().pass_together(watch.paths())) {
+  if (at_rest.empty() || !passage.system().weights().pass_together(watch.paths())) {
     at_rest.clear();
     for (const double x : scene.output.probes) {
       if (caught_signal() != 0) break;
-      at_rest.push_back(passage.system().static_peak(x, watch.paths(), watch.last().time));
+      at_rest.push_back(passage.system().weights().static_peak(x, watch.paths(), watch.last().time));
     }
   }
   result.ended = caught_signal() == 0;

@@ -31,7 +31,10 @@
 #include <vector>
 
 #include "traverse/beam/recovery.hpp"
+#include "traverse/coupling/contact_events.hpp"
 #include "traverse/coupling/contact_newton.hpp"
+#include "traverse/coupling/corner_events.hpp"
+#include "traverse/coupling/passing_weights.hpp"
 #include "traverse/structure/one_step_methods.hpp"
 #include "traverse/structure/structure.hpp"
 #include "traverse/train/fleet.hpp"
@@ -149,20 +152,9 @@ class System {
   void begin_trial();
   /// Collective. Sets the vehicles to y at t, the end of a step, unless they are there.
   void arrive(double t, const double* y);
-  /// When they are there: the first contact lost or gained in the step, but for gains that were to come within the
-  /// tolerance (s).
-  std::optional<train::Change> contact_change(double t, double tolerance) const;
-  const train::Separations& separations() const { return separations_; }
   /// Collective. Notes y as accepted at t and chooses new independent coordinates where the old ones have worn out.
   /// True when y was rewritten for that.
   bool accept(double t, double* y);
-  /// Longest step while an impact goes on, s.
-  double step_limit(double t) const;
-  /// Longest step that overshoots the next impact by at most `tolerance`, s.
-  double time_to_impact(double tolerance) const;
-  /// Time tolerance for locating this contact's gain or loss, s.
-  double change_tolerance(int contact, double tolerance) const;
-
   /// Collective. Why the last stage could not be solved, and what to do about it.
   std::string trouble() const;
 
@@ -172,29 +164,24 @@ class System {
   std::vector<double> known_events(double end, bool kinks = true) const;
   /// Ascending stations at which the running surface may have a corner: of the profile, and span ends.
   std::vector<double> corners() const;
-  /// A wheel begins or ends to turn about a corner of the bridge's surface: when, and how exactly a step has to end
-  /// there.
-  struct Turn {
-    double time = 0.0, tolerance = 0.0;  // s
-    std::size_t corner = 0;
-    int end = 0;
-  };
-  /// Before the first step, the longest one: such corners until `end` are to be looked for, where the speed is
-  /// prescribed.
-  void expect_corners(double end, double step);
-  /// Collective. The first such time within h s from the accepted state y at t, as it lets it be expected.
-  std::optional<Turn> next_turn(double t, double h, const double* y);
-  /// Collective. The same as it is found at the end of a step, where the vehicles are.
-  double time_of(const Turn& turn, double t, const double* y);
-
   /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
   double leaving_time() const;
-  /// Collective. Largest magnitude of the static deflection at a station under the weights of the whole train and all
-  /// forces, the beam's own weight included where it acts: where they keep their distances, placed wherever it is
-  /// worst; where they do not, as they were along `paths` until `end`, s. 0 where the foundation is not linear.
-  double static_peak(double station, const train::WheelPaths& paths, double end);
-  /// Whether they keep them.
-  bool pass_together(const train::WheelPaths& paths) const;
+  /// What steps have to end at: contacts lost and gained, corners of the surface.
+  const ContactEvents& contacts() const { return events_; }
+  /// Before the first step, the longest one, those until `end`: where the speed is prescribed.
+  void expect_corners(double end, double step) {
+    if (input_.train.drive == train::Drive::constant) corners_.expect(input_.train.speed, end, step);
+  }
+  /// CornerEvents::next and time_of at a state y.
+  std::optional<CornerEvents::Turn> next_turn(double t, double h, const double* y) {
+    return corners_.next(t, h, y, y + n_);
+  }
+  double time_of(const CornerEvents::Turn& turn, double t, const double* y) {
+    return corners_.time_of(turn, t, y, y + n_);
+  }
+
+  /// The weights of wheels, as the start has found them, and moving forces.
+  PassingWeights& weights() { return weights_; }
 
   /// Estimated relative error of static solutions so far, from rounding.
   double static_error() const { return structure_ ? structure_->statics().static_error() : 0.0; }
@@ -238,20 +225,6 @@ class System {
   void add_flats(const train::WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
   void note_weights();
-  /// A wheel's centre passes a corner of the surface.
-  struct Corner {
-    double time = 0.0;  // s
-    int wheel = 0;      // of the fleet's
-    double x = 0.0;     // m
-  };
-  double longest_turn(const Corner& corner) const;
-  std::array<double, 2> turning_times(const Corner& corner, double t, const double* y);
-  struct InfluenceLine;
-  InfluenceLine influence_line(double station);
-  double peak_of_train(const InfluenceLine& line, double constant) const;
-  double peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const;
-  double static_energy(double station);
-  double note_contacts(double t);
   void share_coordinates(const double* y);
   Solution settle(Terms terms, double tie = 0.0);
   Solution settle_slowly();
@@ -265,7 +238,6 @@ class System {
   structure::ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
   void share_step();
-  void note_impacts(double t);
   void note_touched();
   void powers(const double* w, Terms terms, double& dissipation, double& work);
   Powers fleet_powers() const;
@@ -279,21 +251,13 @@ class System {
   SystemInput input_;
   train::Fleet fleet_;
   train::VehicleShare share_;
-  train::Separations separations_;
-  struct Impact {
-    double end = 0.0;                                       // s; past: none
-    double step = std::numeric_limits<double>::infinity();  // s, the longest while it goes on
-  };
-  std::vector<Impact> impacts_;  // of every contact
-  std::vector<double> impact_durations_;
+  ContactEvents events_;
+  CornerEvents corners_;
+  PassingWeights weights_;
   ContactNewton newton_;
 
-  std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
-  std::vector<char> on_beam_;                       // of each moving force, during the step under way
-  std::vector<std::pair<double, double>> weights_;  // x (m) and downward force (N) of wheels and loads at the start
-  std::vector<Corner> corners_;                     // ascending in time
-  double longest_step_ = 0.0;
-  std::size_t next_corner_ = 0;                 // the first that may not have been turned
+  std::vector<beam::ElementLoad> loads_;        // of the moving forces now on the beam
+  std::vector<char> on_beam_;                   // of each moving force, during the step under way
   std::string nothing_holds_;                   // why there is no static equilibrium, where that is known
   std::vector<double> p_, c_p_, pdd_;           // p, p' and their c, p'', the same on all ranks
   std::vector<double> pd_;                      // p' that a stage begins its Newton iteration with
@@ -304,8 +268,7 @@ class System {
   std::vector<double> v_, w_;  // of elements, 2*per_node each
   std::vector<double> element_loads_;
   std::vector<structure::Reach> reaches_;
-  std::vector<int> turned_elements_;  // on either side of a corner
-  std::unique_ptr<Motion> motion_;    // null before begin_motion
+  std::unique_ptr<Motion> motion_;  // null before begin_motion
   bool keep_steps_ = false;
 };
 

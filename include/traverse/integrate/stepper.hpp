@@ -77,11 +77,11 @@ class Stepper {
   void show_to_monitors(double t);
   void take_step(double left);
   double step_to(double end);
-  std::optional<coupling::System::Turn> next_turn(double from, double left);
+  std::optional<coupling::CornerEvents::Turn> next_turn(double from, double left);
   double arrive();
   double step_again(double from, double end);
   void locate_contact_change(double from);
-  double end_at_turn(double from, const coupling::System::Turn& turn);
+  double end_at_turn(double from, const coupling::CornerEvents::Turn& turn);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y, const double* ydot) const;
   void rate(double t, Vec y, Vec ydot, coupling::Terms terms);

@@ -1,16 +1,8 @@
-// Where wheels turn about a corner of the running surface, at the end of the bridge or of a span.
-//
-// With the slopes s_l and s_r of the surface on either side of a corner at x_c, a wheel of radius r touches the left
-// side until its centre is at x_c - r s_l and the right side from x_c - r s_r on (their sines for the slopes). In
-// between, a few microseconds at speed, it turns about a crest; in a valley it changes sides half-way. Forces keep
-// their values there, but the rate of penetration and the power of the drive change at once: a step has to end at
-// either end of that.
+#include "traverse/coupling/corner_events.hpp"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-
-#include "traverse/coupling/system.hpp"
 
 namespace traverse::coupling {
 namespace {
@@ -25,33 +17,36 @@ constexpr double margin = 0.02, passed = 0.01;
 
 }  // namespace
 
-void System::expect_corners(double end, double step) {
+void CornerEvents::expect(double speed, double end, double step) {
   longest_step_ = step;
   corners_.clear();
-  next_corner_ = 0;
-  if (!structure_ || input_.train.drive != train::Drive::constant || !(input_.train.speed > 0.0)) return;
+  next_ = 0;
+  speed_ = speed;
+  if (structure_ == nullptr || !(speed > 0.0)) return;
   for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
     const train::WheelContact& c = fleet_.wheels[i];
     if (c.is_further || c.further > 0) continue;  // located by its points
-    for (const double x : line_->mesh.kinks()) {
-      const double t = (x - fleet_.coordinates(c).x()) / input_.train.speed;
+    for (const double x : structure_->line().mesh.kinks()) {
+      const double t = (x - fleet_.coordinates(c).x()) / speed_;
       if (t >= 0.0 && t <= end) corners_.push_back({t, static_cast<int>(i), x});
     }
   }
   std::sort(corners_.begin(), corners_.end(), [](const Corner& a, const Corner& b) { return a.time < b.time; });
 }
 
-double System::longest_turn(const Corner& corner) const {
-  return steepest * fleet_.wheel(fleet_.wheels[corner.wheel]).radius / input_.train.speed;
+double CornerEvents::longest_turn(const Corner& corner) const {
+  return steepest * fleet_.wheel(fleet_.wheels[corner.wheel]).radius / speed_;
 }
 
 // Both times, the earlier one first, as the state y at t lets them be expected.
-std::array<double, 2> System::turning_times(const Corner& corner, double t, const double* y) {
-  const beam::Mesh& mesh = line_->mesh;
+std::array<double, 2> CornerEvents::turning_times(const Corner& corner, double t, const double* v, const double* w) {
+  const beam::Mesh& mesh = structure_->line().mesh;
   const train::WheelContact& c = fleet_.wheels[corner.wheel];
   enum { x, speed, radius, numbers };
   std::array<double, numbers> seen{};
-  if (share_.dealt() ? fleet_.owns(c) : rank_ == 0) {
+  int rank = 0;
+  MPI_Comm_rank(comm_, &rank);
+  if (share_.dealt() ? fleet_.owns(c) : rank == 0) {
     seen[x] = fleet_.coordinates(c).x();
     seen[speed] = fleet_.velocities(c).x();
     seen[radius] = c.kinematics.penetration > 0.0 ? fleet_.wheel(c).radius - c.kinematics.penetration : 0.0;
@@ -61,13 +56,13 @@ std::array<double, 2> System::turning_times(const Corner& corner, double t, cons
   if (!(seen[speed] > 0.0) || seen[radius] == 0.0) return {far, far};  // in flight
   const double straight = t + (corner.x - seen[x]) / seen[speed];      // the centre over the corner
   // The rotations at the end of the element on the left and at the start of that on the right.
-  turned_elements_ = {mesh.locate(corner.x, true).element, mesh.locate(corner.x, false).element};
-  structure_->gather(turned_elements_, y, y + n_, v_, w_);
-  const std::size_t left = 2 * static_cast<std::size_t>(per_node()) - 1,
-                    right = left + static_cast<std::size_t>(per_node());
+  elements_ = {mesh.locate(corner.x, true).element, mesh.locate(corner.x, false).element};
+  structure_->gather(elements_, v, w, v_, w_);
+  const auto per_node = static_cast<std::size_t>(structure_->per_node());
+  const std::size_t left = 2 * per_node - 1, right = left + per_node;
   const auto turned = [&](bool on_beam, std::size_t rotation, double aside) {
     const double bend = on_beam ? v_[rotation] + w_[rotation] * (straight - t) : 0.0;
-    const double there = bend + input_.profile.at(std::nextafter(corner.x, aside)).slope;
+    const double there = bend + profile_.at(std::nextafter(corner.x, aside)).slope;
     return straight - seen[radius] * there / std::hypot(1.0, there) / seen[speed];
   };
   std::array<double, 2> times = {turned(corner.x > mesh.start(), left, -far),
@@ -78,14 +73,13 @@ std::array<double, 2> System::turning_times(const Corner& corner, double t, cons
   return {middle - wide, middle + wide};
 }
 
-std::optional<System::Turn> System::next_turn(double t, double h, const double* y) {
-  while (next_corner_ < corners_.size() && corners_[next_corner_].time + longest_turn(corners_[next_corner_]) < t)
-    ++next_corner_;
+std::optional<CornerEvents::Turn> CornerEvents::next(double t, double h, const double* v, const double* w) {
+  while (next_ < corners_.size() && corners_[next_].time + longest_turn(corners_[next_]) < t) ++next_;
   std::optional<Turn> next;
-  for (std::size_t i = next_corner_; i < corners_.size(); ++i) {
+  for (std::size_t i = next_; i < corners_.size(); ++i) {
     const double longest = longest_turn(corners_[i]);
     if (corners_[i].time - longest > t + h) break;
-    const std::array<double, 2> times = turning_times(corners_[i], t, y);
+    const std::array<double, 2> times = turning_times(corners_[i], t, v, w);
     const double gap = passed * (times[1] - times[0]);
     for (int end = 0; end < 2; ++end) {
       const double at = times[static_cast<std::size_t>(end)];
@@ -96,8 +90,8 @@ std::optional<System::Turn> System::next_turn(double t, double h, const double* 
   return next;
 }
 
-double System::time_of(const Turn& turn, double t, const double* y) {
-  return turning_times(corners_[turn.corner], t, y)[static_cast<std::size_t>(turn.end)];
+double CornerEvents::time_of(const Turn& turn, double t, const double* v, const double* w) {
+  return turning_times(corners_[turn.corner], t, v, w)[static_cast<std::size_t>(turn.end)];
 }
 
 }  // namespace traverse::coupling

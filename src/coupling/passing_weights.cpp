@@ -1,11 +1,12 @@
-// The largest static deflection of a station under the weights that pass: what dynamic amplification is measured by.
+#include "traverse/coupling/passing_weights.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "traverse/beam/shape.hpp"
-#include "traverse/coupling/system.hpp"
 
 namespace traverse::coupling {
 namespace {
@@ -19,7 +20,7 @@ constexpr double together = 0.5;  // m: weights whose distances change by less p
 // The deflection of a station under a unit downward force on the line that wheels run on, over the force's place. What
 // the nodal values of the station's element give is a load on the structure, whose deflections are that line (Maxwell
 // and Betti); a force on that element deflects it between its nodes besides.
-struct System::InfluenceLine {
+struct PassingWeights::InfluenceLine {
   double station = 0.0;
   std::vector<double> nodal;             // deflection and rotation at both ends of every element, on every rank
   std::optional<beam::Recovery> inside;  // of the station; none where wheels run on a rail
@@ -35,15 +36,16 @@ struct System::InfluenceLine {
   }
 };
 
-System::InfluenceLine System::influence_line(double station) {
+PassingWeights::InfluenceLine PassingWeights::influence_line(double station) {
   const beam::Beam& beam = structure_->beam();
-  InfluenceLine line{station, std::vector<double>(4 * static_cast<std::size_t>(line_->mesh.elements()), 0.0), {}, 0.0};
+  InfluenceLine line{
+      station, std::vector<double>(4 * static_cast<std::size_t>(structure_->line().mesh.elements()), 0.0), {}, 0.0};
   std::vector<double> nodal(structure_->dead_load().size(), 0.0);
   const beam::Station s = beam.mesh().locate(station);
   if (beam.rail() != nullptr) {
     structure_->add_force(beam.bridge(), {s.element, s.xi, 0.0, -1.0, 0.0}, nodal.data());
   } else {
-    line.inside.emplace(beam, std::vector<double>{station}, input_.self_weight ? input_.gravity : 0.0);
+    line.inside.emplace(beam, std::vector<double>{station}, gravity_);
     line.of_weight = line.inside->add_deflection_form(0, -1.0, nodal.data());
   }
   structure_->release_held(nodal.data());
@@ -52,8 +54,8 @@ System::InfluenceLine System::influence_line(double station) {
   for (std::size_t i = 0; i < nodal.size(); ++i) of_weight -= nodal[i] * structure_->dead_load()[i];
   MPI_Allreduce(MPI_IN_PLACE, &of_weight, 1, MPI_DOUBLE, MPI_SUM, comm_);
   line.of_weight += of_weight;
-  for (int e = 0; e < line_->mesh.elements(); ++e) {
-    const auto unknowns = line_->transverse(e);
+  for (int e = 0; e < structure_->line().mesh.elements(); ++e) {
+    const auto unknowns = structure_->line().transverse(e);
     for (int i = 0; i < 4; ++i) {
       const int local = beam.local(unknowns[i]);
       if (local >= 0) line.nodal[4 * static_cast<std::size_t>(e) + i] = nodal[local];
@@ -63,59 +65,56 @@ System::InfluenceLine System::influence_line(double station) {
   return line;
 }
 
-// Whether all weights keep their distances: then the train is placed wherever it is worst.
-bool System::pass_together(const train::WheelPaths& paths) const {
-  const bool apart = !fleet_.wheels.empty() && !input_.load.forces.empty() && input_.train.speed != input_.load.speed;
-  return !apart && paths.drift() < together;
+bool PassingWeights::pass_together(const train::WheelPaths& paths) const {
+  const auto otherwise = [this](const PassingWeight& w) { return w.speed != weights_.front().speed; };
+  return std::none_of(weights_.begin(), weights_.end(), otherwise) && paths.drift() < together;
 }
 
-double System::static_peak(double station, const train::WheelPaths& paths, double end) {
-  if (!structure_ || weights_.empty() || !structure_->linear()) return 0.0;  // without superposition there is none
+double PassingWeights::static_peak(double station, const train::WheelPaths& paths, double end) {
+  if (!superpose()) return 0.0;
   const InfluenceLine line = influence_line(station);
   return pass_together(paths) ? peak_of_train(line, line.of_weight) : peak_on_the_way(line, paths, end);
 }
 
-// What a single load does that deflects the station at most as the passing weights do, J; 0: there is none.
-double System::static_energy(double station) {
-  if (!structure_ || weights_.empty() || !structure_->linear() || !pass_together({})) return 0.0;
+double PassingWeights::static_energy(double station) {
+  if (!superpose() || !pass_together({})) return 0.0;
   const InfluenceLine line = influence_line(station);
-  const double deflection = peak_of_train(line, 0.0), compliance = std::abs(line.at(line_->mesh, station));
+  const double deflection = peak_of_train(line, 0.0), compliance = std::abs(line.at(structure_->line().mesh, station));
   return compliance > 0.0 ? 0.5 * deflection * deflection / compliance : 0.0;
 }
 
 // Every weight over the station in turn (where the line peaks), and evenly along the whole way; the constant added.
-double System::peak_of_train(const InfluenceLine& line, double constant) const {
-  const beam::Mesh& mesh = line_->mesh;
+double PassingWeights::peak_of_train(const InfluenceLine& line, double constant) const {
+  const beam::Mesh& mesh = structure_->line().mesh;
   double front = -infinite, rear = infinite;
-  for (const auto& [x, force] : weights_) {
+  for (const auto& [x, force, speed] : weights_) {
     front = std::max(front, x);
     rear = std::min(rear, x);
   }
   double peak = 0.0;
   auto try_shift = [&](double shift) {
     double sum = constant;
-    for (const auto& [x, force] : weights_) sum += force * line.at(mesh, x + shift);
+    for (const auto& [x, force, speed] : weights_) sum += force * line.at(mesh, x + shift);
     peak = std::max(peak, std::abs(sum));
   };
-  for (const auto& [x, force] : weights_) try_shift(line.station - x);
+  for (const auto& [x, force, speed] : weights_) try_shift(line.station - x);
   for (int i = 0; i <= positions; ++i)
     try_shift(mesh.start() - front + (mesh.end() - mesh.start() + front - rear) * i / positions);
   return peak;
 }
 
 // Where the weights are at the same time, from t = 0 to the end: whenever one is over the station, and evenly.
-double System::peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const {
-  const std::size_t wheels = fleet_.wheels.size(), known = paths.instants();
+double PassingWeights::peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const {
+  const std::size_t known = paths.instants();
   const auto place = [&](std::size_t i, std::size_t instant, double t) {
-    if (i < wheels && known > 1) return paths.x(instant, i);
-    return weights_[i].first + t * (i < wheels ? input_.train.speed : input_.load.speed);
+    return i < wheels_ && known > 1 ? paths.x(instant, i) : weights_[i].x + t * weights_[i].speed;
   };
   std::vector<double> from(weights_.size()), way(weights_.size());
   double peak = 0.0;
   const auto try_part = [&](double part) {
     double sum = line.of_weight;
     for (std::size_t i = 0; i < weights_.size(); ++i)
-      sum += weights_[i].second * line.at(line_->mesh, from[i] + part * way[i]);
+      sum += weights_[i].force * line.at(structure_->line().mesh, from[i] + part * way[i]);
     peak = std::max(peak, std::abs(sum));
   };
   const std::size_t stretches = known > 1 ? known - 1 : 1;

@@ -1,0 +1,87 @@
+#include "traverse/coupling/contact_events.hpp"
+
+#include <algorithm>
+
+namespace traverse::coupling {
+
+// Where a damper has let go of a surface not yet back, and where that has come back: the energy that goes, J.
+double ContactEvents::note_released() {
+  double lost = 0.0;
+  for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
+    if (fleet_.has_points(i)) continue;
+    train::Contact& c = fleet_.contact(i);
+    const bool touches = fleet_.touches(i);
+    const double stored = contact::potential(c.law, c.kinematics.penetration);
+    if (separations_.touching(i) && !touches) {
+      c.released = true;
+      lost += stored;
+    } else if (c.released && (touches || stored == 0.0)) {
+      c.released = false;
+      lost -= stored;
+    }
+  }
+  return lost;
+}
+
+double ContactEvents::accept(double t) {
+  const double lost = note_released();
+  separations_.accept(fleet_, t);
+  fleet_.note_sides();
+  note_impacts(t);
+  return lost;
+}
+
+void ContactEvents::note_impacts(double t) {
+  impacts_.resize(static_cast<std::size_t>(fleet_.contacts()));
+  impact_durations_.assign(impacts_.size(), 0.0);
+  bool any = false;
+  for (int i = 0; i < fleet_.contacts(); ++i) {
+    train::Contact& c = fleet_.contact(i);
+    if (separations_.touching(i) && !separations_.met(i)) continue;
+    c.approach_speed = std::max(c.kinematics.penetration_rate, 0.0);
+    impacts_[i] = {};
+    if (impact_steps_ == 0 || c.approach_speed == 0.0) continue;
+    any = true;
+    if (fleet_.owns(c)) impact_durations_[i] = fleet_.impact_duration(i);
+  }
+  if (!any) return;
+  if (share_.dealt())
+    MPI_Allreduce(MPI_IN_PLACE, impact_durations_.data(), fleet_.contacts(), MPI_DOUBLE, MPI_MAX, comm_);
+  for (std::size_t i = 0; i < impacts_.size(); ++i) {
+    if (impact_durations_[i] == 0.0) continue;
+    impacts_[i].step = impact_durations_[i] / impact_steps_;
+    if (separations_.touching(static_cast<int>(i))) impacts_[i].end = t + 2.0 * impact_durations_[i];
+  }
+}
+
+std::optional<train::Change> ContactEvents::change(double t, double tolerance) const {
+  return separations_.change(fleet_, t,
+                             [&](int i) { return separations_.time_to_touch(i) <= 2.0 * tolerance_of(i, tolerance); });
+}
+
+// A damper comes on with a jump, which must lie at a step's border; an elastic force grows from nothing.
+double ContactEvents::tolerance_of(int contact, double tolerance) const {
+  const train::Contact& c = fleet_.contact(contact);
+  const double step = impacts_[contact].step;
+  if (c.law.hysteresis || c.law.damping == 0.0) return std::min(tolerance, 0.1 * step);
+  // a step of twice as much leads from this side of the damper's ramp beyond it
+  const double ramp = c.approach_speed > 0.0 ? contact::damper_ramp / c.approach_speed : 0.0;
+  return std::min(tolerance, std::max(1e-3 * step, std::min(ramp, 0.1 * step)));
+}
+
+double ContactEvents::step_limit(double t) const {
+  double limit = std::numeric_limits<double>::infinity();
+  for (const Impact& impact : impacts_)
+    if (t < impact.end) limit = std::min(limit, impact.step);
+  return limit;
+}
+
+double ContactEvents::time_to_impact(double tolerance) const {
+  double time = std::numeric_limits<double>::infinity();
+  if (tolerance == 0.0) return time;
+  for (int i = 0; i < static_cast<int>(impacts_.size()); ++i)
+    time = std::min(time, std::max(separations_.time_to_touch(i), 2.0 * tolerance_of(i, tolerance)));
+  return time;
+}
+
+}  // namespace traverse::coupling

@@ -1,0 +1,71 @@
+// Steps tried and accepted.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "traverse/coupling/system.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+constexpr double same_place = 1e-9;  // m or rad
+
+}  // namespace
+
+void System::begin_trial() {
+  for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).touched = false;
+}
+
+void System::note_touched() {
+  for (int i = 0; i < fleet_.contacts(); ++i)
+    if (fleet_.contact(i).force.normal > 0.0) fleet_.contact(i).touched = true;
+}
+
+void System::arrive(double t, const double* y) {
+  const int f = fleet_.freedom();
+  bool moved = (signs_ & train::VehicleShare::moved) != 0;
+  if (!motion_) {
+    evaluated_.assign(p_.begin(), p_.begin() + f);
+    share_coordinates(y);
+    for (int i = 0; i < f; ++i) moved = moved || std::abs(p_[i] - evaluated_[i]) > same_place;
+  }
+  if (t != evaluated_time_ || moved) evaluate_fleet(t, y);
+}
+
+bool System::accept(double t, double* y) {
+  if (motion_ && structure_) structure_->complete_step(y, y + n_);
+  if (fleet_.vehicles.empty()) return false;
+  arrive(t, y);
+  const double lost = events_.accept(t);
+  const bool worn = share_.dealt() ? (signs_ & train::VehicleShare::worn) != 0 : fleet_.worn();
+  if (worn) evaluate_fleet(t, y);
+  bool renewed = fleet_.accept();
+  if (worn && share_.dealt()) {
+    renewed = share_.exchange(renewed ? train::VehicleShare::renewed : 0U) != 0;
+    if (renewed) share_.partitions(fleet_);
+  }
+  if (renewed) fleet_.number(t);
+  if (rank_ == 0) y[2 * (n_ + fleet_.freedom())] += lost;
+  if (!renewed) return lost != 0.0;
+  if (rank_ == 0) fleet_.coordinates_of_state(t, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
+  return true;
+}
+
+std::string System::trouble() const {
+  std::string text = fleet_.trouble();
+  if (share_.dealt()) {  // the first rank that has some tells the others
+    std::array<int, 2> teller = {text.empty() ? ranks_ : rank_, 0};
+    MPI_Allreduce(MPI_IN_PLACE, teller.data(), 1, MPI_INT, MPI_MIN, comm_);
+    if (teller[0] < ranks_) {
+      teller[1] = static_cast<int>(text.size());
+      MPI_Bcast(&teller[1], 1, MPI_INT, teller[0], comm_);
+      text.resize(static_cast<std::size_t>(teller[1]));
+      MPI_Bcast(text.data(), teller[1], MPI_CHAR, teller[0], comm_);
+    }
+  }
+  if (!text.empty()) return text;
+  return "the contact iteration does not converge: try a smaller -ts_dt, softer contacts, or look at the state just "
+         "before";
+}
+
+}  // namespace traverse::coupling
