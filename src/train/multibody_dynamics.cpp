@@ -1,6 +1,5 @@
 #include "multibody_dynamics.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace traverse::train {
@@ -9,25 +8,6 @@ namespace {
 constexpr double same_shift = 1e-6;  // relative
 
 bool same(double a, double b) { return std::abs(a - b) <= same_shift * b; }
-
-// Contact directions times B, whose rows of a body reach into the columns given.
-template <class RowMatrix>
-void multiply_directions(ContactRows rows, const std::vector<multibody::ColumnRange>& columns, const Eigen::MatrixXd& B,
-                         RowMatrix& G) {
-  G.setZero(static_cast<Eigen::Index>(rows.size()), B.cols());
-  for (int i = 0; i < G.rows(); ++i) {
-    const ContactRow& row = rows[static_cast<std::size_t>(i)];
-    const Contact& c = *row.contact;
-    const auto add = [&](int body, const Eigen::Vector3d& direction) {
-      const auto [first, last] = columns[body];
-      G.row(i).segment(first, last - first).noalias() +=
-          direction.transpose() * B.block(3 * static_cast<Eigen::Index>(body), first, 3, last - first);
-    };
-    add(c.body, row.normal ? c.touch.normal_on_body : c.touch.tangent_on_body);
-    if (c.other_body != multibody::ground)
-      add(c.other_body, row.normal ? c.touch.normal_on_other : c.touch.tangent_on_other);
-  }
-}
 
 }  // namespace
 
@@ -102,66 +82,17 @@ void MultibodyDynamics::find_J(MovingVehicle& vehicle, const StageShifts& shifts
 void MultibodyDynamics::renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
                               VehicleYield& yield) {
   const multibody::MechanismState& state = vehicle.state;
-  const int f = vehicle.mechanism.freedom();
-  const auto r = static_cast<int>(rows.size());
   const bool rubs = vehicle.mechanism.rubs(), constrained = vehicle.mechanism.constraints() > 0;
   find_J(vehicle, shifts, (curved || rubs) && constrained);
   curved_ = curved || rubs || !constrained;
   shifts_ = shifts;
   partition_version_ = state.partition_version;
 
-  multiply_directions(rows, state.columns, state.B, G_);
   if (rubs) {
-    everything_.assign(state.columns.size(), {0, f});
-    multiply_directions(rows, everything_, projector_, projected_);
+    everything_.assign(state.columns.size(), {0, vehicle.freedom()});
+    VehicleNewton::multiply_directions(rows, everything_, projector_, projected_);
   }
-  range_.resize(rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Contact& c = *rows[i].contact;
-    range_[i] = state.columns[c.body];
-    if (c.other_body == multibody::ground) continue;
-    const multibody::ColumnRange other = state.columns[c.other_body];
-    range_[i] = {std::min(range_[i].first, other.first), std::max(range_[i].last, other.last)};
-  }
-  const RowMatrix& left = rubs ? projected_ : G_;
-  if (yield.D.size() > 0) add_contacts(left, yield.D);
-  inverse_.compute(J_, shifts.statics());
-  Y_.resize(f, r);
-  for (int i = 0; i < r; ++i) {
-    s_ = left.row(i).transpose();
-    inverse_.apply(s_, dx_);
-    Y_.col(i) = dx_;
-  }
-  yield.H.resize(r, r);
-  yield.c.resize(r);
-  for (int i = 0; i < r; ++i) {
-    const auto [first, last] = range_[i];
-    yield.H.row(i).noalias() = G_.row(i).segment(first, last - first) * Y_.middleRows(first, last - first);
-  }
-}
-
-// J += G^T D G. A column of D by the row before belongs to a tangential row.
-void MultibodyDynamics::add_contacts(const RowMatrix& left, const RowTangent& D) {
-  DG_.resize(G_.rows(), G_.cols());
-  for (int i = 0; i < G_.rows(); ++i) {
-    DG_.row(i) = D(i, 1) * G_.row(i);
-    if (D(i, 0) != 0.0) DG_.row(i) += D(i, 0) * G_.row(i - 1);
-  }
-  J_.noalias() += left.transpose() * DG_;
-}
-
-void MultibodyDynamics::go_by_itself(VehicleYield& yield) {
-  inverse_.apply(R_, dx_);
-  dx_ = -dx_;
-  for (int i = 0; i < yield.c.size(); ++i) {
-    const auto [first, last] = range_[i];
-    yield.c[i] = G_.row(i).segment(first, last - first).dot(dx_.segment(first, last - first));
-  }
-}
-
-const Eigen::VectorXd& MultibodyDynamics::take(const Eigen::VectorXd& forces) {
-  for (int i = 0; i < forces.size(); ++i) dx_ -= forces[i] * Y_.col(i);
-  return dx_;
+  newton_.renew(rows, state.columns, state.B, rubs ? &projected_ : nullptr, shifts.statics(), J_, yield);
 }
 
 }  // namespace traverse::train

@@ -2,10 +2,8 @@
 // large as they come. J hardly changes: what follows from it is kept over stages and steps.
 #pragma once
 
-#include <vector>
-
-#include "newton_inverse.hpp"
 #include "traverse/train/fleet.hpp"
+#include "vehicle_newton.hpp"
 
 namespace traverse::train {
 
@@ -22,31 +20,25 @@ class MultibodyDynamics : public VehicleDynamics {
   bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
   void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
              VehicleYield& yield) override;
-  void go_by_itself(VehicleYield& yield) override;
+  void go_by_itself(VehicleYield& yield) override { newton_.go_by_itself(R_, yield); }
   void rest() override { R_.setZero(); }
-  const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override;
+  const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override { return newton_.take(forces); }
 
  private:
-  using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   void find_J(MovingVehicle& vehicle, const StageShifts& shifts, bool curved);
-  void add_contacts(const RowMatrix& left, const RowTangent& D);
 
   // kept
-  NewtonInverse inverse_;                      // of J
-  RowMatrix G_;                                // contact directions times B, r x f
-  Eigen::MatrixXd Y_;                          // J^-1 G^T, f x r
-  std::vector<multibody::ColumnRange> range_;  // of every row of G
-  StageShifts shifts_;                         // that they were computed for; 0: none
+  VehicleNewton newton_;
+  StageShifts shifts_;  // that it was computed for; 0: none
   int partition_version_ = 0;
   bool curved_ = false;
 
-  Eigen::VectorXd R_, dx_, r_, s_;
-  Eigen::MatrixXd J_, NB_;
-  Eigen::MatrixXd projector_;  // in place of B where joints rub
-  RowMatrix projected_;        // directions times projector
-  RowMatrix DG_;               // the law's tangent times G
-  std::vector<multibody::ColumnRange> everything_;
+  Eigen::VectorXd R_, r_;
   Eigen::VectorXd pdd_;  // as the residual was last asked for
+  Eigen::MatrixXd J_, NB_;
+  Eigen::MatrixXd projector_;           // in place of B where joints rub
+  VehicleNewton::RowMatrix projected_;  // directions times projector
+  ColumnRanges everything_;
 };
 
 }  // namespace traverse::train

@@ -1,0 +1,80 @@
+#include "vehicle_newton.hpp"
+
+#include <algorithm>
+
+#include "traverse/train/fleet.hpp"
+
+namespace traverse::train {
+
+void VehicleNewton::multiply_directions(ContactRows rows, const ColumnRanges& columns, const Eigen::MatrixXd& B,
+                                        RowMatrix& G) {
+  G.setZero(static_cast<Eigen::Index>(rows.size()), B.cols());
+  for (int i = 0; i < G.rows(); ++i) {
+    const ContactRow& row = rows[static_cast<std::size_t>(i)];
+    const Contact& c = *row.contact;
+    const auto add = [&](int body, const Eigen::Vector3d& direction) {
+      const auto [first, last] = columns[body];
+      G.row(i).segment(first, last - first).noalias() +=
+          direction.transpose() * B.block(3 * static_cast<Eigen::Index>(body), first, 3, last - first);
+    };
+    add(c.body, row.normal ? c.touch.normal_on_body : c.touch.tangent_on_body);
+    if (c.other_body != multibody::ground)
+      add(c.other_body, row.normal ? c.touch.normal_on_other : c.touch.tangent_on_other);
+  }
+}
+
+void VehicleNewton::renew(ContactRows rows, const ColumnRanges& columns, const Eigen::MatrixXd& B,
+                          const RowMatrix* projected, bool statics, Eigen::MatrixXd& J, VehicleYield& yield) {
+  const auto f = J.rows();
+  const auto r = static_cast<int>(rows.size());
+  multiply_directions(rows, columns, B, G_);
+  range_.resize(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Contact& c = *rows[i].contact;
+    range_[i] = columns[c.body];
+    if (c.other_body == multibody::ground) continue;
+    const multibody::ColumnRange other = columns[c.other_body];
+    range_[i] = {std::min(range_[i].first, other.first), std::max(range_[i].last, other.last)};
+  }
+  const RowMatrix& left = projected != nullptr ? *projected : G_;
+  if (statics) add_contacts(left, yield.D, J);
+  inverse_.compute(J, statics);
+  Y_.resize(f, r);
+  for (int i = 0; i < r; ++i) {
+    s_ = left.row(i).transpose();
+    inverse_.apply(s_, dx_);
+    Y_.col(i) = dx_;
+  }
+  yield.H.resize(r, r);
+  yield.c.resize(r);
+  for (int i = 0; i < r; ++i) {
+    const auto [first, last] = range_[i];
+    yield.H.row(i).noalias() = G_.row(i).segment(first, last - first) * Y_.middleRows(first, last - first);
+  }
+}
+
+// J += G^T D G. The first column of D belongs to tangential rows.
+void VehicleNewton::add_contacts(const RowMatrix& left, const RowTangent& D, Eigen::MatrixXd& J) {
+  DG_.resize(G_.rows(), G_.cols());
+  for (int i = 0; i < G_.rows(); ++i) {
+    DG_.row(i) = D(i, 1) * G_.row(i);
+    if (D(i, 0) != 0.0) DG_.row(i) += D(i, 0) * G_.row(i - 1);
+  }
+  J.noalias() += left.transpose() * DG_;
+}
+
+void VehicleNewton::go_by_itself(const Eigen::VectorXd& R, VehicleYield& yield) {
+  inverse_.apply(R, dx_);
+  dx_ = -dx_;
+  for (int i = 0; i < yield.c.size(); ++i) {
+    const auto [first, last] = range_[i];
+    yield.c[i] = G_.row(i).segment(first, last - first).dot(dx_.segment(first, last - first));
+  }
+}
+
+const Eigen::VectorXd& VehicleNewton::take(const Eigen::VectorXd& forces) {
+  for (int i = 0; i < forces.size(); ++i) dx_ -= forces[i] * Y_.col(i);
+  return dx_;
+}
+
+}  // namespace traverse::train
