@@ -136,6 +136,7 @@ void System::evaluate_fleet(double t, const double* y) {
   signs_ = share_.exchange(signs_);
   if ((signs_ & train::VehicleShare::failed) != 0)
     throw SolverError(trouble() + " (at t = " + std::to_string(t) + " s)");
+  fleet_.observe(pdd_.data());
   share_.states(fleet_);
   share_.coordinates(fleet_, pdd_);
   note_touched();

@@ -48,6 +48,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.step_kinks = o.flag("step_kinks");
   scene.step_probes = o.flag("step_probes");
   scene.rest_tolerance = read_window(o);
+  scene.linear_vehicles = o.choice("model_vehicles") == "linear";
   scene.accuracy = o.number("accuracy");
   scene.accuracy_report = o.flag("accuracy_report");
 }

@@ -164,14 +164,13 @@ std::vector<std::string> Fleet::partition(double t) {
 bool Fleet::worn() const {
   const auto vehicles_here = own();
   return std::any_of(vehicles_here.begin(), vehicles_here.end(),
-                     [](const MovingVehicle& v) { return v.mechanism.worn(v.state); });
+                     [](const MovingVehicle& v) { return v.dynamics->worn(v); });
 }
 
 bool Fleet::accept() {
   bool renewed = false;
   for (MovingVehicle& vehicle : own()) {
-    renewed = vehicle.mechanism.renew_partition(vehicle.state) || renewed;
-    vehicle.mechanism.accept(vehicle.state);
+    renewed = vehicle.dynamics->accept(vehicle) || renewed;
   }
   return renewed;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "linear_dynamics.hpp"
 #include "traverse/train/fleet.hpp"
 
 namespace traverse::train {
@@ -82,10 +83,35 @@ std::vector<double> Fleet::kinks_of_actions() const {
   return kinks;
 }
 
+std::vector<std::string> Fleet::linearise() {
+  std::vector<std::string> notes;
+  for (MovingVehicle& vehicle : own()) {
+    const std::string obstacle = LinearDynamics::obstacle(vehicle);
+    if (obstacle.empty()) {
+      vehicle.dynamics = AnyDynamics(std::make_unique<LinearDynamics>(vehicle, cruise_.data() + vehicle.offset));
+    } else if (std::string note = fmt::format("vehicle '{}' is not taken as linear: {}", vehicle.name(), obstacle);
+               std::find(notes.begin(), notes.end(), note) == notes.end()) {
+      notes.push_back(std::move(note));
+    }
+  }
+  return notes;
+}
+
+void Fleet::observe(const double* pdd) {
+  for (MovingVehicle& vehicle : own())
+    if (vehicle.dynamics->observe(vehicle, pdd + vehicle.offset)) is_set_ = false;
+}
+
+double Fleet::defect() const {
+  double largest = 0.0;
+  for (const MovingVehicle& vehicle : own()) largest = std::max(largest, vehicle.dynamics->defect());
+  return largest;
+}
+
 multibody::MechanismPowers Fleet::powers() const {
   multibody::MechanismPowers sum;
   for (const MovingVehicle& vehicle : own()) {
-    const multibody::MechanismPowers more = vehicle.mechanism.powers(vehicle.state);
+    const multibody::MechanismPowers more = vehicle.dynamics->powers(vehicle);
     sum.dissipation += more.dissipation;
     sum.work += more.work;
   }
@@ -95,7 +121,7 @@ multibody::MechanismPowers Fleet::powers() const {
 multibody::MechanismEnergy Fleet::energy() const {
   multibody::MechanismEnergy sum;
   for (const MovingVehicle& vehicle : vehicles) {
-    const multibody::MechanismEnergy more = vehicle.mechanism.energy(vehicle.state);
+    const multibody::MechanismEnergy more = vehicle.dynamics->energy(vehicle);
     sum.kinetic += more.kinetic;
     sum.strain += more.strain;
     sum.potential += more.potential;

@@ -3,14 +3,6 @@
 #include <cmath>
 
 namespace traverse::train {
-namespace {
-
-constexpr double same_shift = 1e-6;  // relative
-
-bool same(double a, double b) { return std::abs(a - b) <= same_shift * b; }
-
-}  // namespace
-
 bool MultibodyDynamics::set(MovingVehicle& vehicle, double t, const double* p, const double* pd) {
   if (!vehicle.mechanism.set_positions(vehicle.state, t, p)) return false;
   vehicle.mechanism.set_velocities(vehicle.state, t, pd);
@@ -28,6 +20,12 @@ void MultibodyDynamics::accelerations(MovingVehicle& vehicle, double* pdd) {
 
 void MultibodyDynamics::recover(MovingVehicle& vehicle, const double* pdd) {
   vehicle.mechanism.recover(vehicle.state, vehicle.Q, pdd);
+}
+
+bool MultibodyDynamics::accept(MovingVehicle& vehicle) {
+  const bool renewed = vehicle.mechanism.renew_partition(vehicle.state);
+  vehicle.mechanism.accept(vehicle.state);
+  return renewed;
 }
 
 // R = B^T (N q'' - g - Q).
@@ -51,8 +49,7 @@ bool MultibodyDynamics::find_residual(MovingVehicle& vehicle, const double* pdd,
 // Nothing is kept where bodies touch each other: their contacts turn with them.
 bool MultibodyDynamics::serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const {
   return !shifts.statics() && !vehicle.mechanism.rubs() && vehicle.contacts.empty() &&
-         partition_version_ == vehicle.state.partition_version && (curved_ || !curved) &&
-         same(shifts_.rate, shifts.rate) && same(shifts_.acceleration, shifts.acceleration);
+         partition_version_ == vehicle.state.partition_version && (curved_ || !curved) && shifts_.like(shifts);
 }
 
 void MultibodyDynamics::find_J(MovingVehicle& vehicle, const StageShifts& shifts, bool curved) {

@@ -15,6 +15,15 @@ class MultibodyDynamics : public VehicleDynamics {
   void shift(MovingVehicle& vehicle, const double* change, double rate) override;
   void accelerations(MovingVehicle& vehicle, double* pdd) override;
   void recover(MovingVehicle& vehicle, const double* pdd) override;
+  multibody::MechanismPowers powers(const MovingVehicle& vehicle) const override {
+    return vehicle.mechanism.powers(vehicle.state);
+  }
+  multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const override {
+    return vehicle.mechanism.energy(vehicle.state);
+  }
+  bool observe(MovingVehicle&, const double*) override { return false; }
+  bool worn(const MovingVehicle& vehicle) const override { return vehicle.mechanism.worn(vehicle.state); }
+  bool accept(MovingVehicle& vehicle) override;
 
   bool find_residual(MovingVehicle& vehicle, const double* pdd, VehicleYield& yield) override;
   bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;

@@ -102,6 +102,20 @@ class System {
   /// SolverError when there is no equilibrium. Returns one line a joint with redundant equations.
   std::vector<std::string> start(bool equilibrium, double* y);
 
+  /// Collective. After start: takes vehicles as linear about it, those that can be. Returns one line a kind of vehicle
+  /// that cannot.
+  std::vector<std::string> linearise_vehicles(const double* y) {
+    evaluate_fleet(0.0, y);
+    return fleet_.linearise();
+  }
+  /// Collective. How far the mechanisms have been from equilibrium in what was observed, over their weights: what
+  /// linear vehicles leave out.
+  double defect() const {
+    double largest = fleet_.defect();
+    MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm_);
+    return largest;
+  }
+
   /// Collective. ydot = G(t, y), or a part of it.
   void rate(double t, const double* y, double* ydot, Terms terms);
 

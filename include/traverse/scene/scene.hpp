@@ -68,6 +68,7 @@ struct Scene {
   bool step_kinks = true;        // steps end where wheels pass kinks
   bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
   double rest_tolerance = -1.0;  // model_window; -1: auto
+  bool linear_vehicles = false;  // those that can be
   double accuracy = 1e-3;
   bool mesh_open = false;        // its elements are chosen from the accuracy
   bool accuracy_report = false;  // a refined run at the end shows the true errors

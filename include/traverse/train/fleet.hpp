@@ -151,6 +151,14 @@ class Fleet {
   void start_rolling();
   double rolled_angle(const WheelContact& c) const;
 
+  /// Takes this rank's vehicles as linear about the state they are in at t = 0, evaluated, with the contact forces in
+  /// Q: those that can be. Returns a line for each kind of vehicle that cannot, and why.
+  std::vector<std::string> linearise();
+  /// The state of this rank's vehicles as observers see it, with p'' (freedom values).
+  void observe(const double* pdd);
+  /// VehicleDynamics::defect, the largest of this rank's vehicles.
+  double defect() const;
+
   /// Chooses every vehicle's independent coordinates at t and numbers them. From then on p counts from where the
   /// vehicles are now, moving on with the train and rolling on: small numbers, so that velocities found as shift times
   /// p keep their digits. Returns lines on redundant joints.

@@ -3,9 +3,12 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <memory>
 #include <span>
 #include <utility>
+
+#include "traverse/multibody/mechanism.hpp"
 
 namespace traverse::train {
 
@@ -17,6 +20,11 @@ struct StageShifts {
   double rate = 0.0;          // 1/s
   double acceleration = 0.0;  // 1/s2: rate*rate for Runge-Kutta types
   bool statics() const { return acceleration == 0.0; }
+  /// The same within what a Newton matrix notices.
+  bool like(const StageShifts& other) const {
+    const auto same = [](double a, double b) { return std::abs(a - b) <= 1e-6 * b; };
+    return same(rate, other.rate) && same(acceleration, other.acceleration);
+  }
 };
 
 /// A direction of a contact in the contacts' Newton iteration: its normal, or behind that its tangent.
@@ -56,8 +64,23 @@ class VehicleDynamics {
   virtual void shift(MovingVehicle& vehicle, const double* change, double rate) = 0;
   /// p'' under Q. Throws SolverError where friction leaves it undetermined.
   virtual void accelerations(MovingVehicle& vehicle, double* pdd) = 0;
-  /// What powers and reactions need, from p'' as a stage has found it, under Q.
+  /// What powers need, from p'' as a stage has found it, under Q.
   virtual void recover(MovingVehicle& vehicle, const double* pdd) = 0;
+  /// After accelerations or recover.
+  virtual multibody::MechanismPowers powers(const MovingVehicle& vehicle) const = 0;
+  /// Of the state last observed, J.
+  virtual multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const = 0;
+  /// The state of all bodies, springs and joints as observers see it, at what it was last set to with a given p'',
+  /// under Q.
+  virtual bool observe(MovingVehicle& vehicle, const double* pdd) = 0;
+  /// How far the mechanism itself has been from equilibrium in the states observed: the largest of its equations of
+  /// motion's residuals over the vehicle's scale.
+  virtual double defect() const { return 0.0; }
+
+  /// Whether the independent coordinates may have worn out.
+  virtual bool worn(const MovingVehicle& vehicle) const = 0;
+  /// Notes the state, just evaluated, as accepted. True where others take the place of worn coordinates.
+  virtual bool accept(MovingVehicle& vehicle) = 0;
 
   // An iteration of a stage's Newton method, with J the derivative of the residual by p:
 

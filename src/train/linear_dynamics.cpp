@@ -1,0 +1,169 @@
+#include "linear_dynamics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace traverse::train {
+std::string LinearDynamics::obstacle(const MovingVehicle& vehicle) {
+  const multibody::MechanismModel& model = vehicle.mechanism.model();
+  if (vehicle.wheels.empty()) return "it has no wheels";
+  if (vehicle.mechanism.rubs()) return "a joint slides with friction";
+  if (!vehicle.contacts.empty()) return "bodies of it touch each other";
+  if (!model.actuators.empty()) return "it has actuators";
+  if (model.drivers.size() > 1) return "it has drivers of its own";
+  for (const multibody::Driver& driver : model.drivers)
+    if (driver.coordinate != 0 || driver.value.acceleration(0.0) != 0.0) return "it has drivers of its own";
+  for (const multibody::Spring& spring : model.springs) {
+    if (spring.law) return fmt::format("its spring '{}' follows a law that is not linear", spring.name);
+    if (spring.bodies[0] == multibody::ground || spring.bodies[1] == multibody::ground)
+      return fmt::format("its spring '{}' is held by the ground", spring.name);
+  }
+  for (const multibody::TorsionSpring& spring : model.torsion_springs)
+    if (spring.law) return fmt::format("its torsion spring '{}' follows a law that is not linear", spring.name);
+  for (const multibody::Joint& joint : model.joints)
+    if (joint.bodies[0] == multibody::ground || joint.bodies[1] == multibody::ground)
+      return fmt::format("its joint '{}' is held by the ground", joint.name);
+  for (const Wheel& wheel : vehicle.wheels)
+    for (const multibody::Joint& joint : model.joints) {
+      // A wheel that turns carries points of its joints round with it.
+      const bool on_it = joint.bodies[0] == wheel.body || joint.bodies[1] == wheel.body;
+      const Eigen::Vector2d centre = model.bodies[static_cast<std::size_t>(wheel.body)].position.head<2>();
+      const bool turns = wheel.law.friction > 0.0;
+      if (on_it && turns && joint.type == multibody::JointType::revolute && (joint.point - centre).norm() > 1e-9)
+        return fmt::format("its joint '{}' is beside the centre of a wheel that turns", joint.name);
+    }
+  return {};
+}
+
+LinearDynamics::LinearDynamics(MovingVehicle& vehicle, const double* cruise) {
+  multibody::Mechanism& mechanism = vehicle.mechanism;
+  multibody::MechanismState& state = vehicle.state;
+  const int f = vehicle.freedom();
+  c_ = Eigen::Map<const Eigen::VectorXd>(cruise, f);
+  p0_.resize(f);
+  for (int i = 0; i < f; ++i) p0_[i] = state.q[mechanism.partition().independent[static_cast<std::size_t>(i)]];
+  for (Eigen::VectorXd* x : {&x_, &xd_, &xdd_, &force_, &R_}) x->setZero(f);
+  q0_ = state.q;
+  B_ = state.B;
+  u_ = B_ * c_ + state.b;
+  drives_ = !mechanism.model().drivers.empty();
+  columns_ = state.columns;
+
+  mechanism.recover(state, vehicle.Q, x_.data());  // at rest in p: the reactions that turn
+  M_ = B_.transpose() * mechanism.mass_diagonal().asDiagonal() * B_;
+  Eigen::MatrixXd product;
+  mechanism.multiply_tangent(state, -1.0, 0.0, 1.0, product);
+  K_ = B_.transpose() * product;
+  mechanism.multiply_tangent(state, 0.0, -1.0, 0.0, product);
+  C_ = B_.transpose() * product;
+  // At the steady motion alone, of which the state's velocities may differ.
+  r0_ = -B_.transpose() * state.g;
+  for (int i = 0; i < f; ++i) xd_[i] = state.qd[mechanism.partition().independent[static_cast<std::size_t>(i)]] - c_[i];
+  r0_ -= C_ * xd_;
+  driven_ = B_.transpose() * mechanism.mass_diagonal().cwiseProduct(u_);
+  mass_.compute(M_);
+  const multibody::MechanismEnergy start = mechanism.energy(state);
+  stored_ = start.strain + start.potential;
+}
+
+bool LinearDynamics::set(MovingVehicle& vehicle, double t, const double* p, const double* pd) {
+  const auto f = p0_.size();
+  time_ = t;
+  x_ = Eigen::Map<const Eigen::VectorXd>(p, f) - p0_ - t * c_;
+  xd_ = Eigen::Map<const Eigen::VectorXd>(pd, f) - c_;
+  multibody::MechanismState& state = vehicle.state;
+  state.time = t;
+  state.q = q0_ + t * u_;
+  state.q.noalias() += B_ * x_;
+  state.qd = u_;
+  state.qd.noalias() += B_ * xd_;
+  return true;
+}
+
+void LinearDynamics::shift(MovingVehicle& vehicle, const double* change, double rate) {
+  const Eigen::Map<const Eigen::VectorXd> dx(change, x_.size());
+  x_ += dx;
+  xd_ += rate * dx;
+  vehicle.state.q.noalias() += B_ * dx;
+  vehicle.state.qd.noalias() += rate * (B_ * dx);
+}
+
+// B^T Q - C x' - K x - r0. Q has entries at the wheels alone.
+void LinearDynamics::find_force(const MovingVehicle& vehicle) {
+  force_ = -r0_;
+  force_.noalias() -= C_ * xd_;
+  force_.noalias() -= K_ * x_;
+  for (const Wheel& wheel : vehicle.wheels) {
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(wheel.body);
+    const auto [first, last] = columns_[static_cast<std::size_t>(wheel.body)];
+    force_.segment(first, last - first).noalias() +=
+        B_.block(row, first, 3, last - first).transpose() * vehicle.Q.segment<3>(row);
+  }
+}
+
+void LinearDynamics::accelerations(MovingVehicle& vehicle, double* pdd) {
+  find_force(vehicle);
+  xdd_ = mass_.solve(force_);
+  Eigen::Map<Eigen::VectorXd>(pdd, xdd_.size()) = xdd_;
+}
+
+void LinearDynamics::recover(MovingVehicle&, const double* pdd) {
+  xdd_ = Eigen::Map<const Eigen::VectorXd>(pdd, x_.size());
+}
+
+// What keeps the speed works u^T (N q'' - g - Q): springs inside do nothing there.
+multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) const {
+  return {xd_.dot(C_ * xd_), drives_ ? driven_.dot(xdd_) - u_.dot(vehicle.Q) : 0.0};
+}
+
+multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) const {
+  const Eigen::VectorXd q = B_ * x_, qd = u_ + B_ * xd_;
+  const Eigen::VectorXd& mass = vehicle.mechanism.mass_diagonal();
+  multibody::MechanismEnergy e;
+  e.kinetic = 0.5 * qd.dot(mass.cwiseProduct(qd));
+  for (Eigen::Index i = 1; i < q.size(); i += 3)
+    e.potential += mass[i] * vehicle.mechanism.model().gravity * (q0_[i] + q[i]);
+  e.strain = stored_ + r0_.dot(x_) + 0.5 * x_.dot(K_ * x_) - e.potential;
+  return e;
+}
+
+// The mechanism itself at the same coordinates.
+bool LinearDynamics::observe(MovingVehicle& vehicle, const double* pdd) {
+  position_ = p0_ + time_ * c_ + x_;
+  velocity_ = c_ + xd_;
+  multibody::MechanismState& state = vehicle.state;
+  if (!vehicle.mechanism.set_positions(state, time_, position_.data())) {
+    defect_ = std::numeric_limits<double>::infinity();
+    return true;
+  }
+  vehicle.mechanism.set_velocities(state, time_, velocity_.data());
+  vehicle.mechanism.compute_forces(state);
+  vehicle.mechanism.recover(state, vehicle.Q, pdd);
+  r_ = vehicle.mechanism.mass_diagonal().cwiseProduct(state.qdd) - state.g - vehicle.Q;
+  state.dependent_block.project(r_, R_);
+  if (R_.size() > 0) defect_ = std::max(defect_, R_.lpNorm<Eigen::Infinity>() / vehicle.scale);
+  return true;
+}
+
+bool LinearDynamics::find_residual(MovingVehicle& vehicle, const double* pdd, VehicleYield& yield) {
+  find_force(vehicle);
+  R_ = -force_;
+  R_.noalias() += M_ * Eigen::Map<const Eigen::VectorXd>(pdd, x_.size());
+  yield.residual = R_.size() > 0 ? R_.lpNorm<Eigen::Infinity>() / vehicle.scale : 0.0;
+  return true;
+}
+
+bool LinearDynamics::serves(const MovingVehicle&, const StageShifts& shifts, bool) const {
+  return !shifts.statics() && shifts_.like(shifts);
+}
+
+void LinearDynamics::renew(MovingVehicle&, const StageShifts& shifts, bool, ContactRows rows, VehicleYield& yield) {
+  shifts_ = shifts;
+  J_ = shifts.acceleration * M_ + shifts.rate * C_ + K_;
+  newton_.renew(rows, columns_, B_, nullptr, shifts.statics(), J_, yield);
+}
+
+}  // namespace traverse::train

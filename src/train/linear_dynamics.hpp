@@ -1,0 +1,69 @@
+// A vehicle with constant matrices about the state that it starts from: exact up to the squares of angles.
+//
+// With the independent coordinates p = p0 + c t + x, where c is the steady motion along the track, all bodies are at
+// q = q0 + u t + B x with u = B c + b, and the mechanism's projected equations of motion become
+//
+//   M x'' + C x' + K x + r0 = B^T Q,   M = B^T N B,   r0 = -B^T g0
+//
+// K holds the springs' stiffness and how the joints' reactions at the start turn with x.
+#pragma once
+
+#include <string>
+
+#include "traverse/train/fleet.hpp"
+#include "vehicle_newton.hpp"
+
+namespace traverse::train {
+
+class LinearDynamics : public VehicleDynamics {
+ public:
+  /// Why a vehicle cannot be taken so, in words; empty: it can.
+  static std::string obstacle(const MovingVehicle& vehicle);
+
+  /// About the vehicle's state at t = 0, evaluated, with its contact forces in Q. cruise: c of its coordinates.
+  LinearDynamics(MovingVehicle& vehicle, const double* cruise);
+
+  std::unique_ptr<VehicleDynamics> clone() const override { return std::make_unique<LinearDynamics>(*this); }
+
+  bool set(MovingVehicle& vehicle, double t, const double* p, const double* pd) override;
+  void shift(MovingVehicle& vehicle, const double* change, double rate) override;
+  void accelerations(MovingVehicle& vehicle, double* pdd) override;
+  void recover(MovingVehicle&, const double* pdd) override;
+  multibody::MechanismPowers powers(const MovingVehicle& vehicle) const override;
+  multibody::MechanismEnergy energy(const MovingVehicle& vehicle) const override;
+  bool observe(MovingVehicle& vehicle, const double* pdd) override;
+  double defect() const override { return defect_; }
+  bool worn(const MovingVehicle&) const override { return false; }
+  bool accept(MovingVehicle&) override { return false; }
+
+  bool find_residual(MovingVehicle& vehicle, const double* pdd, VehicleYield& yield) override;
+  bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
+  void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
+             VehicleYield& yield) override;
+  void go_by_itself(VehicleYield& yield) override { newton_.go_by_itself(R_, yield); }
+  void rest() override { R_.setZero(); }
+  const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override { return newton_.take(forces); }
+
+ private:
+  void find_force(const MovingVehicle& vehicle);
+
+  Eigen::VectorXd p0_, c_;  // f
+  Eigen::VectorXd q0_, u_;  // n
+  Eigen::MatrixXd B_;       // n x f
+  Eigen::MatrixXd M_, C_, K_;
+  Eigen::LLT<Eigen::MatrixXd> mass_;
+  Eigen::VectorXd r0_;      // f
+  Eigen::VectorXd driven_;  // f: N u projected, whose power a driver gives
+  bool drives_ = false;     // the train's speed is prescribed
+  ColumnRanges columns_;
+  VehicleNewton newton_;
+  StageShifts shifts_;
+  double stored_ = 0.0;  // strain and potential energy at x = 0, J
+  double time_ = 0.0, defect_ = 0.0;
+  Eigen::VectorXd x_, xd_, xdd_;  // f
+  Eigen::VectorXd force_;         // f: B^T Q - C x' - K x - r0
+  Eigen::VectorXd R_, r_, position_, velocity_;
+  Eigen::MatrixXd J_;
+};
+
+}  // namespace traverse::train
