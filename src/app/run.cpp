@@ -156,6 +156,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
     summary.solves = system.beam_solves();
     summary.factorisations = system.factorisations();
     summary.wall_seconds = wall;
+    summary.linear_defect = system.defect();
     if (system.structure() != nullptr && system.structure()->energy_left())
       summary.energy_left = total(comm, *system.structure()->energy_left());
     summary.static_error = system.static_error();

@@ -33,6 +33,7 @@ std::vector<Attribute> attributes_of(const Summary& summary, bool probes) {
   add("longest_loss", summary.longest_loss);
   add("energy_residual", summary.energy_residual);
   add("energy_left", summary.energy_left);
+  if (summary.linear_defect > 0.0) add("linear_defect", summary.linear_defect);
   add("rest_error", summary.rest_error());
   add("energy_scale", summary.energy_scale);
   add("static_error", summary.static_error);

@@ -7,15 +7,30 @@
 #include <limits>
 
 namespace traverse::train {
+namespace {
+
+/// use(coordinate of q, action, action at t = 0): of all actuators, N or N m.
+template <class Use>
+void for_actions(const MovingVehicle& vehicle, double t, Use use) {
+  for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)
+    for (int i = 0; i < 3; ++i) {
+      const base::TimeFunction& action = actuator.action[static_cast<std::size_t>(i)];
+      const double now = action.value(t), at_start = action.value(0.0);
+      if (now == 0.0 && at_start == 0.0) continue;
+      use(3 * actuator.body + i, now, at_start);
+      if (actuator.reaction_body != multibody::ground) use(3 * actuator.reaction_body + i, -now, -at_start);
+    }
+}
+
+}  // namespace
+
 std::string LinearDynamics::obstacle(const MovingVehicle& vehicle) {
   const multibody::MechanismModel& model = vehicle.mechanism.model();
   if (vehicle.wheels.empty()) return "it has no wheels";
   if (vehicle.mechanism.rubs()) return "a joint slides with friction";
   if (!vehicle.contacts.empty()) return "bodies of it touch each other";
-  if (!model.actuators.empty()) return "it has actuators";
-  if (model.drivers.size() > 1) return "it has drivers of its own";
   for (const multibody::Driver& driver : model.drivers)
-    if (driver.coordinate != 0 || driver.value.acceleration(0.0) != 0.0) return "it has drivers of its own";
+    if (!driver.value.straight()) return fmt::format("its driver '{}' changes its speed", driver.name);
   for (const multibody::Spring& spring : model.springs) {
     if (spring.law) return fmt::format("its spring '{}' follows a law that is not linear", spring.name);
     if (spring.bodies[0] == multibody::ground || spring.bodies[1] == multibody::ground)
@@ -102,6 +117,9 @@ void LinearDynamics::find_force(const MovingVehicle& vehicle) {
     force_.segment(first, last - first).noalias() +=
         B_.block(row, first, 3, last - first).transpose() * vehicle.Q.segment<3>(row);
   }
+  for_actions(vehicle, time_, [&](Eigen::Index q, double action, double at_start) {
+    force_ += (action - at_start) * B_.row(q).transpose();
+  });
 }
 
 void LinearDynamics::accelerations(MovingVehicle& vehicle, double* pdd) {
@@ -116,7 +134,11 @@ void LinearDynamics::recover(MovingVehicle&, const double* pdd) {
 
 // What keeps the speed works u^T (N q'' - g - Q): springs inside do nothing there.
 multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) const {
-  return {xd_.dot(C_ * xd_), drives_ ? driven_.dot(xdd_) - u_.dot(vehicle.Q) : 0.0};
+  multibody::MechanismPowers powers{xd_.dot(C_ * xd_), drives_ ? driven_.dot(xdd_) - u_.dot(vehicle.Q) : 0.0};
+  for_actions(vehicle, time_, [&](Eigen::Index q, double action, double) {
+    powers.work += action * ((drives_ ? 0.0 : u_[q]) + B_.row(q).dot(xd_));
+  });
+  return powers;
 }
 
 multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) const {

@@ -19,6 +19,8 @@ class TimeFunction {
   double value(double t) const;
   double rate(double t) const;
   double acceleration(double t) const;
+  /// Whether it is value + rate*t at all times.
+  bool straight() const { return times_.empty(); }
   /// Times at which the rate jumps.
   std::vector<double> kinks() const { return curvatures_.empty() ? times_ : std::vector<double>(); }
   /// Adds a constant to the value at all times.

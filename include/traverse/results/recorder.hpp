@@ -98,6 +98,7 @@ struct Summary {
   double longest_loss = 0.0;      // s
   double energy_residual = 0.0;   // largest |residual|, J
   double structure_energy = 0.0;  // largest, kinetic and strain, J
+  double linear_defect = 0.0;     // largest residual of linear vehicles' mechanisms, over their weights
   double energy_left = 0.0;       // put to rest outside the window of what is stepped, J
   /// The same relative to the structure's motion: the root of energy_left over structure_energy.
   double rest_error() const;
