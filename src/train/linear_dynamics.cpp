@@ -142,13 +142,20 @@ multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) 
 }
 
 multibody::MechanismEnergy LinearDynamics::energy(const MovingVehicle& vehicle) const {
-  const Eigen::VectorXd q = B_ * x_, qd = u_ + B_ * xd_;
+  const std::vector<int>& independent = vehicle.mechanism.partition().independent;
+  Eigen::VectorXd x(p0_.size()), xd(p0_.size());  // from the state, which another rank may have told
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const int coordinate = independent[static_cast<std::size_t>(i)];
+    x[i] = vehicle.state.q[coordinate] - p0_[i] - vehicle.state.time * c_[i];
+    xd[i] = vehicle.state.qd[coordinate] - c_[i];
+  }
+  const Eigen::VectorXd q = B_ * x, qd = u_ + B_ * xd;
   const Eigen::VectorXd& mass = vehicle.mechanism.mass_diagonal();
   multibody::MechanismEnergy e;
   e.kinetic = 0.5 * qd.dot(mass.cwiseProduct(qd));
   for (Eigen::Index i = 1; i < q.size(); i += 3)
     e.potential += mass[i] * vehicle.mechanism.model().gravity * (q0_[i] + q[i]);
-  e.strain = stored_ + r0_.dot(x_) + 0.5 * x_.dot(K_ * x_) - e.potential;
+  e.strain = stored_ + r0_.dot(x) + 0.5 * x.dot(K_ * x) - e.potential;
   return e;
 }
 

@@ -236,6 +236,18 @@ TEST(Ranks, TrainOnABridgeByItsModes) {
                            35);
 }
 
+// Displacements from the start are differences of coordinates: wheelsets' accelerations on stiff contacts show it.
+TEST(Ranks, LinearVehicles) {
+  expect_same_on_all_ranks("three_span_train",
+                           {{"train_vehicles", "coach*3"},
+                            {"beam_elements_per_span", "10"},
+                            {"model_vehicles", "linear"},
+                            {"ts_dt", "2e-3"},
+                            {"ts_max_time", "1.2"},
+                            {"output_interval", "0.02"}},
+                           35, 1e-8);
+}
+
 TEST(Ranks, MovingForces) {
   expect_same_on_all_ranks("r6_three_spans",
                            {{"load_forces", "1e4,2e4,-5e3"},
