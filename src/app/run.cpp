@@ -14,6 +14,7 @@
 #include "traverse/options/input.hpp"
 #include "traverse/results/stage.hpp"
 #include "traverse/run/deflection_check.hpp"
+#include "traverse/run/outputs.hpp"
 #include "traverse/run/passage.hpp"
 #include "traverse/run/process.hpp"
 #include "traverse/run/signals.hpp"
@@ -44,7 +45,7 @@ int run_modes(MPI_Comm comm, const Scene& scene, results::Place place, SharedBea
     return damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
   }();
   results::Layout layout;
-  layout.supports = beam.mesh().span_ends();
+  layout.constants = stations({}, beam.mesh().span_ends());
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   if (rank == 0) results::print_modes(found, omega1, omega2, ab.a, ab.b, damped);
@@ -135,7 +136,7 @@ int run_transient(MPI_Comm comm, const Scene& scene, results::Place place, const
   print_notes(comm, notes);
 
   std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
-  results::Layout layout = layout_of(scene, system, beam);
+  results::Layout layout = outputs_of({scene, system.fleet(), beam}).layout();
   if (!still) layout.interval = passage.plan().interval * static_cast<double>(passage.plan().stored);
   results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
   store_modes(shared, recorder);

@@ -1,9 +1,5 @@
-#include "fields.hpp"
-
-#include <algorithm>
-#include <numeric>
-
-#include "traverse/run/watch.hpp"
+// Outputs of the foundation: the forces of its points one by one, and those of its beds on each span.
+#include "output_groups.hpp"
 
 namespace traverse::app {
 namespace {
@@ -63,139 +59,30 @@ void for_beds(const beam::Beam& beam, Use use) {
   }
 }
 
-struct RailQuantity {
-  const char* name;
-  const char* unit;
-  double beam::Response::*member;
-};
-constexpr RailQuantity rail_quantities[] = {
-    {"deflection", "m", &beam::Response::deflection},
-    {"velocity", "m/s", &beam::Response::velocity},
-    {"acceleration", "m/s2", &beam::Response::acceleration},
-    {"moment", "N m", &beam::Response::moment},
-    {"axial_displacement", "m", &beam::Response::axial_displacement},
-    {"axial_force", "N", &beam::Response::axial_force},
-};
+/// The force that is linear, of the kind's i-th point or span, and what the others add.
+template <class Kind>
+double force_of(const Observed& now, const Kind& kind, std::size_t i) {
+  const double linear = (*now.ground.*kind.force)()[i];
+  const std::vector<double>& other = now.motion.beam.foundation.*kind.other;
+  return i < other.size() ? linear + other[i] : linear;
+}
 
 }  // namespace
 
-void describe_foundation(const beam::Beam& beam, results::Layout& layout) {
-  for_points(beam, [&](const PointKind& kind, std::size_t count) {
+void add_foundation(const Source& source, Outputs& outputs) {
+  const auto force = [](const auto& kind) {
+    return [&kind](const Observed& now, std::size_t i) { return force_of(now, kind, i); };
+  };
+  for_points(*source.beam, [&](const PointKind& kind, std::size_t count) {
     const std::string group = std::string("/foundation/") + kind.name + "/";
     std::vector<double> x;
-    for (const PointFoundation& p : beam.model().foundation.*kind.points) x.push_back(p.x);
-    layout.constants.push_back({group + "x", x, "m"});
-    layout.fields.push_back({group + kind.quantity, count, kind.unit});
+    for (const PointFoundation& p : source.beam->model().foundation.*kind.points) x.push_back(p.x);
+    outputs.add_constant(group + "x", x, "m");
+    outputs.add_numbers(group + kind.quantity, kind.unit, count, force(kind));
   });
-  for_beds(beam, [&](const BedKind& kind, std::size_t spans) {
-    layout.fields.push_back({std::string("/foundation/") + kind.name + "/force", spans, "N"});
+  for_beds(*source.beam, [&](const BedKind& kind, std::size_t spans) {
+    outputs.add_numbers(std::string("/foundation/") + kind.name + "/force", "N", spans, force(kind));
   });
-}
-
-void fill_foundation(const beam::Beam& beam, const GroundForces& linear, const structure::NonlinearForces& other,
-                     Fields& fields) {
-  const auto fill = [&](const auto& kind, std::size_t count) {
-    const double* first = (linear.*kind.force)();
-    std::vector<double>& field = fields.next();
-    field.assign(first, first + count);
-    const std::vector<double>& more = other.*kind.other;
-    for (std::size_t i = 0; i < more.size(); ++i) field[i] += more[i];
-  };
-  for_points(beam, fill);
-  for_beds(beam, fill);
-}
-
-void describe_balance(results::Layout& layout) {
-  for (const char* name : {"load", "support", "foundation", "inertia", "drag", "residual"})
-    layout.fields.push_back({std::string("/balance/") + name, 2, "N, N"});
-}
-
-void fill_balance(const GroundForces& forces, const coupling::Observation& observation,
-                  const std::vector<std::array<double, 3>>& supports, double weight, bool axial, Fields& fields) {
-  std::array<double, 2> load{0.0, -weight}, support{}, residual{};
-  for (const beam::ElementLoad& l : observation.loads) {
-    if (axial) load[0] += l.fx;
-    load[1] += l.fy;
-  }
-  for (const auto& r : supports) {
-    support[0] += r[0];
-    support[1] += r[1];
-  }
-  auto foundation = forces.foundation();
-  const auto add = [](const std::vector<double>& more, double& sum) {
-    sum = std::accumulate(more.begin(), more.end(), sum);
-  };
-  const structure::NonlinearForces& other = observation.beam.foundation;
-  for (const auto* along : {&other.longitudinal, &other.longitudinal_bed}) add(*along, foundation[0]);
-  for (const auto* up : {&other.vertical, &other.vertical_bed}) add(*up, foundation[1]);
-  const auto inertia = forces.inertia(), drag = forces.drag();
-  for (std::size_t i = 0; i < 2; ++i) residual[i] = load[i] + support[i] + foundation[i] + inertia[i] + drag[i];
-  for (const auto& term : {load, support, foundation, inertia, drag, residual})
-    fields.next().assign(term.begin(), term.end());
-}
-
-void describe_rail(const std::vector<double>& stations, results::Layout& layout) {
-  for (const RailQuantity& q : rail_quantities)
-    layout.fields.push_back({std::string("/rail/") + q.name, stations.size(), q.unit});
-}
-
-void fill_rail(const std::vector<beam::Response>& rail, Fields& fields) {
-  for (const RailQuantity& q : rail_quantities) {
-    std::vector<double>& field = fields.next();
-    for (const beam::Response& r : rail) field.push_back(r.*q.member);
-  }
-}
-
-void describe_couplers(const train::Train& train, results::Layout& layout) {
-  for (const train::Coupler& c : train.couplers) {
-    const std::string group = "/couplers/" + c.name + "/";
-    layout.constants.push_back({group + "gap", {c.gaps.begin(), c.gaps.end()}, "1"});
-    if (!c.joint) layout.fields.push_back({group + "force", c.gaps.size(), "N"});
-    if (!c.joint) continue;
-    layout.fields.push_back({group + "fx", c.gaps.size(), "N"});
-    layout.fields.push_back({group + "fy", c.gaps.size(), "N"});
-    layout.fields.push_back({group + "moment", c.gaps.size(), "N m"});
-  }
-}
-
-void fill_couplers(const train::Fleet& fleet, const train::Train& train, Fields& fields) {
-  auto part = fleet.couplers.begin();
-  for (const train::Coupler& c : train.couplers) {
-    const auto first = part;
-    part += static_cast<std::ptrdiff_t>(c.gaps.size());
-    for (int component = 0; component < (c.joint ? 3 : 1); ++component) {
-      std::vector<double>& field = fields.next();
-      for (auto gap = first; gap != part; ++gap) {
-        const train::MovingVehicle& unit = fleet.vehicles[gap->unit];
-        field.push_back(c.joint ? unit.mechanism.joint_reaction(unit.state, gap->part)[component]
-                                : unit.mechanism.spring_force(unit.state, gap->part));
-      }
-    }
-  }
-}
-
-results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam) {
-  results::Layout layout;
-  describe_couplers(scene.train, layout);
-  if (beam != nullptr) {
-    layout.probes = scene.output.probes;
-    layout.supports = beam->mesh().span_ends();
-    describe_foundation(*beam, layout);
-    describe_balance(layout);
-    if (beam->rail() != nullptr) describe_rail(scene.output.probes, layout);
-  }
-  for (const train::Member& member : system.fleet().members) {
-    results::Layout::VehicleNames names;
-    const train::Vehicle& type = *member.type;
-    for (const multibody::Body& b : type.mechanism.bodies) names.bodies.push_back(b.name);
-    for (const train::Wheel& w : type.wheels) names.wheels.push_back(w.name);
-    for (const contact::BodyContact& c : type.contacts) names.wheels.push_back(c.name);
-    for (const multibody::Joint& j : type.mechanism.joints) names.joints.push_back(j.name);
-    for (const multibody::Spring& s : type.mechanism.springs) names.springs.push_back(s.name);
-    for (const multibody::TorsionSpring& s : type.mechanism.torsion_springs) names.torsion_springs.push_back(s.name);
-    layout.vehicles.push_back(std::move(names));
-  }
-  return layout;
 }
 
 }  // namespace traverse::app

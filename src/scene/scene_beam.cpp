@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "limits.hpp"
 #include "scene_parts.hpp"
 #include "traverse/options/data_file.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 using options::Options;
 
 constexpr double most_stations = 1e6;  // of springs at equal distances
-constexpr double most_elements = 2e7;  // see limits.cpp
 
 /// Even, so that midspan is a node; the error of deflections falls with the fourth power of the element's length.
 int elements_from_accuracy(double accuracy) {
