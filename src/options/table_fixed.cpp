@@ -1,6 +1,8 @@
 // Rows of the option table: options with a fixed name. See table.hpp for the columns.
+#include <array>
 #include <limits>
 
+#include "traverse/options/analyses.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {
@@ -12,6 +14,36 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 // Below these no beam is meant: a steel wire of 0.1 mm has EI = 1e-6 N m2, EA = 1.6e3 N and 6e-5 kg/m.
 constexpr Range beam_length = {1e-3, 1e6, true}, beam_stiffness = {1e-7, unbounded, true},
                 beam_weight = {1e-7, unbounded, true};
+
+/// Text put together by the compiler.
+struct Words {
+  std::array<char, 400> letters{};
+  std::size_t size = 0;
+  constexpr void add(std::string_view more) {
+    for (const char letter : more) letters[size++] = letter;
+  }
+  constexpr operator std::string_view() const { return {letters.data(), size}; }  // NOLINT: it is text
+};
+
+constexpr Words names_of_analyses = [] {
+  Words words;
+  for (const AnalysisRow& row : analyses) {
+    words.add(words.size == 0 ? "" : " ");
+    words.add(row.name);
+  }
+  return words;
+}();
+
+constexpr Words text_of_analyses = [] {
+  Words words;
+  std::string_view before = "what is computed: ";
+  for (const AnalysisRow& row : analyses) {
+    for (const std::string_view part : {before, row.name, std::string_view(" ("), row.words, std::string_view(")")})
+      words.add(part);
+    before = "; ";
+  }
+  return words;
+}();
 
 // clang-format off
 constexpr Row rows[] = {
@@ -102,7 +134,7 @@ constexpr Row rows[] = {
 
   {"gravity", number, "m/s2", "9.81", not_negative, "", 0, "downward"},
   {"scene_name", text, "", "(the first options file)", any, "", 0, "names the scene in messages and the results file"},
-  {"scene_analysis", choice, "", "transient", any, "transient modes static", 0, "what is computed"},
+  {"scene_analysis", choice, "", analyses[0].name, any, names_of_analyses, 0, text_of_analyses},
   {"scene_start", choice, "", "equilibrium", any, "equilibrium given", 0, "given: positions and velocities as written"},
   {"scene_tail", number, "s", "", not_negative, "", 0, "free vibration after the last wheel has left"},
   {"ts_max_time", number, "s", "(when the last wheel has left)", positive, "", 0, "the run's end"},

@@ -6,11 +6,14 @@
 #include <hdf5.h>
 
 #include <array>
+#include <fstream>
 #include <map>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "recorder_helpers.hpp"
+#include "support/paths.hpp"
 #include "support/scene_run.hpp"
 
 namespace traverse::app {
@@ -79,6 +82,17 @@ void expect_part(const Units& all, const std::string& group, const Units& expect
   EXPECT_EQ(part, expected) << group;
 }
 
+// doc/results_file.md names every quantity.
+void expect_documented(const Units& all) {
+  std::ifstream file(TRAVERSE_SOURCE_DIR "/doc/results_file.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  for (const auto& [name, unit] : all) {
+    const std::string quantity = name.substr(name.rfind('/') + 1);
+    EXPECT_NE(text.str().find(quantity), std::string::npos) << name;
+  }
+}
+
 const Units body = {{"position", "m, m, rad"}, {"velocity", "m/s, m/s, rad/s"}, {"acceleration", "m/s2, m/s2, rad/s2"}};
 const Units wheel = {{"normal_force", "N"}, {"friction_force", "N"}, {"penetration", "m"}};
 const Units response = {{"deflection", "m"}, {"velocity", "m/s"},         {"acceleration", "m/s2"},
@@ -94,6 +108,7 @@ TEST(Outputs, OfAHalfCarOnABridgeWithAFoundation) {
                                                               {"foundation_rotational_k", "1e9"},
                                                               {"foundation_vertical_bed_k", "1e5"}});
   const Units units = units_of(run.file());
+  expect_documented(units);
   Units probes = response;
   probes.insert({{"shear", "N"}, {"x", "m"}});
   expect_part(units, "probes/", probes);
@@ -143,8 +158,11 @@ TEST(Outputs, OfAHalfCarOnABridgeWithAFoundation) {
 
 TEST(Outputs, OfARailAndOfCouplers) {
   const test::Values at_rest = {{"scene_analysis", "static"}};
-  expect_part(units_of(test::run_scene("r8_ballasted_bridge", at_rest).file()), "rail/", response);
+  const Units bridge = units_of(test::run_scene("r8_ballasted_bridge", at_rest).file());
+  expect_part(bridge, "rail/", response);
+  expect_documented(bridge);
   const Units train = units_of(test::run_scene("articulated_train", at_rest).file());
+  expect_documented(train);
   expect_part(train, "couplers/",
               {{"pivot/gap", "1"},
                {"pivot/fx", "N"},
@@ -173,6 +191,7 @@ TEST(Outputs, OfTorsionSpringsAndOfContactsBetweenBodies) {
       "ts_max_time: 0.01\n"
       "output: {interval: 0.01}\n");
   const Units units = units_of(run.file());
+  expect_documented(units);
   expect_part(units, "vehicles/0/coil/", {{"moment", "N m"}});
   expect_part(units, "vehicles/0/floor/", wheel);
   expect_part(units, "probes/", {});
