@@ -76,7 +76,7 @@ std::string chosen_type() {
   const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
   const bool for_arkimex = (adapt != TSADAPTNONE && adapt != ladder_adapt) || is_given("-ts_arkimex_type") ||
                            is_given("-ts_arkimex_fully_implicit");
-  const std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : structure::methods().front().name);
+  std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : structure::methods().front().name);
   if (structure::find_method(type) == nullptr && find_petsc_type(type) == nullptr)
     throw InputError("ts_type = " + type + ": does not integrate this system rightly; allowed: " + allowed_types());
   check_adapt(adapt, type);
