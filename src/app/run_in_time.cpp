@@ -104,12 +104,13 @@ int run_in_time(Job job) {
   print_notes(comm, notes);
 
   std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
-  results::Layout layout = outputs_of({scene, system.fleet(), beam}).layout();
+  const Outputs outputs = outputs_of({scene, system.fleet(), beam});
+  results::Layout layout = outputs.layout();
   if (!still) layout.interval = passage.plan().interval * static_cast<double>(passage.plan().stored);
   results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
   store_modes(shared, recorder);
   if (shared.beam) shared.beam->release_matrices();
-  Watch watch(scene, system, beam, recorder);
+  Watch watch(scene, system, beam, recorder, &outputs);
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
   double reached = 0.0;

@@ -25,14 +25,18 @@ void check_balance(const Scene& scene, const results::Summary& summary) {
                     summary.energy_residual, summary.energy_scale));
 }
 
-Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
-    : scene_(scene), system_(system), beam_(beam), recorder_(recorder) {
+Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
+             const Outputs* outputs)
+    : scene_(scene),
+      system_(system),
+      beam_(beam),
+      recorder_(recorder),
+      outputs_(recorder.writes() ? outputs : nullptr) {
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     now_.ground.emplace(*beam);
     if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
   }
-  if (recorder.writes()) outputs_ = outputs_of({scene, system.fleet(), beam});
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
   const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
@@ -65,7 +69,7 @@ void Watch::store(bool end) {
     now_.ground->evaluate(beam.v, beam.w, beam.a.data());
   }
   note_energy();
-  if (outputs_) outputs_->fill(now_, sample_.values);
+  if (outputs_ != nullptr) outputs_->fill(now_, sample_.values);
   if (end)
     recorder_.end(sample_);
   else

@@ -22,7 +22,9 @@ namespace traverse::app {
 /// Watches stored instants and steps: samples for the recorder, extremes for the summary.
 class Watch {
  public:
-  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder);
+  /// outputs: what the recorder's layout is of; null: no samples are recorded.
+  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
+        const Outputs* outputs = nullptr);
 
   void sample(const integrate::Instant& instant);
   /// To be called at the end of every step, also of one that ends at a sample.
@@ -52,7 +54,7 @@ class Watch {
   results::Recorder& recorder_;
   std::optional<beam::Recovery> recovery_, rail_recovery_;
   std::optional<beam::ViscousLag> lag_;
-  std::optional<Outputs> outputs_;  // where this rank writes a file
+  const Outputs* outputs_;  // null where this rank writes no file
   std::vector<beam::Response> dragged_;
   Peaks peaks_;
   WheelExtremes wheels_;
