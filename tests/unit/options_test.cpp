@@ -7,7 +7,6 @@
 #include "support/message.hpp"
 #include "support/temporary_folder.hpp"
 #include "traverse/multibody/joint_type.hpp"
-#include "traverse/multibody/joint_type.hpp"
 #include "traverse/options/data_file.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/options/read_file.hpp"
