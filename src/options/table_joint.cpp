@@ -1,13 +1,11 @@
 // Rows of the option table: joints and couplers. Types, and what each of them needs, come from the table of joint
 // types.
-#include "table_joint.hpp"
-
 #include <fmt/format.h>
 
-#include <list>
 #include <string>
 #include <vector>
 
+#include "derived_rows.hpp"
 #include "traverse/multibody/joint_type.hpp"
 
 namespace traverse::options {
@@ -21,12 +19,6 @@ bool has_point(const JointRow& row) { return row.needs.point; }
 bool has_axis(const JointRow& row) { return row.needs.axis; }
 bool has_ends(const JointRow& row) { return row.needs.ends; }
 bool slides(const JointRow& row) { return row.slides; }
-
-/// Keeps texts for as long as the program runs, which rows only look at.
-std::string_view kept(std::string text) {
-  static std::list<std::string> all;
-  return all.emplace_back(std::move(text));
-}
 
 /// "prismatic, slot: " and what it is that these have.
 std::string_view of(bool (*fits)(const JointRow&), std::string_view text, std::string_view before = "") {

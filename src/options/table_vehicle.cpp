@@ -1,7 +1,7 @@
 // Rows of the option table: a vehicle and its parts. See table.hpp for the columns.
 #include <array>
 
-#include "table_joint.hpp"
+#include "derived_rows.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {

@@ -13,53 +13,16 @@ constexpr std::size_t most_points = 2000;  // of a kind whose forces are stored 
 using beam::GroundForces;
 using beam::PointFoundation;
 
-struct PointKind {
-  const char* name;
-  const char* quantity;
-  const char* unit;
-  std::vector<PointFoundation> beam::Foundation::*points;
-  const double* (GroundForces::*force)() const;
-  std::vector<double> structure::NonlinearForces::*other;
-  bool axial;
-};
-constexpr PointKind point_kinds[] = {
-    {"vertical", "force", "N", &beam::Foundation::vertical, &GroundForces::vertical,
-     &structure::NonlinearForces::vertical, false},
-    {"longitudinal", "force", "N", &beam::Foundation::longitudinal, &GroundForces::longitudinal,
-     &structure::NonlinearForces::longitudinal, true},
-    {"rotational", "moment", "N m", &beam::Foundation::rotational, &GroundForces::rotational,
-     &structure::NonlinearForces::rotational, false},
-};
-
-struct BedKind {
-  const char* name;
-  std::optional<beam::Bed> beam::Foundation::*bed;
-  const double* (GroundForces::*force)() const;
-  std::vector<double> structure::NonlinearForces::*other;
-  bool axial;
-};
-constexpr BedKind bed_kinds[] = {
-    {"vertical_bed", &beam::Foundation::vertical_bed, &GroundForces::vertical_bed,
-     &structure::NonlinearForces::vertical_bed, false},
-    {"longitudinal_bed", &beam::Foundation::longitudinal_bed, &GroundForces::longitudinal_bed,
-     &structure::NonlinearForces::longitudinal_bed, true},
-};
-
-/// Calls use(kind, count) for what the beam has and what is stored.
+/// Calls use(number of the kind, count) for the kinds of foundation that the beam has and that are stored: a force for
+/// every point, or for every span on a bed.
 template <class Use>
-void for_points(const beam::Beam& beam, Use use) {
-  for (const PointKind& kind : point_kinds) {
-    const std::size_t count = (beam.model().foundation.*kind.points).size();
-    if (count > 0 && count <= most_points && (!kind.axial || beam.model().axial)) use(kind, count);
-  }
-}
-
-template <class Use>
-void for_beds(const beam::Beam& beam, Use use) {
-  const std::size_t spans = beam.model().spans.size();
-  for (const BedKind& kind : bed_kinds) {
-    if (beam.model().foundation.*kind.bed && spans <= most_points && (!kind.axial || beam.model().axial))
-      use(kind, spans);
+void for_foundations(const beam::Beam& beam, Use use) {
+  const beam::BeamModel& model = beam.model();
+  for (std::size_t i = 0; i < beam::foundation_kind_count; ++i) {
+    const beam::FoundationKind& kind = beam::foundation_kinds[i];
+    if (!present(model.foundation, kind) || !acts(kind, model)) continue;
+    const std::size_t count = kind.bed != nullptr ? model.spans.size() : (model.foundation.*kind.points).size();
+    if (count <= most_points) use(i, count);
   }
 }
 
@@ -80,29 +43,28 @@ constexpr RailQuantity rail_quantities[] = {
 }  // namespace
 
 void describe_foundation(const beam::Beam& beam, results::Layout& layout) {
-  for_points(beam, [&](const PointKind& kind, std::size_t count) {
-    const std::string group = std::string("/foundation/") + kind.name + "/";
-    std::vector<double> x;
-    for (const PointFoundation& p : beam.model().foundation.*kind.points) x.push_back(p.x);
-    layout.constants.push_back({group + "x", x, "m"});
-    layout.fields.push_back({group + kind.quantity, count, kind.unit});
-  });
-  for_beds(beam, [&](const BedKind& kind, std::size_t spans) {
-    layout.fields.push_back({std::string("/foundation/") + kind.name + "/force", spans, "N"});
+  for_foundations(beam, [&](std::size_t i, std::size_t count) {
+    const beam::FoundationKind& kind = beam::foundation_kinds[i];
+    const std::string group = "/foundation/" + std::string(kind.name) + "/";
+    if (kind.points != nullptr) {
+      std::vector<double> x;
+      for (const PointFoundation& p : beam.model().foundation.*kind.points) x.push_back(p.x);
+      layout.constants.push_back({group + "x", x, "m"});
+    }
+    const beam::FoundationForceName& force = beam::force_name(kind);
+    layout.fields.push_back({group + std::string(force.quantity), count, std::string(force.unit)});
   });
 }
 
 void fill_foundation(const beam::Beam& beam, const GroundForces& linear, const structure::NonlinearForces& other,
                      Fields& fields) {
-  const auto fill = [&](const auto& kind, std::size_t count) {
-    const double* first = (linear.*kind.force)();
+  for_foundations(beam, [&](std::size_t i, std::size_t count) {
+    const double* first = linear.of_kind(i);
     std::vector<double>& field = fields.next();
     field.assign(first, first + count);
-    const std::vector<double>& more = other.*kind.other;
-    for (std::size_t i = 0; i < more.size(); ++i) field[i] += more[i];
-  };
-  for_points(beam, fill);
-  for_beds(beam, fill);
+    const std::vector<double>& more = other.of_kind[i];
+    for (std::size_t j = 0; j < more.size(); ++j) field[j] += more[j];
+  });
 }
 
 void describe_balance(results::Layout& layout) {
@@ -122,12 +84,13 @@ void fill_balance(const GroundForces& forces, const coupling::Observation& obser
     support[1] += r[1];
   }
   auto foundation = forces.foundation();
-  const auto add = [](const std::vector<double>& more, double& sum) {
+  for (std::size_t i = 0; i < beam::foundation_kind_count; ++i) {
+    const beam::Direction direction = beam::foundation_kinds[i].direction;
+    if (direction == beam::Direction::rotational) continue;
+    double& sum = foundation[direction == beam::Direction::longitudinal ? 0 : 1];
+    const std::vector<double>& more = observation.beam.foundation.of_kind[i];
     sum = std::accumulate(more.begin(), more.end(), sum);
-  };
-  const structure::NonlinearForces& other = observation.beam.foundation;
-  for (const auto* along : {&other.longitudinal, &other.longitudinal_bed}) add(*along, foundation[0]);
-  for (const auto* up : {&other.vertical, &other.vertical_bed}) add(*up, foundation[1]);
+  }
   const auto inertia = forces.inertia(), drag = forces.drag();
   for (std::size_t i = 0; i < 2; ++i) residual[i] = load[i] + support[i] + foundation[i] + inertia[i] + drag[i];
   for (const auto& term : {load, support, foundation, inertia, drag, residual})
