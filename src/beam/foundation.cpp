@@ -1,6 +1,7 @@
 #include "traverse/beam/foundation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "traverse/base/error.hpp"
@@ -21,6 +22,11 @@ std::size_t foundation_kind(std::string_view name) {
   const auto kind = std::find_if(foundation_kinds.begin(), foundation_kinds.end(), same);
   if (kind == foundation_kinds.end()) throw InputError("there is no foundation_" + std::string(name));
   return static_cast<std::size_t>(kind - foundation_kinds.begin());
+}
+
+double fading_of_bending(Direction direction, double k, double EI) {
+  if (direction == Direction::vertical) return std::pow(k / (4.0 * EI), 0.25);
+  return direction == Direction::rotational ? std::sqrt(k / EI) : 0.0;
 }
 
 bool present(const Foundation& foundation, const FoundationKind& kind) {

@@ -256,7 +256,7 @@ TEST(Names, JointsAreThoseOfTheTableOfTheirTypes) {
   const Row& coupler = *find_row(coupler_rows(), "type");
   for (const multibody::JointRow& joint : multibody::joint_rows()) {
     const std::string name(joint.name);
-    for (const Row* row : {&type, &coupler}) EXPECT_PRED2(contains, allowed(*row), ", " + name);
+    for (const Row* row : {&type, &coupler}) EXPECT_PRED2(contains, " " + allowed(*row) + ",", " " + name + ",");
     EXPECT_PRED2(contains, help_text(), name + ": " + std::string(joint.text));
     for (const multibody::JointNumber& own : joint.numbers)
       EXPECT_NE(find_row(part_rows(Part::joint), own.name), nullptr) << own.name;

@@ -90,6 +90,10 @@ constexpr FoundationUnits units_of(const FoundationKind& kind) {
                              : FoundationUnits{"N/m", "N s/m", "m", "N/m3"};
 }
 
+/// The rate at which bending beside a load fades along a bed of k on a beam of EI, 1/m: lambda = (k/(4 EI))^(1/4) on a
+/// vertical bed, (k/EI)^(1/2) on a rotational one, 0 on a longitudinal one.
+double fading_of_bending(Direction direction, double k, double EI);
+
 /// Calls use(kind, points) for the kinds that stand at stations.
 template <class F, class Use>
 void for_points(F& foundation, Use use) {
