@@ -4,6 +4,7 @@
 
 #include "equations/angle.hpp"
 #include "equations/distance.hpp"
+#include "equations/gear.hpp"
 #include "equations/normal.hpp"
 #include "equations/point.hpp"
 #include "traverse/base/error.hpp"
@@ -98,6 +99,7 @@ constexpr JointRow table[] = {
     row<Normal>("slot", "slides and turns"),
     row<Point, Angle>("weld", "nothing is free"),
     row<Distance>("distance", "a rod from one body to the other"),
+    row<Gear>("gear", "the two bodies turn together, by a ratio", Gear::numbers),
 };
 // clang-format on
 
