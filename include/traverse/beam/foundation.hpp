@@ -43,6 +43,7 @@ struct Foundation {
   std::vector<PointFoundation> longitudinal;  // 3.4
   std::optional<Bed> longitudinal_bed;        // 3.5
   std::vector<PointFoundation> rotational;    // 3.6
+  std::optional<Bed> rotational_bed;          // holds the slope along the beam; not in the paper
 
   /// Whether any of it has a law that is not linear.
   bool nonlinear() const;
@@ -62,6 +63,7 @@ inline constexpr std::array foundation_kinds = {
     FoundationKind{
         .name = "longitudinal_bed", .direction = Direction::longitudinal, .bed = &Foundation::longitudinal_bed},
     FoundationKind{.name = "rotational", .direction = Direction::rotational, .points = &Foundation::rotational},
+    FoundationKind{.name = "rotational_bed", .direction = Direction::rotational, .bed = &Foundation::rotational_bed},
 };
 inline constexpr std::size_t foundation_kind_count = foundation_kinds.size();
 
