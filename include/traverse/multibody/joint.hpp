@@ -7,6 +7,7 @@
 //   distance  (d.d - L^2) / (2 L) = 0       1 equation, m; d = P2 - P1,                     equations/distance.hpp
 //                                           so that lambda is a force
 //   angle     phi2 - phi1 - angle = 0       1 equation, rad                                 equations/angle.hpp
+//   gear      phi2 + ratio phi1 - angle = 0 1 equation, rad                                 equations/gear.hpp
 // A kind has its number of rows, whether they are about an angle, what it needs to know of the joint (JointNeeds), and
 // the functions prepare, residual, gradient, gamma, curvature and reaction, of which the functions below are made.
 // Which types of joints there are stands in joint_types.cpp. With N q'' + Phi_q^T lambda = g, the joint acts on the
