@@ -12,7 +12,7 @@ namespace {
 
 const std::string scene = R"(
 beam: {spans: [20.0, 20.0], elements_per_span: 6, EI: 2.0e9, EA: 1.0e10, mass: 2000.0}
-support: {types: [pinned, roller, roller]}
+support: {types: [clamped, roller, free]}
 load: {forces: 1e5, positions: 8.0}
 scene: {analysis: static}
 model: {axial: true}
