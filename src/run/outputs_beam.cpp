@@ -54,12 +54,13 @@ Balance balance_of(const Observed& now, double gravity, bool axial) {
     b.support[1] += r[1];
   }
   b.foundation = ground.foundation();
-  const auto add = [](const std::vector<double>& more, double& sum) {
+  for (std::size_t k = 0; k < beam::foundation_kind_count; ++k) {
+    const beam::Direction direction = beam::foundation_kinds[k].direction;
+    if (direction == beam::Direction::rotational) continue;
+    double& sum = b.foundation[direction == beam::Direction::longitudinal ? 0 : 1];
+    const std::vector<double>& more = now.motion.beam.foundation.of_kind[k];
     sum = std::accumulate(more.begin(), more.end(), sum);
-  };
-  const structure::NonlinearForces& other = now.motion.beam.foundation;
-  for (const auto* along : {&other.longitudinal, &other.longitudinal_bed}) add(*along, b.foundation[0]);
-  for (const auto* up : {&other.vertical, &other.vertical_bed}) add(*up, b.foundation[1]);
+  }
   b.inertia = ground.inertia();
   b.drag = ground.drag();
   for (std::size_t i = 0; i < 2; ++i)

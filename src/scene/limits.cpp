@@ -100,7 +100,9 @@ std::vector<Need> needs_of(const options::Options& o, const Scene& scene) {
                               fmt::format("{:g} probes and what passes each of them", probes)}};
   if (!scene.beam) return needs;
   const beam::Foundation& f = scene.beam->foundation;
-  const auto springs = static_cast<double>(f.vertical.size() + f.longitudinal.size() + f.rotational.size());
+  double springs = 0.0;
+  for_points(f,
+             [&](const beam::FoundationKind&, const auto& points) { springs += static_cast<double>(points.size()); });
   const double kinks = static_cast<double>(scene.profile.kinks().size() + scene.beam->spans.size());
   needs.push_back(mesh(o, scene));
   needs.push_back(

@@ -6,6 +6,7 @@
 
 #include "support/message.hpp"
 #include "support/temporary_folder.hpp"
+#include "traverse/multibody/joint_type.hpp"
 #include "traverse/options/analyses.hpp"
 #include "traverse/options/data_file.hpp"
 #include "traverse/options/input.hpp"
@@ -261,6 +262,18 @@ TEST(Names, AnalysesAreTheChoicesOfTheirOption) {
   }
   EXPECT_EQ(option.choices, names);
   EXPECT_EQ(option.fallback, analyses[0].name);
+}
+
+TEST(Names, JointsAreThoseOfTheTableOfTheirTypes) {
+  const Row& type = *find_row(part_rows(Part::joint), "type");
+  const Row& coupler = *find_row(coupler_rows(), "type");
+  for (const multibody::JointRow& joint : multibody::joint_rows()) {
+    const std::string name(joint.name);
+    for (const Row* row : {&type, &coupler}) EXPECT_PRED2(contains, " " + allowed(*row) + ",", " " + name + ",");
+    EXPECT_PRED2(contains, help_text(), name + ": " + std::string(joint.text));
+    for (const multibody::JointNumber& own : joint.numbers)
+      EXPECT_NE(find_row(part_rows(Part::joint), own.name), nullptr) << own.name;
+  }
 }
 
 TEST(Names, EveryDefaultIsAllowed) {

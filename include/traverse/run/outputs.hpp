@@ -99,8 +99,8 @@ class Outputs {
   }
   /// One dataset [n, count]: see(now, i) gives number i.
   template <class See>
-  void add_numbers(std::string name, const char* unit, std::size_t count, See see) {
-    describe(std::move(name), unit, {count}, 0);
+  void add_numbers(std::string name, std::string unit, std::size_t count, See see) {
+    describe(std::move(name), std::move(unit), {count}, 0);
     append_.push_back([count, see](const Observed& now, std::vector<double>& values) {
       for (std::size_t i = 0; i < count; ++i) values.push_back(see(now, i));
     });
@@ -118,9 +118,9 @@ class Outputs {
   }
 
  private:
-  void describe(std::string name, const char* unit, std::vector<std::size_t> shape, std::size_t components) {
+  void describe(std::string name, std::string unit, std::vector<std::size_t> shape, std::size_t components) {
     if (components > 0) shape.push_back(components);
-    layout_.fields.push_back({std::move(name), std::move(shape), unit});
+    layout_.fields.push_back({std::move(name), std::move(shape), std::move(unit)});
   }
 
   results::Layout layout_;
