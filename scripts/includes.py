@@ -13,8 +13,9 @@ import re
 import sys
 
 # From the top layer down: a room includes headers of rooms that stand behind it, never before it.
-LAYERS = ["app", "study", "accuracy", "run", "scene", "results", "integrate", "coupling", "structure", "train", "contact",
-          "multibody", "track", "modes", "beam", "solve", "options", "base"]
+# The options stand above what they describe: their tables take the names of joints and foundations from there.
+LAYERS = ["app", "study", "accuracy", "run", "scene", "results", "integrate", "coupling", "structure", "train", "options",
+          "contact", "multibody", "track", "modes", "beam", "solve", "base"]
 WITHOUT_PETSC = {"multibody", "contact", "track"}
 GREATEST_SHARE = 0.10  # of all lines, in one room
 

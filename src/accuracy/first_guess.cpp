@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "traverse/base/error.hpp"
 #include "traverse/base/whole.hpp"
@@ -28,25 +29,42 @@ double contact_angle_of(double accuracy) {
   return contact_angle * std::clamp(std::pow(accuracy / 1e-2, contact_power), least_contact_angle, 1.0);
 }
 
+/// The fastest fading of bending on the beam's beds, 1/m, and the kind of foundation that makes it. Vertical springs at
+/// stations count as a bed.
+struct Fading {
+  double rate = 0.0;
+  std::string_view kind = "vertical";
+};
+Fading fading_of(const beam::BeamModel& beam) {
+  const double EI = beam.EI.minimum();
+  double springs = 0.0;
+  for (const beam::PointFoundation& point : beam.foundation.vertical) springs += point.k / beam.length();
+  Fading fastest{fading_of_bending(beam::Direction::vertical, springs, EI)};
+  for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
+    const bool vertical = kind.direction == beam::Direction::vertical;
+    const double rate = fading_of_bending(kind.direction, bed.k.maximum() + (vertical ? springs : 0.0), EI);
+    if (rate > fastest.rate) fastest = {rate, vertical ? "vertical" : kind.name};
+  });
+  return fastest;
+}
+
 }  // namespace
 
 int first_mesh(const Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   if (beam.track) return first_bay;
-  double bed = beam.foundation.vertical_bed ? beam.foundation.vertical_bed->k.maximum() : 0.0;
-  for (const beam::PointFoundation& point : beam.foundation.vertical) bed += point.k / beam.length();
   const int wanted = scene.accuracy >= 3e-3 ? 8 : scene.accuracy >= 3e-4 ? 16 : 32;
-  if (bed == 0.0) return wanted;
-  const double wave = std::pow(4.0 * beam.EI.minimum() / bed, 0.25);
+  const auto [fading, kind] = fading_of(beam);
+  if (fading == 0.0) return wanted;
   const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
-  if (elements_a_wave * longest / wave > most_in_a_span)
+  if (elements_a_wave * longest * fading > most_in_a_span)
     throw InputError(
-        fmt::format("foundation_vertical: on its bed the beam bends within {:.3g} m, which {:g} elements in the span "
+        fmt::format("foundation_{}: on its bed the beam bends within {:.3g} m, which {:g} elements in the span "
                     "of {:g} m do not "
                     "resolve; a softer foundation, a stiffer beam_EI or a shorter span is meant, or "
                     "beam_elements_per_span is given",
-                    wave, static_cast<double>(most_in_a_span), longest));
-  return std::max(wanted, 4 * base::whole(std::ceil(0.25 * elements_a_wave * longest / wave), most_in_a_span / 4));
+                    kind, 1.0 / fading, static_cast<double>(most_in_a_span), longest));
+  return std::max(wanted, 4 * base::whole(std::ceil(0.25 * elements_a_wave * longest * fading), most_in_a_span / 4));
 }
 
 double contact_frequency(const Scene& scene) {

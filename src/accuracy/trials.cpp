@@ -59,9 +59,8 @@ void leave_out_vehicles(Scene& scene, double end) {
 
 void leave_out_spans(Scene& scene, double end) {
   beam::BeamModel& beam = *scene.beam;
-  const beam::Foundation& f = beam.foundation;
-  const bool founded =
-      f.vertical_bed || f.longitudinal_bed || !f.vertical.empty() || !f.longitudinal.empty() || !f.rotational.empty();
+  const auto there = [&](const beam::FoundationKind& kind) { return present(beam.foundation, kind); };
+  const bool founded = std::any_of(beam::foundation_kinds.begin(), beam::foundation_kinds.end(), there);
   const bool plain = !founded && !beam.track && beam.hinges.empty();
   if (!plain || beam.spans.size() <= few_spans || scene.train.drive != train::Drive::constant) return;
   double front = scene.output.probes.empty() ? 0.0 : scene.output.probes.front();
@@ -96,9 +95,9 @@ void set_mesh(Scene& scene, int elements) {
 int aligned_mesh(const Scene& scene, int elements) {
   if (scene.beam->track) return elements;
   std::vector<double> stations = scene.output.probes;
-  for (const auto* points :
-       {&scene.beam->foundation.vertical, &scene.beam->foundation.longitudinal, &scene.beam->foundation.rotational})
-    for (const beam::PointFoundation& point : *points) stations.push_back(point.x);
+  for_points(scene.beam->foundation, [&](const beam::FoundationKind&, const auto& points) {
+    for (const beam::PointFoundation& point : points) stations.push_back(point.x);
+  });
   if (stations.size() > few_stations) return elements;
   Scene tried = scene;
   for (int count = elements; 2 * count <= 3 * elements; count += 2) {

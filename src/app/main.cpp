@@ -14,6 +14,7 @@
 #include "standard_output.hpp"
 #include "traverse/app/run.hpp"
 #include "traverse/base/error.hpp"
+#include "traverse/integrate/integrators.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/options/table.hpp"
 #include "traverse/run/process.hpp"
@@ -85,7 +86,10 @@ int main(int argc, char** argv) {
   start_lightly();
   try {
     traverse::options::Input input = traverse::options::read_input(argc, argv);
-    if (input.help) return after_output(std::fputs(traverse::options::help_text().c_str(), stdout) < 0 ? 1 : 0);
+    if (input.help) {
+      const std::string text = traverse::options::help_text() + traverse::integrate::integrators_help();
+      return after_output(std::fputs(text.c_str(), stdout) < 0 ? 1 : 0);
+    }
     if (input.version) return after_output(std::puts("traverse " TRAVERSE_VERSION) < 0 ? 1 : 0);
     traverse::options::Arguments words(input.petsc_words);
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;

@@ -1,6 +1,6 @@
 #include "assembly.hpp"
 
-#include "traverse/beam/shape.hpp"
+#include "traverse/beam/point_shape.hpp"
 
 namespace traverse::beam {
 namespace {
@@ -18,39 +18,6 @@ void for_elements(const Line& line, const Slice& slice, bool uniform, Compute co
     length = element.length;
     add(e, matrices);
   }
-}
-
-/// Sum over the points of value * s s^T; shape(xi, h) gives s.
-template <class Shape, class Unknowns>
-Rows points(const std::vector<PointFoundation>& all, const Line& line, const Slice& slice, Term term, Shape shape,
-            Unknowns unknowns) {
-  Rows rows(slice);
-  const auto [first, past] = line.elements_at(slice.first, slice.local);
-  for (const PointFoundation& p : all) {
-    if (p.law.nonlinear()) continue;
-    const Station at = station_of(line.mesh, p);
-    if (at.element < first || at.element >= past) continue;
-    rows.add(unknowns(at.element),
-             outer(term == Term::stiffness ? p.k : p.c, shape(at.xi, line.mesh.element(at.element).length)));
-  }
-  return rows;
-}
-
-template <class Matrix, class Unknowns>
-Rows bed(const Bed& bed, const Line& line, const Slice& slice, Term term, Matrix matrix, Unknowns unknowns) {
-  Rows rows(slice);
-  const Distribution& density = term == Term::stiffness ? bed.k : bed.c;
-  for_elements(
-      line, slice, density.uniform(), [&](const Element& e) { return matrix(density, e); },
-      [&](int e, const auto& m) { rows.add(unknowns(e), m); });
-  return rows;
-}
-
-auto transverse_of(const Line& line) {
-  return [&line](int e) { return line.transverse(e); };
-}
-auto axial_of(const Line& line) {
-  return [&line](int e) { return line.axial(e); };
 }
 
 }  // namespace
@@ -71,30 +38,27 @@ void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness)
       });
 }
 
-Rows vertical_points(const Line& line, const Slice& slice, Term term) {
-  return points(
-      line.model.foundation.vertical, line, slice, term, [](double xi, double h) { return hermite(xi, h).value; },
-      transverse_of(line));
+Rows points_of(const FoundationKind& kind, const Line& line, const Slice& slice, Term term) {
+  Rows rows(slice);
+  const auto [first, past] = line.elements_at(slice.first, slice.local);
+  for (const PointFoundation& p : line.model.foundation.*kind.points) {
+    if (p.law.nonlinear()) continue;
+    const Station at = station_of(line.mesh, p);
+    if (at.element < first || at.element >= past) continue;
+    const PointShape s = shape_at(line, kind.direction, at);
+    rows.add(s.unknown, outer(term == Term::stiffness ? p.k : p.c, s.shape));
+  }
+  return rows;
 }
 
-Rows longitudinal_points(const Line& line, const Slice& slice, Term term) {
-  return points(
-      line.model.foundation.longitudinal, line, slice, term, [](double xi, double) { return linear(xi); },
-      axial_of(line));
-}
-
-Rows rotational_points(const Line& line, const Slice& slice, Term term) {
-  return points(
-      line.model.foundation.rotational, line, slice, term, [](double xi, double h) { return hermite(xi, h).slope; },
-      transverse_of(line));
-}
-
-Rows vertical_bed(const Line& line, const Slice& slice, Term term) {
-  return bed(*line.model.foundation.vertical_bed, line, slice, term, transverse_bed, transverse_of(line));
-}
-
-Rows longitudinal_bed(const Line& line, const Slice& slice, Term term) {
-  return bed(*line.model.foundation.longitudinal_bed, line, slice, term, axial_bed, axial_of(line));
+Rows bed_of(const FoundationKind& kind, const Line& line, const Slice& slice, Term term) {
+  Rows rows(slice);
+  const Bed& bed = *(line.model.foundation.*kind.bed);
+  const Distribution& density = term == Term::stiffness ? bed.k : bed.c;
+  for_elements(
+      line, slice, density.uniform(), [&](const Element& e) { return bed_matrix(kind.direction, density, e); },
+      [&](int e, const Transverse& m) { rows.add(unknowns_of(line, kind.direction, e), m); });
+  return rows;
 }
 
 }  // namespace traverse::beam

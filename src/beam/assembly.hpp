@@ -14,13 +14,10 @@ Station station_of(const Mesh& mesh, const PointFoundation& point);
 
 enum class Term { stiffness, damping };
 
-/// Eqs. 22-24 and 31-33 as matrices: the sum of {s} k {s}^T over the points, s the shape vector at the station.
-Rows vertical_points(const Line& line, const Slice& slice, Term term);
-Rows longitudinal_points(const Line& line, const Slice& slice, Term term);
-/// Eq. 40, at any station: s holds the slopes of the shape functions. At a node it is that node's rotation alone.
-Rows rotational_points(const Line& line, const Slice& slice, Term term);
-/// Eqs. 27, 29 and 36, 38.
-Rows vertical_bed(const Line& line, const Slice& slice, Term term);
-Rows longitudinal_bed(const Line& line, const Slice& slice, Term term);
+/// Eqs. 22-24, 31-33 and 40 as matrices: the sum of {s} k {s}^T over the points, s the shape vector at the station. Of
+/// a rotational kind s holds the slopes of the shape functions: at a node it is that node's rotation alone.
+Rows points_of(const FoundationKind& kind, const Line& line, const Slice& slice, Term term);
+/// Eqs. 27, 29 and 36, 38; there is a bed.
+Rows bed_of(const FoundationKind& kind, const Line& line, const Slice& slice, Term term);
 
 }  // namespace traverse::beam

@@ -42,14 +42,16 @@ BeamModel checked(BeamModel model) {
   return model;
 }
 
-bool any(const std::vector<PointFoundation>& points, Term term) {
+/// Whether there is anything of a kind that is linear.
+bool any(const Foundation& foundation, const FoundationKind& kind, Term term) {
+  if (kind.bed != nullptr) {
+    const std::optional<Bed>& bed = foundation.*kind.bed;
+    return bed && !bed->law.nonlinear() && (term == Term::stiffness ? bed->k : bed->c).maximum() > 0.0;
+  }
+  const std::vector<PointFoundation>& points = foundation.*kind.points;
   return std::any_of(points.begin(), points.end(), [&](const PointFoundation& p) {
     return !p.law.nonlinear() && (term == Term::stiffness ? p.k : p.c) > 0.0;
   });
-}
-
-bool any(const std::optional<Bed>& bed, Term term) {
-  return bed && !bed->law.nonlinear() && (term == Term::stiffness ? bed->k : bed->c).maximum() > 0.0;
 }
 
 /// A second owner of the same object.
@@ -156,21 +158,16 @@ void Beam::assemble(const Slice& slice) {
 
 void Beam::add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
                           std::vector<std::pair<base::Handle<Mat>*, Rows>>& own) {
-  const Foundation& f = model().foundation;
-  // One kind of section 3: a matrix of its own, and its part of the sum.
-  const auto add = [&](const auto& description, auto rows_of, base::Handle<Mat>(&matrices)[2]) {
+  for (std::size_t i = 0; i < foundation_kind_count; ++i) {
+    const FoundationKind& kind = foundation_kinds[i];
+    if (!acts(kind, model())) continue;
     for (Term term : {Term::stiffness, Term::damping}) {
-      if (!any(description, term)) continue;
-      own.emplace_back(&matrices[term == Term::stiffness ? 0 : 1], rows_of(bridge_, slice, term));
+      if (!any(model().foundation, kind, term)) continue;
+      own.emplace_back(&foundation_.of_kind[i][term == Term::stiffness ? 0 : 1],
+                       (kind.bed != nullptr ? bed_of : points_of)(kind, bridge_, slice, term));
       (term == Term::stiffness ? stiffness : damping).add(1.0, own.back().second);
     }
-  };
-  add(f.vertical, vertical_points, foundation_.vertical_discrete);
-  add(f.vertical_bed, vertical_bed, foundation_.vertical_continuous);
-  add(f.rotational, rotational_points, foundation_.rotational_discrete);
-  if (!model().axial) return;
-  add(f.longitudinal, longitudinal_points, foundation_.longitudinal_discrete);
-  add(f.longitudinal_bed, longitudinal_bed, foundation_.longitudinal_continuous);
+  }
 }
 
 void Beam::set_rayleigh(Rayleigh ab) {

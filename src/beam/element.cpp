@@ -60,6 +60,11 @@ Axial axial_bed(const Distribution& density, const Element& e) {
   return {2 * c, c, c, 2 * c};
 }
 
+Transverse slope_bed(const Distribution& density, const Element& e) {
+  const double h = e.length;
+  return integral<4>(density, e, [h](double xi) { return hermite(xi, h).slope; });
+}
+
 std::array<double, 4> transverse_load(const Distribution& density, const Element& e) {
   const double h = e.length;
   if (const auto constant = constant_value(density, e.x, e.x + h)) {
@@ -70,6 +75,23 @@ std::array<double, 4> transverse_load(const Distribution& density, const Element
   integrate(density, e.x, e.x + e.length, [&](double x, double weight) {
     const auto psi = hermite((x - e.x) / h, h).value;
     for (std::size_t i = 0; i < 4; ++i) load[i] += weight * psi[i];
+  });
+  return load;
+}
+
+std::array<double, 2> axial_load(const Distribution& density, const Element& e) {
+  const auto transverse = transverse_load(density, e);  // the same resultant and first moment about the left end
+  const double force = transverse[0] + transverse[2];
+  const double moment = transverse[2] * e.length + transverse[1] + transverse[3];
+  return {force - moment / e.length, moment / e.length};
+}
+
+std::array<double, 4> slope_load(const Distribution& density, const Element& e) {
+  const double h = e.length;
+  std::array<double, 4> load{};
+  integrate(density, e.x, e.x + h, [&](double x, double weight) {
+    const auto slope = hermite((x - e.x) / h, h).slope;
+    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * slope[i];
   });
   return load;
 }

@@ -47,15 +47,15 @@ bool holds(const PointFoundation& p, const Part& part, const BeamModel& model, S
 }
 
 /// The stretches of the part, between its hinges and the bed's own breaks, along which the bed has stiffness.
-std::vector<std::pair<double, double>> bedded(const std::optional<Bed>& bed, const Part& part, Springs which) {
+std::vector<std::pair<double, double>> bedded(const Bed& bed, const Part& part, Springs which) {
   std::vector<std::pair<double, double>> stretches;
-  if (!bed || !counts(bed->law, which)) return stretches;
+  if (!counts(bed.law, which)) return stretches;
   for (std::size_t i = 1; i < part.x.size(); ++i) {
-    auto ends = bed->k.breaks(part.x[i - 1], part.x[i]);
+    auto ends = bed.k.breaks(part.x[i - 1], part.x[i]);
     ends.push_back(part.x[i]);
     double left = part.x[i - 1];
     for (double right : ends) {  // linear in between
-      if (bed->law.cubic > 0.0 || bed->k.at(left, right) > 0.0 || bed->k.at(right, left) > 0.0)
+      if (bed.law.cubic > 0.0 || bed.k.at(left, right) > 0.0 || bed.k.at(right, left) > 0.0)
         stretches.emplace_back(left, right);
       left = right;
     }
@@ -113,23 +113,32 @@ Conditions bending_conditions(const BeamModel& model, const Part& part, const st
     conditions.no_slope(x, false);
     conditions.no_slope(x, true);
   }
-  for (const PointFoundation& p : model.foundation.vertical) {
-    if (holds(p, part, model, which)) conditions.no_deflection(p.x);
-  }
-  for (const PointFoundation& p : model.foundation.rotational) {
-    if (holds(p, part, model, which)) conditions.no_slope(p.x, p.from_left);
-  }
-  for (const auto& [left, right] : bedded(model.foundation.vertical_bed, part, which)) {
-    conditions.no_deflection(0.5 * (left + right));
-    conditions.no_slope(0.5 * (left + right), false);
-  }
+  for_points(model.foundation, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
+    for (const PointFoundation& p : points) {
+      if (!holds(p, part, model, which)) continue;
+      if (kind.direction == Direction::vertical) conditions.no_deflection(p.x);
+      if (kind.direction == Direction::rotational) conditions.no_slope(p.x, p.from_left);
+    }
+  });
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    if (kind.direction == Direction::longitudinal) return;
+    for (const auto& [left, right] : bedded(bed, part, which)) {
+      if (kind.direction == Direction::vertical) conditions.no_deflection(0.5 * (left + right));
+      conditions.no_slope(0.5 * (left + right), false);
+    }
+  });
   return conditions;
 }
 
 bool supported_axially(const BeamModel& model, const Part& part, Springs which) {
-  const auto& points = model.foundation.longitudinal;
-  bool held = !bedded(model.foundation.longitudinal_bed, part, which).empty() ||
-              std::any_of(points.begin(), points.end(), [&](const auto& p) { return holds(p, part, model, which); });
+  bool held = false;
+  for_points(model.foundation, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
+    if (kind.direction != Direction::longitudinal) return;
+    for (const PointFoundation& p : points) held = held || holds(p, part, model, which);
+  });
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    if (kind.direction == Direction::longitudinal) held = held || !bedded(bed, part, which).empty();
+  });
   for (int end = part.first_end; end <= part.last_end; ++end) held = held || fixes_axial(model.supports[end]);
   return held;
 }

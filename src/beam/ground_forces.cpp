@@ -4,34 +4,28 @@
 
 #include "assembly.hpp"
 #include "layered_track.hpp"
+#include "traverse/beam/point_shape.hpp"
 #include "traverse/beam/shape.hpp"
 
 namespace traverse::beam {
-namespace {
-
-/// Integral of density(x) phi: nodal forces along x.
-std::array<double, 2> axial_load(const Distribution& density, const Element& e) {
-  const auto transverse = transverse_load(density, e);  // the same resultant and first moment about the left end
-  const double force = transverse[0] + transverse[2];
-  const double moment = transverse[2] * e.length + transverse[1] + transverse[3];
-  return {force - moment / e.length, moment / e.length};
-}
-
-}  // namespace
-
 GroundForces::GroundForces(const Beam& beam) : beam_(beam) {
   const Foundation& f = beam.model().foundation;
   const std::size_t spans = beam.model().spans.size();
-  longitudinal_ = vertical_ + f.vertical.size();
-  rotational_ = longitudinal_ + f.longitudinal.size();
-  vertical_bed_ = rotational_ + f.rotational.size();
-  longitudinal_bed_ = vertical_bed_ + spans;
-  track_ = longitudinal_bed_ + spans;
+  for (std::size_t i = 0; i < foundation_kind_count; ++i) {
+    const FoundationKind& kind = foundation_kinds[i];
+    first_[i + 1] = first_[i] + (kind.bed != nullptr ? spans : (f.*kind.points).size());
+  }
+  track_ = first_.back();
   inertia_ = track_ + 2;
   drag_ = inertia_ + 2;
   sums_.assign(drag_ + 2, 0.0);
-  add_points(beam.bridge());
-  add_beds(beam.bridge());
+  for (std::size_t i = 0; i < foundation_kind_count; ++i) {
+    if (foundation_kinds[i].bed != nullptr) {
+      add_bed(i, beam.bridge());
+    } else {
+      add_points(i, beam.bridge());
+    }
+  }
   for (auto& along : bridge_masses_) along.assign(index(beam.local_unknowns()), 0.0);
   add_masses(beam.bridge(), bridge_masses_);
   masses_ = bridge_masses_;
@@ -58,40 +52,26 @@ void GroundForces::add_mass(std::vector<double>& masses, int unknown, double mas
   if (local >= 0) masses[index(local)] += mass;
 }
 
-void GroundForces::add_points(const Line& line) {
-  const Foundation& f = line.model.foundation;
-  const auto add_kind = [&](const std::vector<PointFoundation>& points, std::size_t sum, auto unknowns, auto shape) {
-    for (const PointFoundation& p : points) {
-      if (p.law.nonlinear()) {
-        ++sum;
-        continue;
-      }
-      const Station at = station_of(line.mesh, p);
-      const auto s = shape(at.xi, line.mesh.element(at.element).length);
-      const auto places = unknowns(at.element);
-      for (std::size_t i = 0; i < s.size(); ++i) add(sum, places[i], p.c * s[i], p.k * s[i]);
-      ++sum;
+void GroundForces::add_points(std::size_t kind, const Line& line) {
+  std::size_t sum = first_[kind];
+  for (const PointFoundation& p : line.model.foundation.*foundation_kinds[kind].points) {
+    if (!p.law.nonlinear()) {
+      const PointShape s = shape_at(line, foundation_kinds[kind].direction, station_of(line.mesh, p));
+      for (std::size_t i = 0; i < 4; ++i) add(sum, s.unknown[i], p.c * s.shape[i], p.k * s.shape[i]);
     }
-  };
-  const auto transverse = [&](int e) { return line.transverse(e); };
-  const auto axial = [&](int e) { return line.axial(e); };
-  add_kind(f.vertical, vertical_, transverse, [](double xi, double h) { return hermite(xi, h).value; });
-  add_kind(f.longitudinal, longitudinal_, axial, [](double xi, double) { return linear(xi); });
-  add_kind(f.rotational, rotational_, transverse, [](double xi, double h) { return hermite(xi, h).slope; });
+    ++sum;
+  }
 }
 
-void GroundForces::add_beds(const Line& line) {
-  const Foundation& f = line.model.foundation;
+void GroundForces::add_bed(std::size_t kind, const Line& line) {
+  const std::optional<Bed>& bed = line.model.foundation.*foundation_kinds[kind].bed;
+  if (!bed || bed->law.nonlinear()) return;
+  const Direction direction = foundation_kinds[kind].direction;
   for (int e = 0; e < line.mesh.elements(); ++e) {
     const Element& element = line.mesh.element(e);
-    const auto add_bed = [&](const Bed& bed, std::size_t sum, auto load, const auto& places) {
-      const auto c = load(bed.c, element), k = load(bed.k, element);
-      for (std::size_t i = 0; i < c.size(); ++i) add(sum + index(element.span), places[i], c[i], k[i]);
-    };
-    if (f.vertical_bed && !f.vertical_bed->law.nonlinear())
-      add_bed(*f.vertical_bed, vertical_bed_, transverse_load, line.transverse(e));
-    if (f.longitudinal_bed && !f.longitudinal_bed->law.nonlinear())
-      add_bed(*f.longitudinal_bed, longitudinal_bed_, axial_load, line.axial(e));
+    const auto c = bed_form(direction, bed->c, element), k = bed_form(direction, bed->k, element);
+    const auto places = unknowns_of(line, direction, e);
+    for (std::size_t i = 0; i < 4; ++i) add(first_[kind] + index(element.span), places[i], c[i], k[i]);
   }
 }
 
@@ -134,13 +114,15 @@ void GroundForces::evaluate(const double* v, const double* w, const double* a) {
 
 std::array<double, 2> GroundForces::foundation() const {
   std::array<double, 2> sum = track_bed();
-  const auto add_range = [&](std::size_t from, std::size_t to, double& total) {
-    for (std::size_t i = from; i < to; ++i) total += sums_[i];
-  };
-  add_range(vertical_, longitudinal_, sum[1]);
-  add_range(longitudinal_, rotational_, sum[0]);
-  add_range(vertical_bed_, longitudinal_bed_, sum[1]);
-  add_range(longitudinal_bed_, track_, sum[0]);
+  // At stations, then along beds: the order in which they have always been added.
+  for (const bool of_bed : {false, true}) {
+    for (std::size_t kind = 0; kind < foundation_kind_count; ++kind) {
+      const Direction direction = foundation_kinds[kind].direction;
+      if ((foundation_kinds[kind].bed != nullptr) != of_bed || direction == Direction::rotational) continue;
+      double& total = sum[direction == Direction::longitudinal ? 0 : 1];
+      for (std::size_t i = first_[kind]; i < first_[kind + 1]; ++i) total += sums_[i];
+    }
+  }
   return sum;
 }
 

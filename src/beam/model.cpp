@@ -52,28 +52,32 @@ void check_spans(const BeamModel& model) {
           "one at every span end is needed: " + std::to_string(model.spans.size() + 1));
 }
 
-void check_law(const FoundationLaw& law, const std::string& option, const std::string& unit) {
-  require_not_negative(law.gap, option + "_gap", unit == "N m/rad" ? "rad" : "m");
-  const std::string cubic = unit == "N m/rad" ? "N m/rad3" : unit == "N/m" ? "N/m3" : "N/m4";
-  require_not_negative(law.cubic, option + "_cubic", cubic);
+void check_law(const FoundationLaw& law, const std::string& option, const FoundationUnits& units) {
+  require_not_negative(law.gap, option + "_gap", std::string(units.gap));
+  require_not_negative(law.cubic, option + "_cubic", std::string(units.cubic));
 }
 
-void check_points(const std::vector<PointFoundation>& points, const std::string& option, double length,
-                  const std::string& unit) {
-  for (const PointFoundation& p : points) {
-    require(std::isfinite(p.x) && p.x >= 0.0 && p.x <= length, option + "_x", number(p.x),
-            "it must lie on the beam, from 0 to " + number(length) + " m");
-    require_not_negative(p.k, option + "_k", unit);
-    require_not_negative(p.c, option + "_c", unit + " s");
-    check_law(p.law, option, unit);
-  }
-}
-
-void check_bed(const std::optional<Bed>& bed, const std::string& option) {
-  if (!bed) return;
-  for (double value : {bed->k.minimum(), bed->k.maximum()}) require_not_negative(value, option + "_k", "N/m2");
-  for (double value : {bed->c.minimum(), bed->c.maximum()}) require_not_negative(value, option + "_c", "N s/m2");
-  check_law(bed->law, option, "N/m2");
+void check_foundation(const Foundation& foundation, double length) {
+  for_points(foundation, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
+    const std::string option = "foundation_" + std::string(kind.name);
+    const FoundationUnits units = units_of(kind);
+    for (const PointFoundation& p : points) {
+      require(std::isfinite(p.x) && p.x >= 0.0 && p.x <= length, option + "_x", number(p.x),
+              "it must lie on the beam, from 0 to " + number(length) + " m");
+      require_not_negative(p.k, option + "_k", std::string(units.k));
+      require_not_negative(p.c, option + "_c", std::string(units.c));
+      check_law(p.law, option, units);
+    }
+  });
+  for_beds(foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    const std::string option = "foundation_" + std::string(kind.name);
+    const FoundationUnits units = units_of(kind);
+    for (double value : {bed.k.minimum(), bed.k.maximum()})
+      require_not_negative(value, option + "_k", std::string(units.k));
+    for (double value : {bed.c.minimum(), bed.c.maximum()})
+      require_not_negative(value, option + "_c", std::string(units.c));
+    check_law(bed.law, option, units);
+  });
 }
 
 void check_joints(const BeamModel& model) {
@@ -136,28 +140,21 @@ Joint BeamModel::joint(int span_end) const {
   return joints.size() == 1 ? joints.front() : joints[static_cast<std::size_t>(span_end) - 1];
 }
 
-bool Foundation::nonlinear() const {
-  for (const auto* points : {&vertical, &longitudinal, &rotational}) {
-    for (const PointFoundation& p : *points) {
-      if (p.law.nonlinear()) return true;
-    }
-  }
-  return (vertical_bed && vertical_bed->law.nonlinear()) || (longitudinal_bed && longitudinal_bed->law.nonlinear());
-}
-
 BeamModel linearised(const BeamModel& model) {
   BeamModel linear = model;
-  Foundation& f = linear.foundation;
-  for (auto* points : {&f.vertical, &f.longitudinal, &f.rotational}) {
-    for (PointFoundation& p : *points) {
+  for_points(linear.foundation, [](const FoundationKind&, std::vector<PointFoundation>& points) {
+    for (PointFoundation& p : points) {
       if (p.law.gap > 0.0) p.k = p.c = 0.0;
       p.law = {};
     }
-  }
-  for (auto* bed : {&f.vertical_bed, &f.longitudinal_bed}) {
-    if (*bed && (*bed)->law.gap > 0.0) bed->reset();
-    if (*bed) (*bed)->law = {};
-  }
+  });
+  for_beds(linear.foundation, [&](const FoundationKind& kind, Bed& bed) {
+    if (bed.law.gap > 0.0) {
+      (linear.foundation.*kind.bed).reset();
+    } else {
+      bed.law = {};
+    }
+  });
   return linear;
 }
 
@@ -172,12 +169,7 @@ void check(const BeamModel& model) {
   require_positive(model.mass, "beam_mass", "kg/m");
   check_joints(model);
   if (model.track) check_track(model);
-  const double length = model.length();
-  check_points(model.foundation.vertical, "foundation_vertical", length, "N/m");
-  check_points(model.foundation.longitudinal, "foundation_longitudinal", length, "N/m");
-  check_points(model.foundation.rotational, "foundation_rotational", length, "N m/rad");
-  check_bed(model.foundation.vertical_bed, "foundation_vertical_bed");
-  check_bed(model.foundation.longitudinal_bed, "foundation_longitudinal_bed");
+  check_foundation(model.foundation, model.length());
 }
 
 }  // namespace traverse::beam

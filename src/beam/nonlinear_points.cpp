@@ -4,23 +4,25 @@
 
 #include "assembly.hpp"
 #include "gauss.hpp"
-#include "traverse/beam/shape.hpp"
 
 namespace traverse::beam {
 namespace {
 
-void add_points(const std::vector<PointFoundation>& list, Direction direction, const Line& bridge, int first, int past,
-                std::vector<NonlinearPoint>& points) {
+void add_points(std::size_t kind, const Line& bridge, int first, int past, std::vector<NonlinearPoint>& points) {
+  const std::vector<PointFoundation>& list = bridge.model.foundation.*foundation_kinds[kind].points;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const PointFoundation& p = list[i];
     if (!p.law.nonlinear()) continue;
     const Station at = station_of(bridge.mesh, p);
     if (at.element < first || at.element >= past) continue;
-    points.push_back({direction, false, static_cast<int>(i), p.x, at, p.k, p.c, p.law});
+    points.push_back({kind, foundation_kinds[kind].direction, static_cast<int>(i), p.x, at, p.k, p.c, p.law});
   }
 }
 
-void add_bed(const Bed& bed, Direction direction, const Line& bridge, int e, std::vector<NonlinearPoint>& points) {
+void add_bed(std::size_t kind, const Line& bridge, int e, std::vector<NonlinearPoint>& points) {
+  const std::optional<Bed>& there = bridge.model.foundation.*foundation_kinds[kind].bed;
+  if (!there || !there->law.nonlinear()) return;
+  const Bed& bed = *there;
   const Element& element = bridge.mesh.element(e);
   for (const auto& [left, right] : bed_pieces(bed, element)) {
     const double middle = 0.5 * (left + right);
@@ -28,8 +30,8 @@ void add_bed(const Bed& bed, Direction direction, const Line& bridge, int e, std
       FoundationLaw law = bed.law;
       law.cubic *= length;
       const Station at{e, (x - element.x) / element.length};
-      points.push_back(
-          {direction, true, element.span, x, at, length * bed.k.at(x, middle), length * bed.c.at(x, middle), law});
+      points.push_back({kind, foundation_kinds[kind].direction, element.span, x, at, length * bed.k.at(x, middle),
+                        length * bed.c.at(x, middle), law});
     });
   }
 }
@@ -52,34 +54,23 @@ std::vector<std::pair<double, double>> bed_pieces(const Bed& bed, const Element&
 }
 
 std::vector<NonlinearPoint> nonlinear_points(const Line& bridge, int first, int past) {
-  const Foundation& f = bridge.model.foundation;
-  const bool axial = bridge.model.axial;
   std::vector<NonlinearPoint> points;
-  add_points(f.vertical, Direction::vertical, bridge, first, past, points);
-  if (axial) add_points(f.longitudinal, Direction::longitudinal, bridge, first, past, points);
-  add_points(f.rotational, Direction::rotational, bridge, first, past, points);
-  for (int e = first; e < past; ++e) {
-    if (f.vertical_bed && f.vertical_bed->law.nonlinear())
-      add_bed(*f.vertical_bed, Direction::vertical, bridge, e, points);
-    if (axial && f.longitudinal_bed && f.longitudinal_bed->law.nonlinear())
-      add_bed(*f.longitudinal_bed, Direction::longitudinal, bridge, e, points);
+  std::vector<std::size_t> beds;
+  for (std::size_t kind = 0; kind < foundation_kind_count; ++kind) {
+    if (!acts(foundation_kinds[kind], bridge.model)) continue;
+    if (foundation_kinds[kind].bed != nullptr) {
+      beds.push_back(kind);
+    } else {
+      add_points(kind, bridge, first, past, points);
+    }
   }
+  for (int e = first; e < past; ++e)
+    for (const std::size_t kind : beds) add_bed(kind, bridge, e, points);
   return points;
 }
 
 PointShape shape_of(const Line& bridge, const NonlinearPoint& point) {
-  PointShape s;
-  if (point.direction == Direction::longitudinal) {
-    const auto unknowns = bridge.axial(point.at.element);
-    const auto phi = linear(point.at.xi);
-    std::copy(unknowns.begin(), unknowns.end(), s.unknown.begin());
-    std::copy(phi.begin(), phi.end(), s.shape.begin());
-    return s;
-  }
-  const Hermite psi = hermite(point.at.xi, bridge.mesh.element(point.at.element).length);
-  s.unknown = bridge.transverse(point.at.element);
-  s.shape = point.direction == Direction::vertical ? psi.value : psi.slope;
-  return s;
+  return shape_at(bridge, point.direction, point.at);
 }
 
 }  // namespace traverse::beam

@@ -21,7 +21,7 @@ struct Recovery::Section {
   void add_foundation(const Line& line);
   void hold(const BeamModel& model, const std::vector<InnerSpring>& springs, const std::vector<InnerSpring>& dampers);
   template <class Sum>
-  void along_held(const Distribution& density, Sum sum) const;
+  void along_held(const Distribution& density, bool moments, Sum sum) const;
   void note_riders(const Beam& beam);
   void add_weight(const BeamModel& model, double gravity);
   void add_weight_at_points(const Bed& bed, const Distribution& mass_per_length, double gravity);
@@ -90,65 +90,59 @@ void Recovery::Section::add_foundation(const Line& line) {
   const BeamModel& model = line.model;
   const Foundation& f = model.foundation;
   std::vector<InnerSpring> springs, dampers;
-  const auto add_points = [&](const std::vector<PointFoundation>& points, auto add, auto note) {
+  for_points(f, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
+    if (!acts(kind, model)) return;
     for (const PointFoundation& p : points) {
       if (p.law.nonlinear()) continue;  // a load
       // locate() is the judge, as in the assembly; a glance at x spares most of the calls.
       if (p.x < element.x - element.length || p.x > element.x + 2.0 * element.length) continue;
       const Station s = station_of(line.mesh, p);
       if (s.element != at.element) continue;
-      (stiffness.*add)(p.k, s.xi);
-      (damping.*add)(p.c, s.xi);
-      note(p, s.xi);
+      stiffness.add_spring(kind.direction, p.k, s.xi);
+      damping.add_spring(kind.direction, p.c, s.xi);
+      if (kind.direction == Direction::longitudinal || s.xi <= 0.0 || s.xi >= 1.0) continue;
+      springs.push_back({s.xi, p.k, kind.direction == Direction::rotational});
+      dampers.push_back({s.xi, p.c, kind.direction == Direction::rotational});
     }
-  };
-  const auto add_beds = [&](const Bed& bed, auto matrix, auto add) {
-    stiffness.add_end_forces(matrix(bed.k, element));
-    damping.add_end_forces(matrix(bed.c, element));
-    (stiffness.*add)(bed.k);
-    (damping.*add)(bed.c);
-  };
-  const auto bends = [&](bool rotational) {
-    return [&, rotational](const PointFoundation& p, double xi) {
-      if (xi <= 0.0 || xi >= 1.0) return;  // at a node
-      springs.push_back({xi, p.k, rotational});
-      dampers.push_back({xi, p.c, rotational});
-    };
-  };
-  add_points(f.vertical, &SectionForms::add_vertical_spring, bends(false));
-  add_points(f.rotational, &SectionForms::add_rotational_spring, bends(true));
-  const bool bedded = f.vertical_bed && !f.vertical_bed->law.nonlinear();
-  if (bedded) add_beds(*f.vertical_bed, transverse_bed, &SectionForms::add_transverse_density);
-  if (bedded || !springs.empty()) hold(model, springs, dampers);
-  if (!model.axial) return;
-  const auto stretches = [](const PointFoundation&, double) {};
-  add_points(f.longitudinal, &SectionForms::add_longitudinal_spring, stretches);
-  if (f.longitudinal_bed && !f.longitudinal_bed->law.nonlinear())
-    add_beds(*f.longitudinal_bed, axial_bed, &SectionForms::add_axial_density);
+  });
+  bool bends = !springs.empty();
+  for_beds(f, [&](const FoundationKind& kind, const Bed& bed) {
+    if (!acts(kind, model) || bed.law.nonlinear()) return;
+    stiffness.add_bed(kind.direction, bed.k);
+    damping.add_bed(kind.direction, bed.c);
+    bends = bends || kind.direction != Direction::longitudinal;
+  });
+  if (bends) hold(model, springs, dampers);
 }
 
-/// Integrates over the held element: calls sum(s, weight*density(s)*G(s)), where G is its line.
+/// Integrates over the held element: calls sum(s, weight*density(s), G(s)), where G is its line under a force, or under
+/// a moment.
 template <class Sum>
-void Recovery::Section::along_held(const Distribution& density, Sum sum) const {
+void Recovery::Section::along_held(const Distribution& density, bool moments, Sum sum) const {
   const std::vector<double> ends = held->ends();
   const double h = element.length, x = element.x;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
-    integrate(density, x + h * ends[i], x + h * ends[i + 1],
-              [&](double s, double piece) { sum((s - x) / h, piece * held->by_force((s - x) / h)); });
+    integrate(density, x + h * ends[i], x + h * ends[i + 1], [&](double s, double piece) {
+      const double xi = (s - x) / h;
+      sum(xi, piece * (moments ? held->by_moment(xi) : held->by_force(xi)));
+    });
 }
 
+/// The element is held by its springs and by the mean of a vertical bed. What a bed that holds the slope does to the
+/// deflection between held ends is left out; that is a part k h^2/(40 EI) of it.
 void Recovery::Section::hold(const BeamModel& model, const std::vector<InnerSpring>& springs,
                              const std::vector<InnerSpring>& dampers) {
-  const Bed* bed = model.foundation.vertical_bed ? &*model.foundation.vertical_bed : nullptr;
-  if (bed != nullptr && bed->law.nonlinear()) bed = nullptr;
   const double h = element.length;
   double mean = 0.0;
-  if (bed != nullptr) integrate(bed->k, element.x, element.x + h, [&](double, double piece) { mean += piece / h; });
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    if (kind.direction == Direction::vertical && !bed.law.nonlinear())
+      integrate(bed.k, element.x, element.x + h, [&](double, double piece) { mean += piece / h; });
+  });
   held.emplace(at.xi, h, EI, mean, springs);
-  const auto add = [&](const Distribution& density, std::array<double, 4>& form) {
-    along_held(density, [&](double s, double line) {
-      const auto value = hermite(s, h).value;
-      for (std::size_t i = 0; i < 4; ++i) form[i] -= line * value[i];
+  const auto add = [&](const Distribution& density, Direction direction, std::array<double, 4>& form) {
+    along_held(density, direction == Direction::rotational, [&](double s, double line) {
+      const auto shape = shape_of(direction, s, h);
+      for (std::size_t i = 0; i < 4; ++i) form[i] -= line * shape[i];
     });
   };
   const auto add_points = [&](const std::vector<InnerSpring>& points, std::array<double, 4>& form) {
@@ -158,9 +152,12 @@ void Recovery::Section::hold(const BeamModel& model, const std::vector<InnerSpri
       for (std::size_t i = 0; i < 4; ++i) form[i] -= line * (p.rotational ? s.slope[i] : s.value[i]);
     }
   };
-  add(model.mass, held_by_mass);
-  if (bed != nullptr) add(bed->k, held_by_stiffness);
-  if (bed != nullptr) add(bed->c, held_by_damping);
+  add(model.mass, Direction::vertical, held_by_mass);
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    if (kind.direction == Direction::longitudinal || bed.law.nonlinear()) return;
+    add(bed.k, kind.direction, held_by_stiffness);
+    add(bed.c, kind.direction, held_by_damping);
+  });
   add_points(springs, held_by_stiffness);
   add_points(dampers, held_by_damping);
 }
@@ -170,14 +167,17 @@ void Recovery::Section::add_weight(const BeamModel& model, double gravity) {
   const auto end = transverse_load(model.mass, element);
   weight.shear = gravity * end[0];
   weight.moment = gravity * (x * end[0] - end[1]);
-  const std::optional<Bed>& bed = model.foundation.vertical_bed;
-  if (bed && bed->law.nonlinear()) return add_weight_at_points(*bed, model.mass, gravity);
+  const Bed* pushing = nullptr;
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    if (kind.direction == Direction::vertical && bed.law.nonlinear()) pushing = &bed;
+  });
+  if (pushing != nullptr) return add_weight_at_points(*pushing, model.mass, gravity);
   integrate(model.mass, element.x, element.x + x, [&](double s, double piece) {
     weight.shear -= gravity * piece;
     weight.moment -= gravity * piece * (element.x + x - s);
   });
   if (held) {
-    along_held(model.mass, [&](double, double line) { weight.deflection -= gravity * line; });
+    along_held(model.mass, false, [&](double, double line) { weight.deflection -= gravity * line; });
     return;
   }
   const double bubble = at.xi * (1.0 - at.xi) * h * h, middle = element.x + 0.5 * h;

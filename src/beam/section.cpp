@@ -60,6 +60,39 @@ void SectionForms::add_longitudinal_spring(double c, double xi) {
   for (std::size_t j = 0; j < 2; ++j) axial_force_[j] += c * phi[j];
 }
 
+void SectionForms::add_slope_density(const Distribution& density) {
+  const double h = element_.length;
+  integrate(density, element_.x, element_.x + xi_ * h, [&](double x, double weight) {
+    const auto slope = hermite((x - element_.x) / h, h).slope;
+    for (std::size_t j = 0; j < 4; ++j) moment_[j] += weight * slope[j];
+  });
+}
+
+void SectionForms::add_bed(Direction direction, const Distribution& density) {
+  switch (direction) {
+    case Direction::vertical:
+      add_end_forces(transverse_bed(density, element_));
+      return add_transverse_density(density);
+    case Direction::longitudinal:
+      add_end_forces(axial_bed(density, element_));
+      return add_axial_density(density);
+    case Direction::rotational:
+      add_end_forces(slope_bed(density, element_));
+      return add_slope_density(density);
+  }
+}
+
+void SectionForms::add_spring(Direction direction, double c, double xi) {
+  switch (direction) {
+    case Direction::vertical:
+      return add_vertical_spring(c, xi);
+    case Direction::longitudinal:
+      return add_longitudinal_spring(c, xi);
+    case Direction::rotational:
+      return add_rotational_spring(c, xi);
+  }
+}
+
 double fixed_end_by_force(double xi, double load, double h, double EI) {
   if (xi > load) return fixed_end_by_force(1.0 - xi, 1.0 - load, h, EI);
   const double b = 1.0 - load;

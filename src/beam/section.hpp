@@ -21,16 +21,21 @@ class SectionForms {
   /// Inertia or a bed: the force on the beam is -density(x) psi v, or -density(x) phi u; without end forces.
   void add_transverse_density(const Distribution& density);
   void add_axial_density(const Distribution& density);
-  /// Springs at xi, with their end forces: the force on the beam is -c psi v, the moment -c psi' v, the force -c phi u.
-  void add_vertical_spring(double c, double xi);
-  void add_rotational_spring(double c, double xi);
-  void add_longitudinal_spring(double c, double xi);
+  /// A foundation in a direction, with its end forces. A bed: a force -density(x) psi v per length, a moment
+  /// -density(x) psi' v, or a force -density(x) phi u; a spring at xi: the same concentrated, with c.
+  void add_bed(Direction direction, const Distribution& density);
+  void add_spring(Direction direction, double c, double xi);
 
   const std::array<double, 4>& moment() const { return moment_; }
   const std::array<double, 4>& shear() const { return shear_; }
   const std::array<double, 2>& axial_force() const { return axial_force_; }
 
  private:
+  void add_vertical_spring(double c, double xi);
+  void add_rotational_spring(double c, double xi);
+  void add_longitudinal_spring(double c, double xi);
+  void add_slope_density(const Distribution& density);
+
   Element element_;
   double xi_ = 0.0;
   std::array<double, 4> moment_{}, shear_{};

@@ -1,12 +1,15 @@
 #include "integrator_choice.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <petscts.h>
 
-#include <algorithm>
 #include <array>
+#include <vector>
 
 #include "traverse/base/error.hpp"
 #include "traverse/base/petsc.hpp"
+#include "traverse/integrate/integrators.hpp"
 #include "traverse/integrate/second_order.hpp"
 
 namespace traverse::integrate {
@@ -27,36 +30,62 @@ bool is_given(const char* name) {
   return given == PETSC_TRUE;
 }
 
+/// "esdirk4, genalpha, ... (implicit), rk (explicit, small scenes)".
+std::string allowed_types() {
+  std::vector<std::string> implicit, others;
+  for (const structure::MethodRow& row : structure::methods()) implicit.emplace_back(row.name);
+  for (const PetscType& type : petsc_types()) (type.implicit ? implicit : others).emplace_back(type.name);
+  return fmt::format("{} (implicit), {} (explicit, small scenes)", fmt::join(implicit, ", "), fmt::join(others, ", "));
+}
+
+std::string types_that_estimate_errors() {
+  std::vector<std::string> names;
+  for (const structure::MethodRow& row : structure::methods())
+    if (row.estimates_errors()) names.emplace_back(row.name);
+  return fmt::format("{}", fmt::join(names, " and "));
+}
+
+void check_adapt(const std::string& adapt, const std::string& type) {
+  const structure::MethodRow* own = structure::find_method(type);
+  if (adapt == ladder_adapt && (own == nullptr || !own->estimates_errors()))
+    throw InputError(fmt::format("ts_adapt_type = ladder: estimates the errors of {} alone; ts_type is {}",
+                                 types_that_estimate_errors(), type));
+  if (adapt != TSADAPTNONE && adapt != ladder_adapt && own != nullptr)
+    throw InputError(
+        fmt::format("ts_adapt_type = {}: does not fit {}; allowed: none, ladder (with {}), or a ts_type of "
+                    "PETSc's own such as arkimex",
+                    adapt, type, types_that_estimate_errors()));
+  PetscReal tolerance = 1.0;
+  check(PetscOptionsGetReal(nullptr, nullptr, "-ts_rtol", &tolerance, nullptr));
+  if (adapt == ladder_adapt && !(tolerance > 0.0))
+    throw InputError("ts_rtol = " + std::to_string(tolerance) + ": allowed: above 0");
+}
+
+void check_parameter(const structure::MethodParameter& parameter) {
+  if (parameter.option == nullptr) return;
+  PetscReal value = parameter.value;
+  check(PetscOptionsGetReal(nullptr, nullptr, parameter.option, &value, nullptr));
+  if (!(value >= parameter.least && value <= parameter.most))
+    throw InputError(
+        fmt::format("{} = {:f}: allowed: {:g} to {:g}", parameter.option + 1, value, parameter.least, parameter.most));
+}
+
 }  // namespace
 
 std::string chosen_type() {
   const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
   const bool for_arkimex = (adapt != TSADAPTNONE && adapt != ladder_adapt) || is_given("-ts_arkimex_type") ||
                            is_given("-ts_arkimex_fully_implicit");
-  const std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : esdirk4_type);
-  constexpr std::array allowed = {esdirk4_type, genalpha_type, TSARKIMEX, TSCN, TSBDF, TSTHETA, TSBEULER, TSRK};
-  if (std::find(allowed.begin(), allowed.end(), type) == allowed.end())
-    throw InputError("ts_type = " + type +
-                     ": does not integrate this system rightly; allowed: esdirk4, genalpha, arkimex, cn, bdf, theta, "
-                     "beuler (implicit), rk (explicit, small scenes)");
-  if (adapt == ladder_adapt && type != esdirk4_type)
-    throw InputError("ts_adapt_type = ladder: estimates the errors of esdirk4 alone; ts_type is " + type);
-  if (adapt != TSADAPTNONE && adapt != ladder_adapt && (type == esdirk4_type || type == genalpha_type))
-    throw InputError("ts_adapt_type = " + adapt + ": does not fit " + type +
-                     "; allowed: none, ladder (with esdirk4), or a ts_type of PETSc's own such as arkimex");
-  PetscReal tolerance = 1.0;
-  check(PetscOptionsGetReal(nullptr, nullptr, "-ts_rtol", &tolerance, nullptr));
-  if (adapt == ladder_adapt && !(tolerance > 0.0))
-    throw InputError("ts_rtol = " + std::to_string(tolerance) + ": allowed: above 0");
+  std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : structure::methods().front().name);
+  if (structure::find_method(type) == nullptr && find_petsc_type(type) == nullptr)
+    throw InputError("ts_type = " + type + ": does not integrate this system rightly; allowed: " + allowed_types());
+  check_adapt(adapt, type);
   PetscInt order = 2;
   check(PetscOptionsGetInt(nullptr, nullptr, "-ts_bdf_order", &order, nullptr));
   if (order < 1 || order > 2)
     throw InputError("ts_bdf_order = " + std::to_string(order) +
                      ": orders above 2 are unstable for lightly damped bridges; allowed: 1, 2");
-  PetscReal radius = 1.0;
-  check(PetscOptionsGetReal(nullptr, nullptr, "-ts_genalpha_radius", &radius, nullptr));
-  if (!(radius >= 0.0 && radius <= 1.0))
-    throw InputError("ts_genalpha_radius = " + std::to_string(radius) + ": allowed: 0 to 1");
+  for (const structure::MethodRow& row : structure::methods()) check_parameter(row.parameter);
   return type;
 }
 

@@ -15,21 +15,15 @@ using base::check;
 using base::guard;
 
 constexpr double shorter = 0.25;  // of a step that could not be taken
-constexpr double default_radius = 0.9;
 
 struct Data {
+  const structure::MethodRow* row = nullptr;
   coupling::System* system = nullptr;
-  double radius = default_radius;  // of generalised-alpha
+  double parameter = 0.0;  // of the method
   bool started = false;
 };
 
 Data& data_of(TS ts) { return *static_cast<Data*>(ts->data); }
-
-bool is(TS ts, std::string_view type) {
-  TSType own = nullptr;
-  check(TSGetType(ts, &own));
-  return own != nullptr && own == type;
-}
 
 bool is_ladder(TSAdapt adapt) {
   TSAdaptType type = nullptr;
@@ -40,10 +34,10 @@ bool is_ladder(TSAdapt adapt) {
 PetscErrorCode set_up(TS ts) {
   return guard([&] {
     Data& data = data_of(ts);
-    data.system->begin_motion(is(ts, esdirk4_type) ? structure::esdirk4() : structure::generalised_alpha(data.radius));
+    data.system->begin_motion(data.row->make(data.parameter));
     if (is_ladder(ts->adapt)) data.system->measure_errors();
     check(TSAdaptCandidatesClear(ts->adapt));
-    check(TSAdaptCandidateAdd(ts->adapt, nullptr, is(ts, esdirk4_type) ? 4 : 2, 1, 1.0, 1.0, PETSC_TRUE));
+    check(TSAdaptCandidateAdd(ts->adapt, nullptr, data.row->order, 1, 1.0, 1.0, PETSC_TRUE));
   });
 }
 
@@ -98,10 +92,11 @@ PetscErrorCode step_second_order(TS ts) {
 }
 
 PetscErrorCode read_options(TS ts, PetscOptionItems* PetscOptionsObject) {
-  double& radius = data_of(ts).radius;
-  PetscOptionsHeadBegin(PetscOptionsObject, "Generalised-alpha");
-  PetscCall(PetscOptionsReal("-ts_genalpha_radius", "what is left after a step of a fast oscillation, 0 to 1", "",
-                             radius, &radius, nullptr));
+  Data& data = data_of(ts);
+  const structure::MethodParameter& parameter = data.row->parameter;
+  PetscOptionsHeadBegin(PetscOptionsObject, data.row->name);
+  if (parameter.option != nullptr)
+    PetscCall(PetscOptionsReal(parameter.option, parameter.words, "", data.parameter, &data.parameter, nullptr));
   PetscOptionsHeadEnd();
   return 0;
 }
@@ -122,21 +117,26 @@ PetscErrorCode error_of_step(TS ts, NormType, PetscInt* order, PetscReal* error)
   return guard([&] {
     const double* y = nullptr;
     check(VecGetArrayRead(ts->vec_sol, &y));
-    *order = 4;
+    *order = data_of(ts).row->order;
     *error = data_of(ts).system->step_error(y) / ts->rtol;
     check(VecRestoreArrayRead(ts->vec_sol, &y));
   });
 }
 
+// TSSetType has named the type before it calls this.
 PetscErrorCode create_second_order(TS ts) {
-  ts->ops->setup = set_up;
-  ts->ops->step = step_second_order;
-  ts->ops->setfromoptions = read_options;
-  ts->ops->reset = reset;
-  ts->ops->destroy = destroy_second_order;
-  ts->ops->evaluatewlte = error_of_step;
-  ts->data = new Data;
-  return 0;
+  return guard([&] {
+    TSType type = nullptr;
+    check(TSGetType(ts, &type));
+    const structure::MethodRow* row = structure::find_method(type);
+    ts->ops->setup = set_up;
+    ts->ops->step = step_second_order;
+    ts->ops->setfromoptions = read_options;
+    ts->ops->reset = reset;
+    ts->ops->destroy = destroy_second_order;
+    ts->ops->evaluatewlte = error_of_step;
+    ts->data = new Data{row, nullptr, row->parameter.value};
+  });
 }
 
 PetscErrorCode choose(TSAdapt adapt, TS ts, PetscReal h, PetscInt* scheme, PetscReal* next, PetscBool* accept,
@@ -161,11 +161,8 @@ PetscErrorCode create_ladder(TSAdapt adapt) {
 
 void register_second_order() {
   check(TSAdaptRegister(ladder_adapt, create_ladder));
-  check(TSRegister(esdirk4_type, create_second_order));
-  check(TSRegister(genalpha_type, create_second_order));
+  for (const structure::MethodRow& row : structure::methods()) check(TSRegister(row.name, create_second_order));
 }
-
-bool is_second_order(TS ts) { return is(ts, esdirk4_type) || is(ts, genalpha_type); }
 
 void set_system(TS ts, coupling::System& system) { data_of(ts).system = &system; }
 

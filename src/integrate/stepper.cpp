@@ -11,6 +11,7 @@
 
 #include "arrays.hpp"
 #include "integrator_choice.hpp"
+#include "traverse/integrate/integrators.hpp"
 #include "traverse/integrate/second_order.hpp"
 #include "traverse/options/input.hpp"
 
@@ -81,14 +82,19 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
 }
 
 void Stepper::set_up_type() {
-  second_order_ = is_second_order(ts_);
-  if (second_order_) {
+  TSType name = nullptr;
+  check(TSGetType(ts_, &name));
+  if (const structure::MethodRow* own = structure::find_method(name)) {
+    second_order_ = true;
+    high_order_ = own->order > 2;
     set_system(ts_, system_);
     return;
   }
+  const PetscType& type = *find_petsc_type(name);
   check(VecDuplicate(y_, before_.out()));
-  implicit_ = !has_type(ts_, TSRK);
-  multistep_ = has_type(ts_, TSBDF);
+  implicit_ = type.implicit;
+  multistep_ = type.multistep;
+  high_order_ = type.order > 2;
   bool imex = false;
   if (has_type(ts_, TSARKIMEX)) {
     PetscBool fully = PETSC_TRUE;
@@ -133,8 +139,6 @@ std::string Stepper::method() const {
   }
   return text;
 }
-
-bool Stepper::high_order() const { return has_type(ts_, esdirk4_type) || has_type(ts_, TSARKIMEX); }
 
 double* Stepper::state() {
   double* array = nullptr;

@@ -69,27 +69,26 @@ void check_friction(const Part& part, const Joint& joint) {
   part.not_negative("friction", joint.friction.coefficient);
   part.not_negative("friction_force", joint.friction.force);
   part.positive("transition_speed", joint.friction.transition_speed);
-  const bool slides = joint.type == JointType::prismatic || joint.type == JointType::slot;
-  if (joint.friction.acts() && !slides) part.fail("friction needs a joint that slides: prismatic or slot");
+  if (!joint.friction.acts() || joint.type->slides) return;
+  part.fail("friction needs a joint that slides: " +
+            joint_names([](const JointRow& row) { return row.slides; }, ", ", " or "));
 }
 
 void check_joint(const Part& part, const Joint& joint) {
   part.pair(joint.bodies);
   check_friction(part, joint);
-  switch (joint.type) {
-    case JointType::distance:
-      part.finite_vector("from", joint.from);
-      part.finite_vector("to", joint.to);
-      if (!((joint.to - joint.from).norm() > 0.0)) part.fail("from and to must be different points");
-      break;
-    case JointType::prismatic:
-    case JointType::slot:
-      part.finite_vector("axis", joint.axis);
-      if (!(joint.axis.norm() > 0.0)) part.fail("axis must not be zero");
-      [[fallthrough]];
-    default:
-      part.finite_vector("point", joint.point);
+  if (joint.type->needs.ends) {
+    part.finite_vector("from", joint.from);
+    part.finite_vector("to", joint.to);
+    if (!((joint.to - joint.from).norm() > 0.0)) part.fail("from and to must be different points");
   }
+  if (joint.type->needs.axis) {
+    part.finite_vector("axis", joint.axis);
+    if (!(joint.axis.norm() > 0.0)) part.fail("axis must not be zero");
+  }
+  if (joint.type->needs.point) part.finite_vector("point", joint.point);
+  for (std::size_t i = 0; i < joint.type->numbers.size(); ++i)
+    part.finite(std::string(joint.type->numbers[i].name).c_str(), joint.numbers[i]);
 }
 
 void check_driver(const Part& part, const Driver& driver) {

@@ -53,7 +53,7 @@ void Mechanism::compute_Phi_q(MechanismState& s) const {
   };
   for (const JointGeometry& joint : joints_) {
     joint_jacobian(joint, frame(s, joint.first), frame(s, joint.second), rows);
-    const int count = joint_rows(joint.type);
+    const int count = joint.type->rows;
     for (int end = 0; end < 2; ++end) {
       const int body = end == 0 ? joint.first : joint.second;
       if (body == ground) continue;

@@ -34,7 +34,7 @@ Mechanism::Mechanism(MechanismModel model) : model_(std::move(model)) {
   for (const Joint& joint : model_.joints) {
     joints_.push_back(joint_geometry(joint, start_frame(model_, joint.bodies[0]), start_frame(model_, joint.bodies[1]),
                                      joint_row_count_));
-    joint_row_count_ += joint_rows(joint.type);
+    joint_row_count_ += joint.type->rows;
     if (!joint.friction.acts()) continue;
     rubbing_.push_back(static_cast<int>(joints_.size()) - 1);
     presses_ = presses_ || joint.friction.coefficient > 0.0;
@@ -75,7 +75,8 @@ void Mechanism::find_scaling() {
   for (int i = 2; i < coordinates(); i += 3) scaling_.column[i] = 1.0 / length_;
   scaling_.row = Eigen::VectorXd::Ones(constraints());
   for (const JointGeometry& joint : joints_) {
-    if (has_angle_row(joint.type)) scaling_.row[joint.row + joint_rows(joint.type) - 1] = length_;
+    for (int r = 0; r < joint.type->rows; ++r)
+      if (joint.type->angle[static_cast<std::size_t>(r)]) scaling_.row[joint.row + r] = length_;
   }
   for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
     if (model_.drivers[k].coordinate == 2) scaling_.row[driver_row(static_cast<int>(k))] = length_;
@@ -125,7 +126,7 @@ MechanismState Mechanism::make_state() const {
 
 const std::string& Mechanism::part_name(int row) const {
   for (std::size_t j = 0; j < joints_.size(); ++j) {
-    if (row < joints_[j].row + joint_rows(joints_[j].type)) return model_.joints[j].name;
+    if (row < joints_[j].row + joints_[j].type->rows) return model_.joints[j].name;
   }
   return model_.drivers[row - joint_row_count_].name;
 }
@@ -133,7 +134,8 @@ const std::string& Mechanism::part_name(int row) const {
 const char* Mechanism::row_unit(int row) const {
   if (row >= joint_row_count_) return model_.drivers[row - joint_row_count_].coordinate == 2 ? "rad" : "m";
   for (const JointGeometry& joint : joints_) {
-    if (has_angle_row(joint.type) && row == joint.row + joint_rows(joint.type) - 1) return "rad";
+    const int own = row - joint.row;
+    if (own >= 0 && own < joint.type->rows) return joint.type->angle[static_cast<std::size_t>(own)] ? "rad" : "m";
   }
   return "m";
 }

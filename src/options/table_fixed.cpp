@@ -1,6 +1,10 @@
 // Rows of the option table: options with a fixed name. See table.hpp for the columns.
+#include <array>
 #include <limits>
+#include <vector>
 
+#include "derived_rows.hpp"
+#include "traverse/options/analyses.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {
@@ -13,8 +17,38 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr Range beam_length = {1e-3, 1e6, true}, beam_stiffness = {1e-7, unbounded, true},
                 beam_weight = {1e-7, unbounded, true};
 
+/// Text put together by the compiler.
+struct Words {
+  std::array<char, 400> letters{};
+  std::size_t size = 0;
+  constexpr void add(std::string_view more) {
+    for (const char letter : more) letters[size++] = letter;
+  }
+  constexpr operator std::string_view() const { return {letters.data(), size}; }  // NOLINT: it is text
+};
+
+constexpr Words names_of_analyses = [] {
+  Words words;
+  for (const AnalysisRow& row : analyses) {
+    words.add(words.size == 0 ? "" : " ");
+    words.add(row.name);
+  }
+  return words;
+}();
+
+constexpr Words text_of_analyses = [] {
+  Words words;
+  std::string_view before = "what is computed: ";
+  for (const AnalysisRow& row : analyses) {
+    for (const std::string_view part : {before, row.name, std::string_view(" ("), row.words, std::string_view(")")})
+      words.add(part);
+    before = "; ";
+  }
+  return words;
+}();
+
 // clang-format off
-constexpr Row rows[] = {
+constexpr Row beam_rows[] = {
   {"options_file", text, "", "", any, "", 0, "a YAML (.yml, .yaml) or classic options file, which may name further ones"},
 
   {"beam_spans", numbers, "m", "", beam_length, "", 0, "length of each span; left out: no bridge"},
@@ -31,39 +65,9 @@ constexpr Row rows[] = {
   {"beam_surface_height", number, "m", "0", any, "", 0, "of the running surface above the neutral axis"},
 
   {"support_types", choice_list, "", "(pinned, then rollers; simply supported spans: all pinned)", any, "free roller pinned clamped guided", 0, "support at every span end, one word serves all"},
+};
 
-  {"foundation_vertical_x", numbers, "m", "", not_negative, "", 0, "stations of vertical springs and dampers"},
-  {"foundation_vertical_spacing", number, "m", "", positive, "", 0, "of stations at equal distances: x holds the first and the last"},
-  {"foundation_vertical_k", numbers, "N/m", "0", not_negative, "", 0, "their stiffness, one serves all"},
-  {"foundation_vertical_c", numbers, "Ns/m", "0", not_negative, "", 0, "their damping, one serves all"},
-  {"foundation_vertical_one_sided", choice_list, "", "false", any, "true false", 0, "pushes only, where the beam is pressed down; one word serves all"},
-  {"foundation_vertical_gap", numbers, "m", "0", not_negative, "", 0, "up and down (one-sided: down) before it acts, one serves all"},
-  {"foundation_vertical_cubic", numbers, "N/m3", "0", not_negative, "", 0, "cubic term of the spring, one serves all"},
-  {"foundation_vertical_side", choice_list, "", "right", any, "right left both", 0, "at a joint of separate spans or a hinge: the side that a point holds, one word serves all"},
-  {"foundation_vertical_bed_k", number_or_file, "N/m2", "0", not_negative, "", 0, "vertical bed along the beam: stiffness, or a file x,value"},
-  {"foundation_vertical_bed_c", number_or_file, "Ns/m2", "0", not_negative, "", 0, "vertical bed: damping, or a file x,value"},
-  {"foundation_vertical_bed_one_sided", flag, "", "false", any, "", 0, "vertical bed: pushes only, where the beam is pressed down"},
-  {"foundation_vertical_bed_gap", number, "m", "0", not_negative, "", 0, "vertical bed: before it acts"},
-  {"foundation_vertical_bed_cubic", number, "N/m4", "0", not_negative, "", 0, "vertical bed: cubic term of the spring"},
-  {"foundation_longitudinal_x", numbers, "m", "", not_negative, "", 0, "stations of longitudinal springs and dampers"},
-  {"foundation_longitudinal_spacing", number, "m", "", positive, "", 0, "of stations at equal distances: x holds the first and the last"},
-  {"foundation_longitudinal_k", numbers, "N/m", "0", not_negative, "", 0, "their stiffness, one serves all"},
-  {"foundation_longitudinal_c", numbers, "Ns/m", "0", not_negative, "", 0, "their damping, one serves all"},
-  {"foundation_longitudinal_gap", numbers, "m", "0", not_negative, "", 0, "to and fro before it acts, one serves all"},
-  {"foundation_longitudinal_cubic", numbers, "N/m3", "0", not_negative, "", 0, "cubic term of the spring, one serves all"},
-  {"foundation_longitudinal_side", choice_list, "", "right", any, "right left both", 0, "at a joint of separate spans or a hinge: the side that a point holds, one word serves all"},
-  {"foundation_longitudinal_bed_k", number_or_file, "N/m2", "0", not_negative, "", 0, "longitudinal bed: stiffness, or a file x,value"},
-  {"foundation_longitudinal_bed_c", number_or_file, "Ns/m2", "0", not_negative, "", 0, "longitudinal bed: damping, or a file x,value"},
-  {"foundation_longitudinal_bed_gap", number, "m", "0", not_negative, "", 0, "longitudinal bed: before it acts"},
-  {"foundation_longitudinal_bed_cubic", number, "N/m4", "0", not_negative, "", 0, "longitudinal bed: cubic term of the spring"},
-  {"foundation_rotational_x", numbers, "m", "", not_negative, "", 0, "stations of rotational springs and dampers"},
-  {"foundation_rotational_spacing", number, "m", "", positive, "", 0, "of stations at equal distances: x holds the first and the last"},
-  {"foundation_rotational_k", numbers, "Nm/rad", "0", not_negative, "", 0, "their stiffness, one serves all"},
-  {"foundation_rotational_c", numbers, "Nms/rad", "0", not_negative, "", 0, "their damping, one serves all"},
-  {"foundation_rotational_gap", numbers, "rad", "0", not_negative, "", 0, "either way before it acts, one serves all"},
-  {"foundation_rotational_cubic", numbers, "Nm/rad3", "0", not_negative, "", 0, "cubic term of the spring, one serves all"},
-  {"foundation_rotational_side", choice_list, "", "right", any, "right left both", 0, "at a joint of separate spans or a hinge: the side that a point holds, one word serves all"},
-
+constexpr Row run_rows[] = {
   {"train_vehicles", texts, "", "(the vehicle, if one is defined)", any, "", 0, "vehicles by name, front one first; name*count repeats"},
   {"train_positions", numbers, "m", "(front wheel at 0)", any, "", 0, "x of each vehicle's origin at t = 0, or of the first one"},
   {"train_spacing", numbers, "m", "(from vehicle lengths)", positive, "", 0, "distance from origin to origin, one number or one per gap"},
@@ -102,7 +106,7 @@ constexpr Row rows[] = {
 
   {"gravity", number, "m/s2", "9.81", not_negative, "", 0, "downward"},
   {"scene_name", text, "", "(the first options file)", any, "", 0, "names the scene in messages and the results file"},
-  {"scene_analysis", choice, "", "transient", any, "transient modes static", 0, "what is computed"},
+  {"scene_analysis", choice, "", analyses[0].name, any, names_of_analyses, 0, text_of_analyses},
   {"scene_start", choice, "", "equilibrium", any, "equilibrium given", 0, "given: positions and velocities as written"},
   {"scene_tail", number, "s", "", not_negative, "", 0, "free vibration after the last wheel has left"},
   {"ts_max_time", number, "s", "(when the last wheel has left)", positive, "", 0, "the run's end"},
@@ -159,7 +163,15 @@ constexpr std::string_view petsc_names[] = {
 
 }  // namespace
 
-std::span<const Row> fixed_rows() { return rows; }
+std::span<const Row> fixed_rows() {
+  static const std::vector<Row> rows = [] {
+    std::vector<Row> all(std::begin(beam_rows), std::end(beam_rows));
+    for (const std::span<const Row> more : {foundation_rows(), std::span<const Row>(run_rows)})
+      all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }();
+  return rows;
+}
 
 bool owned_by_petsc(std::string_view name) {
   for (const std::string_view prefix : petsc_prefixes) {

@@ -1,6 +1,7 @@
 // Rows of the option table: a vehicle and its parts. See table.hpp for the columns.
 #include <array>
 
+#include "derived_rows.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {
@@ -30,18 +31,6 @@ constexpr Row body[] = {
   {"position", numbers, "m", "", any, "", 2, "x, y of the centre of mass at t = 0, relative to the vehicle's origin"},
   {"angle", number, "rad", "0", any, "", 0, "at t = 0, counter-clockwise"},
   {"velocity", numbers, "m/s, rad/s", "0, 0, 0", any, "", 3, "vx, vy, omega at t = 0, on top of the train's speed"},
-};
-
-constexpr Row joint[] = {
-  {"type", choice, "", "", any, "revolute prismatic slot weld distance", 0, "prismatic: slides along the axis; slot: slides and turns"},
-  {"bodies", texts, "", "", any, "", 2, "the two bodies; ground is the fixed frame"},
-  {"point", numbers, "m", "", any, "", 2, "revolute, prismatic, slot, weld: x, y at t = 0"},
-  {"axis", numbers, "1", "", any, "", 2, "prismatic, slot: direction, fixed in the first body"},
-  {"from", numbers, "m", "", any, "", 2, "distance: x, y on the first body at t = 0"},
-  {"to", numbers, "m", "", any, "", 2, "distance: x, y on the second body at t = 0"},
-  {"friction", number, "1", "0", not_negative, "", 0, "prismatic, slot: coefficient of dry friction along the axis, on the joint's normal force"},
-  {"friction_force", number, "N", "0", not_negative, "", 0, "prismatic, slot: dry friction whatever the normal force, as of clamped plates; on top of friction"},
-  {"transition_speed", number, "m/s", "0.01", positive, "", 0, "sliding speed at which friction is nearly full: times tanh(speed/transition_speed)"},
 };
 
 constexpr Row spring[] = {
@@ -125,24 +114,14 @@ constexpr Row contact[] = {
   {"other_young", number, "N/m2", "(the first's)", positive, "", 0, "modulus of the second body"},
   {"other_poisson", number, "1", "(the first's)", {-0.99, 0.5}, "", 0, "Poisson's ratio of the second body"},
 };
-
-constexpr Row coupler[] = {
-  {"type", choice, "", "spring", any, "spring revolute prismatic slot weld distance", 0, "what joins two neighbours"},
-  {"bodies", texts, "", "", any, "", 2, "a body of the vehicle in front, one of the vehicle behind"},
-  {"after", integers, "", "(all but the last)", {0, 100000}, "", 0, "the vehicles, counted from 0, behind which it is"},
-  {"point", numbers, "m", "", any, "", 2, "revolute, prismatic, slot, weld: x, y at t = 0, from the front vehicle's origin"},
-  {"axis", numbers, "1", "", any, "", 2, "prismatic, slot: direction, fixed in the front vehicle's body"},
-  {"from", numbers, "m", "", any, "", 2, "spring, distance: x, y on the front one's body, from its origin"},
-  {"to", numbers, "m", "", any, "", 2, "spring, distance: x, y on the other body, from the rear one's origin"},
-};
 // clang-format on
 
 struct PartTable {
   std::string_view list, word;
-  std::span<const Row> rows;
+  std::span<const Row> rows;  // of joints: joint_rows()
 };
 constexpr std::array<PartTable, part_kinds> parts = {{{"bodies", "body", body},
-                                                      {"joints", "joint", joint},
+                                                      {"joints", "joint", {}},
                                                       {"springs", "spring", spring},
                                                       {"torsion_springs", "torsion spring", torsion_spring},
                                                       {"wheels", "wheel", wheel},
@@ -154,9 +133,8 @@ const PartTable& table_of(Part part) { return parts[static_cast<std::size_t>(par
 
 }  // namespace
 
-std::span<const Row> coupler_rows() { return coupler; }
 std::span<const Row> vehicle_rows() { return vehicle; }
-std::span<const Row> part_rows(Part part) { return table_of(part).rows; }
+std::span<const Row> part_rows(Part part) { return part == Part::joint ? joint_rows() : table_of(part).rows; }
 std::string_view part_list(Part part) { return table_of(part).list; }
 std::string_view part_word(Part part) { return table_of(part).word; }
 

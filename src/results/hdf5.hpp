@@ -87,9 +87,10 @@ class Series {
   Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows);
 
   void add(double value) { buffer_.push_back(value); }
-  template <class Values>
-  void add(const Values& values) {
-    buffer_.insert(buffer_.end(), values.begin(), values.end());
+  /// Adds a row from its first number; returns what follows it.
+  const double* add(const double* row) {
+    buffer_.insert(buffer_.end(), row, row + width_);
+    return row + width_;
   }
   /// Appends the buffer to the dataset and empties it. On disk only after File::flush().
   void write(File& file);

@@ -27,7 +27,8 @@ struct Recorder::Impl {
 
   hdf5::File file;
   Layout layout;
-  std::vector<hdf5::Series> series;  // in the order of `create_series`, which `fill` follows
+  std::size_t width;                 // of a sample
+  std::vector<hdf5::Series> series;  // /time and the fields of the layout
   std::size_t block_rows;
   std::size_t waiting = 0;  // samples in memory
   std::chrono::steady_clock::time_point last_flush = std::chrono::steady_clock::now();
@@ -37,6 +38,7 @@ struct Recorder::Impl {
  private:
   /// Under `group`, with buffers of so many rows.
   std::vector<hdf5::Series> create_series(const std::string& group, std::size_t rows);
+  void check_fit(const Sample& sample) const;
   static void fill(std::vector<hdf5::Series>& series, const Sample& sample);
 };
 

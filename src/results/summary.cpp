@@ -8,7 +8,7 @@ double Summary::rest_error() const {
   return structure_energy > 0.0 ? std::sqrt(std::abs(energy_left) / structure_energy) : 0.0;
 }
 
-std::vector<Attribute> attributes_of(const Summary& summary, bool probes) {
+std::vector<Attribute> attributes_of(const Summary& summary) {
   std::vector<Attribute> list;
   const auto add = [&](const std::string& name, auto value) { list.push_back({name, value}); };
   const auto extreme = [&](const std::string& name, const Extreme& value) {
@@ -16,7 +16,7 @@ std::vector<Attribute> attributes_of(const Summary& summary, bool probes) {
     add(name + "_time", value.time);
     add(name + "_place", value.place);
   };
-  if (probes) {
+  if (summary.probes) {
     extreme("deflection", summary.deflection);
     extreme("acceleration", summary.acceleration);
     extreme("moment", summary.moment);

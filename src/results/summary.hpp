@@ -7,7 +7,7 @@
 
 namespace traverse::results {
 
-/// What is not known, or what the scene has not, is left out. probes: whether there are any.
-std::vector<Attribute> attributes_of(const Summary& summary, bool probes);
+/// What is not known, or what the scene has not, is left out.
+std::vector<Attribute> attributes_of(const Summary& summary);
 
 }  // namespace traverse::results

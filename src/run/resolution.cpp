@@ -80,19 +80,21 @@ void check_periods(const Scene& scene, double step, double period, bool high_ord
 }
 
 /// The greatest lambda in a span, 1/m.
-double bending_on_bed(const beam::BeamModel& beam, double left, double length, int elements) {
+double bending_on_beds(const beam::BeamModel& beam, double left, double length, int elements) {
   double lambda = 0.0;
   for (int i = 0; i < elements; ++i) {
     const double x = left + (i + 0.5) * length / elements;
-    lambda = std::max(lambda, std::pow(beam.foundation.vertical_bed->k.at(x, x) / (4.0 * beam.EI.at(x, x)), 0.25));
+    for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
+      lambda = std::max(lambda, fading_of_bending(kind.direction, bed.k.at(x, x), beam.EI.at(x, x)));
+    });
   }
   return lambda;
 }
 
-void check_bed(const beam::BeamModel& beam, std::vector<std::string>& notes) {
+void check_beds(const beam::BeamModel& beam, std::vector<std::string>& notes) {
   double left = 0.0;
   for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
-    const double span = beam.spans[i], lambda = bending_on_bed(beam, left, span, beam.elements[i]);
+    const double span = beam.spans[i], lambda = bending_on_beds(beam, left, span, beam.elements[i]);
     const auto elements = [&](double length) { return base::whole(std::ceil(lambda * span / length)); };
     if (beam.elements[i] < elements(longest_on_bed))
       throw InputError(
@@ -118,7 +120,7 @@ void check_mesh(const Scene& scene, std::vector<std::string>& notes) {
     notes.emplace_back(
         "one element a span: its first frequency is up to a tenth too high, and so may the response be wrong; "
         "-beam_elements_per_span 4 keeps a thousandth");
-  if (beam.foundation.vertical_bed) check_bed(beam, notes);
+  check_beds(beam, notes);
 }
 
 void check_times(const Plan& plan) {

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fields.hpp"
-
 namespace traverse::app {
 namespace {
 
@@ -15,11 +13,6 @@ namespace {
 constexpr double unbalanced = 0.05, unbalanced_mechanism = 0.005;
 constexpr double diverged = 1.0;   // the same while the run goes on, when they have changed little as yet
 constexpr double rounding = 1e-9;  // of the energies themselves
-
-std::array<double, 3> triple(const Eigen::VectorXd& x, std::size_t body) {
-  const auto i = 3 * static_cast<Eigen::Index>(body);
-  return {x[i], x[i + 1], x[i + 2]};
-}
 
 }  // namespace
 
@@ -32,11 +25,16 @@ void check_balance(const Scene& scene, const results::Summary& summary) {
                     summary.energy_residual, summary.energy_scale));
 }
 
-Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder)
-    : scene_(scene), system_(system), beam_(beam), recorder_(recorder) {
+Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
+             const Outputs* outputs)
+    : scene_(scene),
+      system_(system),
+      beam_(beam),
+      recorder_(recorder),
+      outputs_(recorder.writes() ? outputs : nullptr) {
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
-    ground_.emplace(*beam);
+    now_.ground.emplace(*beam);
     if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
@@ -47,17 +45,16 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
 }
 
 void Watch::sample(const integrate::Instant& instant) {
-  system_.observe(instant.time, instant.y, instant.ydot, observation_);
-  const structure::NodalMotion& beam = observation_.beam;
+  system_.observe(instant.time, instant.y, instant.ydot, now_.motion);
+  const structure::NodalMotion& beam = now_.motion.beam;
   sample_.time = instant.time;
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
     if (!beam.drag.empty()) drag(beam.drag.data());
-    recovery_->evaluate(beam.v, beam.w, beam.a.data(), observation_.bridge_loads, sample_.probes);
-    if (lag_) lag_->apply(instant.time, observation_.bridge_loads, sample_.probes);
-    for (std::size_t i = 0; i < dragged_.size(); ++i) sample_.probes[i].acceleration -= dragged_[i].acceleration;
+    recovery_->evaluate(beam.v, beam.w, beam.a.data(), now_.motion.bridge_loads, now_.probes);
+    if (lag_) lag_->apply(instant.time, now_.motion.bridge_loads, now_.probes);
+    for (std::size_t i = 0; i < dragged_.size(); ++i) now_.probes[i].acceleration -= dragged_[i].acceleration;
   }
-  fill_vehicles(sample_);
   step(instant.time);  // the first instant is no step's end
   note_peaks();
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
@@ -66,12 +63,13 @@ void Watch::sample(const integrate::Instant& instant) {
 
 void Watch::store(bool end) {
   if (beam_ != nullptr) {
-    const structure::NodalMotion& beam = observation_.beam;
-    if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a.data(), observation_.loads, rail_);
-    beam_->reactions(beam.v, beam.w, beam.a.data(), beam.P.data(), sample_.supports);
+    const structure::NodalMotion& beam = now_.motion.beam;
+    if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a.data(), now_.motion.loads, now_.rail);
+    beam_->reactions(beam.v, beam.w, beam.a.data(), beam.P.data(), now_.supports);
+    now_.ground->evaluate(beam.v, beam.w, beam.a.data());
   }
-  fill_fields();
   note_energy();
+  if (outputs_ != nullptr) outputs_->fill(now_, sample_.values);
   if (end)
     recorder_.end(sample_);
   else
@@ -80,96 +78,48 @@ void Watch::store(bool end) {
     throw SolverError(
         fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
                     "integrator, take a smaller -ts_dt or an implicit -ts_type",
-                    sample_.energy.residual, sample_.time));
+                    now_.energy.residual, sample_.time));
 }
 
 // Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
 void Watch::drag(const double* drag) {
-  std::vector<double>& a = observation_.beam.a;
+  std::vector<double>& a = now_.motion.beam.a;
   const std::vector<double> still(a.size(), 0.0);
   recovery_->evaluate(still.data(), still.data(), drag, {}, dragged_);
   for (std::size_t i = 0; i < a.size(); ++i) a[i] += drag[i];
 }
 
-void Watch::fill_vehicles(results::Sample& sample) const {
-  const train::Fleet& fleet = system_.fleet();
-  sample.vehicles.resize(fleet.members.size());
-  for (std::size_t k = 0; k < fleet.members.size(); ++k) {
-    const train::Member& member = fleet.members[k];
-    const train::MovingVehicle& vehicle = fleet.vehicles[member.unit];
-    const multibody::MechanismModel& model = member.type->mechanism;
-    results::Sample::Vehicle& out = sample.vehicles[k];
-    out.bodies.resize(model.bodies.size());
-    for (std::size_t i = 0; i < model.bodies.size(); ++i) {
-      const std::size_t b = member.first_body + i;
-      out.bodies[i] = {triple(vehicle.state.q, b), triple(vehicle.state.qd, b), triple(vehicle.state.qdd, b)};
-    }
-    out.wheels.clear();
-    for (std::size_t i = 0; i < member.type->wheels.size(); ++i) {
-      const train::WheelLoad load = fleet.load(fleet.wheels[vehicle.first_wheel + member.first_wheel + i]);
-      out.wheels.push_back({load.normal, load.tangential, load.penetration});
-    }
-    for (std::size_t i = 0; i < member.type->contacts.size(); ++i) {
-      const train::Contact& c = fleet.pairs[vehicle.first_pair + member.first_contact + i];
-      out.wheels.push_back({c.force.normal, c.force.tangential, c.kinematics.penetration});
-    }
-    out.joints.resize(model.joints.size());
-    for (std::size_t i = 0; i < model.joints.size(); ++i) {
-      const int j = member.first_joint + static_cast<int>(i);
-      const Eigen::Vector3d r = vehicle.mechanism.joint_reaction(vehicle.state, j);
-      out.joints[i] = {r.x(), r.y(), r.z()};
-    }
-    out.springs.resize(model.springs.size());
-    for (std::size_t i = 0; i < model.springs.size(); ++i)
-      out.springs[i] = vehicle.mechanism.spring_force(vehicle.state, member.first_spring + static_cast<int>(i));
-    out.torsion_springs.resize(model.torsion_springs.size());
-    for (std::size_t i = 0; i < model.torsion_springs.size(); ++i)
-      out.torsion_springs[i] =
-          vehicle.mechanism.torsion_spring_moment(vehicle.state, member.first_torsion_spring + static_cast<int>(i));
-  }
-}
-
-// In the order of layout_of.
-void Watch::fill_fields() {
-  Fields fields(sample_.fields);
-  fill_couplers(system_.fleet(), scene_.train, fields);
-  if (beam_ == nullptr) return;
-  const structure::NodalMotion& beam = observation_.beam;
-  ground_->evaluate(beam.v, beam.w, beam.a.data());
-  fill_foundation(*beam_, *ground_, beam.foundation, fields);
-  fill_balance(*ground_, observation_, sample_.supports, scene_.self_weight ? scene_.gravity * ground_->mass() : 0.0,
-               beam_->model().axial, fields);
-  if (rail_recovery_) fill_rail(rail_, fields);
-}
-
 void Watch::note_peaks() {
   wheel_forces_.clear();
-  for (std::size_t k = 0; k < sample_.vehicles.size(); ++k)
-    for (std::size_t i = 0; i < system_.fleet().members[k].type->wheels.size(); ++i)
-      wheel_forces_.push_back(sample_.vehicles[k].wheels[i].normal_force);
-  peaks_.add(sample_.time, sample_.probes, wheel_forces_);
+  const train::Fleet& fleet = system_.fleet();
+  for (const train::Member& member : fleet.members) {
+    const int first = fleet.vehicles[member.unit].first_wheel + member.first_wheel;
+    for (std::size_t i = 0; i < member.type->wheels.size(); ++i)
+      wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
+  }
+  peaks_.add(sample_.time, now_.probes, wheel_forces_);
   double deflected = 0.0;
-  for (const beam::Response& probe : sample_.probes) deflected = std::max(deflected, std::abs(probe.deflection));
+  for (const beam::Response& probe : now_.probes) deflected = std::max(deflected, std::abs(probe.deflection));
   if (deflected > most_deflected_) {
     most_deflected_ = deflected;
     worst_.time = sample_.time;
-    const structure::NodalMotion& beam = observation_.beam;
+    const structure::NodalMotion& beam = now_.motion.beam;
     worst_.v.assign(beam.v, beam.v + beam.a.size());
     worst_.w.assign(beam.w, beam.w + beam.a.size());
     worst_.a = beam.a;
-    worst_.loads = observation_.bridge_loads;
+    worst_.loads = now_.motion.bridge_loads;
   }
 }
 
 void Watch::note_energy() {
-  const coupling::Energy& e = observation_.energy;
+  const coupling::Energy& e = now_.motion.energy;
   if (first_) energy_at_start_ = e;
   first_ = false;
   const coupling::Energy& start = energy_at_start_;
   const double stored = (e.kinetic - start.kinetic) + (e.strain - start.strain) + (e.potential - start.potential);
-  sample_.energy = {e.kinetic, e.strain, e.potential, e.dissipated, e.work, stored + e.dissipated - e.work};
+  now_.energy = {e.kinetic, e.strain, e.potential, e.dissipated, e.work, stored + e.dissipated - e.work};
   summary_.structure_energy = std::max(summary_.structure_energy, e.structure);
-  summary_.energy_residual = std::max(summary_.energy_residual, std::abs(sample_.energy.residual));
+  summary_.energy_residual = std::max(summary_.energy_residual, std::abs(now_.energy.residual));
   for (double term : {e.kinetic, e.strain, e.potential})
     summary_.largest_energy = std::max(summary_.largest_energy, std::abs(term));
   // Where steps do not end at kinks the drive's work is not known so well that it could be judged without.
@@ -236,6 +186,7 @@ results::Summary Watch::finish() {
     return results::Extreme{peak.value, peak.time, scene_.output.probes[static_cast<std::size_t>(peak.place)]};
   };
   if (!scene_.output.probes.empty()) {
+    summary_.probes = beam_ != nullptr;
     summary_.deflection = extreme(deflection);
     summary_.acceleration = extreme(acceleration);
     summary_.moment = extreme(moment);

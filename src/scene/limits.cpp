@@ -15,8 +15,7 @@ namespace {
 // Bytes, as measured on runs of many of each.
 constexpr double a_node = 500.0, a_nodal_unknown = 750.0, a_probe = 2200.0, a_vehicle = 6e4, a_pair_of_vehicles = 1e3,
                  a_force = 400.0, a_spring = 800.0, a_sweep_peak = 200.0;
-constexpr double most_elements = 2e7;  // whose matrices' entries 32 bits can number
-constexpr double most_peaks = 1e8;     // of a sweep, for the same reason
+constexpr double most_peaks = 1e8;  // of a sweep, which 32 bits can number
 constexpr int lapack_copies = 3, few_modes = 2;
 
 /// Something that there may be too much of.
@@ -101,7 +100,9 @@ std::vector<Need> needs_of(const options::Options& o, const Scene& scene) {
                               fmt::format("{:g} probes and what passes each of them", probes)}};
   if (!scene.beam) return needs;
   const beam::Foundation& f = scene.beam->foundation;
-  const auto springs = static_cast<double>(f.vertical.size() + f.longitudinal.size() + f.rotational.size());
+  double springs = 0.0;
+  for_points(f,
+             [&](const beam::FoundationKind&, const auto& points) { springs += static_cast<double>(points.size()); });
   const double kinks = static_cast<double>(scene.profile.kinks().size() + scene.beam->spans.size());
   needs.push_back(mesh(o, scene));
   needs.push_back(

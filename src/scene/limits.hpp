@@ -6,6 +6,8 @@
 
 namespace traverse::app {
 
+inline constexpr double most_elements = 2e7;  // whose matrices' entries 32 bits can number
+
 /// InputError where the scene needs more memory than this machine has, or counts go beyond what can be numbered: names
 /// the option that asks for most.
 void check_size(const options::Options& options, const Scene& scene);

@@ -34,10 +34,7 @@ double read_window(const Options& o) {
 void read_run(const Options& o, Scene& scene) {
   scene.gravity = o.number("gravity");
   scene.name = o.has("scene_name") ? o.text("scene_name") : "scene";
-  const std::string analysis = o.choice("scene_analysis");
-  scene.analysis = analysis == "modes"    ? Analysis::modes
-                   : analysis == "static" ? Analysis::static_response
-                                          : Analysis::transient;
+  scene.analysis = options::analysis_of(o.choice("scene_analysis"));
   scene.start = o.choice("scene_start") == "given" ? Start::given : Start::equilibrium;
   scene.tail = o.optional_number("scene_tail");
   scene.end_time = o.optional_number("ts_max_time");

@@ -14,7 +14,7 @@ bool acts_along_x(const options::Options& o, const std::string& actuator) {
 /// surface is inclined; it is too small to count.
 std::string longitudinal_action(const options::Options& o, const Scene& scene) {
   const beam::Foundation& foundation = scene.beam->foundation;
-  if (!foundation.longitudinal.empty() || foundation.longitudinal_bed) return "longitudinal foundations";
+  if (present(foundation, beam::Direction::longitudinal)) return "longitudinal foundations";
   if (scene.analysis == Analysis::modes) return "modes are asked for";
   for (const Vehicle& vehicle : scene.vehicles) {
     const bool rolls = !vehicle.wheels.empty();
@@ -47,7 +47,7 @@ void decide_axial(const options::Options& o, Scene& scene) {
     return;
   }
   const beam::Foundation& foundation = scene.beam->foundation;
-  if (!stiffness && (!foundation.longitudinal.empty() || foundation.longitudinal_bed)) {
+  if (!stiffness && present(foundation, beam::Direction::longitudinal)) {
     const options::Entry* entry = o.first_with_prefix("foundation_longitudinal");
     o.refuse(entry->name, "longitudinal foundations need " + missing);
   }

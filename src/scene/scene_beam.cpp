@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "limits.hpp"
 #include "scene_parts.hpp"
 #include "traverse/options/data_file.hpp"
 
@@ -14,7 +15,6 @@ namespace {
 using options::Options;
 
 constexpr double most_stations = 1e6;  // of springs at equal distances
-constexpr double most_elements = 2e7;  // see limits.cpp
 
 /// Even, so that midspan is a node; the error of deflections falls with the fourth power of the element's length.
 int elements_from_accuracy(double accuracy) {
@@ -128,9 +128,10 @@ std::vector<double> read_stations(const Options& o, const std::string& name) {
   return all;
 }
 
-std::vector<beam::PointFoundation> read_points(const Options& o, const std::string& kind, const beam::BeamModel& beam) {
-  const std::string name = "foundation_" + kind;
-  const bool vertical = kind == "vertical";
+std::vector<beam::PointFoundation> read_points(const Options& o, const beam::FoundationKind& kind,
+                                               const beam::BeamModel& beam) {
+  const std::string name = "foundation_" + std::string(kind.name);
+  const bool vertical = kind.direction == beam::Direction::vertical;
   std::vector<beam::PointFoundation> points;
   if (!o.has(name + "_x")) {
     for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided", "_spacing"}) {
@@ -158,9 +159,10 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const std::stri
   return points;
 }
 
-std::optional<beam::Bed> read_bed(const Options& o, const std::string& kind) {
-  const std::string name = "foundation_" + kind + "_bed";
-  const beam::FoundationLaw law{kind == "vertical" && o.flag(name + "_one_sided"), o.number(name + "_gap"),
+std::optional<beam::Bed> read_bed(const Options& o, const beam::FoundationKind& kind) {
+  const std::string name = "foundation_" + std::string(kind.name);
+  const bool vertical = kind.direction == beam::Direction::vertical;
+  const beam::FoundationLaw law{vertical && o.flag(name + "_one_sided"), o.number(name + "_gap"),
                                 o.number(name + "_cubic")};
   if (!o.has(name + "_k") && !o.has(name + "_c") && !o.has(name + "_cubic")) {
     for (const char* what : {"_gap", "_one_sided"}) {
@@ -187,11 +189,13 @@ beam::Distribution read_distribution(const Options& o, const std::string& name) 
 
 beam::Foundation read_foundation(const Options& o, const beam::BeamModel& beam) {
   beam::Foundation f;
-  f.vertical = read_points(o, "vertical", beam);
-  f.vertical_bed = read_bed(o, "vertical");
-  f.longitudinal = read_points(o, "longitudinal", beam);
-  f.longitudinal_bed = read_bed(o, "longitudinal");
-  f.rotational = read_points(o, "rotational", beam);
+  for (const beam::FoundationKind& kind : beam::foundation_kinds) {
+    if (kind.points != nullptr) {
+      f.*kind.points = read_points(o, kind, beam);
+    } else {
+      f.*kind.bed = read_bed(o, kind);
+    }
+  }
   return f;
 }
 

@@ -42,33 +42,48 @@ void VehicleReader::body(const std::string& name) {
 void VehicleReader::joint(const std::string& name) {
   multibody::Joint j;
   j.name = name;
-  const std::string type = o_.choice(key("type"));
+  j.type = multibody::JointType::named(o_.choice(key("type")));
   j.bodies = two_bodies();
-  if (type == "distance") {
-    j.type = multibody::JointType::distance;
+  if (j.type->needs.ends) {
     j.from = vector("from");
     j.to = vector("to");
     check_apart(j.from, j.to);
-  } else {
-    j.type = type == "revolute"    ? multibody::JointType::revolute
-             : type == "prismatic" ? multibody::JointType::prismatic
-             : type == "slot"      ? multibody::JointType::slot
-                                   : multibody::JointType::weld;
-    j.point = vector("point");
   }
-  if (type == "prismatic" || type == "slot") {
+  if (j.type->needs.point) j.point = vector("point");
+  if (j.type->needs.axis) {
     j.axis = vector("axis");
     if (!(j.axis.norm() > 0.0)) o_.refuse(key("axis"), "allowed: a direction, not 0, 0");
     j.axis.normalize();
-    j.friction = {number("friction"), number("friction_force"), number("transition_speed")};
   }
+  joint_friction(j);
+  joint_numbers(j);
+  vehicle_.mechanism.joints.push_back(j);
+}
+
+void VehicleReader::joint_friction(multibody::Joint& j) const {
+  if (j.type->slides) j.friction = {number("friction"), number("friction_force"), number("transition_speed")};
   for (const char* field : {"friction", "friction_force", "transition_speed"}) {
     if (!has(field)) continue;
-    if (type != "prismatic" && type != "slot") o_.refuse(key(field), "belongs to joints that slide: prismatic or slot");
+    if (!j.type->slides)
+      o_.refuse(key(field), "belongs to joints that slide: " +
+                                multibody::joint_names([](const auto& row) { return row.slides; }, ", ", " or "));
     if (!j.friction.acts() && std::string_view(field) == "transition_speed")
       o_.refuse(key(field), "needs friction or friction_force");
   }
-  vehicle_.mechanism.joints.push_back(j);
+}
+
+/// The numbers that joints of this type have of their own; those of other types are refused.
+void VehicleReader::joint_numbers(multibody::Joint& j) const {
+  for (const multibody::JointRow& row : multibody::joint_rows()) {
+    for (std::size_t i = 0; i < row.numbers.size(); ++i) {
+      const std::string_view field = row.numbers[i].name;
+      if (j.type == multibody::JointType(row)) {
+        j.numbers[i] = number(field);
+      } else if (has(field)) {
+        o_.refuse(key(field), fmt::format("belongs to joints of type {}", row.name));
+      }
+    }
+  }
 }
 
 /// What `make` makes of the columns of the option's file; errors name the option, too.

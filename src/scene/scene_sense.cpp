@@ -112,7 +112,7 @@ void note_speeds(const Options& o, Scene& scene) {
 }
 
 /// A table that does not reach the ends of the beam is continued by its end values.
-void note_table(const char* option, const beam::Distribution& table, double length, Scene& scene) {
+void note_table(const std::string& option, const beam::Distribution& table, double length, Scene& scene) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::vector<double> x = table.breaks(-infinity, infinity);
   if (x.empty()) return;
@@ -138,14 +138,11 @@ void note_tables(Scene& scene) {
   note_table("beam_EI", beam.EI, length, scene);
   note_table("beam_EA", beam.EA, length, scene);
   note_table("beam_mass", beam.mass, length, scene);
-  if (const auto& bed = beam.foundation.vertical_bed) {
-    note_table("foundation_vertical_bed_k", bed->k, length, scene);
-    note_table("foundation_vertical_bed_c", bed->c, length, scene);
-  }
-  if (const auto& bed = beam.foundation.longitudinal_bed) {
-    note_table("foundation_longitudinal_bed_k", bed->k, length, scene);
-    note_table("foundation_longitudinal_bed_c", bed->c, length, scene);
-  }
+  for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
+    const std::string option = "foundation_" + std::string(kind.name);
+    note_table(option + "_k", bed.k, length, scene);
+    note_table(option + "_c", bed.c, length, scene);
+  });
 }
 
 }  // namespace

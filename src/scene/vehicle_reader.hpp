@@ -89,6 +89,8 @@ class VehicleReader {
 
   void body(const std::string& name);
   void joint(const std::string& name);
+  void joint_friction(multibody::Joint& j) const;
+  void joint_numbers(multibody::Joint& j) const;
   template <class Make>
   auto from_table(std::string_view field, std::size_t least, std::size_t most, Make&& make) const;
   multibody::Polyline polyline(std::string_view field) const;

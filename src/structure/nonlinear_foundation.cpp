@@ -117,32 +117,26 @@ double NonlinearFoundation::dissipation() const {
 }
 
 void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::ElementLoad>& loads) const {
-  const auto list_of = [&](Direction d, bool of_bed) -> std::vector<double>& {
-    if (d == Direction::rotational) return forces.rotational;
-    if (d == Direction::vertical) return of_bed ? forces.vertical_bed : forces.vertical;
-    return of_bed ? forces.longitudinal_bed : forces.longitudinal;
-  };
-  const auto spans_of = [&](const std::optional<beam::Bed>& bed) {
-    return bed && bed->law.nonlinear() ? static_cast<std::size_t>(spans_) : 0;
-  };
-  forces.vertical.assign(foundation_.vertical.size(), 0.0);
-  forces.longitudinal.assign(foundation_.longitudinal.size(), 0.0);
-  forces.rotational.assign(foundation_.rotational.size(), 0.0);
-  forces.vertical_bed.assign(spans_of(foundation_.vertical_bed), 0.0);
-  forces.longitudinal_bed.assign(spans_of(foundation_.longitudinal_bed), 0.0);
+  for (std::size_t i = 0; i < beam::foundation_kind_count; ++i) {
+    const beam::FoundationKind& kind = beam::foundation_kinds[i];
+    const bool bed = kind.bed != nullptr && foundation_.*kind.bed && (foundation_.*kind.bed)->law.nonlinear();
+    const std::size_t count = kind.points != nullptr ? (foundation_.*kind.points).size()
+                              : bed                  ? static_cast<std::size_t>(spans_)
+                                                     : 0;
+    forces.of_kind[i].assign(count, 0.0);
+  }
   std::vector<beam::ElementLoad> mine;
   for (const Point& p : points_) {
     if (!p.counted || p.state.force == 0.0) continue;
-    list_of(p.its.direction, p.its.of_bed)[static_cast<std::size_t>(p.its.index)] += p.state.force;
+    forces.of_kind[p.its.kind][static_cast<std::size_t>(p.its.index)] += p.state.force;
     beam::ElementLoad load{p.its.at.element, p.its.at.xi};
     (p.its.direction == Direction::vertical       ? load.fy
      : p.its.direction == Direction::longitudinal ? load.fx
                                                   : load.moment) = p.state.force;
     mine.push_back(load);
   }
-  for (std::vector<double>* list :
-       {&forces.vertical, &forces.longitudinal, &forces.rotational, &forces.vertical_bed, &forces.longitudinal_bed})
-    MPI_Allreduce(MPI_IN_PLACE, list->data(), static_cast<int>(list->size()), MPI_DOUBLE, MPI_SUM, comm_);
+  for (std::vector<double>& list : forces.of_kind)
+    MPI_Allreduce(MPI_IN_PLACE, list.data(), static_cast<int>(list.size()), MPI_DOUBLE, MPI_SUM, comm_);
 
   int ranks = 1;
   MPI_Comm_size(comm_, &ranks);
@@ -296,20 +290,18 @@ std::string NonlinearFoundation::worst_point() const {
     int rank;
   } worst{-1.0, 0};
   MPI_Comm_rank(comm_, &worst.rank);
-  double which[3] = {0.0, 0.0, 0.0};
+  double which[2] = {0.0, 0.0};  // kind, x
   for (const Point& p : points_) {
     if (!(p.misfit > worst.misfit)) continue;
     worst.misfit = p.misfit;
-    which[0] = static_cast<double>(p.its.direction);
-    which[1] = p.its.of_bed ? 1.0 : 0.0;
-    which[2] = p.its.x;
+    which[0] = static_cast<double>(p.its.kind);
+    which[1] = p.its.x;
   }
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm_);
-  MPI_Bcast(which, 3, MPI_DOUBLE, worst.rank, comm_);
-  const char* names[] = {"foundation_vertical", "foundation_longitudinal", "foundation_rotational"};
+  MPI_Bcast(which, 2, MPI_DOUBLE, worst.rank, comm_);
   char text[96];
-  std::snprintf(text, sizeof text, "%s%s at x = %.6g m", names[static_cast<int>(which[0])],
-                which[1] != 0.0 ? "_bed" : "", which[2]);
+  std::snprintf(text, sizeof text, "foundation_%s at x = %.6g m",
+                beam::foundation_kinds[static_cast<std::size_t>(which[0])].name.data(), which[1]);
   return text;
 }
 

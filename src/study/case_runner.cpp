@@ -111,7 +111,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
     at_rest.clear();
     for (const double x : scene.output.probes) {
       if (caught_signal() != 0) break;
-      at_rest.push_back(passage.system().weights().static_peak(x, watch.paths(), watch.last().time));
+      at_rest.push_back(passage.system().weights().static_peak(x, watch.paths(), watch.last_time()));
     }
   }
   result.ended = caught_signal() == 0;

@@ -17,6 +17,7 @@
 #include "traverse/results/sweep.hpp"
 #include "traverse/results/terminal.hpp"
 #include "traverse/run/deflection_check.hpp"
+#include "traverse/run/outputs.hpp"
 #include "traverse/run/process.hpp"
 #include "traverse/run/signals.hpp"
 
@@ -232,8 +233,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
 
   const SignalsNoted noted;
   results::Layout layout;
-  layout.probes = scene.output.probes;
-  layout.supports = span_ends(*scene.beam);
+  layout.constants = stations(scene.output.probes, span_ends(*scene.beam));
   results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
   results::Sweep sweep = empty_sweep(scene, runner, choice.model);
   Course course(cases, runner, ranks, scene.quiet || rank != 0);

@@ -97,10 +97,10 @@ TEST_P(CutBeam, SameRows) {
   same(cut_.stiffness(), whole_.stiffness());
   same(cut_.damping(), whole_.damping());
   for (int i = 0; i < 2; ++i) {
-    same(cut_.foundation().vertical_discrete[i], whole_.foundation().vertical_discrete[i]);
-    same(cut_.foundation().vertical_continuous[i], whole_.foundation().vertical_continuous[i]);
-    same(cut_.foundation().longitudinal_discrete[i], whole_.foundation().longitudinal_discrete[i]);
-    same(cut_.foundation().rotational_discrete[i], whole_.foundation().rotational_discrete[i]);
+    same(cut_.foundation().of("vertical")[i], whole_.foundation().of("vertical")[i]);
+    same(cut_.foundation().of("vertical_bed")[i], whole_.foundation().of("vertical_bed")[i]);
+    same(cut_.foundation().of("longitudinal")[i], whole_.foundation().of("longitudinal")[i]);
+    same(cut_.foundation().of("rotational")[i], whole_.foundation().of("rotational")[i]);
   }
   for (std::size_t i = 0; i < cut_.fixed().size(); ++i) EXPECT_EQ(cut_.fixed()[i], whole_.fixed()[first_ + i]);
   std::vector<double> mine(cut_.local_unknowns(), 0.0), all(whole_.local_unknowns(), 0.0);

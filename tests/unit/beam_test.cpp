@@ -93,12 +93,12 @@ TEST(Assembly, PointFoundationsInsideAnElement) {
   m.foundation.longitudinal = {{6.5, 0.0, 7e3}};
   const Beam b(PETSC_COMM_SELF, m);
   const auto& f = b.foundation();
-  EXPECT_EQ(f.longitudinal_discrete[0], nullptr);
-  EXPECT_EQ(f.rotational_discrete[1], nullptr);
-  EXPECT_EQ(f.vertical_continuous[0], nullptr);
+  EXPECT_EQ(f.of("longitudinal")[0], nullptr);
+  EXPECT_EQ(f.of("rotational")[1], nullptr);
+  EXPECT_EQ(f.of("vertical_bed")[0], nullptr);
   const auto s = beam::hermite(0.3, 5.0);
-  const auto k = test::local_rows(f.vertical_discrete[0]), c = test::local_rows(f.vertical_discrete[1]);
-  const auto r = test::local_rows(f.rotational_discrete[0]), u = test::local_rows(f.longitudinal_discrete[1]);
+  const auto k = test::local_rows(f.of("vertical")[0]), c = test::local_rows(f.of("vertical")[1]);
+  const auto r = test::local_rows(f.of("rotational")[0]), u = test::local_rows(f.of("longitudinal")[1]);
   const int unknown[] = {4, 5, 7, 8};
   for (int i = 0; i < 4; ++i) {
     for (int j = 0; j < 4; ++j) {
@@ -127,9 +127,9 @@ TEST(Assembly, BedsAreMassMatrices) {
   heavy.mass = table;
   Beam b(PETSC_COMM_SELF, m);
   const Beam h(PETSC_COMM_SELF, heavy);
-  const auto M = test::local_rows(h.mass()), k = test::local_rows(b.foundation().vertical_continuous[0]),
-             c = test::local_rows(b.foundation().longitudinal_continuous[1]);
-  EXPECT_EQ(b.foundation().vertical_continuous[1], nullptr);
+  const auto M = test::local_rows(h.mass()), k = test::local_rows(b.foundation().of("vertical_bed")[0]),
+             c = test::local_rows(b.foundation().of("longitudinal_bed")[1]);
+  EXPECT_EQ(b.foundation().of("vertical_bed")[1], nullptr);
   for (std::size_t i = 0; i < M.size(); ++i) {
     for (std::size_t j = 0; j < M.size(); ++j) {
       EXPECT_EQ(k[i][j], i % 3 == 0 || j % 3 == 0 ? 0.0 : M[i][j]);
@@ -154,7 +154,7 @@ TEST(Assembly, IsolatedSpansDoNotCouple) {
   m.foundation.vertical = {{10.0, 1e6, 0.0}, {40.0, 2e6, 0.0}};
   m.supports.assign(4, Support::free);
   const Beam b(PETSC_COMM_SELF, m);
-  const auto K = test::local_rows(b.stiffness()), f = test::local_rows(b.foundation().vertical_discrete[0]);
+  const auto K = test::local_rows(b.stiffness()), f = test::local_rows(b.foundation().of("vertical")[0]);
   for (int i = 0; i < 9; ++i) {
     for (int j = 9; j < 18; ++j) EXPECT_EQ(K[i][j], 0.0);
   }

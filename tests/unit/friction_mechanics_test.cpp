@@ -118,7 +118,8 @@ TEST(SlidingFriction, NormalForcesAndFrictionAgree) {
   const MechanismModel& model = motion.mechanism.model();
   int k = 0;
   double power = 0.0;
-  for (std::size_t j = 0, row = 0; j < model.joints.size(); row += joint_rows(model.joints[j].type), ++j) {
+  for (std::size_t j = 0, row = 0; j < model.joints.size();
+       row += static_cast<std::size_t>(model.joints[j].type->rows), ++j) {
     const SlidingFriction& law = model.joints[j].friction;
     if (!law.acts()) continue;
     const double lambda = s.lambda[static_cast<int>(row)], v = s.friction.speed[k];

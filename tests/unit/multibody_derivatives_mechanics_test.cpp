@@ -1,9 +1,13 @@
 // Derivatives of every joint and force element against central differences in random positions.
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <functional>
 #include <random>
+#include <string>
+#include <vector>
 
+#include "traverse/base/error.hpp"
 #include "traverse/multibody/force_element.hpp"
 #include "traverse/multibody/joint.hpp"
 #include "unit/mechanism_helpers.hpp"
@@ -66,8 +70,9 @@ class EveryJoint : public ::testing::TestWithParam<JointType> {
     joint.point = joint.from = random_pair(random).q.head<2>();
     joint.to = random_pair(random).q.tail<2>();
     joint.axis = random_pair(random).q.head<2>();
+    joint.numbers = {1.7, -0.6};
     const JointGeometry geometry = joint_geometry(joint, start.first(), start.second(), 0);
-    Eigen::VectorXd Phi(joint_rows(type));
+    Eigen::VectorXd Phi(type->rows);
     joint_residual(geometry, start.first(), start.second(), Phi.data());
     EXPECT_LT(Phi.cwiseAbs().maxCoeff(), 1e-15 * 10.0);
     return geometry;
@@ -75,7 +80,7 @@ class EveryJoint : public ::testing::TestWithParam<JointType> {
   static Eigen::MatrixXd jacobian(const JointGeometry& joint, const Pair& pair) {
     JointJacobian J;
     joint_jacobian(joint, pair.first(), pair.second(), J);
-    return J.topRows(joint_rows(joint.type));
+    return J.topRows(joint.type->rows);
   }
 };
 
@@ -84,7 +89,7 @@ TEST_P(EveryJoint, DerivativesMatchDifferences) {
   for (int trial = 0; trial < 20; ++trial) {
     const JointGeometry joint = make(GetParam(), random);
     const Pair pair = random_pair(random);
-    const int rows = joint_rows(joint.type);
+    const int rows = joint.type->rows;
     const auto residual = [&](const Vector6& q) {
       const Pair moved{q, pair.qd};
       Eigen::VectorXd Phi(rows);
@@ -116,7 +121,7 @@ TEST_P(EveryJoint, ReactionIsTheGeneralizedForceOnTheSecondBody) {
   std::mt19937 random(2);
   const JointGeometry joint = make(GetParam(), random);
   const Pair pair = random_pair(random);
-  const Eigen::VectorXd lambda = random_pair(random).q.head(joint_rows(joint.type));
+  const Eigen::VectorXd lambda = random_pair(random).q.head(joint.type->rows);
   const Vector6 Q = -jacobian(joint, pair).transpose() * lambda;
   const Eigen::Vector3d reaction = joint_reaction(joint, pair.first(), pair.second(), lambda.data());
   const Vector2d arm = pair.second().to_global(joint.second_arm);
@@ -129,14 +134,28 @@ TEST_P(EveryJoint, ReactionIsTheGeneralizedForceOnTheSecondBody) {
 }
 
 std::string joint_type_name(const ::testing::TestParamInfo<JointType>& info) {
-  const char* names[] = {"Revolute", "Prismatic", "Slot", "Weld", "Distance"};
-  return names[static_cast<int>(info.param)];
+  std::string name(info.param->name);
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Joints, EveryJoint,
-                         ::testing::Values(JointType::revolute, JointType::prismatic, JointType::slot, JointType::weld,
-                                           JointType::distance),
-                         joint_type_name);
+std::vector<JointType> all_joint_types() {
+  std::vector<JointType> types;
+  for (const JointRow& row : joint_rows()) types.emplace_back(row);
+  return types;
+}
+
+INSTANTIATE_TEST_SUITE_P(Joints, EveryJoint, ::testing::ValuesIn(all_joint_types()), joint_type_name);
+
+TEST(JointTypes, AreKnownByTheirNames) {
+  for (const JointRow& row : joint_rows()) {
+    EXPECT_EQ(JointType::named(row.name), JointType(row));
+    EXPECT_FALSE(row.text.empty());
+  }
+  EXPECT_EQ(JointType::named("slot"), JointType::slot);
+  EXPECT_THROW(JointType::named("hinge"), InputError);
+  EXPECT_EQ(joint_names([](const JointRow& row) { return row.slides; }, ", ", " or "), "prismatic or slot");
+}
 
 SpringGeometry random_spring(std::mt19937& random) {
   const Pair start = random_pair(random);

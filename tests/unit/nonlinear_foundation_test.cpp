@@ -165,11 +165,11 @@ class Founded {
     double energy = 0.0, dissipation = 0.0;
     NonlinearForces sums;
     const beam::Foundation& f = beam.model().foundation;
-    sums.vertical.assign(f.vertical.size(), 0.0);
-    sums.longitudinal.assign(f.longitudinal.size(), 0.0);
-    sums.rotational.assign(f.rotational.size(), 0.0);
-    sums.vertical_bed.assign(f.vertical_bed ? beam.mesh().spans() : 0, 0.0);
-    sums.longitudinal_bed.assign(f.longitudinal_bed ? beam.mesh().spans() : 0, 0.0);
+    for (std::size_t i = 0; i < beam::foundation_kind_count; ++i) {
+      const beam::FoundationKind& kind = beam::foundation_kinds[i];
+      const std::size_t spans = present(f, kind) ? static_cast<std::size_t>(beam.mesh().spans()) : 0;
+      sums.of_kind[i].assign(kind.points != nullptr ? (f.*kind.points).size() : spans, 0.0);
+    }
     std::size_t loaded = 0;
     for (std::size_t i = 0; i < points(); ++i) {
       const beam::FoundationForce force = at(i, v, w);
@@ -177,11 +177,7 @@ class Founded {
       dissipation += force.dissipation;
       loaded += force.force != 0.0 ? 1 : 0;
       const beam::NonlinearPoint& p = points_[i];
-      std::vector<double>& list = p.direction == beam::Direction::rotational ? sums.rotational
-                                  : p.direction == beam::Direction::vertical
-                                      ? (p.of_bed ? sums.vertical_bed : sums.vertical)
-                                      : (p.of_bed ? sums.longitudinal_bed : sums.longitudinal);
-      list[static_cast<std::size_t>(p.index)] += force.force;
+      sums.of_kind[p.kind][static_cast<std::size_t>(p.index)] += force.force;
     }
     EXPECT_NEAR(foundation.energy(), energy, 10.0 * precision * std::abs(energy));
     EXPECT_NEAR(foundation.dissipation(), dissipation, 10.0 * precision * (std::abs(dissipation) + 1e-3 * energy));
@@ -189,11 +185,10 @@ class Founded {
     std::vector<beam::ElementLoad> loads(1);
     foundation.report(reported, loads);
     EXPECT_EQ(loads.size(), 1 + loaded);  // appended
-    for (const auto list : {&NonlinearForces::vertical, &NonlinearForces::longitudinal, &NonlinearForces::rotational,
-                            &NonlinearForces::vertical_bed, &NonlinearForces::longitudinal_bed}) {
-      ASSERT_EQ((reported.*list).size(), (sums.*list).size());
-      for (std::size_t i = 0; i < (sums.*list).size(); ++i)
-        EXPECT_NEAR((reported.*list)[i], (sums.*list)[i], precision * greatest);
+    for (std::size_t kind = 0; kind < beam::foundation_kind_count; ++kind) {
+      ASSERT_EQ(reported.of_kind[kind].size(), sums.of_kind[kind].size());
+      for (std::size_t i = 0; i < sums.of_kind[kind].size(); ++i)
+        EXPECT_NEAR(reported.of_kind[kind][i], sums.of_kind[kind][i], precision * greatest);
     }
   }
 

@@ -6,6 +6,8 @@
 
 #include "support/message.hpp"
 #include "support/temporary_folder.hpp"
+#include "traverse/multibody/joint_type.hpp"
+#include "traverse/options/analyses.hpp"
 #include "traverse/options/data_file.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/options/read_file.hpp"
@@ -248,6 +250,30 @@ TEST(Names, HelpHoldsEveryOption) {
     EXPECT_FALSE(row.text.empty());
   }
   EXPECT_PRED2(contains, help, "-vehicle_NAME_PART_stiffness");
+}
+
+TEST(Names, AnalysesAreTheChoicesOfTheirOption) {
+  const Row& option = *find_row(fixed_rows(), "scene_analysis");
+  std::string names;
+  for (const AnalysisRow& row : analyses) {
+    names += (names.empty() ? "" : " ") + std::string(row.name);
+    EXPECT_PRED2(contains, std::string(option.text), std::string(row.name) + " (" + std::string(row.words) + ")");
+    EXPECT_EQ(analysis_of(row.name), row.analysis);
+  }
+  EXPECT_EQ(option.choices, names);
+  EXPECT_EQ(option.fallback, analyses[0].name);
+}
+
+TEST(Names, JointsAreThoseOfTheTableOfTheirTypes) {
+  const Row& type = *find_row(part_rows(Part::joint), "type");
+  const Row& coupler = *find_row(coupler_rows(), "type");
+  for (const multibody::JointRow& joint : multibody::joint_rows()) {
+    const std::string name(joint.name);
+    for (const Row* row : {&type, &coupler}) EXPECT_PRED2(contains, " " + allowed(*row) + ",", " " + name + ",");
+    EXPECT_PRED2(contains, help_text(), name + ": " + std::string(joint.text));
+    for (const multibody::JointNumber& own : joint.numbers)
+      EXPECT_NE(find_row(part_rows(Part::joint), own.name), nullptr) << own.name;
+  }
 }
 
 TEST(Names, EveryDefaultIsAllowed) {

@@ -1,11 +1,13 @@
-// The methods of motion.hpp by their tables alone: the algebraic conditions of their orders, of what they damp and of
-// the quadrature of powers. Nothing is integrated here.
+// The methods of one_step_methods.hpp by their tables alone: the algebraic conditions of their orders, of what they
+// damp and of the quadrature of powers. Every row of methods() is walked; one equation is integrated to see its order.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <set>
+#include <string>
 
 #include "traverse/structure/one_step_methods.hpp"
 
@@ -65,10 +67,27 @@ std::complex<double> growth(const Butcher& t, std::complex<double> z) {
   return 1.0 + z * (t.b.cast<std::complex<double>>().transpose() * x)(0);
 }
 
-TEST(OrderConditions, EsdirkOfOrderFour) {
-  const Butcher t = butcher_of(esdirk4());
-  EXPECT_LT((t.A.rowwise().sum() - t.c).cwiseAbs().maxCoeff(), rounding);
-  for (int order = 1; order <= 4; ++order) EXPECT_LT(violation(t, t.b, order), rounding) << order;
+/// Whether the next step begins with the last acceleration, as Runge-Kutta methods do.
+bool of_runge_kutta(const Method& method) {
+  Weights last{};
+  last[static_cast<std::size_t>(method.step.known) - 1] = 1.0;
+  return method.step.a_next == last;
+}
+
+TEST(OrderConditions, OfEveryRungeKuttaMethod) {
+  int seen = 0;
+  for (const MethodRow& row : methods()) {
+    const Method method = row.make(row.parameter.value);
+    if (!of_runge_kutta(method)) continue;
+    SCOPED_TRACE(row.name);
+    const Butcher t = butcher_of(method);
+    EXPECT_LT((t.A.rowwise().sum() - t.c).cwiseAbs().maxCoeff(), rounding);
+    for (int order = 1; order <= std::min(row.order, 4); ++order)
+      EXPECT_LT(violation(t, t.b, order), rounding) << order;
+    for (double y = 1e-2; y < 1e4; y *= 1.1) EXPECT_LE(std::abs(growth(t, {0.0, y})), 1.0 + rounding) << y;
+    ++seen;
+  }
+  EXPECT_GT(seen, 0);
 }
 
 TEST(OrderConditions, EmbeddedMethodOfOrderThreeAndNoMore) {
@@ -180,7 +199,116 @@ TEST(OrderConditions, RadiusOneIsTheTrapezoidalRule) {
   EXPECT_EQ(method.step.a_next[1], 1.0);
 }
 
-// --------------------------------------------------------------------------------------------------------- of both
+// -------------------------------------------------------------------------------------------------- of every method
+
+// A hardening spring with a damper under a force that changes.
+double acceleration(double t, double v, double w) { return std::cos(t) - v - 0.3 * v * v * v - 0.2 * w; }
+
+struct Swing {
+  double v = 0.4, w = -0.3, a = acceleration(0.0, 0.4, -0.3);
+};
+
+/// One step of a method that is scaled to its length. Returns the errors that it estimates, of v and w together.
+double take_step(const Method& method, double t, Swing& s) {
+  Weights A{s.a};
+  const auto sum = [&A](const Weights& weights, int count) {
+    double total = 0.0;
+    for (int j = 0; j < count; ++j) total += weights[static_cast<std::size_t>(j)] * A[static_cast<std::size_t>(j)];
+    return total;
+  };
+  for (const StageRule& stage : method.stages) {
+    const double v = s.v + stage.w_in_v * s.w + sum(stage.a_in_v, stage.known),
+                 w = s.w + sum(stage.a_in_w, stage.known);
+    double a = A[static_cast<std::size_t>(stage.known) - 1];
+    for (int i = 0; i < 60; ++i) a = acceleration(t + stage.time, v + stage.displacement * a, w + stage.rate * a);
+    A[static_cast<std::size_t>(stage.known)] = a;
+  }
+  const StepRule& step = method.step;
+  s.v += step.w_in_v * s.w + sum(step.a_in_v, step.known);
+  s.w += sum(step.a_in_w, step.known);
+  s.a = sum(step.a_next, step.known);
+  return std::hypot(sum(step.error_in_v, step.known), sum(step.error_in_w, step.known));
+}
+
+Swing after_two_seconds(const Method& unit, int steps) {
+  Method method = unit;
+  const double h = 2.0 / steps;
+  method.scale_to(h);
+  Swing swing;
+  for (int i = 0; i < steps; ++i) take_step(method, i * h, swing);
+  return swing;
+}
+
+TEST(Methods, HaveTheirNamesOnce) {
+  std::set<std::string> names;
+  for (const MethodRow& row : methods()) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_EQ(find_method(row.name), &row);
+    const MethodParameter& p = row.parameter;
+    if (p.option != nullptr) {
+      EXPECT_EQ(p.option[0], '-') << row.name;
+    }
+    EXPECT_GE(p.value, p.least);
+    EXPECT_LE(p.value, p.most);
+  }
+  EXPECT_EQ(find_method("rosw"), nullptr);
+  EXPECT_TRUE(find_method("esdirk4")->estimates_errors());
+  EXPECT_FALSE(find_method("genalpha")->estimates_errors());
+}
+
+// What the steps of System and Structure take for granted.
+TEST(Methods, EndWithTheirLastStage) {
+  for (const MethodRow& row : methods()) {
+    SCOPED_TRACE(row.name);
+    const Method method = row.make(row.parameter.value);
+    ASSERT_FALSE(method.stages.empty());
+    for (std::size_t i = 0; i < method.stages.size(); ++i) EXPECT_EQ(method.stages[i].known, static_cast<int>(i) + 1);
+    const StageRule& last = method.stages.back();
+    const StepRule& step = method.step;
+    ASSERT_EQ(step.known, last.known + 1);
+    ASSERT_LE(step.known, most_accelerations);
+    EXPECT_NEAR(last.time, 1.0, rounding);
+    EXPECT_EQ(step.w_in_v, last.w_in_v);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(last.known); ++j) {
+      EXPECT_EQ(step.a_in_v[j], last.a_in_v[j]) << j;
+      EXPECT_EQ(step.a_in_w[j], last.a_in_w[j]) << j;
+    }
+    EXPECT_EQ(step.a_in_v[static_cast<std::size_t>(last.known)], last.displacement);
+    EXPECT_EQ(step.a_in_w[static_cast<std::size_t>(last.known)], last.rate);
+  }
+}
+
+TEST(Methods, ConvergeWithTheirOrder) {
+  const Swing exact = after_two_seconds(esdirk4(), 2000);  // 1e-14 off
+  for (const MethodRow& row : methods()) {
+    SCOPED_TRACE(row.name);
+    const Method method = row.make(row.parameter.value);
+    double errors[2];
+    for (int i = 0; i < 2; ++i) {
+      const Swing end = after_two_seconds(method, 40 << i);
+      errors[i] = std::hypot(end.v - exact.v, end.w - exact.w);
+    }
+    EXPECT_NEAR(std::log2(errors[0] / errors[1]), row.order, 0.2) << errors[1];
+  }
+}
+
+// One of an embedded method of one order less: it falls with the power `order` of the step.
+TEST(Methods, EstimateTheErrorOfAStep) {
+  for (const MethodRow& row : methods()) {
+    SCOPED_TRACE(row.name);
+    const auto estimate = [&](double h) {
+      Method method = row.make(row.parameter.value);
+      method.scale_to(h);
+      Swing swing;
+      return take_step(method, 0.0, swing);
+    };
+    if (row.estimates_errors()) {
+      EXPECT_NEAR(std::log2(estimate(0.04) / estimate(0.02)), row.order, 0.2);
+    } else {
+      EXPECT_EQ(estimate(0.04), 0.0);
+    }
+  }
+}
 
 // The integral of a power of time is exact below the order of the method.
 TEST(OrderConditions, IntegralsOfPowers) {
@@ -193,14 +321,17 @@ TEST(OrderConditions, IntegralsOfPowers) {
     }
     return greatest;
   };
-  EXPECT_LT(greatest_error(esdirk4(), 4), rounding);
+  for (const MethodRow& row : methods())
+    EXPECT_LT(greatest_error(row.make(row.parameter.value), row.order), rounding) << row.name;
   for (double radius : radii) EXPECT_LT(greatest_error(generalised_alpha(radius), 2), rounding) << radius;
 }
 
 // Weights of v'' carry s2 in v and s in w; those of a carry none.
 TEST(OrderConditions, ScaledToALength) {
   constexpr double h = 0.125;  // so that nothing is rounded
-  for (const Method& unit : {esdirk4(), generalised_alpha(0.9)}) {
+  for (const MethodRow& row : methods()) {
+    SCOPED_TRACE(row.name);
+    const Method unit = row.make(row.parameter.value);
     Method scaled = unit;
     scaled.scale_to(h);
     for (std::size_t i = 0; i < unit.stages.size(); ++i) {

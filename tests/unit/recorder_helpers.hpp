@@ -22,11 +22,13 @@ namespace traverse::results::testing {
 
 inline Layout small_layout() {
   Layout layout;
-  layout.probes = {2.5, 5.0};
-  layout.supports = {0.0, 5.0, 10.0};
   layout.interval = 1.0;
-  layout.vehicles = {{{"car"}, {"front_wheel", "rear_wheel"}, {"guide"}, {"spring"}, {"bar"}},
-                     {{"car", "bogie"}, {}, {}, {}, {}}};
+  layout.constants = {{"/probes/x", {2.5, 5.0}, "m"}, {"/supports/x", {0.0, 5.0, 10.0}, "m"}};
+  layout.fields = {{"/probes/deflection", {2}, "m"},
+                   {"/supports/reaction", {3, 3}, "N, N, N m"},
+                   {"/energy/residual", {}, "J"},
+                   {"/vehicles/0/car/position", {3}, "m, m, rad"},
+                   {"/vehicles/0/rear_wheel/penetration", {}, "m"}};
   return layout;
 }
 
@@ -35,17 +37,10 @@ inline Sample sample_at(long i) {
   const double t = static_cast<double>(i);
   Sample sample;
   sample.time = t;
-  sample.probes = {{t + 0.01, t + 0.02, t + 0.03, t + 0.04, t + 0.05, t + 0.06, t + 0.07},
-                   {t + 0.11, t + 0.12, t + 0.13, t + 0.14, t + 0.15, t + 0.16, t + 0.17}};
-  sample.supports = {{t + 0.2, t + 0.21, t + 0.22}, {t + 0.23, t + 0.24, t + 0.25}, {t + 0.26, t + 0.27, t + 0.28}};
-  sample.vehicles.resize(2);
-  sample.vehicles[0].bodies = {{{t + 0.3, t + 0.31, t + 0.32}, {t + 0.33, t + 0.34, t + 0.35}, {t + 0.36, t, t}}};
-  sample.vehicles[0].wheels = {{t + 0.4, t + 0.41, t + 0.42}, {t + 0.43, t + 0.44, t + 0.45}};
-  sample.vehicles[0].joints = {{t + 0.5, t + 0.51, t + 0.52}};
-  sample.vehicles[0].springs = {t + 0.53};
-  sample.vehicles[0].torsion_springs = {t + 0.54};
-  sample.vehicles[1].bodies = {{{t + 0.6, t, t}, {t, t, t}, {t, t, t}}, {{t + 0.7, t, t}, {t, t, t}, {t, t, t}}};
-  sample.energy = {t + 0.8, t + 0.81, t + 0.82, t + 0.83, t + 0.84, t + 0.85};
+  sample.values = {t + 0.01, t + 0.11,  // probes
+                   t + 0.2,  t + 0.21, t + 0.22, t + 0.23, t + 0.24,
+                   t + 0.25, t + 0.26, t + 0.27, t + 0.28,  // supports
+                   t + 0.85, t + 0.3,  t + 0.31, t + 0.32, t + 0.45};
   return sample;
 }
 

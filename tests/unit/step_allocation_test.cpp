@@ -10,6 +10,8 @@
 #include "traverse/base/petsc.hpp"
 #include "traverse/integrate/stepper.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/run/outputs.hpp"
+#include "traverse/run/passage.hpp"
 #include "traverse/scene/scene.hpp"
 
 #ifdef TRAVERSE_COUNTS_MEMORY
@@ -55,10 +57,8 @@ Words coaches_on_a_continuous_bridge() {
           "2.0"};
 }
 
-/// What 50 steps of 1 ms allocate after 20 that warm up.
-long allocations_of_steps(const Words& scene_words, const std::string& type, const std::string& adapt = "none") {
-  Words words = {"traverse", "-ts_max_time", "0.1", "-ts_type", type, "-ts_adapt_type", adapt};
-  words.insert(words.end(), scene_words.begin(), scene_words.end());
+app::Scene scene_of(Words words) {
+  words.insert(words.begin(), "traverse");
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   base::check(PetscOptionsClear(nullptr));
@@ -66,7 +66,14 @@ long allocations_of_steps(const Words& scene_words, const std::string& type, con
   options::put_into_petsc(input);
   for (std::size_t i = 1; i + 1 < input.petsc_words.size(); i += 2)
     base::check(PetscOptionsSetValue(nullptr, input.petsc_words[i].c_str(), input.petsc_words[i + 1].c_str()));
-  const app::Scene scene = app::read_scene();
+  return app::read_scene();
+}
+
+/// What 50 steps of 1 ms allocate after 20 that warm up.
+long allocations_of_steps(const Words& scene_words, const std::string& type, const std::string& adapt = "none") {
+  Words words = {"-ts_max_time", "0.1", "-ts_type", type, "-ts_adapt_type", adapt};
+  words.insert(words.end(), scene_words.begin(), scene_words.end());
+  const app::Scene scene = scene_of(words);
   beam::Beam beam(PETSC_COMM_SELF, *scene.beam);
   beam.set_rayleigh({0.5, 5e-4});
   coupling::System system(PETSC_COMM_SELF, &beam,
@@ -99,6 +106,29 @@ TEST(Steps, JudgedByTheirErrorsTakeNoMemory) {
 TEST(Steps, OfATrainTakeNoMemory) {
   for (const char* type : {"esdirk4", "genalpha"})
     EXPECT_EQ(allocations_of_steps(coaches_on_a_continuous_bridge(), type), 0) << type;
+}
+
+// All that a results file holds of a train on a bridge, at one instant.
+TEST(Outputs, TakeNoMemoryOnceTheirSampleIsThere) {
+  const app::Scene scene = scene_of(coaches_on_a_continuous_bridge());
+  std::vector<std::string> notes;
+  app::SharedBeam shared(PETSC_COMM_SELF, scene, notes);
+  shared.damp(scene, false, notes);
+  shared.prepare(scene, notes);
+  app::Passage passage(scene, shared, notes);
+  passage.start(notes);
+  const app::Outputs outputs = app::outputs_of({scene, passage.system().fleet(), shared.bridge()});
+  app::Observed now;
+  now.probes.resize(scene.output.probes.size());
+  now.supports.resize(scene.beam->spans.size() + 1);
+  now.ground.emplace(*shared.beam);
+  std::vector<double> values;
+  outputs.fill(now, values);
+  EXPECT_EQ(values.size(), outputs.layout().width());
+  EXPECT_GT(values.size(), 400U);
+  const long before = allocations;
+  outputs.fill(now, values);
+  EXPECT_EQ(allocations - before, 0);
 }
 
 }  // namespace

@@ -80,9 +80,10 @@ class Beam {
   /// Stiffness and damping matrix of each kind of foundation of section 3 by itself; null where the scene has no such
   /// kind.
   struct FoundationMats {
-    base::Handle<Mat> vertical_discrete[2], vertical_continuous[2], longitudinal_discrete[2],
-        longitudinal_continuous[2], rotational_discrete[2];  // [0] stiffness, [1] damping
-    base::Handle<Mat> layered_track[2];                      // rail, pads, ballast, sub-ballast
+    using Pair = std::array<base::Handle<Mat>, 2>;  // [0] stiffness, [1] damping
+    std::array<Pair, foundation_kind_count> of_kind;
+    Pair layered_track;  // rail, pads, ballast, sub-ballast
+    const Pair& of(std::string_view kind) const { return of_kind[foundation_kind(kind)]; }
   };
   const FoundationMats& foundation() const { return foundation_; }
 

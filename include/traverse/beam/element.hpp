@@ -26,8 +26,14 @@ ElementMatrices element_matrices(const BeamModel& model, const Element& element)
 Transverse transverse_bed(const Distribution& density, const Element& element);
 /// Integral of density(x) phi phi^T: the axial mass matrix, a longitudinal bed (eqs. 36 and 38).
 Axial axial_bed(const Distribution& density, const Element& element);
+/// Integral of density(x) psi' psi'^T: a bed that holds the slope.
+Transverse slope_bed(const Distribution& density, const Element& element);
 /// Integral of density(x) psi: nodal forces of a distributed force (eq. 10).
 std::array<double, 4> transverse_load(const Distribution& density, const Element& element);
+/// Integral of density(x) phi: of one along x.
+std::array<double, 2> axial_load(const Distribution& density, const Element& element);
+/// Integral of density(x) psi': of a distributed moment.
+std::array<double, 4> slope_load(const Distribution& density, const Element& element);
 
 /// c s s^T, the matrix of a spring or damper c at one station with the shape vector s.
 template <std::size_t N>

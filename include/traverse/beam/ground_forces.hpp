@@ -17,12 +17,9 @@ class GroundForces {
   /// Collective, complete on every rank: from this rank's slices of the nodal vectors.
   void evaluate(const double* v, const double* w, const double* a);
 
-  // Forces on the structure: N, upward or towards the right; N m.
-  const double* vertical() const { return &sums_[vertical_]; }          // of the points, in the model's order
-  const double* longitudinal() const { return &sums_[longitudinal_]; }  // only where there are axial unknowns
-  const double* rotational() const { return &sums_[rotational_]; }
-  const double* vertical_bed() const { return &sums_[vertical_bed_]; }  // resultant over each span
-  const double* longitudinal_bed() const { return &sums_[longitudinal_bed_]; }
+  /// Forces on the structure of a kind of foundation, N upward or towards the right, N m: of points in the model's
+  /// order, of a bed the resultant over each span. Longitudinal ones only where there are axial unknowns.
+  const double* of_kind(std::size_t kind) const { return &sums_[first_[kind]]; }
   /// Resultants, {x, y}: of all of these and the ground under a layered track, of inertia, and of the drag a M w of
   /// mass-proportional damping.
   std::array<double, 2> foundation() const;
@@ -42,8 +39,8 @@ class GroundForces {
   using Masses = std::array<std::vector<double>, 2>;
   void add(std::size_t sum, int unknown, double c, double k);
   void add_mass(std::vector<double>& masses, int unknown, double mass) const;
-  void add_points(const Line& line);
-  void add_beds(const Line& line);
+  void add_points(std::size_t kind, const Line& line);
+  void add_bed(std::size_t kind, const Line& line);
   void add_masses(const Line& line, Masses& masses) const;
   void add_track();
 
@@ -51,7 +48,8 @@ class GroundForces {
   std::vector<Term> terms_;
   Masses masses_, bridge_masses_;
   std::vector<double> sums_;
-  std::size_t vertical_ = 0, longitudinal_, rotational_, vertical_bed_, longitudinal_bed_, track_, inertia_, drag_;
+  std::array<std::size_t, foundation_kind_count + 1> first_{};  // sum of each kind, and past the last
+  std::size_t track_ = 0, inertia_ = 0, drag_ = 0;
   double mass_ = 0.0;
 };
 

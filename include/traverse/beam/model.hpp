@@ -6,32 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "traverse/beam/foundation_law.hpp"
+#include "traverse/beam/foundation.hpp"
 
 namespace traverse::beam {
-
-/// A quantity along x: one value, or a piecewise linear table in which a repeated x is a step.
-/// Outside the table the end value holds.
-class Distribution {
- public:
-  Distribution(double value = 0.0) : values_{value} {}  // NOLINT: a number is a distribution
-  /// x not decreasing, at most two equal in a row; throws InputError naming `name` otherwise.
-  Distribution(std::vector<double> x, std::vector<double> values, const std::string& name);
-
-  /// Value at x seen from inside the interval that lies towards `inside` (matters at a step only).
-  double at(double x, double inside) const;
-  bool uniform() const { return x_.empty(); }
-  double minimum() const;
-  double maximum() const;
-  /// The same quantity with `value` more everywhere.
-  Distribution plus(double value) const;
-  /// Stations of the table strictly inside (a, b), without repetition: where an integration has to be split.
-  std::vector<double> breaks(double a, double b) const;
-
- private:
-  std::vector<double> x_;
-  std::vector<double> values_;
-};
 
 /// Kinematic conditions of the paper's 3.1 at a span end. `fixes` below says what each one holds.
 enum class Support {
@@ -50,36 +27,6 @@ enum class Joint {
   continuous,  // it goes through
   hinge,       // it goes through, but its slope may jump: no moment there
   separate,    // two beams that end there, side by side on one support
-};
-
-/// A spring and a damper at one station (vertical or longitudinal: N/m, N s/m; rotational: N m/rad, N m s/rad).
-struct PointFoundation {
-  double x = 0.0;
-  double k = 0.0;
-  double c = 0.0;
-  bool from_left = false;  // on the end of two separate spans, or beside a hinge: it holds the left one
-  FoundationLaw law = {};
-};
-
-/// A bed along the whole beam: N/m2 and N s/m2, neither negative.
-struct Bed {
-  Distribution k;
-  Distribution c;
-  FoundationLaw law = {};
-};
-
-/// The paper's section 3, each kind assembled into a matrix of its own. It pushes back: the force on the beam is
-/// -k v - c dv/dt. What has a law that is not linear is in none of the matrices (nonlinear_points.hpp).
-/// The longitudinal kinds have no effect on a beam without axial unknowns.
-struct Foundation {
-  std::vector<PointFoundation> vertical;      // 3.2
-  std::optional<Bed> vertical_bed;            // 3.3
-  std::vector<PointFoundation> longitudinal;  // 3.4
-  std::optional<Bed> longitudinal_bed;        // 3.5
-  std::vector<PointFoundation> rotational;    // 3.6
-
-  /// Whether any of it has a law that is not linear.
-  bool nonlinear() const;
 };
 
 /// A spring and a damper of a layer of track: N/m and N s/m for each sleeper.
@@ -127,6 +74,11 @@ struct BeamModel {
   /// Whether all its spans are beams of their own.
   bool all_separate() const;
 };
+
+/// Whether a kind of foundation has an effect on the beam: a longitudinal one needs axial unknowns.
+inline bool acts(const FoundationKind& kind, const BeamModel& model) {
+  return model.axial || kind.direction != Direction::longitudinal;
+}
 
 /// A run of elements of one length: a span, or what hinges leave of it.
 struct Piece {

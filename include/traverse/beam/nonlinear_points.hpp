@@ -8,16 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "traverse/beam/line.hpp"
+#include "traverse/beam/point_shape.hpp"
 
 namespace traverse::beam {
 
-enum class Direction { vertical, longitudinal, rotational };
-
 struct NonlinearPoint {
+  std::size_t kind = 0;  // a row of foundation_kinds
   Direction direction = Direction::vertical;
-  bool of_bed = false;
-  int index = 0;  // in the foundation's list of points of this direction; of a bed its span
+  int index = 0;  // in the foundation's list of points of this kind; of a bed its span
   double x = 0.0;
   Station at;
   double k = 0.0, c = 0.0;  // N/m, N s/m, or N m/rad, N m s/rad
@@ -30,11 +28,7 @@ std::vector<NonlinearPoint> nonlinear_points(const Line& bridge, int first, int 
 /// The pieces of an element between whose ends a bed's tables have no break, each integrated by itself.
 std::vector<std::pair<double, double>> bed_pieces(const Bed& bed, const Element& element);
 
-/// The displacement at a point is the sum of shape*unknown: four terms, of a longitudinal one two (-1: none).
-struct PointShape {
-  std::array<int, 4> unknown{-1, -1, -1, -1};  // global
-  std::array<double, 4> shape{};
-};
+/// That of the displacement at a point.
 PointShape shape_of(const Line& bridge, const NonlinearPoint& point);
 
 }  // namespace traverse::beam

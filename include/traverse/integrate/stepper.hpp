@@ -61,7 +61,7 @@ class Stepper {
   std::string method() const;                                      // e.g. "ARKIMEX 4, implicit"
   /// Whether steps that are too long would go unnoticed: those of an implicit method with one length.
   bool hides_long_steps() const { return implicit_ && !adaptive_; }
-  bool high_order() const;  // above 2
+  bool high_order() const { return high_order_; }  // above 2
 
  private:
   struct Request {  // what TS asks of a stage
@@ -102,7 +102,7 @@ class Stepper {
   base::Handle<Mat> jacobian_;
   Request request_;
   coupling::Terms implicit_terms_ = coupling::Terms::all;
-  bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false;
+  bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false, high_order_ = false;
   bool monitored_ = false;            // by -ts_monitor and its like
   std::optional<StepLadder> ladder_;  // of adaptive steps of an own type
   double next_step_ = 0.0;            // what the step control wants

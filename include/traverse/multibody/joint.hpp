@@ -1,11 +1,17 @@
 // Constraint equations of the joints with their derivatives (the paper's eqs. 42-44), one joint at a time.
 //
-// Every joint is made of four kinds of equations between a first and a second body:
-//   point     P2 - P1 = 0                   2 equations, m
-//   normal    n . (P2 - r1) - offset = 0    1 equation, m; n is fixed in the first body, r1 its centre of mass
-//   distance  (d.d - L^2) / (2 L) = 0       1 equation, m; d = P2 - P1, so that lambda is a force
-//   angle     phi2 - phi1 - angle = 0       1 equation, rad; always a joint's last one
-// With N q'' + Phi_q^T lambda = g, the joint acts on the second body with -lambda.
+// Every joint is made of kinds of equations between a first and a second body, each in a file of its own:
+//   point     P2 - P1 = 0                   2 equations, m                                  equations/point.hpp
+//   normal    n . (P2 - r1) - offset = 0    1 equation, m; n is fixed in the first body,    equations/normal.hpp
+//                                           r1 its centre of mass
+//   distance  (d.d - L^2) / (2 L) = 0       1 equation, m; d = P2 - P1,                     equations/distance.hpp
+//                                           so that lambda is a force
+//   angle     phi2 - phi1 - angle = 0       1 equation, rad                                 equations/angle.hpp
+//   gear      phi2 + ratio phi1 - angle = 0 1 equation, rad                                 equations/gear.hpp
+// A kind has its number of rows, whether they are about an angle, what it needs to know of the joint (JointNeeds), and
+// the functions prepare, residual, gradient, gamma, curvature and reaction, of which the functions below are made.
+// Which types of joints there are stands in joint_types.cpp. With N q'' + Phi_q^T lambda = g, the joint acts on the
+// second body with -lambda.
 #pragma once
 
 #include <Eigen/Core>
@@ -26,39 +32,31 @@ struct JointGeometry {
   Eigen::Vector2d normal = Eigen::Vector2d::UnitX();     // across the axis, in the first body
   double offset = 0.0;                                   // m, normal . first_arm
   double angle = 0.0;                                    // rad, phi2 - phi1 at t = 0
-  double length = 0.0;                                   // m, of a distance joint
+  double length = 0.0;                                   // m, of a distance
+  std::array<double, most_joint_numbers> numbers = {};   // of the type's own
   SlidingFriction friction;
 };
-
-/// Rows of Phi_q of one joint (the first joint_rows of them), columns x1 y1 phi1 x2 y2 phi2.
-using JointJacobian = Eigen::Matrix<double, 3, 6>;
-using JointCurvature = Eigen::Matrix<double, 6, 6>;
-
-/// The number of equations of a joint.
-int joint_rows(JointType type);
-/// Whether the last equation of the joint is about an angle (rad) instead of a length (m).
-bool has_angle_row(JointType type);
 
 /// `first` and `second` are the bodies' frames at t = 0.
 JointGeometry joint_geometry(const Joint& joint, const Frame& first, const Frame& second, int row);
 
-/// Phi of the joint, joint_rows values.
+/// Phi of the joint, one value a row of its type.
 void joint_residual(const JointGeometry& joint, const Frame& first, const Frame& second, double* Phi);
 /// Phi_q of the joint.
 void joint_jacobian(const JointGeometry& joint, const Frame& first, const Frame& second, JointJacobian& Phi_q);
 /// gamma = -(Phi_q q')_q q' of the joint (eq. 44 as corrected in doc/theory.md; joints do not depend on time).
 void joint_gamma(const JointGeometry& joint, const Frame& first, const Frame& second, double* gamma);
-/// d(Phi_q^T lambda)/dq at fixed lambda (joint_rows values); symmetric.
+/// d(Phi_q^T lambda)/dq at fixed lambda; symmetric.
 void joint_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, const double* lambda,
                      JointCurvature& curvature);
-/// The sliding of a prismatic joint or a slot is that of the joint's point on the second body along the axis, as seen
+/// The sliding of a joint that slides is that of the joint's point on the second body along the axis, as seen
 /// from the first. Its gradient, columns x1 y1 phi1 x2 y2 phi2: times the velocities it is the sliding speed, times a
 /// force along the axis it is the generalized force of that on the second body and its opposite on the first, both at
 /// this point.
 Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& joint, const Frame& first, const Frame& second);
 /// The derivative of slide_gradient; symmetric.
 void slide_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, JointCurvature& curvature);
-/// Force on the second body and moment on it about the joint's point there (for `distance`: about `to`).
+/// Force on the second body and moment on it about the joint's point there (about `to` where it has one).
 Eigen::Vector3d joint_reaction(const JointGeometry& joint, const Frame& first, const Frame& second,
                                const double* lambda);
 

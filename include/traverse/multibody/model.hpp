@@ -11,6 +11,7 @@
 
 #include "traverse/base/time_function.hpp"
 #include "traverse/multibody/force_law.hpp"
+#include "traverse/multibody/joint_type.hpp"
 
 namespace traverse::multibody {
 
@@ -25,14 +26,6 @@ struct Body {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  // of x, y, phi at t = 0
 };
 
-enum class JointType {
-  revolute,   // both bodies share `point`: 2 equations
-  prismatic,  // only sliding along `axis` through `point` (fixed in the first body) is free: 2 equations
-  slot,       // sliding along `axis` and turning are free: 1 equation
-  weld,       // nothing is free: 3 equations
-  distance,   // the distance between `from` (first body) and `to` (second body) is kept: 1 equation
-};
-
 /// Friction along the axis of a joint that slides: (coefficient*|normal force| + force) tanh(sliding speed /
 /// transition_speed), against the sliding.
 struct SlidingFriction {
@@ -44,13 +37,14 @@ struct SlidingFriction {
 
 struct Joint {
   std::string name;
-  JointType type = JointType::revolute;
+  JointType type = JointType::revolute;          // which also says what of the following counts
   std::array<int, 2> bodies = {ground, ground};  // the reaction is reported on the second
   Eigen::Vector2d point = Eigen::Vector2d::Zero();
-  Eigen::Vector2d axis = Eigen::Vector2d::UnitY();
-  Eigen::Vector2d from = Eigen::Vector2d::Zero();
-  Eigen::Vector2d to = Eigen::Vector2d::Zero();
-  SlidingFriction friction = {};  // prismatic, slot
+  Eigen::Vector2d axis = Eigen::Vector2d::UnitY();  // fixed in the first body
+  Eigen::Vector2d from = Eigen::Vector2d::Zero();   // on the first body
+  Eigen::Vector2d to = Eigen::Vector2d::Zero();     // on the second body
+  SlidingFriction friction = {};
+  std::array<double, most_joint_numbers> numbers = {};  // of the type's own
 };
 
 /// A rheonomic constraint: one coordinate of one body is a given function of time.

@@ -2,33 +2,27 @@
 // stays readable when the run dies.
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
-#include "traverse/beam/recovery.hpp"
 #include "traverse/modes/modes.hpp"
 #include "traverse/results/place.hpp"
 
 namespace traverse::results {
 
-/// What the file will hold, fixed before the first sample.
+/// What the file will hold, fixed before the first sample. The time of a sample needs no mention.
 struct Layout {
-  struct VehicleNames {
-    std::vector<std::string> bodies, wheels, joints, springs, torsion_springs;
-  };
-  double interval = 0.0;         // s between samples; 0: there is one instant only
-  std::vector<double> probes;    // stations, m; empty without a beam
-  std::vector<double> supports;  // stations of the span ends, m
-  std::vector<VehicleNames> vehicles;
-  /// A dataset that belongs to some scenes only: forces of the foundation, the response of a rail.
+  double interval = 0.0;  // s between samples; 0: there is one instant only
+  /// A dataset that gains a row with each sample.
   struct Field {
-    std::string name;       // its path in the file
-    std::size_t width = 0;  // numbers in a sample
-    std::string unit;
+    std::string name;              // its path in the file
+    std::vector<std::size_t> row;  // shape of a row; empty: one number
+    std::string unit;              // where the numbers of a row differ it names each
+    std::size_t width() const;     // numbers in a row
   };
   std::vector<Field> fields;
   /// What does not change with time: stations that fields belong to.
@@ -38,31 +32,15 @@ struct Layout {
     std::string unit;
   };
   std::vector<Constant> constants;
+
+  /// Numbers in a sample besides its time.
+  std::size_t width() const;
 };
 
 /// One stored instant.
 struct Sample {
   double time = 0.0;
-  std::vector<beam::Response> probes;
-  std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam
-  struct Body {
-    std::array<double, 3> position, velocity, acceleration;
-  };
-  struct Wheel {
-    double normal_force = 0.0, friction_force = 0.0, penetration = 0.0;
-  };
-  struct Vehicle {
-    std::vector<Body> bodies;
-    std::vector<Wheel> wheels;
-    std::vector<std::array<double, 3>> joints;  // reaction on the second body
-    std::vector<double> springs;                // tension, N
-    std::vector<double> torsion_springs;        // moment on the second body, N m
-  };
-  std::vector<Vehicle> vehicles;
-  std::vector<std::vector<double>> fields;  // as in the layout
-  struct Energy {
-    double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0, residual = 0.0;
-  } energy;
+  std::vector<double> values;  // a row of each field after another, in the order of the layout
 };
 
 /// The bridge's deflection at one instant, at its nodes and at points between them.
@@ -88,6 +66,7 @@ struct Extreme {
   double place = 0.0;  // station, m
 };
 struct Summary {
+  bool probes = false;  // whether there are any: without them there are no peaks
   Extreme deflection, acceleration, moment;
   double static_deflection = 0.0;  // largest |static deflection| at the same station with the same loads; 0: unknown
   double amplification = 0.0;      // |deflection| over static; 0: unknown
@@ -135,6 +114,8 @@ class Recorder {
            const std::vector<std::pair<std::string, std::string>>& options);
   ~Recorder();  // flushes what is there; never throws
 
+  /// Whether this rank writes a file: samples of the others need no values.
+  bool writes() const { return impl_ != nullptr; }
   void add(const Sample& sample);
   /// The end of the run where it is no multiple of the interval: what `add` would append, apart under /end.
   void end(const Sample& sample);

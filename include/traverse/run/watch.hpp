@@ -4,13 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "traverse/beam/ground_forces.hpp"
 #include "traverse/beam/recovery.hpp"
 #include "traverse/beam/viscous_lag.hpp"
 #include "traverse/coupling/system.hpp"
 #include "traverse/integrate/stepper.hpp"
 #include "traverse/results/recorder.hpp"
 #include "traverse/results/terminal.hpp"
+#include "traverse/run/outputs.hpp"
 #include "traverse/run/peaks.hpp"
 #include "traverse/run/plan.hpp"
 #include "traverse/run/wheel_extremes.hpp"
@@ -22,15 +22,17 @@ namespace traverse::app {
 /// Watches stored instants and steps: samples for the recorder, extremes for the summary.
 class Watch {
  public:
-  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder);
+  /// outputs: what the recorder's layout is of; null: no samples are recorded.
+  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
+        const Outputs* outputs = nullptr);
 
   void sample(const integrate::Instant& instant);
   /// To be called at the end of every step, also of one that ends at a sample.
   void step(double t);
   /// Collective. The summary so far, and the shape at the worst instant into the recorder.
   results::Summary finish();
-  /// The latest instant that was seen.
-  const results::Sample& last() const { return sample_; }
+  /// Of the latest instant that was seen, s.
+  double last_time() const { return sample_.time; }
   const results::Summary& extremes() const { return summary_; }
   /// The peaks, those of wheels and contacts included; after the last sample.
   const results::Summary& finished_extremes();
@@ -39,8 +41,6 @@ class Watch {
   const Peaks& finished_peaks();
 
  private:
-  void fill_vehicles(results::Sample& sample) const;
-  void fill_fields();
   void drag(const double* drag);
   void note_separations();
   void note_wheels();
@@ -54,15 +54,15 @@ class Watch {
   results::Recorder& recorder_;
   std::optional<beam::Recovery> recovery_, rail_recovery_;
   std::optional<beam::ViscousLag> lag_;
-  std::optional<beam::GroundForces> ground_;
-  std::vector<beam::Response> rail_, dragged_;
+  const Outputs* outputs_;  // null where this rank writes no file
+  std::vector<beam::Response> dragged_;
   Peaks peaks_;
   WheelExtremes wheels_;
   train::WheelPaths paths_;  // where wheels are free to change their distances
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;
   bool finished_ = false;
-  coupling::Observation observation_;
+  Observed now_;
   results::Sample sample_;
   results::Summary summary_;
   double most_deflected_ = 0.0;  // m
@@ -73,8 +73,5 @@ class Watch {
 
 /// SolverError where so much energy does not balance that the result is meaningless.
 void check_balance(const Scene& scene, const results::Summary& summary);
-
-/// The recorder's layout for a scene.
-results::Layout layout_of(const Scene& scene, const coupling::System& system, const beam::Beam* beam);
 
 }  // namespace traverse::app

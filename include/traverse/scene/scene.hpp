@@ -8,15 +8,16 @@
 #include <vector>
 
 #include "traverse/beam/model.hpp"
+#include "traverse/options/analyses.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/track/profile.hpp"
 #include "traverse/train/vehicle.hpp"
 
 namespace traverse::app {
 
-enum class Analysis { transient, modes, static_response };
 enum class Start { equilibrium, given };
 
+using options::Analysis;
 using train::Coupler;
 using train::Drive;
 using train::MovingLoad;

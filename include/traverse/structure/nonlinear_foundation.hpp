@@ -24,11 +24,11 @@
 
 namespace traverse::structure {
 
-/// Forces on the bridge of the foundation that is not linear, N and N m. Points in the order of the model's lists (zero
-/// for linear ones), of beds the resultant a span; empty where the model has no such list or bed.
+/// Forces on the bridge of the foundation that is not linear, N and N m, by the rows of beam::foundation_kinds. Points
+/// in the order of the model's lists (zero for linear ones), of beds the resultant a span; empty where the model has no
+/// such list or bed.
 struct NonlinearForces {
-  std::vector<double> vertical, longitudinal, rotational;
-  std::vector<double> vertical_bed, longitudinal_bed;
+  std::array<std::vector<double>, beam::foundation_kind_count> of_kind;
 };
 
 class NonlinearFoundation {

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <array>
+#include <span>
+#include <string_view>
 #include <vector>
 
 namespace traverse::structure {
@@ -33,6 +35,7 @@ struct StepRule {
   Weights error_in_v{}, error_in_w{}, error_in_a{};
 };
 
+/// Stage i has the i + 1 accelerations before it; the last stage is the end of the step.
 struct Method {
   std::vector<StageRule> stages;
   StepRule step;
@@ -46,5 +49,30 @@ Method esdirk4();
 /// Generalised-alpha with all forces at the end of the step (Wood, Bossak and Zienkiewicz 1981): order 2, one stage;
 /// what oscillates fast within a step shrinks by `radius` (0..1) each step. 1: the trapezoidal rule.
 Method generalised_alpha(double radius);
+
+/// A number that a method takes from an option.
+struct MethodParameter {
+  const char* option = nullptr;  // with its dash; null: there is none
+  const char* words = "";
+  double value = 0.0;  // where the option is not given
+  double least = 0.0, most = 0.0;
+};
+
+/// A method as `-ts_type NAME` chooses it. Its tests walk the rows (order_conditions_test.cpp).
+struct MethodRow {
+  const char* name;
+  int order;
+  const char* words;
+  Method (*make)(double parameter);
+  MethodParameter parameter{};
+
+  /// Whether there is an embedded method, whose difference is the estimate of a step's error.
+  bool estimates_errors() const;
+};
+
+/// All of them, the default first.
+std::span<const MethodRow> methods();
+/// Null: none has this name.
+const MethodRow* find_method(std::string_view name);
 
 }  // namespace traverse::structure

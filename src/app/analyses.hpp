@@ -1,0 +1,55 @@
+// How each analysis is carried out. A new one is a function in a file of its own, its line here, and its row in
+// options/analyses.hpp.
+#pragma once
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "traverse/accuracy/accuracy.hpp"
+#include "traverse/options/analyses.hpp"
+#include "traverse/results/place.hpp"
+#include "traverse/run/shared_beam.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// A scene that is ready to be computed.
+struct Job {
+  MPI_Comm comm;
+  const Scene& scene;  // with everything chosen that was left open
+  results::Place place;
+  const Accuracy& accuracy;
+  SharedBeam& beam;
+  std::vector<std::string> notes;
+};
+
+// Collective. Each writes the results file and the summary, and returns the exit status as `run` does.
+int run_in_time(Job job);  // the motion in time, or rest at t = 0
+int run_modes(Job job);
+
+struct AnalysisRun {
+  options::Analysis analysis;
+  int (*run)(Job job);
+};
+
+inline constexpr AnalysisRun analysis_runs[] = {
+    {options::Analysis::transient, run_in_time},
+    {options::Analysis::modes, run_modes},
+    {options::Analysis::static_response, run_in_time},
+};
+
+constexpr const AnalysisRun* run_of(options::Analysis analysis) {
+  for (const AnalysisRun& row : analysis_runs)
+    if (row.analysis == analysis) return &row;
+  return nullptr;
+}
+
+static_assert(std::all_of(std::begin(options::analyses), std::end(options::analyses),
+                          [](const options::AnalysisRow& row) { return run_of(row.analysis) != nullptr; }),
+              "every analysis that may be asked for has its line in analysis_runs");
+
+}  // namespace traverse::app

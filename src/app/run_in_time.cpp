@@ -1,0 +1,184 @@
+// The motion in time, or rest where the loads stand: a passage that is watched, recorded and summed up.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include "analyses.hpp"
+#include "traverse/accuracy/trials.hpp"
+#include "traverse/modes/modes.hpp"
+#include "traverse/options/input.hpp"
+#include "traverse/results/recorder.hpp"
+#include "traverse/results/stage.hpp"
+#include "traverse/results/terminal.hpp"
+#include "traverse/run/deflection_check.hpp"
+#include "traverse/run/outputs.hpp"
+#include "traverse/run/passage.hpp"
+#include "traverse/run/process.hpp"
+#include "traverse/run/signals.hpp"
+#include "traverse/run/watch.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr int nodes_for_a_check = 1000;  // of a given step by the first period: up to here frequencies take no time
+
+/// The natural frequencies that the run is made of: those of its modes, or the pair that damping was taken from.
+void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
+  if (!shared.omega) return;
+  const auto [omega1, omega2] = *shared.omega;
+  modes::Modes modes;
+  modes.omega = {omega1, omega2};
+  if (shared.modal)
+    modes = modes::as_stored(*shared.beam, shared.modal->basis(), beam::ShapePoints(shared.beam->mesh()));
+  recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
+}
+
+double total(MPI_Comm comm, double share) {
+  MPI_Allreduce(MPI_IN_PLACE, &share, 1, MPI_DOUBLE, MPI_SUM, comm);
+  return share;
+}
+
+/// The promise against what a refined run gives. False where it is broken.
+bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const Peaks& peaks) {
+  const Scene fine = refined(scene);
+  const Peaks truth = [&] {
+    const results::Stage stage("the refined run of -accuracy_report");
+    const options::WithoutMonitors without_monitors;
+    return peaks_of(comm, fine).peaks;
+  }();
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  bool all_kept = true;
+  if (rank == 0)
+    fmt::print("accuracy, against half the step and elements half as long\n  {:<22}{:>12}{:>12}{:>12}\n", "peak of",
+               "wanted", "expected", "true");
+  for (std::size_t i = 0; i < quantities; ++i) {
+    const Promise& promise = accuracy.promises[i];
+    const auto q = static_cast<Quantity>(i);
+    if (truth.largest(q).value == 0.0) continue;
+    const double error = peak_difference(peaks, truth, q);
+    const bool broken = promise.kept && error > scene.accuracy;
+    all_kept = all_kept && !broken;
+    if (rank != 0) continue;
+    fmt::print("  {:<22}{:>12}{:>12}{:>12.1e}{}\n", quantity_names[i],
+               promise.kept ? fmt::format("{:.1e}", scene.accuracy) : "-",
+               promise.kept ? fmt::format("{:.1e}", promise.expected) : "-", error,
+               broken         ? "  broken"
+               : promise.kept ? "  kept"
+                              : "  not promised");
+  }
+  return all_kept;
+}
+
+}  // namespace
+
+int run_in_time(Job job) {
+  const MPI_Comm comm = job.comm;
+  const Scene& scene = job.scene;
+  const Accuracy& accuracy = job.accuracy;
+  SharedBeam& shared = job.beam;
+  std::vector<std::string>& notes = job.notes;
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  const bool still = scene.analysis == Analysis::static_response;
+  const beam::Beam* beam = shared.bridge();
+  if (beam != nullptr) {
+    const std::vector<int>& elements = beam->model().elements;  // of which one may have no two frequencies
+    const bool cheap =
+        beam->mesh().nodes() <= nodes_for_a_check && *std::min_element(elements.begin(), elements.end()) > 1;
+    shared.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
+  }
+  shared.prepare(scene, notes);
+  Passage passage(scene, shared, notes);  // everything is checked before anything is computed
+  coupling::System& system = passage.system();
+  for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
+  passage.start(notes);
+  if (system.static_error() > 1e-9)
+    notes.push_back(
+        fmt::format("static deflections: relative error about {:.1g}, by rounding in the many elements "
+                    "between supports",
+                    system.static_error()));
+  print_notes(comm, notes);
+
+  std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
+  const Outputs outputs = outputs_of({scene, system.fleet(), beam});
+  results::Layout layout = outputs.layout();
+  if (!still) layout.interval = passage.plan().interval * static_cast<double>(passage.plan().stored);
+  results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
+  store_modes(shared, recorder);
+  if (shared.beam) shared.beam->release_matrices();
+  Watch watch(scene, system, beam, recorder, &outputs);
+  results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
+  const auto begin = std::chrono::steady_clock::now();
+  double reached = 0.0;
+  auto summarise = [&](const std::string& ended) {
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    results::Summary summary = [&] {
+      const results::Stage stage("summary");
+      return watch.finish();
+    }();
+    summary.end_time = reached;
+    summary.steps = passage.steps();
+    summary.rejected_steps = passage.rejected();
+    summary.solves = system.beam_solves();
+    summary.factorisations = system.factorisations();
+    summary.wall_seconds = wall;
+    summary.linear_defect = system.defect();
+    if (system.structure() != nullptr && system.structure()->energy_left())
+      summary.energy_left = total(comm, *system.structure()->energy_left());
+    summary.static_error = system.static_error();
+    summary.expected_errors = accuracy.expected();
+    summary.ended = ended;
+    recorder.finish(summary);
+    progress.done();
+    if (rank == 0) results::print_summary(summary, scene.output.file);
+    return summary;
+  };
+  int stopped = 0;
+  try {
+    const results::Stage stage("time steps");
+    passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
+                [&](double t, long steps) {
+                  watch.step(t);
+                  reached = t;
+                  progress.update(t, steps);
+                  results::Stage::advance(t / passage.plan().end_time);
+                  stopped = signal_on_any(comm);
+                  return stopped == 0;
+                });
+  } catch (const FileError& error) {
+    leave_together(comm, error);
+  } catch (const Error& error) {
+    summarise(error.what());
+    throw;
+  }
+  results::Summary summary;
+  try {
+    summary = summarise(stopped != 0                 ? fmt::format("ended by signal {}", stopped)
+                        : passage.stopped_at_limit() ? "ended at the limit of -ts_max_steps"
+                                                     : "reached its end");
+  } catch (const FileError& error) {
+    leave_together(comm, error);
+  }
+  if (const auto& crowded = system.fleet().crowded(); crowded.contact >= 0 && rank == 0) {
+    const train::WheelContact& c = system.fleet().wheels[static_cast<std::size_t>(crowded.contact)];
+    fmt::print(
+        "  note: {} of vehicle {} overlapped the track's profile at more than {} points (first at x = {:g} m): the {} "
+        "deepest carried\n",
+        system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
+  }
+  noted.reset();
+  check_balance(scene, summary);
+  check_deflection(comm, scene, summary.deflection.value);
+  if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
+      !report(comm, scene, accuracy, watch.finished_peaks()))
+    throw SolverError(
+        fmt::format("the accuracy of {:g} was not kept (above); take a smaller -accuracy, and please report the scene",
+                    scene.accuracy));
+  return stopped == 0 ? 0 : 128 + stopped;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,58 @@
+// Natural modes of the bridge, undamped and damped.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "analyses.hpp"
+#include "traverse/modes/modes.hpp"
+#include "traverse/options/input.hpp"
+#include "traverse/results/recorder.hpp"
+#include "traverse/results/stage.hpp"
+#include "traverse/results/terminal.hpp"
+#include "traverse/run/outputs.hpp"
+#include "traverse/run/process.hpp"
+#include "traverse/run/signals.hpp"
+
+namespace traverse::app {
+
+int run_modes(Job job) {
+  const MPI_Comm comm = job.comm;
+  const Scene& scene = job.scene;
+  SharedBeam& shared = job.beam;
+  std::vector<std::string>& notes = job.notes;
+  shared.damp(scene, true, notes);
+  const beam::Beam& beam = *shared.beam;
+  const auto [omega1, omega2] = *shared.omega;
+  const beam::Rayleigh ab = shared.rayleigh;
+  options::check_all_used(options::in_force());
+  print_notes(comm, notes);
+  const beam::ShapePoints points(beam.mesh());
+  const modes::Modes found = [&] {
+    const results::Stage stage("computation of the natural modes");
+    return modes::natural_modes(beam, scene.mode_count, points);
+  }();
+  const bool damping = modes::damped(beam);
+  const modes::DampedModes damped = [&] {
+    const results::Stage stage("computation of the damped modes");
+    return damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
+  }();
+  results::Layout layout;
+  layout.constants = stations({}, beam.mesh().span_ends());
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (rank == 0) results::print_modes(found, omega1, omega2, ab.a, ab.b, damped);
+  if (rank == 0 && ab.b != 0.0 && damped.size() < found.omega.size())
+    fmt::print(
+        "  damped modes are listed below |lambda| = 1/b = {:.6g} rad/s: above it the elements decide, not the beam\n",
+        1.0 / std::abs(ab.b));
+  if (scene.output.file.empty()) return 0;
+  const SignalsNoted noted;  // a moment, and the file is complete
+  results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
+  recorder.modes(found, ab.a, ab.b, omega1, omega2);
+  if (damping) recorder.damped_modes(damped);
+  recorder.finish_with({{"ended", "reached its end"}});
+  if (rank == 0) fmt::print("results  {}\n", scene.output.file);
+  return 0;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,43 @@
+#include "traverse/beam/point_shape.hpp"
+
+#include "traverse/beam/shape.hpp"
+
+namespace traverse::beam {
+namespace {
+
+/// A matrix of u1, u2 where four unknowns have a place.
+Transverse among_four(const Axial& m) { return {m[0], m[1], 0.0, 0.0, m[2], m[3]}; }
+
+}  // namespace
+
+std::array<int, 4> unknowns_of(const Line& line, Direction direction, int element) {
+  if (direction != Direction::longitudinal) return line.transverse(element);
+  const auto [u1, u2] = line.axial(element);
+  return {u1, u2, -1, -1};
+}
+
+std::array<double, 4> shape_of(Direction direction, double xi, double h) {
+  if (direction == Direction::vertical) return hermite(xi, h).value;
+  if (direction == Direction::rotational) return hermite(xi, h).slope;
+  const auto [left, right] = linear(xi);
+  return {left, right, 0.0, 0.0};
+}
+
+PointShape shape_at(const Line& line, Direction direction, const Station& at) {
+  return {unknowns_of(line, direction, at.element), shape_of(direction, at.xi, line.mesh.element(at.element).length)};
+}
+
+Transverse bed_matrix(Direction direction, const Distribution& density, const Element& element) {
+  if (direction == Direction::vertical) return transverse_bed(density, element);
+  if (direction == Direction::rotational) return slope_bed(density, element);
+  return among_four(axial_bed(density, element));
+}
+
+std::array<double, 4> bed_form(Direction direction, const Distribution& density, const Element& element) {
+  if (direction == Direction::vertical) return transverse_load(density, element);
+  if (direction == Direction::rotational) return slope_load(density, element);
+  const auto [left, right] = axial_load(density, element);
+  return {left, right, 0.0, 0.0};
+}
+
+}  // namespace traverse::beam

@@ -1,0 +1,24 @@
+// The groups of outputs, each in a file of its own or with its like. A new group is a function and its line in the
+// list.
+#pragma once
+
+#include "traverse/run/outputs.hpp"
+
+namespace traverse::app {
+
+using OutputGroup = void (*)(const Source& source, Outputs& outputs);
+
+void add_couplers(const Source& source, Outputs& outputs);    // outputs_train.cpp
+void add_vehicles(const Source& source, Outputs& outputs);    // outputs_train.cpp
+void add_energy(const Source& source, Outputs& outputs);      // outputs.cpp
+void add_probes(const Source& source, Outputs& outputs);      // outputs_beam.cpp
+void add_supports(const Source& source, Outputs& outputs);    // outputs_beam.cpp
+void add_balance(const Source& source, Outputs& outputs);     // outputs_beam.cpp
+void add_rail(const Source& source, Outputs& outputs);        // outputs_beam.cpp
+void add_foundation(const Source& source, Outputs& outputs);  // outputs_foundation.cpp
+
+inline constexpr OutputGroup output_groups[] = {add_couplers, add_vehicles, add_energy};
+inline constexpr OutputGroup output_groups_of_a_bridge[] = {add_probes, add_supports, add_foundation, add_balance,
+                                                            add_rail};
+
+}  // namespace traverse::app

@@ -1,0 +1,103 @@
+// Outputs of the structure: its response at the probes and that of a rail there, the reactions of supports, and the
+// balance of all forces.
+#include <numeric>
+
+#include "output_groups.hpp"
+
+namespace traverse::app {
+namespace {
+
+using beam::Response;
+using Pair = std::array<double, 2>;
+using Triple = std::array<double, 3>;
+
+constexpr Row<Response> response_rows[] = {
+    {"deflection", "m", of<&Response::deflection>},
+    {"velocity", "m/s", of<&Response::velocity>},
+    {"acceleration", "m/s2", of<&Response::acceleration>},
+    {"moment", "N m", of<&Response::moment>},
+    {"axial_displacement", "m", of<&Response::axial_displacement>},
+    {"axial_force", "N", of<&Response::axial_force>},
+};
+
+// Of the bridge alone.
+constexpr Row<Response> shear_rows[] = {{"shear", "N", of<&Response::shear>}};
+
+constexpr Row<Triple> support_rows[] = {{"reaction", "N, N, N m", [](const Triple& reaction) { return reaction; }}};
+
+/// Resultants {x, y} of everything that acts on the structure, and what is left of their sum; those along x are zero
+/// where the structure has no axial unknowns.
+struct Balance {
+  Pair load{}, support{}, foundation{}, inertia{}, drag{}, residual{};
+};
+
+constexpr Row<Balance> balance_rows[] = {
+    {"load", "N, N", of<&Balance::load>},
+    {"support", "N, N", of<&Balance::support>},
+    {"foundation", "N, N", of<&Balance::foundation>},
+    {"inertia", "N, N", of<&Balance::inertia>},
+    {"drag", "N, N", of<&Balance::drag>},
+    {"residual", "N, N", of<&Balance::residual>},
+};
+
+/// gravity: of the structure's own weight, m/s2; 0: it has none.
+Balance balance_of(const Observed& now, double gravity, bool axial) {
+  const beam::GroundForces& ground = *now.ground;
+  Balance b;
+  b.load = {0.0, -(gravity * ground.mass())};
+  for (const beam::ElementLoad& l : now.motion.loads) {
+    if (axial) b.load[0] += l.fx;
+    b.load[1] += l.fy;
+  }
+  for (const Triple& r : now.supports) {
+    b.support[0] += r[0];
+    b.support[1] += r[1];
+  }
+  b.foundation = ground.foundation();
+  for (std::size_t k = 0; k < beam::foundation_kind_count; ++k) {
+    const beam::Direction direction = beam::foundation_kinds[k].direction;
+    if (direction == beam::Direction::rotational) continue;
+    double& sum = b.foundation[direction == beam::Direction::longitudinal ? 0 : 1];
+    const std::vector<double>& more = now.motion.beam.foundation.of_kind[k];
+    sum = std::accumulate(more.begin(), more.end(), sum);
+  }
+  b.inertia = ground.inertia();
+  b.drag = ground.drag();
+  for (std::size_t i = 0; i < 2; ++i)
+    b.residual[i] = b.load[i] + b.support[i] + b.foundation[i] + b.inertia[i] + b.drag[i];
+  return b;
+}
+
+const Response& probe(const Observed& now, std::size_t i) { return now.probes[i]; }
+const Response& rail(const Observed& now, std::size_t i) { return now.rail[i]; }
+const Triple& support(const Observed& now, std::size_t i) { return now.supports[i]; }
+
+}  // namespace
+
+void add_probes(const Source& source, Outputs& outputs) {
+  const std::vector<double>& x = source.scene.output.probes;
+  if (x.empty()) return;
+  outputs.add_constant("/probes/x", x, "m");
+  outputs.add_each("/probes/", response_rows, x.size(), probe);
+  outputs.add_each("/probes/", shear_rows, x.size(), probe);
+}
+
+void add_supports(const Source& source, Outputs& outputs) {
+  const std::vector<double> x = source.beam->mesh().span_ends();
+  outputs.add_constant("/supports/x", x, "m");
+  outputs.add_each("/supports/", support_rows, x.size(), support);
+}
+
+void add_balance(const Source& source, Outputs& outputs) {
+  const double gravity = source.scene.self_weight ? source.scene.gravity : 0.0;
+  outputs.add("/balance/", balance_rows, [gravity, axial = source.beam->model().axial](const Observed& now) {
+    return balance_of(now, gravity, axial);
+  });
+}
+
+void add_rail(const Source& source, Outputs& outputs) {
+  if (source.beam->rail() != nullptr)
+    outputs.add_each("/rail/", response_rows, source.scene.output.probes.size(), rail);
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,43 @@
+// Outputs of the foundation: the forces of points one by one, those of beds on each span.
+#include "output_groups.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr std::size_t most_points = 2000;  // of a kind whose forces are stored one by one
+
+/// How many numbers are stored of a kind of foundation: one a point, or one a span on a bed; 0: the beam has none of
+/// it.
+std::size_t forces_stored(const beam::BeamModel& model, const beam::FoundationKind& kind) {
+  if (!present(model.foundation, kind) || !acts(kind, model)) return 0;
+  const std::size_t count = kind.bed != nullptr ? model.spans.size() : (model.foundation.*kind.points).size();
+  return count <= most_points ? count : 0;
+}
+
+std::vector<double> stations_of(const std::vector<beam::PointFoundation>& points) {
+  std::vector<double> x;
+  for (const beam::PointFoundation& point : points) x.push_back(point.x);
+  return x;
+}
+
+}  // namespace
+
+void add_foundation(const Source& source, Outputs& outputs) {
+  const beam::BeamModel& model = source.beam->model();
+  for (std::size_t k = 0; k < beam::foundation_kind_count; ++k) {
+    const beam::FoundationKind& kind = beam::foundation_kinds[k];
+    const std::size_t count = forces_stored(model, kind);
+    if (count == 0) continue;
+    const std::string group = "/foundation/" + std::string(kind.name) + "/";
+    if (kind.points != nullptr) outputs.add_constant(group + "x", stations_of(model.foundation.*kind.points), "m");
+    const beam::FoundationForceName& force = beam::force_name(kind);
+    outputs.add_numbers(group + std::string(force.quantity), std::string(force.unit), count,
+                        [k](const Observed& now, std::size_t i) {  // what is linear, and what is not
+                          const double linear = now.ground->of_kind(k)[i];
+                          const std::vector<double>& other = now.motion.beam.foundation.of_kind[k];
+                          return i < other.size() ? linear + other[i] : linear;
+                        });
+  }
+}
+
+}  // namespace traverse::app

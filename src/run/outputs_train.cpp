@@ -1,0 +1,145 @@
+// Outputs of the train: bodies, wheels and other contacts, joints, springs, and the couplers between vehicles.
+#include "output_groups.hpp"
+
+namespace traverse::app {
+namespace {
+
+using Triple = std::array<double, 3>;
+constexpr auto itself = [](const auto& numbers) { return numbers; };
+
+struct BodyMotion {
+  Triple position, velocity, acceleration;  // x, y, angle
+};
+
+constexpr Row<BodyMotion> body_rows[] = {
+    {"position", "m, m, rad", of<&BodyMotion::position>},
+    {"velocity", "m/s, m/s, rad/s", of<&BodyMotion::velocity>},
+    {"acceleration", "m/s2, m/s2, rad/s2", of<&BodyMotion::acceleration>},
+};
+
+constexpr Row<train::WheelLoad> wheel_rows[] = {
+    {"normal_force", "N", of<&train::WheelLoad::normal>},
+    {"friction_force", "N", of<&train::WheelLoad::tangential>},
+    {"penetration", "m", of<&train::WheelLoad::penetration>},
+};
+
+// On the second body.
+constexpr Row<Triple> joint_rows[] = {{"reaction", "N, N, N m", itself}};
+constexpr Row<double> spring_rows[] = {{"force", "N", itself}};  // tension
+constexpr Row<double> torsion_spring_rows[] = {{"moment", "N m", itself}};
+
+// Of a joint, on the vehicle behind.
+constexpr Row<Triple> coupler_rows[] = {
+    {"fx", "N", [](const Triple& r) { return r[0]; }},
+    {"fy", "N", [](const Triple& r) { return r[1]; }},
+    {"moment", "N m", [](const Triple& r) { return r[2]; }},
+};
+
+Triple triple(const Eigen::VectorXd& x, std::size_t body) {
+  const auto i = 3 * static_cast<Eigen::Index>(body);
+  return {x[i], x[i + 1], x[i + 2]};
+}
+
+Triple reaction(const train::MovingVehicle& unit, int joint) {
+  const Eigen::Vector3d r = unit.mechanism.joint_reaction(unit.state, joint);
+  return {r.x(), r.y(), r.z()};
+}
+
+double spring_force(const train::MovingVehicle& unit, int spring) {
+  return unit.mechanism.spring_force(unit.state, spring);
+}
+
+/// The outputs of one vehicle of the train.
+class VehicleOutputs {
+ public:
+  VehicleOutputs(const train::Fleet& fleet, std::size_t number, Outputs& outputs)
+      : fleet_(fleet),
+        member_(fleet.members[number]),
+        unit_(static_cast<std::size_t>(member_.unit)),
+        group_("/vehicles/" + std::to_string(number) + "/"),
+        outputs_(outputs) {}
+
+  void add() {
+    add_bodies();
+    add_contacts();
+    add_joints();
+  }
+
+ private:
+  std::string group(const std::string& part) const { return group_ + part + "/"; }
+
+  void add_bodies() {
+    std::size_t body = member_.first_body;
+    for (const multibody::Body& b : member_.type->mechanism.bodies)
+      outputs_.add(group(b.name), body_rows, [&fleet = fleet_, unit = unit_, i = body++](const Observed&) {
+        const multibody::MechanismState& state = fleet.vehicles[unit].state;
+        return BodyMotion{triple(state.q, i), triple(state.qd, i), triple(state.qdd, i)};
+      });
+  }
+
+  void add_contacts() {
+    const train::MovingVehicle& unit = fleet_.vehicles[unit_];
+    std::size_t wheel = unit.first_wheel + member_.first_wheel, pair = unit.first_pair + member_.first_contact;
+    for (const train::Wheel& w : member_.type->wheels)
+      outputs_.add(group(w.name), wheel_rows,
+                   [&fleet = fleet_, i = wheel++](const Observed&) { return fleet.load(fleet.wheels[i]); });
+    for (const contact::BodyContact& c : member_.type->contacts)
+      outputs_.add(group(c.name), wheel_rows, [&fleet = fleet_, i = pair++](const Observed&) {
+        const train::Contact& now = fleet.pairs[i];
+        return train::WheelLoad{now.force.normal, now.force.tangential, now.kinematics.penetration};
+      });
+  }
+
+  void add_joints() {
+    const multibody::MechanismModel& model = member_.type->mechanism;
+    int joint = member_.first_joint, spring = member_.first_spring, torsion = member_.first_torsion_spring;
+    for (const multibody::Joint& j : model.joints)
+      outputs_.add(group(j.name), joint_rows, [&fleet = fleet_, unit = unit_, i = joint++](const Observed&) {
+        return reaction(fleet.vehicles[unit], i);
+      });
+    for (const multibody::Spring& s : model.springs)
+      outputs_.add(group(s.name), spring_rows, [&fleet = fleet_, unit = unit_, i = spring++](const Observed&) {
+        return spring_force(fleet.vehicles[unit], i);
+      });
+    for (const multibody::TorsionSpring& s : model.torsion_springs)
+      outputs_.add(group(s.name), torsion_spring_rows, [&fleet = fleet_, unit = unit_, i = torsion++](const Observed&) {
+        const train::MovingVehicle& now = fleet.vehicles[unit];
+        return now.mechanism.torsion_spring_moment(now.state, i);
+      });
+  }
+
+  const train::Fleet& fleet_;
+  const train::Member& member_;
+  std::size_t unit_;  // in fleet.vehicles, whose place in memory may change
+  std::string group_;
+  Outputs& outputs_;
+};
+
+}  // namespace
+
+void add_vehicles(const Source& source, Outputs& outputs) {
+  for (std::size_t k = 0; k < source.fleet.members.size(); ++k) VehicleOutputs(source.fleet, k, outputs).add();
+}
+
+void add_couplers(const Source& source, Outputs& outputs) {
+  std::size_t first = 0;  // of its gaps
+  for (const train::Coupler& c : source.scene.train.couplers) {
+    const std::string group = "/couplers/" + c.name + "/";
+    outputs.add_constant(group + "gap", {c.gaps.begin(), c.gaps.end()}, "1");
+    const auto joint = [&fleet = source.fleet, first](const Observed&, std::size_t i) {
+      const train::CoupledGap& gap = fleet.couplers[first + i];
+      return reaction(fleet.vehicles[gap.unit], gap.part);
+    };
+    const auto spring = [&fleet = source.fleet, first](const Observed&, std::size_t i) {
+      const train::CoupledGap& gap = fleet.couplers[first + i];
+      return spring_force(fleet.vehicles[gap.unit], gap.part);
+    };
+    if (c.joint)
+      outputs.add_each(group, coupler_rows, c.gaps.size(), joint);
+    else
+      outputs.add_each(group, spring_rows, c.gaps.size(), spring);
+    first += c.gaps.size();
+  }
+}
+
+}  // namespace traverse::app

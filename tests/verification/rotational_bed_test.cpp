@@ -1,0 +1,127 @@
+// A bed that holds the slope of the beam, k in N m/rad per m: EI v'''' - k v'' + m d2v/dt2 = q.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "support/scene_run.hpp"
+#include "traverse/modes/modes.hpp"
+
+namespace traverse::test {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double EI = 1.96e9, m = 1000.0, L = 20.0, k = 6e7;
+const double a = std::sqrt(k / EI);
+
+/// omega_n^2 = (EI b^4 + k b^2)/m with b = n pi/L.
+double exact_omega(int n) {
+  const double b = n * pi / L;
+  return std::sqrt((EI * std::pow(b, 4) + k * b * b) / m);
+}
+
+std::vector<double> frequencies(int elements) {
+  beam::BeamModel model;
+  model.spans = {L};
+  model.elements = {elements};
+  model.supports = {beam::Support::pinned, beam::Support::roller};
+  model.EI = EI;
+  model.mass = m;
+  model.axial = false;
+  model.foundation.rotational_bed = beam::Bed{k, 0.0};
+  return modes::natural_modes(beam::Beam(PETSC_COMM_WORLD, model), 3, false).omega;
+}
+
+TEST(RotationalBed, FrequenciesOfAPinnedBeamWithOrderFour) {
+  const std::vector<double> coarse = frequencies(8), fine = frequencies(16);
+  for (int n = 1; n <= 3; ++n) {
+    const double exact = exact_omega(n), bending_alone = std::sqrt(EI / m) * std::pow(n * pi / L, 2);
+    EXPECT_GT(exact, 1.05 * bending_alone);  // the bed counts
+    const auto i = static_cast<std::size_t>(n - 1);
+    const double error = coarse[i] / exact - 1.0, less = fine[i] / exact - 1.0;
+    EXPECT_LT(std::abs(error), std::pow(n * pi / 8.0, 4) / 1000.0);
+    EXPECT_NEAR(std::log2(error / less), 4.0, 0.1) << n;
+  }
+}
+
+const std::string beam_options = "beam: {spans: 20.0, elements_per_span: 20, EI: 1.96e9, mass: 1000.0}\n";
+
+// With theta = v' of a cantilever under a force F at its end: theta = -F/k (1 - cosh(a (L - x))/cosh(a L)).
+TEST(RotationalBed, CantileverAtRest) {
+  const double F = 1e5, tip = -F / k * (L - std::tanh(a * L) / a);
+  // Elements of length h are off by (a h)^4/1440 = 7e-7. Then the same by a law with a cubic term that is nothing: it
+  // acts at the points of integration, where the moment jumps, so that it is not smooth within an element.
+  for (const char* cubic : {"0", "1"}) {
+    Results run = run_yaml(beam_options + R"(
+support: {types: [clamped, free]}
+foundation: {rotational_bed: {k: 6e7}}
+load: {forces: 1e5, positions: 20.0}
+scene: {analysis: static}
+output: {probes: [0.0, 5.0, 5.5, 20.0]}
+)",
+                           {{"foundation_rotational_bed_cubic", cubic}});
+    const double x[] = {0.0, 5.0, 5.5, 20.0};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double fading = std::sinh(a * (L - x[i])) / std::cosh(a * L);
+      EXPECT_NEAR(run("/probes/deflection")[i], -F / k * (x[i] - (std::tanh(a * L) - fading) / a), 7e-7 * -tip);
+      EXPECT_NEAR(run("/probes/moment")[i], -F / a * fading,
+                  (std::string(cubic) == "1" && x[i] == 5.5 ? 1e-4 : 2e-6) * F / a)
+          << x[i];
+    }
+    const double moment = run("/foundation/rotational_bed/moment")[0];
+    EXPECT_NEAR(moment, -k * run("/probes/deflection")[3], 1e-9 * moment);  // -k times the integral of v'
+    EXPECT_NEAR(run("/supports/reaction")[2] + moment, F * L, 1e-9 * F * L);
+  }
+}
+
+// A force that crosses a pinned beam: the modes n answer with 2 F/(m L) (sin W t - W/omega sin(omega t))/(omega^2 -
+// W^2), W = n pi v/L.
+TEST(RotationalBed, ForceThatCrossesAPinnedBeam) {
+  Results run = run_yaml(beam_options + R"(
+support: {types: [pinned, roller]}
+foundation: {rotational_bed: {k: 6e7}}
+load: {forces: 1e5, positions: 0.0, speed: 50.0}
+ts: {dt: 2.5e-4, max_time: 0.4}
+output: {probes: 10.0}
+)",
+                         {{"beam_elements_per_span", "40"}});
+  std::vector<double> exact;
+  for (const double t : run.time()) {
+    double sum = 0.0;
+    for (int n = 1; n <= 199; n += 2) {
+      const double omega = exact_omega(n), W = n * pi * 50.0 / L, sign = n % 4 == 1 ? 1.0 : -1.0;
+      sum += sign * (std::sin(W * t) - W / omega * std::sin(omega * t)) / (omega * omega - W * W);
+    }
+    exact.push_back(-2.0 * 1e5 / (m * L) * sum);
+  }
+  EXPECT_LT(relative_difference(run("/probes/deflection"), exact), 1e-5);
+  EXPECT_LT(energy_error(run), 1e-6);
+}
+
+// Its damper takes what is missing from the energy.
+TEST(RotationalBed, DamperTakesEnergy) {
+  const auto deflection_left = [](const char* c) {
+    Results run = run_yaml(beam_options + R"(
+support: {types: [pinned, roller]}
+foundation: {rotational_bed: {k: 6e7}}
+load: {forces: 1e5, positions: 0.0, speed: 50.0}
+ts: {dt: 5e-4, max_time: 1.4}
+output: {probes: 10.0}
+)",
+                           {{"foundation_rotational_bed_c", c}});
+    EXPECT_LT(energy_error(run), 1e-6);
+    const std::vector<double> v = run("/probes/deflection"), t = run.time();
+    double most = 0.0;
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (t[i] > 1.2) most = std::max(most, std::abs(v[i]));
+    return most;
+  };
+  // The first mode's m s^2 + c b^2 s + ... = 0 fades with c b^2/(2 m): over about 0.8 s by exp(-2).
+  const double free = deflection_left("0"), damped = deflection_left("2e5");
+  EXPECT_LT(damped, 0.35 * free);
+  EXPECT_GT(damped, 0.03 * free);
+}
+
+}  // namespace
+}  // namespace traverse::test
