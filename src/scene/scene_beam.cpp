@@ -13,7 +13,7 @@ namespace {
 
 using options::Options;
 
-constexpr double most_stations = 1e6;  // of springs at equal distances
+constexpr double most_stations = 1e6;        // of springs at equal distances
 constexpr double most_scene_elements = 2e7;  // see limits.cpp
 
 /// Even, so that midspan is a node; the error of deflections falls with the fourth power of the element's length.
