@@ -23,23 +23,6 @@ JointGeometry joint_geometry(const Joint& joint, const Frame& first, const Frame
   return j;
 }
 
-void joint_residual(const JointGeometry& j, const Frame& first, const Frame& second, double* Phi) {
-  j.type->residual(j, first, second, Phi);
-}
-
-void joint_jacobian(const JointGeometry& j, const Frame& first, const Frame& second, JointJacobian& Phi_q) {
-  j.type->jacobian(j, first, second, Phi_q);
-}
-
-void joint_gamma(const JointGeometry& j, const Frame& first, const Frame& second, double* gamma) {
-  j.type->gamma(j, first, second, gamma);
-}
-
-void joint_curvature(const JointGeometry& j, const Frame& first, const Frame& second, const double* lambda,
-                     JointCurvature& curvature) {
-  j.type->curvature(j, first, second, lambda, curvature);
-}
-
 Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& j, const Frame& first, const Frame& second) {
   return NormalPlacement(j, quarter_turn(j.normal), first, second).gradient().transpose();
 }
@@ -47,10 +30,6 @@ Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& j, const Frame& 
 void slide_curvature(const JointGeometry& j, const Frame& first, const Frame& second, JointCurvature& curvature) {
   curvature.setZero();
   NormalPlacement(j, quarter_turn(j.normal), first, second).add_curvature(1.0, curvature);
-}
-
-Eigen::Vector3d joint_reaction(const JointGeometry& j, const Frame& first, const Frame& second, const double* lambda) {
-  return j.type->reaction(j, first, second, lambda);
 }
 
 }  // namespace traverse::multibody

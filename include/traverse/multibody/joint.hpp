@@ -41,14 +41,22 @@ struct JointGeometry {
 JointGeometry joint_geometry(const Joint& joint, const Frame& first, const Frame& second, int row);
 
 /// Phi of the joint, one value a row of its type.
-void joint_residual(const JointGeometry& joint, const Frame& first, const Frame& second, double* Phi);
+inline void joint_residual(const JointGeometry& joint, const Frame& first, const Frame& second, double* Phi) {
+  joint.type->residual(joint, first, second, Phi);
+}
 /// Phi_q of the joint.
-void joint_jacobian(const JointGeometry& joint, const Frame& first, const Frame& second, JointJacobian& Phi_q);
+inline void joint_jacobian(const JointGeometry& joint, const Frame& first, const Frame& second, JointJacobian& Phi_q) {
+  joint.type->jacobian(joint, first, second, Phi_q);
+}
 /// gamma = -(Phi_q q')_q q' of the joint (eq. 44 as corrected in doc/theory.md; joints do not depend on time).
-void joint_gamma(const JointGeometry& joint, const Frame& first, const Frame& second, double* gamma);
+inline void joint_gamma(const JointGeometry& joint, const Frame& first, const Frame& second, double* gamma) {
+  joint.type->gamma(joint, first, second, gamma);
+}
 /// d(Phi_q^T lambda)/dq at fixed lambda; symmetric.
-void joint_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, const double* lambda,
-                     JointCurvature& curvature);
+inline void joint_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, const double* lambda,
+                            JointCurvature& curvature) {
+  joint.type->curvature(joint, first, second, lambda, curvature);
+}
 /// The sliding of a joint that slides is that of the joint's point on the second body along the axis, as seen
 /// from the first. Its gradient, columns x1 y1 phi1 x2 y2 phi2: times the velocities it is the sliding speed, times a
 /// force along the axis it is the generalized force of that on the second body and its opposite on the first, both at
@@ -57,7 +65,9 @@ Eigen::Matrix<double, 6, 1> slide_gradient(const JointGeometry& joint, const Fra
 /// The derivative of slide_gradient; symmetric.
 void slide_curvature(const JointGeometry& joint, const Frame& first, const Frame& second, JointCurvature& curvature);
 /// Force on the second body and moment on it about the joint's point there (about `to` where it has one).
-Eigen::Vector3d joint_reaction(const JointGeometry& joint, const Frame& first, const Frame& second,
-                               const double* lambda);
+inline Eigen::Vector3d joint_reaction(const JointGeometry& joint, const Frame& first, const Frame& second,
+                                      const double* lambda) {
+  return joint.type->reaction(joint, first, second, lambda);
+}
 
 }  // namespace traverse::multibody
