@@ -21,9 +21,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/petsc.hpp"
 #include "bridge_matrix.hpp"
-#include "traverse/base/petsc.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 extern "C" {
 void dpbtrf_(const char* half, const int* rows, const int* above, double* band, const int* leading, int* info);

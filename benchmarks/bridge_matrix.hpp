@@ -8,8 +8,8 @@
 #include <array>
 #include <vector>
 
-#include "traverse/base/petsc.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "base/petsc.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 namespace traverse::benchmarks {
 

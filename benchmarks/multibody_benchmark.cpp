@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "traverse/multibody/mechanism.hpp"
+#include "multibody/mechanism.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-#include "traverse/coupling/system.hpp"
+#include "coupling/system.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 

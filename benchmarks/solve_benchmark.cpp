@@ -13,9 +13,9 @@
 #include <cstdlib>
 #include <vector>
 
+#include "base/petsc.hpp"
 #include "bridge_matrix.hpp"
-#include "traverse/base/petsc.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "traverse/integrate/stepper.hpp"
+#include "integrate/stepper.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 

@@ -15,9 +15,9 @@
 #include <string_view>
 #include <utility>
 
+#include "methods/one_step_methods.hpp"
 #include "step_scene.hpp"
-#include "traverse/structure/beam_motion.hpp"
-#include "traverse/structure/one_step_methods.hpp"
+#include "structure/beam_motion.hpp"
 
 namespace {
 

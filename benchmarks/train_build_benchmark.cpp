@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "traverse/coupling/system.hpp"
+#include "coupling/system.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/scene/scene.hpp"
 

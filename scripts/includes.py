@@ -4,6 +4,7 @@ A room is a folder of src together with the folder of include/traverse of the sa
 for each place, where
   - a room includes a header of a room above it, or stands in no layer,
   - files include one another in a circle,
+  - a header of include/traverse, which programs that embed Traverse read, includes one of src,
   - a room that knows no PETSc includes a header of PETSc or SLEPc, be it through another header.
 Rooms with more than their part of all lines are named; with --limit-rooms they are an error too.
 """
@@ -14,8 +15,8 @@ import sys
 
 # From the top layer down: a room includes headers of rooms that stand behind it, never before it.
 # The options stand above what they describe: their tables take the names of joints and foundations from there.
-LAYERS = ["app", "study", "accuracy", "run", "scene", "results", "integrate", "coupling", "structure", "train", "options",
-          "contact", "multibody", "track", "modes", "beam", "solve", "base"]
+LAYERS = ["app", "study", "accuracy", "run", "scene", "results", "integrate", "coupling", "structure", "response",
+          "train", "options", "contact", "multibody", "track", "modes", "recovery", "beam", "solve", "methods", "base"]
 WITHOUT_PETSC = {"multibody", "contact", "track"}
 GREATEST_SHARE = 0.10  # of all lines, in one room
 
@@ -71,6 +72,16 @@ def upward_includes(sources):
             if above is not None and below is not None and below < above:
                 yield (f'{sources.place(path, number)}: "{name}" points up, from {LAYERS[above]} to {LAYERS[below]}: '
                        "move what is needed to the lower of the two or below it.")
+
+
+def private_in_public(sources):
+    """A line for every include of a header of src in a header of include/traverse."""
+    public = sources.root / "include"
+    for path, found in sources.includes.items():
+        for number, name, file in found:
+            if path.is_relative_to(public) and file and not file.is_relative_to(public):
+                yield (f'{sources.place(path, number)}: "{name}" is not installed: move it to include/traverse, or what '
+                       "needs it out of there.")
 
 
 def circles(sources):
@@ -135,7 +146,7 @@ def main():
     if not sources.lines:
         sys.exit(f"There are no sources in {chosen.root}: name the project's folder.")
 
-    errors = [*upward_includes(sources), *circles(sources), *petsc_where_none_belongs(sources)]
+    errors = [*upward_includes(sources), *private_in_public(sources), *circles(sources), *petsc_where_none_belongs(sources)]
     large = ", ".join(f"{room} {share:.1%}" for share, room in shares(sources) if share > GREATEST_SHARE)
     above = f"Rooms with more than {GREATEST_SHARE:.0%} of all lines: {large}." if large else ""
     if above and chosen.limit_rooms:

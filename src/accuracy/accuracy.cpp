@@ -1,4 +1,4 @@
-#include "traverse/accuracy/accuracy.hpp"
+#include "accuracy/accuracy.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 
 #include "error_search.hpp"
 #include "first_guess.hpp"
+#include "results/stage.hpp"
+#include "run/passage.hpp"
 #include "traverse/options/input.hpp"
-#include "traverse/results/stage.hpp"
-#include "traverse/run/passage.hpp"
 
 namespace traverse::app {
 namespace {

@@ -7,9 +7,9 @@
 #include <numbers>
 #include <tuple>
 
+#include "base/whole.hpp"
 #include "first_guess.hpp"
-#include "traverse/base/whole.hpp"
-#include "traverse/run/plan.hpp"
+#include "run/plan.hpp"
 
 namespace traverse::app {
 namespace {

@@ -7,10 +7,10 @@
 #include <string>
 #include <utility>
 
+#include "accuracy/accuracy.hpp"
+#include "accuracy/trials.hpp"
 #include "error_law.hpp"
-#include "traverse/accuracy/accuracy.hpp"
-#include "traverse/accuracy/trials.hpp"
-#include "traverse/run/shared_beam.hpp"
+#include "run/shared_beam.hpp"
 
 namespace traverse::app {
 

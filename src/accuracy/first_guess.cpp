@@ -7,9 +7,9 @@
 #include <numbers>
 #include <utility>
 
+#include "base/whole.hpp"
+#include "run/plan.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/base/whole.hpp"
-#include "traverse/run/plan.hpp"
 
 namespace traverse::app {
 namespace {

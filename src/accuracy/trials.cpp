@@ -1,12 +1,12 @@
-#include "traverse/accuracy/trials.hpp"
+#include "accuracy/trials.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "traverse/base/whole.hpp"
-#include "traverse/results/stage.hpp"
-#include "traverse/run/passage.hpp"
-#include "traverse/run/watch.hpp"
+#include "base/whole.hpp"
+#include "results/stage.hpp"
+#include "run/passage.hpp"
+#include "run/watch.hpp"
 
 namespace traverse::app {
 namespace {

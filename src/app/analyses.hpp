@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "traverse/accuracy/accuracy.hpp"
+#include "accuracy/accuracy.hpp"
+#include "results/place.hpp"
+#include "run/shared_beam.hpp"
 #include "traverse/options/analyses.hpp"
-#include "traverse/results/place.hpp"
-#include "traverse/run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {

@@ -11,14 +11,14 @@
 #include <string>
 #include <thread>
 
+#include "integrate/integrators.hpp"
+#include "run/process.hpp"
+#include "run/signals.hpp"
 #include "standard_output.hpp"
 #include "traverse/app/run.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/integrate/integrators.hpp"
 #include "traverse/options/input.hpp"
 #include "traverse/options/table.hpp"
-#include "traverse/run/process.hpp"
-#include "traverse/run/signals.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace {

@@ -1,8 +1,8 @@
 #include "traverse/app/run.hpp"
 
 #include "analyses.hpp"
-#include "traverse/results/stage.hpp"
-#include "traverse/study/study.hpp"
+#include "results/stage.hpp"
+#include "study/study.hpp"
 
 namespace traverse::app {
 

@@ -6,19 +6,19 @@
 #include <cmath>
 #include <optional>
 
+#include "accuracy/trials.hpp"
 #include "analyses.hpp"
-#include "traverse/accuracy/trials.hpp"
-#include "traverse/modes/modes.hpp"
+#include "modes/modes.hpp"
+#include "results/recorder.hpp"
+#include "results/stage.hpp"
+#include "results/terminal.hpp"
+#include "run/deflection_check.hpp"
+#include "run/outputs.hpp"
+#include "run/passage.hpp"
+#include "run/process.hpp"
+#include "run/signals.hpp"
+#include "run/watch.hpp"
 #include "traverse/options/input.hpp"
-#include "traverse/results/recorder.hpp"
-#include "traverse/results/stage.hpp"
-#include "traverse/results/terminal.hpp"
-#include "traverse/run/deflection_check.hpp"
-#include "traverse/run/outputs.hpp"
-#include "traverse/run/passage.hpp"
-#include "traverse/run/process.hpp"
-#include "traverse/run/signals.hpp"
-#include "traverse/run/watch.hpp"
 
 namespace traverse::app {
 namespace {

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "analyses.hpp"
-#include "traverse/modes/modes.hpp"
+#include "modes/modes.hpp"
+#include "results/recorder.hpp"
+#include "results/stage.hpp"
+#include "results/terminal.hpp"
+#include "run/outputs.hpp"
+#include "run/process.hpp"
+#include "run/signals.hpp"
 #include "traverse/options/input.hpp"
-#include "traverse/results/recorder.hpp"
-#include "traverse/results/stage.hpp"
-#include "traverse/results/terminal.hpp"
-#include "traverse/run/outputs.hpp"
-#include "traverse/run/process.hpp"
-#include "traverse/run/signals.hpp"
 
 namespace traverse::app {
 

@@ -1,4 +1,4 @@
-#include "traverse/base/petsc.hpp"
+#include "base/petsc.hpp"
 
 #include <new>
 #include <string>

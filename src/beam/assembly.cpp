@@ -1,6 +1,6 @@
 #include "assembly.hpp"
 
-#include "traverse/beam/point_shape.hpp"
+#include "beam/point_shape.hpp"
 
 namespace traverse::beam {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/beam/beam.hpp"
+#include "beam/beam.hpp"
 
 #include <malloc.h>
 

@@ -1,10 +1,10 @@
-#include "traverse/beam/element.hpp"
+#include "beam/element.hpp"
 
 #include <algorithm>
 #include <cstddef>
 
+#include "beam/shape.hpp"
 #include "gauss.hpp"
-#include "traverse/beam/shape.hpp"
 
 namespace traverse::beam {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/beam/element_rows.hpp"
+#include "beam/element_rows.hpp"
 
 #include <algorithm>
 

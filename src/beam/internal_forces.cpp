@@ -1,4 +1,4 @@
-#include "traverse/beam/internal_forces.hpp"
+#include "beam/internal_forces.hpp"
 
 #include <iterator>
 

@@ -1,7 +1,7 @@
 #include "layered_track.hpp"
 
 #include "assembly.hpp"
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::beam {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/beam/line.hpp"
+#include "beam/line.hpp"
 
 #include <algorithm>
 #include <utility>

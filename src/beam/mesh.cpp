@@ -1,10 +1,10 @@
-#include "traverse/beam/mesh.hpp"
+#include "beam/mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "traverse/base/whole.hpp"
+#include "base/whole.hpp"
 
 namespace traverse::beam {
 

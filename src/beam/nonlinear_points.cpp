@@ -1,4 +1,4 @@
-#include "traverse/beam/nonlinear_points.hpp"
+#include "beam/nonlinear_points.hpp"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "traverse/base/whole.hpp"
+#include "base/whole.hpp"
 #include "traverse/beam/model.hpp"
 
 namespace traverse::beam {

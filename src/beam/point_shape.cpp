@@ -1,6 +1,6 @@
-#include "traverse/beam/point_shape.hpp"
+#include "beam/point_shape.hpp"
 
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::beam {
 namespace {

@@ -2,8 +2,8 @@
 // Each rank multiplies the columns of the unknowns it owns, so that neighbours on another rank are not needed.
 #include <algorithm>
 
+#include "beam/beam.hpp"
 #include "slice.hpp"
-#include "traverse/beam/beam.hpp"
 
 namespace traverse::beam {
 

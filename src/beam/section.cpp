@@ -1,7 +1,7 @@
 #include "section.hpp"
 
+#include "beam/shape.hpp"
 #include "gauss.hpp"
-#include "traverse/beam/shape.hpp"
 
 namespace traverse::beam {
 

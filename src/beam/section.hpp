@@ -1,7 +1,7 @@
 // Moment, shear and axial force at one section of an element as linear forms of the element's nodal values.
 #pragma once
 
-#include "traverse/beam/element.hpp"
+#include "beam/element.hpp"
 
 namespace traverse::beam {
 

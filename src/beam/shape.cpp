@@ -1,4 +1,4 @@
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::beam {
 

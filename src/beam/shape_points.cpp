@@ -1,4 +1,4 @@
-#include "traverse/beam/shape_points.hpp"
+#include "beam/shape_points.hpp"
 
 #include <algorithm>
 

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "traverse/base/petsc.hpp"
-#include "traverse/beam/element.hpp"
-#include "traverse/beam/line.hpp"
+#include "base/petsc.hpp"
+#include "beam/element.hpp"
+#include "beam/line.hpp"
 
 namespace traverse::beam {
 

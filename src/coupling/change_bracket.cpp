@@ -1,4 +1,4 @@
-#include "traverse/coupling/change_bracket.hpp"
+#include "coupling/change_bracket.hpp"
 
 #include <algorithm>
 

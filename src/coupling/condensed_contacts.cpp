@@ -1,4 +1,4 @@
-#include "traverse/coupling/condensed_contacts.hpp"
+#include "coupling/condensed_contacts.hpp"
 
 #include <algorithm>
 #include <array>

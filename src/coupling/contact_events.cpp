@@ -1,4 +1,4 @@
-#include "traverse/coupling/contact_events.hpp"
+#include "coupling/contact_events.hpp"
 
 #include <algorithm>
 

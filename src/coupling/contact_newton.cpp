@@ -1,4 +1,4 @@
-#include "traverse/coupling/contact_newton.hpp"
+#include "coupling/contact_newton.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // The beam under the contacts' forces within a stage, at the elements in touch.
-#include "traverse/coupling/contact_newton.hpp"
+#include "coupling/contact_newton.hpp"
 
 namespace traverse::coupling {
 namespace {

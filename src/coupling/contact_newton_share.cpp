@@ -1,7 +1,7 @@
 // What ranks that share the vehicles tell each other in every iteration.
 #include <algorithm>
 
-#include "traverse/coupling/contact_newton.hpp"
+#include "coupling/contact_newton.hpp"
 
 namespace traverse::coupling {
 

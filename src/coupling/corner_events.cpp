@@ -1,4 +1,4 @@
-#include "traverse/coupling/corner_events.hpp"
+#include "coupling/corner_events.hpp"
 
 #include <algorithm>
 #include <cmath>

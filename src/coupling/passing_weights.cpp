@@ -1,4 +1,4 @@
-#include "traverse/coupling/passing_weights.hpp"
+#include "coupling/passing_weights.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <optional>
 
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::coupling {
 namespace {

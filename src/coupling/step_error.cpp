@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "coupling/system.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/coupling/system.hpp"
 
 namespace traverse::coupling {
 void System::measure_errors() {

@@ -1,9 +1,9 @@
-#include "traverse/coupling/system.hpp"
+#include "coupling/system.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "traverse/structure/element_structure.hpp"
+#include "structure/element_structure.hpp"
 
 namespace traverse::coupling {
 namespace {

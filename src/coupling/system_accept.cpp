@@ -3,7 +3,7 @@
 #include <array>
 #include <cmath>
 
-#include "traverse/coupling/system.hpp"
+#include "coupling/system.hpp"
 
 namespace traverse::coupling {
 namespace {

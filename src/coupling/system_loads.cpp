@@ -1,5 +1,5 @@
 // What acts on the structure: moving forces and contacts.
-#include "traverse/coupling/system.hpp"
+#include "coupling/system.hpp"
 
 namespace traverse::coupling {
 

@@ -1,7 +1,7 @@
 // What is seen of an accepted state: accelerations, loads, forces, energies.
 #include <algorithm>
 
-#include "traverse/coupling/system.hpp"
+#include "coupling/system.hpp"
 
 namespace traverse::coupling {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "traverse/coupling/system.hpp"
+#include "coupling/system.hpp"
 
 namespace traverse::coupling {
 namespace {

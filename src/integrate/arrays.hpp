@@ -1,7 +1,7 @@
 // The entries of PETSc vectors for one scope.
 #pragma once
 
-#include "traverse/base/petsc.hpp"
+#include "base/petsc.hpp"
 
 namespace traverse::integrate {
 

@@ -1,4 +1,4 @@
-#include "traverse/integrate/force_history.hpp"
+#include "integrate/force_history.hpp"
 
 #include <algorithm>
 #include <string>

@@ -7,10 +7,10 @@
 #include <array>
 #include <vector>
 
+#include "base/petsc.hpp"
+#include "integrate/integrators.hpp"
+#include "integrate/second_order.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/base/petsc.hpp"
-#include "traverse/integrate/integrators.hpp"
-#include "traverse/integrate/second_order.hpp"
 
 namespace traverse::integrate {
 namespace {

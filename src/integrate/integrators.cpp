@@ -1,4 +1,4 @@
-#include "traverse/integrate/integrators.hpp"
+#include "integrate/integrators.hpp"
 
 #include <fmt/format.h>
 #include <petscts.h>
@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "traverse/structure/one_step_methods.hpp"
+#include "methods/one_step_methods.hpp"
 
 namespace traverse::integrate {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/integrate/modal_motion.hpp"
+#include "integrate/modal_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

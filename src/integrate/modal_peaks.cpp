@@ -1,4 +1,4 @@
-#include "traverse/integrate/modal_peaks.hpp"
+#include "integrate/modal_peaks.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "traverse/integrate/modal_stepper.hpp"
+#include "integrate/modal_stepper.hpp"
 
 #include <petsc/private/tsimpl.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 #include "ts_modal.hpp"
 
 namespace traverse::integrate {

@@ -1,4 +1,4 @@
-#include "traverse/integrate/second_order.hpp"
+#include "integrate/second_order.hpp"
 
 #include <petsc/private/tsimpl.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <string_view>
 
-#include "traverse/base/petsc.hpp"
+#include "base/petsc.hpp"
 
 namespace traverse::integrate {
 namespace {

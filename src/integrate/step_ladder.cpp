@@ -1,9 +1,9 @@
-#include "traverse/integrate/step_ladder.hpp"
+#include "integrate/step_ladder.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "traverse/base/whole.hpp"
+#include "base/whole.hpp"
 
 namespace traverse::integrate {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/integrate/stepper.hpp"
+#include "integrate/stepper.hpp"
 
 #include <petsc/private/tsimpl.h>
 
@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "arrays.hpp"
+#include "integrate/integrators.hpp"
+#include "integrate/second_order.hpp"
 #include "integrator_choice.hpp"
-#include "traverse/integrate/integrators.hpp"
-#include "traverse/integrate/second_order.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::integrate {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "arrays.hpp"
-#include "traverse/integrate/stepper.hpp"
+#include "integrate/stepper.hpp"
 
 namespace traverse::integrate {
 namespace {

@@ -4,8 +4,8 @@
 // there is no right-hand side to evaluate, no stage and no error to control.
 #pragma once
 
-#include "traverse/base/petsc.hpp"
-#include "traverse/integrate/modal_motion.hpp"
+#include "base/petsc.hpp"
+#include "integrate/modal_motion.hpp"
 
 namespace traverse::integrate {
 

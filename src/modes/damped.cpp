@@ -5,9 +5,9 @@
 #include <tuple>
 
 #include "eigen.hpp"
+#include "modes/modes.hpp"
 #include "quadratic.hpp"
 #include "stored_shape.hpp"
-#include "traverse/modes/modes.hpp"
 
 namespace traverse::modes {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "band.hpp"
-#include "traverse/beam/beam.hpp"
+#include "beam/beam.hpp"
 
 namespace traverse::modes {
 

@@ -5,8 +5,8 @@
 #include <complex>
 #include <vector>
 
+#include "beam/shape_points.hpp"
 #include "segment.hpp"
-#include "traverse/beam/shape_points.hpp"
 
 namespace traverse::modes {
 

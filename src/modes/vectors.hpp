@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "traverse/base/petsc.hpp"
+#include "base/petsc.hpp"
 
 namespace traverse::modes {
 

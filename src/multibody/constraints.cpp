@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "traverse/multibody/mechanism.hpp"
+#include "multibody/mechanism.hpp"
 
 namespace traverse::multibody {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multibody/mechanism.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/multibody/mechanism.hpp"
 
 namespace traverse::multibody {
 

@@ -1,4 +1,4 @@
-#include "traverse/multibody/force_element.hpp"
+#include "multibody/force_element.hpp"
 
 #include <cmath>
 

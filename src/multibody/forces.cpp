@@ -1,6 +1,6 @@
 // The generalized forces g of eq. 42 without contact: gravity, springs, actuators; and the energy balance.
+#include "multibody/mechanism.hpp"
 #include "pair_times_B.hpp"
-#include "traverse/multibody/mechanism.hpp"
 
 namespace traverse::multibody {
 

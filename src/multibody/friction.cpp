@@ -7,8 +7,8 @@
 // jams: then there is no solution or more than one (Painleve's paradox).
 #include <cmath>
 
+#include "multibody/mechanism.hpp"
 #include "pair_times_B.hpp"
-#include "traverse/multibody/mechanism.hpp"
 
 namespace traverse::multibody {
 

@@ -1,4 +1,4 @@
-#include "traverse/multibody/joint.hpp"
+#include "multibody/joint.hpp"
 
 #include "equations/normal.hpp"
 

@@ -1,5 +1,5 @@
 // A mechanism's fixed data, its states, and what is read from them.
-#include "traverse/multibody/mechanism.hpp"
+#include "multibody/mechanism.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Products of a matrix that couples two bodies with the sensitivity B.
 #pragma once
 
-#include "traverse/multibody/mechanism.hpp"
+#include "multibody/mechanism.hpp"
 
 namespace traverse::multibody {
 

@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "active_rows.hpp"
+#include "multibody/mechanism.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/multibody/mechanism.hpp"
 
 namespace traverse::multibody {
 

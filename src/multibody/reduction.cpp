@@ -1,4 +1,4 @@
-#include "traverse/multibody/reduction.hpp"
+#include "multibody/reduction.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // What observers see of a state, as numbers in a row.
 #include <algorithm>
 
-#include "traverse/multibody/mechanism.hpp"
+#include "multibody/mechanism.hpp"
 
 namespace traverse::multibody {
 namespace {

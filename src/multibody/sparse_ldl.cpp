@@ -1,4 +1,4 @@
-#include "traverse/multibody/sparse_ldl.hpp"
+#include "multibody/sparse_ldl.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "traverse/options/data_file.hpp"
+#include "options/data_file.hpp"
 
 #include <fmt/format.h>
 

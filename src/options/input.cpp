@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <sstream>
 
-#include "traverse/base/petsc.hpp"
-#include "traverse/options/data_file.hpp"
-#include "traverse/options/read_file.hpp"
+#include "base/petsc.hpp"
+#include "options/data_file.hpp"
+#include "options/read_file.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {

@@ -1,4 +1,4 @@
-#include "traverse/options/limits.hpp"
+#include "options/limits.hpp"
 
 #include <array>
 #include <utility>

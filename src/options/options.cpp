@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <limits>
 
+#include "options/data_file.hpp"
+#include "options/limits.hpp"
+#include "options/read_file.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/options/data_file.hpp"
-#include "traverse/options/limits.hpp"
-#include "traverse/options/read_file.hpp"
 
 namespace traverse::options {
 namespace {

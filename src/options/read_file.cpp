@@ -1,4 +1,4 @@
-#include "traverse/options/read_file.hpp"
+#include "options/read_file.hpp"
 
 #include <fmt/format.h>
 #include <yaml-cpp/yaml.h>

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "traverse/results/place.hpp"
+#include "results/place.hpp"
 
 namespace traverse::results::hdf5 {
 

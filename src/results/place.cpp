@@ -1,4 +1,4 @@
-#include "traverse/results/place.hpp"
+#include "results/place.hpp"
 
 #include <fcntl.h>
 #include <hdf5.h>

@@ -1,4 +1,4 @@
-#include "traverse/results/recorder.hpp"
+#include "results/recorder.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "hdf5.hpp"
-#include "traverse/results/recorder.hpp"
+#include "results/recorder.hpp"
 
 namespace traverse::results {
 

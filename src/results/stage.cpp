@@ -1,4 +1,4 @@
-#include "traverse/results/stage.hpp"
+#include "results/stage.hpp"
 
 #include <fmt/format.h>
 #include <pthread.h>

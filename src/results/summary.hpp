@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "traverse/results/recorder.hpp"
+#include "results/recorder.hpp"
 
 namespace traverse::results {
 

@@ -1,4 +1,4 @@
-#include "traverse/results/sweep.hpp"
+#include "results/sweep.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "traverse/results/terminal.hpp"
+#include "results/terminal.hpp"
 
 #include <fmt/format.h>
 #include <mpi.h>

@@ -1,4 +1,4 @@
-#include "traverse/run/deflection_check.hpp"
+#include "run/deflection_check.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // list.
 #pragma once
 
-#include "traverse/run/outputs.hpp"
+#include "run/outputs.hpp"
 
 namespace traverse::app {
 

@@ -1,4 +1,4 @@
-#include "traverse/run/outputs.hpp"
+#include "run/outputs.hpp"
 
 #include "output_groups.hpp"
 

@@ -1,14 +1,14 @@
-#include "traverse/run/passage.hpp"
+#include "run/passage.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "traverse/results/stage.hpp"
-#include "traverse/run/peaks.hpp"
-#include "traverse/run/resolution.hpp"
-#include "traverse/structure/modal_structure.hpp"
-#include "traverse/structure/rest_window.hpp"
+#include "results/stage.hpp"
+#include "run/peaks.hpp"
+#include "run/resolution.hpp"
+#include "structure/modal_structure.hpp"
+#include "structure/rest_window.hpp"
 
 namespace traverse::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/run/peaks.hpp"
+#include "run/peaks.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "traverse/run/plan.hpp"
+#include "run/plan.hpp"
 
 #include <fmt/format.h>
 

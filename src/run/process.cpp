@@ -1,4 +1,4 @@
-#include "traverse/run/process.hpp"
+#include "run/process.hpp"
 
 #include <fmt/format.h>
 #include <petscversion.h>
@@ -8,7 +8,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "traverse/results/terminal.hpp"
+#include "results/terminal.hpp"
 
 namespace traverse::app {
 

@@ -1,4 +1,4 @@
-#include "traverse/run/resolution.hpp"
+#include "run/resolution.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "base/whole.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/base/whole.hpp"
 
 namespace traverse::app {
 namespace {

@@ -1,11 +1,11 @@
-#include "traverse/run/shared_beam.hpp"
+#include "run/shared_beam.hpp"
 
 #include <fmt/format.h>
 
 #include <numbers>
 
-#include "traverse/modes/modes.hpp"
-#include "traverse/results/stage.hpp"
+#include "modes/modes.hpp"
+#include "results/stage.hpp"
 
 namespace traverse::app {
 namespace {

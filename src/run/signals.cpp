@@ -1,4 +1,4 @@
-#include "traverse/run/signals.hpp"
+#include "run/signals.hpp"
 
 #include <signal.h>
 #include <unistd.h>
@@ -7,8 +7,8 @@
 #include <atomic>
 #include <cstring>
 
-#include "traverse/results/place.hpp"
-#include "traverse/results/stage.hpp"
+#include "results/place.hpp"
+#include "results/stage.hpp"
 
 namespace traverse::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/run/watch.hpp"
+#include "run/watch.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traverse/run/wheel_extremes.hpp"
+#include "run/wheel_extremes.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "traverse/run/worst_shape.hpp"
+#include "run/worst_shape.hpp"
 
 #include <algorithm>
 
-#include "traverse/beam/shape_points.hpp"
+#include "beam/shape_points.hpp"
 
 namespace traverse::app {
 namespace {

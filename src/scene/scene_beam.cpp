@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "limits.hpp"
+#include "options/data_file.hpp"
 #include "scene_parts.hpp"
-#include "traverse/options/data_file.hpp"
 
 namespace traverse::app {
 namespace {

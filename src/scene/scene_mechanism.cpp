@@ -1,8 +1,8 @@
 // One vehicle's mechanism out of the options: bodies, joints, springs, actuators, drivers; couplers of trains.
 #include <fmt/format.h>
 
+#include "options/data_file.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/options/data_file.hpp"
 #include "vehicle_reader.hpp"
 
 namespace traverse::app {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "options/data_file.hpp"
 #include "scene_parts.hpp"
-#include "traverse/options/data_file.hpp"
 
 namespace traverse::app {
 namespace {

@@ -5,9 +5,9 @@
 #include <cctype>
 #include <unordered_map>
 
+#include "options/read_file.hpp"
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/options/read_file.hpp"
 
 namespace traverse::app {
 namespace {

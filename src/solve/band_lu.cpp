@@ -1,4 +1,4 @@
-#include "traverse/solve/band_lu.hpp"
+#include "solve/band_lu.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,12 +1,12 @@
-#include "traverse/solve/beam_preconditioner.hpp"
+#include "solve/beam_preconditioner.hpp"
 
 #include <exception>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 
-#include "traverse/base/petsc.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "base/petsc.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 namespace traverse::solve {
 namespace {

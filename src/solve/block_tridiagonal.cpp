@@ -1,9 +1,9 @@
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 #include <stdexcept>
 #include <string>
 
-#include "traverse/base/petsc.hpp"
+#include "base/petsc.hpp"
 
 namespace traverse::solve {
 namespace {

@@ -11,8 +11,8 @@
 #include "parts.hpp"
 #include "slice.hpp"
 #include "small_block.hpp"
+#include "solve/block_tridiagonal.hpp"
 #include "sweep.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
 
 namespace traverse::solve {
 

@@ -1,4 +1,4 @@
-#include "traverse/solve/separate_parts.hpp"
+#include "solve/separate_parts.hpp"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "small_block.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 namespace traverse::solve {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "local_factor.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 namespace traverse::solve {
 

@@ -2,8 +2,8 @@
 #include <string>
 #include <utility>
 
+#include "solve/block_tridiagonal.hpp"
 #include "substructure.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
 
 namespace traverse::solve {
 namespace {

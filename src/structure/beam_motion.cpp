@@ -1,4 +1,4 @@
-#include "traverse/structure/beam_motion.hpp"
+#include "structure/beam_motion.hpp"
 
 #include <algorithm>
 #include <tuple>

@@ -1,7 +1,7 @@
 // Steps of the structure by its elements, in second-order form (one_step_methods.hpp).
 #include <algorithm>
 
-#include "traverse/structure/element_structure.hpp"
+#include "structure/element_structure.hpp"
 
 namespace traverse::structure {
 namespace {

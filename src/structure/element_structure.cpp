@@ -1,9 +1,9 @@
-#include "traverse/structure/element_structure.hpp"
+#include "structure/element_structure.hpp"
 
 #include <algorithm>
 #include <tuple>
 
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::structure {
 

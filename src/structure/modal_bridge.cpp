@@ -1,4 +1,4 @@
-#include "traverse/structure/modal_bridge.hpp"
+#include "structure/modal_bridge.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::structure {
 namespace {

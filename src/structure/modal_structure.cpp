@@ -1,8 +1,8 @@
-#include "traverse/structure/modal_structure.hpp"
+#include "structure/modal_structure.hpp"
 
 #include <algorithm>
 
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::structure {
 

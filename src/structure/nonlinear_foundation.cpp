@@ -1,4 +1,4 @@
-#include "traverse/structure/nonlinear_foundation.hpp"
+#include "structure/nonlinear_foundation.hpp"
 
 #include <algorithm>
 #include <cmath>

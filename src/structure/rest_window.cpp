@@ -1,4 +1,4 @@
-#include "traverse/structure/rest_window.hpp"
+#include "structure/rest_window.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
-#include "traverse/structure/structure.hpp"
+#include "structure/structure.hpp"
 
 #include <algorithm>
 
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::structure {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "traverse/run/signals.hpp"
-#include "traverse/run/watch.hpp"
+#include "run/signals.hpp"
+#include "run/watch.hpp"
 
 namespace traverse::app {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "traverse/integrate/modal_peaks.hpp"
-#include "traverse/run/passage.hpp"
+#include "integrate/modal_peaks.hpp"
+#include "run/passage.hpp"
 
 namespace traverse::app {
 

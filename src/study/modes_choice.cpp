@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "case_runner.hpp"
-#include "traverse/modes/modes.hpp"
+#include "modes/modes.hpp"
+#include "results/stage.hpp"
 #include "traverse/options/input.hpp"
-#include "traverse/results/stage.hpp"
 
 namespace traverse::app {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "traverse/accuracy/accuracy.hpp"
+#include "accuracy/accuracy.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {

@@ -1,4 +1,4 @@
-#include "traverse/study/study.hpp"
+#include "study/study.hpp"
 
 #include <fmt/format.h>
 
@@ -11,15 +11,15 @@
 #include "case_runner.hpp"
 #include "deal.hpp"
 #include "modes_choice.hpp"
+#include "results/stage.hpp"
+#include "results/sweep.hpp"
+#include "results/terminal.hpp"
+#include "run/deflection_check.hpp"
+#include "run/outputs.hpp"
+#include "run/process.hpp"
+#include "run/signals.hpp"
 #include "sweep_choice.hpp"
 #include "traverse/options/input.hpp"
-#include "traverse/results/stage.hpp"
-#include "traverse/results/sweep.hpp"
-#include "traverse/results/terminal.hpp"
-#include "traverse/run/deflection_check.hpp"
-#include "traverse/run/outputs.hpp"
-#include "traverse/run/process.hpp"
-#include "traverse/run/signals.hpp"
 
 namespace traverse::app {
 namespace {

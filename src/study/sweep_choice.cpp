@@ -6,9 +6,9 @@
 #include <optional>
 #include <set>
 
+#include "accuracy/accuracy.hpp"
+#include "accuracy/trials.hpp"
 #include "modes_choice.hpp"
-#include "traverse/accuracy/accuracy.hpp"
-#include "traverse/accuracy/trials.hpp"
 
 namespace traverse::app {
 namespace {

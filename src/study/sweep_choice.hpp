@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "traverse/results/sweep.hpp"
+#include "results/sweep.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {

@@ -1,10 +1,10 @@
-#include "traverse/track/touching.hpp"
+#include "track/touching.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "traverse/base/whole.hpp"
+#include "base/whole.hpp"
 
 namespace traverse::track {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/train/fleet.hpp"
+#include "train/fleet.hpp"
 
 #include <algorithm>
 

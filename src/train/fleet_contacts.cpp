@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "traverse/beam/shape.hpp"
-#include "traverse/train/fleet.hpp"
+#include "beam/shape.hpp"
+#include "train/fleet.hpp"
 
 namespace traverse::train {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "linear_dynamics.hpp"
-#include "traverse/train/fleet.hpp"
+#include "train/fleet.hpp"
 
 namespace traverse::train {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <string>
 
-#include "traverse/train/fleet.hpp"
+#include "train/fleet.hpp"
 #include "vehicle_newton.hpp"
 
 namespace traverse::train {

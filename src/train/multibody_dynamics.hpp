@@ -2,7 +2,7 @@
 // large as they come. J hardly changes: what follows from it is kept over stages and steps.
 #pragma once
 
-#include "traverse/train/fleet.hpp"
+#include "train/fleet.hpp"
 #include "vehicle_newton.hpp"
 
 namespace traverse::train {

@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "traverse/solve/band_lu.hpp"
+#include "solve/band_lu.hpp"
 
 namespace traverse::train {
 

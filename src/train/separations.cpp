@@ -1,4 +1,4 @@
-#include "traverse/train/separations.hpp"
+#include "train/separations.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "traverse/train/train_unit.hpp"
+#include "train/train_unit.hpp"
 
 #include <algorithm>
 #include <utility>

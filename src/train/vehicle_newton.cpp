@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "traverse/train/fleet.hpp"
+#include "train/fleet.hpp"
 
 namespace traverse::train {
 

@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "multibody/mechanism.hpp"
 #include "newton_inverse.hpp"
-#include "traverse/multibody/mechanism.hpp"
-#include "traverse/train/vehicle_dynamics.hpp"
+#include "train/vehicle_dynamics.hpp"
 
 namespace traverse::train {
 

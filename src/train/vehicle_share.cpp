@@ -1,4 +1,4 @@
-#include "traverse/train/vehicle_share.hpp"
+#include "train/vehicle_share.hpp"
 
 #include <algorithm>
 #include <type_traits>

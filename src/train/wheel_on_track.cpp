@@ -1,9 +1,9 @@
-#include "traverse/train/wheel_on_track.hpp"
+#include "train/wheel_on_track.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "traverse/beam/shape.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::train {
 namespace {

@@ -1,9 +1,9 @@
-#include "traverse/train/wheel_paths.hpp"
+#include "train/wheel_paths.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "traverse/train/fleet.hpp"
+#include "train/fleet.hpp"
 
 namespace traverse::train {
 namespace {

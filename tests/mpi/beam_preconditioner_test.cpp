@@ -1,14 +1,14 @@
 // The factorisation as a PETSc preconditioner: one application solves a beam's matrix to rounding, on any ranks.
 
-#include "traverse/solve/beam_preconditioner.hpp"
+#include "solve/beam_preconditioner.hpp"
 
 #include <gtest/gtest.h>
 #include <petscksp.h>
 
 #include <stdexcept>
 
+#include "base/petsc.hpp"
 #include "support/random_bands.hpp"
-#include "traverse/base/petsc.hpp"
 
 namespace {
 

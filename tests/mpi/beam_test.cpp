@@ -1,13 +1,13 @@
 // A beam cut over the ranks is the beam of one rank: the same rows, reactions, responses and modes.
-#include "traverse/beam/beam.hpp"
+#include "beam/beam.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "modes/modes.hpp"
+#include "recovery/recovery.hpp"
 #include "support/rows.hpp"
-#include "traverse/beam/recovery.hpp"
-#include "traverse/modes/modes.hpp"
 
 namespace traverse {
 namespace {

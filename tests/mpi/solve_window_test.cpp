@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "solve/block_tridiagonal.hpp"
 #include "support/random_bands.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
 
 namespace {
 

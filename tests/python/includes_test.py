@@ -55,6 +55,10 @@ class Includes(unittest.TestCase):
         self.write("src/base/error.cpp", "#include <beam/slice.hpp>")
         self.assert_fails_with("src/base/error.cpp:1", "from base to beam")
 
+    def test_a_header_that_is_not_installed_in_one_that_is(self):
+        self.write("include/traverse/beam/beam.hpp", '#include "traverse/base/error.hpp"', '#include "beam/slice.hpp"')
+        self.assert_fails_with("include/traverse/beam/beam.hpp:2", "is not installed")
+
     def test_a_folder_without_a_layer(self):
         self.write("src/attic/old.cpp", '#include "traverse/base/error.hpp"')
         self.assert_fails_with("The folder attic stands in no layer")

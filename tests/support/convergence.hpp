@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "modes/modes.hpp"
 #include "support/exact_model.hpp"
-#include "traverse/modes/modes.hpp"
 
 namespace traverse::test {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "beam/beam.hpp"
+#include "beam/nonlinear_points.hpp"
 #include "support/rows.hpp"
-#include "traverse/beam/beam.hpp"
-#include "traverse/beam/nonlinear_points.hpp"
 
 namespace traverse::test {
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 namespace traverse::test {
 

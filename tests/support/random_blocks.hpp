@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "traverse/solve/block_tridiagonal.hpp"
+#include "solve/block_tridiagonal.hpp"
 
 namespace traverse::test {
 

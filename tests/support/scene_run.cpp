@@ -11,9 +11,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "base/petsc.hpp"
 #include "support/paths.hpp"
 #include "traverse/app/run.hpp"
-#include "traverse/base/petsc.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::test {

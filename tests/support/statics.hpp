@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "traverse/beam/beam.hpp"
-#include "traverse/beam/recovery.hpp"
-#include "traverse/beam/shape.hpp"
+#include "beam/beam.hpp"
+#include "beam/shape.hpp"
+#include "recovery/recovery.hpp"
 
 namespace traverse::test {
 

@@ -1,5 +1,5 @@
 // The banded LU of long trains against the full one.
-#include "traverse/solve/band_lu.hpp"
+#include "solve/band_lu.hpp"
 
 #include <gtest/gtest.h>
 

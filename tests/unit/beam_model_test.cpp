@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "traverse/beam/beam.hpp"
-#include "traverse/beam/shape.hpp"
+#include "beam/beam.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse {
 namespace {

@@ -1,4 +1,4 @@
-#include "traverse/beam/beam.hpp"
+#include "beam/beam.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
+#include "beam/shape.hpp"
 #include "support/beam_model.hpp"
 #include "support/rows.hpp"
-#include "traverse/beam/shape.hpp"
 
 namespace traverse {
 namespace {

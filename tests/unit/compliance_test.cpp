@@ -1,14 +1,14 @@
 // Compliance against the dense inverse of the beam's matrix.
-#include "traverse/structure/compliance.hpp"
+#include "response/compliance.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
+#include "structure/nonlinear_foundation.hpp"
 #include "support/beam_model.hpp"
 #include "support/dense.hpp"
-#include "traverse/structure/nonlinear_foundation.hpp"
 
 namespace traverse::structure {
 namespace {

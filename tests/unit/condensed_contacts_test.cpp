@@ -1,5 +1,5 @@
 // CondensedContacts against Newton's method with dense matrices on the equations at the head of its header.
-#include "traverse/coupling/condensed_contacts.hpp"
+#include "coupling/condensed_contacts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // Products of many elements at a time, and parts of a matrix that do not touch, against the matrices themselves.
-#include "traverse/beam/element_rows.hpp"
+#include "beam/element_rows.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "traverse/structure/beam_operator.hpp"
+#include "response/beam_operator.hpp"
 
 namespace traverse {
 namespace {

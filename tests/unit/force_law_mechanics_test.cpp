@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include "multibody/force_element.hpp"
 #include "support/message.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/multibody/force_element.hpp"
-#include "traverse/multibody/force_law.hpp"
+#include "traverse/base/force_law.hpp"
 #include "unit/mechanism_helpers.hpp"
 
 namespace traverse::multibody::testing {

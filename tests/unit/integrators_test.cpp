@@ -1,5 +1,5 @@
 // The choices of -ts_type: each in the help and in the documents.
-#include "traverse/integrate/integrators.hpp"
+#include "integrate/integrators.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "methods/one_step_methods.hpp"
 #include "support/message.hpp"
 #include "support/paths.hpp"
 #include "support/scene_run.hpp"
-#include "traverse/structure/one_step_methods.hpp"
 
 namespace traverse::integrate {
 namespace {

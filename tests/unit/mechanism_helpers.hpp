@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "traverse/multibody/mechanism.hpp"
+#include "multibody/mechanism.hpp"
 
 namespace traverse::multibody::testing {
 

@@ -1,4 +1,4 @@
-#include "traverse/modes/modes.hpp"
+#include "modes/modes.hpp"
 
 #include <gtest/gtest.h>
 

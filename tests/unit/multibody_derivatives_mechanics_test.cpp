@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "multibody/force_element.hpp"
+#include "multibody/joint.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/multibody/force_element.hpp"
-#include "traverse/multibody/joint.hpp"
 #include "unit/mechanism_helpers.hpp"
 
 namespace traverse::multibody::testing {

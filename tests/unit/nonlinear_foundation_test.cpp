@@ -1,5 +1,5 @@
 // NonlinearFoundation, used as a stage and statics use it, against Newton's method with dense matrices.
-#include "traverse/structure/nonlinear_foundation.hpp"
+#include "structure/nonlinear_foundation.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 #include <petscsys.h>
 
+#include "options/data_file.hpp"
+#include "options/read_file.hpp"
 #include "support/message.hpp"
 #include "support/temporary_folder.hpp"
 #include "traverse/multibody/joint_type.hpp"
 #include "traverse/options/analyses.hpp"
-#include "traverse/options/data_file.hpp"
 #include "traverse/options/input.hpp"
-#include "traverse/options/read_file.hpp"
 
 namespace traverse::options {
 namespace {

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "traverse/structure/one_step_methods.hpp"
+#include "methods/one_step_methods.hpp"
 
 namespace traverse::structure {
 namespace {

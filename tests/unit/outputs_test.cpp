@@ -1,6 +1,6 @@
 // The tables of outputs: what a row says of a dataset is what it fills, and the datasets of a scene are those of
 // doc/results_file.md.
-#include "traverse/run/outputs.hpp"
+#include "run/outputs.hpp"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>

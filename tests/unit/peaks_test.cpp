@@ -1,5 +1,5 @@
 // Extremes of sampled curves.
-#include "traverse/run/peaks.hpp"
+#include "run/peaks.hpp"
 
 #include <gtest/gtest.h>
 

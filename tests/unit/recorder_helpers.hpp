@@ -16,7 +16,7 @@
 #include <tuple>
 #include <vector>
 
-#include "traverse/results/recorder.hpp"
+#include "results/recorder.hpp"
 
 namespace traverse::results::testing {
 

@@ -1,5 +1,5 @@
 // The results file: what is written comes back, whatever happens to the run that wrote it.
-#include "traverse/results/recorder.hpp"
+#include "results/recorder.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/file.h>

@@ -1,5 +1,5 @@
 // RestWindow: what it opens and closes, what that takes away, and the motion within it against that of the whole beam.
-#include "traverse/structure/rest_window.hpp"
+#include "structure/rest_window.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <optional>
 
+#include "beam/shape.hpp"
+#include "response/compliance.hpp"
 #include "support/beam_model.hpp"
 #include "support/dense.hpp"
-#include "traverse/beam/shape.hpp"
-#include "traverse/structure/compliance.hpp"
 
 namespace traverse::structure {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "options/read_file.hpp"
 #include "support/message.hpp"
-#include "traverse/options/read_file.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {

@@ -8,10 +8,10 @@
 #include <tuple>
 #include <vector>
 
+#include "base/petsc.hpp"
+#include "solve/block_tridiagonal.hpp"
 #include "support/random_blocks.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/base/petsc.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
 
 namespace {
 

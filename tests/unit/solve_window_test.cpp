@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <vector>
 
+#include "base/petsc.hpp"
+#include "solve/block_tridiagonal.hpp"
 #include "support/random_bands.hpp"
-#include "traverse/base/petsc.hpp"
-#include "traverse/solve/block_tridiagonal.hpp"
 
 namespace {
 

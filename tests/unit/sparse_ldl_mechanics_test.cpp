@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "traverse/multibody/sparse_ldl.hpp"
+#include "multibody/sparse_ldl.hpp"
 
 namespace traverse::multibody {
 namespace {

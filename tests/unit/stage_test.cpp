@@ -1,5 +1,5 @@
 // Whatever takes long is told.
-#include "traverse/results/stage.hpp"
+#include "results/stage.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,13 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "base/petsc.hpp"
+#include "integrate/stepper.hpp"
+#include "run/outputs.hpp"
+#include "run/passage.hpp"
 #include "support/counted_memory.hpp"
 #include "support/paths.hpp"
-#include "traverse/base/petsc.hpp"
-#include "traverse/integrate/stepper.hpp"
 #include "traverse/options/input.hpp"
-#include "traverse/run/outputs.hpp"
-#include "traverse/run/passage.hpp"
 #include "traverse/scene/scene.hpp"
 
 #ifdef TRAVERSE_COUNTS_MEMORY

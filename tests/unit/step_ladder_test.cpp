@@ -1,5 +1,5 @@
 // Which step follows which error, and which step leads to an end.
-#include "traverse/integrate/step_ladder.hpp"
+#include "integrate/step_ladder.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <map>
 
-#include "traverse/results/sweep.hpp"
+#include "results/sweep.hpp"
 
 namespace traverse::results {
 namespace {

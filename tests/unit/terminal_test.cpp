@@ -1,5 +1,5 @@
 // What a user reads at the end of a run.
-#include "traverse/results/terminal.hpp"
+#include "results/terminal.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "traverse/track/touching.hpp"
+#include "track/touching.hpp"
 
 namespace traverse::track {
 namespace {

@@ -1,5 +1,5 @@
 // The least and the greatest of the wheels' forces, step by step.
-#include "traverse/run/wheel_extremes.hpp"
+#include "run/wheel_extremes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "traverse/coupling/system.hpp"
+#include "coupling/system.hpp"
 
 namespace traverse::train {
 namespace {

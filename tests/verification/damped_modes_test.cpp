@@ -8,8 +8,8 @@
 #include <functional>
 #include <numbers>
 
+#include "modes/modes.hpp"
 #include "support/one_span.hpp"
-#include "traverse/modes/modes.hpp"
 
 namespace traverse {
 namespace {

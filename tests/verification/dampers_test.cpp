@@ -7,12 +7,12 @@
 #include <complex>
 #include <numbers>
 
+#include "beam/beam.hpp"
 #include "support/exact_model.hpp"
 #include "support/message.hpp"
 #include "support/one_span.hpp"
 #include "support/rows.hpp"
 #include "support/scene_run.hpp"
-#include "traverse/beam/beam.hpp"
 
 namespace traverse {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "beam/beam.hpp"
 #include "support/scene_run.hpp"
-#include "traverse/beam/beam.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::test {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "traverse/modes/modes.hpp"
+#include "modes/modes.hpp"
 
 namespace traverse {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "modes/modes.hpp"
 #include "support/beam_model.hpp"
 #include "support/scene_run.hpp"
 #include "traverse/base/error.hpp"
-#include "traverse/modes/modes.hpp"
 
 namespace traverse::test {
 namespace {

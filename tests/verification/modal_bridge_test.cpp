@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "integrate/modal_peaks.hpp"
 #include "support/curve.hpp"
 #include "support/message.hpp"
-#include "traverse/integrate/modal_peaks.hpp"
 
 namespace traverse::test {
 namespace {

@@ -8,10 +8,10 @@
 #include <functional>
 #include <numbers>
 
+#include "integrate/stepper.hpp"
 #include "support/beam_model.hpp"
 #include "support/curve.hpp"
 #include "support/record.hpp"
-#include "traverse/integrate/stepper.hpp"
 
 namespace traverse::test {
 namespace {

@@ -1,5 +1,5 @@
 // Moment, shear and deflection of moving beams at any station.
-#include "traverse/beam/recovery.hpp"
+#include "recovery/recovery.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "modes/modes.hpp"
 #include "support/scene_run.hpp"
-#include "traverse/modes/modes.hpp"
 
 namespace traverse::test {
 namespace {

@@ -34,7 +34,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"control_of_steps", {{"ts_dt", "7e-3"}, {"output_interval", "7e-3"}, {"ts_adapt_type", "ladder"}}},
         Case{"of_petsc", {{"ts_dt", "2e-3"}, {"ts_type", "cn"}, {"output_interval", "7e-3"}}},
         Case{"by_modes", {{"model_modes", "4"}, {"output_interval", "7e-3"}}}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& set) { return set.param.name; });
 
 TEST_P(StoredSamples, LieAtMultiplesOfTheInterval) {
   Results run = run_yaml(bridge, GetParam().options);

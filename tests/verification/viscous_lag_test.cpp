@@ -1,5 +1,5 @@
 // The moment under a passing force, on a beam with stiffness-proportional damping: it follows b behind the force.
-#include "traverse/beam/viscous_lag.hpp"
+#include "recovery/viscous_lag.hpp"
 
 #include <gtest/gtest.h>
 

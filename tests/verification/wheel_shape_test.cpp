@@ -9,10 +9,10 @@
 #include <complex>
 #include <numbers>
 
+#include "coupling/system.hpp"
 #include "support/curve.hpp"
 #include "support/quarter_car.hpp"
 #include "support/scene_run.hpp"
-#include "traverse/coupling/system.hpp"
 
 namespace traverse::test {
 namespace {

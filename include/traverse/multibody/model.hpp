@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "traverse/base/force_law.hpp"
 #include "traverse/base/time_function.hpp"
-#include "traverse/multibody/force_law.hpp"
 #include "traverse/multibody/joint_type.hpp"
 
 namespace traverse::multibody {

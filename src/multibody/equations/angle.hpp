@@ -1,7 +1,7 @@
 // phi2 - phi1 - angle = 0: two bodies turn alike. 1 equation, rad; lambda is a moment.
 #pragma once
 
-#include "traverse/multibody/joint.hpp"
+#include "multibody/joint.hpp"
 
 namespace traverse::multibody::equations {
 

@@ -3,7 +3,7 @@
 // rad; lambda is a moment. Their bearings take the forces.
 #pragma once
 
-#include "traverse/multibody/joint.hpp"
+#include "multibody/joint.hpp"
 
 namespace traverse::multibody::equations {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "traverse/multibody/joint.hpp"
+#include "multibody/joint.hpp"
 
 namespace traverse::multibody::equations {
 

@@ -1,7 +1,7 @@
 // P2 - P1 = 0: two bodies share a point. 2 equations, m.
 #pragma once
 
-#include "traverse/multibody/joint.hpp"
+#include "multibody/joint.hpp"
 
 namespace traverse::multibody::equations {
 

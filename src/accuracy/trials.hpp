@@ -1,0 +1,66 @@
+// Runs of the beginning of a scene with several meshes and steps, to see what these change.
+#pragma once
+
+#include <mpi.h>
+
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "run/peaks.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// Elements of the longest span, the others in proportion and even; with a layered track elements of the rail a bay.
+void set_mesh(Scene& scene, int elements);
+int mesh_of(const Scene& scene);
+/// So many elements or up to half as many again: where that lets nodes meet probes and the foundation's springs, inside
+/// of whose elements errors fall slowly.
+int aligned_mesh(const Scene& scene, int elements);
+
+/// When the first vehicle, or the first forces, have crossed two spans (one where there is only one), s; at most `end`.
+double beginning(const Scene& scene, double end);
+
+/// The part of the scene that moves until then: vehicles that come onto the beam later and spans that nothing reaches
+/// are left out.
+Scene shortened(const Scene& scene, double end);
+
+/// What is left of a run of which only the peaks are wanted.
+struct RunPeaks {
+  Peaks peaks;
+  double steps = 0.0;    // taken, those that were taken again for a contact's change too
+  bool complete = true;  // false: ended at the limit of its steps
+};
+
+/// Collective. A run of the scene, whose step is given, sampled at every step.
+RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps = std::numeric_limits<double>::infinity());
+
+/// Trial runs would take more steps than they may: by counting, so that the same scene ends so everywhere.
+struct TooMuchWork {};
+
+class Trials {
+ public:
+  Trials(MPI_Comm comm, Scene scene) : comm_(comm), scene_(std::move(scene)) {}
+
+  static constexpr double most_seconds = 150.0;  // of all trial runs of a scene, as `seconds` estimates them
+
+  /// Collective. The peaks of a run; kept. TooMuchWork where it would exceed what all runs may take.
+  const Peaks& run(int elements, double step);
+  bool has(int elements, double step) const { return kept_.contains({elements, step}); }
+  std::size_t count() const { return kept_.size(); }
+  /// An estimate of what a run takes, or of what all took so far, s: by counting, since decisions must not depend on
+  /// the clock.
+  double seconds(int elements, double step) const;
+  double seconds() const;
+
+ private:
+  double seconds_a_step(int elements) const;
+
+  MPI_Comm comm_;
+  Scene scene_;
+  std::map<std::pair<int, double>, Peaks> kept_;
+  double spent_ = 0.0;  // s, estimated from the steps that were taken
+};
+
+}  // namespace traverse::app

@@ -1,0 +1,128 @@
+#include "traverse/base/force_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::multibody {
+
+namespace {
+
+constexpr double engagement = 1e-9;         // m or rad: over which the damper of a spring that lets go comes on
+constexpr double rounding_of_zero = 1e-12;  // of a table's largest value: what interpolation leaves of a zero
+
+std::string text(double value) {
+  std::ostringstream out;
+  out << value;
+  return out.str();
+}
+
+std::string point(double x, double y) { return text(y) + " at " + text(x); }
+
+void check_points(const std::vector<double>& x, const std::vector<double>& y) {
+  if (x.size() != y.size()) throw InputError("a table needs as many values as arguments");
+  if (x.size() < 2) throw InputError("a table needs at least two rows");
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i])) {
+      throw InputError("row " + std::to_string(i + 1) + " of the table is not a finite number");
+    }
+    if (i > 0 && !(x[i] > x[i - 1])) {
+      throw InputError("the first column must increase strictly: row " + std::to_string(i + 1) + " has " + text(x[i]) +
+                       " after " + text(x[i - 1]));
+    }
+  }
+}
+
+/// What the spring is stretched or pressed by once it is taut; 0 where it is loose.
+double engaged(const ForceLaw& law, double elongation) {
+  if (elongation > law.gap && law.side != Side::compression) return elongation - law.gap;
+  if (elongation < -law.gap && law.side != Side::tension) return elongation + law.gap;
+  return 0.0;
+}
+
+}  // namespace
+
+Polyline::Polyline(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)) {
+  check_points(x_, y_);
+  area_ = {0.0};
+  for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
+    const double width = x_[i + 1] - x_[i];
+    slope_.push_back((y_[i + 1] - y_[i]) / width);
+    area_.push_back(area_.back() + 0.5 * (y_[i] + y_[i + 1]) * width);
+  }
+  origin_ = from_start(0.0);
+}
+
+std::size_t Polyline::segment(double x) const {
+  return static_cast<std::size_t>(std::upper_bound(x_.begin() + 1, x_.end() - 1, x) - x_.begin()) - 1;
+}
+
+double Polyline::value(double x) const {
+  const std::size_t k = segment(x);
+  return y_[k] + slope_[k] * (x - x_[k]);
+}
+
+double Polyline::slope(double x) const { return slope_[segment(x)]; }
+
+double Polyline::from_start(double x) const {
+  const std::size_t k = segment(x);
+  const double along = x - x_[k];
+  return area_[k] + (y_[k] + 0.5 * slope_[k] * along) * along;
+}
+
+double Polyline::integral(double x) const { return from_start(x) - origin_; }
+
+std::optional<double> Polyline::inverse(double y) const {
+  if (!std::all_of(slope_.begin(), slope_.end(), [](double s) { return s > 0.0; })) return {};
+  const auto next = std::upper_bound(y_.begin() + 1, y_.end() - 1, y);
+  const auto k = static_cast<std::size_t>(next - y_.begin()) - 1;
+  return x_[k] + (y - y_[k]) / slope_[k];
+}
+
+std::string Polyline::opposing() const {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    if (x_[i] * y_[i] < 0.0) return "it has " + point(x_[i], y_[i]);
+    largest = std::max(largest, std::abs(y_[i]));
+  }
+  if (std::abs(value(0.0)) > rounding_of_zero * largest) return "it has " + point(0.0, value(0.0));
+  if (slope_.front() < 0.0) return "its first line, continued, falls";
+  if (slope_.back() < 0.0) return "its last line, continued, falls";
+  return {};
+}
+
+std::optional<double> ForceLaw::elongation_at(double tension) const {
+  if (tension == 0.0 && lets_go()) return 0.0;
+  const std::optional<double> x = elastic.inverse(tension);
+  if (!x || !lets_go()) return x;
+  const double e = *x + std::copysign(gap, *x);
+  return engaged(*this, e) != 0.0 ? std::optional(e) : std::nullopt;
+}
+
+Tension tension(const ForceLaw& law, double elongation, double rate) {
+  const bool lets_go = law.lets_go();
+  const double x = lets_go ? engaged(law, elongation) : elongation;
+  if (lets_go && x == 0.0) return {};
+  const double share = lets_go ? std::min(1.0, std::abs(x) / engagement) : 1.0;
+  const double spring = law.elastic.value(x), full_damper = law.damper.value(rate), damper = share * full_damper;
+  Tension t;
+  if (lets_go && !((spring + damper) * x > 0.0)) {
+    t.dissipation = -spring * rate;
+    return t;
+  }
+  t.tension = spring + damper;
+  t.by_elongation = law.elastic.slope(x);
+  if (share < 1.0) t.by_elongation += (x > 0.0 ? full_damper : -full_damper) / engagement;
+  t.by_rate = share * law.damper.slope(rate);
+  t.dissipation = damper * rate;
+  return t;
+}
+
+double stored_energy(const ForceLaw& law, double elongation) {
+  return law.elastic.integral(law.lets_go() ? engaged(law, elongation) : elongation);
+}
+
+}  // namespace traverse::multibody

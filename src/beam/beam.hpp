@@ -1,0 +1,136 @@
+// The assembled structure (the paper's section 2 with the foundation of section 3), cut over ranks by columns.
+//
+//   M a + C* w + K* v = P        v, w, a: nodal displacements, velocities, accelerations
+//
+// A column holds the unknowns of one node (line.hpp). The vectors have all of them; those that a support holds, or
+// that nothing belongs to, stay zero: their rows and columns are empty in M, C and K ("aa" of eq. 17), and the rows
+// "c" of eq. 18 are kept apart for the reactions. A foundation with a law that is not linear is a force in P. All
+// matrices are AIJ, assembled by each rank from its own columns without communication; M, K_aa, K* and C* have the same
+// pattern of non-zeros.
+#pragma once
+
+#include <mpi.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "base/petsc.hpp"
+#include "beam/element.hpp"
+#include "beam/line.hpp"
+
+namespace traverse::beam {
+
+/// Rayleigh damping C = a M + b K of the beam itself, eq. 19.
+struct Rayleigh {
+  double a = 0.0;  // 1/s
+  double b = 0.0;  // s
+};
+
+class Rows;
+struct Slice;
+
+class Beam {
+ public:
+  /// Collective. Checks the model: InputError naming the option.
+  Beam(MPI_Comm comm, BeamModel model);
+
+  const BeamModel& model() const { return bridge_.model; }
+  /// The bridge: the beam of the model.
+  const Line& bridge() const { return bridge_; }
+  const Mesh& mesh() const { return bridge_.mesh; }
+  /// The rail of a layered track, or null.
+  const Line* rail() const { return rail_ ? &*rail_ : nullptr; }
+  /// Where wheels run: on the rail, or on the bridge.
+  const Line& running() const { return rail_ ? *rail_ : bridge_; }
+  const Layout& layout() const { return layout_; }
+  MPI_Comm comm() const { return comm_; }
+  int block() const { return layout_.block; }  // unknowns a column
+  int columns() const { return rail_ ? rail_->mesh.nodes() : bridge_.mesh.nodes(); }
+  int first_column() const { return first_; }  // owned by this rank: [first_column, first_column + local_columns)
+  int local_columns() const { return local_; }
+  int local_unknowns() const { return local_ * block(); }
+  /// First columns of the parts that do not touch each other (between separate joints), and the end. Ranks are cut
+  /// there where there are at least as many parts.
+  const std::vector<int>& parts() const { return parts_; }
+  /// Which rank owns a column.
+  int owner(int column) const;
+  /// The place of a global unknown among this rank's, or -1.
+  int local(int unknown) const {
+    const int i = unknown - first_ * block();
+    return i >= 0 && i < local_unknowns() ? i : -1;
+  }
+  /// One entry for each local unknown: 1 where the unknown is held at zero, 0 where it is free.
+  const std::vector<char>& fixed() const { return fixed_; }
+
+  /// Collective; must be called once before damping() and reactions() are used.
+  void set_rayleigh(Rayleigh ab);
+  Rayleigh rayleigh() const { return rayleigh_; }
+
+  /// Frees M, K and C, which are most of what a long beam takes, once a BeamOperator has read them: null from then on.
+  /// What the foundation and the track add is kept. Memory that is free goes back to the operating system.
+  void release_matrices();
+  Mat mass() const { return mass_; }                      // M_aa, with that of a layered track
+  Mat beam_stiffness() const { return beam_stiffness_; }  // K_aa, without foundation
+  Mat springs() const { return springs_; }                // K* less all beams': foundation, track layers; or null
+  Mat dampers() const { return foundation_damping_; }     // of foundation and track layers; or null
+  Mat beam_mass() const { return beam_mass_; }            // of the bridge alone
+  Mat stiffness() const { return stiffness_; }            // K* = K_aa + K_VC + K_LC + K_VD + K_LD + K_NR
+  Mat damping() const { return damping_; }                // C* = a M_aa + b K_aa + C_VC + C_LC + C_VD + ...
+  /// Stiffness and damping matrix of each kind of foundation of section 3 by itself; null where the scene has no such
+  /// kind.
+  struct FoundationMats {
+    using Pair = std::array<base::Handle<Mat>, 2>;  // [0] stiffness, [1] damping
+    std::array<Pair, foundation_kind_count> of_kind;
+    Pair layered_track;  // rail, pads, ballast, sub-ballast
+    const Pair& of(std::string_view kind) const { return of_kind[foundation_kind(kind)]; }
+  };
+  const FoundationMats& foundation() const { return foundation_; }
+
+  /// Nodal forces of the structure's own weight, this rank's unknowns (consistent with psi: the mass matrix times a
+  /// fall of all that has mass), g > 0 pulls down; added to P.
+  void add_self_weight(double gravity, double* P) const;
+
+  /// Collective. Forces and moment of the supports ON the beam at every span end, {fx, fy, moment} each, on all
+  /// ranks (eq. 18 as corrected in doc/theory.md: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal
+  /// vectors.
+  /// P must hold the load on held unknowns too. Where spans are separate both spans' parts are added.
+  void reactions(const double* v, const double* w, const double* a, const double* P,
+                 std::vector<std::array<double, 3>>& out) const;
+
+ private:
+  /// Coefficients of one free local unknown in the row of one held unknown, eq. 18.
+  struct ReactionTerm {
+    std::size_t slot;     // in the reactions, 3 a span end
+    std::size_t unknown;  // local
+    double mass, beam_mass, beam_stiffness, stiffness, foundation_damping, damping;
+  };
+  /// Where the load on a held unknown enters.
+  struct HeldLoad {
+    std::size_t slot, unknown;
+  };
+
+  Slice slice() const;
+  void assemble(const Slice& slice);
+  void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
+                      std::vector<std::pair<base::Handle<Mat>*, Rows>>& own);
+  void note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_mass, const Rows& beam_stiffness,
+                      const Rows& stiffness, const Rows& foundation_damping);
+
+  MPI_Comm comm_;
+  Layout layout_;
+  Line bridge_;
+  std::optional<Line> rail_;
+  std::vector<int> parts_, cuts_;
+  int first_ = 0, local_ = 0;  // columns
+  std::vector<char> fixed_;
+  Rayleigh rayleigh_;
+  base::Handle<Mat> mass_, beam_mass_, beam_stiffness_, springs_, stiffness_, damping_;
+  base::Handle<Mat> foundation_damping_;  // of all kinds together, with the pattern of the mass; null without any
+  std::vector<double> weight_;            // nodal forces of self-weight for a gravity of 1 m/s2, this rank
+  FoundationMats foundation_;
+  std::vector<ReactionTerm> reaction_terms_;
+  std::vector<HeldLoad> held_loads_;
+};
+
+}  // namespace traverse::beam

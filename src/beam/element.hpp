@@ -1,0 +1,48 @@
+// Element matrices of the Bernoulli-Euler beam, the paper's eqs. 4-11, and what acts along an element.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "beam/mesh.hpp"
+#include "traverse/beam/model.hpp"
+
+namespace traverse::beam {
+
+/// Row-major; the axial unknowns of an element are (u1, u2), the transverse ones (v1, theta1, v2, theta2).
+using Axial = std::array<double, 4>;        // 2 x 2
+using Transverse = std::array<double, 16>;  // 4 x 4
+
+/// Eqs. 8 and 9, without foundation. kg, kg m, kg m2 and N/m, N, N m.
+struct ElementMatrices {
+  Axial axial_mass{}, axial_stiffness{};  // the stiffness is zero where the model has no axial unknowns
+  Transverse mass{}, stiffness{};
+};
+/// Closed form where EI, EA and mass are constant over the element, else Gauss integration between the breaks of
+/// their tables: exact for piecewise linear data.
+ElementMatrices element_matrices(const BeamModel& model, const Element& element);
+
+/// Integral of density(x) psi psi^T over the element: the mass matrix, a vertical bed (eqs. 27 and 29).
+Transverse transverse_bed(const Distribution& density, const Element& element);
+/// Integral of density(x) phi phi^T: the axial mass matrix, a longitudinal bed (eqs. 36 and 38).
+Axial axial_bed(const Distribution& density, const Element& element);
+/// Integral of density(x) psi' psi'^T: a bed that holds the slope.
+Transverse slope_bed(const Distribution& density, const Element& element);
+/// Integral of density(x) psi: nodal forces of a distributed force (eq. 10).
+std::array<double, 4> transverse_load(const Distribution& density, const Element& element);
+/// Integral of density(x) phi: of one along x.
+std::array<double, 2> axial_load(const Distribution& density, const Element& element);
+/// Integral of density(x) psi': of a distributed moment.
+std::array<double, 4> slope_load(const Distribution& density, const Element& element);
+
+/// c s s^T, the matrix of a spring or damper c at one station with the shape vector s.
+template <std::size_t N>
+std::array<double, N * N> outer(double c, const std::array<double, N>& s) {
+  std::array<double, N * N> matrix{};
+  for (std::size_t i = 0; i < N; ++i) {
+    for (std::size_t j = 0; j < N; ++j) matrix[i * N + j] = c * s[i] * s[j];
+  }
+  return matrix;
+}
+
+}  // namespace traverse::beam

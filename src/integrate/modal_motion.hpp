@@ -1,0 +1,71 @@
+// The modes' motion under moving forces, exact in time: between two passages of breaks the modal force is a cubic
+// polynomial of time, so
+//   q(t) = polynomial + free oscillation,   q'' + 2 sigma q' + omega^2 q = g(t).
+// Rounding alone is in the result, however far apart the instants are.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "integrate/force_history.hpp"
+#include "structure/modal_bridge.hpp"
+
+namespace traverse::integrate {
+
+class ModalMotion {
+ public:
+  /// Starts at t = 0: in static equilibrium under the forces that stand on the bridge then, or undeflected. All three
+  /// must outlive it.
+  ModalMotion(const structure::ModalBridge& bridge, const ForceHistory& history, double speed, bool equilibrium);
+
+  /// Steps of this length cost less than others.
+  void expect(double dt);
+  /// From now on counts the work of the forces and what dampers take, which more than doubles the cost.
+  void count_energy() { counting_ = true; }
+  /// Moves on to a time t not before the last one; q, ... are then those of t, and where something jumps at t those
+  /// just before it.
+  void advance(double t);
+  /// The next time at which a force passes a break; infinite after the last one.
+  double next_event() const;
+  /// At the time of an event: q, ... become those just after it.
+  void pass_event();
+  double time() const { return time_; }
+
+  const std::vector<double>& q() const { return q_; }
+  const std::vector<double>& rate() const { return rate_; }
+  const std::vector<double>& acceleration() const { return acceleration_; }
+  /// Adds `count` of the history's channels at this time, from `first` on.
+  void add_channels(std::size_t first, std::size_t count, double* sum) const;
+  double dissipated() const { return dissipated_; }  // J, since t = 0
+  double work() const { return work_; }              // J, of the forces on the modes' motion
+
+ private:
+  /// u(t + dt) = {uu, uw; wu, ww} (u, u') of a free oscillation.
+  struct Propagator {
+    double uu, uw, wu, ww;
+  };
+  struct Mode {
+    std::array<double, 4> particular{};  // by powers of the time since the interval's start
+    double u = 0.0, w = 0.0;             // the free oscillation and its rate, now
+  };
+  static Propagator propagator(double omega, double sigma, double dt);
+  void enter(std::size_t interval);
+  void move(double dt);
+  void move_counting(double dt);
+  void see();
+
+  const structure::ModalBridge& bridge_;
+  const ForceHistory& history_;
+  double speed_;
+  std::size_t interval_ = 0;
+  double time_ = 0.0;
+  std::vector<Mode> modes_;
+  std::vector<double> q_, rate_, acceleration_;
+  std::vector<Propagator> expected_;
+  double expected_dt_ = -1.0;
+  double highest_ = 0.0;  // rad/s
+  bool counting_ = false;
+  double dissipated_ = 0.0, work_ = 0.0;
+};
+
+}  // namespace traverse::integrate

@@ -1,0 +1,134 @@
+#include "recovery/ground_forces.hpp"
+
+#include <algorithm>
+
+#include "beam/assembly.hpp"
+#include "beam/layered_track.hpp"
+#include "beam/point_shape.hpp"
+#include "beam/shape.hpp"
+
+namespace traverse::beam {
+GroundForces::GroundForces(const Beam& beam) : beam_(beam) {
+  const Foundation& f = beam.model().foundation;
+  const std::size_t spans = beam.model().spans.size();
+  for (std::size_t i = 0; i < foundation_kind_count; ++i) {
+    const FoundationKind& kind = foundation_kinds[i];
+    first_[i + 1] = first_[i] + (kind.bed != nullptr ? spans : (f.*kind.points).size());
+  }
+  track_ = first_.back();
+  inertia_ = track_ + 2;
+  drag_ = inertia_ + 2;
+  sums_.assign(drag_ + 2, 0.0);
+  for (std::size_t i = 0; i < foundation_kind_count; ++i) {
+    if (foundation_kinds[i].bed != nullptr) {
+      add_bed(i, beam.bridge());
+    } else {
+      add_points(i, beam.bridge());
+    }
+  }
+  for (auto& along : bridge_masses_) along.assign(index(beam.local_unknowns()), 0.0);
+  add_masses(beam.bridge(), bridge_masses_);
+  masses_ = bridge_masses_;
+  if (beam.rail() != nullptr) {
+    add_masses(*beam.rail(), masses_);
+    add_track();
+  }
+  mass_ = 0.0;
+  // A rigid fall moves every deflection alike.
+  for (int i = 0; i < beam.local_unknowns(); ++i) {
+    const Kind kind = beam.layout().kind[index(i % beam.block())];
+    if (kind == rail_v || kind == sleeper || kind == v) mass_ += masses_[1][index(i)];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, &mass_, 1, MPI_DOUBLE, MPI_SUM, beam.comm());
+}
+
+void GroundForces::add(std::size_t sum, int unknown, double c, double k) {
+  const int local = unknown < 0 ? -1 : beam_.local(unknown);
+  if (local >= 0 && (c != 0.0 || k != 0.0)) terms_.push_back({sum, index(local), c, k});
+}
+
+void GroundForces::add_mass(std::vector<double>& masses, int unknown, double mass) const {
+  const int local = unknown < 0 ? -1 : beam_.local(unknown);
+  if (local >= 0) masses[index(local)] += mass;
+}
+
+void GroundForces::add_points(std::size_t kind, const Line& line) {
+  std::size_t sum = first_[kind];
+  for (const PointFoundation& p : line.model.foundation.*foundation_kinds[kind].points) {
+    if (!p.law.nonlinear()) {
+      const PointShape s = shape_at(line, foundation_kinds[kind].direction, station_of(line.mesh, p));
+      for (std::size_t i = 0; i < 4; ++i) add(sum, s.unknown[i], p.c * s.shape[i], p.k * s.shape[i]);
+    }
+    ++sum;
+  }
+}
+
+void GroundForces::add_bed(std::size_t kind, const Line& line) {
+  const std::optional<Bed>& bed = line.model.foundation.*foundation_kinds[kind].bed;
+  if (!bed || bed->law.nonlinear()) return;
+  const Direction direction = foundation_kinds[kind].direction;
+  for (int e = 0; e < line.mesh.elements(); ++e) {
+    const Element& element = line.mesh.element(e);
+    const auto c = bed_form(direction, bed->c, element), k = bed_form(direction, bed->k, element);
+    const auto places = unknowns_of(line, direction, e);
+    for (std::size_t i = 0; i < 4; ++i) add(first_[kind] + index(element.span), places[i], c[i], k[i]);
+  }
+}
+
+void GroundForces::add_masses(const Line& line, Masses& masses) const {
+  for (int e = 0; e < line.mesh.elements(); ++e) {
+    const auto along = axial_load(line.model.mass, line.mesh.element(e));
+    const auto up = transverse_load(line.model.mass, line.mesh.element(e));
+    for (std::size_t i = 0; i < 2; ++i) add_mass(masses[0], line.axial(e)[i], along[i]);
+    for (std::size_t i = 0; i < 4; ++i) add_mass(masses[1], line.transverse(e)[i], up[i]);
+  }
+}
+
+void GroundForces::add_track() {
+  const LayeredTrack& track = *beam_.model().track;
+  const Layout& layout = beam_.layout();
+  for (const Sleeper& s : sleepers_of(beam_.bridge(), 0, beam_.columns())) {
+    visit_ground_springs(s, track, layout, [&](int unknown, const Layer& layer, bool along_x) {
+      add(track_ + (along_x ? 0 : 1), unknown, layer.c, layer.k);
+    });
+    for (const auto& [unknown, mass] : masses_of(s, track, layout)) add_mass(masses_[1], unknown, mass);
+    if (!s.on_bridge) continue;
+    const double mass = ride_of(s, track, layout).mass;
+    const auto psi = hermite(s.at.xi, beam_.mesh().element(s.at.element).length).value;
+    const auto places = beam_.bridge().transverse(s.at.element);
+    for (std::size_t i = 0; i < 4; ++i) add_mass(masses_[1], places[i], mass * psi[i]);
+  }
+}
+
+void GroundForces::evaluate(const double* v, const double* w, const double* a) {
+  std::fill(sums_.begin(), sums_.end(), 0.0);
+  for (const Term& t : terms_) sums_[t.sum] -= t.c * w[t.unknown] + t.k * v[t.unknown];
+  for (std::size_t i = 0; i < masses_[0].size(); ++i) {
+    sums_[inertia_] -= masses_[0][i] * a[i];
+    sums_[inertia_ + 1] -= masses_[1][i] * a[i];
+    sums_[drag_] -= bridge_masses_[0][i] * w[i];
+    sums_[drag_ + 1] -= bridge_masses_[1][i] * w[i];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, sums_.data(), static_cast<int>(sums_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+}
+
+std::array<double, 2> GroundForces::foundation() const {
+  std::array<double, 2> sum = track_bed();
+  // At stations, then along beds: the order in which they have always been added.
+  for (const bool of_bed : {false, true}) {
+    for (std::size_t kind = 0; kind < foundation_kind_count; ++kind) {
+      const Direction direction = foundation_kinds[kind].direction;
+      if ((foundation_kinds[kind].bed != nullptr) != of_bed || direction == Direction::rotational) continue;
+      double& total = sum[direction == Direction::longitudinal ? 0 : 1];
+      for (std::size_t i = first_[kind]; i < first_[kind + 1]; ++i) total += sums_[i];
+    }
+  }
+  return sum;
+}
+
+std::array<double, 2> GroundForces::drag() const {
+  const double a = beam_.rayleigh().a;
+  return {a * sums_[drag_], a * sums_[drag_ + 1]};
+}
+
+}  // namespace traverse::beam

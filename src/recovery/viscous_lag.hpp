@@ -1,0 +1,41 @@
+// Elastic forces of a beam with stiffness-proportional damping, where loads act inside elements.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "recovery/recovery.hpp"
+
+namespace traverse::beam {
+
+/// With damping b K (eq. 19) a section carries M + b dM/dt, M = EI v''. Equilibrium within an element gives this sum,
+/// so what loads, inertia and foundation inside it add, c, reaches the elastic forces by m + b dm/dt = c: the moment
+/// under a passing wheel has no kink, but follows b behind.
+class ViscousLag {
+ public:
+  /// Of the stations of `recovery`, which must outlive it; b in s, above 0.
+  ViscousLag(const Recovery& recovery, double b) : recovery_(recovery), b_(b), inner_(recovery.stations().size()) {}
+
+  /// Of all stations at ascending times, with the loads that were given to evaluate(): replaces what c adds to moment,
+  /// shear and axial force by m, and fills in moment_rate. Between calls loads have moved with their speeds, and what
+  /// else is in c has changed evenly; at the first one the beam is at rest, m = c.
+  void apply(double t, const std::vector<ElementLoad>& loads, std::vector<Response>& responses);
+
+ private:
+  static constexpr std::size_t parts = 16;  // of an interval in which a load passes through a station's element
+  using History = std::array<Forces, parts + 1>;
+  struct Inner {
+    Forces c{}, m{};
+  };
+
+  bool passing(std::size_t station, const std::vector<ElementLoad>& loads, History& by_loads) const;
+  void follow(std::size_t station, const std::vector<ElementLoad>& loads, const Forces& c);
+
+  const Recovery& recovery_;
+  double b_;
+  double time_ = 0.0, interval_ = 0.0;  // of the latest call, and since the one before, s
+  std::vector<Inner> inner_;            // of each station
+  bool first_ = true;
+};
+
+}  // namespace traverse::beam

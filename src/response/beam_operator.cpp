@@ -1,0 +1,286 @@
+#include "response/beam_operator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace traverse::structure {
+namespace {
+
+constexpr std::size_t kept_factors = 12;
+constexpr int most_refinements = 30;        // of a static solution
+constexpr double refined = 4e-16;           // relative correction that is rounding
+constexpr double stagnant = 0.5;            // corrections that do not halve do not converge
+constexpr double most_static_error = 0.1;   // relative
+constexpr int most_unknowns = beam::kinds;  // of a column
+
+// r += sign*A x for the nodes of one rank; the neighbours' border nodes come in `left` and `right` (null: none).
+// B > 0 fixes the block size at compile time.
+template <int B>
+void block_product(const solve::BlockTridiagonal& A, double sign, const double* x, const double* left,
+                   const double* right, const double* left_upper, double* r) {
+  const int b = B > 0 ? B : A.block;
+  const int bb = b * b;
+  for (int i = 0; i < A.nodes; ++i) {
+    const double* D = A.diagonal.data() + static_cast<std::ptrdiff_t>(i) * bb;
+    const double* xi = x + static_cast<std::ptrdiff_t>(i) * b;
+    const double* U = A.upper.data() + static_cast<std::ptrdiff_t>(i) * bb;
+    const double* next = i + 1 < A.nodes ? xi + b : right;
+    const double* L = i > 0 ? U - bb : left_upper;
+    const double* previous = i > 0 ? xi - b : left;
+    double* ri = r + static_cast<std::ptrdiff_t>(i) * b;
+    std::array<double, (B > 0 ? B : most_unknowns)> sum{};
+    for (int col = 0; col < b; ++col)  // down the columns, as they are stored
+      for (int row = 0; row < b; ++row) sum[row] += D[row + col * b] * xi[col];
+    if (next != nullptr)
+      for (int col = 0; col < b; ++col)
+        for (int row = 0; row < b; ++row) sum[row] += U[row + col * b] * next[col];
+    if (previous != nullptr && L != nullptr)
+      for (int row = 0; row < b; ++row)
+        for (int col = 0; col < b; ++col) sum[row] += L[col + row * b] * previous[col];
+    for (int row = 0; row < b; ++row) ri[row] += sign * sum[row];
+  }
+}
+
+}  // namespace
+
+BeamOperator::BeamOperator(const beam::Beam& beam)
+    : comm_(beam.comm()),
+      block_(beam.block()),
+      nodes_(beam.local_columns()),
+      left_rank_(MPI_PROC_NULL),
+      right_rank_(MPI_PROC_NULL),
+      fixed_(beam.fixed()),
+      internal_(beam),
+      stiffness_damping_(beam.rayleigh().b),
+      halo_(2 * static_cast<std::size_t>(beam.block())) {
+  MPI_Comm_size(comm_, &ranks_);
+  if (beam.local_columns() > 0) {
+    if (beam.first_column() > 0) left_rank_ = beam.owner(beam.first_column() - 1);
+    if (beam.first_column() + beam.local_columns() < beam.columns())
+      right_rank_ = beam.owner(beam.first_column() + beam.local_columns());
+  }
+  const auto read = [&](Mat matrix) { return solve::BlockTridiagonal::from(matrix, beam.block()); };
+  mass_ = with_neighbour(read(beam.mass()));
+  if (beam.springs() != nullptr) springs_ = with_neighbour(read(beam.springs()));
+  const bool dampers = beam.dampers() != nullptr;
+  if (beam.rayleigh().a != 0.0 || dampers) {
+    solve::BlockTridiagonal drag = read(beam.beam_mass());
+    drag.combine(beam.rayleigh().a, drag, dampers ? 1.0 : 0.0, dampers ? read(beam.dampers()) : drag, 0.0, drag);
+    drag_ = with_neighbour(std::move(drag));
+  }
+  for (int i = 0; i < beam.block(); ++i) {
+    const beam::Kind kind = beam.layout().kind[i];
+    const bool bridge =
+        kind != beam::rail_u && kind != beam::rail_v && kind != beam::rail_theta && kind != beam::sleeper;
+    damped_part_.push_back(bridge ? stiffness_damping_ : 0.0);
+  }
+  damped_ = drag_ || stiffness_damping_ != 0.0;
+  relative_.resize(unknowns());
+  Shifted all{{}, read(beam.damping()), read(beam.stiffness())};
+  find_parts(beam, all);
+  if (!parts_) {
+    shifted_.push_back(std::move(all));
+  } else {
+    for (int part : parts_->of_kind) {
+      const solve::Parts::Part& its = parts_->parts[static_cast<std::size_t>(part)];
+      shifted_.push_back(
+          {solve::rows_of(mass_.rows, its), solve::rows_of(all.damping, its), solve::rows_of(all.stiffness, its)});
+    }
+  }
+  mass_factor_.emplace(new_factor());
+  if (parts_) {
+    for (std::size_t kind = 0; kind < shifted_.size(); ++kind)
+      mass_factor_->parts().factor(static_cast<int>(kind), shifted_[kind].mass, fixed_);
+  } else {
+    mass_factor_->whole().factor(mass_.rows, fixed_);
+  }
+}
+
+// Parts of this rank alone, whatever springs come later.
+void BeamOperator::find_parts(const beam::Beam& beam, const Shifted& all) {
+  const std::vector<int>& parts = beam.parts();
+  if (static_cast<int>(parts.size()) - 1 < std::max(2, ranks_) || beam.model().foundation.nonlinear()) return;
+  std::vector<std::ptrdiff_t> begins;
+  for (int begin : parts)
+    if (begin >= beam.first_column() && begin <= beam.first_column() + nodes_)
+      begins.push_back(begin - beam.first_column());
+  parts_ = solve::Parts::find(begins, {&mass_.rows, &all.damping, &all.stiffness}, fixed_);
+}
+
+BeamFactor BeamOperator::new_factor() const {
+  if (parts_) return BeamFactor(solve::SeparateParts(block_, *parts_));
+  return BeamFactor(solve::SubstructuredCholesky(comm_, block_, nodes_));
+}
+
+solve::BlockTridiagonal BeamOperator::shifted(std::size_t kind, double shift, double shift2) const {
+  const Shifted& m = shifted_[kind];
+  solve::BlockTridiagonal sum(block_, m.stiffness.nodes);
+  sum.combine(shift2, parts_ ? m.mass : mass_.rows, shift, m.damping, 1.0, m.stiffness);
+  return sum;
+}
+
+// The block that couples to the left neighbour's last column is that rank's.
+BeamOperator::Matrix BeamOperator::with_neighbour(solve::BlockTridiagonal rows) const {
+  const int bb = rows.block * rows.block;
+  std::vector<double> send(bb, 0.0), left(bb, 0.0);
+  if (rows.nodes > 0)
+    std::copy_n(rows.upper.data() + static_cast<std::ptrdiff_t>(rows.nodes - 1) * bb, bb, send.data());
+  MPI_Sendrecv(send.data(), bb, MPI_DOUBLE, right_rank_, 0, left.data(), bb, MPI_DOUBLE, left_rank_, 0, comm_,
+               MPI_STATUS_IGNORE);
+  return {std::move(rows), std::move(left)};
+}
+
+void BeamOperator::borders(const double* x, double* left, double* right) const {
+  const int b = block_;
+  exchange(x, x + static_cast<std::ptrdiff_t>(nodes_ - 1) * b, b, left, right);
+}
+
+void BeamOperator::exchange(const double* first, const double* last, int count, double* left, double* right) const {
+  if (left_rank_ == MPI_PROC_NULL && right_rank_ == MPI_PROC_NULL) return;
+  MPI_Sendrecv(first, count, MPI_DOUBLE, left_rank_, 1, right, count, MPI_DOUBLE, right_rank_, 1, comm_,
+               MPI_STATUS_IGNORE);
+  MPI_Sendrecv(last, count, MPI_DOUBLE, right_rank_, 2, left, count, MPI_DOUBLE, left_rank_, 2, comm_,
+               MPI_STATUS_IGNORE);
+}
+
+void BeamOperator::product(const Matrix& A, double sign, const double* x, double* r) const {
+  borders(x, halo_.data(), halo_.data() + block_);
+  const int b = block_;
+  const double* left = left_rank_ != MPI_PROC_NULL ? halo_.data() : nullptr;
+  const double* right = right_rank_ != MPI_PROC_NULL ? halo_.data() + b : nullptr;
+  const auto kernel = b == 2   ? block_product<2>
+                      : b == 3 ? block_product<3>
+                      : b == 5 ? block_product<5>
+                      : b == 7 ? block_product<7>
+                               : block_product<0>;
+  kernel(A.rows, sign, x, left, right, A.left.data(), r);
+}
+
+void BeamOperator::multiply(double sign, const double* m, const double* c, const double* k, double* r) const {
+  std::fill_n(r, unknowns(), 0.0);
+  if (m != nullptr) product(mass_, sign, m, r);
+  if (c != nullptr && drag_) product(*drag_, sign, c, r);
+  if (k != nullptr && springs_) product(*springs_, sign, k, r);
+  // The beams' elastic forces and their damping by b K_aa together.
+  const bool damps = c != nullptr && stiffness_damping_ != 0.0;
+  if (k == nullptr && !damps) return;
+  if (damps) add_damped_part(c, k);
+  const double* x = damps ? relative_.data() : k;
+  borders(x, halo_.data(), halo_.data() + block_);
+  internal_.add(sign, x, halo_.data(), halo_.data() + block_, r);
+}
+
+// k + b c; a rail's unknowns have no b.
+void BeamOperator::add_damped_part(const double* c, const double* k) const {
+  const int n = unknowns(), block = block_;
+  const double b = stiffness_damping_;
+  for (int i = 0; i < n; ++i) relative_[i] = b * c[i];
+  for (int j = 0; j < block; ++j) {
+    if (damped_part_[j] != 0.0) continue;
+    for (int i = j; i < n; i += block) relative_[i] = 0.0;
+  }
+  if (k == nullptr) return;
+  for (int i = 0; i < n; ++i) relative_[i] += k[i];
+}
+
+void BeamOperator::solve_mass(double* x) const {
+  ++solves;
+  mass_factor_->solve(x);
+}
+
+void BeamOperator::solve_static(double* x, const AddedSprings* added) {
+  const BeamFactor& factor = factored(0.0, 0.0, added);
+  load_.assign(x, x + unknowns());
+  residual_.resize(unknowns());
+  factor.solve(x);
+  ++solves;
+  double before = 1.0, error = 1.0;
+  for (int i = 0; i < most_refinements; ++i) {
+    residual_ = load_;
+    if (springs_) product(*springs_, -1.0, x, residual_.data());
+    borders(x, halo_.data(), halo_.data() + block_);
+    internal_.add<long double>(-1.0, x, halo_.data(), halo_.data() + block_, residual_.data());
+    if (added != nullptr) {
+      for (const AddedSprings::Term& t : *added->terms)
+        residual_[t.row] -=
+            t.shape * added->k[t.point] * (t.column < unknowns() ? x[t.column] : halo_[t.column - unknowns()]);
+    }
+    for (int j = 0; j < unknowns(); ++j)
+      if (fixed_[j] != 0) residual_[j] = 0.0;
+    factor.solve(residual_.data());
+    ++solves;
+    double sizes[2] = {0.0, 0.0};  // of the correction, of the solution
+    for (int j = 0; j < unknowns(); ++j) {
+      sizes[0] = std::max(sizes[0], std::abs(residual_[j]));
+      sizes[1] = std::max(sizes[1], std::abs(x[j]));
+      x[j] += residual_[j];
+    }
+    MPI_Allreduce(MPI_IN_PLACE, sizes, 2, MPI_DOUBLE, MPI_MAX, comm_);
+    const double change = sizes[1] > 0.0 ? sizes[0] / sizes[1] : 0.0;
+    // What the next correction would be, by the ratio of the last two.
+    const double ratio = std::min(change / before, 1.0);
+    error = change * std::max(ratio, std::numeric_limits<double>::epsilon());
+    if (change <= refined || ratio > stagnant) break;
+    before = change;
+  }
+  static_error_ = std::max(static_error_, error);
+  if (!(error <= most_static_error))
+    throw SolverError(
+        "the static deflection of the beam cannot be computed: rounding takes about " + std::to_string(100.0 * error) +
+        " % of it. Either nothing holds the beam (support_types, foundation, track), or there are too many "
+        "elements between supports (beam_elements_per_span)");
+}
+
+const BeamFactor& BeamOperator::factored(double shift, double shift2, const AddedSprings* added) {
+  const long version = added != nullptr ? added->version : 0;
+  auto same = [&](const Factor& f) {
+    return f.added == version && std::abs(f.shift - shift) <= 1e-9 * std::abs(shift) &&
+           std::abs(f.shift2 - shift2) <= 1e-9 * std::abs(shift2);
+  };
+  auto found = std::find_if(factors_.begin(), factors_.end(), same);
+  if (found != factors_.end()) {
+    factors_.splice(factors_.begin(), factors_, found);
+  } else {
+    if (factors_.size() < kept_factors)
+      factors_.push_front({shift, shift2, version, 0, new_factor()});
+    else
+      factors_.splice(factors_.begin(), factors_, std::prev(factors_.end()));
+    Factor& f = factors_.front();
+    f.shift = shift;
+    f.shift2 = shift2;
+    f.added = version;
+    f.stamp = ++factorisations_;
+    try {
+      factor(f.beam, shift, shift2, added);
+    } catch (const SolverError& error) {
+      factors_.pop_front();
+      if (shift > 0.0) throw;
+      throw SolverError(
+          std::string("the beam's static stiffness cannot be factored: a support is missing, or there are so "
+                      "many elements between supports (beam_elements_per_span) that rounding hides them; ") +
+          error.what());
+    }
+  }
+  stamp_ = factors_.front().stamp;
+  return factors_.front().beam;
+}
+
+void BeamOperator::factor(BeamFactor& to, double shift, double shift2, const AddedSprings* added) {
+  if (parts_) {
+    for (std::size_t kind = 0; kind < shifted_.size(); ++kind)
+      to.parts().factor(static_cast<int>(kind), shifted(kind, shift, shift2), fixed_);
+    return;
+  }
+  solve::BlockTridiagonal all = shifted(0, shift, shift2);
+  if (added != nullptr) {
+    for (const AddedSprings::Term& t : *added->terms)
+      if (t.place >= 0)
+        (t.upper ? all.upper : all.diagonal)[t.place] += t.shape * (added->k[t.point] + shift * added->c[t.point]);
+  }
+  to.whole().factor(all, fixed_);
+}
+
+}  // namespace traverse::structure

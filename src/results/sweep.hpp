@@ -1,0 +1,70 @@
+// The peaks of a sweep: in the file under /sweep and /summary, and as a table on the terminal.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "results/recorder.hpp"
+
+namespace traverse::results {
+
+struct Sweep {
+  static constexpr double not_run = std::numeric_limits<double>::quiet_NaN();
+
+  std::vector<double> speed;   // m/s
+  std::vector<int> trains;     // numbers of HSLM-A; empty: one train, whatever it is
+  std::vector<double> probes;  // stations, m
+  /// Magnitudes [trains][speeds][probes] and when they occurred; not_run where no run got to its end.
+  struct Peaks {
+    std::vector<double> value, time;
+  };
+  Peaks deflection, acceleration, moment;  // m, m/s2, N m
+  std::vector<double> amplification;       // of the deflection over that at rest; 0: unknown
+  std::vector<double> static_deflection;   // [trains][probes], m, largest magnitude; not_run: unknown
+  // [trains][speeds], all empty without vehicles that roll: N, N, losses of contact of all wheels, s.
+  std::vector<double> least_wheel_force, greatest_wheel_force, contact_losses, longest_loss;
+
+  /// How every run is computed.
+  struct Model {
+    int modes = 0;           // 0: by elements
+    int elements = 0;        // of the longest span, or of the rail in a sleeper bay
+    bool in_bays = false;    // the latter
+    double time_step = 0.0;  // s; 0: exact in time, or chosen for each run
+    double accuracy = 0.0;   // from which mesh, step and modes were chosen; 0: they were given
+    /// Relative, of the peaks whose accuracy is promised.
+    std::vector<std::pair<std::string, double>> expected_errors{};
+  } model;
+
+  std::size_t rows() const { return trains.empty() ? 1 : trains.size(); }
+};
+
+/// Where one number of a sweep belongs.
+struct SweepPlace {
+  std::size_t train = 0, speed = 0, probe = 0;  // indices
+  std::size_t at = 0;                           // in [trains][speeds][probes]
+};
+
+/// Of runs that have ended, the place of the largest value of one train, or of all. False where none has ended.
+bool find_largest(const Sweep& sweep, const std::vector<double>& values, std::size_t train, SweepPlace& place);
+bool find_largest(const Sweep& sweep, const std::vector<double>& values, SweepPlace& place);
+
+/// How the whole sweep went.
+struct SweepCourse {
+  long runs = 0, planned = 0;  // that ended; all
+  double wall_seconds = 0.0;
+  std::string ended;  // "reached its end", or why it stopped
+};
+
+/// Writes it under /sweep.
+void record(const Sweep& sweep, Recorder& recorder);
+/// /summary: the largest of all runs, each with its train, speed, probe and time; what is not known is left out.
+std::vector<Attribute> summary_of(const Sweep& sweep, const SweepCourse& course);
+/// Peaks of each train over all speeds and probes, each with its own speed and probe, and the amplification of the
+/// largest deflection beside it.
+void print_sweep(const Sweep& sweep);
+/// "by 3 modes", "by 24 elements a span and steps of 0.00055 s".
+std::string method_of(const Sweep::Model& model);
+
+}  // namespace traverse::results

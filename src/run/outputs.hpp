@@ -1,0 +1,136 @@
+// What a run stores of every sample. A quantity is one row of a table: its name, its unit and how its numbers follow
+// from the thing that it belongs to (a probe, a body, a wheel). The width of a dataset follows from the type of its
+// numbers, and the same row describes the dataset and fills it, so that these cannot disagree.
+//
+//   constexpr Row<beam::Response> rows[] = {{"moment", "N m", of<&beam::Response::moment>}, ...};
+//   outputs.add_each("/probes/", rows, 12, [](const Observed& now, std::size_t probe) { return now.probes[probe]; });
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "coupling/system.hpp"
+#include "recovery/ground_forces.hpp"
+#include "recovery/recovery.hpp"
+#include "results/recorder.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// Stored energies and integrals of powers, J; `residual` is what does not balance.
+struct EnergyTerms {
+  double kinetic = 0.0, strain = 0.0, potential = 0.0, dissipated = 0.0, work = 0.0, residual = 0.0;
+};
+
+/// What is known at a stored instant.
+struct Observed {
+  std::vector<beam::Response> probes, rail;     // at the scene's probes; empty where there is no bridge or no rail
+  std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam, at the ends of spans
+  coupling::Observation motion;
+  std::optional<beam::GroundForces> ground;  // where there is a bridge
+  EnergyTerms energy;
+};
+
+/// What stays as it is through a run: outputs may refer to it.
+struct Source {
+  const Scene& scene;
+  const train::Fleet& fleet;
+  const beam::Beam* beam;  // null: none
+};
+
+/// A quantity of a Thing. `get` gives its numbers, a double or a std::array, and has no state.
+template <class Thing>
+struct Row {
+  template <class Get>
+  constexpr Row(const char* its_name, const char* its_unit, Get)
+      : name(its_name),
+        unit(its_unit),
+        components(count(static_cast<std::invoke_result_t<Get, const Thing&>*>(nullptr))),
+        append([](const Thing& thing, std::vector<double>& values) { add(Get{}(thing), values); }) {}
+
+  const char* name;
+  const char* unit;
+  std::size_t components;  // 0: one number
+  void (*append)(const Thing& thing, std::vector<double>& values);
+
+ private:
+  static constexpr std::size_t count(const double*) { return 0; }
+  template <std::size_t n>
+  static constexpr std::size_t count(const std::array<double, n>*) {
+    return n;
+  }
+  static void add(double number, std::vector<double>& values) { values.push_back(number); }
+  template <std::size_t n>
+  static void add(const std::array<double, n>& numbers, std::vector<double>& values) {
+    values.insert(values.end(), numbers.begin(), numbers.end());
+  }
+};
+
+/// A member as the quantity itself.
+template <auto member>
+inline constexpr auto of = [](const auto& thing) { return thing.*member; };
+
+/// The datasets of a run that gain a row with each sample.
+class Outputs {
+ public:
+  /// Datasets `group` + name of one thing: [n] or [n, components]. see(now) gives the thing at an instant. The table
+  /// has to outlive the outputs.
+  template <class Thing, std::size_t rows, class See>
+  void add(const std::string& group, const Row<Thing> (&table)[rows], See see) {
+    for (const Row<Thing>& row : table) describe(group + row.name, row.unit, {}, row.components);
+    append_.push_back([table = std::span(table), see](const Observed& now, std::vector<double>& values) {
+      const Thing& thing = see(now);
+      for (const Row<Thing>& row : table) row.append(thing, values);
+    });
+  }
+  /// The same of `count` things side by side: [n, count] or [n, count, components]. see(now, i) gives thing i.
+  template <class Thing, std::size_t rows, class See>
+  void add_each(const std::string& group, const Row<Thing> (&table)[rows], std::size_t count, See see) {
+    for (const Row<Thing>& row : table) describe(group + row.name, row.unit, {count}, row.components);
+    append_.push_back([table = std::span(table), count, see](const Observed& now, std::vector<double>& values) {
+      for (const Row<Thing>& row : table)
+        for (std::size_t i = 0; i < count; ++i) row.append(see(now, i), values);
+    });
+  }
+  /// One dataset [n, count]: see(now, i) gives number i.
+  template <class See>
+  void add_numbers(std::string name, std::string unit, std::size_t count, See see) {
+    describe(std::move(name), std::move(unit), {count}, 0);
+    append_.push_back([count, see](const Observed& now, std::vector<double>& values) {
+      for (std::size_t i = 0; i < count; ++i) values.push_back(see(now, i));
+    });
+  }
+  /// A dataset that does not change with time.
+  void add_constant(std::string name, std::vector<double> values, const char* unit) {
+    layout_.constants.push_back({std::move(name), std::move(values), unit});
+  }
+
+  const results::Layout& layout() const { return layout_; }
+  /// The rows of all datasets at an instant.
+  void fill(const Observed& now, std::vector<double>& values) const {
+    values.clear();
+    for (const auto& append : append_) append(now, values);
+  }
+
+ private:
+  void describe(std::string name, std::string unit, std::vector<std::size_t> shape, std::size_t components) {
+    if (components > 0) shape.push_back(components);
+    layout_.fields.push_back({std::move(name), std::move(shape), std::move(unit)});
+  }
+
+  results::Layout layout_;
+  std::vector<std::function<void(const Observed&, std::vector<double>&)>> append_;
+};
+
+/// Everything that is stored of a scene. The source's objects have to outlive it.
+Outputs outputs_of(const Source& source);
+
+/// The stations of probes and span ends: what a file of modes or of a sweep holds of these.
+std::vector<results::Layout::Constant> stations(const std::vector<double>& probes, const std::vector<double>& supports);
+
+}  // namespace traverse::app

@@ -1,0 +1,44 @@
+// One transient run of a scene on a structure, or its static response: checked when it is built, computed by `run`.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "integrate/modal_stepper.hpp"
+#include "integrate/stepper.hpp"
+#include "run/plan.hpp"
+#include "run/shared_beam.hpp"
+
+namespace traverse::app {
+
+class Passage {
+ public:
+  /// Collective. InputError for what cannot be run. Scene and structure must outlive it.
+  Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes);
+
+  /// Collective. Sets everything to its start; SolverError where there is no equilibrium.
+  void start(std::vector<std::string>& notes);
+  /// As Stepper::run.
+  void run(const std::function<void(const integrate::Instant&)>& sample, const std::function<bool(double, long)>& step);
+
+  coupling::System& system() { return system_; }
+  const Plan& plan() const { return plan_; }
+  long rejected() const { return stepper_ ? stepper_->rejected() : 0; }
+  long steps() const { return stepper_ ? stepper_->steps() : modal_->steps(); }
+  bool stopped_at_limit() const { return stepper_ && stepper_->stopped_at_limit(); }
+
+ private:
+  void leave_out_rest(std::vector<std::string>& notes);
+
+  const Scene& scene_;
+  bool still_;
+  coupling::SystemInput input_;
+  coupling::System system_;
+  Plan plan_{0.0, 1.0, 1.0};
+  std::optional<integrate::Stepper> stepper_;  // one of the two
+  std::optional<integrate::ModalStepper> modal_;
+};
+
+}  // namespace traverse::app

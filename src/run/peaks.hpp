@@ -1,0 +1,106 @@
+// Extremes (peaks) of sampled curves; `accuracy` promises their errors. Between samples a curve is taken for a
+// parabola. Where a wheel passes a probe the moment has a kink, which gets a sample of its own (option step_probes).
+// With damping b K the moment relaxes behind the kink within a time of b, which may be much shorter than a step.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "recovery/recovery.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+enum Quantity : std::size_t { deflection, acceleration, moment, wheel_force, quantities };
+inline constexpr std::array<const char*, quantities> quantity_names = {"deflection", "acceleration", "moment",
+                                                                       "wheel force"};
+
+struct Peak {
+  double value = 0.0;  // signed
+  double time = 0.0;   // s
+  int place = 0;       // probe or wheel
+};
+
+/// The extremes of one curve, as samples come.
+class Curve {
+ public:
+  /// Calls note(value, time) for the extreme that is known with this sample. kinks: ascending times at which the curve
+  /// may have one.
+  template <class Note>
+  void add(double t, double value, const std::vector<double>& kinks, Note&& note);
+  /// After the last sample: its value counts too.
+  template <class Note>
+  void finish(Note&& note) const {
+    if (count_ > 0) note(value_[2], time_[2]);
+  }
+
+ private:
+  std::array<double, 3> time_{}, value_{};  // the latest samples, the last one at the end
+  std::size_t count_ = 0;
+};
+
+/// The extremes of a curve M that follows a smooth one by M + b dM/dt, but for its kinks, which have samples.
+class RelaxingCurve {
+ public:
+  /// b in s. Between samples of values and rates M is a second power and exp(-t/b).
+  template <class Note>
+  void add(double t, double value, double rate, double b, Note&& note);
+  template <class Note>
+  void finish(Note&& note) const {
+    if (known_) note(value_, time_);
+  }
+
+ private:
+  double time_ = 0.0, value_ = 0.0, rate_ = 0.0;  // the latest sample
+  bool known_ = false;
+};
+
+/// The extremes of a run: those above half of the largest so far.
+class Peaks {
+ public:
+  Peaks() = default;
+  /// passages: of each probe, the times at which something passes it; lag: of the moments, b of Rayleigh damping in s,
+  /// where responses have rates.
+  Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag = 0.0);
+
+  void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
+  void finish();
+  /// The peaks of a run that failed: there are none.
+  static Peaks of_failure();
+  bool failed() const { return failed_; }
+
+  const std::vector<Peak>& of(Quantity q) const { return found_[q]; }
+  const Peak& largest(Quantity q) const { return largest_[q]; }
+  /// The largest extreme of each probe or wheel.
+  const std::vector<Peak>& largest_of_each(Quantity q) const { return each_[q]; }
+
+ private:
+  void note(Quantity q, std::size_t place, double value, double time);
+
+  std::vector<std::vector<double>> passages_;
+  double lag_ = 0.0;
+  std::vector<RelaxingCurve> moments_;  // of the probes' moments where these lag; otherwise they are in probes_
+  std::vector<std::array<Curve, wheel_force>> probes_;
+  std::vector<Curve> wheels_;
+  std::array<std::vector<Peak>, quantities> found_;
+  std::array<Peak, quantities> largest_{};
+  bool failed_ = false;
+  std::array<std::vector<Peak>, quantities> each_;
+};
+
+/// The relative difference of the largest extremes of two runs, or, where that is larger, twice the root mean square of
+/// the differences of all extremes above 0.6 of the largest one that both runs have within `reach` s of each other: the
+/// largest two may agree by chance. Wheel forces are compared by how they vary about the weight. 0 where there are no
+/// extremes, 1 where a run failed.
+double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reach);
+
+/// The relative difference of the largest extremes alone.
+double peak_difference(const Peaks& rough, const Peaks& fine, Quantity q);
+
+/// For each probe of the scene the times at which wheels and forces pass it, s. Empty where x of the wheels is not
+/// known beforehand, or where they run on the rail of a layered track.
+std::vector<std::vector<double>> passages_of(const Scene& scene);
+
+}  // namespace traverse::app

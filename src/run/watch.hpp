@@ -1,0 +1,77 @@
+// A transient run: time integration with everything that is recorded on the way.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "coupling/system.hpp"
+#include "integrate/stepper.hpp"
+#include "recovery/recovery.hpp"
+#include "recovery/viscous_lag.hpp"
+#include "results/recorder.hpp"
+#include "results/terminal.hpp"
+#include "run/outputs.hpp"
+#include "run/peaks.hpp"
+#include "run/plan.hpp"
+#include "run/wheel_extremes.hpp"
+#include "run/worst_shape.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// Watches stored instants and steps: samples for the recorder, extremes for the summary.
+class Watch {
+ public:
+  /// outputs: what the recorder's layout is of; null: no samples are recorded.
+  Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
+        const Outputs* outputs = nullptr);
+
+  void sample(const integrate::Instant& instant);
+  /// To be called at the end of every step, also of one that ends at a sample.
+  void step(double t);
+  /// Collective. The summary so far, and the shape at the worst instant into the recorder.
+  results::Summary finish();
+  /// Of the latest instant that was seen, s.
+  double last_time() const { return sample_.time; }
+  const results::Summary& extremes() const { return summary_; }
+  /// The peaks, those of wheels and contacts included; after the last sample.
+  const results::Summary& finished_extremes();
+  const train::WheelPaths& paths() const { return paths_; }
+  /// The extremes so far, after the last sample.
+  const Peaks& finished_peaks();
+
+ private:
+  void drag(const double* drag);
+  void note_separations();
+  void note_wheels();
+  void store(bool end);
+  void note_peaks();
+  void note_energy();
+
+  const Scene& scene_;
+  coupling::System& system_;
+  const beam::Beam* beam_;
+  results::Recorder& recorder_;
+  std::optional<beam::Recovery> recovery_, rail_recovery_;
+  std::optional<beam::ViscousLag> lag_;
+  const Outputs* outputs_;  // null where this rank writes no file
+  std::vector<beam::Response> dragged_;
+  Peaks peaks_;
+  WheelExtremes wheels_;
+  train::WheelPaths paths_;  // where wheels are free to change their distances
+  std::vector<double> wheel_forces_;
+  std::size_t wheel_count_ = 0;
+  bool finished_ = false;
+  Observed now_;
+  results::Sample sample_;
+  results::Summary summary_;
+  double most_deflected_ = 0.0;  // m
+  WorstInstant worst_;
+  coupling::Energy energy_at_start_;
+  bool first_ = true;
+};
+
+/// SolverError where so much energy does not balance that the result is meaningless.
+void check_balance(const Scene& scene, const results::Summary& summary);
+
+}  // namespace traverse::app

@@ -1,0 +1,141 @@
+// The beam's part of a stage in second-order form: the right-hand side made tile by tile while the solver's sweep comes
+// by, so that a stage reads each vector once. A tile's numbers stay in the cache from the combination of the vectors
+// until the elimination.
+//
+// With Rayleigh's damping C = a M + b K the equation M A + C (w~ + k1 A) + K (v~ + k2 A) = P of a stage is, for
+// Z = A + c w~ and c = a/(1 + a k1),
+//
+//   ((1 + a k1) M + (b k1 + k2) K) Z = P - K e,   e = v~ + (b - c (b k1 + k2)) w~
+//
+// without a product with M. So Z is kept of each stage in place of A; what is combined of accelerations is rewritten in
+// terms of w_n and these.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "beam/element_rows.hpp"
+#include "methods/one_step_methods.hpp"
+#include "response/beam_operator.hpp"
+
+namespace traverse::structure {
+
+/// A force on a local unknown.
+struct NodalLoad {
+  int unknown = 0;
+  double force = 0.0;  // N or N m
+};
+
+class BeamMotion final : private solve::NodeFiller {
+ public:
+  /// dead_load: of this rank's unknowns; null: none. It and both references are kept.
+  BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* dead_load);
+
+  /// The method of the steps to come, for their length; the acceleration at the start stays.
+  void begin(const Method& method);
+
+  /// Nodal accelerations at the start of the step, this rank's unknowns.
+  double* start_acceleration() { return kept_[0].data(); }
+  const double* start_acceleration() const { return kept_[0].data(); }
+  /// What is kept of stage i, counted from 0: Z where fused, else A.
+  double* kept(std::size_t stage) { return kept_[stage + 1].data(); }
+
+  /// Whether stages are solved by solve(); where not, the beam has more than bending and Rayleigh's damping, and
+  /// still() serves.
+  bool fused() const { return rows_.has_value(); }
+
+  /// Collective. Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
+  void solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads);
+  /// Whether the first stages of steps look at what is lost in damping.
+  void measure(bool on) { measure_ = on; }
+  /// That, w^T C w, and its rate of change, 2 A_0^T C w: this rank's share at the start of the step whose first stage
+  /// was solved last.
+  struct Dissipation {
+    double power = 0.0;  // W
+    double rate = 0.0;   // W/s
+  };
+  Dissipation dissipation() const { return dissipation_; }
+
+  /// v~ and w~ of this rank's unknowns.
+  void still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const;
+  /// v and w of a solved stage at one unknown.
+  std::pair<double, double> state(std::size_t stage, const double* v, const double* w, int unknown) const;
+
+  /// Energy of the step's error as StepRule's embedded method estimates it, J: this rank's share. Once all stages are
+  /// solved. Only where fused; elsewhere error() serves, of v and w of this rank's unknowns.
+  double error_energy();
+  void error(const double* v, const double* w, double* error_of_v, double* error_of_w) const;
+  /// v, w and the acceleration at the end of the step, which is the next one's start.
+  void finish(double* v, double* w);
+
+  /// Where parts of the beam do not touch: a whole step of those among the nodes [first, past) on which nothing but the
+  /// dead load acts, a few parts at a time through all stages while their numbers are in the cache. Adds to
+  /// `dissipation`, of the start of the step.
+  void step_free(int first, int past, double* v, double* w, Dissipation& dissipation);
+
+  /// Stages and the ends of steps are for these nodes of this rank alone, beyond which nothing of them is felt. Only
+  /// where fused.
+  void set_range(int first, int past);
+  int first() const { return first_; }
+  int past() const { return past_; }
+  /// Puts the nodes [first, past) to rest: v as in `rest` (null: 0), w and all accelerations 0. Returns the energy that
+  /// they had beyond rest, J, this rank's share.
+  double put_to_rest(int first, int past, const double* rest, double* v, double* w);
+
+ private:
+  struct Sum {  // of v_n, w_n and what is kept
+    double v = 0.0, w = 0.0;
+    Weights kept{};
+    void add(double by, const Sum& other);
+  };
+  struct Stage {
+    Sum v_still, w_still, a, e;
+    double rate = 0.0, displacement = 0.0;  // k1, k2
+  };
+  struct View {  // the vectors of the nodes [first, past)
+    const double *v = nullptr, *w = nullptr;
+    std::array<const double*, most_accelerations> kept{};
+    int first = 0, past = 0;
+  };
+  struct Tile;  // deflections and rotations of the nodes of a tile and their neighbours
+  template <int outputs>
+  struct Terms;
+
+  void fill(std::ptrdiff_t first, std::ptrdiff_t past) override;
+  void fill_tile(int first, int past);
+  using Ghosts = std::array<double, 4>;  // (v, theta) of the nodes next to this rank's, left and right
+  void measure_dissipation(int first, int past, Tile& elastic, Tile& force);
+  template <int outputs>
+  Terms<outputs> terms_of(const std::array<const Sum*, outputs>& sums, const View& view) const;
+  void combine(const Sum& sum, int first, int past, const Ghosts& ghosts, Tile& to) const;
+  double at(const Sum& sum, const View& view, int unknown) const;
+  View view_of(const double* v, const double* w) const;
+  void end_step(const View& view, int begin, int end, double* v, double* w, double* a) const;
+  void exchange_borders(const Sum& first_sum, const Sum& second_sum);
+
+  const beam::Beam& beam_;
+  BeamOperator& operator_;
+  const double* dead_load_;
+  std::optional<beam::ElementRows> rows_;
+  std::vector<int> held_;                                     // local unknowns that stay zero
+  std::array<std::vector<double>, most_accelerations> kept_;  // A_0, then one a stage
+  int n_ = 0, nodes_ = 0;
+  int first_ = 0, past_ = 0;
+  bool ranged_ = false;
+  std::vector<Stage> stages_;
+  Sum v_end_, w_end_, a_end_, v_error_, w_error_;
+
+  // Of the stage under way
+  View view_;
+  const Stage* stage_ = nullptr;
+  bool measure_ = false;    // the dissipation at the start of the step
+  bool measuring_ = false;  // in this stage
+  const std::vector<NodalLoad>* loads_ = nullptr;
+  std::array<Ghosts, 2> ghosts_{};  // of e and of w, or of the errors of v and w
+  double* target_ = nullptr;        // where the view begins
+  Dissipation dissipation_;
+  std::array<std::vector<double>, most_accelerations> scratch_;  // of step_free
+};
+
+}  // namespace traverse::structure

@@ -1,0 +1,130 @@
+// The structure by its elements: the beam cut over ranks by nodes, its foundation, the track on it.
+//
+//   v' = w,  M w' = P + contacts - C* w - K* v,   P: its own weight and the moving forces
+//
+// A stage's unknown is the change z of v against v~ = v at zero acceleration: v = v~ + z, w = w~ + s z, w' = s2 z.
+// Being small it keeps the digits that a solve for v itself would lose in w and w'. One solve with
+// A = s2 M + s C* + K* gives z without contacts, the columns of A^-1 at elements their compliance. Around this goes a
+// Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
+//
+// Stages of steps of a beam in bending with Rayleigh's damping alone are fused with the solver's sweep (BeamMotion).
+// Spans that do not touch those under the loads go through all stages of a step at once, and what is at rest stays out
+// of the steps (RestWindow).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "response/compliance.hpp"
+#include "structure/beam_motion.hpp"
+#include "structure/rest_window.hpp"
+#include "structure/structure.hpp"
+
+namespace traverse::structure {
+
+class ElementStructure final : public Structure {
+ public:
+  /// `op`: the beam's operator where there is one already, with its factorisations.
+  ElementStructure(const beam::Beam& beam, double gravity, std::shared_ptr<BeamOperator> op = nullptr);
+
+  bool linear() const override { return !nonlinear_; }
+  void expect_weights(double sum, double greatest) override;
+
+  void load(const std::vector<beam::ElementLoad>& forces) override;
+  void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
+  std::array<double, 2> powers(const double* w) override;
+
+  void begin_statics(bool loaded) override;
+  void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) override;
+  void begin_stage(std::size_t i, const double* v, const double* w) override;
+  void solve_free() override;
+  const ElementCompliance& yield(const std::vector<int>& elements) override;
+  void take(const std::vector<double>& loads) override;
+  Verdict judge() override;
+  void end_stage(double* v, double* w) override;
+  void end_stage(std::size_t i, const double* v, const double* w) override;
+  std::string trouble() const override;
+
+  void leave_out_rest(double tolerance, const std::vector<double>& probes) override;
+  std::optional<double> energy_left() const override {
+    return window_ ? std::optional(window_->energy_left()) : std::nullopt;
+  }
+  void begin_motion(const Method& method) override;
+  void set_method(const Method& method, double h) override;
+  void measure_errors() override { measures_errors_ = true; }
+  void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
+  void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) override;
+  void finish_step(double* v, double* w) override;
+  void complete_step(double* v, double* w) override;
+  void take_back_step(double* v, double* w) override;
+  const double* acceleration() const override { return motion_->start_acceleration(); }
+  double error_energy(const double* v, const double* w) override;
+
+  StructureEnergy energy(const double* v, const double* w) override;
+  void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
+               NodalMotion& out) override;
+
+ private:
+  enum class Kind { statics, state, step, fused };  // of the stage under way
+  struct Stage {
+    Kind kind = Kind::statics;
+    double shift = 0.0, shift2 = 0.0;
+    std::size_t number = 0;  // of the step's
+    bool loaded = false;
+    const AddedSprings* added = nullptr;
+    const double *v = nullptr, *w = nullptr;  // where the step begins
+  };
+  struct Powers {  // this rank's share, W
+    double beam = 0.0, forces = 0.0;
+  };
+
+  bool fused() const { return motion_ && motion_->fused(); }
+  void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
+                  double* w_elements) const override;
+  void external_load(double* nodal) const;
+  void load_of_stills();
+  double dissipation(const double* w);
+  BeamMotion::Dissipation measure_dissipation(const double* w);
+  double dissipated_until(const BeamMotion::Dissipation& now) const;
+  void add_dissipation(const BeamMotion::Dissipation& now);
+  std::pair<int, int> loaded_columns(const std::vector<Reach>& loaded) const;
+  void set_ranges(const std::vector<Reach>& loaded);
+
+  Compliance compliance_;
+  std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
+  std::vector<NodalLoad> nodal_forces_;           // the moving ones, of ascending unknowns
+  Stage stage_;
+  // This rank's unknowns: z of the stage under way, v~ and w~, its load where there is a Newton iteration.
+  std::vector<double> z_, v_still_, w_still_, stage_load_, work_;
+  std::vector<double> element_work_;
+
+  // Steps
+  Method method_;
+  double length_ = 0.0;  // s, of a step
+  std::optional<BeamMotion> motion_;
+  std::optional<RestWindow> window_;
+  double rest_tolerance_ = 0.0;  // 0: everything is stepped
+  std::vector<int> watched_;     // columns of probes
+  std::vector<double> rest_;     // deflections under its own weight alone; empty: none
+  std::array<Powers, most_accelerations> powers_;
+  /// Integrals of this rank's powers, J. Of a fused beam what is lost is known up to `unmeasured_` s ago, when it was
+  /// `measured_`.
+  double dissipated_ = 0.0, worked_ = 0.0, unmeasured_ = 0.0;
+  BeamMotion::Dissipation measured_;
+  bool measuring_ = false, to_measure_ = true;
+  struct {
+    double dissipated = 0.0, worked = 0.0;
+    int first = 0, past = 0;  // unknowns: [first, past)
+    std::vector<double> v, w;
+  } before_;                                   // the step, where it may be taken back
+  std::array<std::pair<int, int>, 2> free_{};  // nodes of parts that nothing loads during the step: [first, past)
+  bool stepped_ = false;                       // since the last restart
+  bool incomplete_ = false;                    // these are still at the start of the last step
+  bool measures_errors_ = false;
+};
+
+}  // namespace traverse::structure

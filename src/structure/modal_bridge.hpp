@@ -1,0 +1,85 @@
+// A bridge under moving forces by its first natural modes, mass-normalised:
+//
+//   v(x, t) = sum phi_i(x) q_i(t) + what the other modes deflect by, taken as static (static correction)
+//   q_i'' + 2 sigma_i q_i' + omega_i^2 q_i = -sum_j F_j phi_i(x_j)          F_j downward
+//
+// On an element phi_i is a cubic polynomial of x, and so is the influence line of any static response. What a unit
+// force does is therefore a list of cubic polynomials, one for each piece between nodes and probes.
+#pragma once
+
+#include <vector>
+
+#include "modes/modes.hpp"
+#include "recovery/recovery.hpp"
+#include "response/beam_operator.hpp"
+
+namespace traverse::structure {
+
+/// Several quantities along x, each a cubic polynomial between neighbouring breaks.
+struct PiecewiseCubic {
+  std::vector<double> breaks;  // m, ascending
+  std::size_t channels = 0;
+  std::vector<double> coefficients;  // [piece][power][channel] of x - breaks[piece]
+
+  std::size_t pieces() const { return breaks.size() - 1; }
+};
+
+/// The response at stations as linear forms of the modes' coordinates, rates and accelerations: [mode][station].
+struct ModalProbes {
+  std::size_t count = 0;
+  std::vector<double> deflection;  // of q; of q'' it is the acceleration
+  std::vector<double> moment, moment_by_rate, moment_by_acceleration;
+  std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: of the beam's own weight
+};
+
+class ModalBridge {
+ public:
+  /// Collective. The `count` lowest modes of bending with all copies of the last frequency. `ratios`: damping ratios of
+  /// each mode, the last one for all further modes; empty: the beam's Rayleigh damping. InputError where dampers or
+  /// springs of the foundation make C* couple the modes. The operator may be used further; the beam must stay.
+  ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios);
+
+  /// Collective. Adds the response at stations to the forms, and its static correction to the influence. gravity: 0
+  /// without self-weight.
+  void add_probes(const std::vector<double>& stations, double gravity);
+
+  std::size_t modes() const { return basis_.omega.size(); }
+  const modes::Basis& basis() const { return basis_; }
+  const std::vector<double>& omega() const { return basis_.omega; }  // rad/s
+  const std::vector<double>& sigma() const { return sigma_; }        // 1/s: decay rates
+  /// Damping given by ratios, 1/s: its forces are the mass times an acceleration own_drag q'.
+  const std::vector<double>& own_drag() const { return own_drag_; }
+  const ModalProbes& probes() const { return probes_; }
+  /// Of a unit downward force at x: the modal forces; then the deflections of all probes, then their moments,
+  /// less the modes' static share.
+  const PiecewiseCubic& influence() const { return influence_; }
+  const beam::Beam& beam() const { return beam_; }
+  /// phi_i, this rank's unknowns.
+  const double* shape(std::size_t mode) const;
+
+ private:
+  /// Values of a unit downward force's response along x: the nodal values of an influence line, and what a force does
+  /// within the probe's own element.
+  struct Line {
+    std::vector<double> nodal;  // all ranks' unknowns
+    std::size_t probe = 0;
+    double beam::Response::*direct = nullptr;  // null: none
+  };
+  double share_of_mass(Mat matrix, std::size_t mode, const char* what) const;
+  void set_damping(const std::vector<double>& ratios);
+  void note_forms(beam::Recovery& recovery);
+  void note_weight(beam::Recovery& recovery, double gravity);
+  Line correction_of(beam::Recovery& recovery, std::size_t probe, double beam::Response::*quantity);
+  std::vector<Line> lines_of_modes() const;
+  void set_influence(const std::vector<Line>& lines, const std::vector<double>& stations);
+  std::vector<double> static_solution(const std::vector<double>& load);
+
+  const beam::Beam& beam_;
+  BeamOperator& statics_;
+  modes::Basis basis_;
+  std::vector<double> sigma_, own_drag_;
+  ModalProbes probes_;
+  PiecewiseCubic influence_;
+};
+
+}  // namespace traverse::structure

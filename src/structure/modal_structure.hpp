@@ -1,0 +1,105 @@
+// The structure by its natural modes, mass-normalised: nodal values v = v_0 + sum phi_i q_i with v_0 under its own
+// weight alone, and
+//
+//   q_i'' + 2 sigma_i q_i' + omega_i^2 q_i = phi_i^T (moving forces + contacts)
+//
+// The contacts feel what the modes yield. What is seen of the bridge carries, besides, what all other modes deflect by
+// as they would at rest (static correction), so that reactions and moments balance the loads exactly. The state is q
+// and q', on the first rank; shapes are on all.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "structure/modal_bridge.hpp"
+#include "structure/structure.hpp"
+
+namespace traverse::structure {
+
+class ModalStructure final : public Structure {
+ public:
+  /// The bridge must outlive the structure.
+  ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics);
+
+  void load(const std::vector<beam::ElementLoad>& forces) override;
+  void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
+  std::array<double, 2> powers(const double* w) override;
+
+  void begin_statics(bool loaded) override;
+  void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) override;
+  void begin_stage(std::size_t i, const double* v, const double* w) override;
+  void solve_free() override;
+  const ElementCompliance& yield(const std::vector<int>& elements) override;
+  void take(const std::vector<double>& loads) override;
+  void end_stage(double* v, double* w) override;
+  void end_stage(std::size_t i, const double* v, const double* w) override;
+
+  void begin_motion(const Method& method) override;
+  void set_method(const Method& method, double h) override;
+  void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
+  void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) override;
+  void finish_step(double* v, double* w) override;
+  void take_back_step(double* v, double* w) override;
+  const double* acceleration() const override { return kept_[0].data(); }
+  double error_energy(const double* v, const double* w) override;
+
+  StructureEnergy energy(const double* v, const double* w) override;
+  void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
+               NodalMotion& out) override;
+
+ private:
+  /// sum_i phi_i phi_i^T / stiffness_i between elements.
+  class Yield final : public ElementCompliance {
+   public:
+    explicit Yield(const ModalStructure& structure) : ElementCompliance(structure.per_node()), structure_(structure) {}
+    /// `stiffness`: s2 + 2 sigma s + omega^2 of every mode.
+    void prepare(const std::vector<int>& elements, const std::vector<double>& stiffness);
+
+   private:
+    void fill(int a, double* to) const;
+    const ModalStructure& structure_;
+    std::vector<int> elements_, elements_before_, known_as_;
+    std::vector<double> stiffness_, blocks_before_;
+    std::vector<double> over_;  // shapes of the element that is loaded, over the stiffness: [unknown][mode]
+  };
+  struct Powers {  // W
+    double damping = 0.0, forces = 0.0;
+  };
+
+  /// Of an unknown of the beam, counted over all ranks: its value in every mode.
+  const double* shapes(int unknown) const { return &by_unknown_[static_cast<std::size_t>(unknown) * modes_]; }
+  void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
+                  double* w_elements) const override;
+  void add_modal_forces(const ElementLoads& contacts, double* to) const;
+  double work_rate(const double* w) const;
+  double damping(const double* w) const;
+  void note_stiffness();
+
+  const ModalBridge& bridge_;
+  std::size_t modes_;
+  std::vector<double> by_unknown_;             // [unknown][mode]
+  std::vector<double> sag_;                    // v_0, of all ranks' unknowns
+  std::vector<double> weight_;                 // phi^T of its own weight, N
+  double sag_work_ = 0.0;                      // J, its own weight times v_0
+  std::vector<beam::ElementLoad> forces_;      // the moving ones
+  std::vector<double> modal_force_;            // of these
+  std::vector<double> stiffness_;              // of the stage
+  double shift_ = 0.0, shift2_ = 0.0;          // of the stage
+  std::vector<double> v_still_, w_still_, z_;  // as in ElementStructure
+  std::vector<int> elements_;                  // of the last yield
+  Yield yield_;
+  Method method_;
+  std::array<std::vector<double>, most_accelerations> kept_;  // q'' at the start of the step and at its stages
+  std::array<Powers, most_accelerations> powers_;
+  double dissipated_ = 0.0, worked_ = 0.0;  // J, on the first rank
+  struct {
+    double dissipated = 0.0, worked = 0.0;
+    std::vector<double> v, w;
+  } before_;
+  std::vector<double> q_;  // of take
+  // What is seen: nodal values, the static solution; q, q', q'' and the modes' share of that.
+  std::vector<double> v_nodal_, w_nodal_, rest_, seen_, share_;
+};
+
+}  // namespace traverse::structure

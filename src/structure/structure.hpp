@@ -1,0 +1,173 @@
+// What carries: the structure's side of the coupling. Wheels and forces run on its line; between them and the structure
+// pass nodal values of the line's elements and nothing else, 2*per_node numbers an element:
+//
+//   where the elements would be without the contacts' forces (gather),
+//   by how much they yield to such forces (ElementCompliance),
+//   the forces that were found (take).
+//
+// The state of a structure is v and w = v' of its own unknowns: nodal displacements, or coordinates of modes. What a
+// stage is, how it is solved and what is kept of it is the structure's own affair.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "methods/one_step_methods.hpp"
+#include "recovery/recovery.hpp"
+#include "response/beam_operator.hpp"
+#include "response/compliance.hpp"
+#include "structure/nonlinear_foundation.hpp"
+
+namespace traverse::structure {
+
+/// Forces of contacts as nodal values of elements: 2*per_node an element, N and N m.
+struct ElementLoads {
+  const std::vector<int>& elements;
+  const std::vector<double>& values;
+};
+
+/// A stretch of the line where a wheel or a force is at some time of a step, m.
+struct Reach {
+  double from = 0.0, to = 0.0;
+};
+
+/// Energies of a structure and the integrals of its powers, J.
+struct StructureEnergy {
+  double kinetic = 0.0, strain = 0.0, potential = 0.0;
+  double dissipated = 0.0, work = 0.0;  // since the motion began
+};
+
+/// An accepted instant of a structure, as nodal values of the beam: this rank's.
+struct NodalMotion {
+  const double *v = nullptr, *w = nullptr;
+  std::vector<double> a;     // accelerations
+  std::vector<double> P;     // loads, on held unknowns too
+  std::vector<double> drag;  // what damping that acts like inertia adds to the accelerations in all forces; empty: none
+  NonlinearForces foundation;
+  std::vector<beam::ElementLoad> foundation_loads;  // of the foundation that is not linear
+};
+
+/// A structure with n unknowns on this rank. All functions but those that only return a value are collective.
+class Structure {
+ public:
+  /// gravity: of the beam's own weight, m/s2; 0: it has none. The beam must outlive the structure.
+  Structure(const beam::Beam& beam, std::shared_ptr<BeamOperator> statics, double gravity);
+  virtual ~Structure() = default;
+  Structure(const Structure&) = delete;
+  Structure& operator=(const Structure&) = delete;
+
+  const beam::Beam& beam() const { return beam_; }
+  const beam::Line& line() const { return line_; }  // that wheels and forces run on
+  int per_node() const { return line_.per_node; }
+  int unknowns() const { return n_; }
+  /// The beam's matrices, for what is at rest.
+  BeamOperator& statics() const { return *statics_; }
+  /// Nodal forces of the beam's own weight, this rank's unknowns of the beam.
+  const std::vector<double>& dead_load() const { return dead_load_; }
+  /// Sets nodal forces on unknowns that a support holds to zero: they go into the reactions.
+  void release_held(double* nodal) const;
+  /// Adds a vertical force (N, upward) inside an element of a line to this rank's nodal forces.
+  void add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const;
+  /// Whether the answer to two loads is the sum of the answers.
+  virtual bool linear() const { return true; }
+  /// All that will weigh on it, and the greatest single force, N: what forces of a foundation are judged by.
+  virtual void expect_weights(double /*sum*/, double /*greatest*/) {}
+
+  // --- at a state --------------------------------------------------------------------------------------------------
+
+  /// The moving forces from here on, as they stand on the line.
+  virtual void load(const std::vector<beam::ElementLoad>& forces) = 0;
+  /// v and w of elements at a state, on all ranks.
+  void gather(const std::vector<int>& elements, const double* v, const double* w, std::vector<double>& v_elements,
+              std::vector<double>& w_elements);
+  /// w' of a state, of what is asked for: all that acts but contacts, and contacts (null: none).
+  virtual void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) = 0;
+  /// Power lost in damping, and that of the moving forces, W: this rank's share at the state whose accelerations were
+  /// asked for last, or of the stage that was solved last.
+  virtual std::array<double, 2> powers(const double* w) = 0;
+
+  // --- a stage -----------------------------------------------------------------------------------------------------
+
+  enum class Verdict { settled, again, failed };
+
+  /// Statics under its own weight and the moving forces; `loaded`: whether there is anything of that.
+  virtual void begin_statics(bool loaded) = 0;
+  /// v and w with v' = w = shift*v + c_v, w' = shift*w + c_w; w_guess: about what w will be.
+  virtual void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) = 0;
+  /// Stage i, counted from 0, of the step from v, w.
+  virtual void begin_stage(std::size_t i, const double* v, const double* w) = 0;
+  /// Where it is without contacts.
+  virtual void solve_free() = 0;
+  /// v and w of elements there, on all ranks.
+  void gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w);
+  /// How these elements yield to forces on them in this stage.
+  virtual const ElementCompliance& yield(const std::vector<int>& elements) = 0;
+  /// The contacts' forces on these elements.
+  virtual void take(const std::vector<double>& loads) = 0;
+  /// Whether the stage is solved, or has to be solved once more from solve_free on.
+  virtual Verdict judge() { return Verdict::settled; }
+  /// v and w of a stage that is not one of a step.
+  virtual void end_stage(double* v, double* w) = 0;
+  /// Keeps what the step needs of its stage i.
+  virtual void end_stage(std::size_t i, const double* v, const double* w) = 0;
+  /// Why a stage has no solution, for messages.
+  virtual std::string trouble() const { return {}; }
+
+  // --- steps -------------------------------------------------------------------------------------------------------
+
+  /// Leaves out of the steps what moves less than `tolerance` of the largest motion (rest_window.hpp); before
+  /// begin_motion. Probes' stations rest only when really quiet.
+  virtual void leave_out_rest(double /*tolerance*/, const std::vector<double>& /*probes*/) {}
+  /// J, put to rest so far, this rank's share; none where everything is stepped.
+  virtual std::optional<double> energy_left() const { return std::nullopt; }
+  /// The method of all steps to come, for steps of 1 s.
+  virtual void begin_motion(const Method& method) = 0;
+  /// The same for steps of h.
+  virtual void set_method(const Method& method, double h) = 0;
+  /// Every step is to be asked for its error.
+  virtual void measure_errors() {}
+  /// Before the first step from a state with the accelerations a, and where the state was changed from outside; v and w
+  /// may be put to rest where they hardly move.
+  virtual void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) = 0;
+  /// `loaded`: where wheels and forces will be; keep: the step may be taken back.
+  virtual void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) = 0;
+  virtual void finish_step(double* v, double* w) = 0;
+  /// What may be done once no step will be taken back.
+  virtual void complete_step(double* /*v*/, double* /*w*/) {}
+  virtual void take_back_step(double* v, double* w) = 0;
+  /// w' at the state that the last step led to.
+  virtual const double* acceleration() const = 0;
+  /// Energy of the step's error as the method's embedded one estimates it, J: this rank's share. Once all stages are
+  /// solved.
+  virtual double error_energy(const double* v, const double* w) = 0;
+
+  // --- what is seen ------------------------------------------------------------------------------------------------
+
+  /// This rank's share.
+  virtual StructureEnergy energy(const double* v, const double* w) = 0;
+  /// A state with its accelerations as nodal values, under the moving forces and the contacts' loads.
+  virtual void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
+                       NodalMotion& out) = 0;
+
+ protected:
+  /// v and w of elements, this rank's part of them; at a state, or, with null pointers, at the free response of the
+  /// stage. Both begin as zeros.
+  virtual void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
+                          double* w_elements) const = 0;
+  void add_contacts(const ElementLoads& contacts, double* nodal) const;  // to this rank's nodal forces
+
+  const beam::Beam& beam_;
+  const beam::Line& line_;
+  std::shared_ptr<BeamOperator> statics_;
+  std::vector<double> dead_load_;
+  int n_, ranks_ = 1;
+
+ private:
+  std::vector<double> both_;  // of gather
+};
+
+}  // namespace traverse::structure
