@@ -286,11 +286,32 @@ SECTIONS = [
             [Check("GetParam().amplification, {} * GetParam().amplification);", "error")]),
         Row("all modes of three spans at steps of 0.1 ms: deflection, reactions, energies", "the elements",
             "ModalBridge.AllModesAgainstTheFullModel", [Check("EXPECT_LT(difference, {}) << name;", ".*/.*")]),
+        Row("all modes of three spans under two coaches, by three integrators: deflection, wheel force, reactions",
+            "the elements", "ModalVehicle.AllModesAgainstTheElements",
+            [Check("expect_equal(modal, full, {});", ".*")]),
+        Row("the same train over a bump that lifts its wheels", "the elements",
+            "ModalVehicle.LosesContactAndGainsItAgain",
+            [Check('EXPECT_LT(relative_difference(modal("/probes/deflection"), full("/probes/deflection")), {});')]),
+    ]),
+    ("Linear vehicles", [
+        Row("two coaches over three spans", "the mechanisms", "LinearVehicle.CoachesOverThreeSpans", [
+            Check('{{"/probes/deflection", "{}"},', ".*deflection", "deflection"),
+            Check('{"/probes/acceleration", "{}"},', ".*probes/acceleration", "the bridge's acceleration"),
+            Check('{"/vehicles/0/wheel_1/normal_force", "{}"},', ".*normal_force", "wheel force")]),
+        Row("six hinged cars", "the mechanism", "LinearVehicle.ArticulatedTrain", [
+            Check('{{"/probes/deflection", "{}"},', ".*deflection", "deflection"),
+            Check('{"/vehicles/2/wheel_1/normal_force", "{}"}', ".*normal_force", "wheel force")]),
+        Row("a train that brakes", "the mechanisms", "LinearVehicle.BrakingTrain", [
+            Check('{{"/probes/deflection", "{}"},', ".*deflection", "deflection"),
+            Check('{"/vehicles/1/front_wheel/normal_force", "{}"}', ".*normal_force", "wheel force")]),
+        Row("contact lost over a bump: its times", "the mechanism", "LinearVehicle.LosesContactAndGainsItAgain",
+            [Check('EXPECT_LT(relative_difference(run("/separations/start"), full("/separations/start")), {});')]),
     ]),
     ("One rank against two and three", [
         Row("every dataset of all other scenes, of its peak", "the same scene on one rank", "Ranks.*",
             [Check("double at_rest = 0.0, double bound = {}) {")]),
         Row("an articulated train", "the same scene on one rank", "Ranks.ArticulatedTrain", [Check("60, {});")]),
+        Row("linear vehicles", "the same scene on one rank", "Ranks.LinearVehicles", [Check("35, {});")]),
         Row("a prop below a layered track", "the same scene on one rank", "Ranks.PropBelowALayeredTrack",
             [Check("20, {});")]),
         Row("losses of contact and impacts", "the same scene on one rank", "Ranks.ContactLossAndImpacts",
