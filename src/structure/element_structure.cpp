@@ -110,9 +110,11 @@ void ElementStructure::begin_stage(double shift, const double* c_v, const double
   stage_.kind = Kind::state;
   stage_.shift = shift;
   stage_.shift2 = shift * shift;
-  for (int i = 0; i < n_; ++i) {
-    w_still_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
-    v_still_[i] = shift > 0.0 ? (w_still_[i] - c_v[i]) / shift : 0.0;
+  for (std::vector<double>* still : {&v_still_, &w_still_})
+    if (!(shift > 0.0)) std::fill(still->begin(), still->end(), 0.0);
+  if (shift > 0.0) {
+    for (int i = 0; i < n_; ++i) w_still_[i] = -c_w[i] / shift;
+    for (int i = 0; i < n_; ++i) v_still_[i] = (w_still_[i] - c_v[i]) / shift;
   }
   if (nonlinear_) nonlinear_->begin(shift, v_still_.data(), w_still_.data(), w_guess);
   load_of_stills();
@@ -182,9 +184,10 @@ Structure::Verdict ElementStructure::judge() {
 }
 
 void ElementStructure::end_stage(double* v, double* w) {
+  const double shift = stage_.shift;  // no store to w changes it: the loop goes in vectors
   for (int i = 0; i < n_; ++i) {
     v[i] = v_still_[i] + z_[i];
-    w[i] = w_still_[i] + stage_.shift * z_[i];
+    w[i] = w_still_[i] + shift * z_[i];
   }
 }
 
