@@ -25,10 +25,12 @@
 #include "bridge_matrix.hpp"
 #include "solve/block_tridiagonal.hpp"
 
-extern "C" {
+extern "C" {  // LAPACK's own names
+// NOLINTBEGIN(readability-identifier-naming)
 void dpbtrf_(const char* half, const int* rows, const int* above, double* band, const int* leading, int* info);
 void dpbtrs_(const char* half, const int* rows, const int* above, const int* columns, const double* band,
              const int* leading, double* x, const int* leading_x, int* info);
+// NOLINTEND(readability-identifier-naming)
 }
 
 namespace {

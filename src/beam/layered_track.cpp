@@ -23,9 +23,8 @@ void add_on_bridge(const Sleeper& s, const Line& bridge, const Layout& layout, c
   const Ride ride = ride_of(s, track, layout);
   mass.add(bridge.transverse(s.at.element), outer(ride.mass, psi));
   const std::array<double, 5> direction{1.0, -psi[0], -psi[1], -psi[2], -psi[3]};
-  add_layer(ride.spring, stiffness, damping, [&](double k, Rows& rows) {
-    rows.add(std::array{ride.unknown, v1, theta1, v2, theta2}, outer(k, direction));
-  });
+  const std::array<int, 5> unknowns{ride.unknown, v1, theta1, v2, theta2};
+  add_layer(ride.spring, stiffness, damping, [&](double k, Rows& rows) { rows.add(unknowns, outer(k, direction)); });
   if (ride.along < 0) return;
   // The beam's surface at height e above its axis moves by u - e v' along x.
   const auto [u1, u2] = bridge.axial(s.at.element);
@@ -33,9 +32,8 @@ void add_on_bridge(const Sleeper& s, const Line& bridge, const Layout& layout, c
   const auto slope = hermite(s.at.xi, bridge.mesh.element(s.at.element).length).slope;
   const double e = bridge.model.surface_height;
   const std::array<double, 7> along{1.0, -phi[0], -phi[1], e * slope[0], e * slope[1], e * slope[2], e * slope[3]};
-  add_layer(track.longitudinal, stiffness, damping, [&](double k, Rows& rows) {
-    rows.add(std::array{ride.along, u1, u2, v1, theta1, v2, theta2}, outer(k, along));
-  });
+  const std::array<int, 7> moved{ride.along, u1, u2, v1, theta1, v2, theta2};
+  add_layer(track.longitudinal, stiffness, damping, [&](double k, Rows& rows) { rows.add(moved, outer(k, along)); });
 }
 
 void add_on_ground(const Sleeper& s, const Layout& layout, const LayeredTrack& track, Rows& stiffness, Rows& damping) {
