@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
+#include "accuracy/trials.hpp"
 #include "error_search.hpp"
 #include "first_guess.hpp"
 #include "results/stage.hpp"
@@ -90,13 +92,25 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   Scene timed = known;
   if (!timed.time_step) timed.time_step = some_step;
   const double end = Passage(timed, shared, ignored).plan().end_time;
-  ErrorSearch search(comm, known, shared, end);
-  search.run();
-  search.apply(scene, result);
+  std::optional<ErrorSearch> search(std::in_place, comm, known, shared, end);
+  try {
+    search->run();
+  } catch (const OutOfBalance& linear) {
+    notes.push_back(fmt::format("vehicles stay mechanisms: linear ones are out of balance by {:.1g} of their weights",
+                                linear.defect));
+    scene.vehicle_model = known.vehicle_model = VehicleModel::full;
+    search.emplace(comm, known, shared, end);
+    search->run();
+  }
+  search->apply(scene, result);
+  if (scene.vehicle_model == VehicleModel::automatic) {
+    scene.vehicle_model = VehicleModel::linear;
+    result.most_defect = most_defect(scene);
+  }
   leave_out_rest(scene);
   result.measured = true;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  say(scene, search, result, notes);
+  say(scene, *search, result, notes);
   return result;
 }
 

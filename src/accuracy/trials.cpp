@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
 constexpr std::size_t few_spans = 24;    // are all kept
 constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
+constexpr double part_for_linear = 0.1;  // of the wanted error
 constexpr double roughness = 1.3;        // times the work on vehicles on a rough track
 constexpr double same_node = 1e-9;
 constexpr std::size_t few_stations = 100;
@@ -162,9 +163,12 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
                 return result.complete;
               });
   result.steps = steps_so_far();
+  result.defect = passage.system().defect();
   result.peaks = watch.finished_peaks();
   return result;
 }
+
+double most_defect(const Scene& scene) { return part_for_linear * scene.accuracy; }
 
 // A step with every part of the scene; where contacts change, steps are many more than the run's length asks for.
 double Trials::seconds_a_step(int elements) const {
@@ -194,6 +198,7 @@ const Peaks& Trials::run(int elements, double step) {
   set_mesh(scene, elements);
   scene.time_step = step;
   scene.output.interval = steps_a_check * step;
+  if (scene.vehicle_model == VehicleModel::automatic) scene.vehicle_model = VehicleModel::linear;
   const double a_step = seconds_a_step(elements), most_steps = (most_seconds - spent_) / a_step;
   RunPeaks result;
   try {
@@ -203,6 +208,8 @@ const Peaks& Trials::run(int elements, double step) {
     result.peaks = Peaks::of_failure();  // too long a step, most likely
   }
   spent_ += result.steps * a_step;
+  if (scene_.vehicle_model == VehicleModel::automatic && result.defect > most_defect(scene_))
+    throw OutOfBalance{result.defect};
   if (!result.complete) throw TooMuchWork();
   return kept_.emplace(std::pair{elements, step}, std::move(result.peaks)).first->second;
 }

@@ -31,6 +31,7 @@ struct RunPeaks {
   Peaks peaks;
   double steps = 0.0;    // taken, those that were taken again for a contact's change too
   bool complete = true;  // false: ended at the limit of its steps
+  double defect = 0.0;   // of linear vehicles, coupling::System::defect
 };
 
 /// Collective. A run of the scene, whose step is given, sampled at every step.
@@ -39,13 +40,22 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps = std::nu
 /// Trial runs would take more steps than they may: by counting, so that the same scene ends so everywhere.
 struct TooMuchWork {};
 
+/// Linear vehicles that were taken for a trial leave out more than they may.
+struct OutOfBalance {
+  double defect = 0.0;  // coupling::System::defect
+};
+
+/// What linear vehicles that the scene leaves open may be out of balance by, over their weights.
+double most_defect(const Scene& scene);
+
 class Trials {
  public:
   Trials(MPI_Comm comm, Scene scene) : comm_(comm), scene_(std::move(scene)) {}
 
   static constexpr double most_seconds = 150.0;  // of all trial runs of a scene, as `seconds` estimates them
 
-  /// Collective. The peaks of a run; kept. TooMuchWork where it would exceed what all runs may take.
+  /// Collective. The peaks of a run; kept. TooMuchWork where it would exceed what all runs may take. Vehicles that the
+  /// scene leaves open are taken as linear: OutOfBalance where that leaves out too much.
   const Peaks& run(int elements, double step);
   bool has(int elements, double step) const { return kept_.contains({elements, step}); }
   std::size_t count() const { return kept_.size(); }

@@ -99,7 +99,7 @@ void Passage::start(std::vector<std::string>& notes) {
   }
   double* y = stepper_->state();
   for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y)) notes.push_back(line);
-  if (scene_.linear_vehicles && !still_)
+  if (scene_.vehicle_model == VehicleModel::linear && !still_)
     for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(line);
   if (!still_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);

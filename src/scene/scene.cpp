@@ -45,7 +45,10 @@ void read_run(const Options& o, Scene& scene) {
   scene.step_kinks = o.flag("step_kinks");
   scene.step_probes = o.flag("step_probes");
   scene.rest_tolerance = read_window(o);
-  scene.linear_vehicles = o.choice("model_vehicles") == "linear";
+  const std::string vehicles = o.choice("model_vehicles");
+  scene.vehicle_model = vehicles == "linear" ? VehicleModel::linear
+                        : vehicles == "auto" ? VehicleModel::automatic
+                                             : VehicleModel::full;
   scene.accuracy = o.number("accuracy");
   scene.accuracy_report = o.flag("accuracy_report");
 }

@@ -44,6 +44,10 @@ struct Sweep {
   std::vector<MovingLoad> loads;  // of each of these trains, at the scene's speed
 };
 
+/// Vehicles as mechanisms, or linear, those that can be; automatic: linear where a search for the accuracy finds that
+/// it does not matter, until then mechanisms.
+enum class VehicleModel { full, linear, automatic };
+
 struct Scene {
   std::string name;                     // of the options file, for messages and default file names
   std::optional<beam::BeamModel> beam;  // absent: a mechanism on its own, or on rigid ground
@@ -69,7 +73,7 @@ struct Scene {
   bool step_kinks = true;        // steps end where wheels pass kinks
   bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
   double rest_tolerance = -1.0;  // model_window; -1: auto
-  bool linear_vehicles = false;  // those that can be
+  VehicleModel vehicle_model = VehicleModel::full;
   double accuracy = 1e-3;
   bool mesh_open = false;        // its elements are chosen from the accuracy
   bool accuracy_report = false;  // a refined run at the end shows the true errors
