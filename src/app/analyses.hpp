@@ -49,7 +49,10 @@ constexpr const AnalysisRun* run_of(options::Analysis analysis) {
 }
 
 static_assert(std::all_of(std::begin(options::analyses), std::end(options::analyses),
-                          [](const options::AnalysisRow& row) { return run_of(row.analysis) != nullptr; }),
+                          [](const options::AnalysisRow& row) {
+                            return std::any_of(std::begin(analysis_runs), std::end(analysis_runs),
+                                               [&](const AnalysisRun& run) { return run.analysis == row.analysis; });
+                          }),
               "every analysis that may be asked for has its line in analysis_runs");
 
 }  // namespace traverse::app
