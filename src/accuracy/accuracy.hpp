@@ -6,7 +6,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,8 +29,6 @@ struct Accuracy {
   /// Name in the results file and expected error of each quantity that is promised.
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took
-  /// What linear vehicles that were chosen may be out of balance by in the run itself (coupling::System::defect).
-  double most_defect = std::numeric_limits<double>::infinity();
 };
 
 /// Collective. Fills in the scene's mesh, step and tolerances as far as they are open and says so in `notes`.

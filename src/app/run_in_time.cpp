@@ -134,7 +134,7 @@ std::optional<int> run_once(Job& job) {
     summary.ended = ended;
     recorder.finish(summary);
     progress.done();
-    const bool repeated = reaches_end && summary.linear_defect > accuracy.most_defect;
+    const bool repeated = reaches_end && summary.linear_defect > scene.most_defect;
     if (rank == 0 && !repeated) results::print_summary(summary, scene.output.file);
     return summary;
   };
@@ -173,7 +173,7 @@ std::optional<int> run_once(Job& job) {
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
   noted.reset();
-  if (reaches_end && summary.linear_defect > accuracy.most_defect) return {};
+  if (reaches_end && summary.linear_defect > scene.most_defect) return {};
   check_balance(scene, summary);
   check_deflection(comm, scene, summary.deflection.value);
   if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
@@ -193,7 +193,7 @@ int run_in_time(Job job) {
   std::vector<std::string> notes = {
       fmt::format("linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
                   "the mechanisms",
-                  job.accuracy.most_defect)};
+                  job.scene.most_defect)};
   SharedBeam beam(job.comm, scene, notes);
   Job again{job.comm, scene, results::claim_place(job.comm, scene.output.file), job.accuracy, beam, std::move(notes)};
   return run_once(again).value();

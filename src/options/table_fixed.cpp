@@ -123,7 +123,7 @@ constexpr Row run_rows[] = {
   {"model_axial", choice, "", "auto", any, "auto true false", 0, "axial unknowns of the beam; auto: where there is longitudinal action"},
   {"model_modes", text, "", "auto", any, "", 0, "the bridge by so many natural modes, under moving forces alone exact in time; 0: by its elements; auto: in sweeps of forces by modes where these do as well"},
   {"model_damping_ratios", numbers, "1", "(Rayleigh damping)", {0.0, 0.999}, "", 0, "of each mode of model_modes, one serves all"},
-  {"model_vehicles", choice, "", "full", any, "full linear auto", 0, "vehicles as mechanisms, or those that can be with constant matrices about their start: exact up to squares of angles; auto: where the trial runs of accuracy find that it does not matter"},
+  {"model_vehicles", choice, "", "auto", any, "auto full linear", 0, "vehicles as mechanisms, or those that can be with constant matrices about their start: exact up to squares of angles; auto: where the trial runs of accuracy find that it does not matter"},
   {"model_window", text, "", "auto", any, "", 0, "leave out of the steps what moves less than this part of the largest motion; auto: 1e-9 where spans do not touch; 0: nothing"},
 
   {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},

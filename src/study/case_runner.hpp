@@ -41,6 +41,7 @@ class CaseRunner {
   /// The scene of one run.
   const Scene& scene_of(std::size_t train, double speed);
   CaseResult run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached);
+  CaseResult run_with_mechanisms(std::size_t train, double speed, const std::function<void(double)>& reached);
   CaseResult run_by_modes(std::size_t train, double speed);
 
   Scene scene_;

@@ -37,6 +37,8 @@ void add(const Accuracy& one, std::optional<Accuracy>& all) {
 void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
   notes.push_back(fmt::format("all runs: {} elements a {}, steps of {:g} s", mesh_of(scene),
                               scene.beam->track ? "sleeper bay" : "span", *scene.time_step));
+  if (scene.vehicle_model == VehicleModel::linear && !scene.vehicles.empty())
+    notes.emplace_back("vehicles are taken as linear; a run in which that shows is repeated with the mechanisms");
   std::string expected;
   for (const auto& [quantity, error] : all.expected())
     expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity, error);
@@ -61,6 +63,8 @@ std::optional<Accuracy> choose_at_speeds(const Scene& given, Scene& scene, std::
     set_mesh(scene, mesh);
     scene.rest_tolerance = one.rest_tolerance;
     scene.step_probes = one.step_probes;
+    if (!all || one.vehicle_model == VehicleModel::full) scene.vehicle_model = one.vehicle_model;
+    scene.most_defect = one.most_defect;
     add(accuracy, all);
   }
   return all;

@@ -2,6 +2,7 @@
 // options; the physics sees nothing but these structures.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -74,6 +75,8 @@ struct Scene {
   bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
   double rest_tolerance = -1.0;  // model_window; -1: auto
   VehicleModel vehicle_model = VehicleModel::full;
+  /// What linear vehicles may be out of balance by over their weights; beyond, the run is repeated with the mechanisms.
+  double most_defect = std::numeric_limits<double>::infinity();
   double accuracy = 1e-3;
   bool mesh_open = false;        // its elements are chosen from the accuracy
   bool accuracy_report = false;  // a refined run at the end shows the true errors
