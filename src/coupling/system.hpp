@@ -102,8 +102,7 @@ class System {
   /// SolverError when there is no equilibrium. Returns one line a joint with redundant equations.
   std::vector<std::string> start(bool equilibrium, double* y);
 
-  /// Collective. After start: takes vehicles as linear about it, those that can be. Returns one line a kind of vehicle
-  /// that cannot.
+  /// Collective. After start: takes vehicles as linear about it, those that can be. Returns Fleet::linearise's lines.
   std::vector<std::string> linearise_vehicles(const double* y) {
     evaluate_fleet(0.0, y);
     return fleet_.linearise();

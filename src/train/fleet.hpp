@@ -152,7 +152,7 @@ class Fleet {
   double rolled_angle(const WheelContact& c) const;
 
   /// Takes this rank's vehicles as linear about the state they are in at t = 0, evaluated, with the contact forces in
-  /// Q: those that can be. Returns a line for each kind of vehicle that cannot, and why.
+  /// Q: those that can be. Returns a line on that, and one for each kind of vehicle that cannot be, and why.
   std::vector<std::string> linearise();
   /// The state of this rank's vehicles as observers see it, with p'' (freedom values).
   void observe(const double* pdd);

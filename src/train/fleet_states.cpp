@@ -85,15 +85,20 @@ std::vector<double> Fleet::kinks_of_actions() const {
 
 std::vector<std::string> Fleet::linearise() {
   std::vector<std::string> notes;
+  std::size_t taken = 0;
   for (MovingVehicle& vehicle : own()) {
     const std::string obstacle = LinearDynamics::obstacle(vehicle);
     if (obstacle.empty()) {
+      ++taken;
       vehicle.dynamics = AnyDynamics(std::make_unique<LinearDynamics>(vehicle, cruise_.data() + vehicle.offset));
     } else if (std::string note = fmt::format("vehicle '{}' is not taken as linear: {}", vehicle.name(), obstacle);
                std::find(notes.begin(), notes.end(), note) == notes.end()) {
       notes.push_back(std::move(note));
     }
   }
+  if (taken > 0)
+    notes.insert(notes.begin(), fmt::format("{} taken as linear about their start",
+                                            taken == own().size() ? "vehicles are" : "some vehicles are"));
   return notes;
 }
 
