@@ -89,4 +89,13 @@ std::string chosen_type() {
   return type;
 }
 
+std::optional<structure::Method> own_method() {
+  const structure::MethodRow* row = structure::find_method(chosen_type());
+  if (row == nullptr) return std::nullopt;
+  PetscReal value = row->parameter.value;
+  if (row->parameter.option != nullptr)
+    check(PetscOptionsGetReal(nullptr, nullptr, row->parameter.option, &value, nullptr));
+  return row->make(value);
+}
+
 }  // namespace traverse::integrate

@@ -133,6 +133,7 @@ constexpr Row run_rows[] = {
 
   {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step"},
   {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "runs the scene with each of these trains of EN 1991-2"},
+  {"sweep_lanes", choice, "", "8", any, "0 1 4 8", 0, "so many runs go side by side in the lanes of the processor's vectors, where they may; 0: each by itself, driven by TS"},
 
   {"help", text, "", "", any, "", 0, "prints this list; -help petsc: PETSc's options too"},
 };

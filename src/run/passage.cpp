@@ -15,21 +15,6 @@ namespace {
 
 constexpr double rare = 5.0;  // steps for each
 
-coupling::SystemInput system_input(const Scene& scene, bool still) {
-  coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,        scene.profile,
-                                 scene.gravity,  scene.self_weight, scene.impact_steps};
-  if (still) input.train.speed = input.load.speed = 0.0;
-  return input;
-}
-
-/// The bridge by its modes where vehicles run on these; else by its elements, or none.
-std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
-                                              const coupling::SystemInput& input) {
-  if (!shared.modal || scene.exact_in_time()) return coupling::by_elements(shared.bridge(), input, shared.statics);
-  return std::make_unique<structure::ModalStructure>(*shared.modal, input.self_weight ? input.gravity : 0.0,
-                                                     shared.statics);
-}
-
 /// When something passes a probe, as long as that is rare among the steps.
 std::vector<double> passages(const Scene& scene, const Plan& plan) {
   std::vector<double> times;
@@ -42,6 +27,20 @@ std::vector<double> passages(const Scene& scene, const Plan& plan) {
 }
 
 }  // namespace
+
+coupling::SystemInput system_input(const Scene& scene, bool still) {
+  coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,        scene.profile,
+                                 scene.gravity,  scene.self_weight, scene.impact_steps};
+  if (still) input.train.speed = input.load.speed = 0.0;
+  return input;
+}
+
+std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
+                                              const coupling::SystemInput& input) {
+  if (!shared.modal || scene.exact_in_time()) return coupling::by_elements(shared.bridge(), input, shared.statics);
+  return std::make_unique<structure::ModalStructure>(*shared.modal, input.self_weight ? input.gravity : 0.0,
+                                                     shared.statics);
+}
 
 Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes)
     : scene_(scene),

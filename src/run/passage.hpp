@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,13 @@
 #include "run/shared_beam.hpp"
 
 namespace traverse::app {
+
+/// What a scene puts on its structure. still: it stands where it starts.
+coupling::SystemInput system_input(const Scene& scene, bool still);
+
+/// The bridge by its modes where vehicles run on these; else by its elements, or none.
+std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
+                                              const coupling::SystemInput& input);
 
 class Passage {
  public:

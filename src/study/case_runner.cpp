@@ -29,6 +29,63 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
     for (const double speed : {speeds_.front(), speeds_.back()})
       const Passage checked(scene_of(train, speed), shared_, train == 0 && speed == speeds_.front() ? notes : ignored);
   }
+  set_up_lanes();
+}
+
+void CaseRunner::set_up_lanes() {
+  if (scene_.exact_in_time()) return;
+  why_no_lanes_ = scene_.sweep->lanes == 0 ? "sweep_lanes 0 asks for that" : SideBySide::obstacle(scene_, shared_);
+  if (!why_no_lanes_.empty()) return;
+  scene_of(0, speeds_.front());
+  shared_.modal->add_probes(scene_.output.probes, 0.0);
+  lanes_.emplace(scene_, shared_);
+  why_no_lanes_ = lanes_->obstacle();
+  if (!why_no_lanes_.empty()) return lanes_.reset();
+  static_deflection_[0] = lanes_->static_deflection();
+}
+
+std::vector<std::vector<std::size_t>> CaseRunner::groups() const {
+  std::vector<std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < speeds_.size(); ++i) {
+    const bool joins = lanes_ && !groups.empty() && groups.back().size() < scene_.sweep->lanes &&
+                       SideBySide::step_class(speeds_[groups.back().front()]) == SideBySide::step_class(speeds_[i]);
+    if (!joins) groups.emplace_back();
+    groups.back().push_back(i);
+  }
+  return groups;
+}
+
+std::vector<CaseResult> CaseRunner::run_group(std::size_t train, const std::vector<std::size_t>& speeds,
+                                              const std::function<void(double)>& reached) {
+  std::vector<CaseResult> results;
+  if (!lanes_) {
+    for (const std::size_t i : speeds) results.push_back(run(train, speeds_[i], reached));
+    return results;
+  }
+  std::vector<double> own, ends;
+  for (const std::size_t i : speeds) {
+    own.push_back(speeds_[i]);
+    ends.push_back(duration(train, speeds_[i]));
+  }
+  for (const lanes::CrossingResult& crossing : lanes_->run(own, ends)) {
+    const double speed = own[results.size()];
+    if (caught_signal() != 0) return std::vector<CaseResult>(speeds.size());
+    if (crossing.trouble != lanes::none || lanes_->defect(crossing) > scene_.most_defect) {
+      ++alone_;
+      results.push_back(run(train, speed, reached));
+      continue;
+    }
+    CaseResult& result = results.emplace_back();
+    const auto peak = [](const lanes::CrossingPeak& p) { return integrate::Peak{p.value, p.time}; };
+    for (std::size_t p = 0; p < crossing.deflection.size(); ++p)
+      result.peaks.push_back(
+          {peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
+    result.static_deflection = static_deflection_[train];
+    result.least_wheel_force = crossing.least_force;
+    result.greatest_wheel_force = crossing.greatest_force;
+    result.ended = true;
+  }
+  return results;
 }
 
 const Scene& CaseRunner::scene_of(std::size_t train, double speed) {

@@ -3,11 +3,13 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "integrate/modal_peaks.hpp"
 #include "run/passage.hpp"
+#include "side_by_side.hpp"
 
 namespace traverse::app {
 
@@ -36,6 +38,15 @@ class CaseRunner {
   double cost_of_all() const;
   /// One run. `reached` hears the time of its motion, s, after every step.
   CaseResult run(std::size_t train, double speed, const std::function<void(double)>& reached = {});
+  /// Whether runs go side by side; why not, in words.
+  bool has_lanes() const { return lanes_.has_value(); }
+  const std::string& why_no_lanes() const { return why_no_lanes_; }
+  /// The speeds (indices) of a train whose runs go together, slow ones first: one each, or up to sweep_lanes.
+  std::vector<std::vector<std::size_t>> groups() const;
+  /// The runs of a group.
+  std::vector<CaseResult> run_group(std::size_t train, const std::vector<std::size_t>& speeds,
+                                    const std::function<void(double)>& reached = {});
+  long alone() const { return alone_; }  // runs that had to leave their group
 
  private:
   /// The scene of one run.
@@ -43,6 +54,7 @@ class CaseRunner {
   CaseResult run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached);
   CaseResult run_with_mechanisms(std::size_t train, double speed, const std::function<void(double)>& reached);
   CaseResult run_by_modes(std::size_t train, double speed);
+  void set_up_lanes();
 
   Scene scene_;
   std::vector<double> speeds_;
@@ -50,6 +62,9 @@ class CaseRunner {
   SharedBeam shared_;
   std::map<std::size_t, std::vector<double>> static_deflection_;  // of each train
   std::map<std::size_t, integrate::ForceHistory> histories_;
+  std::optional<SideBySide> lanes_;
+  std::string why_no_lanes_;
+  long alone_ = 0;
 };
 
 }  // namespace traverse::app

@@ -28,18 +28,26 @@ constexpr int nobody = std::numeric_limits<int>::max();
 constexpr double worth_a_word = 10.0;  // s, from which on quicker ways are looked for
 constexpr double quicker_by = 0.2;     // of the time: what modes must do with
 
-/// One run of the sweep.
+/// Runs of the sweep that one rank takes together.
 struct Case {
-  std::size_t train = 0, speed = 0;  // indices
+  std::size_t train = 0;  // indices
+  std::vector<std::size_t> speeds;
 };
+
+/// s of motion, of all its runs.
+double duration_of(const Case& c, const CaseRunner& runner) {
+  double sum = 0.0;
+  for (const std::size_t i : c.speeds) sum += runner.duration(c.train, runner.speeds()[i]);
+  return sum;
+}
 
 /// Longest first, so that no rank ends long after the others.
 std::vector<Case> cases_of(const CaseRunner& runner) {
   std::vector<Case> cases;
   for (std::size_t train = 0; train < runner.trains(); ++train)
-    for (std::size_t speed = 0; speed < runner.speeds().size(); ++speed) cases.push_back({train, speed});
+    for (const std::vector<std::size_t>& speeds : runner.groups()) cases.push_back({train, speeds});
   std::stable_sort(cases.begin(), cases.end(), [&](const Case& a, const Case& b) {
-    return runner.duration(a.train, runner.speeds()[a.speed]) > runner.duration(b.train, runner.speeds()[b.speed]);
+    return duration_of(a, runner) > duration_of(b, runner);
   });
   return cases;
 }
@@ -69,8 +77,8 @@ results::Sweep empty_sweep(const Scene& scene, const CaseRunner& runner, const r
   return sweep;
 }
 
-void store(const CaseResult& result, const Case& c, results::Sweep& sweep) {
-  const std::size_t run = c.train * sweep.speed.size() + c.speed;
+void store(const CaseResult& result, std::size_t train, std::size_t speed, results::Sweep& sweep) {
+  const std::size_t run = train * sweep.speed.size() + speed;
   for (std::size_t p = 0; p < sweep.probes.size(); ++p) {
     const std::size_t at = run * sweep.probes.size() + p;
     const auto put = [&](const integrate::Peak& peak, results::Sweep::Peaks& into) {
@@ -82,7 +90,7 @@ void store(const CaseResult& result, const Case& c, results::Sweep& sweep) {
     put(result.peaks[p].moment, sweep.moment);
     const double rest = result.static_deflection[p];
     sweep.amplification[at] = rest > 0.0 ? result.peaks[p].deflection.value / rest : 0.0;
-    if (rest > 0.0) sweep.static_deflection[c.train * sweep.probes.size() + p] = rest;
+    if (rest > 0.0) sweep.static_deflection[train * sweep.probes.size() + p] = rest;
   }
   if (sweep.least_wheel_force.empty()) return;
   sweep.least_wheel_force[run] = result.least_wheel_force;
@@ -130,7 +138,7 @@ void gather(MPI_Comm comm, results::Sweep& sweep) {
 }
 
 std::string name_of(const Case& c, const results::Sweep& sweep) {
-  const double speed = sweep.speed[c.speed];
+  const double speed = sweep.speed[c.speeds.front()];
   const std::string train = sweep.trains.empty() ? "" : fmt::format(" of train A{}", sweep.trains[c.train]);
   return fmt::format("the run{} at {:g} m/s ({:g} km/h)", train, speed, 3.6 * speed);
 }
@@ -141,7 +149,7 @@ class Course {
   Course(const std::vector<Case>& cases, const CaseRunner& runner, int ranks, bool quiet)
       : ranks_(static_cast<std::size_t>(ranks)), progress_(0.0, 1.0, quiet) {
     for (const Case& c : cases) {
-      duration_.push_back(runner.duration(c.train, runner.speeds()[c.speed]));
+      duration_.push_back(duration_of(c, runner));
       until_.push_back(until_.back() + duration_.back());
     }
   }
@@ -172,11 +180,12 @@ Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal
       deal.stop();
     };
     try {
-      const double speed = runner.speeds()[c.speed], duration = runner.duration(c.train, speed);
-      const CaseResult result =
-          runner.run(c.train, speed, [&](double t) { course.show(deal.taken(), std::max(duration - t, 0.0)); });
-      if (result.ended) {
-        store(result, c, sweep);
+      const double duration = duration_of(c, runner);
+      const std::vector<CaseResult> results = runner.run_group(
+          c.train, c.speeds, [&](double t) { course.show(deal.taken(), std::max(duration - t, 0.0)); });
+      for (std::size_t i = 0; i < results.size(); ++i) {
+        if (!results[i].ended) continue;
+        store(results[i], c.train, c.speeds[i], sweep);
         ++runs;
       }
     } catch (const Error& error) {

@@ -15,6 +15,12 @@
 
 namespace traverse::train {
 
+/// About p0, moving on with c: M, C, K (f x f), r0 (f), B (n x f) as above.
+struct LinearMatrices {
+  const Eigen::MatrixXd &M, &C, &K, &B;
+  const Eigen::VectorXd &r0, &p0, &c;
+};
+
 class LinearDynamics : public VehicleDynamics {
  public:
   /// Why a vehicle cannot be taken so, in words; empty: it can.
@@ -23,6 +29,8 @@ class LinearDynamics : public VehicleDynamics {
   /// About the vehicle's state at t = 0, evaluated, with its contact forces in Q. cruise: c of its coordinates.
   LinearDynamics(MovingVehicle& vehicle, const double* cruise);
 
+  LinearMatrices matrices() const { return {M_, C_, K_, B_, r0_, p0_, c_}; }
+  const LinearDynamics* linear() const override { return this; }
   std::unique_ptr<VehicleDynamics> clone() const override { return std::make_unique<LinearDynamics>(*this); }
 
   bool set(MovingVehicle& vehicle, double t, const double* p, const double* pd) override;

@@ -12,6 +12,7 @@
 
 namespace traverse::train {
 
+class LinearDynamics;
 struct Contact;
 struct MovingVehicle;
 
@@ -56,6 +57,8 @@ class VehicleDynamics {
  public:
   virtual ~VehicleDynamics() = default;
   virtual std::unique_ptr<VehicleDynamics> clone() const = 0;
+  /// Itself where it has constant matrices, else null.
+  virtual const LinearDynamics* linear() const { return nullptr; }
 
   /// Positions, velocities and forces but for Q, from the independent coordinates and their rates (freedom values
   /// each). False where the vehicle cannot be assembled there.

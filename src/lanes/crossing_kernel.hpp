@@ -1,0 +1,770 @@
+// The motion of several runs at once, one in each lane of the processor's vectors. All runs of a group take their steps
+// by distance: wheels and forces are at the same stations in every lane, so that all meet bridge ends, probes and bumps
+// in the same step, and shapes, influence lines and places are looked up once for all.
+//
+// A stage of a step has, with w = w~ + rate a, v = v~ + d a for coordinates of vehicles and modes alike:
+//
+//   vehicles   J a = G^T F - r0 - C w~ - K v~,   J = M + rate C + d K, inverted once a step length; H = d G J^-1 G^T
+//   modes      S p = g^T F, S = (1 + rate c)/d + omega^2: what the contacts push the bridge down by, with g the modal
+//              forces of unit forces at the wheels
+//   contacts   F = F(delta),   delta = delta_free - H F - g p
+//
+// The contacts' Newton iteration puts everything into the modes: with D = 1/k + H of each vehicle by itself
+//
+//   (S + sum g^T D^-1 g) p = sum g^T D^-1 r,   F = D^-1 (r - g p),   r = delta_free - delta + F/k
+//
+// This file is compiled once for each kind of processor. Nothing in it may be seen by the linker, or code for one
+// processor could be taken for another: no functions of the library, everything in an unnamed namespace.
+#pragma once
+
+#include "lanes/crossing_task.hpp"
+
+namespace traverse::lanes {
+namespace {
+
+constexpr double force_tolerance = 1e-10;  // of the force scale: what a contact's law may be missed by
+constexpr int most_iterations = 20, fresh_after = 4;
+constexpr double least_penetration = 1e-12;  // m: below, the contact counts as lost
+constexpr double near = 0.9;                 // of the largest magnitude so far: no parabola's vertex of less is larger
+constexpr double alike = 4.0;                // see WheelExtremes
+
+template <int W>
+class Group {
+ public:
+  // NOLINTNEXTLINE: vector types have no other spelling
+  typedef double Lane __attribute__((vector_size(8 * W), may_alias));
+  typedef long Mask __attribute__((vector_size(8 * W), may_alias));  // NOLINT
+
+  Group(const Task& task, double* work) : t(task), m(task.modes) { lay_out(work); }
+  long size() const { return used_ * W; }
+
+  void run() {
+    begin();
+    double from = 0.0;
+    for (int i = 0; i < t.stretches; ++i) {
+      const TaskStretch& stretch = t.stretch[i];
+      const double ds = (stretch.to - from) / static_cast<double>(stretch.steps);
+      set_step(ds);
+      for (long k = 0; k < stretch.steps; ++k) {
+        place_vehicles(from + static_cast<double>(k) * ds);
+        for (int stage = 0; stage < t.method.stages; ++stage) solve_stage(stage);
+        finish_step();
+        distance_ = k + 1 < stretch.steps ? from + static_cast<double>(k + 1) * ds : stretch.to;
+        look(true);
+      }
+      known_ = 1;  // forces at probes may have a kink there
+      if (!any(failed_ == fill(0.0))) break;
+      from = stretch.to;
+    }
+    give();
+  }
+
+ private:
+  // --- lanes -------------------------------------------------------------------------------------------------------
+
+  static Lane fill(double value) { return Lane{} + value; }
+  static const Lane* lanes(const double* numbers) { return reinterpret_cast<const Lane*>(numbers); }
+  static Lane* lanes(double* numbers) { return reinterpret_cast<Lane*>(numbers); }
+  static Lane magnitude(Lane x) { return x < Lane{} ? -x : x; }
+  static Lane greater(Lane a, Lane b) { return a > b ? a : b; }
+  static Lane root(Lane x) {
+    double* numbers = reinterpret_cast<double*>(&x);
+    for (int l = 0; l < W; ++l) numbers[l] = __builtin_sqrt(numbers[l]);
+    return x;
+  }
+  static bool any(Mask mask) {
+    const long* words = reinterpret_cast<const long*>(&mask);
+    long seen = 0;
+    for (int l = 0; l < W; ++l) seen |= words[l];
+    return seen != 0;
+  }
+
+  // --- memory ------------------------------------------------------------------------------------------------------
+
+  template <class T>
+  T* take(double* work, long count) {
+    double* at = work == nullptr ? nullptr : work + used_ * W;
+    used_ += (count * static_cast<long>(sizeof(T)) + static_cast<long>(sizeof(Lane)) - 1) /
+             static_cast<long>(sizeof(Lane));
+    return reinterpret_cast<T*>(at);
+  }
+
+  struct KindWork {
+    Lane *inverse, *Y, *H;  // J^-1, J^-1 G^T (freedom x wheels), d G J^-1 G^T
+  };
+
+  void lay_out(double* work) {
+    const long n = t.coordinates, wheels = t.wheels, modes = m, probes = 3L * t.probes.count;
+    kinds_ = take<KindWork>(work, t.kinds);
+    for (int k = 0; k < t.kinds; ++k) {
+      const long f = t.kind[k].freedom, w = t.kind[k].wheels;
+      const KindWork own = {take<Lane>(work, f * f), take<Lane>(work, f * w), take<Lane>(work, w * w)};
+      if (work != nullptr) kinds_[k] = own;
+    }
+    Lane** const of_coordinates[] = {&x_, &w_, &x_still_, &w_still_, &a_free_, &excursion_};
+    for (Lane** own : of_coordinates) *own = take<Lane>(work, n);
+    Lane** const of_modes[] = {&q_, &r_, &q_still_, &r_still_, &z_, &p_, &omega2_, &load_, &rhs_};
+    for (Lane** own : of_modes) *own = take<Lane>(work, modes);
+    for (int j = 0; j < most_kept; ++j) {
+      a_[j] = take<Lane>(work, j < t.method.known ? n : 0);
+      b_[j] = take<Lane>(work, j < t.method.known ? modes : 0);
+    }
+    S_ = take<Lane>(work, modes * modes);
+    S_inverse_ = take<Lane>(work, modes * (t.coupled ? modes : 1));
+    factor_ = take<Lane>(work, modes * modes);
+    Lane** const of_wheels[] = {&offset_, &delta_, &F_, &k_,   &free_,  &end_,
+                                &slope_,  &yield_,   &residual_, &pivot_, &F0_, &F1_};
+    for (Lane** own : of_wheels) *own = take<Lane>(work, wheels);
+    D_begin_ = take<long>(work, t.vehicles + 1);
+    long entries = 0;
+    for (int v = 0; v < t.vehicles; ++v) {
+      const long w = t.kind[t.vehicle[v].kind].wheels;
+      if (work != nullptr) D_begin_[v] = entries;
+      entries += w * w;
+    }
+    D_ = take<Lane>(work, entries);
+    reduced_ = take<Lane>(work, wheels * modes);
+    g_ = take<double>(work, wheels * t.influence.channels);
+    load_g_ = take<double>(work, static_cast<long>(t.loads) * t.influence.channels);
+    piece_ = take<int>(work, wheels);
+    load_piece_ = take<int>(work, t.loads);
+    on_ = take<char>(work, wheels);
+    load_on_ = take<char>(work, t.loads);
+    awake_ = take<char>(work, t.vehicles);
+    touching_ = take<char>(work, t.vehicles);
+    for (Lane*& row : row_of_) row = take<Lane>(work, probes);
+    peak_ = take<Lane>(work, probes);
+    peak_time_ = take<Lane>(work, probes);
+  }
+
+  // --- places ------------------------------------------------------------------------------------------------------
+
+  /// The influence of a unit force at x: `channels` of them, or all. False off the bridge.
+  bool influence_at(double x, int* piece, int channels, double* g) const {
+    const TaskInfluence& line = t.influence;
+    if (m == 0 || x < line.breaks[0] || x > line.breaks[line.pieces]) return false;
+    while (*piece + 1 < line.pieces && x >= line.breaks[*piece + 1]) ++*piece;
+    const double* c = line.coefficients + 4L * line.channels * *piece;
+    const double d = x - line.breaks[*piece];
+    const int n = line.channels;
+    for (int i = 0; i < channels; ++i) g[i] = c[i] + d * (c[n + i] + d * (c[2 * n + i] + d * c[3 * n + i]));
+    return true;
+  }
+
+  Lane height_at(double x) const {
+    const TaskHeights& track = t.heights;
+    if (track.stations == 0) return Lane{};
+    double at = (x - track.start) / track.distance;
+    const double last = static_cast<double>(track.stations - 1);
+    at = at < 0.0 ? 0.0 : at > last ? last : at;
+    long i = static_cast<long>(at);
+    if (i > track.stations - 2) i = track.stations - 2;
+    const double u = at - static_cast<double>(i), v = 1.0 - u;
+    const double left = v * v * (1.0 + 2.0 * u), right = u * u * (1.0 + 2.0 * v);
+    const double rise_left = v * v * u, rise_right = -u * u * v;
+    if (track.shared) {
+      const double* h = track.values + 2 * i;
+      return fill(left * h[0] + rise_left * h[1] + right * h[2] + rise_right * h[3]);
+    }
+    const Lane* h = lanes(track.values) + 2 * i;
+    return left * h[0] + rise_left * h[1] + right * h[2] + rise_right * h[3];
+  }
+
+  /// Wheels and forces when all have travelled s. Fills free_ with the penetration over a bridge at rest.
+  void place(double s, int channels) {
+    for (int v = 0; v < t.vehicles; ++v) {
+      if (awake_[v] == 0) continue;
+      const TaskVehicle& vehicle = t.vehicle[v];
+      touching_[v] = 0;
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + t.kind[vehicle.kind].wheels; ++j) {
+        const double x = t.x[j] + s;
+        on_[j] = influence_at(x, &piece_[j], channels, g_ + static_cast<long>(j) * t.influence.channels) ? 1 : 0;
+        touching_[v] = static_cast<char>(touching_[v] | on_[j]);
+        free_[j] = offset_[j] + height_at(x);
+      }
+    }
+    for (int j = 0; j < t.loads; ++j) {
+      double* g = load_g_ + static_cast<long>(j) * t.influence.channels;
+      load_on_[j] = influence_at(t.load_x[j] + s, &load_piece_[j], channels, g) ? 1 : 0;
+    }
+    for (int i = 0; i < m; ++i) load_[i] = Lane{};
+    for (int j = 0; j < t.loads; ++j) {
+      if (load_on_[j] == 0) continue;
+      const double* g = load_g_ + static_cast<long>(j) * t.influence.channels;
+      const Lane force = lanes(t.load)[j];
+      for (int i = 0; i < m; ++i) load_[i] += g[i] * force;
+    }
+  }
+
+  void place_vehicles(double s) {
+    start_ = s;
+    for (int v = 0; v < t.vehicles; ++v) awake_[v] = s + 1e-9 >= t.vehicle[v].rests_until ? 1 : 0;
+  }
+
+  // --- start -------------------------------------------------------------------------------------------------------
+
+  void begin() {
+    for (int i = 0; i < t.coordinates; ++i) {
+      x_[i] = w_[i] = x_still_[i] = w_still_[i] = excursion_[i] = Lane{};
+      for (int j = 0; j < t.method.known; ++j) a_[j][i] = Lane{};
+    }
+    for (int i = 0; i < m; ++i) {
+      q_[i] = lanes(t.q)[i];
+      r_[i] = p_[i] = Lane{};
+      omega2_[i] = lanes(t.omega2)[i];
+      for (int j = 0; j < t.method.known; ++j) b_[j][i] = Lane{};
+    }
+    for (int j = 0; j < t.wheels; ++j) {
+      piece_[j] = 0;
+      offset_[j] = Lane{};
+      delta_[j] = end_[j] = lanes(t.penetration)[j];
+      slope_[j] = Lane{};
+      F_[j] = law(j, delta_[j], k_[j]);
+      F0_[j] = F1_[j] = F_[j];
+    }
+    for (int j = 0; j < t.loads; ++j) load_piece_[j] = 0;
+    for (int v = 0; v < t.vehicles; ++v) awake_[v] = 1;
+    speed_ = *lanes(t.speed);
+    end_time_ = *lanes(t.end_time);
+    failed_ = Lane{};
+    least_ = fill(1e300);
+    greatest_ = fill(-1e300);
+    for (int i = 0; i < 3 * t.probes.count; ++i) peak_[i] = peak_time_[i] = Lane{};
+    distance_ = start_ = 0.0;
+    ds_ = ds_before_ = 0.0;
+    known_ = seen_ = 0;
+    // The wheels' heights over the bridge as it stands.
+    place(0.0, t.influence.channels);
+    for (int j = 0; j < t.wheels; ++j) offset_[j] = delta_[j] - free_[j] - surface(j);
+    look(false);
+  }
+
+  /// By how much the bridge lifts a wheel.
+  Lane surface(int j) const {
+    Lane height{};
+    if (on_[j] == 0) return height;
+    const double* g = g_ + static_cast<long>(j) * t.influence.channels;
+    for (int i = 0; i < m; ++i) height -= g[i] * q_[i];
+    return height;
+  }
+
+  Lane law(int j, Lane delta, Lane& tangent) const {
+    const Lane k = lanes(t.stiffness)[j];
+    delta = delta > least_penetration ? delta : fill(least_penetration);
+    if (t.hertz[j] == 0) {
+      tangent = k;
+      return k * delta;
+    }
+    const Lane steep = k * root(delta);
+    tangent = 1.5 * steep;
+    return steep * delta;
+  }
+
+  // --- a step's length ---------------------------------------------------------------------------------------------
+
+  void set_step(double ds) {
+    const double change = ds - ds_;
+    if ((change < 0.0 ? -change : change) <= 1e-13 * ds) return;
+    ds_ = ds;
+    h_ = ds / speed_;
+    rate_ = t.method.rate * h_;
+    d_ = t.method.displacement * h_ * h_;
+    for (int k = 0; k < t.kinds; ++k) renew(t.kind[k], kinds_[k]);
+    for (int i = 0; i < m; ++i)
+      for (int j = 0; j < m; ++j) S_[i * m + j] = Lane{};
+    for (int i = 0; i < m; ++i) S_[i * m + i] = 1.0 / d_ + omega2_[i];
+    const Lane over = rate_ / d_;
+    const Lane* c = lanes(t.damping);
+    if (!t.coupled) {
+      for (int i = 0; i < m; ++i) {
+        S_[i * m + i] += over * c[i];
+        S_inverse_[i] = 1.0 / S_[i * m + i];
+      }
+      return;
+    }
+    for (int i = 0; i < m * m; ++i) {
+      S_[i] += over * c[i];
+      S_inverse_[i] = S_[i];
+    }
+    invert(S_inverse_, m);
+  }
+
+  /// In place, without pivots: of matrices whose symmetric part is positive.
+  static void invert(Lane* A, int n) {
+    for (int k = 0; k < n; ++k) {
+      const Lane pivot = 1.0 / A[k * n + k];
+      for (int j = 0; j < n; ++j) A[k * n + j] *= pivot;
+      A[k * n + k] = pivot;
+      for (int i = 0; i < n; ++i) {
+        if (i == k) continue;
+        const Lane factor = A[i * n + k];
+        A[i * n + k] = Lane{};
+        for (int j = 0; j < n; ++j) A[i * n + j] -= factor * A[k * n + j];
+      }
+    }
+  }
+
+  void renew(const TaskKind& kind, const KindWork& own) {
+    const int f = kind.freedom, w = kind.wheels;
+    for (int i = 0; i < f * f; ++i)
+      own.inverse[i] = lanes(kind.M)[i] + rate_ * lanes(kind.C)[i] + d_ * lanes(kind.K)[i];
+    invert(own.inverse, f);
+    for (int i = 0; i < f; ++i)
+      for (int j = 0; j < w; ++j) {
+        Lane sum{};
+        for (int e = kind.G_row[j]; e < kind.G_row[j + 1]; ++e) {
+          const int k = kind.G_column[e];
+          sum += own.inverse[i * f + k] * lanes(kind.G)[j * f + k];
+        }
+        own.Y[i * w + j] = sum;
+      }
+    for (int i = 0; i < w; ++i)
+      for (int j = 0; j < w; ++j) {
+        Lane sum{};
+        for (int e = kind.G_row[i]; e < kind.G_row[i + 1]; ++e) {
+          const int k = kind.G_column[e];
+          sum += lanes(kind.G)[i * f + k] * own.Y[k * w + j];
+        }
+        own.H[i * w + j] = d_ * sum;
+      }
+  }
+
+  // --- a stage -----------------------------------------------------------------------------------------------------
+
+  void solve_stage(int stage) {
+    const TaskMethod& method = t.method;
+    const double s = start_ + method.time[stage] * ds_;
+    const bool last = stage + 1 == method.stages;
+    place(s, last ? t.influence.channels : m);
+    const Lane w_in_v = method.w_in_v[stage] * h_;
+    Lane in_v[most_kept], in_w[most_kept];
+    for (int j = 0; j <= stage; ++j) {
+      in_v[j] = method.a_in_v[stage][j] * h_ * h_;
+      in_w[j] = method.a_in_w[stage][j] * h_;
+    }
+    for (int v = 0; v < t.vehicles; ++v)
+      if (awake_[v] != 0) free_vehicle(v, stage + 1, w_in_v, in_v, in_w);
+    for (int i = 0; i < m; ++i) {
+      Lane q = q_[i] + w_in_v * r_[i], r = r_[i];
+      for (int j = 0; j <= stage; ++j) {
+        q += in_v[j] * b_[j][i];
+        r += in_w[j] * b_[j][i];
+      }
+      q_still_[i] = q;
+      r_still_[i] = r;
+    }
+    free_modes();
+    const double ahead = ds_before_ > 0.0 ? method.time[stage] * ds_ / ds_before_ : 0.0;
+    for (int v = 0; v < t.vehicles; ++v) {
+      if (awake_[v] == 0) continue;
+      const TaskVehicle& vehicle = t.vehicle[v];
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + t.kind[vehicle.kind].wheels; ++j) {
+        if (on_[j] != 0) {
+          const double* g = g_ + static_cast<long>(j) * t.influence.channels;
+          Lane height{};
+          for (int i = 0; i < m; ++i) height -= g[i] * z_[i];
+          free_[j] += height;
+        }
+        const Lane guess = end_[j] + ahead * slope_[j];
+        delta_[j] = guess > 0.5 * end_[j] ? guess : 0.5 * end_[j];
+        F_[j] = law(j, delta_[j], k_[j]);
+      }
+    }
+    solve_contacts();
+    for (int v = 0; v < t.vehicles; ++v)
+      if (awake_[v] != 0) take_forces(v, stage + 1);
+    const Lane per_d = 1.0 / d_;
+    for (int i = 0; i < m; ++i) b_[stage + 1][i] = per_d * (z_[i] - q_still_[i] + p_[i]);
+  }
+
+  /// Without contact forces.
+  void free_vehicle(int v, int known, Lane w_in_v, const Lane* in_v, const Lane* in_w) {
+    const TaskVehicle& vehicle = t.vehicle[v];
+    const TaskKind& kind = t.kind[vehicle.kind];
+    const KindWork& own = kinds_[vehicle.kind];
+    const int f = kind.freedom, first = vehicle.first_coordinate;
+    for (int i = first; i < first + f; ++i) {
+      Lane x = x_[i] + w_in_v * w_[i], w = w_[i];
+      for (int j = 0; j < known; ++j) {
+        x += in_v[j] * a_[j][i];
+        w += in_w[j] * a_[j][i];
+      }
+      x_still_[i] = x;
+      w_still_[i] = w;
+    }
+    Lane* a = a_free_ + first;
+    for (int i = 0; i < f; ++i) a[i] = Lane{};
+    for (int k = 0; k < f; ++k) {
+      Lane force = -lanes(kind.r0)[k];
+      for (int e = kind.row[k]; e < kind.row[k + 1]; ++e) {
+        const int j = kind.column[e];
+        force -= lanes(kind.C)[k * f + j] * w_still_[first + j] + lanes(kind.K)[k * f + j] * x_still_[first + j];
+      }
+      const Lane* column = own.inverse + k;
+      for (int i = 0; i < f; ++i) a[i] += column[i * f] * force;
+    }
+    for (int j = 0; j < kind.wheels; ++j) {
+      Lane up{};
+      for (int e = kind.G_row[j]; e < kind.G_row[j + 1]; ++e) {
+        const int k = kind.G_column[e];
+        up += lanes(kind.G)[j * f + k] * (x_still_[first + k] + d_ * a[k]);
+      }
+      free_[vehicle.first_wheel + j] -= up;
+    }
+  }
+
+  /// z_: where the modes would be without the contacts.
+  void free_modes() {
+    const Lane* c = lanes(t.damping);
+    if (!t.coupled) {
+      for (int i = 0; i < m; ++i)
+        z_[i] = q_still_[i] + S_inverse_[i] * (load_[i] - c[i] * r_still_[i] - omega2_[i] * q_still_[i]);
+      return;
+    }
+    for (int i = 0; i < m; ++i) {
+      rhs_[i] = load_[i] - omega2_[i] * q_still_[i];
+      for (int j = 0; j < m; ++j) rhs_[i] -= c[i * m + j] * r_still_[j];
+    }
+    for (int i = 0; i < m; ++i) {
+      z_[i] = q_still_[i];
+      for (int j = 0; j < m; ++j) z_[i] += S_inverse_[i * m + j] * rhs_[j];
+    }
+  }
+
+  void solve_contacts() {
+    for (int i = 0; i < m; ++i) p_[i] = Lane{};
+    Mask open = failed_ == Lane{};
+    bool on_bridge = false;
+    for (int v = 0; v < t.vehicles; ++v) on_bridge |= awake_[v] != 0 && touching_[v] != 0;
+    for (int iteration = 0; any(open); ++iteration) {
+      if (iteration == most_iterations) {
+        failed_ = open ? fill(not_converged) : failed_;
+        return;
+      }
+      const bool fresh = iteration % fresh_after == 0;
+      if (fresh && on_bridge)
+        for (int i = 0; i < m * m; ++i) factor_[i] = S_[i];
+      for (int i = 0; i < m; ++i) rhs_[i] = Lane{};
+      for (int v = 0; v < t.vehicles; ++v)
+        if (awake_[v] != 0) condense(v, fresh);
+      if (on_bridge) {
+        if (fresh) factorise();
+        solve_modes();
+        for (int i = 0; i < m; ++i) p_[i] = open ? rhs_[i] : p_[i];
+      }
+      Mask wrong{};
+      for (int v = 0; v < t.vehicles; ++v)
+        if (awake_[v] != 0) wrong |= update(v, open);
+      open &= wrong;
+    }
+  }
+
+  /// A vehicle's contacts into the modes' equations.
+  void condense(int v, bool fresh) {
+    const TaskVehicle& vehicle = t.vehicle[v];
+    const int w = t.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
+    Lane* L = D_ + D_begin_[v];
+    if (fresh) {
+      const Lane* H = kinds_[vehicle.kind].H;
+      for (int i = 0; i < w; ++i) pivot_[first + i] = 1.0 / k_[first + i];
+      for (int j = 0; j < w; ++j) {
+        // Symmetric, but for rounding: the lower half serves. yield_ holds 1/k from here on.
+        Lane pivot = H[j * w + j] + pivot_[first + j];
+        yield_[first + j] = pivot_[first + j];
+        for (int k = 0; k < j; ++k) pivot -= L[j * w + k] * L[j * w + k] * L[k * w + k];
+        L[j * w + j] = pivot;
+        pivot_[first + j] = 1.0 / pivot;
+        for (int i = j + 1; i < w; ++i) {
+          Lane entry = H[i * w + j];
+          for (int k = 0; k < j; ++k) entry -= L[i * w + k] * L[j * w + k] * L[k * w + k];
+          L[i * w + j] = entry * pivot_[first + j];
+        }
+      }
+    }
+    for (int i = 0; i < w; ++i) {
+      Lane r = free_[first + i] - delta_[first + i] + yield_[first + i] * F_[first + i];
+      for (int k = 0; k < i; ++k) r -= L[i * w + k] * residual_[first + k];
+      residual_[first + i] = r;
+    }
+    if (touching_[v] == 0) return;
+    for (int i = 0; i < w; ++i) {
+      Lane* row = reduced_ + static_cast<long>(first + i) * m;
+      if (fresh) reduce(first, i, w, L, row);
+      const Lane weighted = residual_[first + i] * pivot_[first + i];
+      for (int k = 0; k < m; ++k) rhs_[k] += row[k] * weighted;
+    }
+  }
+
+  /// Row i of L^-1 g, and its share of the modes' matrix.
+  void reduce(int first, int i, int w, const Lane* L, Lane* row) {
+    const double* g = g_ + static_cast<long>(first + i) * t.influence.channels;
+    const double there = on_[first + i] != 0 ? 1.0 : 0.0;
+    for (int k = 0; k < m; ++k) row[k] = fill(there != 0.0 ? g[k] : 0.0);
+    for (int j = 0; j < i; ++j) {
+      const Lane* before = reduced_ + static_cast<long>(first + j) * m;
+      const Lane entry = L[i * w + j];
+      for (int k = 0; k < m; ++k) row[k] -= entry * before[k];
+    }
+    for (int k = 0; k < m; ++k) {
+      const Lane weighted = pivot_[first + i] * row[k];
+      for (int l = 0; l <= k; ++l) factor_[k * m + l] += weighted * row[l];
+    }
+  }
+
+  /// L D L^T of the modes' matrix in place, row by row: the pivots' inverses on the diagonal.
+  void factorise() {
+    for (int i = 0; i < m; ++i) {
+      Lane* row = factor_ + i * m;
+      for (int j = 0; j < i; ++j) {
+        const Lane* before = factor_ + j * m;
+        Lane entry = row[j];
+        for (int k = 0; k < j; ++k) entry -= row[k] * before[k];
+        row[j] = entry;
+      }
+      Lane pivot = row[i];
+      for (int j = 0; j < i; ++j) {
+        const Lane scaled = row[j] * factor_[j * m + j];
+        pivot -= row[j] * scaled;
+        row[j] = scaled;
+      }
+      row[i] = 1.0 / pivot;
+    }
+  }
+
+  void solve_modes() {
+    for (int i = 0; i < m; ++i)
+      for (int k = 0; k < i; ++k) rhs_[i] -= factor_[i * m + k] * rhs_[k];
+    for (int i = m - 1; i >= 0; --i) {
+      rhs_[i] *= factor_[i * m + i];
+      for (int k = i + 1; k < m; ++k) rhs_[i] -= factor_[k * m + i] * rhs_[k];
+    }
+  }
+
+  /// New forces and penetrations from the modes' p_; returns the lanes in which they miss the contacts' laws.
+  Mask update(int v, Mask open) {
+    const TaskVehicle& vehicle = t.vehicle[v];
+    const int w = t.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
+    const Lane* L = D_ + D_begin_[v];
+    if (touching_[v] != 0)
+      for (int i = 0; i < w; ++i) {
+        const Lane* row = reduced_ + static_cast<long>(first + i) * m;
+        Lane r = residual_[first + i];
+        for (int k = 0; k < m; ++k) r -= row[k] * p_[k];
+        residual_[first + i] = r;
+      }
+    Mask wrong{};
+    for (int i = w - 1; i >= 0; --i) {
+      Lane force = residual_[first + i] * pivot_[first + i];
+      for (int k = i + 1; k < w; ++k) force -= L[k * w + i] * residual_[first + k];
+      residual_[first + i] = force;
+      const int j = first + i;
+      const Lane delta = delta_[j] + yield_[j] * (force - F_[j]);
+      Lane tangent;
+      const Lane by_law = law(j, delta, tangent);
+      wrong |= magnitude(by_law - force) > force_tolerance * t.force_scale;
+      failed_ = (open & (delta <= fill(least_penetration))) ? fill(contact_lost) : failed_;
+      delta_[j] = open ? delta : delta_[j];
+      F_[j] = open ? by_law : F_[j];
+      k_[j] = tangent;
+    }
+    return wrong;
+  }
+
+  void take_forces(int v, int stage) {
+    const TaskVehicle& vehicle = t.vehicle[v];
+    const TaskKind& kind = t.kind[vehicle.kind];
+    const Lane* Y = kinds_[vehicle.kind].Y;
+    for (int i = 0; i < kind.freedom; ++i) {
+      Lane a = a_free_[vehicle.first_coordinate + i];
+      for (int j = 0; j < kind.wheels; ++j) a += Y[i * kind.wheels + j] * F_[vehicle.first_wheel + j];
+      a_[stage][vehicle.first_coordinate + i] = a;
+    }
+  }
+
+  // --- the end of a step -------------------------------------------------------------------------------------------
+
+  void finish_step() {
+    const TaskMethod& method = t.method;
+    const Lane w_in_v = method.end_w_in_v * h_;
+    Lane in_v[most_kept], in_w[most_kept];
+    for (int j = 0; j < method.known; ++j) {
+      in_v[j] = method.end_a_in_v[j] * h_ * h_;
+      in_w[j] = method.end_a_in_w[j] * h_;
+    }
+    const auto end = [&](Lane* x, Lane* w, Lane* const* a, int i) {
+      Lane next{}, position = x[i] + w_in_v * w[i], rate = w[i];
+      for (int j = 0; j < method.known; ++j) {
+        position += in_v[j] * a[j][i];
+        rate += in_w[j] * a[j][i];
+        next += method.a_next[j] * a[j][i];
+      }
+      x[i] = position;
+      w[i] = rate;
+      a[0][i] = next;
+    };
+    for (int v = 0; v < t.vehicles; ++v) {
+      if (awake_[v] == 0) continue;
+      const TaskVehicle& vehicle = t.vehicle[v];
+      const TaskKind& kind = t.kind[vehicle.kind];
+      for (int i = vehicle.first_coordinate; i < vehicle.first_coordinate + kind.freedom; ++i) {
+        end(x_, w_, a_, i);
+        excursion_[i] = greater(excursion_[i], magnitude(x_[i]));
+      }
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + kind.wheels; ++j) {
+        slope_[j] = delta_[j] - end_[j];
+        end_[j] = delta_[j];
+      }
+    }
+    for (int i = 0; i < m; ++i) end(q_, r_, b_, i);
+    ds_before_ = ds_;
+  }
+
+  // --- what is seen ------------------------------------------------------------------------------------------------
+
+  void look(bool moved) {
+    const Lane time = distance_ / speed_;
+    const Mask counts = time <= end_time_ * (1.0 + 1e-12);
+    time_[0] = time_[1];
+    time_[1] = time_[2];
+    time_[2] = time;
+    ++known_;
+    look_at_probes(counts);
+    if (moved) look_at_wheels(counts);
+    Lane sum{};
+    for (int i = 0; i < m; ++i) sum += q_[i];
+    failed_ = sum - sum == Lane{} ? failed_ : fill(not_finite);
+  }
+
+  void look_at_probes(Mask counts) {
+    const int n = t.probes.count, count = 3 * n;
+    Lane* const oldest = row_of_[0];
+    row_of_[0] = row_of_[1];
+    row_of_[1] = row_of_[2];
+    row_of_[2] = oldest;
+    Lane* seen = row_of_[2];
+    for (int i = 0; i < count; ++i) seen[i] = Lane{};
+    const auto add_corrections = [&](const double* g, Lane force) {
+      for (int p = 0; p < n; ++p) {
+        seen[p] += g[m + p] * force;
+        seen[2 * n + p] += g[m + n + p] * force;
+      }
+    };
+    for (int j = 0; j < t.wheels; ++j)
+      if (on_[j] != 0) add_corrections(g_ + static_cast<long>(j) * t.influence.channels, F_[j]);
+    for (int j = 0; j < t.loads; ++j)
+      if (load_on_[j] != 0) add_corrections(load_g_ + static_cast<long>(j) * t.influence.channels, lanes(t.load)[j]);
+    for (int i = 0; i < m; ++i) {
+      const Lane q = q_[i], r = r_[i], a = b_[0][i];
+      const double *deflection = t.probes.deflection + static_cast<long>(i) * n,
+                   *moment = t.probes.moment + static_cast<long>(i) * n,
+                   *by_rate = t.probes.moment_by_rate + static_cast<long>(i) * n,
+                   *by_acceleration = t.probes.moment_by_acceleration + static_cast<long>(i) * n;
+      for (int p = 0; p < n; ++p) {
+        seen[p] += deflection[p] * q;
+        seen[n + p] += deflection[p] * a;
+        seen[2 * n + p] += moment[p] * q + by_rate[p] * r + by_acceleration[p] * a;
+      }
+    }
+    for (int i = 0; i < count; ++i) {
+      const Lane value = magnitude(seen[i]);
+      const Mask larger = counts & (value > peak_[i]);
+      peak_[i] = larger ? value : peak_[i];
+      peak_time_[i] = larger ? time_[2] : peak_time_[i];
+      if (known_ < 3) continue;
+      const Lane middle = magnitude(row_of_[1][i]);
+      const Mask turns = counts & (middle > near * peak_[i]) & (middle > value);
+      if (any(turns)) look_between(i, turns);
+    }
+  }
+
+  /// The vertex of the parabola through the last three instants, of whose magnitudes the middle one is the largest.
+  void look_between(int i, Mask turns) {
+    const Lane sign = row_of_[1][i] < Lane{} ? fill(-1.0) : fill(1.0);
+    const Lane y0 = sign * row_of_[0][i], y1 = sign * row_of_[1][i], y2 = sign * row_of_[2][i];
+    turns &= y1 >= y0;
+    const Lane before = (y1 - y0) / (time_[1] - time_[0]), after = (y2 - y1) / (time_[2] - time_[1]);
+    const Lane bend = (after - before) / (time_[2] - time_[0]);
+    const Lane at = 0.5 * (time_[0] + time_[1]) - 0.5 * before / bend;
+    const Lane top = y1 + (at - time_[1]) * (before + bend * (at - time_[0]));
+    turns &= top > peak_[i];
+    peak_[i] = turns ? top : peak_[i];
+    peak_time_[i] = turns ? at : peak_time_[i];
+  }
+
+  void look_at_wheels(Mask counts) {
+    ++seen_;
+    const Lane before = time_[1] - time_[0], after = time_[2] - time_[1];
+    const double step = distance_ - s_before_[1], step_before = s_before_[1] - s_before_[0];
+    const bool comparable = seen_ >= 3 && step_before <= alike * step && step <= alike * step_before;
+    for (int j = 0; j < t.wheels; ++j) {
+      const Lane force = F_[j];
+      least_ = counts & (force < least_) ? force : least_;
+      greatest_ = counts & (force > greatest_) ? force : greatest_;
+      const Lane rise = F1_[j] - F0_[j], fall = force - F1_[j];
+      const Mask turns = counts & (rise * fall <= Lane{}) & (F1_[j] != force);
+      if (comparable && any(turns) && smooth(t.x[j])) {
+        const Lane up = rise / before, down = fall / after;
+        const Lane slope = (up * after + down * before) / (before + after), bend = (down - up) / (before + after);
+        const Lane top = F1_[j] - 0.25 * slope * slope / bend;
+        least_ = turns & (top < least_) & (top > Lane{}) ? top : least_;
+        greatest_ = turns & (top > greatest_) ? top : greatest_;
+      }
+      F0_[j] = F1_[j];
+      F1_[j] = force;
+    }
+    s_before_[0] = s_before_[1];
+    s_before_[1] = distance_;
+  }
+
+  /// Whether a wheel has met no corner of the surface within the last two steps.
+  bool smooth(double x) const {
+    const double from = x + s_before_[0], to = x + distance_;
+    for (int i = 0; i < t.kinks; ++i)
+      if (t.kink[i] >= from && t.kink[i] <= to) return false;
+    return true;
+  }
+
+  void give() {
+    for (int i = 0; i < 3 * t.probes.count; ++i) {
+      lanes(t.peak)[i] = peak_[i];
+      lanes(t.peak_time)[i] = peak_time_[i];
+    }
+    *lanes(t.least_force) = least_;
+    *lanes(t.greatest_force) = greatest_;
+    for (int i = 0; i < t.coordinates; ++i) lanes(t.excursion)[i] = excursion_[i];
+    *lanes(t.failed) = failed_;
+  }
+
+  const Task& t;
+  const int m;  // modes
+  long used_ = 0;
+  KindWork* kinds_ = nullptr;
+  Lane speed_{}, end_time_{}, h_{}, rate_{}, d_{}, failed_{}, least_{}, greatest_{};
+  double ds_ = 0.0, ds_before_ = 0.0, distance_ = 0.0, start_ = 0.0, s_before_[2] = {};
+  long known_ = 0, seen_ = 0;
+  Lane time_[3] = {};
+  // Vehicles: coordinates, rates, the same at zero acceleration, accelerations without contacts.
+  Lane *x_ = nullptr, *w_ = nullptr, *x_still_ = nullptr, *w_still_ = nullptr, *a_free_ = nullptr;
+  Lane* excursion_ = nullptr;
+  // Modes: coordinates, rates, the same at zero acceleration, without contacts, what contacts add.
+  Lane *q_ = nullptr, *r_ = nullptr, *q_still_ = nullptr, *r_still_ = nullptr, *z_ = nullptr, *p_ = nullptr;
+  Lane *omega2_ = nullptr, *load_ = nullptr, *rhs_ = nullptr;
+  Lane* a_[most_kept] = {};
+  Lane* b_[most_kept] = {};  // accelerations at the start of the step and at its stages
+  Lane *S_ = nullptr, *S_inverse_ = nullptr, *factor_ = nullptr;
+  // Wheels: penetration on a surface at height zero with the vehicle at rest; penetration; force, tangent; penetration
+  // without contact forces; at the end of the last step, and how it has grown; 1/k of the factors; residuals.
+  Lane *offset_ = nullptr, *delta_ = nullptr, *F_ = nullptr, *k_ = nullptr, *free_ = nullptr, *end_ = nullptr;
+  Lane *slope_ = nullptr, *yield_ = nullptr, *residual_ = nullptr, *pivot_ = nullptr;
+  Lane *F0_ = nullptr, *F1_ = nullptr;  // forces at the two steps before
+  long* D_begin_ = nullptr;
+  Lane *D_ = nullptr, *reduced_ = nullptr;
+  double *g_ = nullptr, *load_g_ = nullptr;
+  int *piece_ = nullptr, *load_piece_ = nullptr;
+  char *on_ = nullptr, *load_on_ = nullptr, *awake_ = nullptr, *touching_ = nullptr;
+  Lane* row_of_[3] = {};  // responses of the last three instants
+  Lane *peak_ = nullptr, *peak_time_ = nullptr;
+};
+
+}  // namespace
+}  // namespace traverse::lanes

@@ -1,0 +1,144 @@
+#include "lanes/train_numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/base/error.hpp"
+#include "train/linear_dynamics.hpp"
+
+namespace traverse::lanes {
+namespace {
+
+constexpr double same = 1e-9;  // of the largest entry: vehicles are alike, but for rounding
+
+std::vector<double> by_rows(const Eigen::MatrixXd& A) {
+  std::vector<double> numbers;
+  const double none = 1e-14 * A.cwiseAbs().maxCoeff();  // what rounding leaves of a zero
+  for (Eigen::Index i = 0; i < A.rows(); ++i)
+    for (Eigen::Index j = 0; j < A.cols(); ++j) numbers.push_back(std::abs(A(i, j)) > none ? A(i, j) : 0.0);
+  return numbers;
+}
+
+bool alike(const std::vector<double>& a, const std::vector<double>& b, double scale) {
+  for (const double value : a) scale = std::max(scale, std::abs(value));
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](double x, double y) { return std::abs(x - y) <= same * scale; });
+}
+
+bool alike(const VehicleNumbers& a, const VehicleNumbers& b, double weight) {
+  return a.freedom == b.freedom && a.wheels == b.wheels && alike(a.M, b.M, 0.0) && alike(a.C, b.C, 0.0) &&
+         alike(a.K, b.K, 0.0) && alike(a.G, b.G, 0.0) && alike(a.r0, b.r0, weight);
+}
+
+VehicleNumbers numbers_of(const train::MovingVehicle& vehicle) {
+  const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
+  VehicleNumbers v;
+  v.freedom = vehicle.freedom();
+  v.wheels = static_cast<int>(vehicle.wheels.size());
+  v.M = by_rows(of.M);
+  v.C = by_rows(of.C);
+  v.K = by_rows(of.K);
+  v.r0.assign(of.r0.begin(), of.r0.end());
+  Eigen::MatrixXd G(v.wheels, v.freedom);
+  for (int j = 0; j < v.wheels; ++j)
+    G.row(j) = of.B.row(3 * static_cast<Eigen::Index>(vehicle.wheels[static_cast<std::size_t>(j)].body) + 1);
+  v.G = by_rows(G);
+  return v;
+}
+
+/// The height of the lowest point of a wheel at x that rolls on the profile, and its slope.
+std::array<double, 2> rolled(const track::Profile& profile, double radius, double x) {
+  double ahead = 0.0;
+  track::Height h = profile.at(x);
+  for (int i = 0; i < 30; ++i) {
+    const double up = std::sqrt(radius * radius - ahead * ahead);
+    const double step =
+        (h.slope - ahead / up) / (radius * radius / (up * up * up) - h.curvature);
+    ahead = std::clamp(ahead + step, -0.5 * radius, 0.5 * radius);
+    h = profile.at(x + ahead);
+    if (std::abs(step) <= 1e-14) break;
+  }
+  return {h.value + std::sqrt(radius * radius - ahead * ahead) - radius, h.slope};
+}
+
+}  // namespace
+
+std::string obstacle(const train::Fleet& fleet) {
+  if (!fleet.pairs.empty()) return "bodies of its vehicles touch each other";
+  for (const train::MovingVehicle& vehicle : fleet.vehicles) {
+    const auto no = [&](const std::string& why) { return fmt::format("vehicle '{}': {}", vehicle.name(), why); };
+    if (vehicle.dynamics->linear() == nullptr) return no("it is not taken as linear");
+    if (!vehicle.mechanism.model().actuators.empty()) return no("actuators act on it");
+    for (const train::Wheel& wheel : vehicle.wheels) {
+      const auto its = [&](const char* why) { return no(fmt::format("its wheel '{}' {}", wheel.name, why)); };
+      if (wheel.law.damping != 0.0 || wheel.law.hysteresis) return its("has a contact with damping");
+      if (wheel.law.friction != 0.0) return its("has a contact with friction");
+      if (!wheel.shape.round()) return its("is out of round");
+      if (wheel.radius != fleet.vehicles.front().wheels.front().radius) return its("has another radius than others");
+    }
+  }
+  for (const train::WheelContact& wheel : fleet.wheels)
+    if (wheel.further > 0) return "a wheel may touch the track at several points";
+  return {};
+}
+
+TrainNumbers train_numbers(const train::Fleet& fleet) {
+  TrainNumbers train;
+  for (const train::MovingVehicle& vehicle : fleet.vehicles) {
+    VehicleNumbers own = numbers_of(vehicle);
+    const auto kind = std::find_if(train.kinds.begin(), train.kinds.end(),
+                                   [&](const VehicleNumbers& known) { return alike(known, own, vehicle.scale); });
+    train.vehicles.push_back({static_cast<std::size_t>(kind - train.kinds.begin()), vehicle.offset,
+                              static_cast<int>(train.x.size())});
+    if (kind == train.kinds.end()) train.kinds.push_back(std::move(own));
+    for (std::size_t j = 0; j < vehicle.wheels.size(); ++j) {
+      const train::WheelContact& contact = fleet.wheels[static_cast<std::size_t>(vehicle.first_wheel) + j];
+      train.x.push_back(fleet.coordinates(contact).x());
+      train.penetration.push_back(contact.kinematics.penetration);
+      train.stiffness.push_back(contact.law.stiffness);
+      train.hertz.push_back(contact.law.kind == contact::LawKind::hertz ? 1 : 0);
+      train.force_scale = std::max(train.force_scale, contact.force.normal);
+    }
+  }
+  train.coordinates = fleet.freedom();
+  return train;
+}
+
+double defect(train::Fleet& fleet, const std::vector<double>& excursion) {
+  double largest = 0.0;
+  for (train::MovingVehicle& vehicle : fleet.vehicles) {
+    const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
+    Eigen::VectorXd p, pdd(vehicle.freedom());
+    for (const bool by_turns : {false, true}) {
+      p = of.p0;
+      for (Eigen::Index i = 0; i < p.size(); ++i)
+        p[i] += (by_turns && i % 2 == 1 ? -1.0 : 1.0) * excursion[static_cast<std::size_t>(vehicle.offset + i)];
+      vehicle.dynamics->set(vehicle, 0.0, p.data(), of.c.data());
+      vehicle.dynamics->accelerations(vehicle, pdd.data());
+      vehicle.dynamics->observe(vehicle, pdd.data());
+    }
+    largest = std::max(largest, vehicle.dynamics->defect());
+  }
+  return largest;
+}
+
+TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to) {
+  constexpr double stations_a_wave = 40.0, most_stations = 2e7;
+  TrackNumbers track;
+  if (profile.level()) return track;
+  track.start = from;
+  track.distance = std::min(profile.resolution(), profile.shortest_wave() / stations_a_wave);
+  const double stations = std::ceil((to - from) / track.distance) + 1.0;
+  if (!(stations < most_stations))
+    throw InputError("track: so long and so fine a track does not fit into memory beside others; sweep_lanes 1");
+  for (double i = 0.0; i < stations; ++i) {
+    const auto [height, slope] = rolled(profile, radius, from + i * track.distance);
+    track.values.push_back(height);
+    track.values.push_back(slope * track.distance);
+  }
+  return track;
+}
+
+}  // namespace traverse::lanes

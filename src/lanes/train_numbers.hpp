@@ -1,0 +1,28 @@
+// A train of linear vehicles as the numbers that runs side by side take, and what its being linear leaves out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lanes/crossing.hpp"
+#include "train/fleet.hpp"
+
+namespace traverse::lanes {
+
+/// Why a train cannot run side by side, in words; empty: it can.
+std::string obstacle(const train::Fleet& fleet);
+
+/// Of a fleet whose vehicles are linear, at its start with its contact forces.
+TrainNumbers train_numbers(const train::Fleet& fleet);
+
+/// How far the mechanisms would be out of balance over their weights with all coordinates at these distances
+/// (CrossingResult::excursion) from where they start, all to one side and by turns to either: more than in any state of
+/// the run, where these are not reached together.
+double defect(train::Fleet& fleet, const std::vector<double>& excursion);
+
+/// What a wheel's lowest point follows on the track from x = `from` to `to` (m): the track itself, but where the wheel
+/// (radius in m) rolls over what is narrower than itself. InputError where cubics between stations would take more
+/// memory than they may.
+TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to);
+
+}  // namespace traverse::lanes

@@ -1,0 +1,120 @@
+#include "study/side_by_side.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/integrator_choice.hpp"
+#include "run/passage.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double classes_an_octave = 4.0;  // of speeds: steps are at most a fifth shorter than asked for
+constexpr double one_place = 1e-9;         // m: events nearer than that are one
+constexpr double no_step = 1e-9;           // of the shapes' largest values: surfaces that meet without a step
+
+double speed_of_class(int number) { return std::exp2(number / classes_an_octave); }
+
+/// Whether wheels come onto the bridge, and leave it, without a step.
+bool level_ends(const structure::ModalBridge& bridge) {
+  const structure::PiecewiseCubic& influence = bridge.influence();
+  double largest = 0.0, at_ends = 0.0;
+  for (std::size_t piece = 0; piece < influence.pieces(); ++piece) {
+    const double length = influence.breaks[piece + 1] - influence.breaks[piece];
+    for (std::size_t i = 0; i < bridge.modes(); ++i) {
+      const double* c = &influence.coefficients[4 * influence.channels * piece + i];
+      const std::size_t n = influence.channels;
+      const double left = c[0], right = c[0] + length * (c[n] + length * (c[2 * n] + length * c[3 * n]));
+      largest = std::max({largest, std::abs(left), std::abs(right)});
+      if (piece == 0) at_ends = std::max(at_ends, std::abs(left));
+      if (piece + 1 == influence.pieces()) at_ends = std::max(at_ends, std::abs(right));
+    }
+  }
+  return at_ends <= no_step * largest;
+}
+
+}  // namespace
+
+std::string SideBySide::obstacle(const Scene& scene, const SharedBeam& shared) {
+  if (!shared.modal) return "the bridge is taken by its elements, not by modes";
+  if (scene.vehicles.empty()) return "no vehicles run";
+  if (!scene.load.forces.empty()) return "forces move beside the vehicles";
+  if (scene.vehicle_model != VehicleModel::linear) return "vehicles are mechanisms, not linear";
+  if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
+  if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
+  if (scene.self_weight) return "the bridge's own weight bends it";
+  if (!integrate::own_method()) return "ts_type is one of PETSc's own";
+  if (!scene.time_step) return "the step is not known";
+  return level_ends(*shared.modal) ? "" : "wheels meet a step at the bridge's ends, which yield";
+}
+
+SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
+    : scene_(scene),
+      shared_(shared),
+      input_(system_input(scene, false)),
+      system_(PETSC_COMM_SELF, carrier(scene, shared, input_), input_) {
+  std::vector<double> y(static_cast<std::size_t>(system_.local_size()));
+  system_.start(true, y.data());
+  system_.linearise_vehicles(y.data());
+  fleet_ = system_.fleet();
+  obstacle_ = lanes::obstacle(fleet_);
+  if (!obstacle_.empty()) return;
+  train_ = lanes::train_numbers(fleet_);
+  q_.assign(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(shared.modal->modes()));
+  plan_.bridge = &*shared.modal;
+  plan_.method = *integrate::own_method();
+  plan_.kinks = system_.corners();
+  plan_.level_until = scene.profile.level() ? shared.beam->mesh().start() : -1e300;
+}
+
+int SideBySide::step_class(double speed) {
+  return static_cast<int>(std::floor(classes_an_octave * std::log2(speed) + 1e-9));
+}
+
+/// Distances at which a wheel meets a corner of the surface or passes a probe.
+std::vector<double> SideBySide::events(double past) const {
+  std::vector<double> events;
+  for (const std::vector<double>& stations : {plan_.kinks, scene_.output.probes})
+    for (const double station : stations)
+      for (const double x : train_.x)
+        if (station > x && station - x < past) events.push_back(station - x);
+  std::sort(events.begin(), events.end());
+  events.erase(std::unique(events.begin(), events.end(), [](double a, double b) { return b - a < one_place; }),
+               events.end());
+  return events;
+}
+
+void SideBySide::make_track(double past) {
+  if (scene_.profile.level() || past <= track_past_) return;
+  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
+  track_ = lanes::track_numbers(scene_.profile, fleet_.vehicles.front().wheels.front().radius, *rear, *front + past);
+  track_past_ = past;
+}
+
+std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speeds, std::span<const double> ends) {
+  const double ds = *scene_.time_step * speed_of_class(step_class(speeds.front()));
+  double past = 0.0;
+  for (std::size_t i = 0; i < speeds.size(); ++i) past = std::max(past, speeds[i] * ends[i]);
+  plan_.stretches.clear();
+  double from = 0.0;
+  for (const double event : events(past)) {
+    plan_.stretches.push_back({event, std::max(1L, static_cast<long>(std::ceil((event - from) / ds - one_place)))});
+    from = event;
+  }
+  const auto steps = static_cast<long>(std::ceil((past - from) / ds - one_place));
+  if (steps > 0) plan_.stretches.push_back({from + static_cast<double>(steps) * ds, steps});
+  make_track(past + ds);
+  std::vector<lanes::CrossingRun> runs;
+  for (std::size_t i = 0; i < speeds.size(); ++i)
+    runs.push_back({&train_, &track_, nullptr, &q_, speeds[i], ends[i]});
+  return lanes::cross(plan_, runs);
+}
+
+std::vector<double> SideBySide::static_deflection() {
+  std::vector<double> deflection;
+  for (const double x : scene_.output.probes)
+    deflection.push_back(system_.weights().static_peak(x, train::WheelPaths(), 0.0));
+  return deflection;
+}
+
+}  // namespace traverse::app
