@@ -22,7 +22,7 @@
 namespace traverse::lanes {
 namespace {
 
-constexpr double force_tolerance = 1e-10;  // of the force scale: what a contact's law may be missed by
+constexpr double force_tolerance = 1e-9;  // of the force scale: what a contact's law may be missed by
 constexpr int most_iterations = 20, fresh_after = 4;
 constexpr double least_penetration = 1e-12;  // m: below, the contact counts as lost
 constexpr double near = 0.9;                 // of the largest magnitude so far: no parabola's vertex of less is larger
@@ -90,7 +90,9 @@ class Group {
   }
 
   struct KindWork {
-    Lane *inverse, *Y, *H;  // J^-1, J^-1 G^T (freedom x wheels), d G J^-1 G^T
+    Lane *inverse, *by_state;  // J^-1; J^-1 [K C], freedom x 2 freedom
+    Lane *alone;               // -J^-1 r0
+    Lane *Y, *H;               // J^-1 G^T (freedom x wheels), d G J^-1 G^T
   };
 
   void lay_out(double* work) {
@@ -98,12 +100,14 @@ class Group {
     kinds_ = take<KindWork>(work, t.kinds);
     for (int k = 0; k < t.kinds; ++k) {
       const long f = t.kind[k].freedom, w = t.kind[k].wheels;
-      const KindWork own = {take<Lane>(work, f * f), take<Lane>(work, f * w), take<Lane>(work, w * w)};
+      const KindWork own = {take<Lane>(work, f * f), take<Lane>(work, 2 * f * f), take<Lane>(work, f),
+                            take<Lane>(work, f * w), take<Lane>(work, w * w)};
       if (work != nullptr) kinds_[k] = own;
     }
-    Lane** const of_coordinates[] = {&x_, &w_, &x_still_, &w_still_, &a_free_, &excursion_};
+    Lane** const of_coordinates[] = {&x_, &w_, &a_free_, &excursion_};
     for (Lane** own : of_coordinates) *own = take<Lane>(work, n);
-    Lane** const of_modes[] = {&q_, &r_, &q_still_, &r_still_, &z_, &p_, &omega2_, &load_, &rhs_};
+    still_ = take<Lane>(work, 2 * n);
+    Lane** const of_modes[] = {&q_, &r_, &q_still_, &r_still_, &z_, &p_, &omega2_, &load_, &rhs_, &scaled_};
     for (Lane** own : of_modes) *own = take<Lane>(work, modes);
     for (int j = 0; j < most_kept; ++j) {
       a_[j] = take<Lane>(work, j < t.method.known ? n : 0);
@@ -205,7 +209,7 @@ class Group {
 
   void begin() {
     for (int i = 0; i < t.coordinates; ++i) {
-      x_[i] = w_[i] = x_still_[i] = w_still_[i] = excursion_[i] = Lane{};
+      x_[i] = w_[i] = excursion_[i] = Lane{};
       for (int j = 0; j < t.method.known; ++j) a_[j][i] = Lane{};
     }
     for (int i = 0; i < m; ++i) {
@@ -309,6 +313,19 @@ class Group {
     for (int i = 0; i < f * f; ++i)
       own.inverse[i] = lanes(kind.M)[i] + rate_ * lanes(kind.C)[i] + d_ * lanes(kind.K)[i];
     invert(own.inverse, f);
+    for (int i = 0; i < f; ++i) {
+      const Lane* row = own.inverse + i * f;
+      Lane* to = own.by_state + 2 * i * f;
+      own.alone[i] = Lane{};
+      for (int j = 0; j < 2 * f; ++j) to[j] = Lane{};
+      for (int k = 0; k < f; ++k) {
+        own.alone[i] -= row[k] * lanes(kind.r0)[k];
+        for (int j = 0; j < f; ++j) {
+          to[j] += row[k] * lanes(kind.K)[k * f + j];
+          to[f + j] += row[k] * lanes(kind.C)[k * f + j];
+        }
+      }
+    }
     for (int i = 0; i < f; ++i)
       for (int j = 0; j < w; ++j) {
         Lane sum{};
@@ -331,28 +348,29 @@ class Group {
 
   // --- a stage -----------------------------------------------------------------------------------------------------
 
+  /// What a method combines, for steps of this length.
+  struct Rule {
+    Lane w_in_v, a_in_v[most_kept], a_in_w[most_kept];
+  };
+  Rule rule_for(double w_in_v, const double* a_in_v, const double* a_in_w, int known) const {
+    Rule rule;
+    rule.w_in_v = w_in_v * h_;
+    for (int j = 0; j < known; ++j) {
+      rule.a_in_v[j] = a_in_v[j] * h_ * h_;
+      rule.a_in_w[j] = a_in_w[j] * h_;
+    }
+    return rule;
+  }
+
   void solve_stage(int stage) {
     const TaskMethod& method = t.method;
     const double s = start_ + method.time[stage] * ds_;
     const bool last = stage + 1 == method.stages;
     place(s, last ? t.influence.channels : m);
-    const Lane w_in_v = method.w_in_v[stage] * h_;
-    Lane in_v[most_kept], in_w[most_kept];
-    for (int j = 0; j <= stage; ++j) {
-      in_v[j] = method.a_in_v[stage][j] * h_ * h_;
-      in_w[j] = method.a_in_w[stage][j] * h_;
-    }
+    const Rule rule = rule_for(method.w_in_v[stage], method.a_in_v[stage], method.a_in_w[stage], stage + 1);
     for (int v = 0; v < t.vehicles; ++v)
-      if (awake_[v] != 0) free_vehicle(v, stage + 1, w_in_v, in_v, in_w);
-    for (int i = 0; i < m; ++i) {
-      Lane q = q_[i] + w_in_v * r_[i], r = r_[i];
-      for (int j = 0; j <= stage; ++j) {
-        q += in_v[j] * b_[j][i];
-        r += in_w[j] * b_[j][i];
-      }
-      q_still_[i] = q;
-      r_still_[i] = r;
-    }
+      if (awake_[v] != 0) free_vehicle(v, stage + 1, rule);
+    predict(stage + 1, m, rule, q_, r_, b_, 0, q_still_, r_still_);
     free_modes();
     const double ahead = ds_before_ > 0.0 ? method.time[stage] * ds_ / ds_before_ : 0.0;
     for (int v = 0; v < t.vehicles; ++v) {
@@ -377,37 +395,92 @@ class Group {
     for (int i = 0; i < m; ++i) b_[stage + 1][i] = per_d * (z_[i] - q_still_[i] + p_[i]);
   }
 
+  /// y += sign A x for a matrix by rows; four rows at a time keep the processor busy.
+  static void multiply(double sign, const Lane* A, int rows, int columns, const Lane* x, Lane* y) {
+    int i = 0;
+    for (; i + 4 <= rows; i += 4) {
+      const Lane *A0 = A + i * columns, *A1 = A0 + columns, *A2 = A1 + columns, *A3 = A2 + columns;
+      Lane y0{}, y1{}, y2{}, y3{};
+      for (int k = 0; k < columns; ++k) {
+        y0 += A0[k] * x[k];
+        y1 += A1[k] * x[k];
+        y2 += A2[k] * x[k];
+        y3 += A3[k] * x[k];
+      }
+      y[i] += sign * y0;
+      y[i + 1] += sign * y1;
+      y[i + 2] += sign * y2;
+      y[i + 3] += sign * y3;
+    }
+    for (; i + 2 <= rows; i += 2) {
+      const Lane *A0 = A + i * columns, *A1 = A0 + columns;
+      Lane y0{}, y1{}, y2{}, y3{};
+      int k = 0;
+      for (; k + 2 <= columns; k += 2) {
+        y0 += A0[k] * x[k];
+        y1 += A1[k] * x[k];
+        y2 += A0[k + 1] * x[k + 1];
+        y3 += A1[k + 1] * x[k + 1];
+      }
+      for (; k < columns; ++k) {
+        y0 += A0[k] * x[k];
+        y1 += A1[k] * x[k];
+      }
+      y[i] += sign * (y0 + y2);
+      y[i + 1] += sign * (y1 + y3);
+    }
+    for (; i < rows; ++i) {
+      Lane sum{};
+      for (int k = 0; k < columns; ++k) sum += A[i * columns + k] * x[k];
+      y[i] += sign * sum;
+    }
+  }
+
+  /// x~ and w~ of n coordinates from `Known` accelerations.
+  template <int Known>
+  static void predict(int n, const Rule& rule, const Lane* x, const Lane* w, Lane* const* a, int first, Lane* x_still,
+                      Lane* w_still) {
+    for (int i = 0; i < n; ++i) {
+      Lane position = x[i] + rule.w_in_v * w[i], rate = w[i];
+      for (int j = 0; j < Known; ++j) {
+        position += rule.a_in_v[j] * a[j][first + i];
+        rate += rule.a_in_w[j] * a[j][first + i];
+      }
+      x_still[i] = position;
+      w_still[i] = rate;
+    }
+  }
+  static void predict(int known, int n, const Rule& rule, const Lane* x, const Lane* w, Lane* const* a, int first,
+                      Lane* x_still, Lane* w_still) {
+    switch (known) {
+      case 1:
+        return predict<1>(n, rule, x, w, a, first, x_still, w_still);
+      case 2:
+        return predict<2>(n, rule, x, w, a, first, x_still, w_still);
+      case 3:
+        return predict<3>(n, rule, x, w, a, first, x_still, w_still);
+      case 4:
+        return predict<4>(n, rule, x, w, a, first, x_still, w_still);
+      default:
+        return predict<5>(n, rule, x, w, a, first, x_still, w_still);
+    }
+  }
+
   /// Without contact forces.
-  void free_vehicle(int v, int known, Lane w_in_v, const Lane* in_v, const Lane* in_w) {
+  void free_vehicle(int v, int known, const Rule& rule) {
     const TaskVehicle& vehicle = t.vehicle[v];
     const TaskKind& kind = t.kind[vehicle.kind];
     const KindWork& own = kinds_[vehicle.kind];
     const int f = kind.freedom, first = vehicle.first_coordinate;
-    for (int i = first; i < first + f; ++i) {
-      Lane x = x_[i] + w_in_v * w_[i], w = w_[i];
-      for (int j = 0; j < known; ++j) {
-        x += in_v[j] * a_[j][i];
-        w += in_w[j] * a_[j][i];
-      }
-      x_still_[i] = x;
-      w_still_[i] = w;
-    }
-    Lane* a = a_free_ + first;
-    for (int i = 0; i < f; ++i) a[i] = Lane{};
-    for (int k = 0; k < f; ++k) {
-      Lane force = -lanes(kind.r0)[k];
-      for (int e = kind.row[k]; e < kind.row[k + 1]; ++e) {
-        const int j = kind.column[e];
-        force -= lanes(kind.C)[k * f + j] * w_still_[first + j] + lanes(kind.K)[k * f + j] * x_still_[first + j];
-      }
-      const Lane* column = own.inverse + k;
-      for (int i = 0; i < f; ++i) a[i] += column[i * f] * force;
-    }
+    Lane *x = still_ + 2 * first, *w = x + f, *a = a_free_ + first;
+    predict(known, f, rule, x_ + first, w_ + first, a_, first, x, w);
+    for (int i = 0; i < f; ++i) a[i] = own.alone[i];
+    multiply(-1.0, own.by_state, f, 2 * f, x, a);
     for (int j = 0; j < kind.wheels; ++j) {
       Lane up{};
       for (int e = kind.G_row[j]; e < kind.G_row[j + 1]; ++e) {
         const int k = kind.G_column[e];
-        up += lanes(kind.G)[j * f + k] * (x_still_[first + k] + d_ * a[k]);
+        up += lanes(kind.G)[j * f + k] * (x[k] + d_ * a[k]);
       }
       free_[vehicle.first_wheel + j] -= up;
     }
@@ -487,57 +560,66 @@ class Group {
       residual_[first + i] = r;
     }
     if (touching_[v] == 0) return;
+    Lane* rows = reduced_ + static_cast<long>(first) * m;
+    if (fresh) reduce(first, w, L, rows);
     for (int i = 0; i < w; ++i) {
-      Lane* row = reduced_ + static_cast<long>(first + i) * m;
-      if (fresh) reduce(first, i, w, L, row);
+      const Lane* row = rows + i * m;
       const Lane weighted = residual_[first + i] * pivot_[first + i];
       for (int k = 0; k < m; ++k) rhs_[k] += row[k] * weighted;
     }
   }
 
-  /// Row i of L^-1 g, and its share of the modes' matrix.
-  void reduce(int first, int i, int w, const Lane* L, Lane* row) {
-    const double* g = g_ + static_cast<long>(first + i) * t.influence.channels;
-    const double there = on_[first + i] != 0 ? 1.0 : 0.0;
-    for (int k = 0; k < m; ++k) row[k] = fill(there != 0.0 ? g[k] : 0.0);
-    for (int j = 0; j < i; ++j) {
-      const Lane* before = reduced_ + static_cast<long>(first + j) * m;
-      const Lane entry = L[i * w + j];
-      for (int k = 0; k < m; ++k) row[k] -= entry * before[k];
+  /// The rows of L^-1 g, and their share of the modes' matrix.
+  void reduce(int first, int w, const Lane* L, Lane* rows) {
+    for (int i = 0; i < w; ++i) {
+      Lane* row = rows + i * m;
+      const double* g = g_ + static_cast<long>(first + i) * t.influence.channels;
+      for (int k = 0; k < m; ++k) row[k] = on_[first + i] != 0 ? fill(g[k]) : Lane{};
+      for (int j = 0; j < i; ++j) {
+        const Lane* before = rows + j * m;
+        const Lane entry = L[i * w + j];
+        for (int k = 0; k < m; ++k) row[k] -= entry * before[k];
+      }
     }
-    for (int k = 0; k < m; ++k) {
-      const Lane weighted = pivot_[first + i] * row[k];
-      for (int l = 0; l <= k; ++l) factor_[k * m + l] += weighted * row[l];
+    int i = 0;
+    for (; i + 2 <= w; i += 2) {
+      const Lane *a = rows + i * m, *b = a + m;
+      for (int k = 0; k < m; ++k) {
+        const Lane of_a = pivot_[first + i] * a[k], of_b = pivot_[first + i + 1] * b[k];
+        Lane* to = factor_ + k * m;
+        for (int l = 0; l <= k; ++l) to[l] += of_a * a[l] + of_b * b[l];
+      }
+    }
+    for (; i < w; ++i) {
+      const Lane* a = rows + i * m;
+      for (int k = 0; k < m; ++k) {
+        const Lane of_a = pivot_[first + i] * a[k];
+        for (int l = 0; l <= k; ++l) factor_[k * m + l] += of_a * a[l];
+      }
     }
   }
 
-  /// L D L^T of the modes' matrix in place, row by row: the pivots' inverses on the diagonal.
+  /// L D L^T of the modes' matrix in place: the pivots' inverses on the diagonal.
   void factorise() {
-    for (int i = 0; i < m; ++i) {
-      Lane* row = factor_ + i * m;
-      for (int j = 0; j < i; ++j) {
-        const Lane* before = factor_ + j * m;
-        Lane entry = row[j];
-        for (int k = 0; k < j; ++k) entry -= row[k] * before[k];
-        row[j] = entry;
+    for (int j = 0; j < m; ++j) {
+      const Lane inverse = 1.0 / factor_[j * m + j];
+      factor_[j * m + j] = inverse;
+      for (int i = j + 1; i < m; ++i) scaled_[i] = factor_[i * m + j] * inverse;
+      for (int i = j + 1; i < m; ++i) {
+        Lane* row = factor_ + i * m;
+        const Lane entry = row[j];
+        for (int k = j + 1; k <= i; ++k) row[k] -= entry * scaled_[k];
       }
-      Lane pivot = row[i];
-      for (int j = 0; j < i; ++j) {
-        const Lane scaled = row[j] * factor_[j * m + j];
-        pivot -= row[j] * scaled;
-        row[j] = scaled;
-      }
-      row[i] = 1.0 / pivot;
+      for (int i = j + 1; i < m; ++i) factor_[i * m + j] = scaled_[i];
     }
   }
 
   void solve_modes() {
-    for (int i = 0; i < m; ++i)
-      for (int k = 0; k < i; ++k) rhs_[i] -= factor_[i * m + k] * rhs_[k];
-    for (int i = m - 1; i >= 0; --i) {
-      rhs_[i] *= factor_[i * m + i];
-      for (int k = i + 1; k < m; ++k) rhs_[i] -= factor_[k * m + i] * rhs_[k];
-    }
+    for (int k = 0; k < m; ++k)
+      for (int i = k + 1; i < m; ++i) rhs_[i] -= factor_[i * m + k] * rhs_[k];
+    for (int i = 0; i < m; ++i) rhs_[i] *= factor_[i * m + i];
+    for (int k = m - 1; k > 0; --k)
+      for (int i = 0; i < k; ++i) rhs_[i] -= factor_[k * m + i] * rhs_[k];
   }
 
   /// New forces and penetrations from the modes' p_; returns the lanes in which they miss the contacts' laws.
@@ -546,12 +628,7 @@ class Group {
     const int w = t.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
     const Lane* L = D_ + D_begin_[v];
     if (touching_[v] != 0)
-      for (int i = 0; i < w; ++i) {
-        const Lane* row = reduced_ + static_cast<long>(first + i) * m;
-        Lane r = residual_[first + i];
-        for (int k = 0; k < m; ++k) r -= row[k] * p_[k];
-        residual_[first + i] = r;
-      }
+      multiply(-1.0, reduced_ + static_cast<long>(first) * m, w, m, p_, residual_ + first);
     Mask wrong{};
     for (int i = w - 1; i >= 0; --i) {
       Lane force = residual_[first + i] * pivot_[first + i];
@@ -573,29 +650,21 @@ class Group {
   void take_forces(int v, int stage) {
     const TaskVehicle& vehicle = t.vehicle[v];
     const TaskKind& kind = t.kind[vehicle.kind];
-    const Lane* Y = kinds_[vehicle.kind].Y;
-    for (int i = 0; i < kind.freedom; ++i) {
-      Lane a = a_free_[vehicle.first_coordinate + i];
-      for (int j = 0; j < kind.wheels; ++j) a += Y[i * kind.wheels + j] * F_[vehicle.first_wheel + j];
-      a_[stage][vehicle.first_coordinate + i] = a;
-    }
+    Lane* a = a_[stage] + vehicle.first_coordinate;
+    for (int i = 0; i < kind.freedom; ++i) a[i] = a_free_[vehicle.first_coordinate + i];
+    multiply(1.0, kinds_[vehicle.kind].Y, kind.freedom, kind.wheels, F_ + vehicle.first_wheel, a);
   }
 
   // --- the end of a step -------------------------------------------------------------------------------------------
 
   void finish_step() {
     const TaskMethod& method = t.method;
-    const Lane w_in_v = method.end_w_in_v * h_;
-    Lane in_v[most_kept], in_w[most_kept];
-    for (int j = 0; j < method.known; ++j) {
-      in_v[j] = method.end_a_in_v[j] * h_ * h_;
-      in_w[j] = method.end_a_in_w[j] * h_;
-    }
+    const Rule rule = rule_for(method.end_w_in_v, method.end_a_in_v, method.end_a_in_w, method.known);
     const auto end = [&](Lane* x, Lane* w, Lane* const* a, int i) {
-      Lane next{}, position = x[i] + w_in_v * w[i], rate = w[i];
+      Lane next{}, position = x[i] + rule.w_in_v * w[i], rate = w[i];
       for (int j = 0; j < method.known; ++j) {
-        position += in_v[j] * a[j][i];
-        rate += in_w[j] * a[j][i];
+        position += rule.a_in_v[j] * a[j][i];
+        rate += rule.a_in_w[j] * a[j][i];
         next += method.a_next[j] * a[j][i];
       }
       x[i] = position;
@@ -744,11 +813,11 @@ class Group {
   long known_ = 0, seen_ = 0;
   Lane time_[3] = {};
   // Vehicles: coordinates, rates, the same at zero acceleration, accelerations without contacts.
-  Lane *x_ = nullptr, *w_ = nullptr, *x_still_ = nullptr, *w_still_ = nullptr, *a_free_ = nullptr;
+  Lane *x_ = nullptr, *w_ = nullptr, *still_ = nullptr, *a_free_ = nullptr;
   Lane* excursion_ = nullptr;
   // Modes: coordinates, rates, the same at zero acceleration, without contacts, what contacts add.
   Lane *q_ = nullptr, *r_ = nullptr, *q_still_ = nullptr, *r_still_ = nullptr, *z_ = nullptr, *p_ = nullptr;
-  Lane *omega2_ = nullptr, *load_ = nullptr, *rhs_ = nullptr;
+  Lane *omega2_ = nullptr, *load_ = nullptr, *rhs_ = nullptr, *scaled_ = nullptr;
   Lane* a_[most_kept] = {};
   Lane* b_[most_kept] = {};  // accelerations at the start of the step and at its stages
   Lane *S_ = nullptr, *S_inverse_ = nullptr, *factor_ = nullptr;
