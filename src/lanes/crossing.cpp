@@ -88,6 +88,15 @@ Pattern pattern_of(int rows, int columns, Has has) {
   return p;
 }
 
+/// The largest magnitude of each of the first channels at the breaks: of modes, whose waves are longer than elements.
+std::vector<double> largest_values(const structure::PiecewiseCubic& influence, std::size_t count) {
+  std::vector<double> largest(count, 0.0);
+  for (std::size_t piece = 0; piece < influence.pieces(); ++piece)
+    for (std::size_t i = 0; i < count; ++i)
+      largest[i] = std::max(largest[i], std::abs(influence.coefficients[4 * influence.channels * piece + i]));
+  return largest;
+}
+
 /// All that a Task points to.
 class Group {
  public:
@@ -110,12 +119,12 @@ class Group {
   std::vector<CrossingResult> run() {
     const std::size_t probes = static_cast<std::size_t>(task_.probes.count);
     Aligned peak(3 * probes * width_), time(3 * probes * width_), least(width_), greatest(width_), failed(width_);
-    Aligned excursion(static_cast<std::size_t>(task_.coordinates) * width_);
+    Aligned bent(static_cast<std::size_t>(task_.coordinates) * width_);
     task_.peak = peak.data();
     task_.peak_time = time.data();
     task_.least_force = least.data();
     task_.greatest_force = greatest.data();
-    task_.excursion = excursion.data();
+    task_.bent = bent.data();
     task_.failed = failed.data();
     const Kernel with = kernel();
     Aligned work(static_cast<std::size_t>(with.work_size(task_)));
@@ -139,7 +148,7 @@ class Group {
       r.least_force = least.data()[lane];
       r.greatest_force = greatest.data()[lane];
       for (int i = 0; i < task_.coordinates; ++i)
-        r.excursion.push_back(excursion.data()[static_cast<std::size_t>(i) * width_ + lane]);
+        r.bent.push_back(bent.data()[static_cast<std::size_t>(i) * width_ + lane]);
     }
     return results;
   }
@@ -164,22 +173,16 @@ class Group {
         return side_by_side(count,
                             [=](const CrossingRun& run, std::size_t i) { return (run.train->kinds[k].*numbers)[i]; });
       };
-      const auto anywhere = [&](const auto& has) {
-        return [&, has](std::size_t i) {
-          return std::any_of(runs_.begin(), runs_.end(),
-                             [&](const CrossingRun& run) { return has(run.train->kinds[k], i); });
-        };
-      };
-      patterns_.push_back(std::make_unique<Pattern>(pattern_of(
-          f, f, anywhere([](const VehicleNumbers& v, std::size_t i) { return v.C[i] != 0.0 || v.K[i] != 0.0; }))));
-      const Pattern& within = *patterns_.back();
       patterns_.push_back(std::make_unique<Pattern>(
-          pattern_of(kind.wheels, f, anywhere([](const VehicleNumbers& v, std::size_t i) { return v.G[i] != 0.0; }))));
+          pattern_of(kind.wheels, f, [&](std::size_t i) {
+            return std::any_of(runs_.begin(), runs_.end(),
+                               [&](const CrossingRun& run) { return run.train->kinds[k].G[i] != 0.0; });
+          })));
       const Pattern& wheels = *patterns_.back();
       kinds_.push_back({f, kind.wheels, of(&VehicleNumbers::M, size * size), of(&VehicleNumbers::C, size * size),
                         of(&VehicleNumbers::K, size * size), of(&VehicleNumbers::r0, size),
-                        of(&VehicleNumbers::G, size * static_cast<std::size_t>(kind.wheels)), within.row.data(),
-                        within.column.data(), wheels.row.data(), wheels.column.data()});
+                        of(&VehicleNumbers::G, size * static_cast<std::size_t>(kind.wheels)), wheels.row.data(),
+                        wheels.column.data(), kind.bend.data()});
     }
     for (const TrainNumbers::Vehicle& vehicle : train.vehicles) {
       double foremost = -1e300;
@@ -218,10 +221,12 @@ class Group {
         modes, [&](const CrossingRun&, std::size_t i) { return bridge.omega()[i] * bridge.omega()[i]; });
     task_.damping =
         side_by_side(modes, [&](const CrossingRun&, std::size_t i) { return 2.0 * bridge.sigma()[i]; });
+    task_.exact_modes = plan_.exact_modes && !task_.coupled;
     task_.q = side_by_side(modes, [](const CrossingRun& run, std::size_t i) { return (*run.q)[i]; });
     const structure::PiecewiseCubic& influence = bridge.influence();
+    largest_ = largest_values(influence, modes);
     task_.influence = {static_cast<int>(influence.pieces()), static_cast<int>(influence.channels),
-                       influence.breaks.data(), influence.coefficients.data()};
+                       influence.breaks.data(), influence.coefficients.data(), largest_.data()};
     const structure::ModalProbes& probes = bridge.probes();
     task_.probes = {static_cast<int>(probes.count), probes.deflection.data(), probes.moment.data(),
                     probes.moment_by_rate.data(), probes.moment_by_acceleration.data()};
@@ -244,6 +249,7 @@ class Group {
   std::size_t width_;
   std::vector<std::unique_ptr<Aligned>> numbers_;
   std::vector<std::unique_ptr<Pattern>> patterns_;
+  std::vector<double> largest_;
   std::vector<TaskKind> kinds_;
   std::vector<TaskVehicle> vehicles_;
   Task task_;

@@ -17,6 +17,8 @@ namespace traverse::lanes {
 struct VehicleNumbers {
   int freedom = 0, wheels = 0;
   std::vector<double> M, C, K, r0, G;
+  /// Of every coordinate x: by the square of bend*x the mechanism is out of balance, over its weight (1/m or 1/rad).
+  std::vector<double> bend;
 };
 
 /// A train of such vehicles as it stands at t = 0.
@@ -49,6 +51,7 @@ struct ForceNumbers {
 struct CrossingPlan {
   const structure::ModalBridge* bridge = nullptr;
   structure::Method method;  // for steps of 1 s
+  bool exact_modes = false;  // of a method with one solve a step: it steps vehicles and contacts alone
   std::vector<TaskStretch> stretches;
   std::vector<double> kinks;  // m: stations at which the surface has a corner, ascending
   double level_until = 0.0;   // m: before it the track is level and the ground rigid
@@ -70,7 +73,7 @@ struct CrossingResult {
   Trouble trouble = none;
   std::vector<CrossingPeak> deflection, acceleration, moment;  // of each probe
   double least_force = 0.0, greatest_force = 0.0;              // N, of all wheels
-  std::vector<double> excursion;                               // of every coordinate, the largest magnitude
+  std::vector<double> bent;  // coordinates of every vehicle where it was farthest from linear
 };
 
 /// The most runs that go side by side here, and the names of the processor's instructions they use.

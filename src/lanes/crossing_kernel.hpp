@@ -13,6 +13,9 @@
 //
 //   (S + sum g^T D^-1 g) p = sum g^T D^-1 r,   F = D^-1 (r - g p),   r = delta_free - delta + F/k
 //
+// Methods of one solve a step need not step the modes at all: these move exactly under forces that are linear over the
+// step, q = e11 q_0 + e12 q'_0 + u0 f_0 + u1 f_1, so that S = 1/u1. Only vehicles and contacts are left to the method.
+//
 // This file is compiled once for each kind of processor. Nothing in it may be seen by the linker, or code for one
 // processor could be taken for another: no functions of the library, everything in an unnamed namespace.
 #pragma once
@@ -23,7 +26,7 @@ namespace traverse::lanes {
 namespace {
 
 constexpr double force_tolerance = 1e-9;  // of the force scale: what a contact's law may be missed by
-constexpr int most_iterations = 20, fresh_after = 4;
+constexpr int few_iterations = 6, most_iterations = 20, fresh_after = 4;
 constexpr double least_penetration = 1e-12;  // m: below, the contact counts as lost
 constexpr double near = 0.9;                 // of the largest magnitude so far: no parabola's vertex of less is larger
 constexpr double alike = 4.0;                // see WheelExtremes
@@ -66,7 +69,6 @@ class Group {
   static const Lane* lanes(const double* numbers) { return reinterpret_cast<const Lane*>(numbers); }
   static Lane* lanes(double* numbers) { return reinterpret_cast<Lane*>(numbers); }
   static Lane magnitude(Lane x) { return x < Lane{} ? -x : x; }
-  static Lane greater(Lane a, Lane b) { return a > b ? a : b; }
   static Lane root(Lane x) {
     double* numbers = reinterpret_cast<double*>(&x);
     for (int l = 0; l < W; ++l) numbers[l] = __builtin_sqrt(numbers[l]);
@@ -104,15 +106,18 @@ class Group {
                             take<Lane>(work, f * w), take<Lane>(work, w * w)};
       if (work != nullptr) kinds_[k] = own;
     }
-    Lane** const of_coordinates[] = {&x_, &w_, &a_free_, &excursion_};
+    Lane** const of_coordinates[] = {&x_, &w_, &a_free_, &bent_};
     for (Lane** own : of_coordinates) *own = take<Lane>(work, n);
     still_ = take<Lane>(work, 2 * n);
+    most_bent_ = take<Lane>(work, t.vehicles);
     Lane** const of_modes[] = {&q_, &r_, &q_still_, &r_still_, &z_, &p_, &omega2_, &load_, &rhs_, &scaled_};
     for (Lane** own : of_modes) *own = take<Lane>(work, modes);
     for (int j = 0; j < most_kept; ++j) {
       a_[j] = take<Lane>(work, j < t.method.known ? n : 0);
       b_[j] = take<Lane>(work, j < t.method.known ? modes : 0);
     }
+    to_q_ = take<Lane>(work, t.exact_modes ? 4 * modes : 0);
+    to_r_ = take<Lane>(work, t.exact_modes ? 4 * modes : 0);
     S_ = take<Lane>(work, modes * modes);
     S_inverse_ = take<Lane>(work, modes * (t.coupled ? modes : 1));
     factor_ = take<Lane>(work, modes * modes);
@@ -209,7 +214,7 @@ class Group {
 
   void begin() {
     for (int i = 0; i < t.coordinates; ++i) {
-      x_[i] = w_[i] = excursion_[i] = Lane{};
+      x_[i] = w_[i] = bent_[i] = Lane{};
       for (int j = 0; j < t.method.known; ++j) a_[j][i] = Lane{};
     }
     for (int i = 0; i < m; ++i) {
@@ -227,7 +232,10 @@ class Group {
       F0_[j] = F1_[j] = F_[j];
     }
     for (int j = 0; j < t.loads; ++j) load_piece_[j] = 0;
-    for (int v = 0; v < t.vehicles; ++v) awake_[v] = 1;
+    for (int v = 0; v < t.vehicles; ++v) {
+      awake_[v] = 1;
+      most_bent_[v] = Lane{};
+    }
     speed_ = *lanes(t.speed);
     end_time_ = *lanes(t.end_time);
     failed_ = Lane{};
@@ -269,6 +277,17 @@ class Group {
   void set_step(double ds) {
     const double change = ds - ds_;
     if ((change < 0.0 ? -change : change) <= 1e-13 * ds) return;
+    hard_ = Mask{};
+    renew_step(ds);
+    yield_to_force_ = fill(1.0);
+    if (t.coupled) return;
+    Lane compliance{}, stiffest{};
+    for (int i = 0; i < m; ++i) compliance += t.influence.largest[i] * t.influence.largest[i] * S_inverse_[i];
+    for (int j = 0; j < t.wheels; ++j) stiffest = k_[j] > stiffest ? k_[j] : stiffest;
+    yield_to_force_ = 2.0 * compliance * stiffest;  // a tangent is not twice as steep under any force that holds
+  }
+
+  void renew_step(double ds) {
     ds_ = ds;
     h_ = ds / speed_;
     rate_ = t.method.rate * h_;
@@ -279,6 +298,7 @@ class Group {
     for (int i = 0; i < m; ++i) S_[i * m + i] = 1.0 / d_ + omega2_[i];
     const Lane over = rate_ / d_;
     const Lane* c = lanes(t.damping);
+    if (t.exact_modes) return set_exact_modes();
     if (!t.coupled) {
       for (int i = 0; i < m; ++i) {
         S_[i * m + i] += over * c[i];
@@ -291,6 +311,61 @@ class Group {
       S_inverse_[i] = S_[i];
     }
     invert(S_inverse_, m);
+  }
+
+  /// Where an oscillator u'' + c u' + k u = f0 + (f1 - f0) t/h is after h.
+  struct Oscillation {
+    double u, w;
+  };
+  static Oscillation oscillate(double k, double c, double h, double u0, double w0, double f0, double f1) {
+    const double phase2 = k * h * h, lost = c * h;
+    if (phase2 < 0.25 && lost < 0.5) {
+      // u h^j/j! by the equation's derivatives, with no digits lost to differences.
+      double a = u0, b = w0 * h, u = a + b, w = b;
+      for (int j = 0; j < 24; ++j) {
+        const double force = j == 0 ? f0 : j == 1 ? f1 - f0 : 0.0;
+        const double next = (force * h * h - lost * (j + 1) * b - phase2 * a) / ((j + 1.0) * (j + 2.0));
+        a = b;
+        b = next;
+        u += b;
+        w += (j + 2) * b;
+      }
+      return {u, w / h};
+    }
+    const double B = (f1 - f0) / (h * k), A = (f0 - c * B) / k, sigma = 0.5 * c, square = k - sigma * sigma;
+    double even = 0.0, odd = 0.0;
+    if (square > 0.0) {
+      const double damped = __builtin_sqrt(square), decay = __builtin_exp(-sigma * h);
+      even = decay * __builtin_cos(damped * h);
+      odd = decay * __builtin_sin(damped * h) / damped;
+    } else {
+      const double kappa = __builtin_sqrt(-square), slow = __builtin_exp((kappa - sigma) * h);
+      const double ratio = __builtin_exp(-2.0 * kappa * h);
+      even = 0.5 * slow * (1.0 + ratio);
+      odd = kappa * h > 1e-8 ? 0.5 * slow * (1.0 - ratio) / kappa : slow * h;
+    }
+    const double u = u0 - A, w = w0 - B;
+    return {A + B * h + (even + sigma * odd) * u + odd * w, B - k * odd * u + (even - sigma * odd) * w};
+  }
+
+  void set_exact_modes() {
+    const double* k = t.omega2;
+    const double* c = t.damping;
+    const double* h = reinterpret_cast<const double*>(&h_);
+    for (int i = 0; i < m; ++i) {
+      for (int from = 0; from < 4; ++from) {
+        double* u = reinterpret_cast<double*>(&to_q_[4 * i + from]);
+        double* w = reinterpret_cast<double*>(&to_r_[4 * i + from]);
+        for (int l = 0; l < W; ++l) {
+          const Oscillation end = oscillate(k[i * W + l], c[i * W + l], h[l], from == 0 ? 1.0 : 0.0,
+                                            from == 1 ? 1.0 : 0.0, from == 2 ? 1.0 : 0.0, from == 3 ? 1.0 : 0.0);
+          u[l] = end.u;
+          w[l] = end.w;
+        }
+      }
+      S_[i * m + i] = 1.0 / to_q_[4 * i + 3];
+      S_inverse_[i] = to_q_[4 * i + 3];
+    }
   }
 
   /// In place, without pivots: of matrices whose symmetric part is positive.
@@ -370,8 +445,12 @@ class Group {
     const Rule rule = rule_for(method.w_in_v[stage], method.a_in_v[stage], method.a_in_w[stage], stage + 1);
     for (int v = 0; v < t.vehicles; ++v)
       if (awake_[v] != 0) free_vehicle(v, stage + 1, rule);
-    predict(stage + 1, m, rule, q_, r_, b_, 0, q_still_, r_still_);
-    free_modes();
+    if (t.exact_modes) {
+      free_exact_modes();
+    } else {
+      predict(stage + 1, m, rule, q_, r_, b_, 0, q_still_, r_still_);
+      free_modes();
+    }
     const double ahead = ds_before_ > 0.0 ? method.time[stage] * ds_ / ds_before_ : 0.0;
     for (int v = 0; v < t.vehicles; ++v) {
       if (awake_[v] == 0) continue;
@@ -391,6 +470,7 @@ class Group {
     solve_contacts();
     for (int v = 0; v < t.vehicles; ++v)
       if (awake_[v] != 0) take_forces(v, stage + 1);
+    if (t.exact_modes) return move_exact_modes();
     const Lane per_d = 1.0 / d_;
     for (int i = 0; i < m; ++i) b_[stage + 1][i] = per_d * (z_[i] - q_still_[i] + p_[i]);
   }
@@ -504,9 +584,117 @@ class Group {
     }
   }
 
+  void free_exact_modes() {
+    const Lane* c = lanes(t.damping);
+    for (int i = 0; i < m; ++i) {
+      const Lane* to = to_q_ + 4 * i;
+      const Lane before = b_[0][i] + c[i] * r_[i] + omega2_[i] * q_[i];
+      z_[i] = to[0] * q_[i] + to[1] * r_[i] + to[2] * before + to[3] * load_[i];
+    }
+  }
+
+  void move_exact_modes() {
+    const Lane* c = lanes(t.damping);
+    for (int i = 0; i < m; ++i) {
+      const Lane* to = to_r_ + 4 * i;
+      const Lane before = b_[0][i] + c[i] * r_[i] + omega2_[i] * q_[i];
+      const Lane after = load_[i] + S_[i * m + i] * p_[i];
+      r_[i] = to[0] * q_[i] + to[1] * r_[i] + to[2] * before + to[3] * after;
+      q_[i] = z_[i] + p_[i];
+      b_[0][i] = after - c[i] * r_[i] - omega2_[i] * q_[i];
+    }
+  }
+
+  /// In short steps masses hardly yield to a change of contact forces: each contact by itself, and all others as they
+  /// were, converges fast. Where it does not, all together.
   void solve_contacts() {
     for (int i = 0; i < m; ++i) p_[i] = Lane{};
-    Mask open = failed_ == Lane{};
+    const Mask running = failed_ == Lane{};
+    const Mask left = one_by_one(running & ~hard_) | (running & hard_);
+    if (!any(left)) return;
+    hard_ |= left;
+    all_together(left);
+  }
+
+  /// Returns the lanes in which that did not converge.
+  Mask one_by_one(Mask open) {
+    moved_ = fill(1e300);  // by how much forces have changed since the bridge was last pushed, N
+    for (int iteration = 0; any(open); ++iteration) {
+      if (iteration == few_iterations) return open;
+      const Mask push = open & (yield_to_force_ * moved_ > force_tolerance * t.force_scale);
+      if (any(push)) push_bridge(push);
+      Mask wrong{};
+      for (int v = 0; v < t.vehicles; ++v)
+        if (awake_[v] != 0) wrong |= update_one_by_one(v, open);
+      open &= wrong;
+    }
+    return open;
+  }
+
+  /// p_ under the contacts' forces.
+  void push_bridge(Mask push) {
+    for (int i = 0; i < m; ++i) rhs_[i] = Lane{};
+    for (int v = 0; v < t.vehicles; ++v) {
+      if (awake_[v] == 0 || touching_[v] == 0) continue;
+      const TaskVehicle& vehicle = t.vehicle[v];
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + t.kind[vehicle.kind].wheels; ++j) {
+        if (on_[j] == 0) continue;
+        const double* g = g_ + static_cast<long>(j) * t.influence.channels;
+        for (int i = 0; i < m; ++i) rhs_[i] += g[i] * F_[j];
+      }
+    }
+    moved_ = push ? Lane{} : moved_;
+    for (int i = 0; i < m; ++i) {
+      Lane p{};
+      if (t.coupled) {
+        for (int j = 0; j < m; ++j) p += S_inverse_[i * m + j] * rhs_[j];
+      } else {
+        p = S_inverse_[i] * rhs_[i];
+      }
+      p_[i] = push ? p : p_[i];
+    }
+  }
+
+  /// One step of Newton's for each contact; returns the lanes in which the penetrations were not yet right.
+  Mask update_one_by_one(int v, Mask open) {
+    const TaskVehicle& vehicle = t.vehicle[v];
+    const int w = t.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
+    const Lane* H = kinds_[vehicle.kind].H;
+    Lane* off = residual_ + first;
+    for (int i = 0; i < w; ++i) {
+      Lane c = free_[first + i] - delta_[first + i];
+      for (int k = 0; k < w; ++k) c -= H[i * w + k] * F_[first + k];
+      if (on_[first + i] != 0) {
+        const double* g = g_ + static_cast<long>(first + i) * t.influence.channels;
+        Lane height{}, more{};
+        int k = 0;
+        for (; k + 2 <= m; k += 2) {
+          height += g[k] * p_[k];
+          more += g[k + 1] * p_[k + 1];
+        }
+        for (; k < m; ++k) height += g[k] * p_[k];
+        c -= height + more;
+      }
+      off[i] = c;
+    }
+    Mask wrong{};
+    for (int i = 0; i < w; ++i) {
+      const int j = first + i;
+      const Lane change = magnitude(off[i]) * k_[j];
+      wrong |= change > force_tolerance * t.force_scale;
+      if (on_[j] != 0) moved_ += change;
+      const Lane delta = delta_[j] + off[i] / (1.0 + H[i * w + i] * k_[j]);
+      Lane tangent;
+      const Lane force = law(j, delta, tangent);
+      failed_ = (open & (delta <= fill(least_penetration))) ? fill(contact_lost) : failed_;
+      delta_[j] = open ? delta : delta_[j];
+      F_[j] = open ? force : F_[j];
+      k_[j] = tangent;
+    }
+    return wrong;
+  }
+
+  void all_together(Mask open) {
     bool on_bridge = false;
     for (int v = 0; v < t.vehicles; ++v) on_bridge |= awake_[v] != 0 && touching_[v] != 0;
     for (int iteration = 0; any(open); ++iteration) {
@@ -675,17 +863,30 @@ class Group {
       if (awake_[v] == 0) continue;
       const TaskVehicle& vehicle = t.vehicle[v];
       const TaskKind& kind = t.kind[vehicle.kind];
-      for (int i = vehicle.first_coordinate; i < vehicle.first_coordinate + kind.freedom; ++i) {
-        end(x_, w_, a_, i);
-        excursion_[i] = greater(excursion_[i], magnitude(x_[i]));
-      }
+      for (int i = vehicle.first_coordinate; i < vehicle.first_coordinate + kind.freedom; ++i) end(x_, w_, a_, i);
+      note_bent(v);
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + kind.wheels; ++j) {
         slope_[j] = delta_[j] - end_[j];
         end_[j] = delta_[j];
       }
     }
-    for (int i = 0; i < m; ++i) end(q_, r_, b_, i);
+    if (!t.exact_modes)
+      for (int i = 0; i < m; ++i) end(q_, r_, b_, i);
     ds_before_ = ds_;
+  }
+
+  /// Keeps the coordinates at which the mechanism is farthest from linear.
+  void note_bent(int v) {
+    const TaskVehicle& vehicle = t.vehicle[v];
+    const TaskKind& kind = t.kind[vehicle.kind];
+    const Lane* x = x_ + vehicle.first_coordinate;
+    Lane bent{};
+    for (int i = 0; i < kind.freedom; ++i) bent += kind.bend[i] * magnitude(x[i]);
+    const Mask more = bent > most_bent_[v];
+    if (!any(more)) return;
+    most_bent_[v] = more ? bent : most_bent_[v];
+    Lane* kept = bent_ + vehicle.first_coordinate;
+    for (int i = 0; i < kind.freedom; ++i) kept[i] = more ? x[i] : kept[i];
   }
 
   // --- what is seen ------------------------------------------------------------------------------------------------
@@ -800,7 +1001,7 @@ class Group {
     }
     *lanes(t.least_force) = least_;
     *lanes(t.greatest_force) = greatest_;
-    for (int i = 0; i < t.coordinates; ++i) lanes(t.excursion)[i] = excursion_[i];
+    for (int i = 0; i < t.coordinates; ++i) lanes(t.bent)[i] = bent_[i];
     *lanes(t.failed) = failed_;
   }
 
@@ -812,14 +1013,17 @@ class Group {
   double ds_ = 0.0, ds_before_ = 0.0, distance_ = 0.0, start_ = 0.0, s_before_[2] = {};
   long known_ = 0, seen_ = 0;
   Lane time_[3] = {};
+  Lane moved_{}, yield_to_force_{};  // of one_by_one; what pushing the bridge by a force changes another one by
+  Mask hard_{};  // lanes whose contacts are solved all together at this step length
   // Vehicles: coordinates, rates, the same at zero acceleration, accelerations without contacts.
   Lane *x_ = nullptr, *w_ = nullptr, *still_ = nullptr, *a_free_ = nullptr;
-  Lane* excursion_ = nullptr;
+  Lane *bent_ = nullptr, *most_bent_ = nullptr;  // coordinates where a vehicle was farthest from linear; how far
   // Modes: coordinates, rates, the same at zero acceleration, without contacts, what contacts add.
   Lane *q_ = nullptr, *r_ = nullptr, *q_still_ = nullptr, *r_still_ = nullptr, *z_ = nullptr, *p_ = nullptr;
   Lane *omega2_ = nullptr, *load_ = nullptr, *rhs_ = nullptr, *scaled_ = nullptr;
   Lane* a_[most_kept] = {};
   Lane* b_[most_kept] = {};  // accelerations at the start of the step and at its stages
+  Lane *to_q_ = nullptr, *to_r_ = nullptr;  // of exact modes: [mode][q, q', force before, force after]
   Lane *S_ = nullptr, *S_inverse_ = nullptr, *factor_ = nullptr;
   // Wheels: penetration on a surface at height zero with the vehicle at rest; penetration; force, tangent; penetration
   // without contact forces; at the end of the last step, and how it has grown; 1/k of the factors; residuals.

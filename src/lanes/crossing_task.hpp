@@ -22,8 +22,8 @@ struct TaskMethod {
 struct TaskKind {
   int freedom = 0, wheels = 0;
   const double *M = nullptr, *C = nullptr, *K = nullptr, *r0 = nullptr, *G = nullptr;  // lanes, matrices by rows
-  const int *row = nullptr, *column = nullptr;      // where C or K has entries: those of row i from row[i] on
   const int *G_row = nullptr, *G_column = nullptr;  // where G has entries
+  const double* bend = nullptr;  // of every coordinate: root of what its square puts the mechanism out of balance by
 };
 
 struct TaskVehicle {
@@ -38,6 +38,7 @@ struct TaskVehicle {
 struct TaskInfluence {
   int pieces = 0, channels = 0;
   const double *breaks = nullptr, *coefficients = nullptr;
+  const double* largest = nullptr;  // magnitude of each mode's
 };
 
 /// Heights of the track that a wheel's lowest point follows: cubics between equidistant stations, by values and slopes
@@ -81,6 +82,7 @@ struct Task {
   int modes = 0;
   const double *omega2 = nullptr, *damping = nullptr;  // lanes: squares; 2 sigma, or of coupled modes the matrix
   bool coupled = false;
+  bool exact_modes = false;    // move exactly under forces that are linear over a step; of methods of one solve
   const double* q = nullptr;  // lanes: at t = 0
   TaskInfluence influence;
   TaskHeights heights;
@@ -94,7 +96,7 @@ struct Task {
   // Results, lanes: of each probe deflection, acceleration and moment; of all wheels.
   double *peak = nullptr, *peak_time = nullptr;
   double *least_force = nullptr, *greatest_force = nullptr;
-  double* excursion = nullptr;  // of every coordinate, the largest magnitude
+  double* bent = nullptr;  // coordinates of every vehicle where it was farthest from linear
   double* failed = nullptr;     // 0: none of what follows
   double* work = nullptr;       // as many numbers as work_size() says, aligned as a lane
 };

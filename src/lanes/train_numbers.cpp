@@ -32,7 +32,30 @@ bool alike(const VehicleNumbers& a, const VehicleNumbers& b, double weight) {
          alike(a.K, b.K, 0.0) && alike(a.G, b.G, 0.0) && alike(a.r0, b.r0, weight);
 }
 
-VehicleNumbers numbers_of(const train::MovingVehicle& vehicle) {
+/// How far a mechanism is out of balance at x from its start, over its weight.
+double defect_at(train::MovingVehicle& vehicle, const double* x) {
+  const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
+  const Eigen::VectorXd p = of.p0 + Eigen::Map<const Eigen::VectorXd>(x, of.p0.size());
+  Eigen::VectorXd pdd(vehicle.freedom());
+  train::AnyDynamics moved = vehicle.dynamics;  // one that has not seen anything else
+  moved->set(vehicle, 0.0, p.data(), of.c.data());
+  moved->accelerations(vehicle, pdd.data());
+  moved->observe(vehicle, pdd.data());
+  return moved->defect();
+}
+
+std::vector<double> bend_of(train::MovingVehicle& vehicle) {
+  constexpr double little = 1e-3;  // m or rad: the square is far from rounding, all higher powers are far below it
+  std::vector<double> x(static_cast<std::size_t>(vehicle.freedom()), 0.0), bend;
+  for (double& one : x) {
+    one = little;
+    bend.push_back(std::sqrt(defect_at(vehicle, x.data())) / little);
+    one = 0.0;
+  }
+  return bend;
+}
+
+VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
   const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
   VehicleNumbers v;
   v.freedom = vehicle.freedom();
@@ -45,6 +68,7 @@ VehicleNumbers numbers_of(const train::MovingVehicle& vehicle) {
   for (int j = 0; j < v.wheels; ++j)
     G.row(j) = of.B.row(3 * static_cast<Eigen::Index>(vehicle.wheels[static_cast<std::size_t>(j)].body) + 1);
   v.G = by_rows(G);
+  v.bend = bend_of(vehicle);
   return v;
 }
 
@@ -84,9 +108,9 @@ std::string obstacle(const train::Fleet& fleet) {
   return {};
 }
 
-TrainNumbers train_numbers(const train::Fleet& fleet) {
+TrainNumbers train_numbers(train::Fleet& fleet) {
   TrainNumbers train;
-  for (const train::MovingVehicle& vehicle : fleet.vehicles) {
+  for (train::MovingVehicle& vehicle : fleet.vehicles) {
     VehicleNumbers own = numbers_of(vehicle);
     const auto kind = std::find_if(train.kinds.begin(), train.kinds.end(),
                                    [&](const VehicleNumbers& known) { return alike(known, own, vehicle.scale); });
@@ -106,21 +130,10 @@ TrainNumbers train_numbers(const train::Fleet& fleet) {
   return train;
 }
 
-double defect(train::Fleet& fleet, const std::vector<double>& excursion) {
+double defect(train::Fleet& fleet, const std::vector<double>& x) {
   double largest = 0.0;
-  for (train::MovingVehicle& vehicle : fleet.vehicles) {
-    const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
-    Eigen::VectorXd p, pdd(vehicle.freedom());
-    for (const bool by_turns : {false, true}) {
-      p = of.p0;
-      for (Eigen::Index i = 0; i < p.size(); ++i)
-        p[i] += (by_turns && i % 2 == 1 ? -1.0 : 1.0) * excursion[static_cast<std::size_t>(vehicle.offset + i)];
-      vehicle.dynamics->set(vehicle, 0.0, p.data(), of.c.data());
-      vehicle.dynamics->accelerations(vehicle, pdd.data());
-      vehicle.dynamics->observe(vehicle, pdd.data());
-    }
-    largest = std::max(largest, vehicle.dynamics->defect());
-  }
+  for (train::MovingVehicle& vehicle : fleet.vehicles)
+    largest = std::max(largest, defect_at(vehicle, x.data() + vehicle.offset));
   return largest;
 }
 

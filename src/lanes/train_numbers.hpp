@@ -12,13 +12,12 @@ namespace traverse::lanes {
 /// Why a train cannot run side by side, in words; empty: it can.
 std::string obstacle(const train::Fleet& fleet);
 
-/// Of a fleet whose vehicles are linear, at its start with its contact forces.
-TrainNumbers train_numbers(const train::Fleet& fleet);
+/// Of a fleet whose vehicles are linear, at its start with its contact forces; it is moved and comes back.
+TrainNumbers train_numbers(train::Fleet& fleet);
 
-/// How far the mechanisms would be out of balance over their weights with all coordinates at these distances
-/// (CrossingResult::excursion) from where they start, all to one side and by turns to either: more than in any state of
-/// the run, where these are not reached together.
-double defect(train::Fleet& fleet, const std::vector<double>& excursion);
+/// How far the mechanisms are out of balance, over their weights, at coordinates x from where they start (metres and
+/// radians, CrossingResult::bent).
+double defect(train::Fleet& fleet, const std::vector<double>& x);
 
 /// What a wheel's lowest point follows on the track from x = `from` to `to` (m): the track itself, but where the wheel
 /// (radius in m) rolls over what is narrower than itself. InputError where cubics between stations would take more

@@ -83,6 +83,7 @@ std::vector<Attribute> attributes_of(const Sweep::Model& model) {
   std::vector<Attribute> list = {{"modes", static_cast<long>(model.modes)}};
   list.push_back({model.in_bays ? "elements_per_bay" : "elements_per_span", static_cast<long>(model.elements)});
   if (model.time_step > 0.0) list.push_back({"time_step", model.time_step});
+  if (!model.method.empty()) list.push_back({"method", model.method});
   if (model.accuracy > 0.0) list.push_back({"accuracy", model.accuracy});
   return list;
 }
@@ -194,8 +195,8 @@ void print_sweep(const Sweep& sweep) {
 }
 
 std::string method_of(const Sweep::Model& model) {
-  if (model.modes > 0) return fmt::format("by {} mode{}", model.modes, model.modes == 1 ? "" : "s");
   const std::string steps = model.time_step > 0.0 ? fmt::format(" and steps of {:g} s", model.time_step) : "";
+  if (model.modes > 0) return fmt::format("by {} mode{}{}", model.modes, model.modes == 1 ? "" : "s", steps);
   return fmt::format("by {} elements a {}{}", model.elements, model.in_bays ? "sleeper bay" : "span", steps);
 }
 

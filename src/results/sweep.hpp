@@ -35,6 +35,7 @@ struct Sweep {
     double accuracy = 0.0;   // from which mesh, step and modes were chosen; 0: they were given
     /// Relative, of the peaks whose accuracy is promised.
     std::vector<std::pair<std::string, double>> expected_errors{};
+    std::string method{};  // of runs side by side, as -ts_type names it; empty: as TS takes it
   } model;
 
   std::size_t rows() const { return trains.empty() ? 1 : trains.size(); }

@@ -12,6 +12,8 @@ namespace {
 
 // As measured; peaks by modes are looked for at so many instants a period of the highest mode.
 constexpr double seconds_a_mode = 1.3e-8, instants_a_period = 20.0;
+// Of a run side by side with seven others, a stage.
+constexpr double seconds_a_lane_vehicle = 2e-8, seconds_a_lane_mode = 4e-9;
 constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
 
 }  // namespace
@@ -67,7 +69,7 @@ std::vector<CaseResult> CaseRunner::run_group(std::size_t train, const std::vect
     own.push_back(speeds_[i]);
     ends.push_back(duration(train, speeds_[i]));
   }
-  for (const lanes::CrossingResult& crossing : lanes_->run(own, ends)) {
+  for (const lanes::CrossingResult& crossing : lanes_->run(own, ends, lanes_->steps())) {
     const double speed = own[results.size()];
     if (caught_signal() != 0) return std::vector<CaseResult>(speeds.size());
     if (crossing.trouble != lanes::none || lanes_->defect(crossing) > scene_.most_defect) {
@@ -109,6 +111,12 @@ double CaseRunner::cost() const {
     const std::vector<double>& omega = shared_.modal->omega();
     return seconds_a_mode * instants_a_period * omega.back() / (2.0 * std::numbers::pi) *
            static_cast<double>(omega.size());
+  }
+  if (lanes_) {
+    const SideBySide::Steps steps = lanes_->steps();
+    const double a_stage = seconds_a_lane_vehicle * static_cast<double>(scene_.train.vehicles.size()) +
+                           seconds_a_lane_mode * static_cast<double>(shared_.modal->modes());
+    return a_stage * static_cast<double>(steps.method.stages.size()) / steps.longest;
   }
   double bodies = 0.0;
   for (const int type : scene_.train.vehicles)

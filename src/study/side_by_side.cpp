@@ -62,7 +62,6 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
   train_ = lanes::train_numbers(fleet_);
   q_.assign(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(shared.modal->modes()));
   plan_.bridge = &*shared.modal;
-  plan_.method = *integrate::own_method();
   plan_.kinks = system_.corners();
   plan_.level_until = scene.profile.level() ? shared.beam->mesh().start() : -1e300;
 }
@@ -91,8 +90,16 @@ void SideBySide::make_track(double past) {
   track_past_ = past;
 }
 
-std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speeds, std::span<const double> ends) {
-  const double ds = *scene_.time_step * speed_of_class(step_class(speeds.front()));
+SideBySide::Steps SideBySide::steps() const {
+  const structure::MethodRow* row = structure::find_method(scene_.sweep->method);
+  return {row != nullptr ? row->make(row->parameter.value) : *integrate::own_method(), *scene_.time_step};
+}
+
+std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speeds, std::span<const double> ends,
+                                                   const Steps& steps) {
+  plan_.method = steps.method;
+  plan_.exact_modes = steps.method.stages.size() == 1;
+  const double ds = steps.longest * speed_of_class(step_class(speeds.front()));
   double past = 0.0;
   for (std::size_t i = 0; i < speeds.size(); ++i) past = std::max(past, speeds[i] * ends[i]);
   plan_.stretches.clear();
@@ -101,8 +108,8 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speed
     plan_.stretches.push_back({event, std::max(1L, static_cast<long>(std::ceil((event - from) / ds - one_place)))});
     from = event;
   }
-  const auto steps = static_cast<long>(std::ceil((past - from) / ds - one_place));
-  if (steps > 0) plan_.stretches.push_back({from + static_cast<double>(steps) * ds, steps});
+  const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
+  if (last > 0) plan_.stretches.push_back({from + static_cast<double>(last) * ds, last});
   make_track(past + ds);
   std::vector<lanes::CrossingRun> runs;
   for (std::size_t i = 0; i < speeds.size(); ++i)

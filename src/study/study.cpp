@@ -138,9 +138,17 @@ void gather(MPI_Comm comm, results::Sweep& sweep) {
 }
 
 std::string name_of(const Case& c, const results::Sweep& sweep) {
-  const double speed = sweep.speed[c.speeds.front()];
+  const double from = sweep.speed[c.speeds.front()], to = sweep.speed[c.speeds.back()];
   const std::string train = sweep.trains.empty() ? "" : fmt::format(" of train A{}", sweep.trains[c.train]);
-  return fmt::format("the run{} at {:g} m/s ({:g} km/h)", train, speed, 3.6 * speed);
+  if (c.speeds.size() > 1)
+    return fmt::format("one of the runs{} at {:g} to {:g} m/s ({:g} to {:g} km/h)", train, from, to, 3.6 * from,
+                       3.6 * to);
+  return fmt::format("the run{} at {:g} m/s ({:g} km/h)", train, from, 3.6 * from);
+}
+
+std::size_t runs_in(const std::vector<Case>& cases) {
+  return std::accumulate(cases.begin(), cases.end(), std::size_t{0},
+                         [](std::size_t sum, const Case& c) { return sum + c.speeds.size(); });
 }
 
 /// How far the sweep is, by the time that its runs' motions last: runs are dealt longest first.
@@ -209,6 +217,11 @@ void announce(const Scene& scene, const CaseRunner& runner, const results::Sweep
   notes.push_back(fmt::format("sweep of {} runs: {} speed{} from {:g} to {:g} m/s, {} train{}; above for the first one",
                               speeds.size() * runner.trains(), speeds.size(), speeds.size() == 1 ? "" : "s",
                               speeds.front(), speeds.back(), runner.trains(), runner.trains() == 1 ? "" : "s"));
+  if (runner.has_lanes())
+    notes.push_back(fmt::format("up to {} runs go side by side, in the lanes of {} vectors", scene.sweep->lanes,
+                                lanes::instructions()));
+  else if (!scene.vehicles.empty() && scene.model_modes > 0)
+    notes.push_back("runs go one by one: " + runner.why_no_lanes());
   const bool known = model.modes > 0 || model.time_step > 0.0;
   notes.push_back(fmt::format("the sweep is {}{}", results::method_of(model),
                               known ? ", which will take about " + results::duration_text(seconds) : ""));
@@ -247,21 +260,23 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   results::Sweep sweep = empty_sweep(scene, runner, choice.model);
   Course course(cases, runner, ranks, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
-  long done[2] = {0, 0};  // runs, the signal that came
+  long done[3] = {0, 0, 0};  // runs, the signal that came, runs that left their group
   Failure failure;
   {
     const results::Stage stage("runs of the sweep");
     Deal deal(comm, cases.size());
     failure = run_share(cases, runner, deal, course, sweep, done[0]);
     done[1] = caught_signal();
+    done[2] = runner.alone();
   }
   course.done();
   failure = first_of(comm, std::move(failure));
   MPI_Allreduce(MPI_IN_PLACE, &done[0], 1, MPI_LONG, MPI_SUM, comm);
   MPI_Allreduce(MPI_IN_PLACE, &done[1], 1, MPI_LONG, MPI_MAX, comm);
+  MPI_Allreduce(MPI_IN_PLACE, &done[2], 1, MPI_LONG, MPI_SUM, comm);
   gather(comm, sweep);
 
-  const results::SweepCourse whole = {done[0], static_cast<long>(cases.size()),
+  const results::SweepCourse whole = {done[0], static_cast<long>(runs_in(cases)),
                                       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
                                       failure.run != nobody ? failure.message
                                       : done[1] != 0        ? fmt::format("ended by signal {}", done[1])
@@ -274,7 +289,9 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   }
   if (rank == 0) {
     if (done[0] > 0) results::print_sweep(sweep);
-    fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], cases.size(),
+    if (done[2] > 0)
+      fmt::print("  {} of the runs left the others beside them, where wheels lost contact, and were taken alone\n", done[2]);
+    fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], whole.planned,
                results::method_of(choice.model), whole.wall_seconds,
                1e3 * whole.wall_seconds / static_cast<double>(std::max(done[0], 1L)), "the sweep", whole.ended,
                scene.output.file.empty() ? "none" : scene.output.file);

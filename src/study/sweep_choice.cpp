@@ -8,6 +8,7 @@
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/trials.hpp"
+#include "lanes_choice.hpp"
 #include "modes_choice.hpp"
 
 namespace traverse::app {
@@ -75,13 +76,27 @@ results::Sweep::Model model_of(const Scene& scene) {
   model.modes = scene.model_modes;
   model.elements = mesh_of(scene);
   model.in_bays = scene.beam->track.has_value();
+  if (scene.sweep) model.method = scene.sweep->method;
   if (!scene.exact_in_time()) model.time_step = scene.time_step.value_or(0.0);
   return model;
+}
+
+std::string name_of(std::size_t quantity) {
+  std::string name = quantity_names[quantity];
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
 }
 
 }  // namespace
 
 SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes) {
+  if (std::optional<LanesChoice> lanes = lanes_that_do(given, notes)) {
+    SweepChoice choice{std::move(lanes->scene), {}};
+    choice.model = model_of(choice.scene);
+    choice.model.accuracy = given.accuracy;
+    for (std::size_t q = 0; q < quantities; ++q) choice.model.expected_errors.emplace_back(name_of(q), lanes->errors[q]);
+    return choice;
+  }
   SweepChoice choice{given, {}};
   const std::optional<Accuracy> all = choose_at_speeds(given, choice.scene, notes);
   if (!all) return {given, model_of(given)};

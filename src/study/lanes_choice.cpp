@@ -1,0 +1,335 @@
+#include "study/lanes_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <memory>
+
+#include "accuracy/first_guess.hpp"
+#include "accuracy/trials.hpp"
+#include "results/stage.hpp"
+#include "study/side_by_side.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+using lanes::CrossingResult;
+using Errors = std::array<double, quantities>;
+
+constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
+constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4, part_of_all = 0.95;  // of the wanted error
+constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
+constexpr int most_halvings = 8, most_shortenings = 6;
+constexpr double shorter = 0.7;  // a quarter of an error of fourth order
+constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
+constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
+
+/// What the runs are computed with.
+struct LaneModel {
+  int modes = 0, elements = 0;
+  const structure::MethodRow* method = nullptr;
+  double step = 0.0;  // s
+  bool operator==(const LaneModel&) const = default;
+};
+
+bool open(const Scene& scene) {
+  return scene.sweep->lanes > 0 && scene.sweep->speeds.size() >= fewest_runs && !scene.vehicles.empty() &&
+         !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full && scene.beam &&
+         options::in_force().find("ts_type") == nullptr;
+}
+
+Scene with(const Scene& given, const LaneModel& model) {
+  Scene scene = given;
+  scene.model_modes = model.modes;
+  if (scene.mesh_open) set_mesh(scene, model.elements);
+  scene.time_step = model.step;
+  scene.sweep->method = model.method->name;
+  scene.vehicle_model = VehicleModel::linear;
+  return scene;
+}
+
+void add(double a, double b, double scale, double& worst) {
+  if (scale > 0.0) worst = std::max(worst, std::abs(a - b) / scale);
+}
+
+/// The largest differences of the peaks of runs, relative to the largest of their kind.
+Errors difference(const std::vector<CrossingResult>& a, const std::vector<CrossingResult>& b) {
+  Errors worst{};
+  for (std::size_t run = 0; run < a.size(); ++run) {
+    if (a[run].trouble != lanes::none || b[run].trouble != lanes::none) continue;
+    const auto compare = [&](std::vector<lanes::CrossingPeak> CrossingResult::*peaks, Quantity q) {
+      double largest = 0.0;
+      for (const lanes::CrossingPeak& peak : b[run].*peaks) largest = std::max(largest, peak.value);
+      for (std::size_t p = 0; p < (b[run].*peaks).size(); ++p)
+        add((a[run].*peaks)[p].value, (b[run].*peaks)[p].value, largest, worst[q]);
+    };
+    compare(&CrossingResult::deflection, deflection);
+    compare(&CrossingResult::acceleration, acceleration);
+    compare(&CrossingResult::moment, moment);
+    add(a[run].greatest_force, b[run].greatest_force, b[run].greatest_force, worst[wheel_force]);
+    add(a[run].least_force, b[run].least_force, b[run].greatest_force, worst[wheel_force]);
+  }
+  return worst;
+}
+
+double greatest(const Errors& errors) { return *std::max_element(errors.begin(), errors.end()); }
+
+/// Passages of one scene at some speeds, by several models.
+class LaneTrials {
+ public:
+  LaneTrials(Scene scene, std::vector<std::vector<double>> speeds, double distance)
+      : scene_(std::move(scene)), speeds_(std::move(speeds)), distance_(distance) {}
+
+  /// Empty where the bridge has not so many modes. Refused where runs cannot go side by side.
+  const std::vector<CrossingResult>& run(const LaneModel& model) {
+    for (const auto& [known, results] : kept_)
+      if (known == model) return results;
+    Setup& with_modes = setup(model);
+    std::vector<CrossingResult> results;
+    for (const std::vector<double>& speeds : speeds_) {
+      std::vector<double> ends;
+      for (const double speed : speeds) ends.push_back(distance_ / speed);
+      for (CrossingResult& result : with_modes.lanes->run(
+               speeds, ends, {model.method->make(model.method->parameter.value), model.step})) {
+        defect_ = std::max(defect_, with_modes.lanes->defect(result));
+        results.push_back(std::move(result));
+      }
+    }
+    return kept_.emplace_back(model, std::move(results)).second;
+  }
+  double defect() const { return defect_; }
+  const Scene& scene() const { return scene_; }
+
+  struct Refused {
+    std::string why;
+  };
+
+ private:
+  struct Setup {
+    Scene scene;
+    std::optional<SharedBeam> shared;
+    std::optional<SideBySide> lanes;
+  };
+  Setup& setup(const LaneModel& model) {
+    std::unique_ptr<Setup>& place = setups_[{model.modes, model.elements}];
+    if (place) return *place;
+    place = std::make_unique<Setup>();
+    place->scene = with(scene_, model);
+    std::vector<std::string> ignored;
+    place->shared.emplace(PETSC_COMM_SELF, place->scene, ignored);
+    place->shared->damp(place->scene, true, ignored);
+    place->shared->prepare(place->scene, ignored);
+    if (const std::string why = SideBySide::obstacle(place->scene, *place->shared); !why.empty()) throw Refused{why};
+    place->shared->modal->add_probes(place->scene.output.probes, 0.0);
+    place->lanes.emplace(place->scene, *place->shared);
+    if (!place->lanes->obstacle().empty()) throw Refused{place->lanes->obstacle()};
+    return *place;
+  }
+
+  Scene scene_;
+  std::vector<std::vector<double>> speeds_;
+  double distance_;  // m
+  std::map<std::pair<int, int>, std::unique_ptr<Setup>> setups_;
+  std::deque<std::pair<LaneModel, std::vector<CrossingResult>>> kept_;  // references to its entries stay
+  double defect_ = 0.0;
+};
+
+/// Neighbouring speeds of one class around each of the given places among all.
+std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, std::initializer_list<double> places,
+                                             std::size_t most) {
+  std::vector<std::vector<double>> groups;
+  for (const double place : places) {
+    const auto at = static_cast<std::size_t>(place * static_cast<double>(speeds.size() - 1));
+    const int number = SideBySide::step_class(speeds[at]);
+    std::vector<double> group;
+    for (std::size_t i = at; i < speeds.size() && group.size() < most; ++i)
+      if (SideBySide::step_class(speeds[i]) == number) group.push_back(speeds[i]);
+    for (std::size_t i = at; i > 0 && group.size() < most; --i)
+      if (SideBySide::step_class(speeds[i - 1]) == number) group.push_back(speeds[i - 1]);
+    std::sort(group.begin(), group.end());
+    groups.push_back(group);
+  }
+  return groups;
+}
+
+int mesh_for(const Scene& scene, int modes) {
+  if (!scene.mesh_open) return mesh_of(scene);
+  const double longest = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end());
+  const double waves = 0.5 * modes * longest / scene.beam->length() + 1.0;  // of the highest mode in that span
+  const int elements = static_cast<int>(std::ceil(elements_a_wave * waves));
+  return aligned_mesh(scene, std::max(first_mesh(scene), elements + elements % 2));
+}
+
+class Search {
+ public:
+  Search(LaneTrials& trials, double accuracy) : trials_(trials), accuracy_(accuracy) {}
+
+  /// The cheapest model within the accuracy; empty: none.
+  std::optional<LaneModel> run(double first_step) {
+    LaneModel model{numbers_of_modes.front(), mesh_for(trials_.scene(), numbers_of_modes.front()),
+                    structure::find_method("esdirk4"), first_step};
+    // Steps first, as modes are told apart by what the contacts do to them.
+    if (!halve_step(model) || !add_modes(model) || !halve_step(model) || !refine_mesh(model)) return std::nullopt;
+    return by_one_solve(model);
+  }
+  /// Of modes and mesh, and of the steps.
+  double error_of_model(std::size_t q) const { return modes_[q] + mesh_[q]; }
+  double error_of_steps(std::size_t q) const { return steps_[q]; }
+
+ private:
+  Errors change(const LaneModel& from, const LaneModel& to) {
+    const std::vector<CrossingResult>& rough = trials_.run(from);
+    return difference(rough, trials_.run(to));
+  }
+  bool halve_step(LaneModel& model) {
+    for (int i = 0; i < most_halvings; ++i) {
+      LaneModel finer = model;
+      finer.step *= 0.5;
+      steps_ = change(model, finer);
+      if (greatest(steps_) <= part_of_steps * accuracy_) return true;
+      model = finer;
+    }
+    return false;
+  }
+  bool add_modes(LaneModel& model) {
+    for (std::size_t i = 0; i + 2 < numbers_of_modes.size(); ++i) {
+      LaneModel more = model;
+      model.modes = numbers_of_modes[i];
+      more.modes = numbers_of_modes[i + 2];
+      model.elements = more.elements = mesh_for(trials_.scene(), more.modes);
+      modes_ = change(model, more);
+      if (greatest(modes_) <= part_of_modes * accuracy_) return true;
+    }
+    return false;
+  }
+  bool refine_mesh(LaneModel& model) {
+    while (trials_.scene().mesh_open) {
+      LaneModel finer = model;
+      finer.elements *= 2;
+      mesh_ = change(model, finer);
+      if (greatest(mesh_) <= part_of_mesh * accuracy_) break;
+      model = finer;
+    }
+    return true;
+  }
+  /// The method of one solve a step where that costs less.
+  LaneModel by_one_solve(const LaneModel& model) {
+    LaneModel exact = model, single = model;
+    exact.step *= 0.5;
+    single.method = structure::find_method("genalpha");
+    for (const double factor : {2.0, 1.0, 0.5}) {
+      single.step = factor * model.step;
+      const Errors own = change(single, exact);
+      if (greatest(own) > part_of_steps * accuracy_) continue;
+      steps_ = own;
+      return single;
+    }
+    return model;
+  }
+
+  LaneTrials& trials_;
+  double accuracy_;
+  Errors modes_{}, steps_{}, mesh_{};
+};
+
+/// How far the chosen model is from the elements and the mechanisms themselves, at one speed.
+Errors off_the_elements(const LaneTrials& trials, const LaneModel& model, const CrossingResult& lane, double speed,
+                        double distance) {
+  Scene scene = with(trials.scene(), model);
+  scene.sweep.reset();
+  scene.model_modes = 0;
+  scene.vehicle_model = VehicleModel::full;
+  scene.train.speed = speed;
+  scene.end_time = distance / speed;
+  scene.output.interval = 32.0 * model.step;
+  const Peaks peaks = peaks_of(PETSC_COMM_SELF, scene).peaks;
+  CrossingResult by_elements = lane;
+  const auto take = [&](std::vector<lanes::CrossingPeak>& to, Quantity q) {
+    for (std::size_t p = 0; p < to.size(); ++p) to[p].value = std::abs(peaks.largest_of_each(q)[p].value);
+  };
+  take(by_elements.deflection, deflection);
+  take(by_elements.acceleration, acceleration);
+  take(by_elements.moment, moment);
+  by_elements.greatest_force = std::abs(peaks.largest(wheel_force).value);
+  return difference({lane}, {by_elements});
+}
+
+std::string words_of(const Errors& errors) {
+  std::string words;
+  for (std::size_t q = 0; q < quantities; ++q)
+    words += fmt::format("{}{} {:.1g}", q == 0 ? "" : ", ", quantity_names[q], errors[q]);
+  return words;
+}
+
+}  // namespace
+
+std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes) {
+  if (!open(given)) return std::nullopt;
+  const results::Stage stage("trial runs side by side");
+  const options::WithoutMonitors without_monitors;
+  const auto refuse = [&](const std::string& why) {
+    notes.push_back("runs go one by one, not side by side by modes: " + why);
+    return std::nullopt;
+  };
+  const std::vector<double>& speeds = given.sweep->speeds;
+  Scene fast = given;
+  fast.train.speed = speeds.back();
+  double whole = 0.0;  // m: of a passage
+  for (const double x : wheels_at_start(fast)) whole = std::max(whole, given.beam->length() - x);
+  if (given.end_time) whole = *given.end_time * speeds.back();
+  const double distance = beginning(fast, whole / speeds.back()) * speeds.back();
+  try {
+    LaneTrials trials(shortened(fast, distance / speeds.back()), some_speeds(speeds, {0.0, 1.0}, trial_lanes),
+                      distance);
+    Search search(trials, given.accuracy);
+    const double first = first_step_factor * first_steps(fast, 0.0, whole / speeds.back()).first;
+    std::optional<LaneModel> model = search.run(first);
+    if (!model) return refuse("the peaks do not settle to the accuracy with up to 128 modes");
+    if (trials.defect() > most_defect(given))
+      return refuse(fmt::format("linear vehicles may be out of balance by {:.1g} of their weights", trials.defect()));
+
+    // Whole passages: errors add up while the train crosses.
+    LaneTrials wholes(given, some_speeds(speeds, {0.5}, lanes::widest), whole);
+    const auto finer = [](LaneModel chosen) {
+      chosen.method = structure::find_method("esdirk4");
+      chosen.step *= 0.5;
+      return chosen;
+    };
+    LanesChoice choice;
+    for (int i = 0; i <= most_shortenings; ++i) {
+      if (i > 0) model->step *= shorter;
+      const Errors along = difference(wholes.run(*model), wholes.run(finer(*model)));
+      for (std::size_t q = 0; q < quantities; ++q)
+        choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
+      if (greatest(choice.errors) <= part_of_all * given.accuracy) break;
+    }
+    if (greatest(choice.errors) > part_of_all * given.accuracy)
+      return refuse(fmt::format("over whole passages errors add up to {}", words_of(choice.errors)));
+    const std::vector<CrossingResult> passages = wholes.run(*model);
+    const auto bad = [](const CrossingResult& result) { return result.trouble != lanes::none; };
+    if (std::all_of(passages.begin(), passages.end(), bad)) return refuse("wheels lose contact");
+
+    const std::vector<CrossingResult>& beginnings = trials.run(*model);
+    const Errors off = off_the_elements(trials, *model, beginnings.back(),
+                                        some_speeds(speeds, {1.0}, trial_lanes).back().back(), distance);
+    if (beginnings.back().trouble == lanes::none && greatest(off) > given.accuracy)
+      return refuse(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
+    choice.scene = with(given, *model);
+    choice.scene.most_defect = most_defect(given);
+    choice.scene.step_probes = true;
+    notes.push_back(fmt::format(
+        "runs go side by side: {} modes from {} elements a span, linear vehicles, {} with steps of {:g} s or less ({})",
+        model->modes, mesh_of(choice.scene), model->method->name, model->step, lanes::instructions()));
+    notes.push_back("expected errors of the peaks: " + words_of(choice.errors));
+    notes.push_back(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
+    return choice;
+  } catch (const LaneTrials::Refused& refused) {
+    return refuse(refused.why);
+  }
+}
+
+}  // namespace traverse::app
