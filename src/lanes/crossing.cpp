@@ -181,7 +181,7 @@ class Group {
       const Pattern& wheels = *patterns_.back();
       kinds_.push_back({f, kind.wheels, of(&VehicleNumbers::M, size * size), of(&VehicleNumbers::C, size * size),
                         of(&VehicleNumbers::K, size * size), of(&VehicleNumbers::r0, size),
-                        of(&VehicleNumbers::G, size * static_cast<std::size_t>(kind.wheels)), wheels.row.data(),
+                        of(&VehicleNumbers::G, size * static_cast<std::size_t>(kind.wheels)), of(&VehicleNumbers::G_along, size * static_cast<std::size_t>(kind.wheels)), wheels.row.data(),
                         wheels.column.data(), kind.bend.data()});
     }
     for (const TrainNumbers::Vehicle& vehicle : train.vehicles) {

@@ -17,6 +17,7 @@ namespace traverse::lanes {
 struct VehicleNumbers {
   int freedom = 0, wheels = 0;
   std::vector<double> M, C, K, r0, G;
+  std::vector<double> G_along;  // of the wheels' motion along the track
   /// Of every coordinate x: by the square of bend*x the mechanism is out of balance, over its weight (1/m or 1/rad).
   std::vector<double> bend;
 };

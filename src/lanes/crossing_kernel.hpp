@@ -94,7 +94,7 @@ class Group {
   struct KindWork {
     Lane *inverse, *by_state;  // J^-1; J^-1 [K C], freedom x 2 freedom
     Lane *alone;               // -J^-1 r0
-    Lane *Y, *H;               // J^-1 G^T (freedom x wheels), d G J^-1 G^T
+    Lane *Y, *Y_along, *H;     // J^-1 G^T (freedom x wheels), the same for forces along the track, d G J^-1 G^T
   };
 
   void lay_out(double* work) {
@@ -103,7 +103,7 @@ class Group {
     for (int k = 0; k < t.kinds; ++k) {
       const long f = t.kind[k].freedom, w = t.kind[k].wheels;
       const KindWork own = {take<Lane>(work, f * f), take<Lane>(work, 2 * f * f), take<Lane>(work, f),
-                            take<Lane>(work, f * w), take<Lane>(work, w * w)};
+                            take<Lane>(work, f * w), take<Lane>(work, f * w), take<Lane>(work, w * w)};
       if (work != nullptr) kinds_[k] = own;
     }
     Lane** const of_coordinates[] = {&x_, &w_, &a_free_, &bent_};
@@ -122,7 +122,7 @@ class Group {
     S_inverse_ = take<Lane>(work, modes * (t.coupled ? modes : 1));
     factor_ = take<Lane>(work, modes * modes);
     Lane** const of_wheels[] = {&offset_, &delta_, &F_, &k_,   &free_,  &end_,
-                                &slope_,  &yield_,   &residual_, &pivot_, &F0_, &F1_};
+                                &slope_,  &yield_, &residual_, &pivot_, &F0_, &F1_, &track_slope_};
     for (Lane** own : of_wheels) *own = take<Lane>(work, wheels);
     D_begin_ = take<long>(work, t.vehicles + 1);
     long entries = 0;
@@ -160,23 +160,26 @@ class Group {
     return true;
   }
 
-  Lane height_at(double x) const {
+  /// Height and slope of the track under a wheel at x.
+  void track_at(double x, Lane& height, Lane& slope) const {
     const TaskHeights& track = t.heights;
-    if (track.stations == 0) return Lane{};
+    height = slope = Lane{};
+    if (track.stations == 0) return;
     double at = (x - track.start) / track.distance;
     const double last = static_cast<double>(track.stations - 1);
     at = at < 0.0 ? 0.0 : at > last ? last : at;
     long i = static_cast<long>(at);
     if (i > track.stations - 2) i = track.stations - 2;
-    const double u = at - static_cast<double>(i), v = 1.0 - u;
-    const double left = v * v * (1.0 + 2.0 * u), right = u * u * (1.0 + 2.0 * v);
-    const double rise_left = v * v * u, rise_right = -u * u * v;
-    if (track.shared) {
-      const double* h = track.values + 2 * i;
-      return fill(left * h[0] + rise_left * h[1] + right * h[2] + rise_right * h[3]);
+    const double u = at - static_cast<double>(i), v = 1.0 - u, turn = 6.0 * u * v / track.distance;
+    const double of_value[2] = {v * v * (1.0 + 2.0 * u), u * u * (1.0 + 2.0 * v)}, of_rise[2] = {v * v * u, -u * u * v};
+    const double slope_of_rise[2] = {v * (1.0 - 3.0 * u) / track.distance, u * (1.0 - 3.0 * v) / track.distance};
+    for (int k = 0; k < 2; ++k) {
+      const long place = 2 * (i + k);
+      const Lane value = track.shared ? fill(track.values[place]) : lanes(track.values)[place];
+      const Lane rise = track.shared ? fill(track.values[place + 1]) : lanes(track.values)[place + 1];
+      height += of_value[k] * value + of_rise[k] * rise;
+      slope += (k == 0 ? -turn : turn) * value + slope_of_rise[k] * rise;
     }
-    const Lane* h = lanes(track.values) + 2 * i;
-    return left * h[0] + rise_left * h[1] + right * h[2] + rise_right * h[3];
   }
 
   /// Wheels and forces when all have travelled s. Fills free_ with the penetration over a bridge at rest.
@@ -189,7 +192,9 @@ class Group {
         const double x = t.x[j] + s;
         on_[j] = influence_at(x, &piece_[j], channels, g_ + static_cast<long>(j) * t.influence.channels) ? 1 : 0;
         touching_[v] = static_cast<char>(touching_[v] | on_[j]);
-        free_[j] = offset_[j] + height_at(x);
+        Lane height;
+        track_at(x, height, track_slope_[j]);
+        free_[j] = offset_[j] + height;
       }
     }
     for (int j = 0; j < t.loads; ++j) {
@@ -409,6 +414,9 @@ class Group {
           sum += own.inverse[i * f + k] * lanes(kind.G)[j * f + k];
         }
         own.Y[i * w + j] = sum;
+        Lane along{};
+        for (int k = 0; k < f; ++k) along += own.inverse[i * f + k] * lanes(kind.G_along)[j * f + k];
+        own.Y_along[i * w + j] = along;
       }
     for (int i = 0; i < w; ++i)
       for (int j = 0; j < w; ++j) {
@@ -556,6 +564,12 @@ class Group {
     predict(known, f, rule, x_ + first, w_ + first, a_, first, x, w);
     for (int i = 0; i < f; ++i) a[i] = own.alone[i];
     multiply(-1.0, own.by_state, f, 2 * f, x, a);
+    if (t.heights.stations > 0)
+      for (int j = 0; j < kind.wheels; ++j) {
+        // The contact's force stands square on the track: it pushes along it by its slope, as it was last found.
+        const Lane push = track_slope_[vehicle.first_wheel + j] * F_[vehicle.first_wheel + j];
+        for (int i = 0; i < f; ++i) a[i] -= own.Y_along[i * kind.wheels + j] * push;
+      }
     for (int j = 0; j < kind.wheels; ++j) {
       Lane up{};
       for (int e = kind.G_row[j]; e < kind.G_row[j + 1]; ++e) {
@@ -563,6 +577,10 @@ class Group {
         up += lanes(kind.G)[j * f + k] * (x[k] + d_ * a[k]);
       }
       free_[vehicle.first_wheel + j] -= up;
+      if (t.heights.stations == 0) continue;
+      Lane along{};
+      for (int k = 0; k < f; ++k) along += lanes(kind.G_along)[j * f + k] * (x[k] + d_ * a[k]);
+      free_[vehicle.first_wheel + j] += track_slope_[vehicle.first_wheel + j] * along;
     }
   }
 
@@ -1029,7 +1047,7 @@ class Group {
   // without contact forces; at the end of the last step, and how it has grown; 1/k of the factors; residuals.
   Lane *offset_ = nullptr, *delta_ = nullptr, *F_ = nullptr, *k_ = nullptr, *free_ = nullptr, *end_ = nullptr;
   Lane *slope_ = nullptr, *yield_ = nullptr, *residual_ = nullptr, *pivot_ = nullptr;
-  Lane *F0_ = nullptr, *F1_ = nullptr;  // forces at the two steps before
+  Lane *F0_ = nullptr, *F1_ = nullptr, *track_slope_ = nullptr;  // forces at the two steps before
   long* D_begin_ = nullptr;
   Lane *D_ = nullptr, *reduced_ = nullptr;
   double *g_ = nullptr, *load_g_ = nullptr;

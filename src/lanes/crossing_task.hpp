@@ -22,6 +22,7 @@ struct TaskMethod {
 struct TaskKind {
   int freedom = 0, wheels = 0;
   const double *M = nullptr, *C = nullptr, *K = nullptr, *r0 = nullptr, *G = nullptr;  // lanes, matrices by rows
+  const double* G_along = nullptr;                  // the wheels move along the track by G_along x
   const int *G_row = nullptr, *G_column = nullptr;  // where G has entries
   const double* bend = nullptr;  // of every coordinate: root of what its square puts the mechanism out of balance by
 };

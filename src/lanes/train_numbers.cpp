@@ -12,6 +12,9 @@ namespace traverse::lanes {
 namespace {
 
 constexpr double same = 1e-9;  // of the largest entry: vehicles are alike, but for rounding
+constexpr double stations_a_wave = 40.0, most_stations = 2e7;
+constexpr double most_off = 2e-9;    // m: of a track between its stations; a wheel on steel feels a few N of that
+constexpr int checked_places = 200;  // along the track
 
 std::vector<double> by_rows(const Eigen::MatrixXd& A) {
   std::vector<double> numbers;
@@ -29,7 +32,7 @@ bool alike(const std::vector<double>& a, const std::vector<double>& b, double sc
 
 bool alike(const VehicleNumbers& a, const VehicleNumbers& b, double weight) {
   return a.freedom == b.freedom && a.wheels == b.wheels && alike(a.M, b.M, 0.0) && alike(a.C, b.C, 0.0) &&
-         alike(a.K, b.K, 0.0) && alike(a.G, b.G, 0.0) && alike(a.r0, b.r0, weight);
+         alike(a.K, b.K, 0.0) && alike(a.G, b.G, 0.0) && alike(a.G_along, b.G_along, 0.0) && alike(a.r0, b.r0, weight);
 }
 
 /// How far a mechanism is out of balance at x from its start, over its weight.
@@ -64,10 +67,14 @@ VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
   v.C = by_rows(of.C);
   v.K = by_rows(of.K);
   v.r0.assign(of.r0.begin(), of.r0.end());
-  Eigen::MatrixXd G(v.wheels, v.freedom);
-  for (int j = 0; j < v.wheels; ++j)
-    G.row(j) = of.B.row(3 * static_cast<Eigen::Index>(vehicle.wheels[static_cast<std::size_t>(j)].body) + 1);
-  v.G = by_rows(G);
+  const auto rows_of_wheels = [&](Eigen::Index coordinate) {
+    Eigen::MatrixXd G(v.wheels, v.freedom);
+    for (int j = 0; j < v.wheels; ++j)
+      G.row(j) = of.B.row(3 * static_cast<Eigen::Index>(vehicle.wheels[static_cast<std::size_t>(j)].body) + coordinate);
+    return by_rows(G);
+  };
+  v.G_along = rows_of_wheels(0);
+  v.G = rows_of_wheels(1);
   v.bend = bend_of(vehicle);
   return v;
 }
@@ -85,6 +92,26 @@ std::array<double, 2> rolled(const track::Profile& profile, double radius, doubl
     if (std::abs(step) <= 1e-14) break;
   }
   return {h.value + std::sqrt(radius * radius - ahead * ahead) - radius, h.slope};
+}
+
+/// By how much the cubic between the stations before and behind x may miss the wheel's height, m.
+double off_at(const track::Profile& profile, double radius, const TrackNumbers& track, double x) {
+  const double left = track.start + std::floor((x - track.start) / track.distance) * track.distance;
+  const auto a = rolled(profile, radius, left), b = rolled(profile, radius, left + track.distance);
+  const double middle = 0.5 * (a[0] + b[0]) + 0.125 * track.distance * (a[1] - b[1]);
+  return std::abs(rolled(profile, radius, left + 0.5 * track.distance)[0] - middle);
+}
+
+/// The largest of these at the profile's kinks and at some places between.
+double off_between_stations(const track::Profile& profile, double radius, const TrackNumbers& track, double to) {
+  double off = 0.0;
+  for (const double kink : profile.kinks())
+    for (const double beside : {-0.5, 0.0, 0.5})
+      if (kink > track.start && kink < to)
+        off = std::max(off, off_at(profile, radius, track, kink + beside * track.distance));
+  for (int i = 0; i < checked_places; ++i)
+    off = std::max(off, off_at(profile, radius, track, track.start + (to - track.start) * (i + 0.5) / checked_places));
+  return off;
 }
 
 }  // namespace
@@ -138,14 +165,18 @@ double defect(train::Fleet& fleet, const std::vector<double>& x) {
 }
 
 TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to) {
-  constexpr double stations_a_wave = 40.0, most_stations = 2e7;
   TrackNumbers track;
   if (profile.level()) return track;
   track.start = from;
   track.distance = std::min(profile.resolution(), profile.shortest_wave() / stations_a_wave);
+  while (off_between_stations(profile, radius, track, to) > most_off) {
+    track.distance *= 0.5;
+    if ((to - from) / track.distance > most_stations)
+      throw InputError("sweep_lanes: the track has corners that runs side by side cannot follow; allowed: 0");
+  }
   const double stations = std::ceil((to - from) / track.distance) + 1.0;
   if (!(stations < most_stations))
-    throw InputError("track: so long and so fine a track does not fit into memory beside others; sweep_lanes 1");
+    throw InputError("sweep_lanes: so long and so fine a track does not fit into memory beside others; allowed: 0");
   for (double i = 0.0; i < stations; ++i) {
     const auto [height, slope] = rolled(profile, radius, from + i * track.distance);
     track.values.push_back(height);

@@ -71,9 +71,8 @@ TEST(SideBySide, RoughTrack) {
                      {{"train_vehicles", "coach"},
                       {"scene_tail", "0.2"},
                       {"track_profile", "german_low"},
-                      {"track_seed", "3"},
-                      {"track_start", "-20"}},
-                     "76,84,4", "1e-3", "2.5e-4", 1e-3);
+                      {"track_seed", "3"}},
+                     "76,84,4", "8e-4", "2e-4", 1e-3);
 }
 
 /// One method of one solve a step, whose modes are exact here: of second order.
