@@ -55,7 +55,7 @@ class Group {
         distance_ = k + 1 < stretch.steps ? from + static_cast<double>(k + 1) * ds : stretch.to;
         look(true);
       }
-      known_ = 1;  // forces at probes may have a kink there
+      known_ = 1;  // moments may have a kink there
       if (!any(failed_ == fill(0.0))) break;
       from = stretch.to;
     }
@@ -249,7 +249,7 @@ class Group {
     for (int i = 0; i < 3 * t.probes.count; ++i) peak_[i] = peak_time_[i] = Lane{};
     distance_ = start_ = 0.0;
     ds_ = ds_before_ = 0.0;
-    known_ = seen_ = 0;
+    known_ = looks_ = seen_ = 0;
     // The wheels' heights over the bridge as it stands.
     place(0.0, t.influence.channels);
     for (int j = 0; j < t.wheels; ++j) offset_[j] = delta_[j] - free_[j] - surface(j);
@@ -916,6 +916,7 @@ class Group {
     time_[1] = time_[2];
     time_[2] = time;
     ++known_;
+    ++looks_;
     look_at_probes(counts);
     if (moved) look_at_wheels(counts);
     Lane sum{};
@@ -958,7 +959,7 @@ class Group {
       const Mask larger = counts & (value > peak_[i]);
       peak_[i] = larger ? value : peak_[i];
       peak_time_[i] = larger ? time_[2] : peak_time_[i];
-      if (known_ < 3) continue;
+      if ((i < 2 * n ? looks_ : known_) < 3) continue;
       const Lane middle = magnitude(row_of_[1][i]);
       const Mask turns = counts & (middle > near * peak_[i]) & (middle > value);
       if (any(turns)) look_between(i, turns);
@@ -1029,7 +1030,7 @@ class Group {
   KindWork* kinds_ = nullptr;
   Lane speed_{}, end_time_{}, h_{}, rate_{}, d_{}, failed_{}, least_{}, greatest_{};
   double ds_ = 0.0, ds_before_ = 0.0, distance_ = 0.0, start_ = 0.0, s_before_[2] = {};
-  long known_ = 0, seen_ = 0;
+  long known_ = 0, looks_ = 0, seen_ = 0;  // instants since the last kink of moments, since the start; of wheels
   Lane time_[3] = {};
   Lane moved_{}, yield_to_force_{};  // of one_by_one; what pushing the bridge by a force changes another one by
   Mask hard_{};  // lanes whose contacts are solved all together at this step length
