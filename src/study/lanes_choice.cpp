@@ -25,7 +25,7 @@ constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4, p
 constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
 constexpr int most_halvings = 8, most_shortenings = 6;
 constexpr double shorter = 0.7;  // a quarter of an error of fourth order
-constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
+constexpr int fewest_modes = 4, most_modes = 128;
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
 /// What the runs are computed with.
@@ -166,11 +166,14 @@ int mesh_for(const Scene& scene, int modes) {
 
 class Search {
  public:
-  Search(LaneTrials& trials, double accuracy) : trials_(trials), accuracy_(accuracy) {}
+  /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes and
+  /// mesh change is seen there as well.
+  Search(LaneTrials& trials, LaneTrials& mixed, double accuracy)
+      : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
   /// The cheapest model within the accuracy; empty: none.
   std::optional<LaneModel> run(double first_step) {
-    LaneModel model{numbers_of_modes.front(), mesh_for(trials_.scene(), numbers_of_modes.front()),
+    LaneModel model{fewest_modes, mesh_for(trials_.scene(), fewest_modes),
                     structure::find_method("esdirk4"), first_step};
     // Steps first, as modes are told apart by what the contacts do to them.
     if (!halve_step(model) || !add_modes(model) || !halve_step(model) || !refine_mesh(model)) return std::nullopt;
@@ -181,28 +184,32 @@ class Search {
   double error_of_steps(std::size_t q) const { return steps_[q]; }
 
  private:
-  Errors change(const LaneModel& from, const LaneModel& to) {
-    const std::vector<CrossingResult>& rough = trials_.run(from);
-    return difference(rough, trials_.run(to));
+  static Errors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to) {
+    const std::vector<CrossingResult>& rough = trials.run(from);
+    return difference(rough, trials.run(to));
   }
   bool halve_step(LaneModel& model) {
     for (int i = 0; i < most_halvings; ++i) {
       LaneModel finer = model;
       finer.step *= 0.5;
-      steps_ = change(model, finer);
+      steps_ = change(trials_, model, finer);
       if (greatest(steps_) <= part_of_steps * accuracy_) return true;
       model = finer;
     }
     return false;
   }
   bool add_modes(LaneModel& model) {
-    for (std::size_t i = 0; i + 2 < numbers_of_modes.size(); ++i) {
+    for (int modes = fewest_modes; 2 * modes <= most_modes; modes *= 2) {
       LaneModel more = model;
-      model.modes = numbers_of_modes[i];
-      more.modes = numbers_of_modes[i + 2];
-      model.elements = more.elements = mesh_for(trials_.scene(), more.modes);
-      modes_ = change(model, more);
-      if (greatest(modes_) <= part_of_modes * accuracy_) return true;
+      more.modes = 2 * modes;
+      more.elements = mesh_for(trials_.scene(), more.modes);
+      // Three quarters of so many, once half were too few.
+      for (const int number : {modes == fewest_modes ? modes : modes * 3 / 4, modes}) {
+        model.modes = number;
+        model.elements = more.elements;
+        modes_ = change(mixed_, model, more);
+        if (greatest(modes_) <= part_of_modes * accuracy_) return true;
+      }
     }
     return false;
   }
@@ -210,7 +217,7 @@ class Search {
     while (trials_.scene().mesh_open) {
       LaneModel finer = model;
       finer.elements *= 2;
-      mesh_ = change(model, finer);
+      mesh_ = change(mixed_, model, finer);
       if (greatest(mesh_) <= part_of_mesh * accuracy_) break;
       model = finer;
     }
@@ -228,7 +235,7 @@ class Search {
       for (const double factor : {2.0, 1.4, 1.0, 0.7, 0.5}) {
         const LaneModel tried = {model.modes, model.elements, structure::find_method(method), factor * model.step};
         if (solves(tried) >= solves(best)) continue;
-        const Errors own = change(tried, exact);
+        const Errors own = change(trials_, tried, exact);
         if (greatest(own) > part_of_steps * accuracy_) continue;
         steps_ = own;
         best = tried;
@@ -236,7 +243,7 @@ class Search {
     return best;
   }
 
-  LaneTrials& trials_;
+  LaneTrials &trials_, &mixed_;
   double accuracy_;
   Errors modes_{}, steps_{}, mesh_{};
 };
@@ -288,9 +295,11 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
   if (given.end_time) whole = *given.end_time * speeds.back();
   const double distance = beginning(fast, whole / speeds.back()) * speeds.back();
   try {
-    LaneTrials trials(shortened(fast, distance / speeds.back()), some_speeds(speeds, {0.0, 1.0}, trial_lanes),
-                      distance);
-    Search search(trials, given.accuracy);
+    const Scene part = shortened(fast, distance / speeds.back());
+    LaneTrials trials(part, some_speeds(speeds, {0.0, 1.0}, trial_lanes), distance);
+    const std::size_t n = speeds.size() - 1;
+    LaneTrials mixed(part, {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}}, distance);
+    Search search(trials, mixed, given.accuracy);
     const double first = first_step_factor * first_steps(fast, 0.0, whole / speeds.back()).first;
     std::optional<LaneModel> model = search.run(first);
     if (!model) return refuse("the peaks do not settle to the accuracy with up to 128 modes");
