@@ -79,19 +79,28 @@ VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
   return v;
 }
 
-/// The height of the lowest point of a wheel at x that rolls on the profile, and its slope.
-std::array<double, 2> rolled(const track::Profile& profile, double radius, double x) {
-  double ahead = 0.0;
-  track::Height h = profile.at(x);
-  for (int i = 0; i < 30; ++i) {
-    const double up = std::sqrt(radius * radius - ahead * ahead);
-    const double step =
-        (h.slope - ahead / up) / (radius * radius / (up * up * up) - h.curvature);
-    ahead = std::clamp(ahead + step, -0.5 * radius, 0.5 * radius);
-    h = profile.at(x + ahead);
-    if (std::abs(step) <= 1e-14) break;
+/// The height of the lowest point of a wheel at x that rolls on the profile, whose height is h there, and its slope. It
+/// touches `ahead` of its centre, where the profile's slope is that of the circle.
+std::array<double, 2> rolled(const track::Profile& profile, double radius, double x, track::Height h) {
+  double ahead = radius * h.slope / (1.0 - radius * h.curvature);
+  double height = h.value + ahead * (h.slope + 0.5 * ahead * h.curvature), slope = h.slope + ahead * h.curvature;
+  if (!profile.is_rough()) {
+    // Corners and short bumps: the profile itself, until the place is exact.
+    for (int i = 0; i < 30; ++i) {
+      h = profile.at(x + ahead);
+      const double up = std::sqrt(radius * radius - ahead * ahead);
+      const double step = (h.slope - ahead / up) / (radius * radius / (up * up * up) - h.curvature);
+      if (std::abs(step) <= 1e-14) break;
+      ahead = std::clamp(ahead + step, -0.5 * radius, 0.5 * radius);
+    }
+    height = h.value;
+    slope = h.slope;
   }
-  return {h.value + std::sqrt(radius * radius - ahead * ahead) - radius, h.slope};
+  return {height + std::sqrt(radius * radius - ahead * ahead) - radius, slope};
+}
+
+std::array<double, 2> rolled(const track::Profile& profile, double radius, double x) {
+  return rolled(profile, radius, x, profile.at(x));
 }
 
 /// By how much the cubic between the stations before and behind x may miss the wheel's height, m.
@@ -177,8 +186,10 @@ TrackNumbers track_numbers(const track::Profile& profile, double radius, double 
   const double stations = std::ceil((to - from) / track.distance) + 1.0;
   if (!(stations < most_stations))
     throw InputError("sweep_lanes: so long and so fine a track does not fit into memory beside others; allowed: 0");
-  for (double i = 0.0; i < stations; ++i) {
-    const auto [height, slope] = rolled(profile, radius, from + i * track.distance);
+  const std::vector<track::Height> heights = profile.along(from, track.distance, static_cast<std::size_t>(stations));
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double x = from + static_cast<double>(i) * track.distance;
+    const auto [height, slope] = rolled(profile, radius, x, heights[i]);
     track.values.push_back(height);
     track.values.push_back(slope * track.distance);
   }

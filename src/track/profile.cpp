@@ -205,4 +205,17 @@ Height Profile::at(double x) const {
   return {};
 }
 
+std::vector<Height> Profile::along(double x, double distance, std::size_t count) const {
+  std::vector<Height> heights;
+  if (kind_ == Kind::waves) heights = waves_.sums(x - start_, distance, count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double place = x + static_cast<double>(i) * distance;
+    if (kind_ != Kind::waves)
+      heights.push_back(at(place));
+    else
+      heights[i] = place > start_ ? faded(heights[i], place - start_, length_) : Height{};
+  }
+  return heights;
+}
+
 }  // namespace traverse::track

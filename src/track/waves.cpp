@@ -15,6 +15,7 @@ namespace {
 constexpr double table_stations_a_wave = 96.0;
 constexpr double farthest = 1e15;   // stations, beyond which there is nothing between two of them
 constexpr std::size_t kept = 4096;  // stations, a power of two
+constexpr std::size_t turned_on = 256;  // places that a wave is turned on to before it is looked at anew
 
 using Lanes = Eigen::Array<double, Waves::lanes, 1>;
 
@@ -65,6 +66,33 @@ Height Waves::sum(double s) const {
     curvature -= k * k * a * cosine;
   }
   return {value.sum(), slope.sum(), curvature.sum()};
+}
+
+std::vector<Height> Waves::sums(double s, double distance, std::size_t count) const {
+  std::vector<Height> heights(count);
+  std::vector<std::array<Lanes, 3>> block(turned_on);
+  Lanes sine, cosine, turn_sine, turn_cosine;
+  for (std::size_t first = 0; first < count; first += turned_on) {
+    const std::size_t places = std::min(turned_on, count - first);
+    block.assign(turned_on, {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()});
+    for (std::size_t i = 0; i < amplitude_.size(); i += lanes) {
+      const Eigen::Map<const Lanes> a(&amplitude_[i]), f(&frequency_[i]), p(&phase_[i]);
+      const Lanes k = two_pi * f, ka = k * a, kka = k * ka, turn = f * distance;
+      const Lanes cycles = f * (s + static_cast<double>(first) * distance) + p;
+      sine_cosine(turn - turn.rint(), turn_sine, turn_cosine);
+      sine_cosine(cycles - cycles.rint(), sine, cosine);
+      for (std::size_t n = 0; n < places; ++n) {
+        block[n][0] += a * cosine;
+        block[n][1] -= ka * sine;
+        block[n][2] -= kka * cosine;
+        const Lanes next = cosine * turn_cosine - sine * turn_sine;
+        sine = sine * turn_cosine + cosine * turn_sine;
+        cosine = next;
+      }
+    }
+    for (std::size_t n = 0; n < places; ++n) heights[first + n] = {block[n][0].sum(), block[n][1].sum(), block[n][2].sum()};
+  }
+  return heights;
 }
 
 const Height& Waves::station(std::int64_t number) const {

@@ -43,6 +43,19 @@ TEST(Waves, TableAgainstTheSum) {
   EXPECT_LT(curvature, 1e-7 * height * k * k);
 }
 
+TEST(Waves, PlacesInARowAgainstTheSum) {
+  const Waves waves = some_waves();
+  const double height = 1e-4 * shortest, k = two_pi / shortest;
+  const std::vector<Height> row = waves.sums(-3.0, 0.01234, 1000);
+  ASSERT_EQ(row.size(), 1000U);
+  for (int i = 0; i < 1000; ++i) {
+    const Height exact = waves.sum(-3.0 + 0.01234 * i), &is = row[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(is.value, exact.value, 1e-11 * height) << i;
+    EXPECT_NEAR(is.slope, exact.slope, 1e-11 * height * k) << i;
+    EXPECT_NEAR(is.curvature, exact.curvature, 1e-11 * height * k * k) << i;
+  }
+}
+
 // What was asked before, however far away, changes nothing.
 TEST(Waves, DoNotDependOnWhatWasAsked) {
   const Waves one = some_waves(), other = some_waves();

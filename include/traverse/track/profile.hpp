@@ -31,6 +31,8 @@ class Profile {
   bool level() const { return kind_ == Kind::level; }
   bool is_rough() const { return kind_ == Kind::waves; }
   Height at(double x) const;
+  /// The same at `count` places from x on, `distance` apart: of roughness in much less time.
+  std::vector<Height> along(double x, double distance, std::size_t count) const;
   /// Stations where the slope or curvature jumps: integration steps end where wheels pass them.
   const std::vector<double>& kinks() const { return kinks_; }
   /// Upper bound of the curvature of valleys, h''/(1 + h'^2)^1.5 (1/m; for roughness six standard deviations of h''): a
