@@ -4,10 +4,10 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "lanes/crossing_task.hpp"
+#include "lanes/processor.hpp"
 #include "methods/one_step_methods.hpp"
 #include "structure/modal_bridge.hpp"
 
@@ -72,10 +72,6 @@ struct CrossingResult {
   double least_force = 0.0, greatest_force = 0.0;              // N, of all wheels
   std::vector<double> excursion;                               // of every coordinate, the largest magnitude
 };
-
-/// The most runs that go side by side here, and the names of the processor's instructions they use.
-inline constexpr std::size_t widest = 8;
-std::string instructions();
 
 /// At most `widest` runs.
 std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const CrossingRun> runs);

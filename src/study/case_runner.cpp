@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "lanes/processor.hpp"
+#include "lanes/speed_class.hpp"
 #include "run/signals.hpp"
 #include "run/watch.hpp"
 
@@ -46,9 +48,11 @@ void CaseRunner::set_up_lanes() {
 
 std::vector<std::vector<std::size_t>> CaseRunner::groups() const {
   std::vector<std::vector<std::size_t>> groups;
+  std::size_t most = lanes_ ? scene_.sweep->lanes : 1;
+  if (scene_.exact_in_time()) most = std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
   for (std::size_t i = 0; i < speeds_.size(); ++i) {
-    const bool joins = lanes_ && !groups.empty() && groups.back().size() < scene_.sweep->lanes &&
-                       SideBySide::step_class(speeds_[groups.back().front()]) == SideBySide::step_class(speeds_[i]);
+    const bool joins = !groups.empty() && groups.back().size() < most &&
+                       lanes::speed_class(speeds_[groups.back().front()]) == lanes::speed_class(speeds_[i]);
     if (!joins) groups.emplace_back();
     groups.back().push_back(i);
   }
@@ -58,14 +62,15 @@ std::vector<std::vector<std::size_t>> CaseRunner::groups() const {
 std::vector<CaseResult> CaseRunner::run_group(std::size_t train, const std::vector<std::size_t>& speeds,
                                               const std::function<void(double)>& reached) {
   std::vector<CaseResult> results;
-  if (!lanes_) {
-    for (const std::size_t i : speeds) results.push_back(run(train, speeds_[i], reached));
-    return results;
-  }
   std::vector<double> own, ends;
   for (const std::size_t i : speeds) {
     own.push_back(speeds_[i]);
     ends.push_back(duration(train, speeds_[i]));
+  }
+  if (scene_.exact_in_time()) return run_by_modes(train, own);
+  if (!lanes_) {
+    for (const double speed : own) results.push_back(run(train, speed, reached));
+    return results;
   }
   for (const lanes::CrossingResult& crossing : lanes_->run(own, ends)) {
     const double speed = own[results.size()];
@@ -125,7 +130,7 @@ double CaseRunner::cost_of_all() const {
 }
 
 CaseResult CaseRunner::run(std::size_t train, double speed, const std::function<void(double)>& reached) {
-  return scene_.exact_in_time() ? run_by_modes(train, speed) : run_by_elements(train, speed, reached);
+  return scene_.exact_in_time() ? run_by_modes(train, {speed}).front() : run_by_elements(train, speed, reached);
 }
 
 CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached) {
@@ -186,19 +191,23 @@ CaseResult CaseRunner::run_with_mechanisms(std::size_t train, double speed,
   return result;
 }
 
-CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
-  const structure::ModalBridge& bridge = *shared_.modal;
-  auto place = histories_.find(train);
-  if (place == histories_.end()) {
-    place = histories_.emplace(train, integrate::ForceHistory(bridge.influence(), scene_of(train, speed).load)).first;
-    static_deflection_[train] = integrate::static_peaks(bridge, place->second);
+std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, const std::vector<double>& speeds) {
+  auto place = passages_.find(train);
+  if (place == passages_.end()) {
+    place = passages_.try_emplace(train, *shared_.modal, scene_of(train, speeds.front()).load,
+                                  scene_.start == Start::equilibrium).first;
+    static_deflection_[train] = place->second.static_peaks();
   }
-  CaseResult result;
-  result.peaks = integrate::modal_peaks(bridge, place->second, speed, scene_.start == Start::equilibrium,
-                                        duration(train, speed), [] { return caught_signal() == 0; });
-  result.static_deflection = static_deflection_[train];
-  result.ended = caught_signal() == 0;
-  return result;
+  std::vector<double> ends;
+  for (const double speed : speeds) ends.push_back(duration(train, speed));
+  std::vector<CaseResult> results(speeds.size());
+  const auto peaks = place->second.peaks(speeds, ends, [] { return caught_signal() == 0; });
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    results[i].peaks = peaks[i];
+    results[i].static_deflection = static_deflection_[train];
+    results[i].ended = caught_signal() == 0;
+  }
+  return results;
 }
 
 }  // namespace traverse::app

@@ -24,9 +24,7 @@ class SideBySide {
 
   /// Why these vehicles on this bridge cannot; empty: they can.
   const std::string& obstacle() const { return obstacle_; }
-  /// Speeds of one class take the same steps: a run's steps are its own, whatever runs are beside it.
-  static int step_class(double speed);
-  /// At most lanes::widest speeds of a class, and when each run ends.
+  /// At most lanes::widest speeds of a class (lanes/speed_class.hpp), and when each run ends.
   std::vector<lanes::CrossingResult> run(std::span<const double> speeds, std::span<const double> ends);
   /// How far the mechanisms may have been out of balance in a run: lanes::defect.
   double defect(const lanes::CrossingResult& result) { return lanes::defect(fleet_, result.excursion); }
