@@ -16,8 +16,6 @@ namespace traverse::lanes {
 /// One train of forces over one bridge.
 class ForcePassages {
  public:
-  static constexpr double instants_a_period = 20.0;
-
   /// The bridge must outlive it. equilibrium: runs start in static equilibrium under the forces that stand on the
   /// bridge then, otherwise undeflected.
   ForcePassages(const structure::ModalBridge& bridge, const train::MovingLoad& load, bool equilibrium);
@@ -28,8 +26,8 @@ class ForcePassages {
   /// false the search stops, and there are no peaks.
   std::vector<std::vector<integrate::ProbePeaks>> peaks(std::span<const double> speeds,
                                                         std::span<const double> end_times,
-                                                        const std::function<bool()>& going,
-                                                        double instants = instants_a_period) const;
+                                                        double instants,
+                                                        const std::function<bool()>& going) const;
 
   /// The largest static deflection of each probe while the forces pass, m.
   std::vector<double> static_peaks() const;

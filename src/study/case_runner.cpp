@@ -201,7 +201,7 @@ std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, const std::v
   std::vector<double> ends;
   for (const double speed : speeds) ends.push_back(duration(train, speed));
   std::vector<CaseResult> results(speeds.size());
-  const auto peaks = place->second.peaks(speeds, ends, [] { return caught_signal() == 0; });
+  const auto peaks = place->second.peaks(speeds, ends, scene_.sweep->instants, [] { return caught_signal() == 0; });
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     results[i].peaks = peaks[i];
     results[i].static_deflection = static_deflection_[train];
