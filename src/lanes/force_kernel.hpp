@@ -37,6 +37,7 @@ class ForceGroup : Lanes<W> {
   using typename Own::Lane;
   using typename Own::Mask;
   using Own::any;
+  using Own::exceeds;
   using Own::fill;
   using Own::lanes;
   using Own::magnitude;
@@ -68,11 +69,15 @@ class ForceGroup : Lanes<W> {
     regular_ = take_from<Advance>(work, used_, W, m);
     series_ = take_from<Series>(work, used_, W, m);
     for (double*& power : g_) power = numbers(m);
-    static_ = numbers(2L * n);
-    for (Lane*& row : row_) row = in_lanes(3L * n);
-    Lane** const of_responses[] = {&peak_, &peak_place_, &limit_};
+    for (Instant& own : seen_) {
+      Lane** const of_modes_then[] = {&own.q, &own.r, &own.a};
+      for (Lane** then : of_modes_then) *then = in_lanes(m);
+      own.still = numbers(2L * n);
+      own.flagged = take_from<int>(work, used_, W, 3L * n);
+      own.value = in_lanes(3L * n);
+    }
+    Lane** const of_responses[] = {&peak_, &peak_place_, &limit_, &kink_value_};
     for (Lane** own : of_responses) *own = in_lanes(3L * n);
-    for (int*& list : flagged_) list = take_from<int>(work, used_, W, 3L * n);
     kink_look_ = take_from<long>(work, used_, W, 3L * n);
     kink_place_ = numbers(3L * n);
   }
@@ -231,6 +236,10 @@ class ForceGroup : Lanes<W> {
 
   void enter_next() {
     ++interval_;
+    if (interval_ + 1 < t.intervals) {
+      const double* next = t.coefficients + 4 * t.channels * (interval_ + 1);
+      for (int i = 0; i < 4 * t.channels; i += 8) __builtin_prefetch(next + i);
+    }
     place(s_);
     accelerate();
   }
@@ -255,15 +264,15 @@ class ForceGroup : Lanes<W> {
 
   /// A response's curve ends here.
   void see_before_kink(int i) {
-    const Lane value = response(i, fill(static_now(i)));
+    const Lane value = response(i, fill(static_now(i)), q_, r_, a_);
     note(i, runs_, magnitude(value), fill(s_));
-    if (kink_look_[i] != looked_) see_between_last(i, runs_, fill(s_), value);
+    see_between_last(i, runs_, fill(s_), value);
   }
 
   /// Another one begins here: what was seen at the last instant does not belong to it.
   void start_after_kink(int i) {
-    row_[2][i] = response(i, fill(static_now(i)));
-    note(i, runs_, magnitude(row_[2][i]), fill(s_));
+    kink_value_[i] = response(i, fill(static_now(i)), q_, r_, a_);
+    note(i, runs_, magnitude(kink_value_[i]), fill(s_));
     kink_look_[i] = looked_;
     kink_place_[i] = s_;
   }
@@ -293,9 +302,9 @@ class ForceGroup : Lanes<W> {
     for (int i = 0; i < 3 * n; ++i) {
       Lane still{};
       if (i < n || i >= 2 * n) still = static_in_lanes(i, at - from + since);
-      const Lane value = response(i, still);
+      const Lane value = response(i, still, q_, r_, a_);
       note(i, ending, magnitude(value), at);
-      if (kink_look_[i] != looked_) see_between_last(i, ending, at, value);
+      see_between_last(i, ending, at, value);
     }
     restore_modes();
     runs_ &= ~ending;
@@ -348,84 +357,113 @@ class ForceGroup : Lanes<W> {
     return t.weight[i < n ? i : i - n] + (c[0] + d * (c[k] + d * (c[2 * k] + d * c[3 * k])));
   }
 
-  /// A response with the modes as they are.
-  Lane response(int i, Lane value) const {
-    const int p = i % n;
-    for (int k = 0; k < m; ++k) {
-      const int at = k * n + p;
-      if (i < n) value += t.deflection[at] * q_[k];
-      if (i >= n && i < 2 * n) value += t.deflection[at] * a_[k];
-      if (i >= 2 * n)
-        value += t.moment[at] * q_[k] + t.moment_by_rate[at] * r_[k] + t.moment_by_acceleration[at] * a_[k];
+  /// A response with these coordinates, rates and accelerations of the modes.
+  Lane response(int i, Lane value, const Lane* q, const Lane* r, const Lane* a) const {
+    if (i < n) {
+      for (int k = 0; k < m; ++k) value += t.deflection[k * n + i] * q[k];
+    } else if (i < 2 * n) {
+      for (int k = 0; k < m; ++k) value += t.deflection[k * n + i - n] * a[k];
+    } else {
+      for (int k = 0; k < m; ++k) {
+        const int at = k * n + i - 2 * n;
+        value += t.moment[at] * q[k];
+        value += t.moment_by_rate[at] * r[k];
+        value += t.moment_by_acceleration[at] * a[k];
+      }
     }
     return value;
   }
 
-  /// All responses at this distance.
-  void look() {
-    Lane* const oldest = row_[0];
-    row_[0] = row_[1];
-    row_[1] = row_[2];
-    row_[2] = oldest;
-    place_[0] = place_[1];
-    place_[1] = place_[2];
-    place_[2] = s_;
-    int* const list = flagged_[0];
-    flagged_[0] = flagged_[1];
-    flagged_[1] = list;
-    count_[0] = count_[1];
-    count_[1] = 0;
-    ++looked_;
-    see_statics();
-    int p = 0;
-    for (; p + 4 <= n; p += 4) see<4>(p);
-    for (; p < n; ++p) see<1>(p);
-    for (int k = 0; k < count_[1]; ++k) {
-      const int i = flagged_[1][k];
-      note(i, runs_, magnitude(row_[2][i]), fill(s_));
-    }
-    if (looked_ - 2 < known_from_) return;
-    for (int k = 0; k < count_[0]; ++k) see_between(flagged_[0][k]);
+  /// What is kept of an instant: the modes, the static corrections, and the responses that may be the largest.
+  struct Instant {
+    double place = 0.0;  // m travelled
+    Lane *q = nullptr, *r = nullptr, *a = nullptr;
+    double* still = nullptr;
+    int* flagged = nullptr;
+    Lane* value = nullptr;  // of these
+    int count = 0;
+  };
+  Lane response(int i, const Instant& then) const {
+    const double still = i < n ? then.still[i] : i < 2 * n ? 0.0 : then.still[i - n];
+    return response(i, fill(still), then.q, then.r, then.a);
   }
 
-  void see_statics() {
+  /// All responses at this distance.
+  void look() {
+    const Instant oldest = seen_[0];
+    seen_[0] = seen_[1];
+    seen_[1] = seen_[2];
+    seen_[2] = oldest;
+    ++looked_;
+    Instant& now = seen_[2];
+    now.place = s_;
+    for (int i = 0; i < m; ++i) {
+      now.q[i] = q_[i];
+      now.r[i] = r_[i];
+      now.a[i] = a_[i];
+    }
+    see_statics(now.still);
+    now.count = 0;
+    int p = 0;
+    for (; p + 4 <= n; p += 4) see<4>(p, now);
+    for (; p < n; ++p) see<1>(p, now);
+    for (int k = 0; k < now.count; ++k) note(now.flagged[k], runs_, magnitude(now.value[k]), fill(s_));
+    if (looked_ - 2 < known_from_) return;
+    for (int k = 0; k < seen_[1].count; ++k) see_between(seen_[1].flagged[k], seen_[1].value[k]);
+  }
+
+  void see_statics(double* still) const {
     const double d = s_ - t.start[interval_];
     const long k = t.channels;
     const double* c = t.coefficients + 4 * k * interval_ + m;
     for (int i = 0; i < 2 * n; ++i)
-      static_[i] = t.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
+      still[i] = t.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
   }
 
-  /// The responses of N neighbouring probes.
+  /// Flags those responses of N neighbouring probes that may be the largest.
   template <int N>
-  void see(int p) {
+  void see(int p, Instant& now) const {
     Lane v[N], a[N], M[N];
+#pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
-      v[k] = fill(static_[p + k]);
+      v[k] = fill(now.still[p + k]);
       a[k] = Lane{};
-      M[k] = fill(static_[n + p + k]);
+      M[k] = fill(now.still[n + p + k]);
     }
     for (int i = 0; i < m; ++i) {
       const int at = i * n + p;
-      const Lane q = q_[i], rate = r_[i], acceleration = a_[i];
+      const double *form = t.deflection + at, *bend = t.moment + at;
+      const double *by_rate = t.moment_by_rate + at, *by_acceleration = t.moment_by_acceleration + at;
+      const Lane q = now.q[i], rate = now.r[i], acceleration = now.a[i];
+#pragma GCC unroll 4
       for (int k = 0; k < N; ++k) {
-        v[k] += t.deflection[at + k] * q;
-        a[k] += t.deflection[at + k] * acceleration;
-        M[k] += t.moment[at + k] * q + t.moment_by_rate[at + k] * rate + t.moment_by_acceleration[at + k] * acceleration;
+        v[k] += form[k] * q;
+        a[k] += form[k] * acceleration;
+        M[k] += bend[k] * q;
+        M[k] += by_rate[k] * rate;
+        M[k] += by_acceleration[k] * acceleration;
       }
     }
+    const Lane *of_v = limit_ + p, *of_a = of_v + n, *of_M = of_a + n;
+    int larger = 0;
+#pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
-      put(p + k, v[k]);
-      put(n + p + k, a[k]);
-      put(2 * n + p + k, M[k]);
+      larger |= exceeds(magnitude(v[k]), of_v[k]);
+      larger |= exceeds(magnitude(a[k]), of_a[k]);
+      larger |= exceeds(magnitude(M[k]), of_M[k]);
     }
-  }
-
-  /// Flags a response that may be the largest.
-  void put(int i, Lane value) {
-    row_[2][i] = value;
-    flagged_[1][count_[1]] = i;
-    count_[1] += any(magnitude(value) > limit_[i]) ? 1 : 0;
+    if (larger == 0) return;
+    const auto flag = [&](int i, Lane value) {
+      now.flagged[now.count] = i;
+      now.value[now.count] = value;
+      now.count += exceeds(magnitude(value), limit_[i]) != 0 ? 1 : 0;
+    };
+#pragma GCC unroll 4
+    for (int k = 0; k < N; ++k) {
+      flag(p + k, v[k]);
+      flag(n + p + k, a[k]);
+      flag(2 * n + p + k, M[k]);
+    }
   }
 
   void note(int i, Mask where, Lane value, Lane at) {
@@ -436,24 +474,29 @@ class ForceGroup : Lanes<W> {
     limit_[i] = may_be_largest * peak_[i];
   }
 
-  /// The last instant but one may be beside a peak.
-  void see_between(int i) {
+  /// The last instant but one, where a response had this value, may be beside a peak.
+  void see_between(int i, Lane middle) {
     if (kink_look_[i] == looked_ - 1) return;
-    const double left = kink_look_[i] == looked_ - 2 ? kink_place_[i] : place_[0];
-    note_vertex(i, runs_, left, row_[0][i], place_[1], row_[1][i], fill(place_[2]), row_[2][i]);
+    const Lane after = response(i, seen_[2]);
+    if (!any(runs_ & (magnitude(middle) > magnitude(after)))) return;
+    const bool kink = kink_look_[i] == looked_ - 2;
+    note_vertex(i, runs_, kink ? kink_place_[i] : seen_[0].place, kink ? kink_value_[i] : response(i, seen_[0]),
+                seen_[1].place, middle, fill(seen_[2].place), after);
   }
 
   /// The last instant may be, before a value further on.
-  void see_between_last(int i, Mask where, Lane at, Lane value) {
-    if (looked_ - 1 < known_from_) return;
-    const double left = kink_look_[i] == looked_ - 1 ? kink_place_[i] : place_[1];
-    note_vertex(i, where, left, row_[1][i], place_[2], row_[2][i], at, value);
+  void see_between_last(int i, Mask where, Lane at, Lane after) {
+    if (kink_look_[i] == looked_ || looked_ - 1 < known_from_) return;
+    const Lane middle = response(i, seen_[2]);
+    if (!any(where & (magnitude(middle) > limit_[i]) & (magnitude(middle) > magnitude(after)))) return;
+    const bool kink = kink_look_[i] == looked_ - 1;
+    note_vertex(i, where, kink ? kink_place_[i] : seen_[1].place, kink ? kink_value_[i] : response(i, seen_[1]),
+                seen_[2].place, middle, at, after);
   }
 
   /// The vertex of the parabola through three points, of whose magnitudes the middle one is the largest.
   void note_vertex(int i, Mask where, double s0, Lane y0, double s1, Lane y1, Lane s2, Lane y2) {
     where &= magnitude(y1) > magnitude(y2);
-    if (!any(where)) return;
     const Lane sign = y1 < Lane{} ? fill(-1.0) : fill(1.0);
     y0 *= sign;
     y1 *= sign;
@@ -481,16 +524,12 @@ class ForceGroup : Lanes<W> {
   Advance* regular_ = nullptr;
   Series* series_ = nullptr;
   double* g_[4] = {};         // of the modes, by powers of the distance from here
-  double* static_ = nullptr;  // deflections and moments
-  // Responses at the last three instants, where that was, those that may be the largest at the last two.
-  Lane* row_[3] = {};
-  double place_[3] = {};
-  int* flagged_[2] = {};
-  int count_[2] = {};
+  Instant seen_[3];           // the last ones
   long looked_ = 0, known_from_ = 1;  // instants so far; the first without a kink of all responses since
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
   long* kink_look_ = nullptr;     // of each response: the instant before its last kink
   double* kink_place_ = nullptr;  // m: where that was
+  Lane* kink_value_ = nullptr;    // just after it
 };
 
 }  // namespace

@@ -7,6 +7,7 @@ namespace {
 
 // NOLINTNEXTLINE: vector types have no other spelling
 typedef double FourNumbers __attribute__((vector_size(32), may_alias));
+typedef double EightNumbers __attribute__((vector_size(64), may_alias));
 typedef long long EightWords __attribute__((vector_size(64), may_alias));  // NOLINT
 
 template <int W>
@@ -25,6 +26,17 @@ struct Lanes {
     double* numbers = reinterpret_cast<double*>(&x);
     for (int l = 0; l < W; ++l) numbers[l] = __builtin_sqrt(numbers[l]);
     return x;
+  }
+  /// Bits, one at least where a > b in some lane, and none where it is in no lane.
+  static int exceeds(Lane a, Lane b) {
+#ifdef __AVX512DQ__
+    constexpr int greater_than = 14, all = 0xff, no_rounding = 4;
+    if constexpr (W == 8)
+      return __builtin_ia32_cmppd512_mask(*reinterpret_cast<const EightNumbers*>(&a),
+                                          *reinterpret_cast<const EightNumbers*>(&b), greater_than,
+                                          static_cast<char>(all), no_rounding);
+#endif
+    return any(a > b) ? 1 : 0;
   }
   /// All bits of a lane of the mask are set, or none: one of them tells.
   static bool any(Mask mask) {
