@@ -69,7 +69,9 @@ class ForceGroup : Lanes<W> {
     regular_ = take_from<Advance>(work, used_, W, m);
     series_ = take_from<Series>(work, used_, W, m);
     for (double*& power : g_) power = numbers(m);
-    for (Instant& own : seen_) {
+    for (int k = 0; k < 3; ++k) {
+      Instant& own = instants_[k];
+      seen_[k] = &own;
       Lane** const of_modes_then[] = {&own.q, &own.r, &own.a};
       for (Lane** then : of_modes_then) *then = in_lanes(m);
       own.still = numbers(2L * n);
@@ -390,12 +392,12 @@ class ForceGroup : Lanes<W> {
 
   /// All responses at this distance.
   void look() {
-    const Instant oldest = seen_[0];
+    Instant* const oldest = seen_[0];
     seen_[0] = seen_[1];
     seen_[1] = seen_[2];
     seen_[2] = oldest;
     ++looked_;
-    Instant& now = seen_[2];
+    Instant& now = *oldest;
     now.place = s_;
     for (int i = 0; i < m; ++i) {
       now.q[i] = q_[i];
@@ -409,7 +411,8 @@ class ForceGroup : Lanes<W> {
     for (; p < n; ++p) see<1>(p, now);
     for (int k = 0; k < now.count; ++k) note(now.flagged[k], runs_, magnitude(now.value[k]), fill(s_));
     if (looked_ - 2 < known_from_) return;
-    for (int k = 0; k < seen_[1].count; ++k) see_between(seen_[1].flagged[k], seen_[1].value[k]);
+    const Instant& last = *seen_[1];
+    for (int k = 0; k < last.count; ++k) see_between(last.flagged[k], last.value[k]);
   }
 
   void see_statics(double* still) const {
@@ -468,7 +471,6 @@ class ForceGroup : Lanes<W> {
 
   void note(int i, Mask where, Lane value, Lane at) {
     const Mask larger = where & (value > peak_[i]);
-    if (!any(larger)) return;
     peak_[i] = larger ? value : peak_[i];
     peak_place_[i] = larger ? at : peak_place_[i];
     limit_[i] = may_be_largest * peak_[i];
@@ -477,21 +479,21 @@ class ForceGroup : Lanes<W> {
   /// The last instant but one, where a response had this value, may be beside a peak.
   void see_between(int i, Lane middle) {
     if (kink_look_[i] == looked_ - 1) return;
-    const Lane after = response(i, seen_[2]);
+    const Lane after = response(i, *seen_[2]);
     if (!any(runs_ & (magnitude(middle) > magnitude(after)))) return;
     const bool kink = kink_look_[i] == looked_ - 2;
-    note_vertex(i, runs_, kink ? kink_place_[i] : seen_[0].place, kink ? kink_value_[i] : response(i, seen_[0]),
-                seen_[1].place, middle, fill(seen_[2].place), after);
+    note_vertex(i, runs_, kink ? kink_place_[i] : seen_[0]->place, kink ? kink_value_[i] : response(i, *seen_[0]),
+                seen_[1]->place, middle, fill(seen_[2]->place), after);
   }
 
   /// The last instant may be, before a value further on.
   void see_between_last(int i, Mask where, Lane at, Lane after) {
     if (kink_look_[i] == looked_ || looked_ - 1 < known_from_) return;
-    const Lane middle = response(i, seen_[2]);
+    const Lane middle = response(i, *seen_[2]);
     if (!any(where & (magnitude(middle) > limit_[i]) & (magnitude(middle) > magnitude(after)))) return;
     const bool kink = kink_look_[i] == looked_ - 1;
-    note_vertex(i, where, kink ? kink_place_[i] : seen_[1].place, kink ? kink_value_[i] : response(i, seen_[1]),
-                seen_[2].place, middle, at, after);
+    note_vertex(i, where, kink ? kink_place_[i] : seen_[1]->place, kink ? kink_value_[i] : response(i, *seen_[1]),
+                seen_[2]->place, middle, at, after);
   }
 
   /// The vertex of the parabola through three points, of whose magnitudes the middle one is the largest.
@@ -524,7 +526,7 @@ class ForceGroup : Lanes<W> {
   Advance* regular_ = nullptr;
   Series* series_ = nullptr;
   double* g_[4] = {};         // of the modes, by powers of the distance from here
-  Instant seen_[3];           // the last ones
+  Instant instants_[3], *seen_[3] = {};  // the last ones, in turn
   long looked_ = 0, known_from_ = 1;  // instants so far; the first without a kink of all responses since
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
   long* kink_look_ = nullptr;     // of each response: the instant before its last kink
