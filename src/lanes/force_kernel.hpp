@@ -17,13 +17,15 @@
 // of the influence lines, only those responses are looked at that have a kink there.
 #pragma once
 
+#include <type_traits>
+
 #include "lanes/force_task.hpp"
 #include "lanes/lane.hpp"
 
 namespace traverse::lanes {
 namespace {
 
-constexpr double may_be_largest = 0.95;     // of the largest so far: no vertex of a parabola of less is larger
+constexpr double near_largest = 0.95;       // of the largest so far: no vertex of a parabola of less is larger
 constexpr double most_phase = 2.0;          // of a part of an instant: series are short up to there
 constexpr int most_terms = 32;              // of a series
 constexpr double last_term = 1e-19;         // of a series, over the first
@@ -407,7 +409,8 @@ class ForceGroup : Lanes<W> {
     see_statics(now.still);
     now.count = 0;
     int p = 0;
-    for (; p + 4 <= n; p += 4) see<4>(p, now);
+    constexpr int together = W == 1 ? 8 : 4;
+    for (; p + together <= n; p += together) see<together>(p, now);
     for (; p < n; ++p) see<1>(p, now);
     for (int k = 0; k < now.count; ++k) note(now.flagged[k], runs_, magnitude(now.value[k]), fill(s_));
     if (looked_ - 2 < known_from_) return;
@@ -423,22 +426,25 @@ class ForceGroup : Lanes<W> {
       still[i] = t.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
   }
 
+  /// A lane, or with a single one its number: neighbouring probes then share a vector.
+  using Number = std::conditional_t<W == 1, double, Lane>;
+
   /// Flags those responses of N neighbouring probes that may be the largest.
   template <int N>
   void see(int p, Instant& now) const {
-    Lane v[N], a[N], M[N];
-#pragma GCC unroll 4
+    Number v[N], a[N], M[N];
+#pragma GCC unroll 8
     for (int k = 0; k < N; ++k) {
-      v[k] = fill(now.still[p + k]);
-      a[k] = Lane{};
-      M[k] = fill(now.still[n + p + k]);
+      v[k] = Number{} + now.still[p + k];
+      a[k] = Number{};
+      M[k] = Number{} + now.still[n + p + k];
     }
     for (int i = 0; i < m; ++i) {
       const int at = i * n + p;
       const double *form = t.deflection + at, *bend = t.moment + at;
       const double *by_rate = t.moment_by_rate + at, *by_acceleration = t.moment_by_acceleration + at;
-      const Lane q = now.q[i], rate = now.r[i], acceleration = now.a[i];
-#pragma GCC unroll 4
+      const Number q = number(now.q[i]), rate = number(now.r[i]), acceleration = number(now.a[i]);
+#pragma GCC unroll 8
       for (int k = 0; k < N; ++k) {
         v[k] += form[k] * q;
         a[k] += form[k] * acceleration;
@@ -449,31 +455,39 @@ class ForceGroup : Lanes<W> {
     }
     const Lane *of_v = limit_ + p, *of_a = of_v + n, *of_M = of_a + n;
     int larger = 0;
-#pragma GCC unroll 4
+#pragma GCC unroll 8
     for (int k = 0; k < N; ++k) {
-      larger |= exceeds(magnitude(v[k]), of_v[k]);
-      larger |= exceeds(magnitude(a[k]), of_a[k]);
-      larger |= exceeds(magnitude(M[k]), of_M[k]);
+      larger |= may_be_largest(v[k], of_v[k]);
+      larger |= may_be_largest(a[k], of_a[k]);
+      larger |= may_be_largest(M[k], of_M[k]);
     }
     if (larger == 0) return;
-    const auto flag = [&](int i, Lane value) {
+    const auto flag = [&](int i, Number value) {
       now.flagged[now.count] = i;
-      now.value[now.count] = value;
-      now.count += exceeds(magnitude(value), limit_[i]) != 0 ? 1 : 0;
+      now.value[now.count] = Lane{} + value;
+      now.count += may_be_largest(value, limit_[i]) != 0 ? 1 : 0;
     };
-#pragma GCC unroll 4
+#pragma GCC unroll 8
     for (int k = 0; k < N; ++k) {
       flag(p + k, v[k]);
       flag(n + p + k, a[k]);
       flag(2 * n + p + k, M[k]);
     }
   }
+  static Number number(Lane x) {
+    if constexpr (W == 1) return x[0];
+    else return x;
+  }
+  static int may_be_largest(Number value, Lane limit) {
+    if constexpr (W == 1) return __builtin_fabs(value) > limit[0] ? 1 : 0;
+    else return exceeds(magnitude(value), limit);
+  }
 
   void note(int i, Mask where, Lane value, Lane at) {
     const Mask larger = where & (value > peak_[i]);
     peak_[i] = larger ? value : peak_[i];
     peak_place_[i] = larger ? at : peak_place_[i];
-    limit_[i] = may_be_largest * peak_[i];
+    limit_[i] = near_largest * peak_[i];
   }
 
   /// The last instant but one, where a response had this value, may be beside a peak.
