@@ -17,8 +17,6 @@
 // of the influence lines, only those responses are looked at that have a kink there.
 #pragma once
 
-#include <type_traits>
-
 #include "lanes/force_task.hpp"
 #include "lanes/lane.hpp"
 
@@ -409,8 +407,10 @@ class ForceGroup : Lanes<W> {
     see_statics(now.still);
     now.count = 0;
     int p = 0;
-    constexpr int together = W == 1 ? 8 : 4;
-    for (; p + together <= n; p += together) see<together>(p, now);
+    if constexpr (W == 1)
+      for (; p + in_a_row <= n; p += in_a_row) see_row(p, now);
+    else
+      for (; p + 4 <= n; p += 4) see<4>(p, now);
     for (; p < n; ++p) see<1>(p, now);
     for (int k = 0; k < now.count; ++k) note(now.flagged[k], runs_, magnitude(now.value[k]), fill(s_));
     if (looked_ - 2 < known_from_) return;
@@ -426,25 +426,22 @@ class ForceGroup : Lanes<W> {
       still[i] = t.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
   }
 
-  /// A lane, or with a single one its number: neighbouring probes then share a vector.
-  using Number = std::conditional_t<W == 1, double, Lane>;
-
   /// Flags those responses of N neighbouring probes that may be the largest.
   template <int N>
   void see(int p, Instant& now) const {
-    Number v[N], a[N], M[N];
-#pragma GCC unroll 8
+    Lane v[N], a[N], M[N];
+#pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
-      v[k] = Number{} + now.still[p + k];
-      a[k] = Number{};
-      M[k] = Number{} + now.still[n + p + k];
+      v[k] = fill(now.still[p + k]);
+      a[k] = Lane{};
+      M[k] = fill(now.still[n + p + k]);
     }
     for (int i = 0; i < m; ++i) {
       const int at = i * n + p;
       const double *form = t.deflection + at, *bend = t.moment + at;
       const double *by_rate = t.moment_by_rate + at, *by_acceleration = t.moment_by_acceleration + at;
-      const Number q = number(now.q[i]), rate = number(now.r[i]), acceleration = number(now.a[i]);
-#pragma GCC unroll 8
+      const Lane q = now.q[i], rate = now.r[i], acceleration = now.a[i];
+#pragma GCC unroll 4
       for (int k = 0; k < N; ++k) {
         v[k] += form[k] * q;
         a[k] += form[k] * acceleration;
@@ -455,32 +452,50 @@ class ForceGroup : Lanes<W> {
     }
     const Lane *of_v = limit_ + p, *of_a = of_v + n, *of_M = of_a + n;
     int larger = 0;
-#pragma GCC unroll 8
+#pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
-      larger |= may_be_largest(v[k], of_v[k]);
-      larger |= may_be_largest(a[k], of_a[k]);
-      larger |= may_be_largest(M[k], of_M[k]);
+      larger |= exceeds(magnitude(v[k]), of_v[k]);
+      larger |= exceeds(magnitude(a[k]), of_a[k]);
+      larger |= exceeds(magnitude(M[k]), of_M[k]);
     }
     if (larger == 0) return;
-    const auto flag = [&](int i, Number value) {
-      now.flagged[now.count] = i;
-      now.value[now.count] = Lane{} + value;
-      now.count += may_be_largest(value, limit_[i]) != 0 ? 1 : 0;
-    };
-#pragma GCC unroll 8
+#pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
-      flag(p + k, v[k]);
-      flag(n + p + k, a[k]);
-      flag(2 * n + p + k, M[k]);
+      flag(p + k, v[k], now);
+      flag(n + p + k, a[k], now);
+      flag(2 * n + p + k, M[k], now);
     }
   }
-  static Number number(Lane x) {
-    if constexpr (W == 1) return x[0];
-    else return x;
+
+  void flag(int i, Lane value, Instant& now) const {
+    now.flagged[now.count] = i;
+    now.value[now.count] = value;
+    now.count += exceeds(magnitude(value), limit_[i]) != 0 ? 1 : 0;
   }
-  static int may_be_largest(Number value, Lane limit) {
-    if constexpr (W == 1) return __builtin_fabs(value) > limit[0] ? 1 : 0;
-    else return exceeds(magnitude(value), limit);
+
+  /// As see() for a single run: here the lanes are neighbouring probes.
+  void see_row(int p, Instant& now) const {
+    using Row = Lanes<in_a_row>;
+    const auto at = [](const double* numbers) { return *reinterpret_cast<const typename Row::Unaligned*>(numbers); };
+    typename Row::Lane v = at(now.still + p), a{}, M = at(now.still + n + p);
+    for (int i = 0; i < m; ++i) {
+      const int k = i * n + p;
+      const double q = now.q[i][0], rate = now.r[i][0], acceleration = now.a[i][0];
+      v += at(t.deflection + k) * q;
+      a += at(t.deflection + k) * acceleration;
+      M += at(t.moment + k) * q;
+      M += at(t.moment_by_rate + k) * rate;
+      M += at(t.moment_by_acceleration + k) * acceleration;
+    }
+    const double* limit = reinterpret_cast<const double*>(limit_) + p;
+    if ((Row::exceeds(Row::magnitude(v), at(limit)) | Row::exceeds(Row::magnitude(a), at(limit + n)) |
+         Row::exceeds(Row::magnitude(M), at(limit + 2 * n))) == 0)
+      return;
+    for (int k = 0; k < in_a_row; ++k) {
+      flag(p + k, fill(v[k]), now);
+      flag(n + p + k, fill(a[k]), now);
+      flag(2 * n + p + k, fill(M[k]), now);
+    }
   }
 
   void note(int i, Mask where, Lane value, Lane at) {

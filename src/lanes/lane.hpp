@@ -10,10 +10,18 @@ typedef double FourNumbers __attribute__((vector_size(32), may_alias));
 typedef double EightNumbers __attribute__((vector_size(64), may_alias));
 typedef long long EightWords __attribute__((vector_size(64), may_alias));  // NOLINT
 
+/// Numbers in a vector of the processor.
+#ifdef __AVX512F__
+constexpr int in_a_row = 8;
+#else
+constexpr int in_a_row = 4;
+#endif
+
 template <int W>
 struct Lanes {
   // NOLINTNEXTLINE: vector types have no other spelling
   typedef double Lane __attribute__((vector_size(8 * W), may_alias));
+  typedef double Unaligned __attribute__((vector_size(8 * W), may_alias, aligned(8)));
   typedef long Mask __attribute__((vector_size(8 * W), may_alias));  // NOLINT
 
   static Lane fill(double value) { return Lane{} + value; }
