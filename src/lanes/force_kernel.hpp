@@ -23,7 +23,9 @@
 namespace traverse::lanes {
 namespace {
 
-constexpr double near_largest = 0.95;       // of the largest so far: no vertex of a parabola of less is larger
+// Of the largest so far: no vertex of a parabola whose middle point is less can be larger, as it lies above that by an
+// eighth of the drop to the next point at most, and points a twentieth of a period apart do not drop by 16 % beside a peak.
+constexpr double near_largest = 0.98;
 constexpr double most_phase = 2.0;          // of a part of an instant: series are short up to there
 constexpr int most_terms = 32;              // of a series
 constexpr double last_term = 1e-19;         // of a series, over the first
