@@ -511,9 +511,10 @@ class ForceGroup : Lanes<W> {
   void see_between(int i, Lane middle) {
     if (kink_look_[i] == looked_ - 1) return;
     const Lane after = response(i, *seen_[2]);
-    if (!any(runs_ & (magnitude(middle) > magnitude(after)))) return;
+    const Mask turns = runs_ & (magnitude(middle) > limit_[i]) & (magnitude(middle) > magnitude(after));
+    if (!any(turns)) return;
     const bool kink = kink_look_[i] == looked_ - 2;
-    note_vertex(i, runs_, kink ? kink_place_[i] : seen_[0]->place, kink ? kink_value_[i] : response(i, *seen_[0]),
+    note_vertex(i, turns, kink ? kink_place_[i] : seen_[0]->place, kink ? kink_value_[i] : response(i, *seen_[0]),
                 seen_[1]->place, middle, fill(seen_[2]->place), after);
   }
 
@@ -521,15 +522,15 @@ class ForceGroup : Lanes<W> {
   void see_between_last(int i, Mask where, Lane at, Lane after) {
     if (kink_look_[i] == looked_ || looked_ - 1 < known_from_) return;
     const Lane middle = response(i, *seen_[2]);
-    if (!any(where & (magnitude(middle) > limit_[i]) & (magnitude(middle) > magnitude(after)))) return;
+    const Mask turns = where & (magnitude(middle) > limit_[i]) & (magnitude(middle) > magnitude(after));
+    if (!any(turns)) return;
     const bool kink = kink_look_[i] == looked_ - 1;
-    note_vertex(i, where, kink ? kink_place_[i] : seen_[1]->place, kink ? kink_value_[i] : response(i, *seen_[1]),
+    note_vertex(i, turns, kink ? kink_place_[i] : seen_[1]->place, kink ? kink_value_[i] : response(i, *seen_[1]),
                 seen_[2]->place, middle, at, after);
   }
 
   /// The vertex of the parabola through three points, of whose magnitudes the middle one is the largest.
   void note_vertex(int i, Mask where, double s0, Lane y0, double s1, Lane y1, Lane s2, Lane y2) {
-    where &= magnitude(y1) > magnitude(y2);
     const Lane sign = y1 < Lane{} ? fill(-1.0) : fill(1.0);
     y0 *= sign;
     y1 *= sign;
