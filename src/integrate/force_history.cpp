@@ -14,6 +14,7 @@ void add(const structure::PiecewiseCubic& influence, std::size_t piece, double f
   const std::size_t n = influence.channels;
   const double* c = &influence.coefficients[4 * n * piece];
   const double d = x - influence.breaks[piece];
+#pragma GCC ivdep  // the sum is apart from the influence
   for (std::size_t i = 0; i < n; ++i) {
     const double c1 = c[n + i], c2 = c[2 * n + i], c3 = c[3 * n + i];
     sum[i] += force * (c[i] + d * (c1 + d * (c2 + d * c3)));
