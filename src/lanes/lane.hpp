@@ -42,7 +42,7 @@ struct Lanes {
     if constexpr (W == 8)
       return __builtin_ia32_cmppd512_mask(*reinterpret_cast<const EightNumbers*>(&a),
                                           *reinterpret_cast<const EightNumbers*>(&b), greater_than,
-                                          static_cast<char>(all), no_rounding);
+                                          static_cast<unsigned char>(all), no_rounding);
 #endif
     return any(a > b) ? 1 : 0;
   }

@@ -151,6 +151,7 @@ class Course {
     for (const Case& c : cases) {
       duration_.push_back(duration_of(c, runner));
       until_.push_back(until_.back() + duration_.back());
+      runs_.push_back(runs_.back() + c.speeds.size());
     }
   }
 
@@ -159,14 +160,15 @@ class Course {
     if (taken == 0) return;
     const double others = 0.5 * static_cast<double>(ranks_ - 1) * duration_[taken - 1];
     const double done = std::max(until_[taken] - left - others, 0.0);
-    progress_.runs(done / until_.back(), taken > ranks_ ? taken - ranks_ : 0, duration_.size());
+    progress_.runs(done / until_.back(), runs_[taken > ranks_ ? taken - ranks_ : 0], runs_.back());
   }
   void done() { progress_.done(); }
 
  private:
   std::size_t ranks_;
   results::Progress progress_;
-  std::vector<double> duration_, until_{0.0};  // s, of each run, and of all before it
+  std::vector<double> duration_, until_{0.0};  // s, of the runs of each case, and of all cases before it
+  std::vector<std::size_t> runs_{0};           // in the cases before each
 };
 
 /// This rank's share of the runs.
@@ -261,7 +263,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   MPI_Allreduce(MPI_IN_PLACE, &done[1], 1, MPI_LONG, MPI_MAX, comm);
   gather(comm, sweep);
 
-  const results::SweepCourse whole = {done[0], static_cast<long>(cases.size()),
+  const results::SweepCourse whole = {done[0], static_cast<long>(runner.speeds().size() * runner.trains()),
                                       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
                                       failure.run != nobody ? failure.message
                                       : done[1] != 0        ? fmt::format("ended by signal {}", done[1])
@@ -274,7 +276,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   }
   if (rank == 0) {
     if (done[0] > 0) results::print_sweep(sweep);
-    fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], cases.size(),
+    fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], whole.planned,
                results::method_of(choice.model), whole.wall_seconds,
                1e3 * whole.wall_seconds / static_cast<double>(std::max(done[0], 1L)), "the sweep", whole.ended,
                scene.output.file.empty() ? "none" : scene.output.file);
