@@ -31,8 +31,11 @@ struct Case {
   std::vector<double> ratios;  // empty: Rayleigh damping
   std::vector<double> probes, positions;
   bool equilibrium;
-  double gravity, until;  // m/s2; m travelled when a run ends
+  double gravity, until;  // m/s2; m travelled when the slowest run ends
 };
+/// s: each run ends at a distance of its own.
+double end_of(const Case& c, double speed) { return c.until * (1.0 - 0.04 * (speed - speeds.front())) / speed; }
+
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 constexpr auto pinned = beam::Support::pinned, roller = beam::Support::roller;
@@ -41,11 +44,21 @@ const std::vector<double> axles = {0.0, -3.0, -14.0, -17.0};  // m
 const std::vector<Case> cases = {
     {"TwoSpans", {20, 20}, {pinned, roller, roller}, {}, 3, {0.01}, {4, 9, 10, 13.3, 20, 31}, axles, true, 0, 97},
     {"ASpanEach", {18, 22}, {pinned, roller, roller}, {beam::Joint::hinge}, 4, {0.02}, {9, 29}, axles, true, 0, 97},
-    {"OverdampedMode", {25}, {pinned, roller}, {}, 6, {0.01, 0.02, 0.1, 0.9, 0.99, 5.0}, {6, 12.5}, axles, true, 0, 82},
+    {"OverdampedMode",
+     {25},
+     {pinned, roller},
+     {},
+     6,
+     {0.01, 0.02, 0.1, 0.9, 0.99, 50.0},
+     {6, 12.5},
+     axles,
+     true,
+     0,
+     82},
     {"RayleighOverdamped", {25}, {pinned, roller}, {}, 6, {}, {6, 12.5}, axles, true, 0, 82},
     {"StartsOnTheBridge", {25}, {pinned, roller}, {}, 3, {0.01}, {7, 12.5}, {12.0, 3.0, -9.0}, true, 0, 74},
     {"StartsUndeflected", {25}, {pinned, roller}, {}, 3, {0.01}, {7, 12.5}, {12.0, 3.0, -9.0}, false, 0, 74},
-    {"EndsAsForcesPass", {25}, {pinned, roller}, {}, 3, {0.01}, {7, 12.5}, axles, true, 0, 13.77},
+    {"EndsAsForcesPass", {25}, {pinned, roller}, {}, 3, {0.01}, {7, 12.5}, axles, true, 0, 9.77},
     {"FreeEnd", {10}, {beam::Support::clamped, beam::Support::free}, {}, 3, {0.02}, {5, 10}, axles, true, 0, 40},
     {"OwnWeight", {25}, {pinned, roller}, {}, 3, {0.01}, {7, 12.5}, axles, true, 9.81, 60},
 };
@@ -109,7 +122,7 @@ Peaks seen_closely(const Bridge& bridge, const Case& c, double speed, double ins
     }
   };
   const double fastest = *std::max_element(modal.omega().begin(), modal.omega().end());
-  const double interval = 2.0 * std::numbers::pi / fastest / instants, end = c.until / speed;
+  const double interval = 2.0 * std::numbers::pi / fastest / instants, end = end_of(c, speed);
   look();
   for (double next = interval; motion.time() < end;) {
     motion.advance(std::min({next, end, motion.next_event()}));
@@ -125,7 +138,7 @@ Peaks seen_closely(const Bridge& bridge, const Case& c, double speed, double ins
 
 std::vector<Peaks> side_by_side(const Bridge& bridge, const Case& c, const std::vector<double>& of, double instants) {
   std::vector<double> ends;
-  for (const double speed : of) ends.push_back(c.until / speed);
+  for (const double speed : of) ends.push_back(end_of(c, speed));
   const lanes::ForcePassages passages(bridge.modal(), bridge.load(), c.equilibrium);
   return passages.peaks(of, ends, instants, [] { return true; });
 }
@@ -164,7 +177,7 @@ TEST_P(ForcePassages, AgainstTheExactMotion) {
       for (std::size_t p = 0; p < exact.size(); ++p) {
         const Peak found = fine[i][p].*quantity, expected = exact[p].*quantity;
         EXPECT_GE(found.time, 0.0);
-        EXPECT_LE(found.time, c.until / speeds[i] * (1.0 + 1e-9));
+        EXPECT_LE(found.time, end_of(c, speeds[i]) * (1.0 + 1e-9));
         if (expected.value > 0.1 * largest(exact, quantity)) {
           EXPECT_NEAR(found.time, expected.time, 2e-4) << p;
         }
