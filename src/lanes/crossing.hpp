@@ -13,7 +13,8 @@
 
 namespace traverse::lanes {
 
-/// Linear vehicles with the same numbers (train/linear_dynamics.hpp): M x'' + C x' + K x + r0 = G^T F; matrices by rows.
+/// Linear vehicles with the same numbers (train/linear_dynamics.hpp): M x'' + C x' + K x + r0 = G^T F; matrices by
+/// rows.
 struct VehicleNumbers {
   int freedom = 0, wheels = 0;
   std::vector<double> M, C, K, r0, G;

@@ -1,51 +1,38 @@
 // Passages of the same moving forces at several speeds, one in each lane of the processor's vectors. All runs look at
-// the same distances: the forces' influence is then the same in every lane, and what the modes leave out, which is
-// taken as static, is the same number.
-//
-//   q'' + 2 sigma q' + omega^2 q = g,    g a cubic polynomial of the distance between two events
-//
-// The motion is exact in time. With O(t) the response to a unit impulse, O(0) = 0, O'(0) = 1, and
-// Q_k the response to the force t^k/k!, Q_0 = int O, Q_k = int Q_(k-1), from a state q, q', q''
-//
-//   q  (t) = q  + t    q' + Q_0 q'' + Q_1 j + Q_2 g'' + Q_3 g'''       j = g' - omega^2 q'
-//   q' (t) = q' + O(t) q'' + Q_0 j + Q_1 g'' + Q_2 g'''
-//
-// Q_3 and Q_2 are power series, which also hold for overdamped modes; the others follow by
-// Q_(k-2) = t^k/k! - 2 sigma Q_(k-1) - omega^2 Q_k.
+// the same distances: what the modes leave out, which is taken as static, is then the same number in every lane.
 //
 // Responses are looked at in regular instants, and peaks between them found by parabolas. Where a force passes a break
 // of the influence lines, only those responses are looked at that have a kink there.
 #pragma once
 
-#include "lanes/force_task.hpp"
-#include "lanes/lane.hpp"
+#include "lanes/force_motion.hpp"
 
 namespace traverse::lanes {
 namespace {
 
 // Of the largest so far: no vertex of a parabola whose middle point is less can be larger, as it lies above that by an
-// eighth of the drop to the next point at most, and points a twentieth of a period apart do not drop by 16 % beside a peak.
+// eighth of the drop to the next point at most, and points a twentieth of a period apart do not drop by 16 % beside a
+// peak.
 constexpr double near_largest = 0.98;
-constexpr double most_phase = 2.0;          // of a part of an instant: series are short up to there
-constexpr int most_terms = 32;              // of a series
-constexpr double last_term = 1e-19;         // of a series, over the first
-constexpr double too_near = 1e-6;           // of the next distance: points that near do not make a parabola
-constexpr double same_end = 1.0 + 1e-12;    // distances that are one but for rounding
-constexpr long instants_unasked = 4096;     // between two questions whether to go on
+constexpr double too_near = 1e-6;         // of the next distance: points that near do not make a parabola
+constexpr double same_end = 1.0 + 1e-12;  // distances that are one but for rounding
+constexpr long instants_unasked = 4096;   // between two questions whether to go on
 
 template <int W>
 class ForceGroup : Lanes<W> {
   using Own = Lanes<W>;
-  using typename Own::Lane;
-  using typename Own::Mask;
   using Own::any;
   using Own::exceeds;
   using Own::fill;
   using Own::lanes;
   using Own::magnitude;
+  using typename Own::Lane;
+  using typename Own::Mask;
 
  public:
-  ForceGroup(const ForceTask& task, double* work) : t(task), m(task.modes), n(task.probes) { lay_out(work); }
+  ForceGroup(const ForceTask& task, double* work) : t(task), m(task.modes), n(task.probes), motion_(task) {
+    lay_out(work);
+  }
   long size() const { return used_ * W; }
 
   void run() {
@@ -66,11 +53,7 @@ class ForceGroup : Lanes<W> {
   void lay_out(double* work) {
     const auto in_lanes = [&](long count) { return take_from<Lane>(work, used_, W, count); };
     const auto numbers = [&](long count) { return take_from<double>(work, used_, W, count); };
-    Lane** const of_modes[] = {&q_, &r_, &a_, &q_kept_, &r_kept_, &a_kept_};
-    for (Lane** own : of_modes) *own = in_lanes(m);
-    regular_ = take_from<Advance>(work, used_, W, m);
-    series_ = take_from<Series>(work, used_, W, m);
-    for (double*& power : g_) power = numbers(m);
+    motion_.lay_out(work, used_);
     for (int k = 0; k < 3; ++k) {
       Instant& own = instants_[k];
       seen_[k] = &own;
@@ -97,162 +80,34 @@ class ForceGroup : Lanes<W> {
       peak_[i] = peak_place_[i] = limit_[i] = Lane{};
       kink_look_[i] = -1;
     }
-    set_series();
-    const Lane part = fill(t.ds / parts_) / speed_;
-    for (int i = 0; i < m; ++i) {
-      regular_[i] = advance_by(i, part);
-      q_[i] = fill(t.q[i]);
-      r_[i] = Lane{};
-    }
-    place(0.0);
-    accelerate();
+    motion_.begin();
     look();
   }
 
-  /// The coefficients of Q_2 and Q_3, as many as the longest part of an instant needs; and how many parts it has.
-  void set_series() {
-    parts_ = 1.0;
-    for (int i = 0; i < m; ++i) {
-      const double least = __builtin_ceil(rate_of(i) * t.instant / most_phase);
-      if (least > parts_) parts_ = least;
-    }
-    for (int i = 0; i < m; ++i) {
-      Series& own = series_[i];
-      const double phase = rate_of(i) * t.instant / parts_;
-      double before = 0.0, impulse = 1.0;  // derivatives of O at t = 0
-      double by_2 = 1.0 / 24.0, by_3 = 1.0 / 120.0, size = 1.0;
-      for (own.terms = 0; own.terms < most_terms && (own.terms < 2 || size > last_term); ++own.terms) {
-        own.by_2[own.terms] = impulse * by_2;
-        own.by_3[own.terms] = impulse * by_3;
-        const double k = own.terms;
-        by_2 /= k + 5.0;
-        by_3 /= k + 6.0;
-        size *= phase / (k + 5.0) * (k + 2.0) / (k + 1.0);
-        const double next = -t.damping[i] * impulse - t.omega2[i] * before;
-        before = impulse;
-        impulse = next;
-      }
-    }
-  }
-
-  /// How fast a mode changes, 1/s.
-  double rate_of(int i) const {
-    const double sigma = 0.5 * t.damping[i], square = sigma * sigma - t.omega2[i];
-    return square > 0.0 ? sigma + __builtin_sqrt(square) : __builtin_sqrt(t.omega2[i]);
-  }
-
-  // --- motion ------------------------------------------------------------------------------------------------------
-
-  /// What one step adds to a mode's q and q', by q', q'', j, and the second and third powers of the distance in g.
-  struct Advance {
-    Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
-  };
-  struct Series {
-    int terms;
-    double by_2[most_terms], by_3[most_terms];
-  };
-
-  Advance advance_by(int i, Lane time) const {
-    const Series& own = series_[i];
-    Lane Q2{}, Q3{};
-    for (int k = own.terms - 1; k >= 0; --k) {
-      Q2 = Q2 * time + own.by_2[k];
-      Q3 = Q3 * time + own.by_3[k];
-    }
-    const Lane square = time * time;
-    Q2 *= square * square;
-    Q3 *= square * square * time;
-    const double c = t.damping[i], w = t.omega2[i];
-    const Lane Q1 = time * square * (1.0 / 6.0) - c * Q2 - w * Q3;
-    const Lane Q0 = 0.5 * square - c * Q1 - w * Q2;
-    const Lane impulse = time - c * Q0 - w * Q1;
-    const Lane by_2 = 2.0 * speed_ * speed_, by_3 = 3.0 * by_2 * speed_;
-    return {time, impulse, Q0, Q1, by_2 * Q2, by_3 * Q3, by_2 * Q1, by_3 * Q2};
-  }
-
-  void move(int i, const Advance& by) {
-    const Lane r = r_[i], a = a_[i], jerk = g_[1][i] * speed_ - t.omega2[i] * r;
-    const double second = g_[2][i], third = g_[3][i];
-    q_[i] = q_[i] + (by.time * r + (by.Q1 * jerk + (by.q_by_2 * second + by.q_by_3 * third))) + by.Q0 * a;
-    r_[i] = r + (by.Q0 * jerk + (by.rate_by_2 * second + by.rate_by_3 * third)) + by.impulse * a;
-  }
-
-  void accelerate() {
-    for (int i = 0; i < m; ++i) a_[i] = g_[0][i] - t.omega2[i] * q_[i] - t.damping[i] * r_[i];
-  }
-
-  /// The modal forces at distance s, in this interval: powers of the distance from there.
-  void place(double s) {
-    s_ = s;
-    const double d = s - t.start[interval_];
-    const double* c = t.coefficients + 4 * t.channels * interval_;
-    for (int i = 0; i < m; ++i) {
-      const double c1 = c[t.channels + i], c2 = c[2 * t.channels + i], c3 = c[3 * t.channels + i];
-      g_[0][i] = c[i] + d * (c1 + d * (c2 + d * c3));
-      g_[1][i] = c1 + d * (2.0 * c2 + 3.0 * d * c3);
-      g_[2][i] = c2 + 3.0 * d * c3;
-      g_[3][i] = c3;
-    }
-  }
-
-  /// One of the `parts_` parts of a step to `to`.
-  double part_of(double from, double to, double k) const { return k < parts_ ? from + (to - from) * (k / parts_) : to; }
-
-  void move_regularly(double to) {
-    const double from = s_;
-    for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < m; ++i) move(i, regular_[i]);
-      place(part_of(from, to, k));
-      accelerate();
-    }
-  }
-
-  void move_to(double to) {
-    const double from = s_;
-    const Lane part = fill((to - from) / parts_) / speed_;
-    for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < m; ++i) move(i, advance_by(i, part));
-      place(part_of(from, to, k));
-      accelerate();
-    }
-  }
-
   void go_to_instant(double to) {
-    if (next_event() > to) {
+    if (motion_.next_event() > to) {
       end_runs_until(to);
-      move_regularly(to);
+      motion_.move_regularly(to);
     } else {
-      while (next_event() <= to) {
-        const double event = next_event();
+      while (motion_.next_event() <= to) {
+        const double event = motion_.next_event();
         end_runs_until(event);
-        move_to(event);
+        motion_.move_to(event);
         pass_event();
       }
       end_runs_until(to);
-      move_to(to);
+      motion_.move_to(to);
     }
     look();
   }
 
   // --- events ------------------------------------------------------------------------------------------------------
 
-  double next_event() const { return interval_ + 1 < t.intervals ? t.start[interval_ + 1] : 1e300; }
-
-  void enter_next() {
-    ++interval_;
-    if (interval_ + 1 < t.intervals) {
-      const double* next = t.coefficients + 4 * t.channels * (interval_ + 1);
-      for (int i = 0; i < 4 * t.channels; i += 8) __builtin_prefetch(next + i);
-    }
-    place(s_);
-    accelerate();
-  }
-
   void pass_event() {
-    const ForceEvent event = t.event[interval_ + 1];
+    const ForceEvent event = t.event[motion_.interval + 1];
     if (event == ForceEvent::all_kink || event == ForceEvent::all_jump) {
       look();
-      enter_next();
+      motion_.enter_next();
       if (event == ForceEvent::all_jump) {
         known_from_ = looked_ + 1;
         look();
@@ -260,25 +115,25 @@ class ForceGroup : Lanes<W> {
       known_from_ = looked_;
       return;
     }
-    const int first = t.first_kink[interval_ + 1], last = t.first_kink[interval_ + 2];
+    const int first = t.first_kink[motion_.interval + 1], last = t.first_kink[motion_.interval + 2];
     for (int k = first; k < last; ++k) see_before_kink(t.kink[k]);
-    enter_next();
+    motion_.enter_next();
     for (int k = first; k < last; ++k) start_after_kink(t.kink[k]);
   }
 
   /// A response's curve ends here.
   void see_before_kink(int i) {
-    const Lane value = response(i, fill(static_now(i)), q_, r_, a_);
-    note(i, runs_, magnitude(value), fill(s_));
-    see_between_last(i, runs_, fill(s_), value);
+    const Lane value = response(i, fill(static_now(i)), motion_.q, motion_.r, motion_.a);
+    note(i, runs_, magnitude(value), fill(motion_.s));
+    see_between_last(i, runs_, fill(motion_.s), value);
   }
 
   /// Another one begins here: what was seen at the last instant does not belong to it.
   void start_after_kink(int i) {
-    kink_value_[i] = response(i, fill(static_now(i)), q_, r_, a_);
-    note(i, runs_, magnitude(kink_value_[i]), fill(s_));
+    kink_value_[i] = response(i, fill(static_now(i)), motion_.q, motion_.r, motion_.a);
+    note(i, runs_, magnitude(kink_value_[i]), fill(motion_.s));
     kink_look_[i] = looked_;
-    kink_place_[i] = s_;
+    kink_place_[i] = motion_.s;
   }
 
   // --- ends --------------------------------------------------------------------------------------------------------
@@ -295,63 +150,30 @@ class ForceGroup : Lanes<W> {
   void end_runs_until(double to) {
     if (next_end_ > to * same_end) return;
     const Mask ending = runs_ & (end_ <= fill(to * same_end));
-    const Lane at = ending ? end_ : fill(s_);
-    keep_modes();
-    const double from = s_;
-    const Lane part = (at - fill(from)) / (parts_ * speed_);
-    for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < m; ++i) move_in_lanes(i, from, (at - from) * ((k - 1.0) / parts_), part);
-    }
-    const double since = from - t.start[interval_];
+    const Lane at = ending ? end_ : fill(motion_.s);
+    const Lane since = at - t.start[motion_.interval];
+    motion_.move_apart(at);
     for (int i = 0; i < 3 * n; ++i) {
       Lane still{};
-      if (i < n || i >= 2 * n) still = static_in_lanes(i, at - from + since);
-      const Lane value = response(i, still, q_, r_, a_);
+      if (i < n || i >= 2 * n) still = static_in_lanes(i, since);
+      const Lane value = response(i, still, motion_.q, motion_.r, motion_.a);
       note(i, ending, magnitude(value), at);
       see_between_last(i, ending, at, value);
     }
-    restore_modes();
+    motion_.move_back();
     runs_ &= ~ending;
     find_next_end();
-  }
-
-  /// As move(), where every lane is at a distance of its own.
-  void move_in_lanes(int i, double from, Lane ahead, Lane part) {
-    const double* c = t.coefficients + 4 * t.channels * interval_ + i;
-    const double c0 = c[0], c1 = c[t.channels], c2 = c[2 * t.channels], c3 = c[3 * t.channels];
-    const Advance by = advance_by(i, part);
-    const auto force = [&](Lane d) { return c0 + d * (c1 + d * (c2 + d * c3)); };
-    const Lane d = ahead + (from - t.start[interval_]), r = r_[i], a = a_[i];
-    const Lane jerk = speed_ * (c1 + d * (2.0 * c2 + 3.0 * d * c3)) - t.omega2[i] * r, second = c2 + 3.0 * d * c3;
-    q_[i] = q_[i] + (by.time * r + (by.Q1 * jerk + (by.q_by_2 * second + by.q_by_3 * c3))) + by.Q0 * a;
-    r_[i] = r + (by.Q0 * jerk + (by.rate_by_2 * second + by.rate_by_3 * c3)) + by.impulse * a;
-    a_[i] = force(d + part * speed_) - t.omega2[i] * q_[i] - t.damping[i] * r_[i];
-  }
-
-  void keep_modes() {
-    for (int i = 0; i < m; ++i) {
-      q_kept_[i] = q_[i];
-      r_kept_[i] = r_[i];
-      a_kept_[i] = a_[i];
-    }
-  }
-  void restore_modes() {
-    for (int i = 0; i < m; ++i) {
-      q_[i] = q_kept_[i];
-      r_[i] = r_kept_[i];
-      a_[i] = a_kept_[i];
-    }
   }
 
   // --- what is seen ------------------------------------------------------------------------------------------------
 
   /// A response without the modes: the static correction, and the beam's own weight.
   const double* static_of(int i) const {
-    return t.coefficients + 4 * t.channels * interval_ + m + (i < n ? i : i - n);
+    return t.coefficients + 4 * t.channels * motion_.interval + m + (i < n ? i : i - n);
   }
   double static_now(int i) const {
     if (i >= n && i < 2 * n) return 0.0;
-    const double *c = static_of(i), d = s_ - t.start[interval_];
+    const double *c = static_of(i), d = motion_.s - t.start[motion_.interval];
     const long k = t.channels;
     return t.weight[i < n ? i : i - n] + (c[0] + d * (c[k] + d * (c[2 * k] + d * c[3 * k])));
   }
@@ -400,11 +222,11 @@ class ForceGroup : Lanes<W> {
     seen_[2] = oldest;
     ++looked_;
     Instant& now = *oldest;
-    now.place = s_;
+    now.place = motion_.s;
     for (int i = 0; i < m; ++i) {
-      now.q[i] = q_[i];
-      now.r[i] = r_[i];
-      now.a[i] = a_[i];
+      now.q[i] = motion_.q[i];
+      now.r[i] = motion_.r[i];
+      now.a[i] = motion_.a[i];
     }
     see_statics(now.still);
     now.count = 0;
@@ -414,16 +236,16 @@ class ForceGroup : Lanes<W> {
     else
       for (; p + 4 <= n; p += 4) see<4>(p, now);
     for (; p < n; ++p) see<1>(p, now);
-    for (int k = 0; k < now.count; ++k) note(now.flagged[k], runs_, magnitude(now.value[k]), fill(s_));
+    for (int k = 0; k < now.count; ++k) note(now.flagged[k], runs_, magnitude(now.value[k]), fill(motion_.s));
     if (looked_ - 2 < known_from_) return;
     const Instant& last = *seen_[1];
     for (int k = 0; k < last.count; ++k) see_between(last.flagged[k], last.value[k]);
   }
 
   void see_statics(double* still) const {
-    const double d = s_ - t.start[interval_];
+    const double d = motion_.s - t.start[motion_.interval];
     const long k = t.channels;
-    const double* c = t.coefficients + 4 * k * interval_ + m;
+    const double* c = t.coefficients + 4 * k * motion_.interval + m;
     for (int i = 0; i < 2 * n; ++i)
       still[i] = t.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
   }
@@ -546,20 +368,13 @@ class ForceGroup : Lanes<W> {
 
   const ForceTask& t;
   const int m, n;  // modes, probes
+  ForcedModes<W> motion_;
   long used_ = 0;
   Lane speed_{}, end_{};
-  Mask runs_{};             // which have not ended
-  double next_end_ = 0.0;   // m: of these
-  double parts_ = 1.0;      // of an instant
-  double s_ = 0.0;          // m travelled
-  long interval_ = 0;
-  Lane *q_ = nullptr, *r_ = nullptr, *a_ = nullptr;  // of the modes: coordinates, rates, accelerations
-  Lane *q_kept_ = nullptr, *r_kept_ = nullptr, *a_kept_ = nullptr;
-  Advance* regular_ = nullptr;
-  Series* series_ = nullptr;
-  double* g_[4] = {};         // of the modes, by powers of the distance from here
+  Mask runs_{};                          // which have not ended
+  double next_end_ = 0.0;                // m: of these
   Instant instants_[3], *seen_[3] = {};  // the last ones, in turn
-  long looked_ = 0, known_from_ = 1;  // instants so far; the first without a kink of all responses since
+  long looked_ = 0, known_from_ = 1;     // instants so far; the first without a kink of all responses since
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
   long* kink_look_ = nullptr;     // of each response: the instant before its last kink
   double* kink_place_ = nullptr;  // m: where that was

@@ -98,8 +98,7 @@ void ForcePassages::find_kinks() {
 }
 
 std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<const double> speeds,
-                                                                     std::span<const double> end_times,
-                                                                     double instants,
+                                                                     std::span<const double> end_times, double instants,
                                                                      const std::function<bool()>& going) const {
   const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 1 ? 4 : 1, probes = bridge_.probes().count;
   Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);

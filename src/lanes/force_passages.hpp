@@ -1,5 +1,5 @@
-// Passages of moving forces by modes, exact in time, where only the peaks at the probes are wanted: what a sweep is made
-// of. Runs of one train at several speeds go side by side, one in each lane of the processor's vectors.
+// Passages of moving forces by modes, exact in time, where only the peaks at the probes are wanted: what a sweep is
+// made of. Runs of one train at several speeds go side by side, one in each lane of the processor's vectors.
 #pragma once
 
 #include <functional>
@@ -25,8 +25,7 @@ class ForcePassages {
   /// wherever a response has a kink, and between them by parabolas. `going` is asked now and then; once it returns
   /// false the search stops, and there are no peaks.
   std::vector<std::vector<integrate::ProbePeaks>> peaks(std::span<const double> speeds,
-                                                        std::span<const double> end_times,
-                                                        double instants,
+                                                        std::span<const double> end_times, double instants,
                                                         const std::function<bool()>& going) const;
 
   /// The largest static deflection of each probe while the forces pass, m.

@@ -15,8 +15,8 @@ enum class ForceEvent : char {
 struct ForceTask {
   int width = 0;
   const double *speed = nullptr, *end = nullptr;  // lanes: m/s, m travelled when the run ends
-  double ds = 0.0;       // m between two instants
-  double instant = 0.0;  // s: the longest that takes in any lane
+  double ds = 0.0;                                // m between two instants
+  double instant = 0.0;                           // s: the longest that takes in any lane
 
   // integrate::ForceHistory: sums of all forces, [interval][power][channel] of the distance since the interval's start.
   // Modal forces first; then each probe's deflection less the modes' share of it, then each probe's moment.

@@ -27,10 +27,8 @@ std::size_t best_width();
   namespace avx512 {                \
   __VA_ARGS__                       \
   }
-#define TRAVERSE_LANES_CALL(call)                     \
-  (best_target() == Target::avx512 ? avx512::call     \
-   : best_target() == Target::avx2 ? avx2::call       \
-                                   : plain::call)
+#define TRAVERSE_LANES_CALL(call) \
+  (best_target() == Target::avx512 ? avx512::call : best_target() == Target::avx2 ? avx2::call : plain::call)
 #else
 #define TRAVERSE_LANES_DECLARE(...) \
   namespace plain {                 \

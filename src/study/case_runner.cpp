@@ -83,8 +83,7 @@ std::vector<CaseResult> CaseRunner::run_group(std::size_t train, const std::vect
     CaseResult& result = results.emplace_back();
     const auto peak = [](const lanes::CrossingPeak& p) { return integrate::Peak{p.value, p.time}; };
     for (std::size_t p = 0; p < crossing.deflection.size(); ++p)
-      result.peaks.push_back(
-          {peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
+      result.peaks.push_back({peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
     result.static_deflection = static_deflection_[train];
     result.least_wheel_force = crossing.least_force;
     result.greatest_wheel_force = crossing.greatest_force;
@@ -195,8 +194,8 @@ CaseResult CaseRunner::run_with_mechanisms(std::size_t train, double speed,
 std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, const std::vector<double>& speeds) {
   auto place = passages_.find(train);
   if (place == passages_.end()) {
-    place = passages_.try_emplace(train, *shared_.modal, scene_of(train, speeds.front()).load,
-                                  scene_.start == Start::equilibrium).first;
+    const train::MovingLoad& load = scene_of(train, speeds.front()).load;
+    place = passages_.try_emplace(train, *shared_.modal, load, scene_.start == Start::equilibrium).first;
     static_deflection_[train] = place->second.static_peaks();
   }
   std::vector<double> ends;
