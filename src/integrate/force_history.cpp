@@ -9,11 +9,12 @@ namespace {
 constexpr double most_numbers = 2e8;     // 1.6 GB
 constexpr double same_distance = 1e-12;  // of the bridge: distances that are one
 
-/// Adds force*influence at x, as a polynomial of a distance that adds to x.
+/// Adds force*influence at x, as a polynomial of a distance that adds to x. The sum is no part of the influence.
 void add(const structure::PiecewiseCubic& influence, std::size_t piece, double force, double x, double* sum) {
   const std::size_t n = influence.channels;
   const double* c = &influence.coefficients[4 * n * piece];
   const double d = x - influence.breaks[piece];
+#pragma GCC ivdep
   for (std::size_t i = 0; i < n; ++i) {
     const double c1 = c[n + i], c2 = c[2 * n + i], c3 = c[3 * n + i];
     sum[i] += force * (c[i] + d * (c1 + d * (c2 + d * c3)));

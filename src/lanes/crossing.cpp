@@ -4,53 +4,14 @@
 #include <cmath>
 #include <memory>
 
+#include "lanes/processor.hpp"
+
 namespace traverse::lanes {
 
 // Compiled from crossing_kernel.cpp, once for each.
-#define TRAVERSE_LANES_KERNEL(target)    \
-  namespace target {                     \
-  long work_size(const Task& task);      \
-  void cross(const Task& task);          \
-  }
-TRAVERSE_LANES_KERNEL(plain)
-#ifdef __x86_64__
-TRAVERSE_LANES_KERNEL(avx2)
-TRAVERSE_LANES_KERNEL(avx512)
-#endif
-#undef TRAVERSE_LANES_KERNEL
+TRAVERSE_LANES_DECLARE(long work_size(const Task& task); void cross(const Task& task);)
 
 namespace {
-
-struct Kernel {
-  const char* instructions;
-  long (*work_size)(const Task&);
-  void (*cross)(const Task&);
-};
-
-/// The best that this processor can run.
-Kernel kernel() {
-#ifdef __x86_64__
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512bw"))
-    return {"AVX-512", avx512::work_size, avx512::cross};
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return {"AVX2", avx2::work_size, avx2::cross};
-#endif
-  return {"plain", plain::work_size, plain::cross};
-}
-
-/// Numbers that start where the widest vectors may.
-class Aligned {
- public:
-  explicit Aligned(std::size_t size) : chunks_((size + widest - 1) / widest) {}
-  double* data() { return chunks_.empty() ? nullptr : chunks_.front().numbers; }
-  const double* data() const { return chunks_.empty() ? nullptr : chunks_.front().numbers; }
-
- private:
-  struct alignas(64) Chunk {
-    double numbers[widest] = {};
-  };
-  std::vector<Chunk> chunks_;
-};
 
 TaskMethod task_method(const structure::Method& method) {
   TaskMethod t;
@@ -126,10 +87,9 @@ class Group {
     task_.greatest_force = greatest.data();
     task_.bent = bent.data();
     task_.failed = failed.data();
-    const Kernel with = kernel();
-    Aligned work(static_cast<std::size_t>(with.work_size(task_)));
+    Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task_))));
     task_.work = work.data();
-    with.cross(task_);
+    TRAVERSE_LANES_CALL(cross(task_));
     std::vector<CrossingResult> results(runs_.size());
     for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
       CrossingResult& r = results[lane];
@@ -256,8 +216,6 @@ class Group {
 };
 
 }  // namespace
-
-std::string instructions() { return kernel().instructions; }
 
 std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const CrossingRun> runs) {
   return Group(plan, runs).run();

@@ -4,16 +4,17 @@
 #pragma once
 
 #include <span>
-#include <string>
 #include <vector>
 
 #include "lanes/crossing_task.hpp"
+#include "lanes/processor.hpp"
 #include "methods/one_step_methods.hpp"
 #include "structure/modal_bridge.hpp"
 
 namespace traverse::lanes {
 
-/// Linear vehicles with the same numbers (train/linear_dynamics.hpp): M x'' + C x' + K x + r0 = G^T F; matrices by rows.
+/// Linear vehicles with the same numbers (train/linear_dynamics.hpp): M x'' + C x' + K x + r0 = G^T F; matrices by
+/// rows.
 struct VehicleNumbers {
   int freedom = 0, wheels = 0;
   std::vector<double> M, C, K, r0, G;
@@ -76,10 +77,6 @@ struct CrossingResult {
   double least_force = 0.0, greatest_force = 0.0;              // N, of all wheels
   std::vector<double> bent;  // coordinates of every vehicle where it was farthest from linear
 };
-
-/// The most runs that go side by side here, and the names of the processor's instructions they use.
-inline constexpr std::size_t widest = 8;
-std::string instructions();
 
 /// At most `widest` runs.
 std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const CrossingRun> runs);

@@ -21,6 +21,7 @@
 #pragma once
 
 #include "lanes/crossing_task.hpp"
+#include "lanes/lane.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -32,12 +33,18 @@ constexpr double near = 0.9;                 // of the largest magnitude so far:
 constexpr double alike = 4.0;                // see WheelExtremes
 
 template <int W>
-class Group {
- public:
-  // NOLINTNEXTLINE: vector types have no other spelling
-  typedef double Lane __attribute__((vector_size(8 * W), may_alias));
-  typedef long Mask __attribute__((vector_size(8 * W), may_alias));  // NOLINT
+class Group : Lanes<W> {
+  using Own = Lanes<W>;
+  using typename Own::Lane;
+  using typename Own::Mask;
+  using Own::any;
+  using Own::fill;
+  using Own::greater;
+  using Own::lanes;
+  using Own::magnitude;
+  using Own::root;
 
+ public:
   Group(const Task& task, double* work) : t(task), m(task.modes) { lay_out(work); }
   long size() const { return used_ * W; }
 
@@ -63,32 +70,11 @@ class Group {
   }
 
  private:
-  // --- lanes -------------------------------------------------------------------------------------------------------
-
-  static Lane fill(double value) { return Lane{} + value; }
-  static const Lane* lanes(const double* numbers) { return reinterpret_cast<const Lane*>(numbers); }
-  static Lane* lanes(double* numbers) { return reinterpret_cast<Lane*>(numbers); }
-  static Lane magnitude(Lane x) { return x < Lane{} ? -x : x; }
-  static Lane root(Lane x) {
-    double* numbers = reinterpret_cast<double*>(&x);
-    for (int l = 0; l < W; ++l) numbers[l] = __builtin_sqrt(numbers[l]);
-    return x;
-  }
-  static bool any(Mask mask) {
-    const long* words = reinterpret_cast<const long*>(&mask);
-    long seen = 0;
-    for (int l = 0; l < W; ++l) seen |= words[l];
-    return seen != 0;
-  }
-
   // --- memory ------------------------------------------------------------------------------------------------------
 
   template <class T>
   T* take(double* work, long count) {
-    double* at = work == nullptr ? nullptr : work + used_ * W;
-    used_ += (count * static_cast<long>(sizeof(T)) + static_cast<long>(sizeof(Lane)) - 1) /
-             static_cast<long>(sizeof(Lane));
-    return reinterpret_cast<T*>(at);
+    return take_from<T>(work, used_, W, count);
   }
 
   struct KindWork {

@@ -134,6 +134,7 @@ constexpr Row run_rows[] = {
   {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step"},
   {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "runs the scene with each of these trains of EN 1991-2"},
   {"sweep_lanes", choice, "", "8", any, "0 1 4 8", 0, "so many runs go side by side in the lanes of the processor's vectors, where they may; 0: each by itself, driven by TS"},
+  {"sweep_instants", number, "", "20", {4.0, 1e4}, "", 0, "a period of the fastest mode is looked at so often where the bridge's modes move exactly in time; parabolas find the peaks between"},
 
   {"help", text, "", "", any, "", 0, "prints this list; -help petsc: PETSc's options too"},
 };

@@ -35,6 +35,7 @@ void read_sweep(const Options& o, Scene& scene) {
   if (!o.has("beam_spans")) o.refuse(given, "a sweep is of a bridge's response: there is no beam (beam_spans)");
   scene.sweep.emplace();
   scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
+  scene.sweep->instants = o.number("sweep_instants");
   if (o.has("sweep_speed")) scene.sweep->speeds = read_speeds(o);
   if (!o.has("sweep_hslm_a")) return;
   if (o.has("load_hslm_a")) o.refuse("load_hslm_a", "give either load_hslm_a or sweep_hslm_a");

@@ -4,14 +4,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "lanes/processor.hpp"
+#include "lanes/speed_class.hpp"
 #include "run/signals.hpp"
 #include "run/watch.hpp"
 
 namespace traverse::app {
 namespace {
 
-// As measured; peaks by modes are looked for at so many instants a period of the highest mode.
-constexpr double seconds_a_mode = 1.3e-8, instants_a_period = 20.0;
+// As measured. Peaks by modes take that much at each instant for every mode, and for every mode and probe.
+constexpr double seconds_a_mode = 2e-9, seconds_a_probe = 4e-10;
 // Of a run side by side with seven others, a stage.
 constexpr double seconds_a_lane_vehicle = 2e-8, seconds_a_lane_mode = 4e-9;
 constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
@@ -48,9 +50,11 @@ void CaseRunner::set_up_lanes() {
 
 std::vector<std::vector<std::size_t>> CaseRunner::groups() const {
   std::vector<std::vector<std::size_t>> groups;
+  std::size_t most = lanes_ ? scene_.sweep->lanes : 1;
+  if (scene_.exact_in_time()) most = std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
   for (std::size_t i = 0; i < speeds_.size(); ++i) {
-    const bool joins = lanes_ && !groups.empty() && groups.back().size() < scene_.sweep->lanes &&
-                       SideBySide::step_class(speeds_[groups.back().front()]) == SideBySide::step_class(speeds_[i]);
+    const bool joins = !groups.empty() && groups.back().size() < most &&
+                       lanes::speed_class(speeds_[groups.back().front()]) == lanes::speed_class(speeds_[i]);
     if (!joins) groups.emplace_back();
     groups.back().push_back(i);
   }
@@ -60,14 +64,15 @@ std::vector<std::vector<std::size_t>> CaseRunner::groups() const {
 std::vector<CaseResult> CaseRunner::run_group(std::size_t train, const std::vector<std::size_t>& speeds,
                                               const std::function<void(double)>& reached) {
   std::vector<CaseResult> results;
-  if (!lanes_) {
-    for (const std::size_t i : speeds) results.push_back(run(train, speeds_[i], reached));
-    return results;
-  }
   std::vector<double> own, ends;
   for (const std::size_t i : speeds) {
     own.push_back(speeds_[i]);
     ends.push_back(duration(train, speeds_[i]));
+  }
+  if (scene_.exact_in_time()) return run_by_modes(train, own);
+  if (!lanes_) {
+    for (const double speed : own) results.push_back(run(train, speed, reached));
+    return results;
   }
   for (const lanes::CrossingResult& crossing : lanes_->run(own, ends, lanes_->steps())) {
     const double speed = own[results.size()];
@@ -80,8 +85,7 @@ std::vector<CaseResult> CaseRunner::run_group(std::size_t train, const std::vect
     CaseResult& result = results.emplace_back();
     const auto peak = [](const lanes::CrossingPeak& p) { return integrate::Peak{p.value, p.time}; };
     for (std::size_t p = 0; p < crossing.deflection.size(); ++p)
-      result.peaks.push_back(
-          {peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
+      result.peaks.push_back({peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
     result.static_deflection = static_deflection_[train];
     result.least_wheel_force = crossing.least_force;
     result.greatest_wheel_force = crossing.greatest_force;
@@ -109,8 +113,9 @@ double CaseRunner::duration(std::size_t train, double speed) const {
 double CaseRunner::cost() const {
   if (scene_.exact_in_time()) {
     const std::vector<double>& omega = shared_.modal->omega();
-    return seconds_a_mode * instants_a_period * omega.back() / (2.0 * std::numbers::pi) *
-           static_cast<double>(omega.size());
+    const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
+    const double an_instant = seconds_a_mode + seconds_a_probe * static_cast<double>(scene_.output.probes.size());
+    return instants * static_cast<double>(omega.size()) * an_instant;
   }
   if (lanes_) {
     const SideBySide::Steps steps = lanes_->steps();
@@ -133,7 +138,7 @@ double CaseRunner::cost_of_all() const {
 }
 
 CaseResult CaseRunner::run(std::size_t train, double speed, const std::function<void(double)>& reached) {
-  return scene_.exact_in_time() ? run_by_modes(train, speed) : run_by_elements(train, speed, reached);
+  return scene_.exact_in_time() ? run_by_modes(train, {speed}).front() : run_by_elements(train, speed, reached);
 }
 
 CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached) {
@@ -194,19 +199,23 @@ CaseResult CaseRunner::run_with_mechanisms(std::size_t train, double speed,
   return result;
 }
 
-CaseResult CaseRunner::run_by_modes(std::size_t train, double speed) {
-  const structure::ModalBridge& bridge = *shared_.modal;
-  auto place = histories_.find(train);
-  if (place == histories_.end()) {
-    place = histories_.emplace(train, integrate::ForceHistory(bridge.influence(), scene_of(train, speed).load)).first;
-    static_deflection_[train] = integrate::static_peaks(bridge, place->second);
+std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, const std::vector<double>& speeds) {
+  auto place = passages_.find(train);
+  if (place == passages_.end()) {
+    const train::MovingLoad& load = scene_of(train, speeds.front()).load;
+    place = passages_.try_emplace(train, *shared_.modal, load, scene_.start == Start::equilibrium).first;
+    static_deflection_[train] = place->second.static_peaks();
   }
-  CaseResult result;
-  result.peaks = integrate::modal_peaks(bridge, place->second, speed, scene_.start == Start::equilibrium,
-                                        duration(train, speed), [] { return caught_signal() == 0; });
-  result.static_deflection = static_deflection_[train];
-  result.ended = caught_signal() == 0;
-  return result;
+  std::vector<double> ends;
+  for (const double speed : speeds) ends.push_back(duration(train, speed));
+  std::vector<CaseResult> results(speeds.size());
+  const auto peaks = place->second.peaks(speeds, ends, scene_.sweep->instants, [] { return caught_signal() == 0; });
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    results[i].peaks = peaks[i];
+    results[i].static_deflection = static_deflection_[train];
+    results[i].ended = caught_signal() == 0;
+  }
+  return results;
 }
 
 }  // namespace traverse::app

@@ -7,7 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "integrate/modal_peaks.hpp"
+#include "integrate/probe_peaks.hpp"
+#include "lanes/force_passages.hpp"
 #include "run/passage.hpp"
 #include "side_by_side.hpp"
 
@@ -53,7 +54,7 @@ class CaseRunner {
   const Scene& scene_of(std::size_t train, double speed);
   CaseResult run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached);
   CaseResult run_with_mechanisms(std::size_t train, double speed, const std::function<void(double)>& reached);
-  CaseResult run_by_modes(std::size_t train, double speed);
+  std::vector<CaseResult> run_by_modes(std::size_t train, const std::vector<double>& speeds);
   void set_up_lanes();
 
   Scene scene_;
@@ -61,7 +62,7 @@ class CaseRunner {
   std::vector<MovingLoad> loads_;
   SharedBeam shared_;
   std::map<std::size_t, std::vector<double>> static_deflection_;  // of each train
-  std::map<std::size_t, integrate::ForceHistory> histories_;
+  std::map<std::size_t, lanes::ForcePassages> passages_;          // of moving forces by modes
   std::optional<SideBySide> lanes_;
   std::string why_no_lanes_;
   long alone_ = 0;

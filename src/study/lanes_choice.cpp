@@ -10,6 +10,7 @@
 
 #include "accuracy/first_guess.hpp"
 #include "accuracy/trials.hpp"
+#include "lanes/speed_class.hpp"
 #include "results/stage.hpp"
 #include "study/side_by_side.hpp"
 #include "traverse/options/input.hpp"
@@ -144,12 +145,12 @@ std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, 
   std::vector<std::vector<double>> groups;
   for (const double place : places) {
     const auto at = static_cast<std::size_t>(place * static_cast<double>(speeds.size() - 1));
-    const int number = SideBySide::step_class(speeds[at]);
+    const int number = lanes::speed_class(speeds[at]);
     std::vector<double> group;
     for (std::size_t i = at; i < speeds.size() && group.size() < most; ++i)
-      if (SideBySide::step_class(speeds[i]) == number) group.push_back(speeds[i]);
+      if (lanes::speed_class(speeds[i]) == number) group.push_back(speeds[i]);
     for (std::size_t i = at; i > 0 && group.size() < most; --i)
-      if (SideBySide::step_class(speeds[i - 1]) == number) group.push_back(speeds[i - 1]);
+      if (lanes::speed_class(speeds[i - 1]) == number) group.push_back(speeds[i - 1]);
     std::sort(group.begin(), group.end());
     groups.push_back(group);
   }

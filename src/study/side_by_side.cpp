@@ -4,16 +4,14 @@
 #include <cmath>
 
 #include "integrate/integrator_choice.hpp"
+#include "lanes/speed_class.hpp"
 #include "run/passage.hpp"
 
 namespace traverse::app {
 namespace {
 
-constexpr double classes_an_octave = 4.0;  // of speeds: steps are at most a fifth shorter than asked for
 constexpr double one_place = 1e-9;         // m: events nearer than that are one
 constexpr double no_step = 1e-9;           // of the shapes' largest values: surfaces that meet without a step
-
-double speed_of_class(int number) { return std::exp2(number / classes_an_octave); }
 
 /// Whether wheels come onto the bridge, and leave it, without a step.
 bool level_ends(const structure::ModalBridge& bridge) {
@@ -66,10 +64,6 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
   plan_.level_until = scene.profile.level() ? shared.beam->mesh().start() : -1e300;
 }
 
-int SideBySide::step_class(double speed) {
-  return static_cast<int>(std::floor(classes_an_octave * std::log2(speed) + 1e-9));
-}
-
 /// Distances at which a wheel meets a corner of the surface or passes a probe.
 std::vector<double> SideBySide::events(double past) const {
   std::vector<double> events;
@@ -99,7 +93,7 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speed
                                                    const Steps& steps) {
   plan_.method = steps.method;
   plan_.exact_modes = steps.method.stages.size() == 1;
-  const double ds = steps.longest * speed_of_class(step_class(speeds.front()));
+  const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(speeds.front()));
   double past = 0.0;
   for (std::size_t i = 0; i < speeds.size(); ++i) past = std::max(past, speeds[i] * ends[i]);
   plan_.stretches.clear();

@@ -24,15 +24,13 @@ class SideBySide {
 
   /// Why these vehicles on this bridge cannot; empty: they can.
   const std::string& obstacle() const { return obstacle_; }
-  /// Speeds of one class take the same steps: a run's steps are its own, whatever runs are beside it.
-  static int step_class(double speed);
   struct Steps {
     structure::Method method;  // for steps of 1 s
     double longest = 0.0;      // s
   };
   /// Those that the scene asks for.
   Steps steps() const;
-  /// At most lanes::widest speeds of a class, and when each run ends.
+  /// At most lanes::widest speeds of a class (lanes/speed_class.hpp), and when each run ends.
   std::vector<lanes::CrossingResult> run(std::span<const double> speeds, std::span<const double> ends,
                                          const Steps& steps);
   /// How far the mechanisms were out of balance in a run: lanes::defect.

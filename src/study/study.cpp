@@ -146,11 +146,6 @@ std::string name_of(const Case& c, const results::Sweep& sweep) {
   return fmt::format("the run{} at {:g} m/s ({:g} km/h)", train, from, 3.6 * from);
 }
 
-std::size_t runs_in(const std::vector<Case>& cases) {
-  return std::accumulate(cases.begin(), cases.end(), std::size_t{0},
-                         [](std::size_t sum, const Case& c) { return sum + c.speeds.size(); });
-}
-
 /// How far the sweep is, by the time that its runs' motions last: runs are dealt longest first.
 class Course {
  public:
@@ -159,6 +154,7 @@ class Course {
     for (const Case& c : cases) {
       duration_.push_back(duration_of(c, runner));
       until_.push_back(until_.back() + duration_.back());
+      runs_.push_back(runs_.back() + c.speeds.size());
     }
   }
 
@@ -167,14 +163,15 @@ class Course {
     if (taken == 0) return;
     const double others = 0.5 * static_cast<double>(ranks_ - 1) * duration_[taken - 1];
     const double done = std::max(until_[taken] - left - others, 0.0);
-    progress_.runs(done / until_.back(), taken > ranks_ ? taken - ranks_ : 0, duration_.size());
+    progress_.runs(done / until_.back(), runs_[taken > ranks_ ? taken - ranks_ : 0], runs_.back());
   }
   void done() { progress_.done(); }
 
  private:
   std::size_t ranks_;
   results::Progress progress_;
-  std::vector<double> duration_, until_{0.0};  // s, of each run, and of all before it
+  std::vector<double> duration_, until_{0.0};  // s, of the runs of each case, and of all cases before it
+  std::vector<std::size_t> runs_{0};           // in the cases before each
 };
 
 /// This rank's share of the runs.
@@ -276,7 +273,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   MPI_Allreduce(MPI_IN_PLACE, &done[2], 1, MPI_LONG, MPI_SUM, comm);
   gather(comm, sweep);
 
-  const results::SweepCourse whole = {done[0], static_cast<long>(runs_in(cases)),
+  const results::SweepCourse whole = {done[0], static_cast<long>(runner.speeds().size() * runner.trains()),
                                       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
                                       failure.run != nobody ? failure.message
                                       : done[1] != 0        ? fmt::format("ended by signal {}", done[1])

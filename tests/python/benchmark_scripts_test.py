@@ -98,6 +98,17 @@ class Scripts(InAFolder):
         self.assert_errors(rows, "acceleration against the list", 3e-2)  # the list has all stations, this run midspan
         self.assert_picture("hslm_sweep.png")
 
+    def test_lanes(self):
+        self.run_smallest("lanes")
+        rows = self.table("lanes.csv", ["scene", "runs", "passages", "ms each", "error of deflection",
+                                        "error of acceleration", "error of moment"])
+        self.assertEqual([row["runs"] for row in rows], ["1 side by side", "4 side by side", "8 side by side"] * 2)
+        self.assertEqual({row["passages"] for row in rows}, {"22"})
+        self.assert_positive(rows, "ms each")
+        self.assert_errors(rows, "error of deflection", 1e-3)
+        self.assert_errors(rows, "error of acceleration", 5e-3)
+        self.assert_errors(rows, "error of moment", 1e-3)
+
     def test_long_bridge(self):
         self.run_smallest("long_bridge")
         rows = self.table("long_bridge.csv", ["bridge", "method", "times real time, 1 rank", "2 ranks",

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "integrate/modal_peaks.hpp"
+#include "integrate/modal_motion.hpp"
 #include "support/curve.hpp"
 #include "support/message.hpp"
 

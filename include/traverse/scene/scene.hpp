@@ -45,6 +45,7 @@ struct Sweep {
   std::vector<MovingLoad> loads;  // of each of these trains, at the scene's speed
   std::size_t lanes = 8;          // runs side by side; 0: each by itself
   std::string method;             // ts_type of those; empty: as TS takes it
+  double instants = 20.0;         // looked at in a period of the fastest mode, where modes move exactly in time
 };
 
 /// Vehicles as mechanisms, or linear, those that can be; automatic: linear where a search for the accuracy finds that

@@ -1,0 +1,75 @@
+// What the kernels share: a number of every run, one in each lane of a vector. As all that kernels are made of, it is
+// compiled once for each kind of processor and seen by no linker (crossing_kernel.hpp).
+#pragma once
+
+namespace traverse::lanes {
+namespace {
+
+// NOLINTNEXTLINE: vector types have no other spelling
+typedef double FourNumbers __attribute__((vector_size(32), may_alias));
+typedef double EightNumbers __attribute__((vector_size(64), may_alias));
+typedef long long EightWords __attribute__((vector_size(64), may_alias));  // NOLINT
+
+/// Numbers in a vector of the processor.
+#ifdef __AVX512F__
+constexpr int in_a_row = 8;
+#else
+constexpr int in_a_row = 4;
+#endif
+
+template <int W>
+struct Lanes {
+  // NOLINTNEXTLINE: vector types have no other spelling
+  typedef double Lane __attribute__((vector_size(8 * W), may_alias));
+  typedef double Unaligned __attribute__((vector_size(8 * W), may_alias, aligned(8)));
+  typedef long Mask __attribute__((vector_size(8 * W), may_alias));  // NOLINT
+
+  static Lane fill(double value) { return Lane{} + value; }
+  static const Lane* lanes(const double* numbers) { return reinterpret_cast<const Lane*>(numbers); }
+  static Lane* lanes(double* numbers) { return reinterpret_cast<Lane*>(numbers); }
+  /// Without the bit of the sign.
+  static Lane magnitude(Lane x) { return (Lane)((Mask)x & 0x7fffffffffffffffL); }
+  static Lane greater(Lane a, Lane b) { return a > b ? a : b; }
+  static Lane root(Lane x) {
+    double* numbers = reinterpret_cast<double*>(&x);
+    for (int l = 0; l < W; ++l) numbers[l] = __builtin_sqrt(numbers[l]);
+    return x;
+  }
+  /// Bits, one at least where a > b in some lane, and none where it is in no lane.
+  static int exceeds(Lane a, Lane b) {
+#ifdef __AVX512DQ__
+    constexpr int greater_than = 14, all = 0xff, no_rounding = 4;
+    if constexpr (W == 8)
+      return __builtin_ia32_cmppd512_mask(*reinterpret_cast<const EightNumbers*>(&a),
+                                          *reinterpret_cast<const EightNumbers*>(&b), greater_than,
+                                          static_cast<unsigned char>(all), no_rounding);
+#endif
+    return any(a > b) ? 1 : 0;
+  }
+  /// All bits of a lane of the mask are set, or none: one of them tells.
+  static bool any(Mask mask) {
+#ifdef __AVX512DQ__
+    if constexpr (W == 8) return __builtin_ia32_cvtq2mask512(*reinterpret_cast<const EightWords*>(&mask)) != 0;
+#endif
+#ifdef __AVX__
+    if constexpr (W == 4) return __builtin_ia32_movmskpd256(*reinterpret_cast<const FourNumbers*>(&mask)) != 0;
+#endif
+    const long* words = reinterpret_cast<const long*>(&mask);
+    long seen = 0;
+    for (int l = 0; l < W; ++l) seen |= words[l];
+    return seen != 0;
+  }
+};
+
+/// The next `count` numbers of type T of the memory at `work`, in whole lanes, of which `used` are taken; null while
+/// work is null and the size alone is asked for.
+template <class T>
+T* take_from(double* work, long& used, int width, long count) {
+  double* at = work == nullptr ? nullptr : work + used * width;
+  const long size = 8L * width;
+  used += (count * static_cast<long>(sizeof(T)) + size - 1) / size;
+  return reinterpret_cast<T*>(at);
+}
+
+}  // namespace
+}  // namespace traverse::lanes

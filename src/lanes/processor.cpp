@@ -1,0 +1,37 @@
+#include "lanes/processor.hpp"
+
+namespace traverse::lanes {
+
+Target best_target() {
+#ifdef __x86_64__
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("avx512bw"))
+    return Target::avx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return Target::avx2;
+#endif
+  return Target::plain;
+}
+
+std::size_t best_width() {
+  switch (best_target()) {
+    case Target::avx512:
+      return 8;
+    case Target::avx2:
+      return 4;
+    default:
+      return 1;
+  }
+}
+
+std::string instructions() {
+  switch (best_target()) {
+    case Target::avx512:
+      return "AVX-512";
+    case Target::avx2:
+      return "AVX2";
+    default:
+      return "plain";
+  }
+}
+
+}  // namespace traverse::lanes

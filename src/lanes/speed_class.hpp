@@ -1,0 +1,18 @@
+// Classes of speeds that take the same steps by distance: a run's steps follow from its own speed, whatever runs are
+// beside it.
+#pragma once
+
+#include <cmath>
+
+namespace traverse::lanes {
+
+inline constexpr double classes_an_octave = 4.0;  // of speeds: steps are at most a fifth shorter than asked for
+
+inline int speed_class(double speed) {
+  return static_cast<int>(std::floor(classes_an_octave * std::log2(speed) + 1e-9));
+}
+
+/// The lowest speed of a class, m/s.
+inline double speed_of_class(int number) { return std::exp2(number / classes_an_octave); }
+
+}  // namespace traverse::lanes
