@@ -216,8 +216,12 @@ class Group {
     task_.modes = static_cast<int>(modes);
     task_.omega2 = side_by_side(
         modes, [&](const CrossingRun&, std::size_t i) { return bridge.omega()[i] * bridge.omega()[i]; });
-    task_.damping =
-        side_by_side(modes, [&](const CrossingRun&, std::size_t i) { return 2.0 * bridge.sigma()[i]; });
+    task_.coupled = bridge.coupled();
+    task_.damping = side_by_side(task_.coupled ? modes * modes : modes, [&](const CrossingRun&, std::size_t i) {
+      if (!task_.coupled) return 2.0 * bridge.sigma()[i];
+      const auto row = static_cast<Eigen::Index>(i / modes), column = static_cast<Eigen::Index>(i % modes);
+      return row == column ? 2.0 * bridge.sigma()[i / modes] : bridge.cross_damping()(row, column);
+    });
     task_.q = side_by_side(modes, [](const CrossingRun& run, std::size_t i) { return (*run.q)[i]; });
     const structure::PiecewiseCubic& influence = bridge.influence();
     task_.influence = {static_cast<int>(influence.pieces()), static_cast<int>(influence.channels),

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
+#include <utility>
 
 #include "beam/shape.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 using base::check;
 using Polynomial = std::array<double, 4>;  // by powers
 
-constexpr double diagonal = 1e-6;  // relative coupling of modes that is none
+constexpr double diagonal = 1e-6;  // damping between two modes that is none, over the geometric mean of their own
 
 /// The polynomial of x - d.
 Polynomial shifted(const Polynomial& c, double d) {
@@ -69,41 +69,55 @@ const double* ModalBridge::shape(std::size_t mode) const {
   return basis_.shape[mode].data() + static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
 }
 
-/// kappa of A phi = kappa M phi.
-double ModalBridge::share_of_mass(Mat matrix, std::size_t mode, const char* what) const {
-  const base::Handle<Vec> phi = vector(beam_.comm(), shape(mode), beam_.local_unknowns());
-  base::Handle<Vec> force, inertia;
-  check(VecDuplicate(phi, force.out()));
-  check(VecDuplicate(phi, inertia.out()));
-  check(MatMult(matrix, phi, force));
-  check(MatMult(beam_.mass(), phi, inertia));
-  PetscScalar kappa = 0.0;
-  PetscReal before = 0.0, after = 0.0;
-  check(VecDot(phi, force, &kappa));
-  check(VecNorm(force, NORM_2, &before));
-  check(VecAXPY(force, -kappa, inertia));
-  check(VecNorm(force, NORM_2, &after));
-  if (after > diagonal * before)
-    throw InputError(std::string("model_modes: ") + what +
-                     ": the modes are coupled; allowed: dampers and springs spread like the beam's mass, "
-                     "model_damping_ratios instead of Rayleigh damping where there are springs, or the full model "
-                     "(model_modes: 0)");
-  return kappa;
+/// phi^T matrix phi, the same on all ranks; zero of no matrix.
+Eigen::MatrixXd ModalBridge::among_modes(Mat matrix) const {
+  const auto m = static_cast<Eigen::Index>(modes());
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(m, m);
+  if (matrix == nullptr) return product;
+  std::vector<base::Handle<Vec>> shapes;
+  for (std::size_t i = 0; i < modes(); ++i) shapes.push_back(vector(beam_.comm(), shape(i), beam_.local_unknowns()));
+  base::Handle<Vec> force;
+  check(VecDuplicate(shapes.front(), force.out()));
+  for (Eigen::Index i = 0; i < m; ++i) {
+    check(MatMult(matrix, shapes[static_cast<std::size_t>(i)], force));
+    for (Eigen::Index k = 0; k <= i; ++k) {
+      check(VecDot(shapes[static_cast<std::size_t>(k)], force, &product(i, k)));
+      product(k, i) = product(i, k);
+    }
+  }
+  return product;
 }
 
 void ModalBridge::set_damping(const std::vector<double>& ratios) {
   const beam::Rayleigh ab = beam_.rayleigh();
+  // Rayleigh's b damps the beam, but not the foundation's springs.
+  const Eigen::MatrixXd springs = among_modes(ab.b != 0.0 ? beam_.springs() : nullptr);
+  const Eigen::MatrixXd dampers = among_modes(beam_.dampers());
   for (std::size_t i = 0; i < modes(); ++i) {
     const double omega = basis_.omega[i];
     if (omega <= 0.0) throw InputError("model_modes: the beam floats; hold it with supports or a foundation");
+    const auto k = static_cast<Eigen::Index>(i);
     double c = ab.a + ab.b * omega * omega;
-    if (beam_.springs() != nullptr && ab.b != 0.0)
-      c -= ab.b * share_of_mass(beam_.springs(), i, "Rayleigh's b damps the beam, but not the foundation's springs");
-    if (beam_.dampers() != nullptr)
-      c += share_of_mass(beam_.dampers(), i, "the foundation has dampers that Rayleigh damping does not cover");
+    c -= ab.b * springs(k, k);
+    c += dampers(k, k);
     own_drag_.push_back(ratios.empty() ? 0.0 : 2.0 * ratios[std::min(i, ratios.size() - 1)] * omega);
     sigma_.push_back(0.5 * (c + own_drag_.back()));
   }
+  set_cross_damping(dampers - ab.b * springs);
+}
+
+/// Keeps it where it is more than rounding.
+void ModalBridge::set_cross_damping(Eigen::MatrixXd damping) {
+  damping.diagonal().setZero();
+  const Eigen::Map<const Eigen::ArrayXd> own(sigma_.data(), damping.rows());
+  const Eigen::ArrayXd root = (2.0 * own).abs().sqrt();
+  if ((damping.array().abs() > diagonal * (root.matrix() * root.matrix().transpose()).array()).any())
+    cross_damping_ = std::move(damping);
+}
+
+const ComplexModes& ModalBridge::complex_modes() const {
+  if (!complex_modes_) complex_modes_.emplace(omega(), sigma(), cross_damping());
+  return *complex_modes_;
 }
 
 std::vector<double> ModalBridge::static_solution(const std::vector<double>& load) {
