@@ -115,6 +115,19 @@ void ModalBridge::set_cross_damping(Eigen::MatrixXd damping) {
     cross_damping_ = std::move(damping);
 }
 
+void ModalBridge::add_coupling_forces(const double* w, double* nodal) const {
+  if (!coupled()) return;
+  const base::Handle<Vec> rate = vector(beam_.comm(), w, beam_.local_unknowns());
+  const base::Handle<Vec> sum = vector(beam_.comm(), nodal, beam_.local_unknowns());
+  base::Handle<Vec> force;
+  check(VecDuplicate(sum, force.out()));
+  for (const auto& [matrix, factor] : {std::pair(beam_.dampers(), -1.0), {beam_.springs(), beam_.rayleigh().b}}) {
+    if (matrix == nullptr) continue;
+    check(MatMult(matrix, rate, force));
+    check(VecAXPY(sum, factor, force));
+  }
+}
+
 const ComplexModes& ModalBridge::complex_modes() const {
   if (!complex_modes_) complex_modes_.emplace(omega(), sigma(), cross_damping());
   return *complex_modes_;
@@ -135,6 +148,7 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   probes_.count = stations.size();
   beam::Recovery recovery(beam_, stations, 0.0);
   note_forms(recovery);
+  if (coupled()) note_coupling(recovery);
   beam::Recovery heavy(beam_, stations, gravity);
   note_weight(heavy, gravity);
   std::vector<Line> lines = lines_of_modes();
@@ -162,6 +176,30 @@ void ModalBridge::note_forms(beam::Recovery& recovery) {
     for (const beam::Response& r : seen) {
       const std::size_t at = probes_.moment_by_rate.size();
       probes_.moment_by_rate.push_back(r.moment + own_drag_[i] * probes_.moment_by_acceleration[at]);
+    }
+  }
+}
+
+/// Of each mode's rate: what the forces that couple modes deflect the others by.
+void ModalBridge::note_coupling(beam::Recovery& recovery) {
+  const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
+  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> seen;
+  for (std::size_t i = 0; i < modes(); ++i) {
+    std::vector<double> force(basis_.shape.front().size(), 0.0), share(modes(), 0.0);
+    add_coupling_forces(shape(i), force.data() + begin);
+    for (std::size_t k = 0; k < modes(); ++k)
+      for (int u = 0; u < beam_.local_unknowns(); ++u)
+        share[k] += shape(k)[u] * force[static_cast<std::size_t>(begin + u)];
+    MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(share.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+    std::vector<double> others = static_solution(force);
+    for (std::size_t k = 0; k < modes(); ++k)
+      for (std::size_t u = 0; u < others.size(); ++u)
+        others[u] -= share[k] / (basis_.omega[k] * basis_.omega[k]) * basis_.shape[k][u];
+    recovery.evaluate(others.data() + begin, zero.data(), zero.data(), {}, seen);
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+      probes_.deflection_by_rate.push_back(seen[p].deflection);
+      probes_.moment_by_rate[i * probes_.count + p] += seen[p].moment;
     }
   }
 }

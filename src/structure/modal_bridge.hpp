@@ -34,7 +34,8 @@ struct PiecewiseCubic {
 /// The response at stations as linear forms of the modes' coordinates, rates and accelerations: [mode][station].
 struct ModalProbes {
   std::size_t count = 0;
-  std::vector<double> deflection;  // of q; of q'' it is the acceleration
+  std::vector<double> deflection;          // of q; of q'' it is the acceleration
+  std::vector<double> deflection_by_rate;  // of coupled modes alone
   std::vector<double> moment, moment_by_rate, moment_by_acceleration;
   std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: of the beam's own weight
 };
@@ -59,6 +60,9 @@ class ModalBridge {
   /// diagonal.
   const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
   bool coupled() const { return cross_damping_.size() > 0; }
+  /// Collective. Adds to nodal forces, where modes are coupled, what couples them does at nodal rates w:
+  /// -(C* - a M - b K*) w. Both of this rank's unknowns.
+  void add_coupling_forces(const double* w, double* nodal) const;
   /// The free oscillations of coupled modes, found when they are first asked for.
   const ComplexModes& complex_modes() const;
   /// Damping given by ratios, 1/s: its forces are the mass times an acceleration own_drag q'.
@@ -83,6 +87,7 @@ class ModalBridge {
   void set_damping(const std::vector<double>& ratios);
   void set_cross_damping(Eigen::MatrixXd damping);
   void note_forms(beam::Recovery& recovery);
+  void note_coupling(beam::Recovery& recovery);
   void note_weight(beam::Recovery& recovery, double gravity);
   Line correction_of(beam::Recovery& recovery, std::size_t probe, double beam::Response::*quantity);
   std::vector<Line> lines_of_modes() const;
