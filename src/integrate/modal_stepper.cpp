@@ -101,25 +101,9 @@ void ModalStepper::load_now(double* nodal) const {
 void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   const std::size_t n = force_.size();
   double *v = y_.data(), *w = v + n, *a = ydot_.data() + n;
-  std::fill_n(w, n, 0.0);
-  std::fill_n(a, n, 0.0);
-  std::fill(drag_.begin(), drag_.end(), 0.0);
-  for (std::size_t i = 0; i < bridge_.modes(); ++i) {
-    const double* phi = bridge_.shape(i);
-    const double rate = motion_.rate()[i], acceleration = motion_.acceleration()[i];
-    for (std::size_t k = 0; k < n; ++k) {
-      w[k] += rate * phi[k];
-      a[k] += acceleration * phi[k];
-      drag_[k] += bridge_.own_drag()[i] * rate * phi[k];
-    }
-  }
-  std::copy_n(w, n, ydot_.data());
-
-  // The static correction: K* v = P and what couples the modes, less the modes' share of it.
+  // The static correction first: K* v = P and dampers' forces, less the modes' share of it.
   load_now(force_.data());
-  bridge_.add_coupling_forces(w, force_.data());
-  for (std::size_t k = 0; k < n; ++k)
-    if (bridge_.beam().fixed()[k] != 0) force_[k] = 0.0;
+  bridge_.add_forces_on_others(motion_.rate().data(), force_.data());
   std::vector<double> share(bridge_.modes(), 0.0);
   for (std::size_t i = 0; i < bridge_.modes(); ++i)
     for (std::size_t k = 0; k < n; ++k) share[i] += bridge_.shape(i)[k] * force_[k];
@@ -135,8 +119,20 @@ void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample,
   MPI_Allreduce(MPI_IN_PLACE, &stored, 1, MPI_DOUBLE, MPI_SUM, system_.comm());
   if (steps_ == 0) at_start_ = stored;
 
-  for (std::size_t i = 0; i < bridge_.modes(); ++i)
-    for (std::size_t k = 0; k < n; ++k) v[k] += motion_.q()[i] * bridge_.shape(i)[k];
+  std::fill_n(w, n, 0.0);
+  std::fill_n(a, n, 0.0);
+  std::fill(drag_.begin(), drag_.end(), 0.0);
+  for (std::size_t i = 0; i < bridge_.modes(); ++i) {
+    const double* phi = bridge_.shape(i);
+    const double q = motion_.q()[i], rate = motion_.rate()[i], acceleration = motion_.acceleration()[i];
+    for (std::size_t k = 0; k < n; ++k) {
+      v[k] += q * phi[k];
+      w[k] += rate * phi[k];
+      a[k] += acceleration * phi[k];
+      drag_[k] += bridge_.own_drag()[i] * rate * phi[k];
+    }
+  }
+  std::copy_n(w, n, ydot_.data());
   for (std::size_t k = 0; k < n; ++k) v[k] += sagging_[k];
   if (y_.size() > 2 * n) {  // the rank that keeps the energies
     y_[2 * n] = motion_.dissipated();

@@ -228,7 +228,8 @@ class Group {
                        influence.breaks.data(), influence.coefficients.data()};
     const structure::ModalProbes& probes = bridge.probes();
     task_.probes = {static_cast<int>(probes.count), probes.deflection.data(), probes.moment.data(),
-                    probes.moment_by_rate.data(), probes.moment_by_acceleration.data(), probes.deflection_by_rate.data()};
+                    probes.moment_by_rate.data(), probes.moment_by_acceleration.data(),
+                    probes.deflection_by_rate.empty() ? nullptr : probes.deflection_by_rate.data()};
   }
 
   void add_track() {

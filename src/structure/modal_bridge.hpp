@@ -35,7 +35,7 @@ struct PiecewiseCubic {
 struct ModalProbes {
   std::size_t count = 0;
   std::vector<double> deflection;          // of q; of q'' it is the acceleration
-  std::vector<double> deflection_by_rate;  // of coupled modes alone
+  std::vector<double> deflection_by_rate;  // empty where damping does nothing to modes left out
   std::vector<double> moment, moment_by_rate, moment_by_acceleration;
   std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: of the beam's own weight
 };
@@ -60,9 +60,9 @@ class ModalBridge {
   /// diagonal.
   const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
   bool coupled() const { return cross_damping_.size() > 0; }
-  /// Collective. Adds to nodal forces, where modes are coupled, what couples them does at nodal rates w:
-  /// -(C* - a M - b K*) w. Both of this rank's unknowns.
-  void add_coupling_forces(const double* w, double* nodal) const;
+  /// Adds to this rank's nodal forces what damping that couples modes does, at the modes' rates q', to those left out:
+  /// -C* phi q' less the modes' share of it.
+  void add_forces_on_others(const double* rates, double* nodal) const;
   /// The free oscillations of coupled modes, found when they are first asked for.
   const ComplexModes& complex_modes() const;
   /// Damping given by ratios, 1/s: its forces are the mass times an acceleration own_drag q'.
@@ -83,11 +83,12 @@ class ModalBridge {
     std::size_t probe = 0;
     double beam::Response::*direct = nullptr;  // null: none
   };
-  Eigen::MatrixXd among_modes(Mat matrix) const;
+  Eigen::MatrixXd on_shapes(Mat matrix) const;
+  Eigen::MatrixXd share_of_modes(const Eigen::MatrixXd& forces) const;
   void set_damping(const std::vector<double>& ratios);
-  void set_cross_damping(Eigen::MatrixXd damping);
+  void set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share);
   void note_forms(beam::Recovery& recovery);
-  void note_coupling(beam::Recovery& recovery);
+  void note_others(beam::Recovery& recovery);
   void note_weight(beam::Recovery& recovery, double gravity);
   Line correction_of(beam::Recovery& recovery, std::size_t probe, double beam::Response::*quantity);
   std::vector<Line> lines_of_modes() const;
@@ -99,6 +100,7 @@ class ModalBridge {
   modes::Basis basis_;
   std::vector<double> sigma_, own_drag_;
   Eigen::MatrixXd cross_damping_;
+  Eigen::MatrixXd forces_on_others_;  // of each mode's rate, this rank's unknowns; no columns where there are none
   mutable std::optional<ComplexModes> complex_modes_;
   ModalProbes probes_;
   PiecewiseCubic influence_;

@@ -372,24 +372,12 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   }
   MPI_Bcast(q.data(), static_cast<int>(q.size()), MPI_DOUBLE, 0, beam_.comm());
 
-  w_nodal_.assign(size, 0.0);
-  out.a.assign(size, 0.0);
-  out.drag.assign(size, 0.0);
-  for (std::size_t k = 0; k < size; ++k) {
-    const double* phi = &by_unknown_[(first + k) * modes_];
-    for (std::size_t i = 0; i < modes_; ++i) {
-      w_nodal_[k] += phi[i] * q[modes_ + i];
-      out.a[k] += phi[i] * q[2 * modes_ + i];
-      out.drag[k] += phi[i] * bridge_.own_drag()[i] * q[modes_ + i];
-    }
-  }
-
-  // Forces but its own weight, and what they and dampers deflect it by at rest, less the modes' share of it.
+  // Forces but its own weight; what they and dampers deflect it by at rest, less the modes' share of that.
   out.P.assign(size, 0.0);
   add_contacts(contacts, out.P.data());
   for (const beam::ElementLoad& force : forces_) add_force(line_, force, out.P.data());
   rest_ = out.P;
-  bridge_.add_coupling_forces(w_nodal_.data(), rest_.data());
+  bridge_.add_forces_on_others(&q[modes_], rest_.data());
   release_held(rest_.data());
   for (std::size_t k = 0; k < size; ++k)
     for (std::size_t i = 0; i < modes_; ++i) share[i] += by_unknown_[(first + k) * modes_ + i] * rest_[k];
@@ -398,10 +386,18 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   for (std::size_t i = 0; i < modes_; ++i) share[i] /= bridge_.omega()[i] * bridge_.omega()[i];
 
   v_nodal_.assign(size, 0.0);
+  w_nodal_.assign(size, 0.0);
+  out.a.assign(size, 0.0);
+  out.drag.assign(size, 0.0);
   for (std::size_t k = 0; k < size; ++k) {
     const double* phi = &by_unknown_[(first + k) * modes_];
     v_nodal_[k] = sag_[first + k] + rest_[k];
-    for (std::size_t i = 0; i < modes_; ++i) v_nodal_[k] += phi[i] * (q[i] - share[i]);
+    for (std::size_t i = 0; i < modes_; ++i) {
+      v_nodal_[k] += phi[i] * (q[i] - share[i]);
+      w_nodal_[k] += phi[i] * q[modes_ + i];
+      out.a[k] += phi[i] * q[2 * modes_ + i];
+      out.drag[k] += phi[i] * bridge_.own_drag()[i] * q[modes_ + i];
+    }
     out.P[k] += dead_load_[k];
   }
   out.v = v_nodal_.data();
