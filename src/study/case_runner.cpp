@@ -12,6 +12,7 @@ namespace {
 
 // As measured; peaks by modes are looked for at so many instants a period of the highest mode.
 constexpr double seconds_a_mode = 1.3e-8, instants_a_period = 20.0;
+constexpr double coupled_over_uncoupled = 2.0;
 constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
 
 }  // namespace
@@ -107,8 +108,8 @@ double CaseRunner::duration(std::size_t train, double speed) const {
 double CaseRunner::cost() const {
   if (scene_.exact_in_time()) {
     const std::vector<double>& omega = shared_.modal->omega();
-    return seconds_a_mode * instants_a_period * omega.back() / (2.0 * std::numbers::pi) *
-           static_cast<double>(omega.size());
+    return (shared_.modal->coupled() ? coupled_over_uncoupled : 1.0) * seconds_a_mode * instants_a_period *
+           omega.back() / (2.0 * std::numbers::pi) * static_cast<double>(omega.size());
   }
   double bodies = 0.0;
   for (const int type : scene_.train.vehicles)
