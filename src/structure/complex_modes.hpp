@@ -6,7 +6,8 @@
 //
 //   (Omega u, u') = Re sum_j s_j y_j e^(lambda_j t)
 //
-// Of a conjugate pair one member stands for both; those of overdamped motion are real.
+// Of a conjugate pair one member stands for both; those of overdamped motion are real. Where two of them are one
+// (critical damping), rounding leaves 1e-8 of the motion instead of 1e-15.
 #pragma once
 
 #include <Eigen/Core>

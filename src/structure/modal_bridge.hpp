@@ -3,9 +3,9 @@
 //   v(x, t) = sum phi_i(x) q_i(t) + what the other modes deflect by, taken as static (static correction)
 //   q_i'' + 2 sigma_i q_i' + sum_k d_ik q_k' + omega_i^2 q_i = -sum_j F_j phi_i(x_j)          F_j downward
 //
-// The matrix d of the damping between modes is zero where C* is diagonal in the modes, as Rayleigh damping is. Single
-// dampers and springs that Rayleigh's b does not damp couple the modes; of that damping phi^T C* phi is what these
-// modes see, since modes that are left out do not move.
+// The damping d between modes is zero where C* is diagonal in the modes, as Rayleigh damping is. Single dampers, and
+// springs that Rayleigh's b does not damp, couple the modes; what their forces do to the modes left out is taken as
+// static too.
 //
 // On an element phi_i is a cubic polynomial of x, and so is the influence line of any static response. What a unit
 // force does is therefore a list of cubic polynomials, one for each piece between nodes and probes.
@@ -54,14 +54,13 @@ class ModalBridge {
   std::size_t modes() const { return basis_.omega.size(); }
   const modes::Basis& basis() const { return basis_; }
   const std::vector<double>& omega() const { return basis_.omega; }  // rad/s
-  /// 1/s: half of the diagonal of the modes' damping phi^T C* phi, decay rates where no damping is between modes.
+  /// Half of the diagonal of the modes' damping phi^T C* phi, given ratios included, 1/s: decay rates unless coupled.
   const std::vector<double>& sigma() const { return sigma_; }
-  /// Damping between modes, 1/s: phi^T C* phi off its diagonal, which is zero here. Symmetric; 0 x 0 where C* is
-  /// diagonal.
+  /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 where C* is diagonal.
   const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
   bool coupled() const { return cross_damping_.size() > 0; }
-  /// Adds to this rank's nodal forces what damping that couples modes does, at the modes' rates q', to those left out:
-  /// -C* phi q' less the modes' share of it.
+  /// Adds to this rank's nodal forces what damping does, at the modes' rates q', to the modes left out: -C* phi q' less
+  /// the modes' share of it.
   void add_forces_on_others(const double* rates, double* nodal) const;
   /// The free oscillations of coupled modes, found when they are first asked for.
   const ComplexModes& complex_modes() const;

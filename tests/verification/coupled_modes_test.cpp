@@ -5,7 +5,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <complex>
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "integrate/modal_peaks.hpp"
@@ -72,6 +72,46 @@ TEST_P(TwoCoupledModes, ByTheExponential) {
       EXPECT_NEAR(motion.q()[i], exact[i], 1e-9 * rest.norm()) << t;
       EXPECT_NEAR(motion.rate()[i], exact[2 + i], 1e-9 * omega[1] * rest.norm()) << t;
       EXPECT_NEAR(motion.acceleration()[i], rate[2 + i], 1e-7 * omega[1] * omega[1] * rest.norm()) << t;
+    }
+  }
+}
+
+// The damper at which two complex modes become one, which have no basis of their own there.
+TEST(CoupledModes, CriticallyDamped) {
+  const std::vector<double> omega = {30.0, 120.0};
+  const Eigen::Vector2d shape(0.9, 0.6);
+  const auto modes_with = [&](double c) {
+    Eigen::MatrixXd cross = c * shape * shape.transpose();
+    const std::vector<double> sigma = {0.5 * cross(0, 0), 0.5 * cross(1, 1)};
+    cross.diagonal().setZero();
+    return structure::ComplexModes(omega, sigma, cross);
+  };
+  const auto overdamped = [&](double c) { return modes_with(c).lambda.size() > 2; };
+  double below = 1.0, above = 200.0;
+  ASSERT_FALSE(overdamped(below));
+  ASSERT_TRUE(overdamped(above));
+  for (int i = 0; i < 100; ++i) {
+    const double middle = 0.5 * (below + above);
+    (overdamped(middle) ? above : below) = middle;
+  }
+  for (const double c : {below, above}) {
+    const structure::ComplexModes modes = modes_with(c);
+    Eigen::Matrix4d A = Eigen::Matrix4d::Zero();
+    for (int i = 0; i < 2; ++i) {
+      A(i, 2 + i) = omega[i];
+      A(2 + i, i) = -omega[i];
+    }
+    A.bottomRightCorner<2, 2>() = -c * shape * shape.transpose();
+    for (double t = 0.01; t < 0.5; t += 0.01) {
+      const Eigen::Index count = modes.lambda.size();
+      Eigen::MatrixXd turned = modes.coordinates;
+      for (Eigen::Index j = 0; j < count; ++j) {
+        const std::complex<double> factor = std::exp(modes.lambda[j] * t);
+        turned.row(j) = factor.real() * modes.coordinates.row(j) - factor.imag() * modes.coordinates.row(count + j);
+        turned.row(count + j) =
+            factor.imag() * modes.coordinates.row(j) + factor.real() * modes.coordinates.row(count + j);
+      }
+      EXPECT_LT((modes.state * turned - Eigen::MatrixXd((A * t).exp())).norm(), 1e-7) << c << ", " << t;
     }
   }
 }
