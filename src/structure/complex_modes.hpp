@@ -6,8 +6,8 @@
 //
 //   (Omega u, u') = Re sum_j s_j y_j e^(lambda_j t)
 //
-// Of a conjugate pair one member stands for both; those of overdamped motion are real. Where two of them are one
-// (critical damping), rounding leaves 1e-8 of the motion instead of 1e-15.
+// Of a conjugate pair one member stands for both; those of overdamped motion are real. Where two of them are one, which
+// critical damping makes them, there is no basis of complex modes: those of a C that is larger by 1e-10 are taken.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,13 +16,18 @@
 namespace traverse::structure {
 
 struct ComplexModes {
-  /// omega in rad/s, all positive; sigma: half of C's diagonal, 1/s; cross_damping: C off its diagonal, 1/s.
+  /// SolverError where none are found. omega in rad/s, all positive; sigma: half of C's diagonal, 1/s; cross_damping: C
+  /// off its diagonal, 1/s.
   ComplexModes(const std::vector<double>& omega, const std::vector<double>& sigma,
                const Eigen::MatrixXd& cross_damping);
 
   Eigen::VectorXcd lambda;      // 1/s
   Eigen::MatrixXd state;        // (Omega u, u') of (Re y, Im y)
   Eigen::MatrixXd coordinates;  // (Re y, Im y) of (Omega u, u')
+
+ private:
+  void solve(const Eigen::MatrixXd& rates);
+  double residual(const Eigen::MatrixXd& rates) const;
 };
 
 }  // namespace traverse::structure
