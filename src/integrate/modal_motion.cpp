@@ -30,6 +30,7 @@ ModalMotion::ModalMotion(const structure::ModalBridge& bridge, const ForceHistor
     highest_ = std::max(highest_, bridge_.omega()[i]);
     if (equilibrium) q_[i] = history_.interval(0)[i] / (bridge_.omega()[i] * bridge_.omega()[i]);
   }
+  if (bridge.coupled()) coupled_.emplace(bridge);
   enter(0);
   see();
 }
@@ -53,6 +54,10 @@ ModalMotion::Propagator ModalMotion::propagator(double omega, double sigma, doub
 
 void ModalMotion::expect(double dt) {
   expected_dt_ = dt;
+  if (coupled_) {
+    expected_coupled_ = coupled_->propagator(dt);
+    return;
+  }
   expected_.clear();
   for (std::size_t i = 0; i < modes_.size(); ++i)
     expected_.push_back(propagator(bridge_.omega()[i], bridge_.sigma()[i], dt));
@@ -63,6 +68,7 @@ void ModalMotion::enter(std::size_t interval) {
   interval_ = interval;
   const std::size_t n = history_.channels;
   const double* g = history_.interval(interval);
+  if (coupled_) return enter_coupled();
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const double square = bridge_.omega()[i] * bridge_.omega()[i], c = 2.0 * bridge_.sigma()[i];
     auto& p = modes_[i].particular;
@@ -72,6 +78,38 @@ void ModalMotion::enter(std::size_t interval) {
     p[0] = (g[i] - c * p[1] - 2.0 * p[2]) / square;
     modes_[i].u = q_[i] - p[0];
     modes_[i].w = rate_[i] - p[1];
+  }
+}
+
+// The same of coupled modes: what damping between modes takes counts to the force, from the highest power down.
+void ModalMotion::enter_coupled() {
+  const std::size_t n = history_.channels;
+  const double* g = history_.interval(interval_);
+  const auto m = static_cast<Eigen::Index>(modes_.size());
+  const std::array<double, 4> scale = {1.0, speed_, speed_ * speed_, speed_ * speed_ * speed_};
+  std::array<Eigen::VectorXd, 6> p;  // by powers; the last two are zero
+  p[4] = p[5] = Eigen::VectorXd::Zero(m);
+  for (std::size_t k = 4; k-- > 0;) {
+    const auto power = static_cast<double>(k);
+    const Eigen::VectorXd rate = (power + 1.0) * p[k + 1];  // of q' by powers
+    p[k] = -bridge_.cross_damping() * rate - (power + 1.0) * (power + 2.0) * p[k + 2];
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const auto mode = static_cast<std::size_t>(i);
+      const double omega = bridge_.omega()[mode];
+      p[k][i] = (p[k][i] + g[k * n + mode] * scale[k] - 2.0 * bridge_.sigma()[mode] * rate[i]) / (omega * omega);
+      modes_[mode].particular[k] = p[k][i];
+    }
+  }
+  u_ = Eigen::Map<const Eigen::VectorXd>(q_.data(), m) - p[0];
+  w_ = Eigen::Map<const Eigen::VectorXd>(rate_.data(), m) - p[1];
+  coupled_->start(u_, w_);
+  note_free();
+}
+
+void ModalMotion::note_free() {
+  for (std::size_t i = 0; i < modes_.size(); ++i) {
+    modes_[i].u = u_[static_cast<Eigen::Index>(i)];
+    modes_[i].w = w_[static_cast<Eigen::Index>(i)];
   }
 }
 
@@ -98,9 +136,14 @@ void ModalMotion::pass_event() {
 
 void ModalMotion::move(double dt) {
   if (dt <= 0.0) return;
-  if (counting_) return move_counting(dt);
+  if (counting_) return coupled_ ? move_coupled_counting(dt) : move_counting(dt);
   // Instants a constant interval apart differ from it by the rounding of their times.
   const bool expected = std::abs(dt - expected_dt_) <= 4.0 * std::numeric_limits<double>::epsilon() * (time_ + dt);
+  if (coupled_) {
+    coupled_->move(expected ? expected_coupled_ : coupled_->propagator(dt));
+    coupled_->see(u_, w_);
+    return note_free();
+  }
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const Propagator a = expected ? expected_[i] : propagator(bridge_.omega()[i], bridge_.sigma()[i], dt);
     Mode& mode = modes_[i];
@@ -137,6 +180,36 @@ void ModalMotion::move_counting(double dt) {
   }
 }
 
+void ModalMotion::move_coupled_counting(double dt) {
+  const double begin = speed_ > 0.0 ? history_.start[interval_] / speed_ : 0.0;
+  const auto parts = static_cast<long>(std::ceil(highest_ * dt / counted_phase));
+  const double h = dt / static_cast<double>(parts);
+  std::array<Eigen::VectorXcd, points.size()> inner;
+  for (std::size_t k = 0; k < points.size(); ++k) inner[k] = coupled_->propagator(points[k] * h);
+  const Eigen::VectorXcd step = coupled_->propagator(h);
+  const auto m = static_cast<Eigen::Index>(modes_.size());
+  Eigen::VectorXd rate(m), lost(m);
+  std::vector<double> force(modes_.size());
+  for (long part = 0; part < parts; ++part) {
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const double t = time_ - begin + (static_cast<double>(part) + points[k]) * h;
+      coupled_->see_after(inner[k], u_, w_);
+      force.assign(modes_.size(), 0.0);
+      add_channels_at(speed_ * t, 0, modes_.size(), force.data());
+      for (Eigen::Index i = 0; i < m; ++i) rate[i] = first(modes_[static_cast<std::size_t>(i)].particular, t) + w_[i];
+      lost.noalias() = bridge_.cross_damping() * rate;
+      for (Eigen::Index i = 0; i < m; ++i) {
+        const auto mode = static_cast<std::size_t>(i);
+        dissipated_ += h * weights[k] * rate[i] * (2.0 * bridge_.sigma()[mode] * rate[i] + lost[i]);
+        work_ += h * weights[k] * force[mode] * rate[i];
+      }
+    }
+    coupled_->move(step);
+  }
+  coupled_->see(u_, w_);
+  note_free();
+}
+
 void ModalMotion::see() {
   const double t = speed_ > 0.0 ? time_ - history_.start[interval_] / speed_ : 0.0;
   for (std::size_t i = 0; i < modes_.size(); ++i) {
@@ -146,12 +219,17 @@ void ModalMotion::see() {
     rate_[i] = first(mode.particular, t) + mode.w;
     acceleration_[i] = second(mode.particular, t) - 2.0 * sigma * mode.w - omega * omega * mode.u;
   }
+  if (coupled_) Eigen::Map<Eigen::VectorXd>(acceleration_.data(), w_.size()).noalias() -= bridge_.cross_damping() * w_;
 }
 
 void ModalMotion::add_channels(std::size_t first, std::size_t count, double* sum) const {
+  add_channels_at(speed_ > 0.0 ? speed_ * time_ - history_.start[interval_] : 0.0, first, count, sum);
+}
+
+// At a distance s from the interval's start.
+void ModalMotion::add_channels_at(double s, std::size_t first, std::size_t count, double* sum) const {
   const std::size_t n = history_.channels;
   const double* c = history_.interval(interval_) + first;
-  const double s = speed_ > 0.0 ? speed_ * time_ - history_.start[interval_] : 0.0;
   for (std::size_t i = 0; i < count; ++i) sum[i] += c[i] + s * (c[n + i] + s * (c[2 * n + i] + s * c[3 * n + i]));
 }
 

@@ -1,12 +1,15 @@
 // The modes' motion under moving forces, exact in time: between two passages of breaks the modal force is a cubic
 // polynomial of time, so
 //   q(t) = polynomial + free oscillation,   q'' + 2 sigma q' + omega^2 q = g(t).
-// Rounding alone is in the result, however far apart the instants are.
+// Of modes that damping couples the polynomials solve the coupled equations, and the free oscillation is that of the
+// complex modes. Rounding alone is in the result, however far apart the instants are.
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
+#include "integrate/coupled_oscillation.hpp"
 #include "integrate/force_history.hpp"
 #include "structure/modal_bridge.hpp"
 
@@ -50,8 +53,12 @@ class ModalMotion {
   };
   static Propagator propagator(double omega, double sigma, double dt);
   void enter(std::size_t interval);
+  void enter_coupled();
   void move(double dt);
   void move_counting(double dt);
+  void move_coupled_counting(double dt);
+  void note_free();
+  void add_channels_at(double s, std::size_t first, std::size_t count, double* sum) const;
   void see();
 
   const structure::ModalBridge& bridge_;
@@ -65,6 +72,9 @@ class ModalMotion {
   double expected_dt_ = -1.0;
   double highest_ = 0.0;  // rad/s
   bool counting_ = false;
+  std::optional<CoupledOscillation> coupled_;  // keeps the free oscillation of coupled modes
+  Eigen::VectorXcd expected_coupled_;
+  Eigen::VectorXd u_, w_;  // that oscillation and its rate, now
   double dissipated_ = 0.0, work_ = 0.0;
 };
 

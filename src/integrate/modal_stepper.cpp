@@ -101,8 +101,9 @@ void ModalStepper::load_now(double* nodal) const {
 void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   const std::size_t n = force_.size();
   double *v = y_.data(), *w = v + n, *a = ydot_.data() + n;
+  // The static correction first: K* v = P and dampers' forces, less the modes' share of it.
   load_now(force_.data());
-  // The static correction first: K* v = P, less the modes' share of it.
+  bridge_.add_forces_on_others(motion_.rate().data(), force_.data());
   std::vector<double> share(bridge_.modes(), 0.0);
   for (std::size_t i = 0; i < bridge_.modes(); ++i)
     for (std::size_t k = 0; k < n; ++k) share[i] += bridge_.shape(i)[k] * force_[k];

@@ -179,8 +179,12 @@ class Group {
     task_.modes = static_cast<int>(modes);
     task_.omega2 = side_by_side(
         modes, [&](const CrossingRun&, std::size_t i) { return bridge.omega()[i] * bridge.omega()[i]; });
-    task_.damping =
-        side_by_side(modes, [&](const CrossingRun&, std::size_t i) { return 2.0 * bridge.sigma()[i]; });
+    task_.coupled = bridge.coupled();
+    task_.damping = side_by_side(task_.coupled ? modes * modes : modes, [&](const CrossingRun&, std::size_t i) {
+      if (!task_.coupled) return 2.0 * bridge.sigma()[i];
+      const auto row = static_cast<Eigen::Index>(i / modes), column = static_cast<Eigen::Index>(i % modes);
+      return row == column ? 2.0 * bridge.sigma()[i / modes] : bridge.cross_damping()(row, column);
+    });
     task_.exact_modes = plan_.exact_modes && !task_.coupled;
     task_.q = side_by_side(modes, [](const CrossingRun& run, std::size_t i) { return (*run.q)[i]; });
     const structure::PiecewiseCubic& influence = bridge.influence();
@@ -189,7 +193,8 @@ class Group {
                        influence.breaks.data(), influence.coefficients.data(), largest_.data()};
     const structure::ModalProbes& probes = bridge.probes();
     task_.probes = {static_cast<int>(probes.count), probes.deflection.data(), probes.moment.data(),
-                    probes.moment_by_rate.data(), probes.moment_by_acceleration.data()};
+                    probes.moment_by_rate.data(), probes.moment_by_acceleration.data(),
+                    probes.deflection_by_rate.empty() ? nullptr : probes.deflection_by_rate.data()};
   }
 
   void add_track() {

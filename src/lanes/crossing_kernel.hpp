@@ -939,6 +939,8 @@ class Group : Lanes<W> {
         seen[n + p] += deflection[p] * a;
         seen[2 * n + p] += moment[p] * q + by_rate[p] * r + by_acceleration[p] * a;
       }
+      if (t.probes.deflection_by_rate == nullptr) continue;
+      for (int p = 0; p < n; ++p) seen[p] += t.probes.deflection_by_rate[static_cast<long>(i) * n + p] * r;
     }
     for (int i = 0; i < count; ++i) {
       const Lane value = magnitude(seen[i]);

@@ -54,7 +54,7 @@ struct TaskHeights {
 struct TaskProbes {
   int count = 0;
   const double *deflection = nullptr, *moment = nullptr, *moment_by_rate = nullptr;  // [mode][probe], ModalProbes
-  const double* moment_by_acceleration = nullptr;
+  const double *moment_by_acceleration = nullptr, *deflection_by_rate = nullptr;  // the latter may be null
 };
 
 /// A stretch of equal steps; at its end a force may have a kink.

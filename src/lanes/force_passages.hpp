@@ -28,6 +28,7 @@ class ForcePassages {
                                                         std::span<const double> end_times, double instants,
                                                         const std::function<bool()>& going) const;
 
+  const integrate::ForceHistory& history() const { return history_; }
   /// The largest static deflection of each probe while the forces pass, m.
   std::vector<double> static_peaks() const;
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
+#include <utility>
 
 #include "beam/shape.hpp"
 
@@ -14,7 +14,7 @@ namespace {
 using base::check;
 using Polynomial = std::array<double, 4>;  // by powers
 
-constexpr double diagonal = 1e-6;  // relative coupling of modes that is none
+constexpr double negligible = 1e-6;  // damping between two modes that is none, over the geometric mean of their own
 
 /// The polynomial of x - d.
 Polynomial shifted(const Polynomial& c, double d) {
@@ -69,41 +69,74 @@ const double* ModalBridge::shape(std::size_t mode) const {
   return basis_.shape[mode].data() + static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
 }
 
-/// kappa of A phi = kappa M phi.
-double ModalBridge::share_of_mass(Mat matrix, std::size_t mode, const char* what) const {
-  const base::Handle<Vec> phi = vector(beam_.comm(), shape(mode), beam_.local_unknowns());
-  base::Handle<Vec> force, inertia;
-  check(VecDuplicate(phi, force.out()));
-  check(VecDuplicate(phi, inertia.out()));
-  check(MatMult(matrix, phi, force));
-  check(MatMult(beam_.mass(), phi, inertia));
-  PetscScalar kappa = 0.0;
-  PetscReal before = 0.0, after = 0.0;
-  check(VecDot(phi, force, &kappa));
-  check(VecNorm(force, NORM_2, &before));
-  check(VecAXPY(force, -kappa, inertia));
-  check(VecNorm(force, NORM_2, &after));
-  if (after > diagonal * before)
-    throw InputError(std::string("model_modes: ") + what +
-                     ": the modes are coupled; allowed: dampers and springs spread like the beam's mass, "
-                     "model_damping_ratios instead of Rayleigh damping where there are springs, or the full model "
-                     "(model_modes: 0)");
-  return kappa;
+/// matrix times every shape, this rank's unknowns; zero of no matrix.
+Eigen::MatrixXd ModalBridge::on_shapes(Mat matrix) const {
+  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(beam_.local_unknowns(), static_cast<Eigen::Index>(modes()));
+  for (std::size_t i = 0; matrix != nullptr && i < modes(); ++i) {
+    const base::Handle<Vec> phi = vector(beam_.comm(), shape(i), beam_.local_unknowns());
+    const base::Handle<Vec> column =
+        vector(beam_.comm(), product.col(static_cast<Eigen::Index>(i)).data(), beam_.local_unknowns());
+    check(MatMult(matrix, phi, column));
+  }
+  return product;
+}
+
+/// phi^T forces, the same on all ranks.
+Eigen::MatrixXd ModalBridge::share_of_modes(const Eigen::MatrixXd& forces) const {
+  const auto m = static_cast<Eigen::Index>(modes());
+  Eigen::MatrixXd share(m, m);
+  for (Eigen::Index i = 0; i < m; ++i)
+    share.row(i) = Eigen::Map<const Eigen::RowVectorXd>(shape(static_cast<std::size_t>(i)), forces.rows()) * forces;
+  MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(share.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+  return share;
 }
 
 void ModalBridge::set_damping(const std::vector<double>& ratios) {
   const beam::Rayleigh ab = beam_.rayleigh();
+  const auto m = static_cast<Eigen::Index>(modes());
+  Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(m, m);  // what is not Rayleigh's
+  // Rayleigh's b damps the beam, but not the foundation's springs.
+  if (beam_.dampers() != nullptr || (beam_.springs() != nullptr && ab.b != 0.0)) {
+    const Eigen::MatrixXd forces = on_shapes(beam_.dampers()) - ab.b * on_shapes(beam_.springs());
+    damping = share_of_modes(forces);
+    set_forces_on_others(forces, damping);
+  }
+  Eigen::VectorXd root(m);  // of each mode's own damping
   for (std::size_t i = 0; i < modes(); ++i) {
     const double omega = basis_.omega[i];
     if (omega <= 0.0) throw InputError("model_modes: the beam floats; hold it with supports or a foundation");
-    double c = ab.a + ab.b * omega * omega;
-    if (beam_.springs() != nullptr && ab.b != 0.0)
-      c -= ab.b * share_of_mass(beam_.springs(), i, "Rayleigh's b damps the beam, but not the foundation's springs");
-    if (beam_.dampers() != nullptr)
-      c += share_of_mass(beam_.dampers(), i, "the foundation has dampers that Rayleigh damping does not cover");
+    const auto k = static_cast<Eigen::Index>(i);
+    const double c = ab.a + ab.b * omega * omega + damping(k, k);
     own_drag_.push_back(ratios.empty() ? 0.0 : 2.0 * ratios[std::min(i, ratios.size() - 1)] * omega);
     sigma_.push_back(0.5 * (c + own_drag_.back()));
+    root[k] = std::sqrt(std::abs(2.0 * sigma_.back()));
   }
+  damping.diagonal().setZero();
+  if ((damping.array().abs() > negligible * (root * root.transpose()).array()).any())
+    cross_damping_ = 0.5 * (damping + damping.transpose());
+}
+
+/// `forces` of the damping that is not Rayleigh's, less what the modes themselves take of them.
+void ModalBridge::set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share) {
+  Eigen::MatrixXd others = on_shapes(beam_.mass()) * share - forces;
+  for (Eigen::Index k = 0; k < others.rows(); ++k)
+    if (beam_.fixed()[k] != 0) others.row(k).setZero();
+  Eigen::ArrayXXd squares(2, others.cols());
+  squares.row(0) = others.colwise().squaredNorm();
+  squares.row(1) = forces.colwise().squaredNorm();
+  MPI_Allreduce(MPI_IN_PLACE, squares.data(), static_cast<int>(squares.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
+  if ((squares.row(0) > negligible * negligible * squares.row(1)).any()) forces_on_others_ = std::move(others);
+}
+
+void ModalBridge::add_forces_on_others(const double* rates, double* nodal) const {
+  if (forces_on_others_.cols() == 0) return;
+  Eigen::Map<Eigen::VectorXd>(nodal, forces_on_others_.rows()).noalias() +=
+      forces_on_others_ * Eigen::Map<const Eigen::VectorXd>(rates, forces_on_others_.cols());
+}
+
+const ComplexModes& ModalBridge::complex_modes() const {
+  if (!complex_modes_) complex_modes_.emplace(omega(), sigma(), cross_damping());
+  return *complex_modes_;
 }
 
 std::vector<double> ModalBridge::static_solution(const std::vector<double>& load) {
@@ -121,6 +154,7 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   probes_.count = stations.size();
   beam::Recovery recovery(beam_, stations, 0.0);
   note_forms(recovery);
+  if (forces_on_others_.cols() > 0) note_others(recovery);
   beam::Recovery heavy(beam_, stations, gravity);
   note_weight(heavy, gravity);
   std::vector<Line> lines = lines_of_modes();
@@ -148,6 +182,24 @@ void ModalBridge::note_forms(beam::Recovery& recovery) {
     for (const beam::Response& r : seen) {
       const std::size_t at = probes_.moment_by_rate.size();
       probes_.moment_by_rate.push_back(r.moment + own_drag_[i] * probes_.moment_by_acceleration[at]);
+    }
+  }
+}
+
+/// Of each mode's rate: what its forces on the others deflect these by.
+void ModalBridge::note_others(beam::Recovery& recovery) {
+  const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
+  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
+  std::vector<beam::Response> seen;
+  for (std::size_t i = 0; i < modes(); ++i) {
+    std::vector<double> force(basis_.shape.front().size(), 0.0);
+    const auto own = forces_on_others_.col(static_cast<Eigen::Index>(i));
+    std::copy(own.begin(), own.end(), force.begin() + begin);
+    const std::vector<double> others = static_solution(force);
+    recovery.evaluate(others.data() + begin, zero.data(), zero.data(), {}, seen);
+    for (std::size_t p = 0; p < seen.size(); ++p) {
+      probes_.deflection_by_rate.push_back(seen[p].deflection);
+      probes_.moment_by_rate[i * probes_.count + p] += seen[p].moment;
     }
   }
 }

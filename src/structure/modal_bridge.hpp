@@ -1,17 +1,24 @@
 // A bridge under moving forces by its first natural modes, mass-normalised:
 //
 //   v(x, t) = sum phi_i(x) q_i(t) + what the other modes deflect by, taken as static (static correction)
-//   q_i'' + 2 sigma_i q_i' + omega_i^2 q_i = -sum_j F_j phi_i(x_j)          F_j downward
+//   q_i'' + 2 sigma_i q_i' + sum_k d_ik q_k' + omega_i^2 q_i = -sum_j F_j phi_i(x_j)          F_j downward
+//
+// The damping d between modes is zero where C* is diagonal in the modes, as Rayleigh damping is. Single dampers, and
+// springs that Rayleigh's b does not damp, couple the modes; what their forces do to the modes left out is taken as
+// static too.
 //
 // On an element phi_i is a cubic polynomial of x, and so is the influence line of any static response. What a unit
 // force does is therefore a list of cubic polynomials, one for each piece between nodes and probes.
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "modes/modes.hpp"
 #include "recovery/recovery.hpp"
 #include "response/beam_operator.hpp"
+#include "structure/complex_modes.hpp"
 
 namespace traverse::structure {
 
@@ -27,7 +34,8 @@ struct PiecewiseCubic {
 /// The response at stations as linear forms of the modes' coordinates, rates and accelerations: [mode][station].
 struct ModalProbes {
   std::size_t count = 0;
-  std::vector<double> deflection;  // of q; of q'' it is the acceleration
+  std::vector<double> deflection;          // of q; of q'' it is the acceleration
+  std::vector<double> deflection_by_rate;  // empty where damping does nothing to modes left out
   std::vector<double> moment, moment_by_rate, moment_by_acceleration;
   std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: of the beam's own weight
 };
@@ -35,8 +43,8 @@ struct ModalProbes {
 class ModalBridge {
  public:
   /// Collective. The `count` lowest modes of bending with all copies of the last frequency. `ratios`: damping ratios of
-  /// each mode, the last one for all further modes; empty: the beam's Rayleigh damping. InputError where dampers or
-  /// springs of the foundation make C* couple the modes. The operator may be used further; the beam must stay.
+  /// each mode, the last one for all further modes; empty: the beam's Rayleigh damping. InputError where the beam
+  /// floats. The operator may be used further; the beam must stay.
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios);
 
   /// Collective. Adds the response at stations to the forms, and its static correction to the influence. gravity: 0
@@ -46,7 +54,16 @@ class ModalBridge {
   std::size_t modes() const { return basis_.omega.size(); }
   const modes::Basis& basis() const { return basis_; }
   const std::vector<double>& omega() const { return basis_.omega; }  // rad/s
-  const std::vector<double>& sigma() const { return sigma_; }        // 1/s: decay rates
+  /// Half of the diagonal of the modes' damping phi^T C* phi, given ratios included, 1/s: decay rates unless coupled.
+  const std::vector<double>& sigma() const { return sigma_; }
+  /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 where C* is diagonal.
+  const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
+  bool coupled() const { return cross_damping_.size() > 0; }
+  /// Adds to this rank's nodal forces what damping does, at the modes' rates q', to the modes left out: -C* phi q' less
+  /// the modes' share of it.
+  void add_forces_on_others(const double* rates, double* nodal) const;
+  /// The free oscillations of coupled modes, found when they are first asked for.
+  const ComplexModes& complex_modes() const;
   /// Damping given by ratios, 1/s: its forces are the mass times an acceleration own_drag q'.
   const std::vector<double>& own_drag() const { return own_drag_; }
   const ModalProbes& probes() const { return probes_; }
@@ -65,9 +82,12 @@ class ModalBridge {
     std::size_t probe = 0;
     double beam::Response::*direct = nullptr;  // null: none
   };
-  double share_of_mass(Mat matrix, std::size_t mode, const char* what) const;
+  Eigen::MatrixXd on_shapes(Mat matrix) const;
+  Eigen::MatrixXd share_of_modes(const Eigen::MatrixXd& forces) const;
   void set_damping(const std::vector<double>& ratios);
+  void set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share);
   void note_forms(beam::Recovery& recovery);
+  void note_others(beam::Recovery& recovery);
   void note_weight(beam::Recovery& recovery, double gravity);
   Line correction_of(beam::Recovery& recovery, std::size_t probe, double beam::Response::*quantity);
   std::vector<Line> lines_of_modes() const;
@@ -78,6 +98,9 @@ class ModalBridge {
   BeamOperator& statics_;
   modes::Basis basis_;
   std::vector<double> sigma_, own_drag_;
+  Eigen::MatrixXd cross_damping_;
+  Eigen::MatrixXd forces_on_others_;  // of each mode's rate, this rank's unknowns; no columns where there are none
+  mutable std::optional<ComplexModes> complex_modes_;
   ModalProbes probes_;
   PiecewiseCubic influence_;
 };

@@ -36,7 +36,13 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
     add_up(weight_.data(), modes_);
     add_up(&sag_work_, 1);
   }
-  for (std::vector<double>* x : {&modal_force_, &stiffness_, &v_still_, &w_still_, &z_, &q_}) x->assign(modes_, 0.0);
+  for (std::vector<double>* x : {&modal_force_, &stiffness_, &v_still_, &w_still_, &z_, &q_, &moved_})
+    x->assign(modes_, 0.0);
+  if (bridge_.coupled()) {
+    const auto m = static_cast<Eigen::Index>(modes_);
+    inverse_.resize(m, m);
+  }
+  factorise();
 }
 
 // --- loads and states ----------------------------------------------------------------------------------------------
@@ -74,7 +80,15 @@ void ModalStructure::accelerations(const double* v, const double* w, bool own, c
     const double omega = bridge_.omega()[i];
     a[i] = modal_force_[i] - 2.0 * bridge_.sigma()[i] * w[i] - omega * omega * v[i];
   }
+  if (own) subtract_cross_damping(w, a);
   if (contacts != nullptr) add_modal_forces(*contacts, a);
+}
+
+/// Of rates w, from the modal forces.
+void ModalStructure::subtract_cross_damping(const double* w, double* forces) const {
+  if (!bridge_.coupled()) return;
+  Eigen::Map<Eigen::VectorXd>(forces, n_).noalias() -=
+      bridge_.cross_damping() * Eigen::Map<const Eigen::VectorXd>(w, n_);
 }
 
 double ModalStructure::work_rate(const double* w) const {
@@ -86,6 +100,10 @@ double ModalStructure::work_rate(const double* w) const {
 double ModalStructure::damping(const double* w) const {
   double lost = 0.0;
   for (int i = 0; i < n_; ++i) lost += 2.0 * bridge_.sigma()[i] * w[i] * w[i];
+  if (bridge_.coupled() && n_ > 0) {
+    const Eigen::Map<const Eigen::VectorXd> rate(w, n_);
+    for (int i = 0; i < n_; ++i) lost += w[i] * bridge_.cross_damping().col(i).dot(rate);
+  }
   return lost;
 }
 
@@ -112,34 +130,53 @@ void ModalStructure::add_values(const std::vector<int>& elements, const double* 
 
 // --- stages --------------------------------------------------------------------------------------------------------
 
-void ModalStructure::note_stiffness() {
+void ModalStructure::set_stage(double shift, double shift2) {
+  if (shift == shift_ && shift2 == shift2_) return;
+  shift_ = shift;
+  shift2_ = shift2;
+  factorise();
+}
+
+void ModalStructure::factorise() {
   for (std::size_t i = 0; i < modes_; ++i) {
     const double omega = bridge_.omega()[i];
     stiffness_[i] = shift2_ + 2.0 * bridge_.sigma()[i] * shift_ + omega * omega;
   }
+  if (!bridge_.coupled()) return;
+  inverse_ = shift_ * bridge_.cross_damping();
+  inverse_.diagonal() += Eigen::Map<const Eigen::VectorXd>(stiffness_.data(), inverse_.rows());
+  factor_.compute(inverse_);
+  inverse_.setIdentity();
+  factor_.solveInPlace(inverse_);
+}
+
+/// S^-1 force.
+void ModalStructure::divide(const double* force, double* displacement) const {
+  if (!bridge_.coupled()) {
+    for (std::size_t i = 0; i < modes_; ++i) displacement[i] = force[i] / stiffness_[i];
+    return;
+  }
+  const Eigen::Index m = inverse_.rows();
+  Eigen::Map<Eigen::VectorXd>(displacement, m).noalias() = inverse_ * Eigen::Map<const Eigen::VectorXd>(force, m);
 }
 
 void ModalStructure::begin_statics(bool /*loaded*/) {
-  shift_ = shift2_ = 0.0;
+  set_stage(0.0, 0.0);
   std::fill(v_still_.begin(), v_still_.end(), 0.0);
   std::fill(w_still_.begin(), w_still_.end(), 0.0);
-  note_stiffness();
 }
 
 void ModalStructure::begin_stage(double shift, const double* c_v, const double* c_w, const double* /*w_guess*/) {
-  shift_ = shift;
-  shift2_ = shift * shift;
+  set_stage(shift, shift * shift);
   for (int i = 0; i < n_; ++i) {
     w_still_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
     v_still_[i] = shift > 0.0 ? (w_still_[i] - c_v[i]) / shift : 0.0;
   }
-  note_stiffness();
 }
 
 void ModalStructure::begin_stage(std::size_t stage, const double* v, const double* w) {
   const StageRule& rule = method_.stages[stage];
-  shift_ = rule.rate / rule.displacement;
-  shift2_ = 1.0 / rule.displacement;
+  set_stage(rule.rate / rule.displacement, 1.0 / rule.displacement);
   for (int i = 0; i < n_; ++i) {
     v_still_[i] = v[i] + rule.w_in_v * w[i];
     w_still_[i] = w[i];
@@ -148,29 +185,32 @@ void ModalStructure::begin_stage(std::size_t stage, const double* v, const doubl
       w_still_[i] += rule.a_in_w[j] * kept_[j][i];
     }
   }
-  note_stiffness();
 }
 
 void ModalStructure::solve_free() {
+  if (n_ == 0) return;
   for (int i = 0; i < n_; ++i) {
     const double omega = bridge_.omega()[i];
-    z_[i] = (modal_force_[i] - 2.0 * bridge_.sigma()[i] * w_still_[i] - omega * omega * v_still_[i]) / stiffness_[i];
+    q_[i] = modal_force_[i] - 2.0 * bridge_.sigma()[i] * w_still_[i] - omega * omega * v_still_[i];
   }
+  subtract_cross_damping(w_still_.data(), q_.data());
+  divide(q_.data(), z_.data());
 }
 
 const ElementCompliance& ModalStructure::yield(const std::vector<int>& elements) {
   elements_ = elements;
-  yield_.prepare(elements, stiffness_);
+  yield_.prepare(elements);
   return yield_;
 }
 
-void ModalStructure::Yield::prepare(const std::vector<int>& elements, const std::vector<double>& stiffness) {
-  const bool same = stiffness == stiffness_;
+void ModalStructure::Yield::prepare(const std::vector<int>& elements) {
+  const bool same = shift_ == structure_.shift_ && shift2_ == structure_.shift2_;
   if (same && elements == elements_) return;
   std::swap(elements_, elements_before_);
   std::swap(blocks_, blocks_before_);
   elements_ = elements;
-  stiffness_ = stiffness;
+  shift_ = structure_.shift_;
+  shift2_ = structure_.shift2_;
   const int count = static_cast<int>(elements_.size()), before = static_cast<int>(elements_before_.size());
   const std::size_t size = static_cast<std::size_t>(m_) * static_cast<std::size_t>(m_);
   known_as_.assign(elements_.size(), -1);
@@ -188,8 +228,7 @@ void ModalStructure::Yield::prepare(const std::vector<int>& elements, const std:
     responses_[b] = {0, count, static_cast<std::size_t>(b) * elements_.size() * size};
     const auto unknowns = structure_.line_.unknowns(elements_[b]);
     for (int k = 0; k < m_; ++k)
-      for (std::size_t i = 0; i < structure_.modes_; ++i)
-        over_[static_cast<std::size_t>(k) * structure_.modes_ + i] = structure_.shapes(unknowns[k])[i] / stiffness_[i];
+      structure_.divide(structure_.shapes(unknowns[k]), &over_[static_cast<std::size_t>(k) * structure_.modes_]);
     for (int a = 0; a < count; ++a) {
       double* to = blocks_.data() + block_at(a, b, count);
       if (known_as_[a] >= 0 && known_as_[b] >= 0)
@@ -216,7 +255,8 @@ void ModalStructure::Yield::fill(int a, double* to) const {
 void ModalStructure::take(const std::vector<double>& loads) {
   std::fill(q_.begin(), q_.end(), 0.0);
   add_modal_forces({elements_, loads}, q_.data());
-  for (int i = 0; i < n_; ++i) z_[i] += q_[i] / stiffness_[i];
+  divide(q_.data(), moved_.data());
+  for (int i = 0; i < n_; ++i) z_[i] += moved_[i];
 }
 
 void ModalStructure::end_stage(double* v, double* w) {
@@ -332,11 +372,12 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   }
   MPI_Bcast(q.data(), static_cast<int>(q.size()), MPI_DOUBLE, 0, beam_.comm());
 
-  // Forces but its own weight, and their deflection at rest less the modes' share of it.
+  // Forces but its own weight; what they and dampers deflect it by at rest, less the modes' share of that.
   out.P.assign(size, 0.0);
   add_contacts(contacts, out.P.data());
   for (const beam::ElementLoad& force : forces_) add_force(line_, force, out.P.data());
   rest_ = out.P;
+  bridge_.add_forces_on_others(&q[modes_], rest_.data());
   release_held(rest_.data());
   for (std::size_t k = 0; k < size; ++k)
     for (std::size_t i = 0; i < modes_; ++i) share[i] += by_unknown_[(first + k) * modes_ + i] * rest_[k];

@@ -1,13 +1,15 @@
 // The structure by its natural modes, mass-normalised: nodal values v = v_0 + sum phi_i q_i with v_0 under its own
 // weight alone, and
 //
-//   q_i'' + 2 sigma_i q_i' + omega_i^2 q_i = phi_i^T (moving forces + contacts)
+//   q_i'' + 2 sigma_i q_i' + sum_k d_ik q_k' + omega_i^2 q_i = phi_i^T (moving forces + contacts)
 //
+// with the damping d between modes, where there is any (modal_bridge.hpp).
 // The contacts feel what the modes yield. What is seen of the bridge carries, besides, what all other modes deflect by
 // as they would at rest (static correction), so that reactions and moments balance the loads exactly. The state is q
 // and q', on the first rank; shapes are on all.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <array>
 #include <memory>
 #include <vector>
@@ -49,19 +51,20 @@ class ModalStructure final : public Structure {
                NodalMotion& out) override;
 
  private:
-  /// sum_i phi_i phi_i^T / stiffness_i between elements.
+  /// phi S^-1 phi^T between elements, S the stage's matrix.
   class Yield final : public ElementCompliance {
    public:
     explicit Yield(const ModalStructure& structure) : ElementCompliance(structure.per_node()), structure_(structure) {}
-    /// `stiffness`: s2 + 2 sigma s + omega^2 of every mode.
-    void prepare(const std::vector<int>& elements, const std::vector<double>& stiffness);
+    /// At the structure's stage.
+    void prepare(const std::vector<int>& elements);
 
    private:
     void fill(int a, double* to) const;
     const ModalStructure& structure_;
     std::vector<int> elements_, elements_before_, known_as_;
-    std::vector<double> stiffness_, blocks_before_;
-    std::vector<double> over_;  // shapes of the element that is loaded, over the stiffness: [unknown][mode]
+    double shift_ = -1.0, shift2_ = -1.0;  // of the stage that the blocks are of
+    std::vector<double> blocks_before_;
+    std::vector<double> over_;  // S^-1 times the shapes of the element that is loaded: [unknown][mode]
   };
   struct Powers {  // W
     double damping = 0.0, forces = 0.0;
@@ -74,18 +77,24 @@ class ModalStructure final : public Structure {
   void add_modal_forces(const ElementLoads& contacts, double* to) const;
   double work_rate(const double* w) const;
   double damping(const double* w) const;
-  void note_stiffness();
+  void set_stage(double shift, double shift2);
+  void factorise();
+  void subtract_cross_damping(const double* w, double* forces) const;
+  void divide(const double* force, double* displacement) const;
 
   const ModalBridge& bridge_;
   std::size_t modes_;
-  std::vector<double> by_unknown_;             // [unknown][mode]
-  std::vector<double> sag_;                    // v_0, of all ranks' unknowns
-  std::vector<double> weight_;                 // phi^T of its own weight, N
-  double sag_work_ = 0.0;                      // J, its own weight times v_0
-  std::vector<beam::ElementLoad> forces_;      // the moving ones
-  std::vector<double> modal_force_;            // of these
-  std::vector<double> stiffness_;              // of the stage
-  double shift_ = 0.0, shift2_ = 0.0;          // of the stage
+  std::vector<double> by_unknown_;         // [unknown][mode]
+  std::vector<double> sag_;                // v_0, of all ranks' unknowns
+  std::vector<double> weight_;             // phi^T of its own weight, N
+  double sag_work_ = 0.0;                  // J, its own weight times v_0
+  std::vector<beam::ElementLoad> forces_;  // the moving ones
+  std::vector<double> modal_force_;        // of these
+  double shift_ = 0.0, shift2_ = 0.0;      // of the stage: of rates, of accelerations by displacements
+  // Of the stage S = s2 + 2 sigma s + omega^2, its diagonal; of coupled modes S^-1 with the damping between them.
+  std::vector<double> stiffness_;
+  Eigen::LLT<Eigen::MatrixXd> factor_;
+  Eigen::MatrixXd inverse_;
   std::vector<double> v_still_, w_still_, z_;  // as in ElementStructure
   std::vector<int> elements_;                  // of the last yield
   Yield yield_;
@@ -97,7 +106,7 @@ class ModalStructure final : public Structure {
     double dissipated = 0.0, worked = 0.0;
     std::vector<double> v, w;
   } before_;
-  std::vector<double> q_;  // of take
+  std::vector<double> q_, moved_;  // modal forces and what they move, of solve_free and take
   // What is seen: nodal values, the static solution; q, q', q'' and the modes' share of that.
   std::vector<double> v_nodal_, w_nodal_, rest_, seen_, share_;
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "integrate/modal_peaks.hpp"
 #include "lanes/processor.hpp"
 #include "lanes/speed_class.hpp"
 #include "run/signals.hpp"
@@ -12,10 +13,12 @@
 namespace traverse::app {
 namespace {
 
-// As measured. Peaks by modes take that much at each instant for every mode, and for every mode and probe.
+// As measured. Peaks by modes take that much at each instant for every mode, and for every mode and probe;
+// with modes that dampers couple, whose runs go one by one, several times that.
 constexpr double seconds_a_mode = 2e-9, seconds_a_probe = 4e-10;
 // Of a run side by side with seven others, a stage.
 constexpr double seconds_a_lane_vehicle = 2e-8, seconds_a_lane_mode = 4e-9;
+constexpr double coupled_over_uncoupled = 8.0;
 constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
 
 }  // namespace
@@ -51,7 +54,8 @@ void CaseRunner::set_up_lanes() {
 std::vector<std::vector<std::size_t>> CaseRunner::groups() const {
   std::vector<std::vector<std::size_t>> groups;
   std::size_t most = lanes_ ? scene_.sweep->lanes : 1;
-  if (scene_.exact_in_time()) most = std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
+  if (scene_.exact_in_time() && !shared_.modal->coupled())
+    most = std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
   for (std::size_t i = 0; i < speeds_.size(); ++i) {
     const bool joins = !groups.empty() && groups.back().size() < most &&
                        lanes::speed_class(speeds_[groups.back().front()]) == lanes::speed_class(speeds_[i]);
@@ -115,7 +119,8 @@ double CaseRunner::cost() const {
     const std::vector<double>& omega = shared_.modal->omega();
     const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
     const double an_instant = seconds_a_mode + seconds_a_probe * static_cast<double>(scene_.output.probes.size());
-    return instants * static_cast<double>(omega.size()) * an_instant;
+    const double coupled = shared_.modal->coupled() ? coupled_over_uncoupled : 1.0;
+    return coupled * instants * static_cast<double>(omega.size()) * an_instant;
   }
   if (lanes_) {
     const SideBySide::Steps steps = lanes_->steps();
@@ -209,7 +214,14 @@ std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, const std::v
   std::vector<double> ends;
   for (const double speed : speeds) ends.push_back(duration(train, speed));
   std::vector<CaseResult> results(speeds.size());
-  const auto peaks = place->second.peaks(speeds, ends, scene_.sweep->instants, [] { return caught_signal() == 0; });
+  const auto going = [] { return caught_signal() == 0; };
+  std::vector<std::vector<integrate::ProbePeaks>> peaks;
+  if (shared_.modal->coupled())
+    for (std::size_t i = 0; i < speeds.size(); ++i)
+      peaks.push_back(integrate::modal_peaks(*shared_.modal, place->second.history(), speeds[i],
+                                             scene_.start == Start::equilibrium, ends[i], scene_.sweep->instants, going));
+  else
+    peaks = place->second.peaks(speeds, ends, scene_.sweep->instants, going);
   for (std::size_t i = 0; i < peaks.size(); ++i) {
     results[i].peaks = peaks[i];
     results[i].static_deflection = static_deflection_[train];

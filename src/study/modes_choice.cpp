@@ -105,7 +105,7 @@ ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vec
       return {number, worst};
     }
   } catch (const Error&) {
-    // Dampers or springs that couple modes, not so many modes, or a run that fails: the sweep itself will say so.
+    // A bridge that floats, not so many modes, or a run that fails: the sweep itself will say so.
   }
   return {};
 }
@@ -122,7 +122,7 @@ std::optional<QuickerModes> quicker_modes(const Scene& scene) {
     const CaseRunner runner(by_modes, ignored);
     return QuickerModes{counted.modes, counted.frequency, runner.cost_of_all()};
   } catch (const Error&) {
-    return std::nullopt;  // dampers or springs that couple modes, say
+    return std::nullopt;  // a bridge that floats, say
   }
 }
 

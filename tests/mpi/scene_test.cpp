@@ -236,6 +236,19 @@ TEST(Ranks, TrainOnABridgeByItsModes) {
                            35);
 }
 
+TEST(Ranks, ABridgeWhoseModesAreCoupled) {
+  const Values damped = {{"foundation_vertical_x", "16,52"},   {"foundation_vertical_k", "0,1e8"},
+                         {"foundation_vertical_c", "3e6,2e6"}, {"beam_elements_per_span", "10"},
+                         {"beam_damping_ratios", "0.01"},      {"model_modes", "12"},
+                         {"output_interval", "0.02"}};
+  expect_same_on_all_ranks("three_span_train",
+                           damped + Values{{"train_vehicles", "coach*3"}, {"ts_dt", "2e-3"}, {"ts_max_time", "1.2"}},
+                           35);
+  expect_same_on_all_ranks(
+      "r6_three_spans",
+      damped + Values{{"load_forces", "1e4,2e4,-5e3"}, {"load_positions", "0,-7.3,-21"}, {"scene_tail", "0.3"}}, 12);
+}
+
 // Displacements from the start are differences of coordinates: wheelsets' accelerations on stiff contacts show it.
 TEST(Ranks, LinearVehicles) {
   expect_same_on_all_ranks("three_span_train",

@@ -69,15 +69,25 @@ app::Scene scene_of(Words words) {
   return app::read_scene();
 }
 
+/// Modes that a damper couples.
+Words coaches_on_a_damped_bridge() {
+  Words words = coaches_on_a_continuous_bridge();
+  for (const char* word : {"-foundation_vertical_x", "48.0", "-foundation_vertical_c", "3e6", "-model_modes", "20"})
+    words.emplace_back(word);
+  return words;
+}
+
 /// What 50 steps of 1 ms allocate after 20 that warm up.
 long allocations_of_steps(const Words& scene_words, const std::string& type, const std::string& adapt = "none") {
   Words words = {"-ts_max_time", "0.1", "-ts_type", type, "-ts_adapt_type", adapt};
   words.insert(words.end(), scene_words.begin(), scene_words.end());
   const app::Scene scene = scene_of(words);
-  beam::Beam beam(PETSC_COMM_SELF, *scene.beam);
-  beam.set_rayleigh({0.5, 5e-4});
-  coupling::System system(PETSC_COMM_SELF, &beam,
-                          {scene.vehicles, scene.train, scene.load, scene.profile, scene.gravity, false});
+  std::vector<std::string> notes;
+  app::SharedBeam shared(PETSC_COMM_SELF, scene, notes);
+  shared.beam->set_rayleigh({0.5, 5e-4});
+  shared.prepare(scene, notes);
+  const coupling::SystemInput input = app::system_input(scene, false);
+  coupling::System system(PETSC_COMM_SELF, app::carrier(scene, shared, input), input);
   Stepper stepper(system, {0.1, 1e-3, 0.1, {}, 1e-6});
   double* y = stepper.state();
   (void)system.start(true, y);
@@ -106,6 +116,11 @@ TEST(Steps, JudgedByTheirErrorsTakeNoMemory) {
 TEST(Steps, OfATrainTakeNoMemory) {
   for (const char* type : {"esdirk4", "genalpha"})
     EXPECT_EQ(allocations_of_steps(coaches_on_a_continuous_bridge(), type), 0) << type;
+}
+
+TEST(Steps, OnABridgeWhoseModesAreCoupledTakeNoMemory) {
+  for (const char* type : {"esdirk4", "genalpha"})
+    EXPECT_EQ(allocations_of_steps(coaches_on_a_damped_bridge(), type), 0) << type;
 }
 
 // All that a results file holds of a train on a bridge, at one instant.

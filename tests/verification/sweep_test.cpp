@@ -140,6 +140,23 @@ TEST_P(SweepAccuracy, HoldsInEveryRun) {
   }
 }
 
+// A damper at midspan couples the modes, which does not keep a sweep from taking them.
+TEST(Sweep, FindsCoupledModesThatDo) {
+  const std::string damped =
+      "beam: {spans: 25.0, EI: 3.0e10, mass: 1.5e4, damping_ratios: 0.01}\n"
+      "support: {types: [pinned, roller]}\n"
+      "foundation: {vertical: {x: 12.5, c: 2.0e5}}\n"
+      "load: {forces: 1.7e5*8, positions: [0,-3,-18,-21,-36,-39,-54,-57]}\n"
+      "sweep: {speed: [28.0, 100.0, 3.6]}\n";
+  Results fine = run_yaml(damped, {{"ts_dt", "5e-4"}, {"beam_elements_per_span", "80"}, {"step_probes", "true"}});
+  Results run = run_yaml(damped, {{"accuracy", "1e-2"}});
+  EXPECT_GT(run.attribute("/sweep", "modes"), 0.0);
+  for (const char* name : {"/sweep/peak_deflection", "/sweep/peak_acceleration", "/sweep/peak_moment"}) {
+    const std::vector<double>&found = run(name), &exact = fine(name);
+    for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], exact[i], 1e-2 * exact[i]) << name << i;
+  }
+}
+
 TEST(Sweep, VehiclesHaveTheirLeastWheelForce) {
   const std::string coaches =
       std::string("options_file: " TRAVERSE_SOURCE_DIR "/options/scenes/three_span_train.yml\n") +

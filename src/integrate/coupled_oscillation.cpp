@@ -1,0 +1,47 @@
+#include "integrate/coupled_oscillation.hpp"
+
+namespace traverse::integrate {
+namespace {
+
+/// y times the propagator, in place.
+void turn(const Eigen::VectorXcd& propagator, Eigen::VectorXd& y) {
+  const Eigen::Index count = propagator.size();
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const double re = y[j], im = y[count + j], c = propagator[j].real(), s = propagator[j].imag();
+    y[j] = c * re - s * im;
+    y[count + j] = s * re + c * im;
+  }
+}
+
+}  // namespace
+
+CoupledOscillation::CoupledOscillation(const structure::ModalBridge& bridge)
+    : modes_(bridge.complex_modes()), omega_(bridge.omega().data(), static_cast<Eigen::Index>(bridge.modes())) {
+  y_.setZero(modes_.state.cols());
+  state_.setZero(modes_.state.rows());
+}
+
+void CoupledOscillation::start(const Eigen::VectorXd& u, const Eigen::VectorXd& w) {
+  state_.head(u.size()) = u.array() * omega_;
+  state_.tail(w.size()) = w;
+  y_.noalias() = modes_.coordinates * state_;
+}
+
+Eigen::VectorXcd CoupledOscillation::propagator(double dt) const { return (modes_.lambda.array() * dt).exp(); }
+
+void CoupledOscillation::move(const Eigen::VectorXcd& propagator) { turn(propagator, y_); }
+
+void CoupledOscillation::see(Eigen::VectorXd& u, Eigen::VectorXd& w) {
+  state_.noalias() = modes_.state * y_;
+  u = state_.head(omega_.size()).array() / omega_;
+  w = state_.tail(omega_.size());
+}
+
+void CoupledOscillation::see_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w) {
+  later_ = y_;
+  turn(propagator, y_);
+  see(u, w);
+  y_.swap(later_);
+}
+
+}  // namespace traverse::integrate

@@ -1,0 +1,32 @@
+// The free oscillation of modes that damping couples, u'' + C u' + Omega^2 u = 0, exact in time: each complex mode
+// decays and turns by itself.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "structure/modal_bridge.hpp"
+
+namespace traverse::integrate {
+
+class CoupledOscillation {
+ public:
+  /// Of a bridge whose modes are coupled, which must outlive it.
+  explicit CoupledOscillation(const structure::ModalBridge& bridge);
+
+  /// Starts anew from u and its rate w.
+  void start(const Eigen::VectorXd& u, const Eigen::VectorXd& w);
+  /// e^(lambda dt) of every complex mode: what it is multiplied by in dt.
+  Eigen::VectorXcd propagator(double dt) const;
+  void move(const Eigen::VectorXcd& propagator);
+  /// u and w, now or after a propagator's time.
+  void see(Eigen::VectorXd& u, Eigen::VectorXd& w);
+  void see_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w);
+
+ private:
+  const structure::ComplexModes& modes_;
+  Eigen::Map<const Eigen::ArrayXd> omega_;
+  Eigen::VectorXd y_, later_;  // coordinates of the complex modes: real parts, then imaginary parts
+  Eigen::VectorXd state_;      // (Omega u, w)
+};
+
+}  // namespace traverse::integrate
