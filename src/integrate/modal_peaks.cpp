@@ -78,7 +78,7 @@ void see(const structure::ModalBridge& bridge, const ModalMotion& motion, std::v
       accelerations[p] += deflection[p] * acceleration;
       moments[p] += moment[p] * q + by_rate[p] * rate + by_acceleration[p] * acceleration;
     }
-    for (std::size_t p = 0; bridge.coupled() && p < n; ++p)
+    for (std::size_t p = 0; !probes.deflection_by_rate.empty() && p < n; ++p)
       deflections[p] += probes.deflection_by_rate[i * n + p] * rate;
   }
 }

@@ -1,5 +1,5 @@
-// The peaks of a passage of moving forces by modes that dampers couple: other ones go side by side
-// (lanes/force_passages.hpp).
+// The peaks of a passage of moving forces by modes where dampers couple these or the ones left out: other passages go
+// side by side (lanes/force_passages.hpp).
 #pragma once
 
 #include <functional>
@@ -10,8 +10,8 @@
 
 namespace traverse::integrate {
 
-/// The peaks from t = 0 to end_time at every probe of the bridge, looked for at so many `instants` a
-/// period of the fastest mode, wherever a force passes a node or a probe, and between them by parabolas. `going` is asked now and
+/// The peaks from t = 0 to end_time (s) at every probe of the bridge, looked for at so many `instants` a period of the
+/// fastest mode, wherever a force passes a node or a probe, and between them by parabolas. `going` is asked now and
 /// then; once it returns false the search stops, and there are no peaks.
 std::vector<ProbePeaks> modal_peaks(const structure::ModalBridge& bridge, const ForceHistory& history, double speed,
                                     bool equilibrium, double end_time, double instants,

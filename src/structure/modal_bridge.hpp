@@ -59,6 +59,8 @@ class ModalBridge {
   /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 where C* is diagonal.
   const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
   bool coupled() const { return cross_damping_.size() > 0; }
+  /// Whether dampers couple modes with each other, or with those left out (after add_probes).
+  bool dampers_couple() const { return coupled() || !probes_.deflection_by_rate.empty(); }
   /// Adds to this rank's nodal forces what damping does, at the modes' rates q', to the modes left out: -C* phi q' less
   /// the modes' share of it.
   void add_forces_on_others(const double* rates, double* nodal) const;

@@ -54,7 +54,7 @@ void CaseRunner::set_up_lanes() {
 std::vector<std::vector<std::size_t>> CaseRunner::groups() const {
   std::vector<std::vector<std::size_t>> groups;
   std::size_t most = lanes_ ? scene_.sweep->lanes : 1;
-  if (scene_.exact_in_time() && !shared_.modal->coupled())
+  if (scene_.exact_in_time() && !shared_.modal->dampers_couple())
     most = std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
   for (std::size_t i = 0; i < speeds_.size(); ++i) {
     const bool joins = !groups.empty() && groups.back().size() < most &&
@@ -119,7 +119,7 @@ double CaseRunner::cost() const {
     const std::vector<double>& omega = shared_.modal->omega();
     const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
     const double an_instant = seconds_a_mode + seconds_a_probe * static_cast<double>(scene_.output.probes.size());
-    const double coupled = shared_.modal->coupled() ? coupled_over_uncoupled : 1.0;
+    const double coupled = shared_.modal->dampers_couple() ? coupled_over_uncoupled : 1.0;
     return coupled * instants * static_cast<double>(omega.size()) * an_instant;
   }
   if (lanes_) {
@@ -216,7 +216,7 @@ std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, const std::v
   std::vector<CaseResult> results(speeds.size());
   const auto going = [] { return caught_signal() == 0; };
   std::vector<std::vector<integrate::ProbePeaks>> peaks;
-  if (shared_.modal->coupled())
+  if (shared_.modal->dampers_couple())
     for (std::size_t i = 0; i < speeds.size(); ++i)
       peaks.push_back(integrate::modal_peaks(*shared_.modal, place->second.history(), speeds[i],
                                              scene_.start == Start::equilibrium, ends[i], scene_.sweep->instants, going));

@@ -134,7 +134,9 @@ void LinearDynamics::recover(MovingVehicle&, const double* pdd) {
 
 // What keeps the speed works u^T (N q'' - g - Q): springs inside do nothing there.
 multibody::MechanismPowers LinearDynamics::powers(const MovingVehicle& vehicle) const {
-  multibody::MechanismPowers powers{xd_.dot(C_ * xd_), drives_ ? driven_.dot(xdd_) - u_.dot(vehicle.Q) : 0.0};
+  double lost = 0.0;
+  for (Eigen::Index i = 0; i < xd_.size(); ++i) lost += xd_[i] * C_.col(i).dot(xd_);
+  multibody::MechanismPowers powers{lost, drives_ ? driven_.dot(xdd_) - u_.dot(vehicle.Q) : 0.0};
   for_actions(vehicle, time_, [&](Eigen::Index q, double action, double) {
     powers.work += action * ((drives_ ? 0.0 : u_[q]) + B_.row(q).dot(xd_));
   });

@@ -91,6 +91,7 @@ long allocations_of_steps(const Words& scene_words, const std::string& type, con
   Stepper stepper(system, {0.1, 1e-3, 0.1, {}, 1e-6});
   double* y = stepper.state();
   (void)system.start(true, y);
+  if (scene.vehicle_model == app::VehicleModel::linear) (void)system.linearise_vehicles(y);
   stepper.restore_state(&y);
   long before = 0, after = 0;
   stepper.run([](const Instant&) {},
@@ -121,6 +122,14 @@ TEST(Steps, OfATrainTakeNoMemory) {
 TEST(Steps, OnABridgeWhoseModesAreCoupledTakeNoMemory) {
   for (const char* type : {"esdirk4", "genalpha"})
     EXPECT_EQ(allocations_of_steps(coaches_on_a_damped_bridge(), type), 0) << type;
+}
+
+TEST(Steps, OfLinearVehiclesTakeNoMemory) {
+  Words scene = coaches_on_a_continuous_bridge();
+  scene.insert(scene.end(), {"-model_vehicles", "linear"});
+  for (const char* type : {"esdirk4", "genalpha"}) {
+    EXPECT_EQ(allocations_of_steps(scene, type), 0) << type;
+  }
 }
 
 // All that a results file holds of a train on a bridge, at one instant.
