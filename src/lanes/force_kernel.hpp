@@ -67,6 +67,7 @@ class ForceGroup : Lanes<W> {
     for (Lane** own : of_responses) *own = in_lanes(3L * n);
     kink_look_ = take_from<long>(work, used_, W, 3L * n);
     kink_place_ = numbers(3L * n);
+    limit_alone_ = numbers(3L * n);
   }
 
   // --- start -------------------------------------------------------------------------------------------------------
@@ -78,6 +79,7 @@ class ForceGroup : Lanes<W> {
     find_next_end();
     for (int i = 0; i < 3 * n; ++i) {
       peak_[i] = peak_place_[i] = limit_[i] = Lane{};
+      limit_alone_[i] = 0.0;
       kink_look_[i] = -1;
     }
     motion_.begin();
@@ -231,7 +233,7 @@ class ForceGroup : Lanes<W> {
     see_statics(now.still);
     now.count = 0;
     int p = 0;
-    if constexpr (W == 1)
+    if (t.runs == 1)
       for (; p + in_a_row <= n; p += in_a_row) see_row(p, now);
     else
       for (; p + 4 <= n; p += 4) see<4>(p, now);
@@ -311,7 +313,7 @@ class ForceGroup : Lanes<W> {
       M += at(t.moment_by_rate + k) * rate;
       M += at(t.moment_by_acceleration + k) * acceleration;
     }
-    const double* limit = reinterpret_cast<const double*>(limit_) + p;
+    const double* limit = limit_alone_ + p;
     if ((Row::exceeds(Row::magnitude(v), at(limit)) | Row::exceeds(Row::magnitude(a), at(limit + n)) |
          Row::exceeds(Row::magnitude(M), at(limit + 2 * n))) == 0)
       return;
@@ -327,6 +329,7 @@ class ForceGroup : Lanes<W> {
     peak_[i] = larger ? value : peak_[i];
     peak_place_[i] = larger ? at : peak_place_[i];
     limit_[i] = near_largest * peak_[i];
+    limit_alone_[i] = limit_[i][0];
   }
 
   /// The last instant but one, where a response had this value, may be beside a peak.
@@ -375,7 +378,9 @@ class ForceGroup : Lanes<W> {
   double next_end_ = 0.0;                // m: of these
   Instant instants_[3], *seen_[3] = {};  // the last ones, in turn
   long looked_ = 0, known_from_ = 1;     // instants so far; the first without a kink of all responses since
+  // Of each response: its largest magnitude so far, m travelled then, what may be larger, the same of the first lane.
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
+  double* limit_alone_ = nullptr;
   long* kink_look_ = nullptr;     // of each response: the instant before its last kink
   double* kink_place_ = nullptr;  // m: where that was
   Lane* kink_value_ = nullptr;    // just after it

@@ -100,7 +100,7 @@ void ForcePassages::find_kinks() {
 std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<const double> speeds,
                                                                      std::span<const double> end_times, double instants,
                                                                      const std::function<bool()>& going) const {
-  const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 1 ? 4 : 1, probes = bridge_.probes().count;
+  const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 2 ? 4 : 2, probes = bridge_.probes().count;
   Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
   for (std::size_t lane = 0; lane < width; ++lane) {
     const std::size_t run = std::min(lane, speeds.size() - 1);
@@ -109,6 +109,7 @@ std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<c
   }
   ForceTask task;
   task.width = static_cast<int>(width);
+  task.runs = static_cast<int>(speeds.size());
   task.speed = speed.data();
   task.end = end.data();
   const double fastest = *std::max_element(bridge_.omega().begin(), bridge_.omega().end());

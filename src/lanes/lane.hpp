@@ -6,15 +6,18 @@ namespace traverse::lanes {
 namespace {
 
 // NOLINTNEXTLINE: vector types have no other spelling
+typedef double TwoNumbers __attribute__((vector_size(16), may_alias));
 typedef double FourNumbers __attribute__((vector_size(32), may_alias));
 typedef double EightNumbers __attribute__((vector_size(64), may_alias));
 typedef long long EightWords __attribute__((vector_size(64), may_alias));  // NOLINT
 
 /// Numbers in a vector of the processor.
-#ifdef __AVX512F__
+#if defined(__AVX512F__)
 constexpr int in_a_row = 8;
-#else
+#elif defined(__AVX__)
 constexpr int in_a_row = 4;
+#else
+constexpr int in_a_row = 2;
 #endif
 
 template <int W>
@@ -50,6 +53,9 @@ struct Lanes {
   static bool any(Mask mask) {
 #ifdef __AVX512DQ__
     if constexpr (W == 8) return __builtin_ia32_cvtq2mask512(*reinterpret_cast<const EightWords*>(&mask)) != 0;
+#endif
+#ifdef __SSE2__
+    if constexpr (W == 2) return __builtin_ia32_movmskpd(*reinterpret_cast<const TwoNumbers*>(&mask)) != 0;
 #endif
 #ifdef __AVX__
     if constexpr (W == 4) return __builtin_ia32_movmskpd256(*reinterpret_cast<const FourNumbers*>(&mask)) != 0;
