@@ -11,7 +11,7 @@ long work_size(const ForceTask& task) {
     case 4:
       return ForceGroup<4>(task, nullptr).size();
     default:
-      return ForceGroup<1>(task, nullptr).size();
+      return ForceGroup<2>(task, nullptr).size();
   }
 }
 
@@ -22,7 +22,7 @@ void cross(const ForceTask& task) {
     case 4:
       return ForceGroup<4>(task, task.work).run();
     default:
-      return ForceGroup<1>(task, task.work).run();
+      return ForceGroup<2>(task, task.work).run();
   }
 }
 

@@ -10,27 +10,21 @@
 namespace traverse::lanes {
 namespace {
 
-// Of the largest so far: no vertex of a parabola whose middle point is less can be larger, as it lies above that by an
-// eighth of the drop to the next point at most, and points a twentieth of a period apart do not drop by 16 % beside a
-// peak.
-constexpr double near_largest = 0.98;
-constexpr double too_near = 1e-6;         // of the next distance: points that near do not make a parabola
-constexpr double same_end = 1.0 + 1e-12;  // distances that are one but for rounding
-constexpr long instants_unasked = 4096;   // between two questions whether to go on
-
 template <int W>
 class ForceGroup : Lanes<W> {
   using Own = Lanes<W>;
   using Own::any;
   using Own::exceeds;
   using Own::fill;
+  using Own::in_a_row;
   using Own::lanes;
   using Own::magnitude;
   using typename Own::Lane;
   using typename Own::Mask;
 
  public:
-  ForceGroup(const ForceTask& task, double* work) : t(task), m(task.modes), n(task.probes), motion_(task) {
+  ForceGroup(const ForceTask& task, double* work)
+      : task_(task), modes_(task.modes), probes_(task.probes), motion_(task) {
     lay_out(work);
   }
   long size() const { return used_ * W; }
@@ -38,16 +32,24 @@ class ForceGroup : Lanes<W> {
   void run() {
     begin();
     for (long k = 1; any(runs_); ++k) {
-      if (k % instants_unasked == 0 && !t.going(t.whom)) return;
-      go_to_instant(static_cast<double>(k) * t.ds);
+      if (k % instants_unasked == 0 && !task_.going(task_.whom)) return;
+      go_to_instant(static_cast<double>(k) * task_.ds);
     }
-    for (int i = 0; i < 3 * n; ++i) {
-      lanes(t.peak)[i] = peak_[i];
-      lanes(t.peak_time)[i] = peak_place_[i] / speed_;
+    for (int i = 0; i < 3 * probes_; ++i) {
+      lanes(task_.peak)[i] = peak_[i];
+      lanes(task_.peak_time)[i] = peak_place_[i] / speed_;
     }
   }
 
  private:
+  // Of the largest so far: no vertex of a parabola whose middle point is less can be larger, as it lies above that by
+  // an eighth of the drop to the next point at most, and points a twentieth of a period apart do not drop by 16 %
+  // beside a peak.
+  static constexpr double near_largest = 0.98;
+  static constexpr double too_near = 1e-6;         // of the next distance: points that near do not make a parabola
+  static constexpr double same_end = 1.0 + 1e-12;  // distances that are one but for rounding
+  static constexpr long instants_unasked = 4096;   // between two questions whether to go on
+
   // --- memory ------------------------------------------------------------------------------------------------------
 
   void lay_out(double* work) {
@@ -58,26 +60,28 @@ class ForceGroup : Lanes<W> {
       Instant& own = instants_[k];
       seen_[k] = &own;
       Lane** const of_modes_then[] = {&own.q, &own.r, &own.a};
-      for (Lane** then : of_modes_then) *then = in_lanes(m);
-      own.still = numbers(2L * n);
-      own.flagged = take_from<int>(work, used_, W, 3L * n);
-      own.value = in_lanes(3L * n);
+      for (Lane** then : of_modes_then) *then = in_lanes(modes_);
+      own.still = numbers(2L * probes_);
+      own.flagged = take_from<int>(work, used_, W, 3L * probes_);
+      own.value = in_lanes(3L * probes_);
     }
     Lane** const of_responses[] = {&peak_, &peak_place_, &limit_, &kink_value_};
-    for (Lane** own : of_responses) *own = in_lanes(3L * n);
-    kink_look_ = take_from<long>(work, used_, W, 3L * n);
-    kink_place_ = numbers(3L * n);
+    for (Lane** own : of_responses) *own = in_lanes(3L * probes_);
+    kink_look_ = take_from<long>(work, used_, W, 3L * probes_);
+    kink_place_ = numbers(3L * probes_);
+    limit_alone_ = numbers(3L * probes_);
   }
 
   // --- start -------------------------------------------------------------------------------------------------------
 
   void begin() {
-    speed_ = *lanes(t.speed);
-    end_ = *lanes(t.end);
+    speed_ = *lanes(task_.speed);
+    end_ = *lanes(task_.end);
     runs_ = end_ >= Lane{};
     find_next_end();
-    for (int i = 0; i < 3 * n; ++i) {
+    for (int i = 0; i < 3 * probes_; ++i) {
       peak_[i] = peak_place_[i] = limit_[i] = Lane{};
+      limit_alone_[i] = 0.0;
       kink_look_[i] = -1;
     }
     motion_.begin();
@@ -104,7 +108,7 @@ class ForceGroup : Lanes<W> {
   // --- events ------------------------------------------------------------------------------------------------------
 
   void pass_event() {
-    const ForceEvent event = t.event[motion_.interval + 1];
+    const ForceEvent event = task_.event[motion_.interval + 1];
     if (event == ForceEvent::all_kink || event == ForceEvent::all_jump) {
       look();
       motion_.enter_next();
@@ -115,10 +119,10 @@ class ForceGroup : Lanes<W> {
       known_from_ = looked_;
       return;
     }
-    const int first = t.first_kink[motion_.interval + 1], last = t.first_kink[motion_.interval + 2];
-    for (int k = first; k < last; ++k) see_before_kink(t.kink[k]);
+    const int first = task_.first_kink[motion_.interval + 1], last = task_.first_kink[motion_.interval + 2];
+    for (int k = first; k < last; ++k) see_before_kink(task_.kink[k]);
     motion_.enter_next();
-    for (int k = first; k < last; ++k) start_after_kink(t.kink[k]);
+    for (int k = first; k < last; ++k) start_after_kink(task_.kink[k]);
   }
 
   /// A response's curve ends here.
@@ -151,11 +155,11 @@ class ForceGroup : Lanes<W> {
     if (next_end_ > to * same_end) return;
     const Mask ending = runs_ & (end_ <= fill(to * same_end));
     const Lane at = ending ? end_ : fill(motion_.s);
-    const Lane since = at - t.start[motion_.interval];
+    const Lane since = at - task_.start[motion_.interval];
     motion_.move_apart(at);
-    for (int i = 0; i < 3 * n; ++i) {
+    for (int i = 0; i < 3 * probes_; ++i) {
       Lane still{};
-      if (i < n || i >= 2 * n) still = static_in_lanes(i, since);
+      if (i < probes_ || i >= 2 * probes_) still = static_in_lanes(i, since);
       const Lane value = response(i, still, motion_.q, motion_.r, motion_.a);
       note(i, ending, magnitude(value), at);
       see_between_last(i, ending, at, value);
@@ -169,32 +173,32 @@ class ForceGroup : Lanes<W> {
 
   /// A response without the modes: the static correction, and the beam's own weight.
   const double* static_of(int i) const {
-    return t.coefficients + 4 * t.channels * motion_.interval + m + (i < n ? i : i - n);
+    return task_.coefficients + 4 * task_.channels * motion_.interval + modes_ + (i < probes_ ? i : i - probes_);
   }
   double static_now(int i) const {
-    if (i >= n && i < 2 * n) return 0.0;
-    const double *c = static_of(i), d = motion_.s - t.start[motion_.interval];
-    const long k = t.channels;
-    return t.weight[i < n ? i : i - n] + (c[0] + d * (c[k] + d * (c[2 * k] + d * c[3 * k])));
+    if (i >= probes_ && i < 2 * probes_) return 0.0;
+    const double *c = static_of(i), d = motion_.s - task_.start[motion_.interval];
+    const long k = task_.channels;
+    return task_.weight[i < probes_ ? i : i - probes_] + (c[0] + d * (c[k] + d * (c[2 * k] + d * c[3 * k])));
   }
   Lane static_in_lanes(int i, Lane d) const {
     const double* c = static_of(i);
-    const long k = t.channels;
-    return t.weight[i < n ? i : i - n] + (c[0] + d * (c[k] + d * (c[2 * k] + d * c[3 * k])));
+    const long k = task_.channels;
+    return task_.weight[i < probes_ ? i : i - probes_] + (c[0] + d * (c[k] + d * (c[2 * k] + d * c[3 * k])));
   }
 
   /// A response with these coordinates, rates and accelerations of the modes.
   Lane response(int i, Lane value, const Lane* q, const Lane* r, const Lane* a) const {
-    if (i < n) {
-      for (int k = 0; k < m; ++k) value += t.deflection[k * n + i] * q[k];
-    } else if (i < 2 * n) {
-      for (int k = 0; k < m; ++k) value += t.deflection[k * n + i - n] * a[k];
+    if (i < probes_) {
+      for (int k = 0; k < modes_; ++k) value += task_.deflection[k * probes_ + i] * q[k];
+    } else if (i < 2 * probes_) {
+      for (int k = 0; k < modes_; ++k) value += task_.deflection[k * probes_ + i - probes_] * a[k];
     } else {
-      for (int k = 0; k < m; ++k) {
-        const int at = k * n + i - 2 * n;
-        value += t.moment[at] * q[k];
-        value += t.moment_by_rate[at] * r[k];
-        value += t.moment_by_acceleration[at] * a[k];
+      for (int k = 0; k < modes_; ++k) {
+        const int at = k * probes_ + i - 2 * probes_;
+        value += task_.moment[at] * q[k];
+        value += task_.moment_by_rate[at] * r[k];
+        value += task_.moment_by_acceleration[at] * a[k];
       }
     }
     return value;
@@ -210,7 +214,7 @@ class ForceGroup : Lanes<W> {
     int count = 0;
   };
   Lane response(int i, const Instant& then) const {
-    const double still = i < n ? then.still[i] : i < 2 * n ? 0.0 : then.still[i - n];
+    const double still = i < probes_ ? then.still[i] : i < 2 * probes_ ? 0.0 : then.still[i - probes_];
     return response(i, fill(still), then.q, then.r, then.a);
   }
 
@@ -223,7 +227,7 @@ class ForceGroup : Lanes<W> {
     ++looked_;
     Instant& now = *oldest;
     now.place = motion_.s;
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < modes_; ++i) {
       now.q[i] = motion_.q[i];
       now.r[i] = motion_.r[i];
       now.a[i] = motion_.a[i];
@@ -231,11 +235,11 @@ class ForceGroup : Lanes<W> {
     see_statics(now.still);
     now.count = 0;
     int p = 0;
-    if constexpr (W == 1)
-      for (; p + in_a_row <= n; p += in_a_row) see_row(p, now);
+    if (task_.runs == 1)
+      for (; p + in_a_row <= probes_; p += in_a_row) see_row(p, now);
     else
-      for (; p + 4 <= n; p += 4) see<4>(p, now);
-    for (; p < n; ++p) see<1>(p, now);
+      for (; p + 4 <= probes_; p += 4) see<4>(p, now);
+    for (; p < probes_; ++p) see<1>(p, now);
     for (int k = 0; k < now.count; ++k) note(now.flagged[k], runs_, magnitude(now.value[k]), fill(motion_.s));
     if (looked_ - 2 < known_from_) return;
     const Instant& last = *seen_[1];
@@ -243,11 +247,11 @@ class ForceGroup : Lanes<W> {
   }
 
   void see_statics(double* still) const {
-    const double d = motion_.s - t.start[motion_.interval];
-    const long k = t.channels;
-    const double* c = t.coefficients + 4 * k * motion_.interval + m;
-    for (int i = 0; i < 2 * n; ++i)
-      still[i] = t.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
+    const double d = motion_.s - task_.start[motion_.interval];
+    const long k = task_.channels;
+    const double* c = task_.coefficients + 4 * k * motion_.interval + modes_;
+    for (int i = 0; i < 2 * probes_; ++i)
+      still[i] = task_.weight[i] + (c[i] + d * (c[k + i] + d * (c[2 * k + i] + d * c[3 * k + i])));
   }
 
   /// Flags those responses of N neighbouring probes that may be the largest.
@@ -258,12 +262,12 @@ class ForceGroup : Lanes<W> {
     for (int k = 0; k < N; ++k) {
       v[k] = fill(now.still[p + k]);
       a[k] = Lane{};
-      M[k] = fill(now.still[n + p + k]);
+      M[k] = fill(now.still[probes_ + p + k]);
     }
-    for (int i = 0; i < m; ++i) {
-      const int at = i * n + p;
-      const double *form = t.deflection + at, *bend = t.moment + at;
-      const double *by_rate = t.moment_by_rate + at, *by_acceleration = t.moment_by_acceleration + at;
+    for (int i = 0; i < modes_; ++i) {
+      const int at = i * probes_ + p;
+      const double *form = task_.deflection + at, *bend = task_.moment + at;
+      const double *by_rate = task_.moment_by_rate + at, *by_acceleration = task_.moment_by_acceleration + at;
       const Lane q = now.q[i], rate = now.r[i], acceleration = now.a[i];
 #pragma GCC unroll 4
       for (int k = 0; k < N; ++k) {
@@ -274,7 +278,7 @@ class ForceGroup : Lanes<W> {
         M[k] += by_acceleration[k] * acceleration;
       }
     }
-    const Lane *of_v = limit_ + p, *of_a = of_v + n, *of_M = of_a + n;
+    const Lane *of_v = limit_ + p, *of_a = of_v + probes_, *of_M = of_a + probes_;
     int larger = 0;
 #pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
@@ -286,8 +290,8 @@ class ForceGroup : Lanes<W> {
 #pragma GCC unroll 4
     for (int k = 0; k < N; ++k) {
       flag(p + k, v[k], now);
-      flag(n + p + k, a[k], now);
-      flag(2 * n + p + k, M[k], now);
+      flag(probes_ + p + k, a[k], now);
+      flag(2 * probes_ + p + k, M[k], now);
     }
   }
 
@@ -301,24 +305,24 @@ class ForceGroup : Lanes<W> {
   void see_row(int p, Instant& now) const {
     using Row = Lanes<in_a_row>;
     const auto at = [](const double* numbers) { return *reinterpret_cast<const typename Row::Unaligned*>(numbers); };
-    typename Row::Lane v = at(now.still + p), a{}, M = at(now.still + n + p);
-    for (int i = 0; i < m; ++i) {
-      const int k = i * n + p;
+    typename Row::Lane v = at(now.still + p), a{}, M = at(now.still + probes_ + p);
+    for (int i = 0; i < modes_; ++i) {
+      const int k = i * probes_ + p;
       const double q = now.q[i][0], rate = now.r[i][0], acceleration = now.a[i][0];
-      v += at(t.deflection + k) * q;
-      a += at(t.deflection + k) * acceleration;
-      M += at(t.moment + k) * q;
-      M += at(t.moment_by_rate + k) * rate;
-      M += at(t.moment_by_acceleration + k) * acceleration;
+      v += at(task_.deflection + k) * q;
+      a += at(task_.deflection + k) * acceleration;
+      M += at(task_.moment + k) * q;
+      M += at(task_.moment_by_rate + k) * rate;
+      M += at(task_.moment_by_acceleration + k) * acceleration;
     }
-    const double* limit = reinterpret_cast<const double*>(limit_) + p;
-    if ((Row::exceeds(Row::magnitude(v), at(limit)) | Row::exceeds(Row::magnitude(a), at(limit + n)) |
-         Row::exceeds(Row::magnitude(M), at(limit + 2 * n))) == 0)
+    const double* limit = limit_alone_ + p;
+    if ((Row::exceeds(Row::magnitude(v), at(limit)) | Row::exceeds(Row::magnitude(a), at(limit + probes_)) |
+         Row::exceeds(Row::magnitude(M), at(limit + 2 * probes_))) == 0)
       return;
     for (int k = 0; k < in_a_row; ++k) {
       flag(p + k, fill(v[k]), now);
-      flag(n + p + k, fill(a[k]), now);
-      flag(2 * n + p + k, fill(M[k]), now);
+      flag(probes_ + p + k, fill(a[k]), now);
+      flag(2 * probes_ + p + k, fill(M[k]), now);
     }
   }
 
@@ -327,6 +331,7 @@ class ForceGroup : Lanes<W> {
     peak_[i] = larger ? value : peak_[i];
     peak_place_[i] = larger ? at : peak_place_[i];
     limit_[i] = near_largest * peak_[i];
+    limit_alone_[i] = limit_[i][0];
   }
 
   /// The last instant but one, where a response had this value, may be beside a peak.
@@ -366,8 +371,8 @@ class ForceGroup : Lanes<W> {
     note(i, where, y1 + (at - s1) * (before + bend * (at - s0)), at);
   }
 
-  const ForceTask& t;
-  const int m, n;  // modes, probes
+  const ForceTask& task_;
+  const int modes_, probes_;
   ForcedModes<W> motion_;
   long used_ = 0;
   Lane speed_{}, end_{};
@@ -375,7 +380,9 @@ class ForceGroup : Lanes<W> {
   double next_end_ = 0.0;                // m: of these
   Instant instants_[3], *seen_[3] = {};  // the last ones, in turn
   long looked_ = 0, known_from_ = 1;     // instants so far; the first without a kink of all responses since
+  // Of each response: its largest magnitude so far, m travelled then, what may be larger, the same of the first lane.
   Lane *peak_ = nullptr, *peak_place_ = nullptr, *limit_ = nullptr;
+  double* limit_alone_ = nullptr;
   long* kink_look_ = nullptr;     // of each response: the instant before its last kink
   double* kink_place_ = nullptr;  // m: where that was
   Lane* kink_value_ = nullptr;    // just after it

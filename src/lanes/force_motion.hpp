@@ -19,10 +19,6 @@
 namespace traverse::lanes {
 namespace {
 
-constexpr double most_phase = 2.0;   // of a part of an instant: series are short up to there
-constexpr int most_terms = 32;       // of a series
-constexpr double last_term = 1e-19;  // of a series, over the first
-
 template <int W>
 class ForcedModes : Lanes<W> {
   using Own = Lanes<W>;
@@ -31,37 +27,37 @@ class ForcedModes : Lanes<W> {
  public:
   using typename Own::Lane;
 
-  explicit ForcedModes(const ForceTask& task) : t(task), m(task.modes) {}
+  explicit ForcedModes(const ForceTask& task) : task_(task), modes_(task.modes) {}
 
   void lay_out(double* work, long& used) {
     Lane** const of_modes[] = {&q, &r, &a, &q_kept_, &r_kept_, &a_kept_};
-    for (Lane** own : of_modes) *own = take_from<Lane>(work, used, W, m);
-    regular_ = take_from<Advance>(work, used, W, m);
-    series_ = take_from<Series>(work, used, W, m);
-    for (double*& power : g_) power = take_from<double>(work, used, W, m);
+    for (Lane** own : of_modes) *own = take_from<Lane>(work, used, W, modes_);
+    regular_ = take_from<Advance>(work, used, W, modes_);
+    series_ = take_from<Series>(work, used, W, modes_);
+    for (double*& power : g_) power = take_from<double>(work, used, W, modes_);
   }
 
   void begin() {
-    speed_ = *Own::lanes(t.speed);
+    speed_ = *Own::lanes(task_.speed);
     set_series();
-    const Lane part = fill(t.ds / parts_) / speed_;
-    for (int i = 0; i < m; ++i) {
+    const Lane part = fill(task_.ds / parts_) / speed_;
+    for (int i = 0; i < modes_; ++i) {
       regular_[i] = advance_by(i, part);
-      q[i] = fill(t.q[i]);
+      q[i] = fill(task_.q[i]);
       r[i] = Lane{};
     }
     place(0.0);
   }
 
   /// m travelled; infinite after the last one.
-  double next_event() const { return interval + 1 < t.intervals ? t.start[interval + 1] : 1e300; }
+  double next_event() const { return interval + 1 < task_.intervals ? task_.start[interval + 1] : 1e300; }
 
   /// At an event: the modal forces become those after it.
   void enter_next() {
     ++interval;
-    if (interval + 1 < t.intervals) {
-      const double* next = t.coefficients + 4 * t.channels * (interval + 1);
-      for (int i = 0; i < 4 * t.channels; i += 8) __builtin_prefetch(next + i);
+    if (interval + 1 < task_.intervals) {
+      const double* next = task_.coefficients + 4 * task_.channels * (interval + 1);
+      for (int i = 0; i < 4 * task_.channels; i += 8) __builtin_prefetch(next + i);
     }
     place(s);
   }
@@ -70,7 +66,7 @@ class ForcedModes : Lanes<W> {
   void move_regularly(double to) {
     const double from = s;
     for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < m; ++i) move(i, regular_[i], g_[1][i], g_[2][i], g_[3][i]);
+      for (int i = 0; i < modes_; ++i) move(i, regular_[i], g_[1][i], g_[2][i], g_[3][i]);
       place(part_of(from, to, k));
     }
   }
@@ -80,7 +76,7 @@ class ForcedModes : Lanes<W> {
     const double from = s;
     const Lane part = fill((to - from) / parts_) / speed_;
     for (double k = 1.0; k <= parts_; k += 1.0) {
-      for (int i = 0; i < m; ++i) move(i, advance_by(i, part), g_[1][i], g_[2][i], g_[3][i]);
+      for (int i = 0; i < modes_; ++i) move(i, advance_by(i, part), g_[1][i], g_[2][i], g_[3][i]);
       place(part_of(from, to, k));
     }
   }
@@ -88,23 +84,23 @@ class ForcedModes : Lanes<W> {
   /// So does every lane to a distance of its own; move_back() undoes it.
   void move_apart(Lane to) {
     const Lane step = (to - s) / parts_, part = step / speed_;
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < modes_; ++i) {
       q_kept_[i] = q[i];
       r_kept_[i] = r[i];
       a_kept_[i] = a[i];
       const Advance by = advance_by(i, part);
-      const double* c = t.coefficients + 4 * t.channels * interval + i;
-      const double c0 = c[0], c1 = c[t.channels], c2 = c[2 * t.channels], c3 = c[3 * t.channels];
-      Lane d = fill(s - t.start[interval]);
+      const double* c = task_.coefficients + 4 * task_.channels * interval + i;
+      const double c0 = c[0], c1 = c[task_.channels], c2 = c[2 * task_.channels], c3 = c[3 * task_.channels];
+      Lane d = fill(s - task_.start[interval]);
       for (double k = 1.0; k <= parts_; k += 1.0) {
         move(i, by, c1 + d * (2.0 * c2 + 3.0 * d * c3), c2 + 3.0 * d * c3, c3);
         d += step;
-        a[i] = c0 + d * (c1 + d * (c2 + d * c3)) - t.omega2[i] * q[i] - t.damping[i] * r[i];
+        a[i] = c0 + d * (c1 + d * (c2 + d * c3)) - task_.omega2[i] * q[i] - task_.damping[i] * r[i];
       }
     }
   }
   void move_back() {
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < modes_; ++i) {
       q[i] = q_kept_[i];
       r[i] = r_kept_[i];
       a[i] = a_kept_[i];
@@ -116,6 +112,10 @@ class ForcedModes : Lanes<W> {
   Lane *q = nullptr, *r = nullptr, *a = nullptr;  // of the modes: coordinates, rates, accelerations
 
  private:
+  static constexpr double most_phase = 2.0;   // of a part of an instant: series are short up to there
+  static constexpr int most_terms = 32;       // of a series
+  static constexpr double last_term = 1e-19;  // of a series, over the first
+
   /// What one step adds to a mode's q and q', by q', q'', j, and the second and third powers of the distance in g.
   struct Advance {
     Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
@@ -127,13 +127,13 @@ class ForcedModes : Lanes<W> {
 
   /// As many coefficients as the longest part of an instant needs; and how many parts it has.
   void set_series() {
-    for (int i = 0; i < m; ++i) {
-      const double least = __builtin_ceil(rate_of(i) * t.instant / most_phase);
+    for (int i = 0; i < modes_; ++i) {
+      const double least = __builtin_ceil(rate_of(i) * task_.instant / most_phase);
       if (least > parts_) parts_ = least;
     }
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < modes_; ++i) {
       Series& own = series_[i];
-      const double phase = rate_of(i) * t.instant / parts_;
+      const double phase = rate_of(i) * task_.instant / parts_;
       double before = 0.0, impulse = 1.0;  // derivatives of O at t = 0
       double by_2 = 1.0 / 24.0, by_3 = 1.0 / 120.0, size = 1.0;
       for (own.terms = 0; own.terms < most_terms && (own.terms < 2 || size > last_term); ++own.terms) {
@@ -143,7 +143,7 @@ class ForcedModes : Lanes<W> {
         by_2 /= k + 5.0;
         by_3 /= k + 6.0;
         size *= phase / (k + 5.0) * (k + 2.0) / (k + 1.0);
-        const double next = -t.damping[i] * impulse - t.omega2[i] * before;
+        const double next = -task_.damping[i] * impulse - task_.omega2[i] * before;
         before = impulse;
         impulse = next;
       }
@@ -152,8 +152,8 @@ class ForcedModes : Lanes<W> {
 
   /// How fast a mode changes, 1/s.
   double rate_of(int i) const {
-    const double sigma = 0.5 * t.damping[i], square = sigma * sigma - t.omega2[i];
-    return square > 0.0 ? sigma + __builtin_sqrt(square) : __builtin_sqrt(t.omega2[i]);
+    const double sigma = 0.5 * task_.damping[i], square = sigma * sigma - task_.omega2[i];
+    return square > 0.0 ? sigma + __builtin_sqrt(square) : __builtin_sqrt(task_.omega2[i]);
   }
 
   Advance advance_by(int i, Lane time) const {
@@ -166,7 +166,7 @@ class ForcedModes : Lanes<W> {
     const Lane square = time * time;
     Q2 *= square * square;
     Q3 *= square * square * time;
-    const double c = t.damping[i], w = t.omega2[i];
+    const double c = task_.damping[i], w = task_.omega2[i];
     const Lane Q1 = time * square * (1.0 / 6.0) - c * Q2 - w * Q3;
     const Lane Q0 = 0.5 * square - c * Q1 - w * Q2;
     const Lane impulse = time - c * Q0 - w * Q1;
@@ -177,7 +177,7 @@ class ForcedModes : Lanes<W> {
   /// With the powers of the distance in g from where the step begins; of one lane's distance, or of all.
   template <class Number>
   void move(int i, const Advance& by, Number first, Number second, double third) {
-    const Lane rate = r[i], acceleration = a[i], jerk = first * speed_ - t.omega2[i] * rate;
+    const Lane rate = r[i], acceleration = a[i], jerk = first * speed_ - task_.omega2[i] * rate;
     q[i] = q[i] + (by.time * rate + (by.Q1 * jerk + (by.q_by_2 * second + by.q_by_3 * third))) + by.Q0 * acceleration;
     r[i] = rate + (by.Q0 * jerk + (by.rate_by_2 * second + by.rate_by_3 * third)) + by.impulse * acceleration;
   }
@@ -188,20 +188,20 @@ class ForcedModes : Lanes<W> {
   /// At a distance within this interval: the modal forces, and the accelerations by them.
   void place(double at) {
     s = at;
-    const double d = s - t.start[interval];
-    const double* c = t.coefficients + 4 * t.channels * interval;
-    for (int i = 0; i < m; ++i) {
-      const double c1 = c[t.channels + i], c2 = c[2 * t.channels + i], c3 = c[3 * t.channels + i];
+    const double d = s - task_.start[interval];
+    const double* c = task_.coefficients + 4 * task_.channels * interval;
+    for (int i = 0; i < modes_; ++i) {
+      const double c1 = c[task_.channels + i], c2 = c[2 * task_.channels + i], c3 = c[3 * task_.channels + i];
       const double force = c[i] + d * (c1 + d * (c2 + d * c3));
       g_[1][i] = c1 + d * (2.0 * c2 + 3.0 * d * c3);
       g_[2][i] = c2 + 3.0 * d * c3;
       g_[3][i] = c3;
-      a[i] = force - t.omega2[i] * q[i] - t.damping[i] * r[i];
+      a[i] = force - task_.omega2[i] * q[i] - task_.damping[i] * r[i];
     }
   }
 
-  const ForceTask& t;
-  const int m;  // modes
+  const ForceTask& task_;
+  const int modes_;
   Lane speed_{};
   double parts_ = 1.0;  // of an instant
   Lane *q_kept_ = nullptr, *r_kept_ = nullptr, *a_kept_ = nullptr;

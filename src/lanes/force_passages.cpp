@@ -100,7 +100,7 @@ void ForcePassages::find_kinks() {
 std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<const double> speeds,
                                                                      std::span<const double> end_times, double instants,
                                                                      const std::function<bool()>& going) const {
-  const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 1 ? 4 : 1, probes = bridge_.probes().count;
+  const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 2 ? 4 : 2, probes = bridge_.probes().count;
   Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
   for (std::size_t lane = 0; lane < width; ++lane) {
     const std::size_t run = std::min(lane, speeds.size() - 1);
@@ -109,6 +109,7 @@ std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<c
   }
   ForceTask task;
   task.width = static_cast<int>(width);
+  task.runs = static_cast<int>(speeds.size());
   task.speed = speed.data();
   task.end = end.data();
   const double fastest = *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
@@ -161,18 +162,18 @@ std::vector<double> ForcePassages::static_peaks() const {
   const std::size_t modes = bridge_.modes();
   const structure::ModalProbes& probes = bridge_.probes();
   std::vector<double> peaks;
-  for (std::size_t p = 0; p < probes.count; ++p) {
-    double peak = std::abs(probes.weight_deflection[p]);
-    for (std::size_t interval = 0; interval + 1 < history_.start.size(); ++interval) {
+  for (const double weight : probes.weight_deflection) peaks.push_back(std::abs(weight));
+  for (std::size_t interval = 0; interval + 1 < history_.start.size(); ++interval) {
+    const double length = history_.start[interval + 1] - history_.start[interval];
+    for (std::size_t p = 0; p < probes.count; ++p) {
       std::array<double, 4> c = cubic_of(history_, interval, modes + p);  // of the deflection over the distance
       for (std::size_t i = 0; i < modes; ++i) {
         const std::array<double, 4> force = cubic_of(history_, interval, i);
         for (std::size_t k = 0; k < 4; ++k) c[k] += probes.deflection[i * probes.count + p] * force[k] / omega2_[i];
       }
       c[0] += probes.weight_deflection[p];
-      const double length = history_.start[interval + 1] - history_.start[interval];
       const auto look = [&](double s) {
-        if (s >= 0.0 && s <= length) peak = std::max(peak, std::abs(c[0] + s * (c[1] + s * (c[2] + s * c[3]))));
+        if (s >= 0.0 && s <= length) peaks[p] = std::max(peaks[p], std::abs(c[0] + s * (c[1] + s * (c[2] + s * c[3]))));
       };
       look(0.0);
       look(length);
@@ -182,7 +183,6 @@ std::vector<double> ForcePassages::static_peaks() const {
       if (c[3] != 0.0) look(far / (3.0 * c[3]));
       if (far != 0.0) look(c[1] / far);
     }
-    peaks.push_back(peak);
   }
   return peaks;
 }

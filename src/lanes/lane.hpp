@@ -5,24 +5,29 @@
 namespace traverse::lanes {
 namespace {
 
-// NOLINTNEXTLINE: vector types have no other spelling
+// NOLINTBEGIN: vector types have no other spelling
+typedef double TwoNumbers __attribute__((vector_size(16), may_alias));
 typedef double FourNumbers __attribute__((vector_size(32), may_alias));
 typedef double EightNumbers __attribute__((vector_size(64), may_alias));
-typedef long long EightWords __attribute__((vector_size(64), may_alias));  // NOLINT
-
-/// Numbers in a vector of the processor.
-#ifdef __AVX512F__
-constexpr int in_a_row = 8;
-#else
-constexpr int in_a_row = 4;
-#endif
+typedef long long EightWords __attribute__((vector_size(64), may_alias));
+// NOLINTEND
 
 template <int W>
 struct Lanes {
-  // NOLINTNEXTLINE: vector types have no other spelling
+  // NOLINTBEGIN: vector types have no other spelling
   typedef double Lane __attribute__((vector_size(8 * W), may_alias));
   typedef double Unaligned __attribute__((vector_size(8 * W), may_alias, aligned(8)));
-  typedef long Mask __attribute__((vector_size(8 * W), may_alias));  // NOLINT
+  typedef long Mask __attribute__((vector_size(8 * W), may_alias));
+  // NOLINTEND
+
+  /// Numbers in a vector of the processor.
+#if defined(__AVX512F__)
+  static constexpr int in_a_row = 8;
+#elif defined(__AVX__)
+  static constexpr int in_a_row = 4;
+#else
+  static constexpr int in_a_row = 2;
+#endif
 
   static Lane fill(double value) { return Lane{} + value; }
   static const Lane* lanes(const double* numbers) { return reinterpret_cast<const Lane*>(numbers); }
@@ -50,6 +55,9 @@ struct Lanes {
   static bool any(Mask mask) {
 #ifdef __AVX512DQ__
     if constexpr (W == 8) return __builtin_ia32_cvtq2mask512(*reinterpret_cast<const EightWords*>(&mask)) != 0;
+#endif
+#ifdef __SSE2__
+    if constexpr (W == 2) return __builtin_ia32_movmskpd(*reinterpret_cast<const TwoNumbers*>(&mask)) != 0;
 #endif
 #ifdef __AVX__
     if constexpr (W == 4) return __builtin_ia32_movmskpd256(*reinterpret_cast<const FourNumbers*>(&mask)) != 0;

@@ -19,7 +19,7 @@ std::size_t best_width() {
     case Target::avx2:
       return 4;
     default:
-      return 1;
+      return 2;
   }
 }
 
