@@ -1,11 +1,13 @@
 #!/usr/bin/python3
-"""Passages of moving forces side by side in the lanes of vectors: what each takes, and how far its peaks are off.
+"""Passages side by side in the lanes of vectors: what each takes, and how far its peaks are off.
 /usr/bin/python3 benchmarks/lanes.py [BUILD_FOLDER] [OUT_FOLDER] [--smallest] [--beside OTHER_BUILD_FOLDER]
 
-Runs the sweeps of options/scenes/hslm_sweep.yml (one station) and hslm_two_spans.yml (41) with one, four and eight runs
-side by side on one rank, in turn, and takes the quickest of several rounds. Peaks are held against those of the same
-sweep looked at 400 times a period (sweep_instants): the largest difference of any run and station, over the largest of
-the run's stations. --beside adds another build of the program, an older one say. Prints a table; writes lanes.csv.
+Runs sweeps of moving forces (options/scenes/hslm_sweep.yml with one station, hslm_two_spans.yml with 41) and of eight
+coaches (fifty_metre_train.yml by 16 modes), in turn with one, four and eight runs side by side on one rank, with eight on
+two, and the coaches' by themselves too, which PETSc's TS then drives; takes the quickest of several rounds. Peaks are held
+against those of a finer sweep: forces looked at 400 times a period (sweep_instants), coaches with a quarter of the step
+and twice the modes. The error is the largest difference of any run and station, over the largest of the run's stations.
+--beside adds another build of the program, an older one say. Prints a table; writes lanes.csv.
 """
 
 import os
@@ -15,38 +17,48 @@ import h5py
 import numpy as np
 import runs
 
-SCENES = ["hslm_sweep", "hslm_two_spans"]
-LANES = [1, 4, 8]
-QUANTITIES = ["deflection", "acceleration", "moment"]
-FINE = {"sweep_instants": "400"}
-SMALLEST = {"sweep_hslm_a": "1,9", "sweep_speed": "60,64,0.4"}
-ROUNDS = 9
+FORCES = {"lanes": [1, 4, 8], "options": {}, "fine": {"sweep_instants": "400"}, "rounds": 9,
+          "smallest": {"sweep_hslm_a": "1,9", "sweep_speed": "60,64,0.4"}}
+COACHES = {"lanes": [0, 1, 4, 8], "rounds": 3,
+           "options": {"sweep_speed": "77,84,1", "model_vehicles": "linear", "model_modes": "16", "ts_dt": "6e-4",
+                       "beam_elements_per_span": "64", "step_probes": "true"},
+           "fine": {"ts_dt": "1.5e-4", "model_modes": "32"},
+           "smallest": {"train_vehicles": "coach", "sweep_speed": "77,84,7", "model_modes": "4", "ts_dt": "2e-3"}}
+SCENES = {"hslm_sweep": FORCES, "hslm_two_spans": FORCES, "fifty_metre_train": COACHES}
+QUANTITIES = {"deflection": "peak_deflection", "acceleration": "peak_acceleration", "moment": "peak_moment",
+              "wheel force": "greatest_wheel_force"}
 
 
-def sweep(build, options, folder):
-    """ms a passage, and the peaks as [train][speed][station]."""
+def sweep(build, options, folder, ranks=1):
+    """ms a passage, and the peaks as [train][speed][station], none where there are no wheels."""
     file = os.path.join(folder, "sweep.h5")
-    run = runs.Run(build, options, file)
+    run = runs.Run(build, options, file, ranks)
     with h5py.File(file) as results:
-        peaks = {name: results["sweep/peak_" + name][...] for name in QUANTITIES}
+        stored = results["sweep"]
+        peaks = {name: stored[of][...] for name, of in QUANTITIES.items() if of in stored}
+    if "wheel force" in peaks:
+        peaks["wheel force"] = peaks["wheel force"][..., np.newaxis]
     return 1e3 * run.seconds / peaks["deflection"][..., 0].size, peaks
 
 
 def off(peaks, fine):
-    return [(np.abs(peaks[name] - fine[name]) / fine[name].max(axis=2, keepdims=True)).max() for name in QUANTITIES]
+    return [(np.abs(peaks[name] - fine[name]) / fine[name].max(axis=2, keepdims=True)).max() if name in peaks else 0.0
+            for name in QUANTITIES]
 
 
-def measured(given, scene, options, folder):
+def measured(given, scene, how, folder):
     """Rows of the table."""
-    options = {"options_file": runs.scene(scene)} | options
-    cases = {f"{lanes} side by side": (given.build, {"sweep_lanes": lanes}) for lanes in LANES}
+    options = {"options_file": runs.scene(scene)} | how["options"] | (how["smallest"] if given.smallest else {})
+    cases = {f"{lanes} side by side" if lanes else "by themselves": (given.build, {"sweep_lanes": lanes}, 1)
+             for lanes in how["lanes"]}
+    cases["8, two ranks"] = (given.build, {"sweep_lanes": 8}, 2)
     if given.beside:
-        cases["the other build"] = (given.beside, {})
-    _, fine = sweep(given.build, options | FINE, folder)
+        cases["the other build"] = (given.beside, {}, 1)
+    _, fine = sweep(given.build, options | how["fine"], folder)
     taken, found = {name: [] for name in cases}, {}
-    for _ in range(1 if given.smallest else ROUNDS):
-        for name, (build, own) in cases.items():
-            ms, found[name] = sweep(build, options | own, folder)
+    for _ in range(1 if given.smallest else how["rounds"]):
+        for name, (build, own, ranks) in cases.items():
+            ms, found[name] = sweep(build, options | own, folder, ranks)
             taken[name].append(ms)
     for name in cases:
         yield [scene, name, found[name]["deflection"][..., 0].size, min(taken[name]), *off(found[name], fine)]
@@ -56,12 +68,12 @@ def main():
     arguments = runs.parser(__doc__)
     arguments.add_argument("--beside", metavar="OTHER_BUILD_FOLDER", help="another build, run in turn with this one")
     given = runs.given(arguments)
-    print(f"{'':16}{'':18}{'passages':>10}{'ms each':>10}" + "".join(f"{name:>14}" for name in QUANTITIES))
+    print(f"{'':18}{'':18}{'passages':>10}{'ms each':>10}" + "".join(f"{name:>14}" for name in QUANTITIES))
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        for scene in SCENES:
-            for row in measured(given, scene, SMALLEST if given.smallest else {}, folder):
-                print("{:16}{:18}{:10}{:10.3g}".format(*row[:4]) + "".join(f"{e:14.1e}" for e in row[4:]), flush=True)
+        for scene, how in SCENES.items():
+            for row in measured(given, scene, how, folder):
+                print("{:18}{:18}{:10}{:10.3g}".format(*row[:4]) + "".join(f"{e:14.1e}" for e in row[4:]), flush=True)
                 rows.append(row)
     runs.write_table(os.path.join(given.out, "lanes.csv"),
                      ["scene", "runs", "passages", "ms each", *(f"error of {name}" for name in QUANTITIES)], rows)

@@ -27,6 +27,7 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
     : scene_(scene), speeds_(scene.sweep->speeds), loads_(scene.sweep->loads), shared_(PETSC_COMM_SELF, scene, notes) {
   if (speeds_.empty()) speeds_ = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
   if (loads_.empty()) loads_ = {scene.load};
+  for (const double x : wheels_at_start(scene)) last_wheel_ = std::min(last_wheel_, x);
   shared_.damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
   shared_.prepare(scene_, notes);
   if (scene_.exact_in_time())
@@ -108,9 +109,8 @@ const Scene& CaseRunner::scene_of(std::size_t train, double speed) {
 
 double CaseRunner::duration(std::size_t train, double speed) const {
   if (scene_.end_time) return *scene_.end_time;
-  double last = 0.0;
-  for (const auto* positions : {&loads_[train].positions, &scene_.train.positions})
-    for (const double x : *positions) last = std::min(last, x);
+  double last = last_wheel_;
+  for (const double x : loads_[train].positions) last = std::min(last, x);
   return (scene_.beam->length() - last) / speed + scene_.tail.value_or(0.0);
 }
 

@@ -60,6 +60,7 @@ class CaseRunner {
   Scene scene_;
   std::vector<double> speeds_;
   std::vector<MovingLoad> loads_;
+  double last_wheel_ = 0.0;  // m: x at t = 0; 0 where all wheels stand on the bridge
   SharedBeam shared_;
   std::map<std::size_t, std::vector<double>> static_deflection_;  // of each train
   std::map<std::size_t, lanes::ForcePassages> passages_;          // of moving forces by modes
