@@ -62,7 +62,7 @@ std::vector<double> largest_values(const structure::PiecewiseCubic& influence, s
 class Group {
  public:
   Group(const CrossingPlan& plan, std::span<const CrossingRun> runs)
-      : plan_(plan), runs_(runs), width_(runs.size() > 4 ? 8 : runs.size() > 1 ? 4 : 1) {
+      : plan_(plan), runs_(runs), width_(runs.size() > 4 ? 8 : runs.size() > 2 ? 4 : 2) {
     task_.width = static_cast<int>(width_);
     task_.method = task_method(plan.method);
     task_.speed = side_by_side(1, [](const CrossingRun& run, std::size_t) { return run.speed; });

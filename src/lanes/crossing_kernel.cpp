@@ -11,7 +11,7 @@ long work_size(const Task& task) {
     case 4:
       return Group<4>(task, nullptr).size();
     default:
-      return Group<1>(task, nullptr).size();
+      return Group<2>(task, nullptr).size();
   }
 }
 
@@ -22,7 +22,7 @@ void cross(const Task& task) {
     case 4:
       return Group<4>(task, task.work).run();
     default:
-      return Group<1>(task, task.work).run();
+      return Group<2>(task, task.work).run();
   }
 }
 
