@@ -8,7 +8,7 @@
 namespace traverse::integrate {
 namespace {
 
-constexpr long instants_unasked = 4096;     // between two questions whether to go on
+constexpr long instants_unasked = 4096;  // between two questions whether to go on
 
 /// The vertex of the parabola through three instants, where the middle one is the largest.
 Peak vertex(const std::array<double, 3>& t, const std::array<double, 3>& y) {

@@ -62,7 +62,11 @@ std::vector<double> largest_values(const structure::PiecewiseCubic& influence, s
 class Group {
  public:
   Group(const CrossingPlan& plan, std::span<const CrossingRun> runs)
-      : plan_(plan), runs_(runs), width_(runs.size() > 4 ? 8 : runs.size() > 2 ? 4 : 2) {
+      : plan_(plan),
+        runs_(runs),
+        width_(runs.size() > 4   ? 8
+               : runs.size() > 2 ? 4
+                                 : 2) {
     task_.width = static_cast<int>(width_);
     task_.method = task_method(plan.method);
     task_.speed = side_by_side(1, [](const CrossingRun& run, std::size_t) { return run.speed; });
@@ -133,15 +137,15 @@ class Group {
         return side_by_side(count,
                             [=](const CrossingRun& run, std::size_t i) { return (run.train->kinds[k].*numbers)[i]; });
       };
-      patterns_.push_back(std::make_unique<Pattern>(
-          pattern_of(kind.wheels, f, [&](std::size_t i) {
-            return std::any_of(runs_.begin(), runs_.end(),
-                               [&](const CrossingRun& run) { return run.train->kinds[k].G[i] != 0.0; });
-          })));
+      patterns_.push_back(std::make_unique<Pattern>(pattern_of(kind.wheels, f, [&](std::size_t i) {
+        return std::any_of(runs_.begin(), runs_.end(),
+                           [&](const CrossingRun& run) { return run.train->kinds[k].G[i] != 0.0; });
+      })));
       const Pattern& wheels = *patterns_.back();
       kinds_.push_back({f, kind.wheels, of(&VehicleNumbers::M, size * size), of(&VehicleNumbers::C, size * size),
                         of(&VehicleNumbers::K, size * size), of(&VehicleNumbers::r0, size),
-                        of(&VehicleNumbers::G, size * static_cast<std::size_t>(kind.wheels)), of(&VehicleNumbers::G_along, size * static_cast<std::size_t>(kind.wheels)), wheels.row.data(),
+                        of(&VehicleNumbers::G, size * static_cast<std::size_t>(kind.wheels)),
+                        of(&VehicleNumbers::G_along, size * static_cast<std::size_t>(kind.wheels)), wheels.row.data(),
                         wheels.column.data(), kind.bend.data()});
     }
     for (const TrainNumbers::Vehicle& vehicle : train.vehicles) {
@@ -171,14 +175,15 @@ class Group {
   void add_forces(const ForceNumbers& forces) {
     task_.loads = static_cast<int>(forces.x.size());
     task_.load_x = forces.x.data();
-    task_.load = side_by_side(forces.x.size(), [](const CrossingRun& run, std::size_t i) { return run.forces->force[i]; });
+    task_.load =
+        side_by_side(forces.x.size(), [](const CrossingRun& run, std::size_t i) { return run.forces->force[i]; });
   }
 
   void add_bridge(const structure::ModalBridge& bridge) {
     const std::size_t modes = bridge.modes();
     task_.modes = static_cast<int>(modes);
-    task_.omega2 = side_by_side(
-        modes, [&](const CrossingRun&, std::size_t i) { return bridge.omega()[i] * bridge.omega()[i]; });
+    task_.omega2 =
+        side_by_side(modes, [&](const CrossingRun&, std::size_t i) { return bridge.omega()[i] * bridge.omega()[i]; });
     task_.coupled = bridge.coupled();
     task_.damping = side_by_side(task_.coupled ? modes * modes : modes, [&](const CrossingRun&, std::size_t i) {
       if (!task_.coupled) return 2.0 * bridge.sigma()[i];
@@ -192,21 +197,24 @@ class Group {
     task_.influence = {static_cast<int>(influence.pieces()), static_cast<int>(influence.channels),
                        influence.breaks.data(), influence.coefficients.data(), largest_.data()};
     const structure::ModalProbes& probes = bridge.probes();
-    task_.probes = {static_cast<int>(probes.count), probes.deflection.data(), probes.moment.data(),
-                    probes.moment_by_rate.data(), probes.moment_by_acceleration.data(),
+    task_.probes = {static_cast<int>(probes.count),
+                    probes.deflection.data(),
+                    probes.moment.data(),
+                    probes.moment_by_rate.data(),
+                    probes.moment_by_acceleration.data(),
                     probes.deflection_by_rate.empty() ? nullptr : probes.deflection_by_rate.data()};
   }
 
   void add_track() {
     const auto* track = runs_.front().track;
     if (track == nullptr || track->values.empty()) return;
-    const bool shared = std::all_of(runs_.begin(), runs_.end(),
-                                    [&](const CrossingRun& run) { return run.track == track; });
+    const bool shared =
+        std::all_of(runs_.begin(), runs_.end(), [&](const CrossingRun& run) { return run.track == track; });
     task_.heights = {static_cast<int>(track->values.size() / 2), shared, track->start, track->distance,
                      track->values.data()};
     if (!shared)
-      task_.heights.values =
-          side_by_side(track->values.size(), [](const CrossingRun& run, std::size_t i) { return run.track->values[i]; });
+      task_.heights.values = side_by_side(track->values.size(),
+                                          [](const CrossingRun& run, std::size_t i) { return run.track->values[i]; });
   }
 
   const CrossingPlan& plan_;

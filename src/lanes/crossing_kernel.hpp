@@ -35,14 +35,14 @@ constexpr double alike = 4.0;                // see WheelExtremes
 template <int W>
 class Group : Lanes<W> {
   using Own = Lanes<W>;
-  using typename Own::Lane;
-  using typename Own::Mask;
   using Own::any;
   using Own::fill;
   using Own::greater;
   using Own::lanes;
   using Own::magnitude;
   using Own::root;
+  using typename Own::Lane;
+  using typename Own::Mask;
 
  public:
   Group(const Task& task, double* work) : t(task), m(task.modes) { lay_out(work); }
@@ -79,7 +79,7 @@ class Group : Lanes<W> {
 
   struct KindWork {
     Lane *inverse, *by_state;  // J^-1; J^-1 [K C], freedom x 2 freedom
-    Lane *alone;               // -J^-1 r0
+    Lane* alone;               // -J^-1 r0
     Lane *Y, *Y_along, *H;     // J^-1 G^T (freedom x wheels), the same for forces along the track, d G J^-1 G^T
   };
 
@@ -89,7 +89,7 @@ class Group : Lanes<W> {
     for (int k = 0; k < t.kinds; ++k) {
       const long f = t.kind[k].freedom, w = t.kind[k].wheels;
       const KindWork own = {take<Lane>(work, f * f), take<Lane>(work, 2 * f * f), take<Lane>(work, f),
-                            take<Lane>(work, f * w), take<Lane>(work, f * w), take<Lane>(work, w * w)};
+                            take<Lane>(work, f * w), take<Lane>(work, f * w),     take<Lane>(work, w * w)};
       if (work != nullptr) kinds_[k] = own;
     }
     Lane** const of_coordinates[] = {&x_, &w_, &a_free_, &bent_};
@@ -107,8 +107,8 @@ class Group : Lanes<W> {
     S_ = take<Lane>(work, modes * modes);
     S_inverse_ = take<Lane>(work, modes * (t.coupled ? modes : 1));
     factor_ = take<Lane>(work, modes * modes);
-    Lane** const of_wheels[] = {&offset_, &delta_, &F_, &k_,   &free_,  &end_,
-                                &slope_,  &yield_, &residual_, &pivot_, &F0_, &F1_, &track_slope_};
+    Lane** const of_wheels[] = {&offset_, &delta_,    &F_,     &k_,  &free_, &end_,        &slope_,
+                                &yield_,  &residual_, &pivot_, &F0_, &F1_,   &track_slope_};
     for (Lane** own : of_wheels) *own = take<Lane>(work, wheels);
     D_begin_ = take<long>(work, t.vehicles + 1);
     long entries = 0;
@@ -819,8 +819,7 @@ class Group : Lanes<W> {
     const TaskVehicle& vehicle = t.vehicle[v];
     const int w = t.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
     const Lane* L = D_ + D_begin_[v];
-    if (touching_[v] != 0)
-      multiply(-1.0, reduced_ + static_cast<long>(first) * m, w, m, p_, residual_ + first);
+    if (touching_[v] != 0) multiply(-1.0, reduced_ + static_cast<long>(first) * m, w, m, p_, residual_ + first);
     Mask wrong{};
     for (int i = w - 1; i >= 0; --i) {
       Lane force = residual_[first + i] * pivot_[first + i];
@@ -1021,7 +1020,7 @@ class Group : Lanes<W> {
   long known_ = 0, looks_ = 0, seen_ = 0;  // instants since the last kink of moments, since the start; of wheels
   Lane time_[3] = {};
   Lane moved_{}, yield_to_force_{};  // of one_by_one; what pushing the bridge by a force changes another one by
-  Mask hard_{};  // lanes whose contacts are solved all together at this step length
+  Mask hard_{};                      // lanes whose contacts are solved all together at this step length
   // Vehicles: coordinates, rates, the same at zero acceleration, accelerations without contacts.
   Lane *x_ = nullptr, *w_ = nullptr, *still_ = nullptr, *a_free_ = nullptr;
   Lane *bent_ = nullptr, *most_bent_ = nullptr;  // coordinates where a vehicle was farthest from linear; how far
@@ -1029,7 +1028,7 @@ class Group : Lanes<W> {
   Lane *q_ = nullptr, *r_ = nullptr, *q_still_ = nullptr, *r_still_ = nullptr, *z_ = nullptr, *p_ = nullptr;
   Lane *omega2_ = nullptr, *load_ = nullptr, *rhs_ = nullptr, *scaled_ = nullptr;
   Lane* a_[most_kept] = {};
-  Lane* b_[most_kept] = {};  // accelerations at the start of the step and at its stages
+  Lane* b_[most_kept] = {};                 // accelerations at the start of the step and at its stages
   Lane *to_q_ = nullptr, *to_r_ = nullptr;  // of exact modes: [mode][q, q', force before, force after]
   Lane *S_ = nullptr, *S_inverse_ = nullptr, *factor_ = nullptr;
   // Wheels: penetration on a surface at height zero with the vehicle at rest; penetration; force, tangent; penetration

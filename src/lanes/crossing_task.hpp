@@ -54,7 +54,7 @@ struct TaskHeights {
 struct TaskProbes {
   int count = 0;
   const double *deflection = nullptr, *moment = nullptr, *moment_by_rate = nullptr;  // [mode][probe], ModalProbes
-  const double *moment_by_acceleration = nullptr, *deflection_by_rate = nullptr;  // the latter may be null
+  const double *moment_by_acceleration = nullptr, *deflection_by_rate = nullptr;     // the latter may be null
 };
 
 /// A stretch of equal steps; at its end a force may have a kink.
@@ -77,13 +77,13 @@ struct Task {
   const char* hertz = nullptr;          // whether it is the former
   double force_scale = 0.0;             // N: what contact forces are judged by
 
-  int loads = 0;  // moving forces
+  int loads = 0;                                    // moving forces
   const double *load_x = nullptr, *load = nullptr;  // m; lanes: N, downward
 
   int modes = 0;
   const double *omega2 = nullptr, *damping = nullptr;  // lanes: squares; 2 sigma, or of coupled modes the matrix
   bool coupled = false;
-  bool exact_modes = false;    // move exactly under forces that are linear over a step; of methods of one solve
+  bool exact_modes = false;   // move exactly under forces that are linear over a step; of methods of one solve
   const double* q = nullptr;  // lanes: at t = 0
   TaskInfluence influence;
   TaskHeights heights;
@@ -97,9 +97,9 @@ struct Task {
   // Results, lanes: of each probe deflection, acceleration and moment; of all wheels.
   double *peak = nullptr, *peak_time = nullptr;
   double *least_force = nullptr, *greatest_force = nullptr;
-  double* bent = nullptr;  // coordinates of every vehicle where it was farthest from linear
-  double* failed = nullptr;     // 0: none of what follows
-  double* work = nullptr;       // as many numbers as work_size() says, aligned as a lane
+  double* bent = nullptr;    // coordinates of every vehicle where it was farthest from linear
+  double* failed = nullptr;  // 0: none of what follows
+  double* work = nullptr;    // as many numbers as work_size() says, aligned as a lane
 };
 
 enum Trouble { none = 0, contact_lost = 1, not_converged = 2, not_finite = 3 };

@@ -13,8 +13,8 @@ enum class ForceEvent : char {
 };
 
 struct ForceTask {
-  int width = 0;  // 2, 4 or 8
-  int runs = 0;   // of these; the lanes beyond repeat the last one
+  int width = 0;                                  // 2, 4 or 8
+  int runs = 0;                                   // of these; the lanes beyond repeat the last one
   const double *speed = nullptr, *end = nullptr;  // lanes: m/s, m travelled when the run ends
   double ds = 0.0;                                // m between two instants
   double instant = 0.0;                           // s: the longest that takes in any lane

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "traverse/base/error.hpp"
 #include "train/linear_dynamics.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -150,8 +150,8 @@ TrainNumbers train_numbers(train::Fleet& fleet) {
     VehicleNumbers own = numbers_of(vehicle);
     const auto kind = std::find_if(train.kinds.begin(), train.kinds.end(),
                                    [&](const VehicleNumbers& known) { return alike(known, own, vehicle.scale); });
-    train.vehicles.push_back({static_cast<std::size_t>(kind - train.kinds.begin()), vehicle.offset,
-                              static_cast<int>(train.x.size())});
+    train.vehicles.push_back(
+        {static_cast<std::size_t>(kind - train.kinds.begin()), vehicle.offset, static_cast<int>(train.x.size())});
     if (kind == train.kinds.end()) train.kinds.push_back(std::move(own));
     for (std::size_t j = 0; j < vehicle.wheels.size(); ++j) {
       const train::WheelContact& contact = fleet.wheels[static_cast<std::size_t>(vehicle.first_wheel) + j];

@@ -219,7 +219,8 @@ std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, const std::v
   if (shared_.modal->dampers_couple())
     for (std::size_t i = 0; i < speeds.size(); ++i)
       peaks.push_back(integrate::modal_peaks(*shared_.modal, place->second.history(), speeds[i],
-                                             scene_.start == Start::equilibrium, ends[i], scene_.sweep->instants, going));
+                                             scene_.start == Start::equilibrium, ends[i], scene_.sweep->instants,
+                                             going));
   else
     peaks = place->second.peaks(speeds, ends, scene_.sweep->instants, going);
   for (std::size_t i = 0; i < peaks.size(); ++i) {

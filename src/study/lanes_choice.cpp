@@ -22,7 +22,8 @@ using lanes::CrossingResult;
 using Errors = std::array<double, quantities>;
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
-constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4, part_of_all = 0.95;  // of the wanted error
+constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4,
+                 part_of_all = 0.95;     // of the wanted error
 constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
 constexpr int most_halvings = 8, most_shortenings = 6;
 constexpr double shorter = 0.7;  // a quarter of an error of fourth order
@@ -94,8 +95,8 @@ class LaneTrials {
     for (const std::vector<double>& speeds : speeds_) {
       std::vector<double> ends;
       for (const double speed : speeds) ends.push_back(distance_ / speed);
-      for (CrossingResult& result : with_modes.lanes->run(
-               speeds, ends, {model.method->make(model.method->parameter.value), model.step})) {
+      for (CrossingResult& result :
+           with_modes.lanes->run(speeds, ends, {model.method->make(model.method->parameter.value), model.step})) {
         defect_ = std::max(defect_, with_modes.lanes->defect(result));
         results.push_back(std::move(result));
       }
@@ -167,15 +168,15 @@ int mesh_for(const Scene& scene, int modes) {
 
 class Search {
  public:
-  /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes and
-  /// mesh change is seen there as well.
+  /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes
+  /// and mesh change is seen there as well.
   Search(LaneTrials& trials, LaneTrials& mixed, double accuracy)
       : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
   /// The cheapest model within the accuracy; empty: none.
   std::optional<LaneModel> run(double first_step) {
-    LaneModel model{fewest_modes, mesh_for(trials_.scene(), fewest_modes),
-                    structure::find_method("esdirk4"), first_step};
+    LaneModel model{fewest_modes, mesh_for(trials_.scene(), fewest_modes), structure::find_method("esdirk4"),
+                    first_step};
     // Steps first, as modes are told apart by what the contacts do to them.
     if (!halve_step(model) || !add_modes(model) || !halve_step(model) || !refine_mesh(model)) return std::nullopt;
     return cheaper(model);

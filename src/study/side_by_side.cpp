@@ -10,8 +10,8 @@
 namespace traverse::app {
 namespace {
 
-constexpr double one_place = 1e-9;         // m: events nearer than that are one
-constexpr double no_step = 1e-9;           // of the shapes' largest values: surfaces that meet without a step
+constexpr double one_place = 1e-9;  // m: events nearer than that are one
+constexpr double no_step = 1e-9;    // of the shapes' largest values: surfaces that meet without a step
 
 /// Whether wheels come onto the bridge, and leave it, without a step.
 bool level_ends(const structure::ModalBridge& bridge) {
@@ -106,8 +106,7 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speed
   if (last > 0) plan_.stretches.push_back({from + static_cast<double>(last) * ds, last});
   make_track(past + ds);
   std::vector<lanes::CrossingRun> runs;
-  for (std::size_t i = 0; i < speeds.size(); ++i)
-    runs.push_back({&train_, &track_, nullptr, &q_, speeds[i], ends[i]});
+  for (std::size_t i = 0; i < speeds.size(); ++i) runs.push_back({&train_, &track_, nullptr, &q_, speeds[i], ends[i]});
   return lanes::cross(plan_, runs);
 }
 

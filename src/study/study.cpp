@@ -46,9 +46,8 @@ std::vector<Case> cases_of(const CaseRunner& runner) {
   std::vector<Case> cases;
   for (std::size_t train = 0; train < runner.trains(); ++train)
     for (const std::vector<std::size_t>& speeds : runner.groups()) cases.push_back({train, speeds});
-  std::stable_sort(cases.begin(), cases.end(), [&](const Case& a, const Case& b) {
-    return duration_of(a, runner) > duration_of(b, runner);
-  });
+  std::stable_sort(cases.begin(), cases.end(),
+                   [&](const Case& a, const Case& b) { return duration_of(a, runner) > duration_of(b, runner); });
   return cases;
 }
 
@@ -287,7 +286,8 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   if (rank == 0) {
     if (done[0] > 0) results::print_sweep(sweep);
     if (done[2] > 0)
-      fmt::print("  {} of the runs left the others beside them, where wheels lost contact, and were taken alone\n", done[2]);
+      fmt::print("  {} of the runs left the others beside them, where wheels lost contact, and were taken alone\n",
+                 done[2]);
     fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], whole.planned,
                results::method_of(choice.model), whole.wall_seconds,
                1e3 * whole.wall_seconds / static_cast<double>(std::max(done[0], 1L)), "the sweep", whole.ended,

@@ -94,7 +94,8 @@ SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes
     SweepChoice choice{std::move(lanes->scene), {}};
     choice.model = model_of(choice.scene);
     choice.model.accuracy = given.accuracy;
-    for (std::size_t q = 0; q < quantities; ++q) choice.model.expected_errors.emplace_back(name_of(q), lanes->errors[q]);
+    for (std::size_t q = 0; q < quantities; ++q)
+      choice.model.expected_errors.emplace_back(name_of(q), lanes->errors[q]);
     return choice;
   }
   SweepChoice choice{given, {}};

@@ -13,8 +13,8 @@ namespace traverse::track {
 namespace {
 
 constexpr double table_stations_a_wave = 96.0;
-constexpr double farthest = 1e15;   // stations, beyond which there is nothing between two of them
-constexpr std::size_t kept = 4096;  // stations, a power of two
+constexpr double farthest = 1e15;       // stations, beyond which there is nothing between two of them
+constexpr std::size_t kept = 4096;      // stations, a power of two
 constexpr std::size_t turned_on = 256;  // places that a wave is turned on to before it is looked at anew
 
 using Lanes = Eigen::Array<double, Waves::lanes, 1>;
@@ -90,7 +90,8 @@ std::vector<Height> Waves::sums(double s, double distance, std::size_t count) co
         cosine = next;
       }
     }
-    for (std::size_t n = 0; n < places; ++n) heights[first + n] = {block[n][0].sum(), block[n][1].sum(), block[n][2].sum()};
+    for (std::size_t n = 0; n < places; ++n)
+      heights[first + n] = {block[n][0].sum(), block[n][1].sum(), block[n][2].sum()};
   }
   return heights;
 }

@@ -1,5 +1,5 @@
-// Runs of a sweep side by side (sweep_lanes) against the same runs each by itself, driven by PETSc's TS, and against the
-// elements with the mechanisms themselves.
+// Runs of a sweep side by side (sweep_lanes) against the same runs each by itself, driven by PETSc's TS, and against
+// the elements with the mechanisms themselves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -41,7 +41,10 @@ double difference(const Peaks& a, const Peaks& b) {
 }
 
 Values sweep(const char* speeds, const char* lanes, const char* step) {
-  return {{"sweep_speed", speeds}, {"sweep_lanes", lanes}, {"ts_dt", step}, {"model_vehicles", "linear"},
+  return {{"sweep_speed", speeds},
+          {"sweep_lanes", lanes},
+          {"ts_dt", step},
+          {"model_vehicles", "linear"},
           {"model_modes", "8"}};
 }
 
@@ -58,21 +61,18 @@ void expect_same_motion(const std::string& scene, const Values& more, const char
 }
 
 TEST(SideBySide, CoachesOverThreeSpans) {
-  expect_same_motion("three_span_train", {{"train_vehicles", "coach*2"}, {"scene_tail", "0"}, {"output_probes", "20,52,88"}}, "70,90,10", "1e-3",
-                     "2.5e-4", 3e-4);
+  expect_same_motion("three_span_train",
+                     {{"train_vehicles", "coach*2"}, {"scene_tail", "0"}, {"output_probes", "20,52,88"}}, "70,90,10",
+                     "1e-3", "2.5e-4", 3e-4);
 }
 
-TEST(SideBySide, OneVehicleOfManyCars) {
-  expect_same_motion("articulated_train", {}, "60,72,4", "2e-3", "5e-4", 3e-4);
-}
+TEST(SideBySide, OneVehicleOfManyCars) { expect_same_motion("articulated_train", {}, "60,72,4", "2e-3", "5e-4", 3e-4); }
 
 TEST(SideBySide, RoughTrack) {
-  expect_same_motion("three_span_train",
-                     {{"train_vehicles", "coach"},
-                      {"scene_tail", "0.2"},
-                      {"track_profile", "german_low"},
-                      {"track_seed", "3"}},
-                     "76,84,4", "8e-4", "2e-4", 1e-3);
+  expect_same_motion(
+      "three_span_train",
+      {{"train_vehicles", "coach"}, {"scene_tail", "0.2"}, {"track_profile", "german_low"}, {"track_seed", "3"}},
+      "76,84,4", "8e-4", "2e-4", 1e-3);
 }
 
 /// One method of one solve a step, whose modes are exact here: of second order.
@@ -109,8 +109,8 @@ TEST(SideBySide, NeighboursAndWidthsChangeNothing) {
 
 // Over a bump that is too sharp for the fast ones wheels fly: these runs are taken alone, with their losses.
 TEST(SideBySide, RunsThatLoseContactLeave) {
-  const Values bump = {{"train_vehicles", "coach"},   {"scene_tail", "0.1"},    {"track_profile", "bump"},
-                       {"track_bump_start", "20"},    {"track_bump_length", "2"}, {"track_bump_height", "4e-3"},
+  const Values bump = {{"train_vehicles", "coach"}, {"scene_tail", "0.1"},      {"track_profile", "bump"},
+                       {"track_bump_start", "20"},  {"track_bump_length", "2"}, {"track_bump_height", "4e-3"},
                        {"step_probes", "true"}};
   Results alone = run_scene("three_span_train", bump + sweep("20,80,20", "0", "2.5e-4"));
   Results beside = run_scene("three_span_train", bump + sweep("20,80,20", "8", "2.5e-4"));
@@ -127,9 +127,9 @@ TEST(SideBySide, ChosenByTheAccuracy) {
   Results chosen = run_scene("fifty_metre_train", scene + Values{{"accuracy", "5e-3"}});
   EXPECT_GT(chosen.attribute("/sweep", "modes"), 3.0);
   const Peaks exact = peaks_of(run_scene("fifty_metre_train", scene + Values{{"ts_dt", "1.5e-4"},
-                                                                            {"beam_elements_per_span", "48"},
-                                                                            {"model_vehicles", "full"},
-                                                                            {"step_probes", "true"}}));
+                                                                             {"beam_elements_per_span", "48"},
+                                                                             {"model_vehicles", "full"},
+                                                                             {"step_probes", "true"}}));
   EXPECT_LT(difference(peaks_of(std::move(chosen)), exact), 5e-3);
 }
 
