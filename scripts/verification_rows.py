@@ -307,6 +307,31 @@ SECTIONS = [
         Row("contact lost over a bump: its times", "the mechanism", "LinearVehicle.LosesContactAndGainsItAgain",
             [Check('EXPECT_LT(relative_difference(run("/separations/start"), full("/separations/start")), {});')]),
     ]),
+    ("Runs side by side", [
+        Row("two coaches over three spans at three speeds: all peaks", "the same runs, each driven by TS",
+            "SideBySide.CoachesOverThreeSpans", [Check('"1e-3", "2.5e-4", {});', "three_span_train")]),
+        Row("six hinged cars at four speeds: all peaks", "the same runs, each driven by TS",
+            "SideBySide.OneVehicleOfManyCars", [Check('"60,72,4", "2e-3", "5e-4", {});', "articulated_train")]),
+        Row("a coach on a rough track at three speeds: all peaks", "the same runs, each driven by TS",
+            "SideBySide.RoughTrack", [Check('"76,84,4", "8e-4", "2e-4", {});', "three_span_train")]),
+        Row("one solve a step, modes exact: greatest wheel force", "a fine step of esdirk4", "SideBySide.OneSolveAStep",
+            [Check("EXPECT_LT(errors[1], {});", "error")]),
+        Row("modes, step and method found by `accuracy` 5e-3: all peaks", "fine elements, mechanisms",
+            "SideBySide.ChosenByTheAccuracy", [Check("EXPECT_LT(error, {});", "error")]),
+        Row("other neighbours, four lanes, two lanes", "eight lanes", "SideBySide.NeighboursAndWidthsChangeNothing",
+            [Check('EXPECT_LT(difference(run("77,84,1", "4"), eight), {});')]),
+        Row("forces over nine bridges, 20 instants a period: all peaks", "the exact motion at 2,000",
+            "ForcePassages.AgainstTheExactMotion", [
+                Check("EXPECT_LT(difference(usual[i], exact), {}) << speeds[i];", None, "20 instants"),
+                Check("EXPECT_LT(difference(fine[i], exact), {}) << speeds[i];", None, "200 instants")]),
+    ]),
+    ("Modes that dampers couple", [
+        Row("elastic bearings with Rayleigh damping, a damped bearing; all modes", "the elements",
+            "CoupledModesOf.AllModesAgainstTheElements", [
+                Check('{std::pair("/probes/deflection", {}),', "probes/deflection", "deflection")]),
+        Row("coaches over dampers, all modes", "the elements", "CoupledModes.UnderVehicles", [
+            Check('? 2e-5 : {}) << name;', ".*wheel_1/normal_force", "wheel force")]),
+    ]),
     ("One rank against two and three", [
         Row("every dataset of all other scenes, of its peak", "the same scene on one rank", "Ranks.*",
             [Check("double at_rest = 0.0, double bound = {}) {")]),

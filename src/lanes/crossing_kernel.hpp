@@ -20,44 +20,47 @@
 // processor could be taken for another: no functions of the library, everything in an unnamed namespace.
 #pragma once
 
+#include "lanes/crossing_algebra.hpp"
 #include "lanes/crossing_task.hpp"
-#include "lanes/lane.hpp"
 
 namespace traverse::lanes {
 namespace {
 
-constexpr double force_tolerance = 1e-9;  // of the force scale: what a contact's law may be missed by
-constexpr int few_iterations = 6, most_iterations = 20, fresh_after = 4;
-constexpr double least_penetration = 1e-12;  // m: below, the contact counts as lost
-constexpr double near = 0.9;                 // of the largest magnitude so far: no parabola's vertex of less is larger
-constexpr double alike = 4.0;                // see WheelExtremes
-
 template <int W>
-class Group : Lanes<W> {
-  using Own = Lanes<W>;
+class Group : CrossingAlgebra<W> {
+  using Own = CrossingAlgebra<W>;
   using Own::any;
+  using Own::factorise;
   using Own::fill;
-  using Own::greater;
+  using Own::influence_at;
+  using Own::invert;
   using Own::lanes;
   using Own::magnitude;
+  using Own::multiply;
+  using Own::oscillate;
+  using Own::predict;
   using Own::root;
+  using Own::solve;
+  using Own::track_at;
   using typename Own::Lane;
   using typename Own::Mask;
+  using typename Own::Oscillation;
+  using typename Own::Rule;
 
  public:
-  Group(const Task& task, double* work) : t(task), m(task.modes) { lay_out(work); }
+  Group(const Task& task, double* work) : task_(task), modes_(task.modes) { lay_out(work); }
   long size() const { return used_ * W; }
 
   void run() {
     begin();
     double from = 0.0;
-    for (int i = 0; i < t.stretches; ++i) {
-      const TaskStretch& stretch = t.stretch[i];
+    for (int i = 0; i < task_.stretches; ++i) {
+      const TaskStretch& stretch = task_.stretch[i];
       const double ds = (stretch.to - from) / static_cast<double>(stretch.steps);
       set_step(ds);
       for (long k = 0; k < stretch.steps; ++k) {
         place_vehicles(from + static_cast<double>(k) * ds);
-        for (int stage = 0; stage < t.method.stages; ++stage) solve_stage(stage);
+        for (int stage = 0; stage < task_.method.stages; ++stage) solve_stage(stage);
         finish_step();
         distance_ = k + 1 < stretch.steps ? from + static_cast<double>(k + 1) * ds : stretch.to;
         look(true);
@@ -70,6 +73,12 @@ class Group : Lanes<W> {
   }
 
  private:
+  static constexpr double force_tolerance = 1e-9;  // of the force scale: what a contact's law may be missed by
+  static constexpr int few_iterations = 6, most_iterations = 20, fresh_after = 4;
+  static constexpr double least_penetration = 1e-12;  // m: below, the contact counts as lost
+  static constexpr double near = 0.9;   // of the largest magnitude so far: no parabola's vertex of less is larger
+  static constexpr double alike = 4.0;  // see WheelExtremes
+
   // --- memory ------------------------------------------------------------------------------------------------------
 
   template <class T>
@@ -84,10 +93,10 @@ class Group : Lanes<W> {
   };
 
   void lay_out(double* work) {
-    const long n = t.coordinates, wheels = t.wheels, modes = m, probes = 3L * t.probes.count;
-    kinds_ = take<KindWork>(work, t.kinds);
-    for (int k = 0; k < t.kinds; ++k) {
-      const long f = t.kind[k].freedom, w = t.kind[k].wheels;
+    const long n = task_.coordinates, wheels = task_.wheels, modes = modes_, probes = 3L * task_.probes.count;
+    kinds_ = take<KindWork>(work, task_.kinds);
+    for (int k = 0; k < task_.kinds; ++k) {
+      const long f = task_.kind[k].freedom, w = task_.kind[k].wheels;
       const KindWork own = {take<Lane>(work, f * f), take<Lane>(work, 2 * f * f), take<Lane>(work, f),
                             take<Lane>(work, f * w), take<Lane>(work, f * w),     take<Lane>(work, w * w)};
       if (work != nullptr) kinds_[k] = own;
@@ -95,38 +104,38 @@ class Group : Lanes<W> {
     Lane** const of_coordinates[] = {&x_, &w_, &a_free_, &bent_};
     for (Lane** own : of_coordinates) *own = take<Lane>(work, n);
     still_ = take<Lane>(work, 2 * n);
-    most_bent_ = take<Lane>(work, t.vehicles);
+    most_bent_ = take<Lane>(work, task_.vehicles);
     Lane** const of_modes[] = {&q_, &r_, &q_still_, &r_still_, &z_, &p_, &omega2_, &load_, &rhs_, &scaled_};
     for (Lane** own : of_modes) *own = take<Lane>(work, modes);
     for (int j = 0; j < most_kept; ++j) {
-      a_[j] = take<Lane>(work, j < t.method.known ? n : 0);
-      b_[j] = take<Lane>(work, j < t.method.known ? modes : 0);
+      a_[j] = take<Lane>(work, j < task_.method.known ? n : 0);
+      b_[j] = take<Lane>(work, j < task_.method.known ? modes : 0);
     }
-    to_q_ = take<Lane>(work, t.exact_modes ? 4 * modes : 0);
-    to_r_ = take<Lane>(work, t.exact_modes ? 4 * modes : 0);
+    to_q_ = take<Lane>(work, task_.exact_modes ? 4 * modes : 0);
+    to_r_ = take<Lane>(work, task_.exact_modes ? 4 * modes : 0);
     S_ = take<Lane>(work, modes * modes);
-    S_inverse_ = take<Lane>(work, modes * (t.coupled ? modes : 1));
+    S_inverse_ = take<Lane>(work, modes * (task_.coupled ? modes : 1));
     factor_ = take<Lane>(work, modes * modes);
     Lane** const of_wheels[] = {&offset_, &delta_,    &F_,     &k_,  &free_, &end_,        &slope_,
                                 &yield_,  &residual_, &pivot_, &F0_, &F1_,   &track_slope_};
     for (Lane** own : of_wheels) *own = take<Lane>(work, wheels);
-    D_begin_ = take<long>(work, t.vehicles + 1);
+    D_begin_ = take<long>(work, task_.vehicles + 1);
     long entries = 0;
-    for (int v = 0; v < t.vehicles; ++v) {
-      const long w = t.kind[t.vehicle[v].kind].wheels;
+    for (int v = 0; v < task_.vehicles; ++v) {
+      const long w = task_.kind[task_.vehicle[v].kind].wheels;
       if (work != nullptr) D_begin_[v] = entries;
       entries += w * w;
     }
     D_ = take<Lane>(work, entries);
     reduced_ = take<Lane>(work, wheels * modes);
-    g_ = take<double>(work, wheels * t.influence.channels);
-    load_g_ = take<double>(work, static_cast<long>(t.loads) * t.influence.channels);
+    g_ = take<double>(work, wheels * task_.influence.channels);
+    load_g_ = take<double>(work, static_cast<long>(task_.loads) * task_.influence.channels);
     piece_ = take<int>(work, wheels);
-    load_piece_ = take<int>(work, t.loads);
+    load_piece_ = take<int>(work, task_.loads);
     on_ = take<char>(work, wheels);
-    load_on_ = take<char>(work, t.loads);
-    awake_ = take<char>(work, t.vehicles);
-    touching_ = take<char>(work, t.vehicles);
+    load_on_ = take<char>(work, task_.loads);
+    awake_ = take<char>(work, task_.vehicles);
+    touching_ = take<char>(work, task_.vehicles);
     for (Lane*& row : row_of_) row = take<Lane>(work, probes);
     peak_ = take<Lane>(work, probes);
     peak_time_ = take<Lane>(work, probes);
@@ -134,111 +143,80 @@ class Group : Lanes<W> {
 
   // --- places ------------------------------------------------------------------------------------------------------
 
-  /// The influence of a unit force at x: `channels` of them, or all. False off the bridge.
-  bool influence_at(double x, int* piece, int channels, double* g) const {
-    const TaskInfluence& line = t.influence;
-    if (m == 0 || x < line.breaks[0] || x > line.breaks[line.pieces]) return false;
-    while (*piece + 1 < line.pieces && x >= line.breaks[*piece + 1]) ++*piece;
-    const double* c = line.coefficients + 4L * line.channels * *piece;
-    const double d = x - line.breaks[*piece];
-    const int n = line.channels;
-    for (int i = 0; i < channels; ++i) g[i] = c[i] + d * (c[n + i] + d * (c[2 * n + i] + d * c[3 * n + i]));
-    return true;
-  }
-
-  /// Height and slope of the track under a wheel at x.
-  void track_at(double x, Lane& height, Lane& slope) const {
-    const TaskHeights& track = t.heights;
-    height = slope = Lane{};
-    if (track.stations == 0) return;
-    double at = (x - track.start) / track.distance;
-    const double last = static_cast<double>(track.stations - 1);
-    at = at < 0.0 ? 0.0 : at > last ? last : at;
-    long i = static_cast<long>(at);
-    if (i > track.stations - 2) i = track.stations - 2;
-    const double u = at - static_cast<double>(i), v = 1.0 - u, turn = 6.0 * u * v / track.distance;
-    const double of_value[2] = {v * v * (1.0 + 2.0 * u), u * u * (1.0 + 2.0 * v)}, of_rise[2] = {v * v * u, -u * u * v};
-    const double slope_of_rise[2] = {v * (1.0 - 3.0 * u) / track.distance, u * (1.0 - 3.0 * v) / track.distance};
-    for (int k = 0; k < 2; ++k) {
-      const long place = 2 * (i + k);
-      const Lane value = track.shared ? fill(track.values[place]) : lanes(track.values)[place];
-      const Lane rise = track.shared ? fill(track.values[place + 1]) : lanes(track.values)[place + 1];
-      height += of_value[k] * value + of_rise[k] * rise;
-      slope += (k == 0 ? -turn : turn) * value + slope_of_rise[k] * rise;
-    }
-  }
-
   /// Wheels and forces when all have travelled s. Fills free_ with the penetration over a bridge at rest.
   void place(double s, int channels) {
-    for (int v = 0; v < t.vehicles; ++v) {
+    for (int v = 0; v < task_.vehicles; ++v) {
       if (awake_[v] == 0) continue;
-      const TaskVehicle& vehicle = t.vehicle[v];
+      const TaskVehicle& vehicle = task_.vehicle[v];
       touching_[v] = 0;
-      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + t.kind[vehicle.kind].wheels; ++j) {
-        const double x = t.x[j] + s;
-        on_[j] = influence_at(x, &piece_[j], channels, g_ + static_cast<long>(j) * t.influence.channels) ? 1 : 0;
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + task_.kind[vehicle.kind].wheels; ++j) {
+        const double x = task_.x[j] + s;
+        on_[j] =
+            influence_at(task_.influence, x, &piece_[j], channels, g_ + static_cast<long>(j) * task_.influence.channels)
+                ? 1
+                : 0;
         touching_[v] = static_cast<char>(touching_[v] | on_[j]);
         Lane height;
-        track_at(x, height, track_slope_[j]);
+        track_at(task_.heights, x, height, track_slope_[j]);
         free_[j] = offset_[j] + height;
       }
     }
-    for (int j = 0; j < t.loads; ++j) {
-      double* g = load_g_ + static_cast<long>(j) * t.influence.channels;
-      load_on_[j] = influence_at(t.load_x[j] + s, &load_piece_[j], channels, g) ? 1 : 0;
+    for (int j = 0; j < task_.loads; ++j) {
+      double* g = load_g_ + static_cast<long>(j) * task_.influence.channels;
+      load_on_[j] = influence_at(task_.influence, task_.load_x[j] + s, &load_piece_[j], channels, g) ? 1 : 0;
     }
-    for (int i = 0; i < m; ++i) load_[i] = Lane{};
-    for (int j = 0; j < t.loads; ++j) {
+    for (int i = 0; i < modes_; ++i) load_[i] = Lane{};
+    for (int j = 0; j < task_.loads; ++j) {
       if (load_on_[j] == 0) continue;
-      const double* g = load_g_ + static_cast<long>(j) * t.influence.channels;
-      const Lane force = lanes(t.load)[j];
-      for (int i = 0; i < m; ++i) load_[i] += g[i] * force;
+      const double* g = load_g_ + static_cast<long>(j) * task_.influence.channels;
+      const Lane force = lanes(task_.load)[j];
+      for (int i = 0; i < modes_; ++i) load_[i] += g[i] * force;
     }
   }
 
   void place_vehicles(double s) {
     start_ = s;
-    for (int v = 0; v < t.vehicles; ++v) awake_[v] = s + 1e-9 >= t.vehicle[v].rests_until ? 1 : 0;
+    for (int v = 0; v < task_.vehicles; ++v) awake_[v] = s + 1e-9 >= task_.vehicle[v].rests_until ? 1 : 0;
   }
 
   // --- start -------------------------------------------------------------------------------------------------------
 
   void begin() {
-    for (int i = 0; i < t.coordinates; ++i) {
+    for (int i = 0; i < task_.coordinates; ++i) {
       x_[i] = w_[i] = bent_[i] = Lane{};
-      for (int j = 0; j < t.method.known; ++j) a_[j][i] = Lane{};
+      for (int j = 0; j < task_.method.known; ++j) a_[j][i] = Lane{};
     }
-    for (int i = 0; i < m; ++i) {
-      q_[i] = lanes(t.q)[i];
+    for (int i = 0; i < modes_; ++i) {
+      q_[i] = lanes(task_.q)[i];
       r_[i] = p_[i] = Lane{};
-      omega2_[i] = lanes(t.omega2)[i];
-      for (int j = 0; j < t.method.known; ++j) b_[j][i] = Lane{};
+      omega2_[i] = lanes(task_.omega2)[i];
+      for (int j = 0; j < task_.method.known; ++j) b_[j][i] = Lane{};
     }
-    for (int j = 0; j < t.wheels; ++j) {
+    for (int j = 0; j < task_.wheels; ++j) {
       piece_[j] = 0;
       offset_[j] = Lane{};
-      delta_[j] = end_[j] = lanes(t.penetration)[j];
+      delta_[j] = end_[j] = lanes(task_.penetration)[j];
       slope_[j] = Lane{};
       F_[j] = law(j, delta_[j], k_[j]);
       F0_[j] = F1_[j] = F_[j];
     }
-    for (int j = 0; j < t.loads; ++j) load_piece_[j] = 0;
-    for (int v = 0; v < t.vehicles; ++v) {
+    for (int j = 0; j < task_.loads; ++j) load_piece_[j] = 0;
+    for (int v = 0; v < task_.vehicles; ++v) {
       awake_[v] = 1;
       most_bent_[v] = Lane{};
     }
-    speed_ = *lanes(t.speed);
-    end_time_ = *lanes(t.end_time);
+    speed_ = *lanes(task_.speed);
+    end_time_ = *lanes(task_.end_time);
     failed_ = Lane{};
     least_ = fill(1e300);
     greatest_ = fill(-1e300);
-    for (int i = 0; i < 3 * t.probes.count; ++i) peak_[i] = peak_time_[i] = Lane{};
+    for (int i = 0; i < 3 * task_.probes.count; ++i) peak_[i] = peak_time_[i] = Lane{};
     distance_ = start_ = 0.0;
     ds_ = ds_before_ = 0.0;
     known_ = looks_ = seen_ = 0;
     // The wheels' heights over the bridge as it stands.
-    place(0.0, t.influence.channels);
-    for (int j = 0; j < t.wheels; ++j) offset_[j] = delta_[j] - free_[j] - surface(j);
+    place(0.0, task_.influence.channels);
+    for (int j = 0; j < task_.wheels; ++j) offset_[j] = delta_[j] - free_[j] - surface(j);
     look(false);
   }
 
@@ -246,15 +224,15 @@ class Group : Lanes<W> {
   Lane surface(int j) const {
     Lane height{};
     if (on_[j] == 0) return height;
-    const double* g = g_ + static_cast<long>(j) * t.influence.channels;
-    for (int i = 0; i < m; ++i) height -= g[i] * q_[i];
+    const double* g = g_ + static_cast<long>(j) * task_.influence.channels;
+    for (int i = 0; i < modes_; ++i) height -= g[i] * q_[i];
     return height;
   }
 
   Lane law(int j, Lane delta, Lane& tangent) const {
-    const Lane k = lanes(t.stiffness)[j];
+    const Lane k = lanes(task_.stiffness)[j];
     delta = delta > least_penetration ? delta : fill(least_penetration);
-    if (t.hertz[j] == 0) {
+    if (task_.hertz[j] == 0) {
       tangent = k;
       return k * delta;
     }
@@ -271,79 +249,45 @@ class Group : Lanes<W> {
     hard_ = Mask{};
     renew_step(ds);
     yield_to_force_ = fill(1.0);
-    if (t.coupled) return;
+    if (task_.coupled) return;
     Lane compliance{}, stiffest{};
-    for (int i = 0; i < m; ++i) compliance += t.influence.largest[i] * t.influence.largest[i] * S_inverse_[i];
-    for (int j = 0; j < t.wheels; ++j) stiffest = k_[j] > stiffest ? k_[j] : stiffest;
+    for (int i = 0; i < modes_; ++i)
+      compliance += task_.influence.largest[i] * task_.influence.largest[i] * S_inverse_[i];
+    for (int j = 0; j < task_.wheels; ++j) stiffest = k_[j] > stiffest ? k_[j] : stiffest;
     yield_to_force_ = 2.0 * compliance * stiffest;  // a tangent is not twice as steep under any force that holds
   }
 
   void renew_step(double ds) {
     ds_ = ds;
     h_ = ds / speed_;
-    rate_ = t.method.rate * h_;
-    d_ = t.method.displacement * h_ * h_;
-    for (int k = 0; k < t.kinds; ++k) renew(t.kind[k], kinds_[k]);
-    for (int i = 0; i < m; ++i)
-      for (int j = 0; j < m; ++j) S_[i * m + j] = Lane{};
-    for (int i = 0; i < m; ++i) S_[i * m + i] = 1.0 / d_ + omega2_[i];
+    rate_ = task_.method.rate * h_;
+    d_ = task_.method.displacement * h_ * h_;
+    for (int k = 0; k < task_.kinds; ++k) renew(task_.kind[k], kinds_[k]);
+    for (int i = 0; i < modes_; ++i)
+      for (int j = 0; j < modes_; ++j) S_[i * modes_ + j] = Lane{};
+    for (int i = 0; i < modes_; ++i) S_[i * modes_ + i] = 1.0 / d_ + omega2_[i];
     const Lane over = rate_ / d_;
-    const Lane* c = lanes(t.damping);
-    if (t.exact_modes) return set_exact_modes();
-    if (!t.coupled) {
-      for (int i = 0; i < m; ++i) {
-        S_[i * m + i] += over * c[i];
-        S_inverse_[i] = 1.0 / S_[i * m + i];
+    const Lane* c = lanes(task_.damping);
+    if (task_.exact_modes) return set_exact_modes();
+    if (!task_.coupled) {
+      for (int i = 0; i < modes_; ++i) {
+        S_[i * modes_ + i] += over * c[i];
+        S_inverse_[i] = 1.0 / S_[i * modes_ + i];
       }
       return;
     }
-    for (int i = 0; i < m * m; ++i) {
+    for (int i = 0; i < modes_ * modes_; ++i) {
       S_[i] += over * c[i];
       S_inverse_[i] = S_[i];
     }
-    invert(S_inverse_, m);
-  }
-
-  /// Where an oscillator u'' + c u' + k u = f0 + (f1 - f0) t/h is after h.
-  struct Oscillation {
-    double u, w;
-  };
-  static Oscillation oscillate(double k, double c, double h, double u0, double w0, double f0, double f1) {
-    const double phase2 = k * h * h, lost = c * h;
-    if (phase2 < 0.25 && lost < 0.5) {
-      // u h^j/j! by the equation's derivatives, with no digits lost to differences.
-      double a = u0, b = w0 * h, u = a + b, w = b;
-      for (int j = 0; j < 24; ++j) {
-        const double force = j == 0 ? f0 : j == 1 ? f1 - f0 : 0.0;
-        const double next = (force * h * h - lost * (j + 1) * b - phase2 * a) / ((j + 1.0) * (j + 2.0));
-        a = b;
-        b = next;
-        u += b;
-        w += (j + 2) * b;
-      }
-      return {u, w / h};
-    }
-    const double B = (f1 - f0) / (h * k), A = (f0 - c * B) / k, sigma = 0.5 * c, square = k - sigma * sigma;
-    double even = 0.0, odd = 0.0;
-    if (square > 0.0) {
-      const double damped = __builtin_sqrt(square), decay = __builtin_exp(-sigma * h);
-      even = decay * __builtin_cos(damped * h);
-      odd = decay * __builtin_sin(damped * h) / damped;
-    } else {
-      const double kappa = __builtin_sqrt(-square), slow = __builtin_exp((kappa - sigma) * h);
-      const double ratio = __builtin_exp(-2.0 * kappa * h);
-      even = 0.5 * slow * (1.0 + ratio);
-      odd = kappa * h > 1e-8 ? 0.5 * slow * (1.0 - ratio) / kappa : slow * h;
-    }
-    const double u = u0 - A, w = w0 - B;
-    return {A + B * h + (even + sigma * odd) * u + odd * w, B - k * odd * u + (even - sigma * odd) * w};
+    invert(S_inverse_, modes_);
   }
 
   void set_exact_modes() {
-    const double* k = t.omega2;
-    const double* c = t.damping;
+    const double* k = task_.omega2;
+    const double* c = task_.damping;
     const double* h = reinterpret_cast<const double*>(&h_);
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < modes_; ++i) {
       for (int from = 0; from < 4; ++from) {
         double* u = reinterpret_cast<double*>(&to_q_[4 * i + from]);
         double* w = reinterpret_cast<double*>(&to_r_[4 * i + from]);
@@ -354,23 +298,8 @@ class Group : Lanes<W> {
           w[l] = end.w;
         }
       }
-      S_[i * m + i] = 1.0 / to_q_[4 * i + 3];
+      S_[i * modes_ + i] = 1.0 / to_q_[4 * i + 3];
       S_inverse_[i] = to_q_[4 * i + 3];
-    }
-  }
-
-  /// In place, without pivots: of matrices whose symmetric part is positive.
-  static void invert(Lane* A, int n) {
-    for (int k = 0; k < n; ++k) {
-      const Lane pivot = 1.0 / A[k * n + k];
-      for (int j = 0; j < n; ++j) A[k * n + j] *= pivot;
-      A[k * n + k] = pivot;
-      for (int i = 0; i < n; ++i) {
-        if (i == k) continue;
-        const Lane factor = A[i * n + k];
-        A[i * n + k] = Lane{};
-        for (int j = 0; j < n; ++j) A[i * n + j] -= factor * A[k * n + j];
-      }
     }
   }
 
@@ -417,10 +346,6 @@ class Group : Lanes<W> {
 
   // --- a stage -----------------------------------------------------------------------------------------------------
 
-  /// What a method combines, for steps of this length.
-  struct Rule {
-    Lane w_in_v, a_in_v[most_kept], a_in_w[most_kept];
-  };
   Rule rule_for(double w_in_v, const double* a_in_v, const double* a_in_w, int known) const {
     Rule rule;
     rule.w_in_v = w_in_v * h_;
@@ -432,28 +357,28 @@ class Group : Lanes<W> {
   }
 
   void solve_stage(int stage) {
-    const TaskMethod& method = t.method;
+    const TaskMethod& method = task_.method;
     const double s = start_ + method.time[stage] * ds_;
     const bool last = stage + 1 == method.stages;
-    place(s, last ? t.influence.channels : m);
+    place(s, last ? task_.influence.channels : modes_);
     const Rule rule = rule_for(method.w_in_v[stage], method.a_in_v[stage], method.a_in_w[stage], stage + 1);
-    for (int v = 0; v < t.vehicles; ++v)
+    for (int v = 0; v < task_.vehicles; ++v)
       if (awake_[v] != 0) free_vehicle(v, stage + 1, rule);
-    if (t.exact_modes) {
+    if (task_.exact_modes) {
       free_exact_modes();
     } else {
-      predict(stage + 1, m, rule, q_, r_, b_, 0, q_still_, r_still_);
+      predict(stage + 1, modes_, rule, q_, r_, b_, 0, q_still_, r_still_);
       free_modes();
     }
     const double ahead = ds_before_ > 0.0 ? method.time[stage] * ds_ / ds_before_ : 0.0;
-    for (int v = 0; v < t.vehicles; ++v) {
+    for (int v = 0; v < task_.vehicles; ++v) {
       if (awake_[v] == 0) continue;
-      const TaskVehicle& vehicle = t.vehicle[v];
-      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + t.kind[vehicle.kind].wheels; ++j) {
+      const TaskVehicle& vehicle = task_.vehicle[v];
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + task_.kind[vehicle.kind].wheels; ++j) {
         if (on_[j] != 0) {
-          const double* g = g_ + static_cast<long>(j) * t.influence.channels;
+          const double* g = g_ + static_cast<long>(j) * task_.influence.channels;
           Lane height{};
-          for (int i = 0; i < m; ++i) height -= g[i] * z_[i];
+          for (int i = 0; i < modes_; ++i) height -= g[i] * z_[i];
           free_[j] += height;
         }
         const Lane guess = end_[j] + ahead * slope_[j];
@@ -462,95 +387,24 @@ class Group : Lanes<W> {
       }
     }
     solve_contacts();
-    for (int v = 0; v < t.vehicles; ++v)
+    for (int v = 0; v < task_.vehicles; ++v)
       if (awake_[v] != 0) take_forces(v, stage + 1);
-    if (t.exact_modes) return move_exact_modes();
+    if (task_.exact_modes) return move_exact_modes();
     const Lane per_d = 1.0 / d_;
-    for (int i = 0; i < m; ++i) b_[stage + 1][i] = per_d * (z_[i] - q_still_[i] + p_[i]);
-  }
-
-  /// y += sign A x for a matrix by rows; four rows at a time keep the processor busy.
-  static void multiply(double sign, const Lane* A, int rows, int columns, const Lane* x, Lane* y) {
-    int i = 0;
-    for (; i + 4 <= rows; i += 4) {
-      const Lane *A0 = A + i * columns, *A1 = A0 + columns, *A2 = A1 + columns, *A3 = A2 + columns;
-      Lane y0{}, y1{}, y2{}, y3{};
-      for (int k = 0; k < columns; ++k) {
-        y0 += A0[k] * x[k];
-        y1 += A1[k] * x[k];
-        y2 += A2[k] * x[k];
-        y3 += A3[k] * x[k];
-      }
-      y[i] += sign * y0;
-      y[i + 1] += sign * y1;
-      y[i + 2] += sign * y2;
-      y[i + 3] += sign * y3;
-    }
-    for (; i + 2 <= rows; i += 2) {
-      const Lane *A0 = A + i * columns, *A1 = A0 + columns;
-      Lane y0{}, y1{}, y2{}, y3{};
-      int k = 0;
-      for (; k + 2 <= columns; k += 2) {
-        y0 += A0[k] * x[k];
-        y1 += A1[k] * x[k];
-        y2 += A0[k + 1] * x[k + 1];
-        y3 += A1[k + 1] * x[k + 1];
-      }
-      for (; k < columns; ++k) {
-        y0 += A0[k] * x[k];
-        y1 += A1[k] * x[k];
-      }
-      y[i] += sign * (y0 + y2);
-      y[i + 1] += sign * (y1 + y3);
-    }
-    for (; i < rows; ++i) {
-      Lane sum{};
-      for (int k = 0; k < columns; ++k) sum += A[i * columns + k] * x[k];
-      y[i] += sign * sum;
-    }
-  }
-
-  /// x~ and w~ of n coordinates from `Known` accelerations.
-  template <int Known>
-  static void predict(int n, const Rule& rule, const Lane* x, const Lane* w, Lane* const* a, int first, Lane* x_still,
-                      Lane* w_still) {
-    for (int i = 0; i < n; ++i) {
-      Lane position = x[i] + rule.w_in_v * w[i], rate = w[i];
-      for (int j = 0; j < Known; ++j) {
-        position += rule.a_in_v[j] * a[j][first + i];
-        rate += rule.a_in_w[j] * a[j][first + i];
-      }
-      x_still[i] = position;
-      w_still[i] = rate;
-    }
-  }
-  static void predict(int known, int n, const Rule& rule, const Lane* x, const Lane* w, Lane* const* a, int first,
-                      Lane* x_still, Lane* w_still) {
-    switch (known) {
-      case 1:
-        return predict<1>(n, rule, x, w, a, first, x_still, w_still);
-      case 2:
-        return predict<2>(n, rule, x, w, a, first, x_still, w_still);
-      case 3:
-        return predict<3>(n, rule, x, w, a, first, x_still, w_still);
-      case 4:
-        return predict<4>(n, rule, x, w, a, first, x_still, w_still);
-      default:
-        return predict<5>(n, rule, x, w, a, first, x_still, w_still);
-    }
+    for (int i = 0; i < modes_; ++i) b_[stage + 1][i] = per_d * (z_[i] - q_still_[i] + p_[i]);
   }
 
   /// Without contact forces.
   void free_vehicle(int v, int known, const Rule& rule) {
-    const TaskVehicle& vehicle = t.vehicle[v];
-    const TaskKind& kind = t.kind[vehicle.kind];
+    const TaskVehicle& vehicle = task_.vehicle[v];
+    const TaskKind& kind = task_.kind[vehicle.kind];
     const KindWork& own = kinds_[vehicle.kind];
     const int f = kind.freedom, first = vehicle.first_coordinate;
     Lane *x = still_ + 2 * first, *w = x + f, *a = a_free_ + first;
     predict(known, f, rule, x_ + first, w_ + first, a_, first, x, w);
     for (int i = 0; i < f; ++i) a[i] = own.alone[i];
     multiply(-1.0, own.by_state, f, 2 * f, x, a);
-    if (t.heights.stations > 0)
+    if (task_.heights.stations > 0)
       for (int j = 0; j < kind.wheels; ++j) {
         // The contact's force stands square on the track: it pushes along it by its slope, as it was last found.
         const Lane push = track_slope_[vehicle.first_wheel + j] * F_[vehicle.first_wheel + j];
@@ -563,7 +417,7 @@ class Group : Lanes<W> {
         up += lanes(kind.G)[j * f + k] * (x[k] + d_ * a[k]);
       }
       free_[vehicle.first_wheel + j] -= up;
-      if (t.heights.stations == 0) continue;
+      if (task_.heights.stations == 0) continue;
       Lane along{};
       for (int k = 0; k < f; ++k) along += lanes(kind.G_along)[j * f + k] * (x[k] + d_ * a[k]);
       free_[vehicle.first_wheel + j] += track_slope_[vehicle.first_wheel + j] * along;
@@ -572,25 +426,25 @@ class Group : Lanes<W> {
 
   /// z_: where the modes would be without the contacts.
   void free_modes() {
-    const Lane* c = lanes(t.damping);
-    if (!t.coupled) {
-      for (int i = 0; i < m; ++i)
+    const Lane* c = lanes(task_.damping);
+    if (!task_.coupled) {
+      for (int i = 0; i < modes_; ++i)
         z_[i] = q_still_[i] + S_inverse_[i] * (load_[i] - c[i] * r_still_[i] - omega2_[i] * q_still_[i]);
       return;
     }
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < modes_; ++i) {
       rhs_[i] = load_[i] - omega2_[i] * q_still_[i];
-      for (int j = 0; j < m; ++j) rhs_[i] -= c[i * m + j] * r_still_[j];
+      for (int j = 0; j < modes_; ++j) rhs_[i] -= c[i * modes_ + j] * r_still_[j];
     }
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < modes_; ++i) {
       z_[i] = q_still_[i];
-      for (int j = 0; j < m; ++j) z_[i] += S_inverse_[i * m + j] * rhs_[j];
+      for (int j = 0; j < modes_; ++j) z_[i] += S_inverse_[i * modes_ + j] * rhs_[j];
     }
   }
 
   void free_exact_modes() {
-    const Lane* c = lanes(t.damping);
-    for (int i = 0; i < m; ++i) {
+    const Lane* c = lanes(task_.damping);
+    for (int i = 0; i < modes_; ++i) {
       const Lane* to = to_q_ + 4 * i;
       const Lane before = b_[0][i] + c[i] * r_[i] + omega2_[i] * q_[i];
       z_[i] = to[0] * q_[i] + to[1] * r_[i] + to[2] * before + to[3] * load_[i];
@@ -598,11 +452,11 @@ class Group : Lanes<W> {
   }
 
   void move_exact_modes() {
-    const Lane* c = lanes(t.damping);
-    for (int i = 0; i < m; ++i) {
+    const Lane* c = lanes(task_.damping);
+    for (int i = 0; i < modes_; ++i) {
       const Lane* to = to_r_ + 4 * i;
       const Lane before = b_[0][i] + c[i] * r_[i] + omega2_[i] * q_[i];
-      const Lane after = load_[i] + S_[i * m + i] * p_[i];
+      const Lane after = load_[i] + S_[i * modes_ + i] * p_[i];
       r_[i] = to[0] * q_[i] + to[1] * r_[i] + to[2] * before + to[3] * after;
       q_[i] = z_[i] + p_[i];
       b_[0][i] = after - c[i] * r_[i] - omega2_[i] * q_[i];
@@ -612,7 +466,7 @@ class Group : Lanes<W> {
   /// In short steps masses hardly yield to a change of contact forces: each contact by itself, and all others as they
   /// were, converges fast. Where it does not, all together.
   void solve_contacts() {
-    for (int i = 0; i < m; ++i) p_[i] = Lane{};
+    for (int i = 0; i < modes_; ++i) p_[i] = Lane{};
     const Mask running = failed_ == Lane{};
     const Mask left = one_by_one(running & ~hard_) | (running & hard_);
     if (!any(left)) return;
@@ -625,10 +479,10 @@ class Group : Lanes<W> {
     moved_ = fill(1e300);  // by how much forces have changed since the bridge was last pushed, N
     for (int iteration = 0; any(open); ++iteration) {
       if (iteration == few_iterations) return open;
-      const Mask push = open & (yield_to_force_ * moved_ > force_tolerance * t.force_scale);
+      const Mask push = open & (yield_to_force_ * moved_ > force_tolerance * task_.force_scale);
       if (any(push)) push_bridge(push);
       Mask wrong{};
-      for (int v = 0; v < t.vehicles; ++v)
+      for (int v = 0; v < task_.vehicles; ++v)
         if (awake_[v] != 0) wrong |= update_one_by_one(v, open);
       open &= wrong;
     }
@@ -637,21 +491,21 @@ class Group : Lanes<W> {
 
   /// p_ under the contacts' forces.
   void push_bridge(Mask push) {
-    for (int i = 0; i < m; ++i) rhs_[i] = Lane{};
-    for (int v = 0; v < t.vehicles; ++v) {
+    for (int i = 0; i < modes_; ++i) rhs_[i] = Lane{};
+    for (int v = 0; v < task_.vehicles; ++v) {
       if (awake_[v] == 0 || touching_[v] == 0) continue;
-      const TaskVehicle& vehicle = t.vehicle[v];
-      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + t.kind[vehicle.kind].wheels; ++j) {
+      const TaskVehicle& vehicle = task_.vehicle[v];
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + task_.kind[vehicle.kind].wheels; ++j) {
         if (on_[j] == 0) continue;
-        const double* g = g_ + static_cast<long>(j) * t.influence.channels;
-        for (int i = 0; i < m; ++i) rhs_[i] += g[i] * F_[j];
+        const double* g = g_ + static_cast<long>(j) * task_.influence.channels;
+        for (int i = 0; i < modes_; ++i) rhs_[i] += g[i] * F_[j];
       }
     }
     moved_ = push ? Lane{} : moved_;
-    for (int i = 0; i < m; ++i) {
+    for (int i = 0; i < modes_; ++i) {
       Lane p{};
-      if (t.coupled) {
-        for (int j = 0; j < m; ++j) p += S_inverse_[i * m + j] * rhs_[j];
+      if (task_.coupled) {
+        for (int j = 0; j < modes_; ++j) p += S_inverse_[i * modes_ + j] * rhs_[j];
       } else {
         p = S_inverse_[i] * rhs_[i];
       }
@@ -661,22 +515,22 @@ class Group : Lanes<W> {
 
   /// One step of Newton's for each contact; returns the lanes in which the penetrations were not yet right.
   Mask update_one_by_one(int v, Mask open) {
-    const TaskVehicle& vehicle = t.vehicle[v];
-    const int w = t.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
+    const TaskVehicle& vehicle = task_.vehicle[v];
+    const int w = task_.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
     const Lane* H = kinds_[vehicle.kind].H;
     Lane* off = residual_ + first;
     for (int i = 0; i < w; ++i) {
       Lane c = free_[first + i] - delta_[first + i];
       for (int k = 0; k < w; ++k) c -= H[i * w + k] * F_[first + k];
       if (on_[first + i] != 0) {
-        const double* g = g_ + static_cast<long>(first + i) * t.influence.channels;
+        const double* g = g_ + static_cast<long>(first + i) * task_.influence.channels;
         Lane height{}, more{};
         int k = 0;
-        for (; k + 2 <= m; k += 2) {
+        for (; k + 2 <= modes_; k += 2) {
           height += g[k] * p_[k];
           more += g[k + 1] * p_[k + 1];
         }
-        for (; k < m; ++k) height += g[k] * p_[k];
+        for (; k < modes_; ++k) height += g[k] * p_[k];
         c -= height + more;
       }
       off[i] = c;
@@ -685,7 +539,7 @@ class Group : Lanes<W> {
     for (int i = 0; i < w; ++i) {
       const int j = first + i;
       const Lane change = magnitude(off[i]) * k_[j];
-      wrong |= change > force_tolerance * t.force_scale;
+      wrong |= change > force_tolerance * task_.force_scale;
       if (on_[j] != 0) moved_ += change;
       const Lane delta = delta_[j] + off[i] / (1.0 + H[i * w + i] * k_[j]);
       Lane tangent;
@@ -700,7 +554,7 @@ class Group : Lanes<W> {
 
   void all_together(Mask open) {
     bool on_bridge = false;
-    for (int v = 0; v < t.vehicles; ++v) on_bridge |= awake_[v] != 0 && touching_[v] != 0;
+    for (int v = 0; v < task_.vehicles; ++v) on_bridge |= awake_[v] != 0 && touching_[v] != 0;
     for (int iteration = 0; any(open); ++iteration) {
       if (iteration == most_iterations) {
         failed_ = open ? fill(not_converged) : failed_;
@@ -708,17 +562,17 @@ class Group : Lanes<W> {
       }
       const bool fresh = iteration % fresh_after == 0;
       if (fresh && on_bridge)
-        for (int i = 0; i < m * m; ++i) factor_[i] = S_[i];
-      for (int i = 0; i < m; ++i) rhs_[i] = Lane{};
-      for (int v = 0; v < t.vehicles; ++v)
+        for (int i = 0; i < modes_ * modes_; ++i) factor_[i] = S_[i];
+      for (int i = 0; i < modes_; ++i) rhs_[i] = Lane{};
+      for (int v = 0; v < task_.vehicles; ++v)
         if (awake_[v] != 0) condense(v, fresh);
       if (on_bridge) {
-        if (fresh) factorise();
-        solve_modes();
-        for (int i = 0; i < m; ++i) p_[i] = open ? rhs_[i] : p_[i];
+        if (fresh) factorise(factor_, modes_, scaled_);
+        solve(factor_, modes_, rhs_);
+        for (int i = 0; i < modes_; ++i) p_[i] = open ? rhs_[i] : p_[i];
       }
       Mask wrong{};
-      for (int v = 0; v < t.vehicles; ++v)
+      for (int v = 0; v < task_.vehicles; ++v)
         if (awake_[v] != 0) wrong |= update(v, open);
       open &= wrong;
     }
@@ -726,8 +580,8 @@ class Group : Lanes<W> {
 
   /// A vehicle's contacts into the modes' equations.
   void condense(int v, bool fresh) {
-    const TaskVehicle& vehicle = t.vehicle[v];
-    const int w = t.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
+    const TaskVehicle& vehicle = task_.vehicle[v];
+    const int w = task_.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
     Lane* L = D_ + D_begin_[v];
     if (fresh) {
       const Lane* H = kinds_[vehicle.kind].H;
@@ -752,74 +606,52 @@ class Group : Lanes<W> {
       residual_[first + i] = r;
     }
     if (touching_[v] == 0) return;
-    Lane* rows = reduced_ + static_cast<long>(first) * m;
+    Lane* rows = reduced_ + static_cast<long>(first) * modes_;
     if (fresh) reduce(first, w, L, rows);
     for (int i = 0; i < w; ++i) {
-      const Lane* row = rows + i * m;
+      const Lane* row = rows + i * modes_;
       const Lane weighted = residual_[first + i] * pivot_[first + i];
-      for (int k = 0; k < m; ++k) rhs_[k] += row[k] * weighted;
+      for (int k = 0; k < modes_; ++k) rhs_[k] += row[k] * weighted;
     }
   }
 
   /// The rows of L^-1 g, and their share of the modes' matrix.
   void reduce(int first, int w, const Lane* L, Lane* rows) {
     for (int i = 0; i < w; ++i) {
-      Lane* row = rows + i * m;
-      const double* g = g_ + static_cast<long>(first + i) * t.influence.channels;
-      for (int k = 0; k < m; ++k) row[k] = on_[first + i] != 0 ? fill(g[k]) : Lane{};
+      Lane* row = rows + i * modes_;
+      const double* g = g_ + static_cast<long>(first + i) * task_.influence.channels;
+      for (int k = 0; k < modes_; ++k) row[k] = on_[first + i] != 0 ? fill(g[k]) : Lane{};
       for (int j = 0; j < i; ++j) {
-        const Lane* before = rows + j * m;
+        const Lane* before = rows + j * modes_;
         const Lane entry = L[i * w + j];
-        for (int k = 0; k < m; ++k) row[k] -= entry * before[k];
+        for (int k = 0; k < modes_; ++k) row[k] -= entry * before[k];
       }
     }
     int i = 0;
     for (; i + 2 <= w; i += 2) {
-      const Lane *a = rows + i * m, *b = a + m;
-      for (int k = 0; k < m; ++k) {
+      const Lane *a = rows + i * modes_, *b = a + modes_;
+      for (int k = 0; k < modes_; ++k) {
         const Lane of_a = pivot_[first + i] * a[k], of_b = pivot_[first + i + 1] * b[k];
-        Lane* to = factor_ + k * m;
+        Lane* to = factor_ + k * modes_;
         for (int l = 0; l <= k; ++l) to[l] += of_a * a[l] + of_b * b[l];
       }
     }
     for (; i < w; ++i) {
-      const Lane* a = rows + i * m;
-      for (int k = 0; k < m; ++k) {
+      const Lane* a = rows + i * modes_;
+      for (int k = 0; k < modes_; ++k) {
         const Lane of_a = pivot_[first + i] * a[k];
-        for (int l = 0; l <= k; ++l) factor_[k * m + l] += of_a * a[l];
+        for (int l = 0; l <= k; ++l) factor_[k * modes_ + l] += of_a * a[l];
       }
     }
-  }
-
-  /// L D L^T of the modes' matrix in place: the pivots' inverses on the diagonal.
-  void factorise() {
-    for (int j = 0; j < m; ++j) {
-      const Lane inverse = 1.0 / factor_[j * m + j];
-      factor_[j * m + j] = inverse;
-      for (int i = j + 1; i < m; ++i) scaled_[i] = factor_[i * m + j] * inverse;
-      for (int i = j + 1; i < m; ++i) {
-        Lane* row = factor_ + i * m;
-        const Lane entry = row[j];
-        for (int k = j + 1; k <= i; ++k) row[k] -= entry * scaled_[k];
-      }
-      for (int i = j + 1; i < m; ++i) factor_[i * m + j] = scaled_[i];
-    }
-  }
-
-  void solve_modes() {
-    for (int k = 0; k < m; ++k)
-      for (int i = k + 1; i < m; ++i) rhs_[i] -= factor_[i * m + k] * rhs_[k];
-    for (int i = 0; i < m; ++i) rhs_[i] *= factor_[i * m + i];
-    for (int k = m - 1; k > 0; --k)
-      for (int i = 0; i < k; ++i) rhs_[i] -= factor_[k * m + i] * rhs_[k];
   }
 
   /// New forces and penetrations from the modes' p_; returns the lanes in which they miss the contacts' laws.
   Mask update(int v, Mask open) {
-    const TaskVehicle& vehicle = t.vehicle[v];
-    const int w = t.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
+    const TaskVehicle& vehicle = task_.vehicle[v];
+    const int w = task_.kind[vehicle.kind].wheels, first = vehicle.first_wheel;
     const Lane* L = D_ + D_begin_[v];
-    if (touching_[v] != 0) multiply(-1.0, reduced_ + static_cast<long>(first) * m, w, m, p_, residual_ + first);
+    if (touching_[v] != 0)
+      multiply(-1.0, reduced_ + static_cast<long>(first) * modes_, w, modes_, p_, residual_ + first);
     Mask wrong{};
     for (int i = w - 1; i >= 0; --i) {
       Lane force = residual_[first + i] * pivot_[first + i];
@@ -829,7 +661,7 @@ class Group : Lanes<W> {
       const Lane delta = delta_[j] + yield_[j] * (force - F_[j]);
       Lane tangent;
       const Lane by_law = law(j, delta, tangent);
-      wrong |= magnitude(by_law - force) > force_tolerance * t.force_scale;
+      wrong |= magnitude(by_law - force) > force_tolerance * task_.force_scale;
       failed_ = (open & (delta <= fill(least_penetration))) ? fill(contact_lost) : failed_;
       delta_[j] = open ? delta : delta_[j];
       F_[j] = open ? by_law : F_[j];
@@ -839,8 +671,8 @@ class Group : Lanes<W> {
   }
 
   void take_forces(int v, int stage) {
-    const TaskVehicle& vehicle = t.vehicle[v];
-    const TaskKind& kind = t.kind[vehicle.kind];
+    const TaskVehicle& vehicle = task_.vehicle[v];
+    const TaskKind& kind = task_.kind[vehicle.kind];
     Lane* a = a_[stage] + vehicle.first_coordinate;
     for (int i = 0; i < kind.freedom; ++i) a[i] = a_free_[vehicle.first_coordinate + i];
     multiply(1.0, kinds_[vehicle.kind].Y, kind.freedom, kind.wheels, F_ + vehicle.first_wheel, a);
@@ -849,7 +681,7 @@ class Group : Lanes<W> {
   // --- the end of a step -------------------------------------------------------------------------------------------
 
   void finish_step() {
-    const TaskMethod& method = t.method;
+    const TaskMethod& method = task_.method;
     const Rule rule = rule_for(method.end_w_in_v, method.end_a_in_v, method.end_a_in_w, method.known);
     const auto end = [&](Lane* x, Lane* w, Lane* const* a, int i) {
       Lane next{}, position = x[i] + rule.w_in_v * w[i], rate = w[i];
@@ -862,10 +694,10 @@ class Group : Lanes<W> {
       w[i] = rate;
       a[0][i] = next;
     };
-    for (int v = 0; v < t.vehicles; ++v) {
+    for (int v = 0; v < task_.vehicles; ++v) {
       if (awake_[v] == 0) continue;
-      const TaskVehicle& vehicle = t.vehicle[v];
-      const TaskKind& kind = t.kind[vehicle.kind];
+      const TaskVehicle& vehicle = task_.vehicle[v];
+      const TaskKind& kind = task_.kind[vehicle.kind];
       for (int i = vehicle.first_coordinate; i < vehicle.first_coordinate + kind.freedom; ++i) end(x_, w_, a_, i);
       note_bent(v);
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + kind.wheels; ++j) {
@@ -873,15 +705,15 @@ class Group : Lanes<W> {
         end_[j] = delta_[j];
       }
     }
-    if (!t.exact_modes)
-      for (int i = 0; i < m; ++i) end(q_, r_, b_, i);
+    if (!task_.exact_modes)
+      for (int i = 0; i < modes_; ++i) end(q_, r_, b_, i);
     ds_before_ = ds_;
   }
 
   /// Keeps the coordinates at which the mechanism is farthest from linear.
   void note_bent(int v) {
-    const TaskVehicle& vehicle = t.vehicle[v];
-    const TaskKind& kind = t.kind[vehicle.kind];
+    const TaskVehicle& vehicle = task_.vehicle[v];
+    const TaskKind& kind = task_.kind[vehicle.kind];
     const Lane* x = x_ + vehicle.first_coordinate;
     Lane bent{};
     for (int i = 0; i < kind.freedom; ++i) bent += kind.bend[i] * magnitude(x[i]);
@@ -905,12 +737,12 @@ class Group : Lanes<W> {
     look_at_probes(counts);
     if (moved) look_at_wheels(counts);
     Lane sum{};
-    for (int i = 0; i < m; ++i) sum += q_[i];
+    for (int i = 0; i < modes_; ++i) sum += q_[i];
     failed_ = sum - sum == Lane{} ? failed_ : fill(not_finite);
   }
 
   void look_at_probes(Mask counts) {
-    const int n = t.probes.count, count = 3 * n;
+    const int n = task_.probes.count, count = 3 * n;
     Lane* const oldest = row_of_[0];
     row_of_[0] = row_of_[1];
     row_of_[1] = row_of_[2];
@@ -919,27 +751,28 @@ class Group : Lanes<W> {
     for (int i = 0; i < count; ++i) seen[i] = Lane{};
     const auto add_corrections = [&](const double* g, Lane force) {
       for (int p = 0; p < n; ++p) {
-        seen[p] += g[m + p] * force;
-        seen[2 * n + p] += g[m + n + p] * force;
+        seen[p] += g[modes_ + p] * force;
+        seen[2 * n + p] += g[modes_ + n + p] * force;
       }
     };
-    for (int j = 0; j < t.wheels; ++j)
-      if (on_[j] != 0) add_corrections(g_ + static_cast<long>(j) * t.influence.channels, F_[j]);
-    for (int j = 0; j < t.loads; ++j)
-      if (load_on_[j] != 0) add_corrections(load_g_ + static_cast<long>(j) * t.influence.channels, lanes(t.load)[j]);
-    for (int i = 0; i < m; ++i) {
+    for (int j = 0; j < task_.wheels; ++j)
+      if (on_[j] != 0) add_corrections(g_ + static_cast<long>(j) * task_.influence.channels, F_[j]);
+    for (int j = 0; j < task_.loads; ++j)
+      if (load_on_[j] != 0)
+        add_corrections(load_g_ + static_cast<long>(j) * task_.influence.channels, lanes(task_.load)[j]);
+    for (int i = 0; i < modes_; ++i) {
       const Lane q = q_[i], r = r_[i], a = b_[0][i];
-      const double *deflection = t.probes.deflection + static_cast<long>(i) * n,
-                   *moment = t.probes.moment + static_cast<long>(i) * n,
-                   *by_rate = t.probes.moment_by_rate + static_cast<long>(i) * n,
-                   *by_acceleration = t.probes.moment_by_acceleration + static_cast<long>(i) * n;
+      const double *deflection = task_.probes.deflection + static_cast<long>(i) * n,
+                   *moment = task_.probes.moment + static_cast<long>(i) * n,
+                   *by_rate = task_.probes.moment_by_rate + static_cast<long>(i) * n,
+                   *by_acceleration = task_.probes.moment_by_acceleration + static_cast<long>(i) * n;
       for (int p = 0; p < n; ++p) {
         seen[p] += deflection[p] * q;
         seen[n + p] += deflection[p] * a;
         seen[2 * n + p] += moment[p] * q + by_rate[p] * r + by_acceleration[p] * a;
       }
-      if (t.probes.deflection_by_rate == nullptr) continue;
-      for (int p = 0; p < n; ++p) seen[p] += t.probes.deflection_by_rate[static_cast<long>(i) * n + p] * r;
+      if (task_.probes.deflection_by_rate == nullptr) continue;
+      for (int p = 0; p < n; ++p) seen[p] += task_.probes.deflection_by_rate[static_cast<long>(i) * n + p] * r;
     }
     for (int i = 0; i < count; ++i) {
       const Lane value = magnitude(seen[i]);
@@ -972,13 +805,13 @@ class Group : Lanes<W> {
     const Lane before = time_[1] - time_[0], after = time_[2] - time_[1];
     const double step = distance_ - s_before_[1], step_before = s_before_[1] - s_before_[0];
     const bool comparable = seen_ >= 3 && step_before <= alike * step && step <= alike * step_before;
-    for (int j = 0; j < t.wheels; ++j) {
+    for (int j = 0; j < task_.wheels; ++j) {
       const Lane force = F_[j];
       least_ = counts & (force < least_) ? force : least_;
       greatest_ = counts & (force > greatest_) ? force : greatest_;
       const Lane rise = F1_[j] - F0_[j], fall = force - F1_[j];
       const Mask turns = counts & (rise * fall <= Lane{}) & (F1_[j] != force);
-      if (comparable && any(turns) && smooth(t.x[j])) {
+      if (comparable && any(turns) && smooth(task_.x[j])) {
         const Lane up = rise / before, down = fall / after;
         const Lane slope = (up * after + down * before) / (before + after), bend = (down - up) / (before + after);
         const Lane top = F1_[j] - 0.25 * slope * slope / bend;
@@ -995,24 +828,24 @@ class Group : Lanes<W> {
   /// Whether a wheel has met no corner of the surface within the last two steps.
   bool smooth(double x) const {
     const double from = x + s_before_[0], to = x + distance_;
-    for (int i = 0; i < t.kinks; ++i)
-      if (t.kink[i] >= from && t.kink[i] <= to) return false;
+    for (int i = 0; i < task_.kinks; ++i)
+      if (task_.kink[i] >= from && task_.kink[i] <= to) return false;
     return true;
   }
 
   void give() {
-    for (int i = 0; i < 3 * t.probes.count; ++i) {
-      lanes(t.peak)[i] = peak_[i];
-      lanes(t.peak_time)[i] = peak_time_[i];
+    for (int i = 0; i < 3 * task_.probes.count; ++i) {
+      lanes(task_.peak)[i] = peak_[i];
+      lanes(task_.peak_time)[i] = peak_time_[i];
     }
-    *lanes(t.least_force) = least_;
-    *lanes(t.greatest_force) = greatest_;
-    for (int i = 0; i < t.coordinates; ++i) lanes(t.bent)[i] = bent_[i];
-    *lanes(t.failed) = failed_;
+    *lanes(task_.least_force) = least_;
+    *lanes(task_.greatest_force) = greatest_;
+    for (int i = 0; i < task_.coordinates; ++i) lanes(task_.bent)[i] = bent_[i];
+    *lanes(task_.failed) = failed_;
   }
 
-  const Task& t;
-  const int m;  // modes
+  const Task& task_;
+  const int modes_;
   long used_ = 0;
   KindWork* kinds_ = nullptr;
   Lane speed_{}, end_time_{}, h_{}, rate_{}, d_{}, failed_{}, least_{}, greatest_{};

@@ -103,12 +103,19 @@ std::array<double, 2> rolled(const track::Profile& profile, double radius, doubl
   return rolled(profile, radius, x, profile.at(x));
 }
 
-/// By how much the cubic between the stations before and behind x may miss the wheel's height, m.
+/// By how much the cubic between the stations before and behind x may miss the wheel's height, m: in its middle, and in
+/// its quarters, where it is off when a corner lies in the middle.
 double off_at(const track::Profile& profile, double radius, const TrackNumbers& track, double x) {
-  const double left = track.start + std::floor((x - track.start) / track.distance) * track.distance;
-  const auto a = rolled(profile, radius, left), b = rolled(profile, radius, left + track.distance);
-  const double middle = 0.5 * (a[0] + b[0]) + 0.125 * track.distance * (a[1] - b[1]);
-  return std::abs(rolled(profile, radius, left + 0.5 * track.distance)[0] - middle);
+  const double d = track.distance, left = track.start + std::floor((x - track.start) / d) * d;
+  const auto a = rolled(profile, radius, left), b = rolled(profile, radius, left + d);
+  double off = 0.0;
+  for (const double u : {0.25, 0.5, 0.75}) {
+    const double v = 1.0 - u;
+    const double cubic =
+        v * v * ((1.0 + 2.0 * u) * a[0] + u * d * a[1]) + u * u * ((1.0 + 2.0 * v) * b[0] - v * d * b[1]);
+    off = std::max(off, std::abs(rolled(profile, radius, left + u * d)[0] - cubic));
+  }
+  return off;
 }
 
 /// The largest of these at the profile's kinks and at some places between.
