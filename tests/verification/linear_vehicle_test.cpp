@@ -10,7 +10,7 @@
 namespace traverse::test {
 namespace {
 
-const Values linear = {{"model_vehicles", "linear"}};
+const Values linear = {{"model_vehicles", "linear"}}, mechanisms = {{"model_vehicles", "full"}};
 
 double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
   double largest = 0.0;
@@ -20,7 +20,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
 
 /// A train over a bridge both ways: what is left out, relative to the peaks, and the energy balance of the linear one.
 void expect_close(const std::string& scene, const Values& options, const Values& bounds) {
-  Results full = run_scene(scene, options);
+  Results full = run_scene(scene, options + mechanisms);
   Results run = run_scene(scene, options + linear);
   for (const auto& [name, bound] : bounds) {
     const double difference = relative_difference(run(name), full(name));
@@ -58,7 +58,7 @@ TEST(LinearVehicle, BrakingTrain) {
 
 // A vehicle whose bodies only move up and down is linear: contact is lost and gained at the same times.
 TEST(LinearVehicle, LosesContactAndGainsItAgain) {
-  Results full = run_scene("wheel_over_a_bump", {});
+  Results full = run_scene("wheel_over_a_bump", mechanisms);
   Results run = run_scene("wheel_over_a_bump", linear);
   EXPECT_GT(full.attribute("/summary", "contact_losses"), 3.0);
   EXPECT_EQ(run.attribute("/summary", "contact_losses"), full.attribute("/summary", "contact_losses"));
@@ -76,7 +76,7 @@ TEST(LinearVehicle, LeavesOutSquares) {
   std::array<double, 2> left_out{}, defect{};
   int i = 0;
   for (const char* height : {"0.02", "0.01"}) {
-    Results full = run_yaml(scene(height), {});
+    Results full = run_yaml(scene(height), mechanisms);
     Results run = run_yaml(scene(height), linear);
     left_out[i] = largest_difference(run("/vehicles/0/car/acceleration"), full("/vehicles/0/car/acceleration"));
     defect[i++] = run.attribute("/summary", "linear_defect");
