@@ -62,7 +62,11 @@ void add(double a, double b, double scale, double& worst) {
 Errors difference(const std::vector<CrossingResult>& a, const std::vector<CrossingResult>& b) {
   Errors worst{};
   for (std::size_t run = 0; run < a.size(); ++run) {
-    if (a[run].trouble != lanes::none || b[run].trouble != lanes::none) continue;
+    if (a[run].trouble == lanes::contact_lost && b[run].trouble == lanes::contact_lost) continue;
+    if (a[run].trouble != lanes::none || b[run].trouble != lanes::none) {
+      worst.fill(1.0);  // too long a step, most likely
+      continue;
+    }
     const auto compare = [&](std::vector<lanes::CrossingPeak> CrossingResult::*peaks, Quantity q) {
       double largest = 0.0;
       for (const lanes::CrossingPeak& peak : b[run].*peaks) largest = std::max(largest, peak.value);
@@ -86,24 +90,28 @@ class LaneTrials {
   LaneTrials(Scene scene, std::vector<std::vector<double>> speeds, double distance)
       : scene_(std::move(scene)), speeds_(std::move(speeds)), distance_(distance) {}
 
-  /// Empty where the bridge has not so many modes. Refused where runs cannot go side by side.
+  /// Refused where runs cannot go side by side.
   const std::vector<CrossingResult>& run(const LaneModel& model) {
-    for (const auto& [known, results] : kept_)
-      if (known == model) return results;
+    for (const Kept& known : kept_)
+      if (known.model == model) return known.results;
     Setup& with_modes = setup(model);
-    std::vector<CrossingResult> results;
+    Kept& kept = kept_.emplace_back();
+    kept.model = model;
     for (const std::vector<double>& speeds : speeds_) {
       std::vector<double> ends;
       for (const double speed : speeds) ends.push_back(distance_ / speed);
       for (CrossingResult& result :
            with_modes.lanes->run(speeds, ends, {model.method->make(model.method->parameter.value), model.step})) {
-        defect_ = std::max(defect_, with_modes.lanes->defect(result));
-        results.push_back(std::move(result));
+        if (result.trouble == lanes::none) kept.defect = std::max(kept.defect, with_modes.lanes->defect(result));
+        kept.results.push_back(std::move(result));
       }
     }
-    return kept_.emplace_back(model, std::move(results)).second;
+    return kept.results;
   }
-  double defect() const { return defect_; }
+  /// The largest SideBySide::defect of a model's runs, which are known.
+  double defect(const LaneModel& model) const {
+    return std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; })->defect;
+  }
   const Scene& scene() const { return scene_; }
 
   struct Refused {
@@ -136,8 +144,12 @@ class LaneTrials {
   std::vector<std::vector<double>> speeds_;
   double distance_;  // m
   std::map<std::pair<int, int>, std::unique_ptr<Setup>> setups_;
-  std::deque<std::pair<LaneModel, std::vector<CrossingResult>>> kept_;  // references to its entries stay
-  double defect_ = 0.0;
+  struct Kept {
+    LaneModel model;
+    std::vector<CrossingResult> results;
+    double defect = 0.0;
+  };
+  std::deque<Kept> kept_;  // references to its entries stay
 };
 
 /// Neighbouring speeds of one class around each of the given places among all.
@@ -272,6 +284,11 @@ Errors off_the_elements(const LaneTrials& trials, const LaneModel& model, const 
   return difference({lane}, {by_elements});
 }
 
+bool lose_contact(const std::vector<CrossingResult>& runs) {
+  return std::any_of(runs.begin(), runs.end(),
+                     [](const CrossingResult& run) { return run.trouble == lanes::contact_lost; });
+}
+
 std::string words_of(const Errors& errors) {
   std::string words;
   for (std::size_t q = 0; q < quantities; ++q)
@@ -305,8 +322,10 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     const double first = first_step_factor * first_steps(fast, 0.0, whole / speeds.back()).first;
     std::optional<LaneModel> model = search.run(first);
     if (!model) return refuse("the peaks do not settle to the accuracy with up to 128 modes");
-    if (trials.defect() > most_defect(given))
-      return refuse(fmt::format("linear vehicles may be out of balance by {:.1g} of their weights", trials.defect()));
+    if (lose_contact(trials.run(*model))) return refuse("wheels lose contact");
+    if (trials.defect(*model) > most_defect(given))
+      return refuse(
+          fmt::format("linear vehicles are out of balance by {:.1g} of their weights", trials.defect(*model)));
 
     // Whole passages: errors add up while the train crosses.
     LaneTrials wholes(given, some_speeds(speeds, {0.5}, lanes::widest), whole);
@@ -325,14 +344,12 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     }
     if (greatest(choice.errors) > part_of_all * given.accuracy)
       return refuse(fmt::format("over whole passages errors add up to {}", words_of(choice.errors)));
-    const std::vector<CrossingResult> passages = wholes.run(*model);
-    const auto bad = [](const CrossingResult& result) { return result.trouble != lanes::none; };
-    if (std::all_of(passages.begin(), passages.end(), bad)) return refuse("wheels lose contact");
+    if (lose_contact(wholes.run(*model))) return refuse("wheels lose contact");
 
     const std::vector<CrossingResult>& beginnings = trials.run(*model);
     const Errors off = off_the_elements(trials, *model, beginnings.back(),
                                         some_speeds(speeds, {1.0}, trial_lanes).back().back(), distance);
-    if (beginnings.back().trouble == lanes::none && greatest(off) > given.accuracy)
+    if (greatest(off) > given.accuracy)
       return refuse(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
     choice.scene = with(given, *model);
     choice.scene.most_defect = most_defect(given);
@@ -345,6 +362,8 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     return choice;
   } catch (const LaneTrials::Refused& refused) {
     return refuse(refused.why);
+  } catch (const Error& failed) {
+    return refuse(failed.what());  // the runs one by one will say so too, if it is theirs
   }
 }
 
