@@ -4,22 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <map>
-#include <memory>
 
 #include "accuracy/first_guess.hpp"
 #include "accuracy/trials.hpp"
 #include "lanes/speed_class.hpp"
 #include "results/stage.hpp"
-#include "study/side_by_side.hpp"
+#include "study/lane_trials.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
 namespace {
 
 using lanes::CrossingResult;
-using Errors = std::array<double, quantities>;
+using Errors = LaneErrors;
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
 constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4,
@@ -30,127 +27,11 @@ constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 constexpr int fewest_modes = 4, most_modes = 128;
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
-/// What the runs are computed with.
-struct LaneModel {
-  int modes = 0, elements = 0;
-  const structure::MethodRow* method = nullptr;
-  double step = 0.0;  // s
-  bool operator==(const LaneModel&) const = default;
-};
-
 bool open(const Scene& scene) {
   return scene.sweep->lanes > 0 && scene.sweep->speeds.size() >= fewest_runs && !scene.vehicles.empty() &&
          !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full && scene.beam &&
          options::in_force().find("ts_type") == nullptr;
 }
-
-Scene with(const Scene& given, const LaneModel& model) {
-  Scene scene = given;
-  scene.model_modes = model.modes;
-  if (scene.mesh_open) set_mesh(scene, model.elements);
-  scene.time_step = model.step;
-  scene.sweep->method = model.method->name;
-  scene.vehicle_model = VehicleModel::linear;
-  return scene;
-}
-
-void add(double a, double b, double scale, double& worst) {
-  if (scale > 0.0) worst = std::max(worst, std::abs(a - b) / scale);
-}
-
-/// The largest differences of the peaks of runs, relative to the largest of their kind.
-Errors difference(const std::vector<CrossingResult>& a, const std::vector<CrossingResult>& b) {
-  Errors worst{};
-  for (std::size_t run = 0; run < a.size(); ++run) {
-    if (a[run].trouble == lanes::contact_lost && b[run].trouble == lanes::contact_lost) continue;
-    if (a[run].trouble != lanes::none || b[run].trouble != lanes::none) {
-      worst.fill(1.0);  // too long a step, most likely
-      continue;
-    }
-    const auto compare = [&](std::vector<lanes::CrossingPeak> CrossingResult::*peaks, Quantity q) {
-      double largest = 0.0;
-      for (const lanes::CrossingPeak& peak : b[run].*peaks) largest = std::max(largest, peak.value);
-      for (std::size_t p = 0; p < (b[run].*peaks).size(); ++p)
-        add((a[run].*peaks)[p].value, (b[run].*peaks)[p].value, largest, worst[q]);
-    };
-    compare(&CrossingResult::deflection, deflection);
-    compare(&CrossingResult::acceleration, acceleration);
-    compare(&CrossingResult::moment, moment);
-    add(a[run].greatest_force, b[run].greatest_force, b[run].greatest_force, worst[wheel_force]);
-    add(a[run].least_force, b[run].least_force, b[run].greatest_force, worst[wheel_force]);
-  }
-  return worst;
-}
-
-double greatest(const Errors& errors) { return *std::max_element(errors.begin(), errors.end()); }
-
-/// Passages of one scene at some speeds, by several models.
-class LaneTrials {
- public:
-  LaneTrials(Scene scene, std::vector<std::vector<double>> speeds, double distance)
-      : scene_(std::move(scene)), speeds_(std::move(speeds)), distance_(distance) {}
-
-  /// Refused where runs cannot go side by side.
-  const std::vector<CrossingResult>& run(const LaneModel& model) {
-    for (const Kept& known : kept_)
-      if (known.model == model) return known.results;
-    Setup& with_modes = setup(model);
-    Kept& kept = kept_.emplace_back();
-    kept.model = model;
-    for (const std::vector<double>& speeds : speeds_) {
-      std::vector<double> ends;
-      for (const double speed : speeds) ends.push_back(distance_ / speed);
-      for (CrossingResult& result :
-           with_modes.lanes->run(speeds, ends, {model.method->make(model.method->parameter.value), model.step})) {
-        if (result.trouble == lanes::none) kept.defect = std::max(kept.defect, with_modes.lanes->defect(result));
-        kept.results.push_back(std::move(result));
-      }
-    }
-    return kept.results;
-  }
-  /// The largest SideBySide::defect of a model's runs, which are known.
-  double defect(const LaneModel& model) const {
-    return std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; })->defect;
-  }
-  const Scene& scene() const { return scene_; }
-
-  struct Refused {
-    std::string why;
-  };
-
- private:
-  struct Setup {
-    Scene scene;
-    std::optional<SharedBeam> shared;
-    std::optional<SideBySide> lanes;
-  };
-  Setup& setup(const LaneModel& model) {
-    std::unique_ptr<Setup>& place = setups_[{model.modes, model.elements}];
-    if (place) return *place;
-    place = std::make_unique<Setup>();
-    place->scene = with(scene_, model);
-    std::vector<std::string> ignored;
-    place->shared.emplace(PETSC_COMM_SELF, place->scene, ignored);
-    place->shared->damp(place->scene, true, ignored);
-    place->shared->prepare(place->scene, ignored);
-    if (const std::string why = SideBySide::obstacle(place->scene, *place->shared); !why.empty()) throw Refused{why};
-    place->shared->modal->add_probes(place->scene.output.probes, 0.0);
-    place->lanes.emplace(place->scene, *place->shared);
-    if (!place->lanes->obstacle().empty()) throw Refused{place->lanes->obstacle()};
-    return *place;
-  }
-
-  Scene scene_;
-  std::vector<std::vector<double>> speeds_;
-  double distance_;  // m
-  std::map<std::pair<int, int>, std::unique_ptr<Setup>> setups_;
-  struct Kept {
-    LaneModel model;
-    std::vector<CrossingResult> results;
-    double defect = 0.0;
-  };
-  std::deque<Kept> kept_;  // references to its entries stay
-};
 
 /// Neighbouring speeds of one class around each of the given places among all.
 std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, std::initializer_list<double> places,
@@ -228,14 +109,14 @@ class Search {
     return false;
   }
   bool refine_mesh(LaneModel& model) {
-    while (trials_.scene().mesh_open) {
+    for (int i = 0; trials_.scene().mesh_open && i < most_halvings; ++i) {
       LaneModel finer = model;
       finer.elements *= 2;
       mesh_ = change(mixed_, model, finer);
-      if (greatest(mesh_) <= part_of_mesh * accuracy_) break;
+      if (greatest(mesh_) <= part_of_mesh * accuracy_) return true;
       model = finer;
     }
-    return true;
+    return !trials_.scene().mesh_open;
   }
   /// A longer step, or the method of one solve a step, where that costs less.
   LaneModel cheaper(const LaneModel& model) {
@@ -284,11 +165,6 @@ Errors off_the_elements(const LaneTrials& trials, const LaneModel& model, const 
   return difference({lane}, {by_elements});
 }
 
-bool lose_contact(const std::vector<CrossingResult>& runs) {
-  return std::any_of(runs.begin(), runs.end(),
-                     [](const CrossingResult& run) { return run.trouble == lanes::contact_lost; });
-}
-
 std::string words_of(const Errors& errors) {
   std::string words;
   for (std::size_t q = 0; q < quantities; ++q)
@@ -323,7 +199,8 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     std::optional<LaneModel> model = search.run(first);
     if (!model) return refuse("the peaks do not settle to the accuracy with up to 128 modes");
     if (lose_contact(trials.run(*model))) return refuse("wheels lose contact");
-    if (trials.defect(*model) > most_defect(given))
+    const bool automatic = given.vehicle_model == VehicleModel::automatic;
+    if (automatic && trials.defect(*model) > most_defect(given))
       return refuse(
           fmt::format("linear vehicles are out of balance by {:.1g} of their weights", trials.defect(*model)));
 
@@ -352,7 +229,7 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     if (greatest(off) > given.accuracy)
       return refuse(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
     choice.scene = with(given, *model);
-    choice.scene.most_defect = most_defect(given);
+    if (automatic) choice.scene.most_defect = most_defect(given);
     choice.scene.step_probes = true;
     notes.push_back(fmt::format(
         "runs go side by side: {} modes from {} elements a span, linear vehicles, {} with steps of {:g} s or less ({})",

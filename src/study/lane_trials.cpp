@@ -1,0 +1,98 @@
+#include "study/lane_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "accuracy/trials.hpp"
+
+namespace traverse::app {
+
+using lanes::CrossingResult;
+
+namespace {
+
+void note_difference(double a, double b, double scale, double& worst) {
+  if (scale > 0.0) worst = std::max(worst, std::abs(a - b) / scale);
+}
+
+}  // namespace
+
+Scene with(const Scene& given, const LaneModel& model) {
+  Scene scene = given;
+  scene.model_modes = model.modes;
+  if (scene.mesh_open) set_mesh(scene, model.elements);
+  scene.time_step = model.step;
+  scene.sweep->method = model.method->name;
+  scene.vehicle_model = VehicleModel::linear;
+  return scene;
+}
+
+LaneErrors difference(const std::vector<CrossingResult>& a, const std::vector<CrossingResult>& b) {
+  LaneErrors worst{};
+  for (std::size_t run = 0; run < a.size(); ++run) {
+    if (a[run].trouble == lanes::contact_lost && b[run].trouble == lanes::contact_lost) continue;
+    if (a[run].trouble != lanes::none || b[run].trouble != lanes::none) {
+      worst.fill(1.0);  // too long a step, most likely
+      continue;
+    }
+    const auto compare = [&](std::vector<lanes::CrossingPeak> CrossingResult::*peaks, Quantity q) {
+      double largest = 0.0;
+      for (const lanes::CrossingPeak& peak : b[run].*peaks) largest = std::max(largest, peak.value);
+      for (std::size_t p = 0; p < (b[run].*peaks).size(); ++p)
+        note_difference((a[run].*peaks)[p].value, (b[run].*peaks)[p].value, largest, worst[q]);
+    };
+    compare(&CrossingResult::deflection, deflection);
+    compare(&CrossingResult::acceleration, acceleration);
+    compare(&CrossingResult::moment, moment);
+    note_difference(a[run].greatest_force, b[run].greatest_force, b[run].greatest_force, worst[wheel_force]);
+    note_difference(a[run].least_force, b[run].least_force, b[run].greatest_force, worst[wheel_force]);
+  }
+  return worst;
+}
+
+double greatest(const LaneErrors& errors) { return *std::max_element(errors.begin(), errors.end()); }
+
+bool lose_contact(const std::vector<CrossingResult>& runs) {
+  return std::any_of(runs.begin(), runs.end(),
+                     [](const CrossingResult& run) { return run.trouble == lanes::contact_lost; });
+}
+
+const std::vector<CrossingResult>& LaneTrials::run(const LaneModel& model) {
+  for (const Kept& known : kept_)
+    if (known.model == model) return known.results;
+  Setup& with_modes = setup(model);
+  Kept& kept = kept_.emplace_back();
+  kept.model = model;
+  for (const std::vector<double>& speeds : speeds_) {
+    std::vector<double> ends;
+    for (const double speed : speeds) ends.push_back(distance_ / speed);
+    for (CrossingResult& result :
+         with_modes.lanes->run(speeds, ends, {model.method->make(model.method->parameter.value), model.step})) {
+      if (result.trouble == lanes::none) kept.defect = std::max(kept.defect, with_modes.lanes->defect(result));
+      kept.results.push_back(std::move(result));
+    }
+  }
+  return kept.results;
+}
+
+double LaneTrials::defect(const LaneModel& model) const {
+  return std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; })->defect;
+}
+
+LaneTrials::Setup& LaneTrials::setup(const LaneModel& model) {
+  std::unique_ptr<Setup>& place = setups_[{model.modes, model.elements}];
+  if (place) return *place;
+  place = std::make_unique<Setup>();
+  place->scene = with(scene_, model);
+  std::vector<std::string> ignored;
+  place->shared.emplace(PETSC_COMM_SELF, place->scene, ignored);
+  place->shared->damp(place->scene, true, ignored);
+  place->shared->prepare(place->scene, ignored);
+  if (const std::string why = SideBySide::obstacle(place->scene, *place->shared); !why.empty()) throw Refused{why};
+  place->shared->modal->add_probes(place->scene.output.probes, 0.0);
+  place->lanes.emplace(place->scene, *place->shared);
+  if (!place->lanes->obstacle().empty()) throw Refused{place->lanes->obstacle()};
+  return *place;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,75 @@
+// Trial passages side by side, by several models: what modes, meshes, methods and steps change.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/peaks.hpp"
+#include "study/side_by_side.hpp"
+
+namespace traverse::app {
+
+/// What the runs are computed with.
+struct LaneModel {
+  int modes = 0, elements = 0;
+  const structure::MethodRow* method = nullptr;
+  double step = 0.0;  // s
+  bool operator==(const LaneModel&) const = default;
+};
+
+/// The scene by such a model, with linear vehicles.
+Scene with(const Scene& given, const LaneModel& model);
+
+/// Errors of each quantity's peaks.
+using LaneErrors = std::array<double, quantities>;
+
+/// The largest differences of the peaks of runs, relative to the largest of their kind in the run; 1 where one of them
+/// has found no end. Runs in which wheels lose contact both times are passed over.
+LaneErrors difference(const std::vector<lanes::CrossingResult>& a, const std::vector<lanes::CrossingResult>& b);
+double greatest(const LaneErrors& errors);
+bool lose_contact(const std::vector<lanes::CrossingResult>& runs);
+
+/// Passages of one scene at some speeds.
+class LaneTrials {
+ public:
+  /// Groups of speeds, those of a group in one class, or the slowest one first; distance: of every passage, m.
+  LaneTrials(Scene scene, std::vector<std::vector<double>> speeds, double distance)
+      : scene_(std::move(scene)), speeds_(std::move(speeds)), distance_(distance) {}
+
+  /// Kept. Refused where runs cannot go side by side.
+  const std::vector<lanes::CrossingResult>& run(const LaneModel& model);
+  /// The largest SideBySide::defect of a model's runs, which are known.
+  double defect(const LaneModel& model) const;
+  const Scene& scene() const { return scene_; }
+
+  struct Refused {
+    std::string why;
+  };
+
+ private:
+  struct Setup {
+    Scene scene;
+    std::optional<SharedBeam> shared;
+    std::optional<SideBySide> lanes;
+  };
+  struct Kept {
+    LaneModel model;
+    std::vector<lanes::CrossingResult> results;
+    double defect = 0.0;
+  };
+  Setup& setup(const LaneModel& model);
+
+  Scene scene_;
+  std::vector<std::vector<double>> speeds_;
+  double distance_;
+  std::map<std::pair<int, int>, std::unique_ptr<Setup>> setups_;  // by modes and elements
+  std::deque<Kept> kept_;                                         // references to its entries stay
+};
+
+}  // namespace traverse::app
