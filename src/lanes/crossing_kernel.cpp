@@ -4,26 +4,7 @@
 namespace traverse::lanes::TRAVERSE_LANES_TARGET {
 
 /// Doubles that Task::work needs.
-long work_size(const Task& task) {
-  switch (task.width) {
-    case 8:
-      return Group<8>(task, nullptr).size();
-    case 4:
-      return Group<4>(task, nullptr).size();
-    default:
-      return Group<2>(task, nullptr).size();
-  }
-}
-
-void cross(const Task& task) {
-  switch (task.width) {
-    case 8:
-      return Group<8>(task, task.work).run();
-    case 4:
-      return Group<4>(task, task.work).run();
-    default:
-      return Group<2>(task, task.work).run();
-  }
-}
+long work_size(const Task& task) { return size_of_work<Group>(task); }
+void cross(const Task& task) { run_as_wide<Group>(task); }
 
 }  // namespace traverse::lanes::TRAVERSE_LANES_TARGET

@@ -79,5 +79,22 @@ T* take_from(double* work, long& used, int width, long count) {
   return reinterpret_cast<T*>(at);
 }
 
+/// Doubles that a task's work takes, and its runs, by a kernel as wide as the task asks.
+template <template <int> class Group, class Task>
+long size_of_work(const Task& task) {
+  return task.width == 8   ? Group<8>(task, nullptr).size()
+         : task.width == 4 ? Group<4>(task, nullptr).size()
+                           : Group<2>(task, nullptr).size();
+}
+template <template <int> class Group, class Task>
+void run_as_wide(const Task& task) {
+  if (task.width == 8)
+    Group<8>(task, task.work).run();
+  else if (task.width == 4)
+    Group<4>(task, task.work).run();
+  else
+    Group<2>(task, task.work).run();
+}
+
 }  // namespace
 }  // namespace traverse::lanes

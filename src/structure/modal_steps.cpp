@@ -1,0 +1,219 @@
+// Stages and steps of a structure by its modes, and how it yields in a stage.
+#include <algorithm>
+
+#include "structure/modal_structure.hpp"
+
+namespace traverse::structure {
+
+// --- stages --------------------------------------------------------------------------------------------------------
+
+void ModalStructure::set_stage(double shift, double shift2) {
+  if (shift == shift_ && shift2 == shift2_) return;
+  shift_ = shift;
+  shift2_ = shift2;
+  factorise();
+}
+
+void ModalStructure::factorise() {
+  for (std::size_t i = 0; i < modes_; ++i) {
+    const double omega = bridge_.omega()[i];
+    stiffness_[i] = shift2_ + 2.0 * bridge_.sigma()[i] * shift_ + omega * omega;
+  }
+  if (!bridge_.coupled()) return;
+  inverse_ = shift_ * bridge_.cross_damping();
+  inverse_.diagonal() += Eigen::Map<const Eigen::VectorXd>(stiffness_.data(), inverse_.rows());
+  factor_.compute(inverse_);
+  inverse_.setIdentity();
+  factor_.solveInPlace(inverse_);
+}
+
+/// S^-1 force.
+void ModalStructure::divide(const double* force, double* displacement) const {
+  if (!bridge_.coupled()) {
+    for (std::size_t i = 0; i < modes_; ++i) displacement[i] = force[i] / stiffness_[i];
+    return;
+  }
+  const Eigen::Index m = inverse_.rows();
+  Eigen::Map<Eigen::VectorXd>(displacement, m).noalias() = inverse_ * Eigen::Map<const Eigen::VectorXd>(force, m);
+}
+
+void ModalStructure::begin_statics(bool /*loaded*/) {
+  set_stage(0.0, 0.0);
+  std::fill(v_still_.begin(), v_still_.end(), 0.0);
+  std::fill(w_still_.begin(), w_still_.end(), 0.0);
+}
+
+void ModalStructure::begin_stage(double shift, const double* c_v, const double* c_w, const double* /*w_guess*/) {
+  set_stage(shift, shift * shift);
+  for (int i = 0; i < n_; ++i) {
+    w_still_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
+    v_still_[i] = shift > 0.0 ? (w_still_[i] - c_v[i]) / shift : 0.0;
+  }
+}
+
+void ModalStructure::begin_stage(std::size_t stage, const double* v, const double* w) {
+  const StageRule& rule = method_.stages[stage];
+  set_stage(rule.rate / rule.displacement, 1.0 / rule.displacement);
+  for (int i = 0; i < n_; ++i) {
+    v_still_[i] = v[i] + rule.w_in_v * w[i];
+    w_still_[i] = w[i];
+    for (int j = 0; j < rule.known; ++j) {
+      v_still_[i] += rule.a_in_v[j] * kept_[j][i];
+      w_still_[i] += rule.a_in_w[j] * kept_[j][i];
+    }
+  }
+}
+
+void ModalStructure::solve_free() {
+  if (n_ == 0) return;
+  for (int i = 0; i < n_; ++i) {
+    const double omega = bridge_.omega()[i];
+    q_[i] = modal_force_[i] - 2.0 * bridge_.sigma()[i] * w_still_[i] - omega * omega * v_still_[i];
+  }
+  subtract_cross_damping(w_still_.data(), q_.data());
+  divide(q_.data(), z_.data());
+}
+
+const ElementCompliance& ModalStructure::yield(const std::vector<int>& elements) {
+  elements_ = elements;
+  yield_.prepare(elements);
+  return yield_;
+}
+
+void ModalStructure::Yield::prepare(const std::vector<int>& elements) {
+  const bool same = shift_ == structure_.shift_ && shift2_ == structure_.shift2_;
+  if (same && elements == elements_) return;
+  std::swap(elements_, elements_before_);
+  std::swap(blocks_, blocks_before_);
+  elements_ = elements;
+  shift_ = structure_.shift_;
+  shift2_ = structure_.shift2_;
+  const int count = static_cast<int>(elements_.size()), before = static_cast<int>(elements_before_.size());
+  const std::size_t size = static_cast<std::size_t>(m_) * static_cast<std::size_t>(m_);
+  known_as_.assign(elements_.size(), -1);
+  for (std::size_t a = 0; same && a < elements_.size(); ++a) {
+    const auto at = std::find(elements_before_.begin(), elements_before_.end(), elements_[a]);
+    if (at != elements_before_.end()) known_as_[a] = static_cast<int>(at - elements_before_.begin());
+  }
+  blocks_.resize(elements_.size() * elements_.size() * size);
+  responses_.resize(elements_.size());
+  const auto block_at = [&](int a, int b, int of) {
+    return static_cast<std::ptrdiff_t>(static_cast<std::size_t>(b * of + a) * size);
+  };
+  over_.resize(static_cast<std::size_t>(m_) * structure_.modes_);
+  for (int b = 0; b < count; ++b) {
+    responses_[b] = {0, count, static_cast<std::size_t>(b) * elements_.size() * size};
+    const auto unknowns = structure_.line_.unknowns(elements_[b]);
+    for (int k = 0; k < m_; ++k)
+      structure_.divide(structure_.shapes(unknowns[k]), &over_[static_cast<std::size_t>(k) * structure_.modes_]);
+    for (int a = 0; a < count; ++a) {
+      double* to = blocks_.data() + block_at(a, b, count);
+      if (known_as_[a] >= 0 && known_as_[b] >= 0)
+        std::copy_n(blocks_before_.data() + block_at(known_as_[a], known_as_[b], before), size, to);
+      else
+        fill(a, to);
+    }
+  }
+}
+
+void ModalStructure::Yield::fill(int a, double* to) const {
+  const auto unknowns = structure_.line_.unknowns(elements_[a]);
+  for (int j = 0; j < m_; ++j) {
+    const double* loaded = &over_[static_cast<std::size_t>(j) * structure_.modes_];
+    for (int k = 0; k < m_; ++k) {
+      const double* phi = structure_.shapes(unknowns[k]);
+      double sum = 0.0;
+      for (std::size_t i = 0; i < structure_.modes_; ++i) sum += phi[i] * loaded[i];
+      to[j * m_ + k] = sum;
+    }
+  }
+}
+
+void ModalStructure::take(const std::vector<double>& loads) {
+  std::fill(q_.begin(), q_.end(), 0.0);
+  add_modal_forces({elements_, loads}, q_.data());
+  divide(q_.data(), moved_.data());
+  for (int i = 0; i < n_; ++i) z_[i] += moved_[i];
+}
+
+void ModalStructure::end_stage(double* v, double* w) {
+  for (int i = 0; i < n_; ++i) {
+    v[i] = v_still_[i] + z_[i];
+    w[i] = w_still_[i] + shift_ * z_[i];
+  }
+}
+
+void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const double* /*w*/) {
+  for (int i = 0; i < n_; ++i) {
+    kept_[stage + 1][i] = shift2_ * z_[i];
+    w_still_[i] += shift_ * z_[i];
+  }
+  powers_[stage + 1] = {damping(w_still_.data()), work_rate(w_still_.data())};
+}
+
+// --- steps ---------------------------------------------------------------------------------------------------------
+
+void ModalStructure::begin_motion(const Method& method) {
+  method_ = method;
+  for (int j = 0; j < method.step.known; ++j) kept_[j].assign(static_cast<std::size_t>(n_), 0.0);
+}
+
+void ModalStructure::set_method(const Method& method, double /*h*/) { method_ = method; }
+
+void ModalStructure::restart(const std::vector<Reach>& /*loaded*/, double* /*v*/, double* w, const double* a) {
+  std::copy_n(a, n_, kept_[0].begin());
+  powers_[0].damping = damping(w);
+}
+
+void ModalStructure::begin_step(const std::vector<Reach>& /*loaded*/, const double* v, const double* w, bool keep) {
+  before_.dissipated = dissipated_;
+  before_.worked = worked_;
+  if (keep) {
+    before_.v.assign(v, v + n_);
+    before_.w.assign(w, w + n_);
+  }
+  powers_[0].forces = work_rate(w);
+}
+
+void ModalStructure::finish_step(double* v, double* w) {
+  const StepRule& rule = method_.step;
+  for (int i = 0; i < n_; ++i) {
+    v[i] += rule.w_in_v * w[i];
+    double next = 0.0;
+    for (int j = 0; j < rule.known; ++j) {
+      v[i] += rule.a_in_v[j] * kept_[j][i];
+      w[i] += rule.a_in_w[j] * kept_[j][i];
+      next += rule.a_next[j] * kept_[j][i];
+    }
+    kept_[0][i] = next;
+  }
+  for (int j = 0; j < rule.known; ++j) {
+    dissipated_ += rule.power[j] * powers_[j].damping;
+    worked_ += rule.power[j] * powers_[j].forces;
+  }
+  powers_[0] = powers_[rule.known - 1];
+}
+
+void ModalStructure::take_back_step(double* v, double* w) {
+  dissipated_ = before_.dissipated;
+  worked_ = before_.worked;
+  std::copy(before_.v.begin(), before_.v.end(), v);
+  std::copy(before_.w.begin(), before_.w.end(), w);
+}
+
+double ModalStructure::error_energy(const double* /*v*/, const double* /*w*/) {
+  const StepRule& rule = method_.step;
+  double energy = 0.0;
+  for (int i = 0; i < n_; ++i) {
+    double v_off = 0.0, w_off = 0.0;
+    for (int j = 0; j < rule.known; ++j) {
+      v_off += rule.error_in_v[j] * kept_[j][i];
+      w_off += rule.error_in_w[j] * kept_[j][i];
+    }
+    const double omega = bridge_.omega()[i];
+    energy += 0.5 * (omega * omega * v_off * v_off + w_off * w_off);
+  }
+  return energy;
+}
+
+}  // namespace traverse::structure
