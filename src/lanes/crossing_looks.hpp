@@ -1,0 +1,144 @@
+// What is seen of the crossing of a group of trains: peaks at the probes, extremes of wheel forces
+// (crossing_kernel.hpp).
+#pragma once
+
+#include "lanes/crossing_state.hpp"
+
+namespace traverse::lanes {
+namespace {
+
+template <int W>
+struct CrossingLooks : CrossingAlgebra<W> {
+  using Own = CrossingAlgebra<W>;
+  using State = CrossingState<W>;
+  using Own::any;
+  using Own::fill;
+  using Own::lanes;
+  using Own::magnitude;
+  using typename Own::Lane;
+  using typename Own::Mask;
+
+  static constexpr double near = 0.9;   // of the largest magnitude so far: no parabola's vertex of less is larger
+  static constexpr double alike = 4.0;  // see WheelExtremes
+
+  static void look(State& s, bool moved) {
+    const Lane time = s.distance / s.speed;
+    const Mask counts = time <= s.end_time * (1.0 + 1e-12);
+    s.time[0] = s.time[1];
+    s.time[1] = s.time[2];
+    s.time[2] = time;
+    ++s.known;
+    ++s.looks;
+    look_at_probes(s, counts);
+    if (moved) look_at_wheels(s, counts);
+    Lane sum{};
+    for (int i = 0; i < s.modes; ++i) sum += s.q[i];
+    s.failed = sum - sum == Lane{} ? s.failed : fill(not_finite);
+  }
+
+  static void look_at_probes(State& s, Mask counts) {
+    const int n = s.task.probes.count, count = 3 * n;
+    Lane* const oldest = s.row_of[0];
+    s.row_of[0] = s.row_of[1];
+    s.row_of[1] = s.row_of[2];
+    s.row_of[2] = oldest;
+    Lane* seen = s.row_of[2];
+    for (int i = 0; i < count; ++i) seen[i] = Lane{};
+    const auto add_corrections = [&](const double* g, Lane force) {
+      for (int p = 0; p < n; ++p) {
+        seen[p] += g[s.modes + p] * force;
+        seen[2 * n + p] += g[s.modes + n + p] * force;
+      }
+    };
+    for (int j = 0; j < s.task.wheels; ++j)
+      if (s.on[j] != 0) add_corrections(s.g + static_cast<long>(j) * s.task.influence.channels, s.F[j]);
+    for (int j = 0; j < s.task.loads; ++j)
+      if (s.load_on[j] != 0)
+        add_corrections(s.load_g + static_cast<long>(j) * s.task.influence.channels, lanes(s.task.load)[j]);
+    for (int i = 0; i < s.modes; ++i) {
+      const Lane q = s.q[i], r = s.r[i], a = s.b[0][i];
+      const double *deflection = s.task.probes.deflection + static_cast<long>(i) * n,
+                   *moment = s.task.probes.moment + static_cast<long>(i) * n,
+                   *by_rate = s.task.probes.moment_by_rate + static_cast<long>(i) * n,
+                   *by_acceleration = s.task.probes.moment_by_acceleration + static_cast<long>(i) * n;
+      for (int p = 0; p < n; ++p) {
+        seen[p] += deflection[p] * q;
+        seen[n + p] += deflection[p] * a;
+        seen[2 * n + p] += moment[p] * q + by_rate[p] * r + by_acceleration[p] * a;
+      }
+      if (s.task.probes.deflection_by_rate == nullptr) continue;
+      for (int p = 0; p < n; ++p) seen[p] += s.task.probes.deflection_by_rate[static_cast<long>(i) * n + p] * r;
+    }
+    for (int i = 0; i < count; ++i) {
+      const Lane value = magnitude(seen[i]);
+      const Mask larger = counts & (value > s.peak[i]);
+      s.peak[i] = larger ? value : s.peak[i];
+      s.peak_time[i] = larger ? s.time[2] : s.peak_time[i];
+      if ((i < 2 * n ? s.looks : s.known) < 3) continue;
+      const Lane middle = magnitude(s.row_of[1][i]);
+      const Mask turns = counts & (middle > near * s.peak[i]) & (middle > value);
+      if (any(turns)) look_between(s, i, turns);
+    }
+  }
+
+  /// The vertex of the parabola through the last three instants, of whose magnitudes the middle one is the largest.
+  static void look_between(State& s, int i, Mask turns) {
+    const Lane sign = s.row_of[1][i] < Lane{} ? fill(-1.0) : fill(1.0);
+    const Lane y0 = sign * s.row_of[0][i], y1 = sign * s.row_of[1][i], y2 = sign * s.row_of[2][i];
+    turns &= y1 >= y0;
+    const Lane before = (y1 - y0) / (s.time[1] - s.time[0]), after = (y2 - y1) / (s.time[2] - s.time[1]);
+    const Lane bend = (after - before) / (s.time[2] - s.time[0]);
+    const Lane at = 0.5 * (s.time[0] + s.time[1]) - 0.5 * before / bend;
+    const Lane top = y1 + (at - s.time[1]) * (before + bend * (at - s.time[0]));
+    turns &= top > s.peak[i];
+    s.peak[i] = turns ? top : s.peak[i];
+    s.peak_time[i] = turns ? at : s.peak_time[i];
+  }
+
+  static void look_at_wheels(State& s, Mask counts) {
+    ++s.seen;
+    const Lane before = s.time[1] - s.time[0], after = s.time[2] - s.time[1];
+    const double step = s.distance - s.s_before[1], step_before = s.s_before[1] - s.s_before[0];
+    const bool comparable = s.seen >= 3 && step_before <= alike * step && step <= alike * step_before;
+    for (int j = 0; j < s.task.wheels; ++j) {
+      const Lane force = s.F[j];
+      s.least = counts & (force < s.least) ? force : s.least;
+      s.greatest = counts & (force > s.greatest) ? force : s.greatest;
+      const Lane rise = s.F1[j] - s.F0[j], fall = force - s.F1[j];
+      const Mask turns = counts & (rise * fall <= Lane{}) & (s.F1[j] != force);
+      if (comparable && any(turns) && smooth(s, s.task.x[j])) {
+        const Lane up = rise / before, down = fall / after;
+        const Lane slope = (up * after + down * before) / (before + after), bend = (down - up) / (before + after);
+        const Lane top = s.F1[j] - 0.25 * slope * slope / bend;
+        s.least = turns & (top < s.least) & (top > Lane{}) ? top : s.least;
+        s.greatest = turns & (top > s.greatest) ? top : s.greatest;
+      }
+      s.F0[j] = s.F1[j];
+      s.F1[j] = force;
+    }
+    s.s_before[0] = s.s_before[1];
+    s.s_before[1] = s.distance;
+  }
+
+  /// Whether a wheel has met no corner of the surface within the last two steps.
+  static bool smooth(State& s, double x) {
+    const double from = x + s.s_before[0], to = x + s.distance;
+    for (int i = 0; i < s.task.kinks; ++i)
+      if (s.task.kink[i] >= from && s.task.kink[i] <= to) return false;
+    return true;
+  }
+
+  static void give(State& s) {
+    for (int i = 0; i < 3 * s.task.probes.count; ++i) {
+      lanes(s.task.peak)[i] = s.peak[i];
+      lanes(s.task.peak_time)[i] = s.peak_time[i];
+    }
+    *lanes(s.task.least_force) = s.least;
+    *lanes(s.task.greatest_force) = s.greatest;
+    for (int i = 0; i < s.task.coordinates; ++i) lanes(s.task.bent)[i] = s.bent[i];
+    *lanes(s.task.failed) = s.failed;
+  }
+};
+
+}  // namespace
+}  // namespace traverse::lanes

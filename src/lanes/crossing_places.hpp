@@ -1,0 +1,67 @@
+// Where wheels and forces are, on the bridge and on the track (crossing_kernel.hpp).
+#pragma once
+
+#include "lanes/crossing_state.hpp"
+
+namespace traverse::lanes {
+namespace {
+
+template <int W>
+struct CrossingPlaces : CrossingAlgebra<W> {
+  using Own = CrossingAlgebra<W>;
+  using State = CrossingState<W>;
+  using Own::influence_at;
+  using Own::lanes;
+  using Own::track_at;
+  using typename Own::Lane;
+
+  /// Wheels and forces when all have gone so far (m), with so many channels of the influence. Fills `free` with the
+  /// penetration over a bridge at rest.
+  static void place(State& s, double gone, int channels) {
+    for (int v = 0; v < s.task.vehicles; ++v) {
+      if (s.awake[v] == 0) continue;
+      const TaskVehicle& vehicle = s.task.vehicle[v];
+      s.touching[v] = 0;
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
+        const double x = s.task.x[j] + gone;
+        s.on[j] = influence_at(s.task.influence, x, &s.piece[j], channels,
+                               s.g + static_cast<long>(j) * s.task.influence.channels)
+                      ? 1
+                      : 0;
+        s.touching[v] = static_cast<char>(s.touching[v] | s.on[j]);
+        Lane height;
+        track_at(s.task.heights, x, height, s.track_slope[j]);
+        s.free[j] = s.offset[j] + height;
+      }
+    }
+    for (int j = 0; j < s.task.loads; ++j) {
+      double* g = s.load_g + static_cast<long>(j) * s.task.influence.channels;
+      s.load_on[j] = influence_at(s.task.influence, s.task.load_x[j] + gone, &s.load_piece[j], channels, g) ? 1 : 0;
+    }
+    for (int i = 0; i < s.modes; ++i) s.load[i] = Lane{};
+    for (int j = 0; j < s.task.loads; ++j) {
+      if (s.load_on[j] == 0) continue;
+      const double* g = s.load_g + static_cast<long>(j) * s.task.influence.channels;
+      const Lane force = lanes(s.task.load)[j];
+      for (int i = 0; i < s.modes; ++i) s.load[i] += g[i] * force;
+    }
+  }
+
+  /// The start of a step: vehicles that stand still on level ground until their first wheel comes onto the bridge.
+  static void place_vehicles(State& s, double gone) {
+    s.start = gone;
+    for (int v = 0; v < s.task.vehicles; ++v) s.awake[v] = gone + 1e-9 >= s.task.vehicle[v].rests_until ? 1 : 0;
+  }
+
+  /// By how much the bridge lifts a wheel with its modes at q, m.
+  static Lane surface(const State& s, int j, const Lane* q) {
+    Lane height{};
+    if (s.on[j] == 0) return height;
+    const double* g = s.g + static_cast<long>(j) * s.task.influence.channels;
+    for (int i = 0; i < s.modes; ++i) height -= g[i] * q[i];
+    return height;
+  }
+};
+
+}  // namespace
+}  // namespace traverse::lanes

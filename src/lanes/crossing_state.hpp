@@ -1,0 +1,115 @@
+// All that the crossing of a group of trains has (crossing_kernel.hpp), number by number and lane by lane.
+#pragma once
+
+#include "lanes/crossing_algebra.hpp"
+
+namespace traverse::lanes {
+namespace {
+
+template <int W>
+struct CrossingState {
+  using Lane = typename Lanes<W>::Lane;
+  using Mask = typename Lanes<W>::Mask;
+
+  struct Kind {
+    Lane *inverse, *by_state;  // J^-1; J^-1 [K C], freedom x 2 freedom
+    Lane* alone;               // -J^-1 r0
+    Lane *Y, *Y_along, *H;     // J^-1 G^T (freedom x wheels), the same for forces along the track, d G J^-1 G^T
+  };
+
+  explicit CrossingState(const Task& of) : task(of), modes(of.modes) {}
+
+  const Task& task;
+  const int modes;
+  long used = 0;
+  Kind* kinds = nullptr;
+  Lane speed{}, end_time{}, h{}, rate{}, d{}, failed{}, least{}, greatest{};
+  double ds = 0.0, ds_before = 0.0, distance = 0.0, start = 0.0, s_before[2] = {};
+  long known = 0, looks = 0, seen = 0;  // instants since the last kink of moments, since the start; of wheels
+  Lane time[3] = {};
+  Lane moved{}, yield_to_force{};  // of one_by_one; what pushing the bridge by a force changes another one by
+  Mask hard{};                     // lanes whose contacts are solved all together at this step length
+  // Vehicles: coordinates, rates, the same at zero acceleration, accelerations without contacts.
+  Lane *x = nullptr, *w = nullptr, *still = nullptr, *a_free = nullptr;
+  Lane *bent = nullptr, *most_bent = nullptr;  // coordinates where a vehicle was farthest from linear; how far
+  // Modes: coordinates, rates, the same at zero acceleration, without contacts, what contacts add.
+  Lane *q = nullptr, *r = nullptr, *q_still = nullptr, *r_still = nullptr, *z = nullptr, *p = nullptr;
+  Lane *omega2 = nullptr, *load = nullptr, *rhs = nullptr, *scaled = nullptr;
+  Lane* a[most_kept] = {};
+  Lane* b[most_kept] = {};                // accelerations at the start of the step and at its stages
+  Lane *to_q = nullptr, *to_r = nullptr;  // of exact modes: [mode][q, q', force before, force after]
+  Lane *S = nullptr, *S_inverse = nullptr, *factor = nullptr;
+  // Wheels: penetration on a surface at height zero with the vehicle at rest; penetration; force, tangent; penetration
+  // without contact forces; at the end of the last step, and how it has grown; 1/k of the factors; residuals.
+  Lane *offset = nullptr, *delta = nullptr, *F = nullptr, *k = nullptr, *free = nullptr, *end = nullptr;
+  Lane *slope = nullptr, *yield = nullptr, *residual = nullptr, *pivot = nullptr;
+  Lane *F0 = nullptr, *F1 = nullptr, *track_slope = nullptr;  // forces at the two steps before
+  long* D_begin = nullptr;
+  Lane *D = nullptr, *reduced = nullptr;
+  double *g = nullptr, *load_g = nullptr;
+  int *piece = nullptr, *load_piece = nullptr;
+  char *on = nullptr, *load_on = nullptr, *awake = nullptr, *touching = nullptr;
+  Lane* row_of[3] = {};  // responses of the last three instants
+  Lane *peak = nullptr, *peak_time = nullptr;
+};
+
+template <int W>
+struct CrossingMemory {
+  using State = CrossingState<W>;
+  using Kind = typename State::Kind;
+  using Lane = typename State::Lane;
+
+  /// Sets all pointers into `work`, or, where that is null, counts alone what they take.
+  static void lay_out(State& s, double* work) {
+    const long n = s.task.coordinates, wheels = s.task.wheels, modes = s.modes, probes = 3L * s.task.probes.count;
+    s.kinds = take_from<Kind>(work, s.used, W, s.task.kinds);
+    for (int k = 0; k < s.task.kinds; ++k) {
+      const long f = s.task.kind[k].freedom, w = s.task.kind[k].wheels;
+      const Kind own = {take_from<Lane>(work, s.used, W, f * f), take_from<Lane>(work, s.used, W, 2 * f * f),
+                        take_from<Lane>(work, s.used, W, f),     take_from<Lane>(work, s.used, W, f * w),
+                        take_from<Lane>(work, s.used, W, f * w), take_from<Lane>(work, s.used, W, w * w)};
+      if (work != nullptr) s.kinds[k] = own;
+    }
+    Lane** const of_coordinates[] = {&s.x, &s.w, &s.a_free, &s.bent};
+    for (Lane** own : of_coordinates) *own = take_from<Lane>(work, s.used, W, n);
+    s.still = take_from<Lane>(work, s.used, W, 2 * n);
+    s.most_bent = take_from<Lane>(work, s.used, W, s.task.vehicles);
+    Lane** const of_modes[] = {&s.q, &s.r, &s.q_still, &s.r_still, &s.z, &s.p, &s.omega2, &s.load, &s.rhs, &s.scaled};
+    for (Lane** own : of_modes) *own = take_from<Lane>(work, s.used, W, modes);
+    for (int j = 0; j < most_kept; ++j) {
+      s.a[j] = take_from<Lane>(work, s.used, W, j < s.task.method.known ? n : 0);
+      s.b[j] = take_from<Lane>(work, s.used, W, j < s.task.method.known ? modes : 0);
+    }
+    s.to_q = take_from<Lane>(work, s.used, W, s.task.exact_modes ? 4 * modes : 0);
+    s.to_r = take_from<Lane>(work, s.used, W, s.task.exact_modes ? 4 * modes : 0);
+    s.S = take_from<Lane>(work, s.used, W, modes * modes);
+    s.S_inverse = take_from<Lane>(work, s.used, W, modes * (s.task.coupled ? modes : 1));
+    s.factor = take_from<Lane>(work, s.used, W, modes * modes);
+    Lane** const of_wheels[] = {&s.offset, &s.delta,    &s.F,     &s.k,  &s.free, &s.end,        &s.slope,
+                                &s.yield,  &s.residual, &s.pivot, &s.F0, &s.F1,   &s.track_slope};
+    for (Lane** own : of_wheels) *own = take_from<Lane>(work, s.used, W, wheels);
+    s.D_begin = take_from<long>(work, s.used, W, s.task.vehicles + 1);
+    long entries = 0;
+    for (int v = 0; v < s.task.vehicles; ++v) {
+      const long w = s.task.kind[s.task.vehicle[v].kind].wheels;
+      if (work != nullptr) s.D_begin[v] = entries;
+      entries += w * w;
+    }
+    s.D = take_from<Lane>(work, s.used, W, entries);
+    s.reduced = take_from<Lane>(work, s.used, W, wheels * modes);
+    s.g = take_from<double>(work, s.used, W, wheels * s.task.influence.channels);
+    s.load_g = take_from<double>(work, s.used, W, static_cast<long>(s.task.loads) * s.task.influence.channels);
+    s.piece = take_from<int>(work, s.used, W, wheels);
+    s.load_piece = take_from<int>(work, s.used, W, s.task.loads);
+    s.on = take_from<char>(work, s.used, W, wheels);
+    s.load_on = take_from<char>(work, s.used, W, s.task.loads);
+    s.awake = take_from<char>(work, s.used, W, s.task.vehicles);
+    s.touching = take_from<char>(work, s.used, W, s.task.vehicles);
+    for (Lane*& row : s.row_of) row = take_from<Lane>(work, s.used, W, probes);
+    s.peak = take_from<Lane>(work, s.used, W, probes);
+    s.peak_time = take_from<Lane>(work, s.used, W, probes);
+  }
+};
+
+}  // namespace
+}  // namespace traverse::lanes
