@@ -21,36 +21,51 @@ struct CrossingState {
 
   const Task& task;
   const int modes;
-  long used = 0;
-  Kind* kinds = nullptr;
-  Lane speed{}, end_time{}, h{}, rate{}, d{}, failed{}, least{}, greatest{};
-  double ds = 0.0, ds_before = 0.0, distance = 0.0, start = 0.0, s_before[2] = {};
-  long known = 0, looks = 0, seen = 0;  // instants since the last kink of moments, since the start; of wheels
-  Lane time[3] = {};
-  Lane moved{}, yield_to_force{};  // of one_by_one; what pushing the bridge by a force changes another one by
-  Mask hard{};                     // lanes whose contacts are solved all together at this step length
-  // Vehicles: coordinates, rates, the same at zero acceleration, accelerations without contacts.
+  long used = 0;          // lanes of the work memory
+  Kind* kinds = nullptr;  // of every kind of vehicle, at this step length
+
+  // The step: m/s, s; its length h and what the method makes of it, s, s2; lanes that have failed (Trouble).
+  Lane speed{}, end_time{}, h{}, rate{}, d{}, failed{};
+  double ds = 0.0, ds_before = 0.0, start = 0.0, distance = 0.0;  // m: lengths, begin of the step, end of the last one
+
+  // Vehicles, [coordinate]: x, x', x~ and x'~ of a vehicle behind each other, x'' without contacts and at the stages.
   Lane *x = nullptr, *w = nullptr, *still = nullptr, *a_free = nullptr;
-  Lane *bent = nullptr, *most_bent = nullptr;  // coordinates where a vehicle was farthest from linear; how far
-  // Modes: coordinates, rates, the same at zero acceleration, without contacts, what contacts add.
-  Lane *q = nullptr, *r = nullptr, *q_still = nullptr, *r_still = nullptr, *z = nullptr, *p = nullptr;
-  Lane *omega2 = nullptr, *load = nullptr, *rhs = nullptr, *scaled = nullptr;
   Lane* a[most_kept] = {};
-  Lane* b[most_kept] = {};                // accelerations at the start of the step and at its stages
+  Lane *bent = nullptr,
+       *most_bent = nullptr;  // coordinates where a vehicle was farthest from linear; how far [vehicle]
+  char *awake = nullptr, *touching = nullptr;  // [vehicle]: moves; has a wheel on the bridge
+
+  // Modes, [mode]: q, q', q~, q'~, without contacts, what contacts add, q'' at the stages.
+  Lane *q = nullptr, *r = nullptr, *q_still = nullptr, *r_still = nullptr, *z = nullptr, *p = nullptr;
+  Lane* b[most_kept] = {};
+  Lane *omega2 = nullptr, *load = nullptr;  // 1/s2; modal forces of the moving forces
+  Lane *S = nullptr, *S_inverse = nullptr, *factor = nullptr, *rhs = nullptr, *scaled = nullptr;  // [mode][mode]; work
   Lane *to_q = nullptr, *to_r = nullptr;  // of exact modes: [mode][q, q', force before, force after]
-  Lane *S = nullptr, *S_inverse = nullptr, *factor = nullptr;
-  // Wheels: penetration on a surface at height zero with the vehicle at rest; penetration; force, tangent; penetration
-  // without contact forces; at the end of the last step, and how it has grown; 1/k of the factors; residuals.
-  Lane *offset = nullptr, *delta = nullptr, *F = nullptr, *k = nullptr, *free = nullptr, *end = nullptr;
-  Lane *slope = nullptr, *yield = nullptr, *residual = nullptr, *pivot = nullptr;
-  Lane *F0 = nullptr, *F1 = nullptr, *track_slope = nullptr;  // forces at the two steps before
+
+  // Wheels, [wheel]. m: penetration over a level surface with the vehicle at rest, now, without contact forces, at the
+  // end of the last step, and how it grew in that; N, N/m: force and tangent.
+  Lane *offset = nullptr, *delta = nullptr, *free = nullptr, *end = nullptr, *slope = nullptr;
+  Lane *F = nullptr, *k = nullptr, *track_slope = nullptr;
+  double *g = nullptr, *load_g = nullptr;       // influence at each wheel and moving force: [wheel][channel]
+  int *piece = nullptr, *load_piece = nullptr;  // of it, that each is on
+  char *on = nullptr, *load_on = nullptr;       // whether it is on the bridge
+
+  // The contacts' solution: what pushing the bridge by a force changes another one by, and how much forces have changed
+  // since; lanes whose contacts are solved all together at this step length; 1/k and L D L^T of D = 1/k + H of each
+  // vehicle, residuals, L^-1 g [wheel][mode].
+  Lane yield_to_force{}, moved{};
+  Mask hard{};
+  Lane *yield = nullptr, *D = nullptr, *pivot = nullptr, *residual = nullptr, *reduced = nullptr;
   long* D_begin = nullptr;
-  Lane *D = nullptr, *reduced = nullptr;
-  double *g = nullptr, *load_g = nullptr;
-  int *piece = nullptr, *load_piece = nullptr;
-  char *on = nullptr, *load_on = nullptr, *awake = nullptr, *touching = nullptr;
-  Lane* row_of[3] = {};  // responses of the last three instants
-  Lane *peak = nullptr, *peak_time = nullptr;
+
+  // What is seen: instants since the last kink of moments, since the start, of wheels; the last three instants, s, and
+  // their responses [deflections, accelerations, moments of the probes]; distances and forces of the two steps before.
+  long known = 0, looks = 0, seen = 0;
+  Lane time[3] = {};
+  Lane* row_of[3] = {};
+  double s_before[2] = {};
+  Lane *F0 = nullptr, *F1 = nullptr;
+  Lane *peak = nullptr, *peak_time = nullptr, least{}, greatest{};
 };
 
 template <int W>
