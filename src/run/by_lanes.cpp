@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "integrate/integrator_choice.hpp"
+#include "lanes/processor.hpp"
 #include "lanes/stepped_crossing.hpp"
 #include "lanes/train_numbers.hpp"
 
@@ -33,6 +34,15 @@ bool level_ends(const structure::ModalBridge& bridge) {
   return at_ends <= no_step * largest;
 }
 
+/// Whether all ranks compute the same to the last bit.
+bool same_processors(MPI_Comm comm) {
+  const int own = static_cast<int>(lanes::best_target());
+  int bounds[2] = {own, -own};
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm);
+  return bounds[0] == -bounds[1];
+}
+
+/// Each rank takes all steps, as there is less in one than in a message.
 class ByLanes final : public coupling::SteppedApart {
  public:
   using Now = lanes::TaskInstant;
@@ -122,10 +132,9 @@ lanes::CrossingPlan lanes_plan(const Scene& scene, const SharedBeam& shared, con
 
 std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const SharedBeam& shared,
                                                  const coupling::System& system, const double* y, double end_time) {
-  int ranks = 1;
-  MPI_Comm_size(system.comm(), &ranks);
-  if (!scene.step_lanes || ranks > 1 || !lanes_obstacle(scene, shared).empty()) return nullptr;
-  if (!lanes::obstacle(system.fleet()).empty()) return nullptr;
+  if (!scene.step_lanes || !lanes_obstacle(scene, shared).empty() || !lanes::obstacle(system.fleet()).empty() ||
+      !same_processors(system.comm()))
+    return nullptr;
   train::Fleet fleet = system.fleet();
   lanes::TrainNumbers train = lanes::train_numbers(fleet);
   lanes::CrossingPlan plan = lanes_plan(scene, shared, system);
@@ -139,7 +148,11 @@ std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const Share
   } catch (const InputError&) {
     return nullptr;  // too long or too sharp
   }
-  std::vector<double> q(y, y + shared.modal->modes());
+  std::vector<double> q(shared.modal->modes());
+  int rank = 0;
+  MPI_Comm_rank(system.comm(), &rank);
+  if (rank == 0) std::copy_n(y, q.size(), q.begin());
+  MPI_Bcast(q.data(), static_cast<int>(q.size()), MPI_DOUBLE, 0, system.comm());
   return std::make_unique<ByLanes>(plan, std::move(train), std::move(track), std::move(q), scene.train.speed,
                                    system.known_events(end_time, scene.step_kinks), std::move(fleet));
 }

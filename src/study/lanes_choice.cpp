@@ -30,6 +30,7 @@ constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4,
 constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
 constexpr int most_halvings = 8, most_shortenings = 6;
 constexpr double shorter = 0.7;  // a quarter of an error of fourth order
+constexpr double longer = 1.4;
 constexpr int fewest_modes = 4, most_modes = 128;
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
@@ -180,7 +181,7 @@ std::string words_of(const Errors& errors) {
 
 /// Where wheels of a train have their trials: groups of speeds, and the passages' lengths, m.
 struct TrialSpeeds {
-  std::vector<std::vector<double>> beginnings, mixed, wholes;
+  std::vector<std::vector<double>> beginnings, mixed, wholes;  // mixed: none where the beginnings serve for them
 };
 
 /// A choice on the way, or why there is none.
@@ -191,20 +192,21 @@ struct NotChosen {
 /// Chooses by trial runs of a scene with a sweep.
 class Chooser {
  public:
-  Chooser(const Scene& scene, const TrialSpeeds& speeds, std::span<const char* const> methods)
-      : scene_(scene), fastest_(scene), methods_(methods) {
+  /// alone: of a single passage, not of a sweep.
+  Chooser(const Scene& scene, const TrialSpeeds& speeds, std::span<const char* const> methods, bool alone)
+      : scene_(scene), fastest_(scene), methods_(methods), alone_(alone) {
     fastest_.train.speed = scene.sweep->speeds.back();
     for (const double x : wheels_at_start(fastest_)) whole_ = std::max(whole_, scene.beam->length() - x);
     if (scene.end_time) whole_ = *scene.end_time * fastest_.train.speed;
     distance_ = beginning(fastest_, whole_ / fastest_.train.speed) * fastest_.train.speed;
     const Scene part = shortened(fastest_, distance_ / fastest_.train.speed);
     beginnings_.emplace(part, speeds.beginnings, distance_);
-    mixed_.emplace(part, speeds.mixed, distance_);
+    if (!speeds.mixed.empty()) mixed_.emplace(part, speeds.mixed, distance_);
     wholes_.emplace(scene, speeds.wholes, whole_);
   }
 
   LanesChoice choose() {
-    Search search(*beginnings_, *mixed_, methods_, scene_.accuracy);
+    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, methods_, scene_.accuracy);
     const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
     const std::optional<LaneModel> found = search.run(first);
     if (!found) throw NotChosen{"the peaks do not settle to the accuracy with up to 128 modes"};
@@ -215,6 +217,7 @@ class Chooser {
       throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
     LanesChoice choice;
     check_wholes(search, choice);
+    for (double& error : choice.errors) error += defect;
     choice.scene = with(scene_, model_);
     if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
     choice.scene.step_probes = true;
@@ -228,14 +231,16 @@ class Chooser {
   const LaneModel& model() const { return model_; }
 
  private:
-  /// Whole passages: errors add up while the train crosses.
+  /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
+  /// should not cost several, against a longer one, by errors that fall at least with the third power.
   void check_wholes(const Search& search, LanesChoice& choice) {
     for (int i = 0; i <= most_shortenings; ++i) {
       if (i > 0) model_.step *= shorter;
-      LaneModel finer = model_;
-      finer.method = structure::find_method("esdirk4");
-      finer.step *= 0.5;
-      const Errors along = difference(wholes_->run(model_), wholes_->run(finer));
+      LaneModel other = model_;
+      other.method = structure::find_method("esdirk4");
+      other.step *= alone_ ? longer : 0.5;
+      Errors along = difference(wholes_->run(model_), wholes_->run(other));
+      for (double& error : along) error *= alone_ ? 1.0 / (longer * longer * longer - 1.0) : 1.0;
       for (std::size_t q = 0; q < quantities; ++q)
         choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
       if (greatest(choice.errors) <= part_of_all * scene_.accuracy) break;
@@ -248,6 +253,7 @@ class Chooser {
   const Scene& scene_;
   Scene fastest_;
   std::span<const char* const> methods_;
+  bool alone_;
   double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
   std::optional<LaneTrials> beginnings_, mixed_, wholes_;
   LaneModel model_;
@@ -271,7 +277,7 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
                     {some_speeds(speeds, {0.0, 1.0}, trial_lanes),
                      {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}},
                      some_speeds(speeds, {0.5}, lanes::widest)},
-                    methods);
+                    methods, false);
     LanesChoice choice = chooser.choose();
     const Errors off = chooser.off_the_elements(some_speeds(speeds, {1.0}, trial_lanes).back().back());
     if (greatest(off) > given.accuracy)
@@ -305,7 +311,7 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
   for (const double part : beside) scene.sweep->speeds.push_back(part * given.train.speed);
   const std::vector<std::vector<double>> speeds = some_speeds(scene.sweep->speeds, {0.0}, trial_lanes);
   try {
-    Chooser chooser(scene, {speeds, speeds, {{given.train.speed}}}, methods);
+    Chooser chooser(scene, {speeds, {}, {{given.train.speed}}}, methods, true);
     LanesChoice choice = chooser.choose();
     choice.scene.sweep.reset();
     notes.push_back(fmt::format(

@@ -1,5 +1,5 @@
-// How the runs of a sweep of trains go side by side, or a single one by itself, by the lanes' kernel: modes, mesh, method
-// and step, chosen from the accuracy.
+// How the runs of a sweep of trains go side by side, or a single one by itself, by the lanes' kernel: modes, mesh,
+// method and step, chosen from the accuracy.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ struct LanesChoice {
 /// by one. The same on every rank.
 std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes);
 
-/// The same for a scene without a sweep, by trials at its speed and just above: without a run by elements, and with none
-/// of `notes` where nothing was chosen.
+/// The same for a scene without a sweep, by trials at its speed and just above: without a run by elements, and with
+/// none of `notes` where nothing was chosen.
 std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -70,7 +70,7 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speed
     from = event;
   }
   const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
-  if (last > 0) plan_.stretches.push_back({from + static_cast<double>(last) * ds, last});
+  if (last > 0) plan_.stretches.push_back({past, last});
   make_track(past + ds);
   std::vector<lanes::CrossingRun> runs;
   for (std::size_t i = 0; i < speeds.size(); ++i) runs.push_back({&train_, &track_, nullptr, &q_, speeds[i], ends[i]});
