@@ -20,13 +20,6 @@ constexpr double some_step = 1e-6;             // s, to look at a scene before i
 constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
 constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
 
-/// The option that makes the integrator choose its steps by a measure of its own, or treat contacts apart; null: none.
-const options::Entry* own_measure() {
-  const options::Entry* control = options::in_force().find("ts_adapt_type");
-  if (control != nullptr && control->value != "none") return control;
-  return options::in_force().find("ts_arkimex_fully_implicit");
-}
-
 /// Whether there is something to choose, and something moves that it can be chosen by.
 bool chooses(const Scene& scene) {
   const bool open = scene.mesh_open || !scene.time_step;
@@ -57,6 +50,12 @@ void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, 
 }
 
 }  // namespace
+
+const options::Entry* own_measure() {
+  const options::Entry* control = options::in_force().find("ts_adapt_type");
+  if (control != nullptr && control->value != "none") return control;
+  return options::in_force().find("ts_arkimex_fully_implicit");
+}
 
 std::vector<std::pair<std::string, double>> Accuracy::expected() const {
   std::vector<std::pair<std::string, double>> list;

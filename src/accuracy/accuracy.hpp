@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "run/peaks.hpp"
+#include "traverse/options/entry.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
@@ -30,6 +31,9 @@ struct Accuracy {
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took
 };
+
+/// The option that makes the integrator choose its steps by a measure of its own, or treat contacts apart; null: none.
+const options::Entry* own_measure();
 
 /// Collective. Fills in the scene's mesh, step and tolerances as far as they are open and says so in `notes`.
 /// InputError as the scene's own run would throw it.

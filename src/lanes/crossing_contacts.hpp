@@ -26,8 +26,9 @@ struct CrossingContacts : CrossingAlgebra<W> {
   static constexpr int few_iterations = 6, most_iterations = 20, fresh_after = 4;
   static constexpr double least_penetration = 1e-12;  // m: below, the contact counts as lost
 
+  /// The vertical force at a vertical penetration delta: on a slope cos and 1/cos of those along the normal.
   static Lane law(State& s, int j, Lane delta, Lane& tangent) {
-    const Lane k = lanes(s.task.stiffness)[j];
+    const Lane k = lanes(s.task.stiffness)[j] * (1.0 - (s.task.hertz[j] == 0 ? 1.0 : 1.25) * s.lean[j] * s.lean[j]);
     delta = delta > least_penetration ? delta : fill(least_penetration);
     if (s.task.hertz[j] == 0) {
       tangent = k;
@@ -37,6 +38,8 @@ struct CrossingContacts : CrossingAlgebra<W> {
     tangent = 1.5 * steep;
     return steep * delta;
   }
+
+  static Lane normal(const State& s, int j) { return s.F[j] * (1.0 + 0.5 * s.lean[j] * s.lean[j]); }
 
   /// In short steps masses hardly yield to a change of contact forces: each contact by itself, and all others as they
   /// were, converges fast. Where it does not, all together.

@@ -95,12 +95,13 @@ class Group : CrossingAlgebra<W> {
     Powers::finish_step(s);
     s.distance = to;
     Looks::see(s);
+    for (int j = 0; j < s.task.wheels; ++j) s.F1[j] = Contacts::normal(s, j);
   }
   TaskInstant instant() const {
     const State& s = state_;
     const auto numbers = [](const Lane* x) { return reinterpret_cast<const double*>(x); };
-    return {s.failed[0],     numbers(s.q), numbers(s.r),         numbers(s.x),         numbers(s.w),
-            numbers(s.bent), numbers(s.F), numbers(s.row_of[2]), numbers(&s.all_lost), numbers(&s.all_given)};
+    return {s.failed[0],     numbers(s.q),  numbers(s.r),         numbers(s.x),         numbers(s.w),
+            numbers(s.bent), numbers(s.F1), numbers(s.row_of[2]), numbers(&s.all_lost), numbers(&s.all_given)};
   }
 
  private:
@@ -119,11 +120,7 @@ class Group : CrossingAlgebra<W> {
     }
     for (int j = 0; j < s.task.wheels; ++j) {
       s.piece[j] = 0;
-      s.offset[j] = Lane{};
-      s.delta[j] = s.end[j] = lanes(s.task.penetration)[j];
-      s.slope[j] = Lane{};
-      s.F[j] = Contacts::law(s, j, s.delta[j], s.k[j]);
-      s.F0[j] = s.F1[j] = s.F[j];
+      s.offset[j] = s.slope[j] = Lane{};
     }
     for (int j = 0; j < s.task.loads; ++j) s.load_piece[j] = 0;
     for (int v = 0; v < s.task.vehicles; ++v) {
@@ -141,7 +138,13 @@ class Group : CrossingAlgebra<W> {
     s.known = s.looks = s.seen = 0;
     // The wheels' heights over the bridge as it stands.
     Places::place(s, 0.0, s.task.influence.channels);
-    for (int j = 0; j < s.task.wheels; ++j) s.offset[j] = s.delta[j] - s.free[j] - Places::surface(s, j, s.q);
+    Places::lean_with_bridge(s, 0.0, s.q);
+    for (int j = 0; j < s.task.wheels; ++j) {
+      s.delta[j] = s.end[j] = lanes(s.task.penetration)[j] * (1.0 + 0.5 * s.lean[j] * s.lean[j]);
+      s.offset[j] = s.delta[j] - s.free[j] - Places::surface(s, j, s.q);
+      s.F[j] = Contacts::law(s, j, s.delta[j], s.k[j]);
+      s.F0[j] = s.F1[j] = Contacts::normal(s, j);
+    }
     Looks::look(s, false);
   }
 

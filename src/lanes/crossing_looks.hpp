@@ -2,7 +2,7 @@
 // (crossing_kernel.hpp).
 #pragma once
 
-#include "lanes/crossing_state.hpp"
+#include "lanes/crossing_contacts.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -112,7 +112,7 @@ struct CrossingLooks : CrossingAlgebra<W> {
     const double step = s.distance - s.s_before[1], step_before = s.s_before[1] - s.s_before[0];
     const bool comparable = s.seen >= 3 && step_before <= alike * step && step <= alike * step_before;
     for (int j = 0; j < s.task.wheels; ++j) {
-      const Lane force = s.F[j];
+      const Lane force = CrossingContacts<W>::normal(s, j);
       s.least = counts & (force < s.least) ? force : s.least;
       s.greatest = counts & (force > s.greatest) ? force : s.greatest;
       const Lane rise = s.F1[j] - s.F0[j], fall = force - s.F1[j];

@@ -16,6 +16,13 @@ struct CrossingPlaces : CrossingAlgebra<W> {
   using Own::track_at;
   using typename Own::Lane;
 
+  /// Where a wheel touches the track, m: on a slope, in lean[j], ahead of its centre, by what a tyre leaves of its
+  /// radius at rest. Where runs have tracks of their own that is left out.
+  static double touched(const State& s, int j, double gone) {
+    const double x = s.task.x[j] + gone;
+    return s.task.heights.shared ? x + (s.task.radius - lanes(s.task.penetration)[j][0]) * s.lean[j][0] : x;
+  }
+
   /// Wheels and forces when all have gone so far (m), with so many channels of the influence. Fills `free` with the
   /// penetration over a bridge at rest.
   static void place(State& s, double gone, int channels) {
@@ -24,15 +31,14 @@ struct CrossingPlaces : CrossingAlgebra<W> {
       const TaskVehicle& vehicle = s.task.vehicle[v];
       s.touching[v] = 0;
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
-        const double x = s.task.x[j] + gone;
-        s.on[j] = influence_at(s.task.influence, x, &s.piece[j], channels,
+        Lane height;
+        track_at(s.task.heights, s.task.x[j] + gone, height, s.lean[j]);
+        s.free[j] = s.offset[j] + height;
+        s.on[j] = influence_at(s.task.influence, touched(s, j, gone), &s.piece[j], channels,
                                s.g + static_cast<long>(j) * s.task.influence.channels)
                       ? 1
                       : 0;
         s.touching[v] = static_cast<char>(s.touching[v] | s.on[j]);
-        Lane height;
-        track_at(s.task.heights, x, height, s.lean[j]);
-        s.free[j] = s.offset[j] + height;
       }
     }
     for (int j = 0; j < s.task.loads; ++j) {
@@ -62,10 +68,12 @@ struct CrossingPlaces : CrossingAlgebra<W> {
       const TaskVehicle& vehicle = s.task.vehicle[v];
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
         if (s.on[j] == 0) continue;
-        influence_slope_at(s.task.influence, s.task.x[j] + gone, s.piece[j], s.modes, s.g_slope);
-        const Lane of_track = s.lean[j];
-        for (int i = 0; i < s.modes; ++i) s.lean[j] -= s.g_slope[i] * q[i];
-        s.free[j] += 0.5 * s.task.radius * (s.lean[j] * s.lean[j] - of_track * of_track);
+        influence_slope_at(s.task.influence, touched(s, j, gone), s.piece[j], s.modes, s.g_slope);
+        Lane of_bridge{};
+        for (int i = 0; i < s.modes; ++i) of_bridge -= s.g_slope[i] * q[i];
+        const Lane rise = 0.5 * of_bridge + (s.task.heights.shared ? Lane{} : s.lean[j]);
+        s.free[j] += s.task.radius * of_bridge * rise;
+        s.lean[j] += of_bridge;
       }
     }
   }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <span>
 
+#include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
 #include "accuracy/trials.hpp"
 #include "lanes/speed_class.hpp"
@@ -37,6 +38,17 @@ constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full &&
          scene.beam && options::in_force().find("ts_type") == nullptr;
+}
+
+/// Whether a single run is left open, and of a kind that the lanes' kernel takes: what is fixed, and accelerations that
+/// no damping makes sums of, are judged by the search by elements.
+bool open_alone(const Scene& scene) {
+  const Damping& damping = scene.damping;
+  const bool damped =
+      (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
+  return open(scene) && scene.mesh_open && damped && scene.step_lanes && scene.analysis == Analysis::transient &&
+         !scene.beam->track && scene.train.drive == Drive::constant && scene.train.speed > 0.0 &&
+         scene.beam->spans.size() <= most_spans_alone && own_measure() == nullptr;
 }
 
 /// Neighbouring speeds of one class around each of the given places among all.
@@ -216,7 +228,7 @@ class Chooser {
     if (scene_.vehicle_model == VehicleModel::automatic && defect > most_defect(scene_))
       throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
     LanesChoice choice;
-    check_wholes(search, choice);
+    check_wholes(search, choice, moment_lag());
     for (double& error : choice.errors) error += defect;
     choice.scene = with(scene_, model_);
     if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
@@ -229,11 +241,25 @@ class Chooser {
     return app::off_the_elements(*beginnings_, model_, beginnings_->run(model_).back(), speed, distance_);
   }
   const LaneModel& model() const { return model_; }
+  std::size_t trials() const { return beginnings_->trials() + wholes_->trials(); }
+  double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
 
  private:
+  /// Of the peaks of moments: under a wheel they follow by b of the damping b K, which rounds the kink that a force
+  /// makes in them by F v b/2 (recovery/viscous_lag.hpp). What the modes leave out is taken as static, without that.
+  double moment_lag() {
+    double largest = 0.0;
+    for (const CrossingResult& run : beginnings_->run(model_)) {
+      double peak = 0.0;
+      for (const lanes::CrossingPeak& one : run.moment) peak = std::max(peak, one.value);
+      if (peak > 0.0) largest = std::max(largest, run.greatest_force / peak);
+    }
+    return 0.5 * largest * fastest_.train.speed * beginnings_->viscous(model_);
+  }
+
   /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
   /// should not cost several, against a longer one, by errors that fall at least with the third power.
-  void check_wholes(const Search& search, LanesChoice& choice) {
+  void check_wholes(const Search& search, LanesChoice& choice, double lag) {
     for (int i = 0; i <= most_shortenings; ++i) {
       if (i > 0) model_.step *= shorter;
       LaneModel other = model_;
@@ -243,6 +269,7 @@ class Chooser {
       for (double& error : along) error *= alone_ ? 1.0 / (longer * longer * longer - 1.0) : 1.0;
       for (std::size_t q = 0; q < quantities; ++q)
         choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
+      choice.errors[moment] += lag;
       if (greatest(choice.errors) <= part_of_all * scene_.accuracy) break;
     }
     if (greatest(choice.errors) > part_of_all * scene_.accuracy)
@@ -299,9 +326,7 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
 }
 
 std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::string>& notes) {
-  if (!open(given) || !given.step_lanes || given.analysis != Analysis::transient || given.beam->track ||
-      given.train.drive != Drive::constant || given.train.speed <= 0.0 || given.beam->spans.size() > most_spans_alone)
-    return std::nullopt;
+  if (!open_alone(given)) return std::nullopt;
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
   constexpr std::array methods = {"esdirk4"};  // which is what TS takes
@@ -315,9 +340,11 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
     LanesChoice choice = chooser.choose();
     choice.scene.sweep.reset();
     notes.push_back(fmt::format(
-        "accuracy {:g}: {} modes from {} elements a span, linear vehicles, steps of {:g} s; trial runs took {:.2g} s",
-        given.accuracy, chooser.model().modes, mesh_of(choice.scene), chooser.model().step,
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
+        "accuracy {:g}: {} elements a span, of these {} modes, linear vehicles, steps of {:g} s; {} trial runs of "
+        "{:.3g} s "
+        "took {:.2g} s",
+        given.accuracy, mesh_of(choice.scene), chooser.model().modes, chooser.model().step, chooser.trials(),
+        chooser.horizon(), std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     notes.push_back("expected errors of the peaks: " + words_of(choice.errors));
     return choice;
   } catch (const NotChosen&) {

@@ -1,5 +1,6 @@
 // Single runs of linear vehicles over modes by the lanes' kernel (step_lanes) against the same runs by the system
-// itself: the kernel takes the contact's normal by its first power, so that what is left falls with the bridge's slope.
+// itself: the kernel takes the contact's normal by its first power. What is left falls with the slopes of bridge and
+// track, and so does what the energies miss.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,20 +31,21 @@ Pair run_both(const std::string& scene, const Values& options) {
   return {run_scene(scene, options), run_scene(scene, options + Values{{"step_lanes", "false"}})};
 }
 
-void expect_same_motion(const char* name, const std::string& scene, const Values& options, double bound) {
+void expect_same_motion(const char* name, const std::string& scene, const Values& options, double bound,
+                        double unbalanced) {
   Pair runs = run_both(scene, linear + options);
   const double off = difference(runs.apart, runs.itself);
   testing::Test::RecordProperty(name, text(off));
   EXPECT_LT(off, bound) << name;
   EXPECT_GT(off, 0.0) << "both are the same run";
-  EXPECT_LT(std::abs(peak(runs.apart("/balance/residual")).first), 1e-9 * peak(runs.apart("/balance/load")).first);
-  // What the kernel counts by first powers is what the energies miss.
-  EXPECT_LT(energy_error(runs.apart), 3e-4);
+  EXPECT_LT(std::abs(peak(runs.apart("/balance/residual")).first),
+            1e-9 * std::abs(peak(runs.apart("/balance/load")).first));
+  EXPECT_LT(energy_error(runs.apart), unbalanced);
 }
 
 TEST(SteppedApart, CoachesOverThreeSpans) {
   expect_same_motion("three spans", "three_span_train",
-                     {{"train_vehicles", "coach*2"}, {"scene_tail", "0.2"}, {"ts_dt", "2.5e-4"}}, 2e-5);
+                     {{"train_vehicles", "coach*2"}, {"scene_tail", "0.2"}, {"ts_dt", "2.5e-4"}}, 2e-5, 3e-5);
 }
 
 TEST(SteppedApart, RoughTrack) {
@@ -53,7 +55,7 @@ TEST(SteppedApart, RoughTrack) {
                       {"track_profile", "german_low"},
                       {"track_seed", "3"},
                       {"ts_dt", "2e-4"}},
-                     2e-4);
+                     2e-4, 1e-3);
 }
 
 TEST(SteppedApart, OneSolveAStep) {
