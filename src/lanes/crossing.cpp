@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 
 #include "lanes/processor.hpp"
 
@@ -212,6 +213,10 @@ class Group {
         std::all_of(runs_.begin(), runs_.end(), [&](const CrossingRun& run) { return run.track == track; });
     task_.heights = {static_cast<int>(track->values.size() / 2), shared, track->start, track->distance,
                      track->values.data()};
+    for (const CrossingRun& run : runs_)
+      if (run.track == nullptr || run.track->values.size() != track->values.size() ||
+          run.track->start != track->start || run.track->distance != track->distance)
+        throw std::logic_error("runs side by side over tracks with other stations");
     if (!shared)
       task_.heights.values = side_by_side(track->values.size(),
                                           [](const CrossingRun& run, std::size_t i) { return run.track->values[i]; });

@@ -170,6 +170,7 @@ std::vector<double> wheels_at_start(const Scene& scene) {
 }
 
 Scene read_scene(Options o) {
+  if (asks_for_study(o)) return read_study(o);
   Scene scene;
   const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);

@@ -11,6 +11,7 @@ namespace traverse::app {
 namespace {
 
 constexpr double one_place = 1e-9;  // m: events nearer than that are one
+constexpr double most_of_tracks = 2.56e8;  // bytes, of tracks that are kept
 constexpr double no_step = 1e-9;    // of the shapes' largest values: surfaces that meet without a step
 
 /// Whether wheels come onto the bridge, and leave it, without a step.
@@ -77,11 +78,30 @@ std::vector<double> SideBySide::events(double past) const {
   return events;
 }
 
-void SideBySide::make_track(double past) {
-  if (scene_.profile.level() || past <= track_past_) return;
-  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
-  track_ = lanes::track_numbers(scene_.profile, fleet_.vehicles.front().wheels.front().radius, *rear, *front + past);
+void SideBySide::expect(double past) {
+  tracks_.clear();
   track_past_ = past;
+  if (scene_.profile.level()) return;
+  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
+  track_distance_ = lanes::track_distance(scene_.profile, fleet_.vehicles.front().wheels.front().radius, *rear,
+                                          *front + track_past_);
+}
+
+/// All tracks of a spectrum have their stations where the scene's own has.
+SideBySide::Track SideBySide::track(const std::optional<std::uint64_t>& seed, double past) {
+  if (scene_.profile.level()) return std::make_shared<lanes::TrackNumbers>();
+  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
+  const double radius = fleet_.vehicles.front().wheels.front().radius;
+  if (past > track_past_) expect(past);
+  const auto known = std::find_if(tracks_.begin(), tracks_.end(), [&](const auto& one) { return one.first == seed; });
+  if (known != tracks_.end()) return known->second;
+  const track::Profile other = seed ? scene_.roughness->profile(*seed) : track::Profile();
+  const lanes::TrackNumbers made =
+      lanes::track_numbers(seed ? other : scene_.profile, radius, *rear, *front + track_past_, track_distance_);
+  if (static_cast<double>((tracks_.size() + 1) * made.values.size() * sizeof(double)) > most_of_tracks &&
+      !tracks_.empty())
+    tracks_.pop_front();
+  return tracks_.emplace_back(seed, std::make_shared<lanes::TrackNumbers>(made)).second;
 }
 
 SideBySide::Steps SideBySide::steps() const {
@@ -91,11 +111,17 @@ SideBySide::Steps SideBySide::steps() const {
 
 std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speeds, std::span<const double> ends,
                                                    const Steps& steps) {
+  std::vector<LaneRun> runs;
+  for (std::size_t i = 0; i < speeds.size(); ++i) runs.push_back({speeds[i], ends[i], {}});
+  return run(runs, steps);
+}
+
+std::vector<lanes::CrossingResult> SideBySide::run(std::span<const LaneRun> runs, const Steps& steps) {
   plan_.method = steps.method;
   plan_.exact_modes = steps.method.stages.size() == 1;
-  const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(speeds.front()));
+  const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(runs.front().speed));
   double past = 0.0;
-  for (std::size_t i = 0; i < speeds.size(); ++i) past = std::max(past, speeds[i] * ends[i]);
+  for (const LaneRun& run : runs) past = std::max(past, run.speed * run.end);
   plan_.stretches.clear();
   double from = 0.0;
   for (const double event : events(past)) {
@@ -104,10 +130,13 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speed
   }
   const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
   if (last > 0) plan_.stretches.push_back({from + static_cast<double>(last) * ds, last});
-  make_track(past + ds);
-  std::vector<lanes::CrossingRun> runs;
-  for (std::size_t i = 0; i < speeds.size(); ++i) runs.push_back({&train_, &track_, nullptr, &q_, speeds[i], ends[i]});
-  return lanes::cross(plan_, runs);
+  std::vector<Track> tracks;
+  std::vector<lanes::CrossingRun> crossings;
+  for (const LaneRun& run : runs) {
+    tracks.push_back(track(run.seed, past + ds));
+    crossings.push_back({&train_, tracks.back().get(), nullptr, &q_, run.speed, run.end});
+  }
+  return lanes::cross(plan_, crossings);
 }
 
 std::vector<double> SideBySide::static_deflection() {

@@ -2,6 +2,7 @@
 // options; the physics sees nothing but these structures.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "traverse/beam/model.hpp"
 #include "traverse/options/analyses.hpp"
 #include "traverse/options/options.hpp"
+#include "traverse/scene/study.hpp"
 #include "traverse/track/profile.hpp"
 #include "traverse/train/vehicle.hpp"
 
@@ -38,6 +40,17 @@ struct Output {
   std::vector<double> probes;      // stations; default: the middle of every span (of the first 200)
 };
 
+/// The random running surfaces that one spectrum describes.
+struct Roughness {
+  track::Spectrum spectrum;
+  double shortest = 0.0, longest = 0.0;  // m: waves
+  double start = 0.0;                    // m: before it the track is level
+
+  track::Profile profile(std::uint64_t seed) const {
+    return track::Profile::rough(spectrum, shortest, longest, start, seed);
+  }
+};
+
 /// Runs of one scene at many speeds, with many trains of forces, or both.
 struct Sweep {
   std::vector<double> speeds;     // m/s; empty: that of the scene
@@ -46,6 +59,7 @@ struct Sweep {
   std::size_t lanes = 8;          // runs side by side; 0: each by itself
   std::string method;             // ts_type of those; empty: as TS takes it
   double instants = 20.0;         // looked at in a period of the fastest mode, where modes move exactly in time
+  std::size_t runs = 0;           // of the study that these are a part of; 0: there are no others
 };
 
 /// Vehicles as mechanisms, or linear, those that can be; automatic: linear where a search for the accuracy finds that
@@ -61,6 +75,7 @@ struct Scene {
   Train train;
   MovingLoad load;
   track::Profile profile;
+  std::optional<Roughness> roughness;  // that the profile is one of
   double gravity = 9.81;
   Analysis analysis = Analysis::transient;
   Start start = Start::equilibrium;
@@ -72,6 +87,7 @@ struct Scene {
   bool modes_open = false;               // a sweep may take modes where these do as well
   std::vector<double> damping_of_modes;  // ratio of each mode, the last one for all further modes; empty: Rayleigh's
   std::optional<Sweep> sweep;
+  std::optional<Study> study;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
   bool step_kinks = true;        // steps end where wheels pass kinks
@@ -107,5 +123,7 @@ double shortest_wave(const Scene& scene);
 Scene read_scene(options::Options options);
 /// The scene of the options in force, which are those that put_into_petsc saw last.
 Scene read_scene();
+/// The scene of a study with other values (as a user would write them) of some of its options; a sweep of itself alone.
+Scene read_scene_of_study(options::Options options, const std::vector<std::pair<std::string, std::string>>& values);
 
 }  // namespace traverse::app
