@@ -105,6 +105,7 @@ class Reader {
   double number(std::string_view how) const { return number(name(how), o_.text(name(how))); }
 
   void check(const std::string& given, double value, const std::string& what = "", const char* advice = "") const {
+    if (row_.unit == "m/s" && value == 0.0) o_.refuse(given, "0 m/s: nothing would ever leave; allowed: above 0");
     const bool fits = row_.range.holds(value) && (!whole() || (value == std::floor(value) && std::abs(value) < 2e9));
     if (!fits)
       o_.refuse(given, fmt::format("{}{:g} is no value of {}; allowed: {}{}", what, value, option_,

@@ -46,7 +46,7 @@ std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, 
     for (std::size_t i = at; i > 0 && group.size() < most; --i)
       if (lanes::speed_class(speeds[i - 1]) == number) group.push_back(speeds[i - 1]);
     std::sort(group.begin(), group.end());
-    groups.push_back(group);
+    if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
   }
   return groups;
 }
@@ -191,10 +191,10 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
   const double distance = beginning(fast, whole / speeds.back()) * speeds.back();
   try {
     const Scene part = shortened(fast, distance / speeds.back());
-    LaneTrials trials(part, some_speeds(speeds, {0.0, 1.0}, trial_lanes), distance);
+    LaneTrials trials(part, some_speeds(speeds, {0.0, 1.0}, trial_lanes), distance, lanes::widest);
     const std::size_t n = speeds.size() - 1;
-    LaneTrials mixed(part, {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}}, distance);
-    Search search(trials, mixed, given.accuracy);
+    LaneTrials mixed(part, {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}}, distance, lanes::widest);
+    Search search(trials, n == 0 ? trials : mixed, given.accuracy);
     const double first = first_step_factor * first_steps(fast, 0.0, whole / speeds.back()).first;
     std::optional<LaneModel> model = search.run(first);
     if (!model) return refuse("the peaks do not settle to the accuracy with up to 128 modes");
@@ -205,7 +205,7 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
           fmt::format("linear vehicles are out of balance by {:.1g} of their weights", trials.defect(*model)));
 
     // Whole passages: errors add up while the train crosses.
-    LaneTrials wholes(given, some_speeds(speeds, {0.5}, lanes::widest), whole);
+    LaneTrials wholes(given, some_speeds(speeds, {0.5}, lanes::widest), whole, lanes::widest);
     const auto finer = [](LaneModel chosen) {
       chosen.method = structure::find_method("esdirk4");
       chosen.step *= 0.5;

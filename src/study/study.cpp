@@ -139,6 +139,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   const bool wheels = has_wheels(given);
   StudyScenes scenes(given);
   results::StudyTable table(*given.study, given.output.probes.size(), wheels);
+  for (const std::size_t base : scenes.extreme_bases()) scenes.base(base);  // all input is checked first
   std::vector<std::string> notes;
   SweepChoice choice = choose_for_study(scenes, notes);
   scenes.choose(choice.scene);

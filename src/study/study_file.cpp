@@ -175,7 +175,6 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
   recorder_.attributes("/study", {{"dimensions", dimensions}, {"axes", axes}});
   recorder_.attributes("/study", attributes_of(model));
   recorder_.rewrite({table.finished()});  // on the disk, with all that stands above
-  written_ = std::chrono::steady_clock::now();
 }
 
 void StudyFile::write() {
@@ -188,7 +187,7 @@ void StudyFile::write() {
 
 void StudyFile::update() {
   const double since = std::chrono::duration<double>(std::chrono::steady_clock::now() - written_).count();
-  if (since < std::max(write_every, cost_factor * cost_)) return;
+  if (cost_ > 0.0 && since < std::max(write_every, cost_factor * cost_)) return;
   try {
     write();
   } catch (const FileError& error) {

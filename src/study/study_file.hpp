@@ -31,7 +31,7 @@ class StudyFile {
   /// Collective. Begins the file, with the coordinates of all runs and what is known of them.
   StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::Sweep::Model& model,
             const results::StudyTable& table);
-  /// Writes what is new in the table, every few seconds. On rank 0, which leaves with all others where the disk is full.
+  /// Writes what is new in the table, the first run at once, later ones every few seconds. On rank 0, which leaves with all others where the disk is full.
   void update();
   /// Writes all, with summary and statistics. FileError.
   void finish(const StudyCourse& course);
@@ -44,7 +44,7 @@ class StudyFile {
   results::Sweep::Model model_;
   results::Recorder recorder_;
   std::chrono::steady_clock::time_point written_;
-  double cost_ = 0.0;  // s, of the last writing
+  double cost_ = 0.0;  // s, of the last writing; 0: there was none
 };
 
 /// What the terminal shows at the end.

@@ -13,7 +13,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t most_runners = 8;
+constexpr std::size_t most_runners = 8, some_seeds = 8;
 
 bool names(const StudyDimension& dimension, const char* option) {
   return std::find(dimension.options.begin(), dimension.options.end(), option) != dimension.options.end();
@@ -59,6 +59,9 @@ StudyScenes::StudyScenes(const Scene& scene) : scene_(scene), chosen_(scene) {
     if (is_new) first_run_.push_back(run);
     one.base = base->second;
     runs_.push_back(one);
+    if (one.own.seed && seeds_.size() < some_seeds &&
+        std::find(seeds_.begin(), seeds_.end(), *one.own.seed) == seeds_.end())
+      seeds_.push_back(*one.own.seed);
     speeds.insert(one.own.speed);
   }
   speeds_.assign(speeds.begin(), speeds.end());
@@ -71,6 +74,8 @@ Scene StudyScenes::base(std::size_t base) const {
                                  scene.output.probes.size(), scene_.output.probes.size()));
   scene.sweep->speeds = speeds_;
   scene.sweep->runs = runs_.size();
+  scene.sweep->seeds = seeds_;
+  if (const auto& own = runs_[first_run_[base]].own.seed) std::erase(scene.sweep->seeds, *own);
   scene.name = scene_.name;
   scene.quiet = scene_.quiet;
   return scene;

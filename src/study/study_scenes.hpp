@@ -45,6 +45,7 @@ class StudyScenes {
   const Scene& scene_;
   Scene chosen_;
   std::vector<double> speeds_;          // of all runs, ascending
+  std::vector<std::uint64_t> seeds_;    // of some tracks
   std::vector<StudyRun> runs_;
   std::vector<std::size_t> first_run_;  // of each base
   std::deque<std::pair<std::size_t, std::unique_ptr<CaseRunner>>> runners_;

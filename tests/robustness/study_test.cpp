@@ -1,9 +1,10 @@
 // Studies that do not get to their end, and are gone on with; studies that cannot be meant.
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
+#include <filesystem>
 
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
@@ -18,13 +19,22 @@ std::size_t finished(const std::string& file) {
   return static_cast<std::size_t>(std::count(values.begin(), values.end(), 1.0));
 }
 
-/// A file that a writer may hold open.
-std::size_t finished_so_far(const std::string& file) {
-  try {
-    return finished(file);
-  } catch (const std::runtime_error&) {
-    return 0;
+/// A file that a run holds open and has locked.
+std::size_t finished_so_far(const Workplace& workplace, const std::string& name) {
+  std::error_code failed;
+  const std::string copy = workplace.path("copy.h5");
+  std::filesystem::copy_file(workplace.path(name), copy, std::filesystem::copy_options::overwrite_existing, failed);
+  if (failed || std::filesystem::file_size(copy) == 0) return 0;
+  std::size_t found = 0;
+  H5E_BEGIN_TRY {  // HDF5 is silent about what is not there yet
+    try {
+      found = finished(copy);
+    } catch (const std::runtime_error&) {
+      found = 0;
+    }
   }
+  H5E_END_TRY
+  return found;
 }
 
 std::string study(const char* what) { return forces + "study: {vary: {" + what + "}}\n"; }
@@ -46,7 +56,7 @@ TEST(StudyInput, IsRefusedInOneLine) {
       {"accuracy: [1.0e-3, 1.0e-2]", {"accuracy cannot be varied"}},
       {"track_seed: 1:5", {"track_seed has no effect", "track_profile is none"}},
       {"beam_mass: {from: 1, to: 2}", {"study_vary_beam_mass_from", "either step or count"}},
-      {"load_speed: 0:10", {"the speed 0 m/s", "above 0"}},
+      {"load_speed: 0:10", {"study_vary_load_speed", "0 m/s", "above 0"}},
       {"load_speed: {from: 10, to: 60, count: 100000}, beam_mass: {from: 1, to: 2, count: 10000}",
        {"1e+09 runs (100000 of load_speed times 10000 of beam_mass)", "allowed: at most 1e+06", "They would take 1388 h"}},
   };
@@ -79,26 +89,26 @@ TEST(StudyFails, ByOneRunThatIsNamed) {
   EXPECT_EQ(Results(workplace.path("r.h5"))("/study/peak_deflection").size(), 4u) << "readable";
 }
 
-// Killed without warning, on one rank and on two: what is in the file stays, and the study goes on from there.
+// Killed without warning: what is in the file stays, and the study goes on from there, on one rank and on two.
 TEST(StudyResumes, AfterAKill) {
-  const Workplace workplace(study("beam_mass: {from: 1.0e3, to: 2.0e3, count: 4000}, load_speed: [30, 40]"));
+  const Workplace workplace(study("beam_mass: {from: 1.0e3, to: 2.0e3, count: 400}, load_speed: [30, 40]"));
   Results whole = [&] {
-    expect_success(workplace.run({"-output_file", "whole.h5", "-ts_dt", "2e-3"}));
+    expect_success(workplace.run({"-output_file", "whole.h5"}));
     return Results(workplace.path("whole.h5"));
   }();
   for (const int ranks : {1, 2}) {
     const std::string name = "r" + std::to_string(ranks) + ".h5", file = workplace.path(name);
-    Child child(workplace.command({"-output_file", name, "-ts_dt", "2e-3"}, ranks), workplace.folder());
-    ASSERT_TRUE(child.wait_until([&] { return finished_so_far(file) > 0; }, 300.0)) << child.written("out");
+    Child child(workplace.command({"-output_file", name}), workplace.folder());
+    ASSERT_TRUE(child.wait_until([&] { return finished_so_far(workplace, name) > 0; }, 300.0)) << child.written("out");
     child.kill(SIGKILL);
     (void)child.wait();
     const std::size_t before = finished(file);
     EXPECT_GT(before, 0u);
-    EXPECT_LT(before, 8000u);
-    const Outcome outcome = workplace.run({"-output_file", name, "-ts_dt", "2e-3", "-study_resume"}, ranks);
+    EXPECT_LT(before, 800u);
+    const Outcome outcome = workplace.run({"-output_file", name, "-study_resume"}, ranks);
     expect_success(outcome);
     EXPECT_NE(outcome.out.find(std::to_string(before) + " of them are known"), std::string::npos) << outcome.out;
-    EXPECT_NE(outcome.out.find(std::to_string(8000 - before) + " of " + std::to_string(8000 - before) + " runs"),
+    EXPECT_NE(outcome.out.find(std::to_string(800 - before) + " of " + std::to_string(800 - before) + " runs"),
               std::string::npos)
         << outcome.out;
     Results resumed(file);

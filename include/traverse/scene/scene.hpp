@@ -60,6 +60,7 @@ struct Sweep {
   std::string method;             // ts_type of those; empty: as TS takes it
   double instants = 20.0;         // looked at in a period of the fastest mode, where modes move exactly in time
   std::size_t runs = 0;           // of the study that these are a part of; 0: there are no others
+  std::vector<std::uint64_t> seeds;  // of some tracks of the study, which differ in them; empty: the scene's own alone
 };
 
 /// Vehicles as mechanisms, or linear, those that can be; automatic: linear where a search for the accuracy finds that
