@@ -24,6 +24,7 @@
 #include "lanes/crossing_looks.hpp"
 #include "lanes/crossing_motion.hpp"
 #include "lanes/crossing_places.hpp"
+#include "lanes/crossing_powers.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -36,6 +37,7 @@ class Group : CrossingAlgebra<W> {
   using Motion = CrossingMotion<W>;
   using Looks = CrossingLooks<W>;
   using Places = CrossingPlaces<W>;
+  using Powers = CrossingPowers<W>;
   using Own::any;
   using Own::fill;
   using Own::invert;
@@ -47,6 +49,7 @@ class Group : CrossingAlgebra<W> {
 
  public:
   Group(const Task& task, double* work) : state_(task) { CrossingMemory<W>::lay_out(state_, work); }
+  static void* operator new(__SIZE_TYPE__, double* at) { return at; }
   long size() const { return state_.used * W; }
 
   void run() {
@@ -69,6 +72,34 @@ class Group : CrossingAlgebra<W> {
       from = stretch.to;
     }
     Looks::give(s);
+  }
+
+  // The same step by step, by somebody else's choice of steps, with the energies that come and go.
+  void begin() {
+    begin(state_);
+    Powers::begin(state_);
+  }
+  /// From where it is until all have gone `to` m. Where that fails, the crossing is where it was.
+  void step(double to) {
+    State& s = state_;
+    set_step(s, to - s.distance);
+    Places::place_vehicles(s, s.distance);
+    Powers::begin_step(s);
+    for (int stage = 0; stage < s.task.method.stages; ++stage) {
+      solve_stage(s, stage);
+      if (!any(s.failed == fill(0.0))) return;
+      Powers::note(s, stage + 1);
+    }
+    finish_step(s);
+    Powers::finish_step(s);
+    s.distance = to;
+    Looks::see(s);
+  }
+  TaskInstant instant() const {
+    const State& s = state_;
+    const auto numbers = [](const Lane* x) { return reinterpret_cast<const double*>(x); };
+    return {s.failed[0],     numbers(s.q), numbers(s.r),         numbers(s.x),         numbers(s.w),
+            numbers(s.bent), numbers(s.F), numbers(s.row_of[2]), numbers(&s.all_lost), numbers(&s.all_given)};
   }
 
  private:
@@ -166,14 +197,15 @@ class Group : CrossingAlgebra<W> {
     const bool last = stage + 1 == method.stages;
     Places::place(s, s.start + method.time[stage] * s.ds, last ? s.task.influence.channels : s.modes);
     const Rule rule = rule_for(s, method.w_in_v[stage], method.a_in_v[stage], method.a_in_w[stage], stage + 1);
-    for (int v = 0; v < s.task.vehicles; ++v)
-      if (s.awake[v] != 0) Motion::free_vehicle(s, v, stage + 1, rule);
     if (s.task.exact_modes) {
       Motion::free_exact_modes(s);
     } else {
       predict(stage + 1, s.modes, rule, s.q, s.r, s.b, 0, s.q_still, s.r_still);
       Motion::free_modes(s);
     }
+    Places::lean_with_bridge(s, s.start + method.time[stage] * s.ds, s.z);
+    for (int v = 0; v < s.task.vehicles; ++v)
+      if (s.awake[v] != 0) Motion::free_vehicle(s, v, stage + 1, rule);
     const double ahead = s.ds_before > 0.0 ? method.time[stage] * s.ds / s.ds_before : 0.0;
     for (int v = 0; v < s.task.vehicles; ++v) {
       if (s.awake[v] == 0) continue;
@@ -186,6 +218,7 @@ class Group : CrossingAlgebra<W> {
       }
     }
     Contacts::solve_contacts(s);
+    if (!any(s.failed == fill(0.0))) return;
     for (int v = 0; v < s.task.vehicles; ++v)
       if (s.awake[v] != 0) Motion::take_forces(s, v, stage + 1);
     if (s.task.exact_modes) return Motion::move_exact_modes(s);

@@ -76,6 +76,7 @@ VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
   v.G_along = rows_of_wheels(0);
   v.G = rows_of_wheels(1);
   v.bend = bend_of(vehicle);
+  v.driven.assign(of.driven.begin(), of.driven.end());
   return v;
 }
 
@@ -170,6 +171,7 @@ TrainNumbers train_numbers(train::Fleet& fleet) {
     }
   }
   train.coordinates = fleet.freedom();
+  train.radius = fleet.vehicles.front().wheels.front().radius;
   return train;
 }
 
@@ -182,6 +184,7 @@ double defect(train::Fleet& fleet, const std::vector<double>& x) {
 
 double track_distance(const track::Profile& profile, double radius, double from, double to) {
   TrackNumbers track;
+  if (profile.level()) return track.distance;
   track.start = from;
   track.distance = std::min(profile.resolution(), profile.shortest_wave() / stations_a_wave);
   while (off_between_stations(profile, radius, track, to) > most_off) {
@@ -196,6 +199,7 @@ double track_distance(const track::Profile& profile, double radius, double from,
 
 TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to, double distance) {
   TrackNumbers track;
+  if (profile.level()) return track;
   track.start = from;
   track.distance = distance;
   const double stations = std::ceil((to - from) / distance) + 1.0;

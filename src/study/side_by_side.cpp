@@ -5,6 +5,7 @@
 
 #include "integrate/integrator_choice.hpp"
 #include "lanes/speed_class.hpp"
+#include "run/by_lanes.hpp"
 #include "run/passage.hpp"
 
 namespace traverse::app {
@@ -12,40 +13,8 @@ namespace {
 
 constexpr double one_place = 1e-9;  // m: events nearer than that are one
 constexpr double most_of_tracks = 2.56e8;  // bytes, of tracks that are kept
-constexpr double no_step = 1e-9;    // of the shapes' largest values: surfaces that meet without a step
-
-/// Whether wheels come onto the bridge, and leave it, without a step.
-bool level_ends(const structure::ModalBridge& bridge) {
-  const structure::PiecewiseCubic& influence = bridge.influence();
-  double largest = 0.0, at_ends = 0.0;
-  for (std::size_t piece = 0; piece < influence.pieces(); ++piece) {
-    const double length = influence.breaks[piece + 1] - influence.breaks[piece];
-    for (std::size_t i = 0; i < bridge.modes(); ++i) {
-      const double* c = &influence.coefficients[4 * influence.channels * piece + i];
-      const std::size_t n = influence.channels;
-      const double left = c[0], right = c[0] + length * (c[n] + length * (c[2 * n] + length * c[3 * n]));
-      largest = std::max({largest, std::abs(left), std::abs(right)});
-      if (piece == 0) at_ends = std::max(at_ends, std::abs(left));
-      if (piece + 1 == influence.pieces()) at_ends = std::max(at_ends, std::abs(right));
-    }
-  }
-  return at_ends <= no_step * largest;
-}
 
 }  // namespace
-
-std::string SideBySide::obstacle(const Scene& scene, const SharedBeam& shared) {
-  if (!shared.modal) return "the bridge is taken by its elements, not by modes";
-  if (scene.vehicles.empty()) return "no vehicles run";
-  if (!scene.load.forces.empty()) return "forces move beside the vehicles";
-  if (scene.vehicle_model != VehicleModel::linear) return "vehicles are mechanisms, not linear";
-  if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
-  if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
-  if (scene.self_weight) return "the bridge's own weight bends it";
-  if (!integrate::own_method()) return "ts_type is one of PETSc's own";
-  if (!scene.time_step) return "the step is not known";
-  return level_ends(*shared.modal) ? "" : "wheels meet a step at the bridge's ends, which yield";
-}
 
 SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
     : scene_(scene),
@@ -60,9 +29,7 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
   if (!obstacle_.empty()) return;
   train_ = lanes::train_numbers(fleet_);
   q_.assign(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(shared.modal->modes()));
-  plan_.bridge = &*shared.modal;
-  plan_.kinks = system_.corners();
-  plan_.level_until = scene.profile.level() ? shared.beam->mesh().start() : -1e300;
+  plan_ = lanes_plan(scene, shared, system_);
 }
 
 /// Distances at which a wheel meets a corner of the surface or passes a probe.
@@ -81,7 +48,6 @@ std::vector<double> SideBySide::events(double past) const {
 void SideBySide::expect(double past) {
   tracks_.clear();
   track_past_ = past;
-  if (scene_.profile.level()) return;
   const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
   track_distance_ = lanes::track_distance(scene_.profile, fleet_.vehicles.front().wheels.front().radius, *rear,
                                           *front + track_past_);
@@ -89,7 +55,6 @@ void SideBySide::expect(double past) {
 
 /// All tracks of a spectrum have their stations where the scene's own has.
 SideBySide::Track SideBySide::track(const std::optional<std::uint64_t>& seed, double past) {
-  if (scene_.profile.level()) return std::make_shared<lanes::TrackNumbers>();
   const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
   const double radius = fleet_.vehicles.front().wheels.front().radius;
   if (past > track_past_) expect(past);
