@@ -162,8 +162,8 @@ void CrossingNumbers::add_track() {
   task_.heights = {static_cast<int>(track->values.size() / 2), shared, track->start, track->distance,
                    track->values.data()};
   for (const CrossingRun& run : runs_)
-    if (run.track == nullptr || run.track->values.size() != track->values.size() ||
-        run.track->start != track->start || run.track->distance != track->distance)
+    if (run.track == nullptr || run.track->values.size() != track->values.size() || run.track->start != track->start ||
+        run.track->distance != track->distance)
       throw std::logic_error("runs side by side over tracks with other stations");
   if (!shared)
     task_.heights.values =

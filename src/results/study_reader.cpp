@@ -98,8 +98,7 @@ StoredStudy read_study(const std::string& path) {
   const Reading file(path);
   if (!file.has("/study") || !file.has("/options")) return study;
   study.options = file.pairs("/options");
-  for (const std::string& name : file.datasets_of("/study"))
-    study.datasets[name] = file.numbers("/study/" + name);
+  for (const std::string& name : file.datasets_of("/study")) study.datasets[name] = file.numbers("/study/" + name);
   file.attributes_of("/study", study);
   return study;
 }

@@ -9,9 +9,9 @@
 namespace traverse::results {
 
 struct StoredStudy {
-  std::map<std::string, std::string> options;              // that it was asked for
-  std::map<std::string, std::vector<double>> datasets;     // of /study, without the folder: coordinates and results
-  std::map<std::string, std::string> texts;                // attributes of /study
+  std::map<std::string, std::string> options;           // that it was asked for
+  std::map<std::string, std::vector<double>> datasets;  // of /study, without the folder: coordinates and results
+  std::map<std::string, std::string> texts;             // attributes of /study
   std::map<std::string, double> numbers;
 };
 

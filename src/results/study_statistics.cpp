@@ -51,12 +51,12 @@ double quantile(const std::vector<double>& ascending, double p) {
 }
 
 StudyStatistics::StudyStatistics(const StudyTable& table) : table_(table) {
-  const app::Study& study = table.study();
+  const options::Study& study = table.study();
   if (study.over.empty()) return;
   const auto over = [&](std::size_t axis) {
     return std::find(study.over.begin(), study.over.end(), axis) != study.over.end();
   };
-  for (const app::StudyDimension& dimension : study.dimensions)
+  for (const options::StudyDimension& dimension : study.dimensions)
     if (!over(dimension.axis)) dimensions_.push_back(&dimension);
   std::map<std::vector<std::size_t>, std::size_t> known;  // places on the other axes
   for (std::size_t run = 0; run < study.runs(); ++run) {
@@ -71,7 +71,7 @@ StudyStatistics::StudyStatistics(const StudyTable& table) : table_(table) {
 
 StudyStatistics::Numbers StudyStatistics::of(std::size_t group, const StudyTable::Column& column,
                                              std::size_t probe) const {
-  const app::Study& study = table_.study();
+  const options::Study& study = table_.study();
   std::vector<double> samples;
   for (const std::size_t run : groups_[group])
     if (const double value = column.values[run * column.width + probe]; !std::isnan(value)) samples.push_back(value);
@@ -100,10 +100,10 @@ StudyStatistics::Numbers StudyStatistics::of(std::size_t group, const StudyTable
 std::vector<Recorder::Dataset> StudyStatistics::datasets() const {
   std::vector<Recorder::Dataset> sets;
   if (groups_.empty()) return sets;
-  const app::Study& study = table_.study();
+  const options::Study& study = table_.study();
   const std::string folder = "/study/statistics/";
   const std::size_t g = groups_.size(), k = study.quantiles.size();
-  for (const app::StudyDimension* dimension : dimensions_) {
+  for (const options::StudyDimension* dimension : dimensions_) {
     std::vector<double> values;
     for (const auto& runs : groups_) values.push_back(study.value(runs.front(), *dimension));
     sets.push_back({folder + dimension->name(), {g}, std::move(values), dimension->unit});
@@ -139,14 +139,13 @@ std::vector<Recorder::Dataset> StudyStatistics::datasets() const {
 
 void StudyStatistics::print() const {
   if (groups_.empty()) return;
-  const app::Study& study = table_.study();
+  const options::Study& study = table_.study();
   std::string over;
-  for (const app::StudyDimension& d : study.dimensions)
+  for (const options::StudyDimension& d : study.dimensions)
     if (std::find(study.over.begin(), study.over.end(), d.axis) != study.over.end())
       over += (over.empty() ? "" : ", ") + d.name();
   fmt::print("statistics over {}: mean, deviation{}; each at the probe where it is largest\n", over,
-             study.quantiles.empty() ? ""
-                                     : fmt::format(", quantiles [within, with {:g} %]", 100.0 * study.confidence));
+             study.quantiles.empty() ? "" : fmt::format(", quantiles [within, with {:g} %]", 100.0 * study.confidence));
   const struct {
     const char *label, *column, *unit;
     double scale;
@@ -157,9 +156,9 @@ void StudyStatistics::print() const {
               {"greatest wheel force", "greatest_wheel_force", "kN", 1e-3}};
   for (std::size_t group = 0; group < std::min(groups_.size(), most_printed); ++group) {
     std::string point;
-    for (const app::StudyDimension* d : dimensions_)
-      point += fmt::format("{}{} {:.6g}", point.empty() ? "" : ", ", d->name(),
-                           study.value(groups_[group].front(), *d));
+    for (const options::StudyDimension* d : dimensions_)
+      point +=
+          fmt::format("{}{} {:.6g}", point.empty() ? "" : ", ", d->name(), study.value(groups_[group].front(), *d));
     if (!point.empty()) fmt::print("  at {}\n", point);
     for (const auto& row : rows) {
       const StudyTable::Column* column = table_.find(row.column);
@@ -176,8 +175,7 @@ void StudyStatistics::print() const {
       fmt::print("\n");
     }
   }
-  if (groups_.size() > most_printed)
-    fmt::print("  and {} more in the results file\n", groups_.size() - most_printed);
+  if (groups_.size() > most_printed) fmt::print("  and {} more in the results file\n", groups_.size() - most_printed);
 }
 
 }  // namespace traverse::results

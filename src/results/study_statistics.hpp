@@ -8,10 +8,10 @@
 
 namespace traverse::results {
 
-/// Ranks of order statistics, from 1: with at least the given confidence the p-quantile of what the samples are drawn from
-/// lies between the lower-th and the upper-th smallest of n, whatever the distribution is (W. J. Conover, Practical
-/// nonparametric statistics, 3.2). Each side is missed with at most half of what is left of the confidence; lower 0 or
-/// upper n + 1: so few samples bound that side by nothing.
+/// Ranks of order statistics, from 1: with at least the given confidence the p-quantile of what the samples are drawn
+/// from lies between the lower-th and the upper-th smallest of n, whatever the distribution is (W. J. Conover,
+/// Practical nonparametric statistics, 3.2). Each side is missed with at most half of what is left of the confidence;
+/// lower 0 or upper n + 1: so few samples bound that side by nothing.
 struct RankInterval {
   std::size_t lower = 0, upper = 0;
 };
@@ -27,7 +27,7 @@ class StudyStatistics {
   /// Of one number (a column at a probe) over the finished runs of a group.
   struct Numbers {
     std::size_t samples = 0;
-    double mean = 0.0, deviation = 0.0;  // the latter of the samples, n - 1
+    double mean = 0.0, deviation = 0.0;       // the latter of the samples, n - 1
     std::vector<double> quantile, low, high;  // NaN where nothing bounds them
   };
   std::size_t groups() const { return groups_.size(); }
@@ -39,8 +39,8 @@ class StudyStatistics {
 
  private:
   const StudyTable& table_;
-  std::vector<const app::StudyDimension*> dimensions_;  // that tell groups apart
-  std::vector<std::vector<std::size_t>> groups_;        // runs
+  std::vector<const options::StudyDimension*> dimensions_;  // that tell groups apart
+  std::vector<std::vector<std::size_t>> groups_;            // runs
 };
 
 }  // namespace traverse::results

@@ -7,7 +7,7 @@
 
 namespace traverse::results {
 
-StudyTable::StudyTable(const app::Study& study, std::size_t probes, bool wheels)
+StudyTable::StudyTable(const options::Study& study, std::size_t probes, bool wheels)
     : study_(study), runs_(study.runs()), probes_(probes), finished_(runs_, 0.0) {
   for (const StudyColumn& column : study_columns) {
     if (column.of_wheels && !wheels) continue;
@@ -47,13 +47,13 @@ std::vector<Recorder::Dataset> StudyTable::results() const {
 
 std::vector<Recorder::Dataset> StudyTable::coordinates() const {
   std::vector<Recorder::Dataset> sets;
-  for (const app::StudyDimension& dimension : study_.dimensions) {
+  for (const options::StudyDimension& dimension : study_.dimensions) {
     std::vector<double> values(runs_);
     for (std::size_t run = 0; run < runs_; ++run) values[run] = study_.value(run, dimension);
     sets.push_back({"/study/" + dimension.name(), {runs_}, std::move(values), dimension.unit});
   }
   std::vector<double> shape;
-  for (const app::Study::Axis& axis : study_.axes) shape.push_back(static_cast<double>(axis.length));
+  for (const options::Study::Axis& axis : study_.axes) shape.push_back(static_cast<double>(axis.length));
   sets.push_back({"/study/shape", {shape.size()}, shape, "1"});
   return sets;
 }
@@ -74,9 +74,9 @@ bool find_extreme(const StudyTable& table, const std::string& name, bool largest
   return true;
 }
 
-std::string point_text(const app::Study& study, std::size_t run) {
+std::string point_text(const options::Study& study, std::size_t run) {
   std::string text;
-  for (const app::StudyDimension& d : study.dimensions)
+  for (const options::StudyDimension& d : study.dimensions)
     text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", d.name(), study.value(run, d));
   return text;
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "results/recorder.hpp"
-#include "traverse/scene/study.hpp"
+#include "traverse/options/study.hpp"
 
 namespace traverse::results {
 
@@ -38,9 +38,9 @@ class StudyTable {
  public:
   static constexpr double not_run = std::numeric_limits<double>::quiet_NaN();
 
-  StudyTable(const app::Study& study, std::size_t probes, bool wheels);
+  StudyTable(const options::Study& study, std::size_t probes, bool wheels);
 
-  const app::Study& study() const { return study_; }
+  const options::Study& study() const { return study_; }
   std::size_t runs() const { return runs_; }
   std::size_t probes() const { return probes_; }
   /// Numbers in a row: those of each column, per probe or one, in the columns' order.
@@ -64,7 +64,7 @@ class StudyTable {
   Recorder::Dataset finished() const;
 
  private:
-  const app::Study& study_;
+  const options::Study& study_;
   std::size_t runs_, probes_, width_ = 0;
   std::vector<Column> columns_;
   std::vector<double> finished_;
@@ -78,7 +78,7 @@ struct StudyPlace {
 bool find_extreme(const StudyTable& table, const std::string& column, bool largest, StudyPlace& place);
 
 /// "track_seed 5, train_speed 83.3".
-std::string point_text(const app::Study& study, std::size_t run);
+std::string point_text(const options::Study& study, std::size_t run);
 /// Peaks of all runs, each with its run.
 std::vector<Attribute> summary_of(const StudyTable& table);
 void print_study(const StudyTable& table);

@@ -35,9 +35,8 @@ std::optional<Varied> varied(const Options& o, const std::string& name) {
   const std::string rest = name.substr(prefix.size());
   if (o.find_known(rest) != nullptr) return Varied{rest, ""};
   for (const Row& row : options::vary_rows())
-    if (const std::size_t own = row.name.size() + 1;
-        rest.size() > own && rest.ends_with("_" + std::string(row.name)) &&
-        o.find_known(rest.substr(0, rest.size() - own)) != nullptr)
+    if (const std::size_t own = row.name.size() + 1; rest.size() > own && rest.ends_with("_" + std::string(row.name)) &&
+                                                     o.find_known(rest.substr(0, rest.size() - own)) != nullptr)
       return Varied{rest.substr(0, rest.size() - own), row.name};
   return {};
 }
@@ -148,8 +147,12 @@ class Reader {
   /// from, to and step or count.
   std::vector<double> block(double& count) const {
     for (const char* end : {"from", "to"})
-      if (!has(end)) o_.refuse(name(has("from") ? "from" : has("to") ? "to" : has("step") ? "step" : "count"),
-                               fmt::format("wanted: from, to, and step or count ({} is missing)", name(end)));
+      if (!has(end))
+        o_.refuse(name(has("from")   ? "from"
+                       : has("to")   ? "to"
+                       : has("step") ? "step"
+                                     : "count"),
+                  fmt::format("wanted: from, to, and step or count ({} is missing)", name(end)));
     const double from = number("from"), to = number("to");
     if (has("step") == has("count")) o_.refuse(name("from"), "wanted: from, to, and either step or count");
     if (has("step")) return range(name("step"), from, to, number("step"), count);
@@ -188,7 +191,8 @@ class Reader {
         value = a + b * stream.normal(i);
       else
         value = a * std::exp(wide * stream.normal(i) - 0.5 * wide * wide);
-      check(given, value, fmt::format("draw {}: ", i + 1), of == "normal" ? "; take lognormal, or a smaller deviation" : "");
+      check(given, value, fmt::format("draw {}: ", i + 1),
+            of == "normal" ? "; take lognormal, or a smaller deviation" : "");
       values.push_back(value);
     }
     return values;
@@ -280,9 +284,10 @@ class Axes {
  private:
   std::size_t draws(const std::string& dimension) const {
     if (draws_ == 0)
-      throw InputError(fmt::format("study_draws is missing: how many values of {} are drawn; wanted: a whole number "
-                                   "from 1 to {:g}",
-                                   dimension, most_runs));
+      throw InputError(
+          fmt::format("study_draws is missing: how many values of {} are drawn; wanted: a whole number "
+                      "from 1 to {:g}",
+                      dimension, most_runs));
     return draws_;
   }
   /// Puts a dimension on the axis that several share.
@@ -324,8 +329,8 @@ void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& stu
   for (const std::string& option : varied_options(o)) {
     const Reader reader(o, option);
     const std::string given = o.first_with_prefix(reader.name())->name;
-    StudyDimension dimension{{option}, std::string(reader.unit().empty() ? "1" : reader.unit()), reader.whole(), "list",
-                             {}, 0};
+    StudyDimension dimension{
+        {option}, std::string(reader.unit().empty() ? "1" : reader.unit()), reader.whole(), "list", {}, 0};
     if (reader.has("also"))
       for (const std::string& other : o.texts(reader.name("also"))) {
         if (o.find_known(other) == nullptr) o.refuse(reader.name("also"), "there is no option " + other);
@@ -350,10 +355,9 @@ void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& stu
     }
   }
   if (axes.runs() > most_runs)
-    throw InputError(fmt::format("study_vary: {:.4g} runs ({}); allowed: at most {:g}. They would take {} even at {}",
-                                 axes.runs(), axes.sizes(), most_runs,
-                                 results::duration_text(quickest_run * axes.runs()),
-                                 results::duration_text(quickest_run) + " each"));
+    throw InputError(fmt::format(
+        "study_vary: {:.4g} runs ({}); allowed: at most {:g}. They would take {} even at {}", axes.runs(), axes.sizes(),
+        most_runs, results::duration_text(quickest_run * axes.runs()), results::duration_text(quickest_run) + " each"));
 }
 
 void read_statistics(const Options& o, Study& study) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -31,14 +32,16 @@ struct CaseRun {
   std::optional<std::uint64_t> seed;  // of its track; none: the scene's own
 };
 
-/// The indices of runs that go together: neighbours in the order of class of speed, seed and speed, up to `most` of them.
+/// The indices of runs that go together: neighbours in the order of class of speed, seed and speed, up to `most` of
+/// them.
 std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& runs, std::size_t most);
 
 class CaseRunner {
  public:
   /// Builds structure and damping on this rank alone, and checks the runs at the slowest and the fastest speed. What
   /// was modelled goes into `notes`.
-  CaseRunner(const Scene& scene, std::vector<std::string>& notes);
+  /// beam: of a scene that differs in its vehicles alone; null: it builds its own.
+  CaseRunner(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam = nullptr);
 
   const std::vector<double>& speeds() const { return speeds_; }
   std::size_t trains() const { return loads_.size(); }
@@ -56,9 +59,18 @@ class CaseRunner {
   const std::string& why_no_lanes() const { return why_no_lanes_; }
   /// How many runs go together: one, or up to sweep_lanes.
   std::size_t width() const;
-  /// The runs of a group, at most `width` with speeds of one class.
-  std::vector<CaseResult> run_group(std::size_t train, std::span<const CaseRun> runs,
-                                    const std::function<void(double)>& reached = {});
+  /// A run, and what computes it.
+  struct Member {
+    CaseRunner* runner;
+    CaseRun run;
+  };
+  /// Runs of a group, at most `width` with speeds of one class, of runners that go beside the first.
+  static std::vector<CaseResult> run_together(std::size_t train, std::span<const Member> members,
+                                              const std::function<void(double)>& reached = {});
+  /// From now on its runs go beside those of another runner on the same bridge; false where they cannot.
+  bool join(const CaseRunner& other) { return lanes_ && other.lanes_ && lanes_->join(*other.lanes_); }
+  const std::shared_ptr<SharedBeam>& beam() const { return beam_; }
+  bool axial() const { return scene_.beam->axial; }
   long alone() const { return alone_; }  // runs that had to leave their group
 
  private:
@@ -67,6 +79,8 @@ class CaseRunner {
   CaseResult run_by_elements(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
   CaseResult run_with_mechanisms(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
   std::vector<CaseResult> run_by_modes(std::size_t train, std::span<const CaseRun> runs);
+  static std::vector<CaseResult> run_in_lanes(std::size_t train, std::span<const Member> members,
+                                              const std::function<void(double)>& reached);
   CaseResult result_of(const lanes::CrossingResult& crossing, std::size_t train) const;
   void set_up_lanes();
 
@@ -74,7 +88,7 @@ class CaseRunner {
   std::vector<double> speeds_;
   std::vector<MovingLoad> loads_;
   double last_wheel_ = 0.0;  // m: x at t = 0; 0 where all wheels stand on the bridge
-  SharedBeam shared_;
+  std::shared_ptr<SharedBeam> beam_;
   std::map<std::size_t, std::vector<double>> static_deflection_;  // of each train
   std::map<std::size_t, lanes::ForcePassages> passages_;          // of moving forces by modes
   std::optional<SideBySide> lanes_;

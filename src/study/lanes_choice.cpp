@@ -28,9 +28,9 @@ constexpr int fewest_modes = 4, most_modes = 128;
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
 bool open(const Scene& scene) {
-  return scene.sweep->lanes > 0 && std::max(scene.sweep->runs, scene.sweep->speeds.size()) >= fewest_runs && !scene.vehicles.empty() &&
-         !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full && scene.beam &&
-         options::in_force().find("ts_type") == nullptr;
+  return scene.sweep->lanes > 0 && std::max(scene.sweep->runs, scene.sweep->speeds.size()) >= fewest_runs &&
+         !scene.vehicles.empty() && !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full &&
+         scene.beam && options::in_force().find("ts_type") == nullptr;
 }
 
 /// Neighbouring speeds of one class around each of the given places among all.

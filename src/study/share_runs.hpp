@@ -34,8 +34,8 @@ struct RunFailure {
   bool failed() const { return piece != nobody; }
 };
 
-/// Collective. Each rank takes the next piece when it is free, until all are taken, one has failed or a signal has come.
-/// Returns the failure of this rank.
+/// Collective. Each rank takes the next piece when it is free, until all are taken, one has failed or a signal has
+/// come. Returns the failure of this rank.
 RunFailure share_runs(MPI_Comm comm, const SharedWork& work, bool quiet);
 
 /// Collective. The failure of the earliest piece, the same on every rank.

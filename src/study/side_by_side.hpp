@@ -43,9 +43,15 @@ class SideBySide {
   void expect(double past);
   /// At most lanes::widest runs with speeds of a class (lanes/speed_class.hpp).
   std::vector<lanes::CrossingResult> run(std::span<const LaneRun> runs, const Steps& steps);
-  /// The same over the scene's own track.
-  std::vector<lanes::CrossingResult> run(std::span<const double> speeds, std::span<const double> ends,
-                                         const Steps& steps);
+  /// The same of runs whose trains have numbers of their own; those of different trains have joined one and the same.
+  struct Member {
+    SideBySide* lanes;
+    LaneRun run;
+  };
+  static std::vector<lanes::CrossingResult> run(std::span<const Member> members, const Steps& steps);
+  /// From now on its runs may go beside those of another scene on the same bridge: what all lanes have in common it
+  /// takes from there. False where the trains differ in more than numbers.
+  bool join(const SideBySide& other);
   /// How far the mechanisms were out of balance in a run: lanes::defect.
   double defect(const lanes::CrossingResult& result) { return lanes::defect(fleet_, result.bent); }
   /// The largest deflection at rest of each probe while the train passes, m.

@@ -46,19 +46,18 @@ void announce(const StudyScenes& scenes, const CaseRunner& first, const results:
   for (const StudyDimension& d : scenes.study().dimensions) notes.push_back(words_of(d));
   if (known > 0) notes.push_back(fmt::format("{} of them are known from the results file that was there", known));
   if (first.has_lanes())
-    notes.push_back(fmt::format("up to {} runs that differ in speed and track alone go side by side, in the lanes of {} "
-                                "vectors",
-                                first.width(), lanes::instructions()));
+    notes.push_back(fmt::format(
+        "up to {} runs that differ in {} alone go side by side, in the lanes of {} vectors", first.width(),
+        scenes.mixes(first.width()) ? "speed, track and vehicles' numbers" : "speed and track", lanes::instructions()));
   else if (!first.why_no_lanes().empty())
     notes.push_back("runs go one by one: " + first.why_no_lanes());
   double motion = 0.0;
   for (const StudyRun& run : scenes.runs()) motion += first.duration(0, run.own.speed);
   const double part = static_cast<double>(runs - known) / static_cast<double>(runs);
   const bool told = model.modes > 0 || model.time_step > 0.0;
-  notes.push_back(fmt::format("the study is {}{}", results::method_of(model),
-                              told ? ", which will take about " +
-                                         results::duration_text(part * first.cost() * motion / ranks)
-                                   : ""));
+  notes.push_back(fmt::format(
+      "the study is {}{}", results::method_of(model),
+      told ? ", which will take about " + results::duration_text(part * first.cost() * motion / ranks) : ""));
   if (ranks > 1)
     notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
 }
@@ -79,8 +78,8 @@ std::vector<double> row_of(std::size_t run, const CaseResult& result, const std:
   add([&](std::size_t p) { return or_unknown(result.static_deflection[p]); });
   add([&](std::size_t p) { return result.peaks[p].deflection.value / or_unknown(result.static_deflection[p]); });
   if (wheels)
-    row.insert(row.end(), {result.least_wheel_force, result.greatest_wheel_force, result.contact_losses,
-                           result.longest_loss});
+    row.insert(row.end(),
+               {result.least_wheel_force, result.greatest_wheel_force, result.contact_losses, result.longest_loss});
   return row;
 }
 
@@ -90,11 +89,32 @@ std::string name_of(const Study& study, const std::vector<std::size_t>& group) {
                      results::point_text(study, group.back()));
 }
 
+/// The runs of a group: side by side as far as they can be, the others by themselves.
+void run_pieces(StudyScenes& scenes, const std::vector<std::size_t>& group, const std::function<void(double)>& reached,
+                const std::function<void(std::size_t, const CaseResult&, const CaseRunner&)>& ended) {
+  std::vector<StudyScenes::Runner> runners;  // which stay as long as their runs
+  for (const std::size_t run : group) runners.push_back(scenes.runner(scenes.runs()[run].base));
+  std::vector<char> done(group.size(), 0);
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (done[i] != 0) continue;
+    std::vector<CaseRunner::Member> members;
+    std::vector<std::size_t> places;
+    for (std::size_t j = i; j < group.size(); ++j) {
+      if (done[j] != 0 || !scenes.beside(runners[j], runners[i])) continue;
+      members.push_back({runners[j].runs.get(), scenes.runs()[group[j]].own});
+      places.push_back(j);
+      done[j] = 1;
+    }
+    const std::vector<CaseResult> results = CaseRunner::run_together(0, members, reached);
+    for (std::size_t j = 0; j < results.size(); ++j) ended(group[places[j]], results[j], *runners[places[j]].runs);
+  }
+}
+
 /// Computes groups of runs and hands their numbers in.
 SharedWork study_work(StudyScenes& scenes, const std::vector<std::vector<std::size_t>>& groups, bool wheels,
                       Returns& returns) {
   SharedWork work;
-  const CaseRunner& first = scenes.runner(0);
+  const CaseRunner& first = *scenes.runner(0).runs;
   for (const std::vector<std::size_t>& group : groups) {
     double duration = 0.0;
     for (const std::size_t run : group) duration += first.duration(0, scenes.runs()[run].own.speed);
@@ -102,15 +122,15 @@ SharedWork study_work(StudyScenes& scenes, const std::vector<std::vector<std::si
   }
   work.take = [&, wheels](std::size_t piece, const std::function<void(double)>& reached) {
     const std::vector<std::size_t>& group = groups[piece];
-    CaseRunner& runner = scenes.runner(scenes.runs()[group.front()].base);
-    std::vector<CaseRun> own;
-    for (const std::size_t run : group) own.push_back(scenes.runs()[run].own);
-    const std::vector<CaseResult> results = runner.run_group(0, own, [&](double t) {
-      reached(t);
-      returns.collect();
-    });
-    for (std::size_t i = 0; i < results.size(); ++i)
-      if (results[i].ended) returns.send(row_of(group[i], results[i], runner.probes(), wheels));
+    run_pieces(
+        scenes, group,
+        [&](double t) {
+          reached(t);
+          returns.collect();
+        },
+        [&](std::size_t run, const CaseResult& result, const CaseRunner& runner) {
+          if (result.ended) returns.send(row_of(run, result, runner.probes(), wheels));
+        });
     returns.collect();
   };
   work.name = [&](std::size_t piece) { return name_of(scenes.study(), groups[piece]); };
@@ -143,7 +163,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   std::vector<std::string> notes;
   SweepChoice choice = choose_for_study(scenes, notes);
   scenes.choose(choice.scene);
-  const CaseRunner& first = scenes.runner(0, &notes);
+  const CaseRunner& first = *scenes.runner(0, &notes).runs;
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
   const std::vector<char> known = runs_known(comm, given, choice.model, table);

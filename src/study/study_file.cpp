@@ -168,8 +168,7 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
   std::string dimensions, axes;
   for (const StudyDimension& d : table.study().dimensions) {
     dimensions += (dimensions.empty() ? "" : ",") + d.name();
-    recorder_.attributes("/study/" + d.name(),
-                         {{"axis", static_cast<long>(d.axis)}, {"law", d.law}});
+    recorder_.attributes("/study/" + d.name(), {{"axis", static_cast<long>(d.axis)}, {"law", d.law}});
   }
   for (const Study::Axis& axis : table.study().axes) axes += (axes.empty() ? "" : ",") + axis.name;
   recorder_.attributes("/study", {{"dimensions", dimensions}, {"axes", axes}});
@@ -200,8 +199,7 @@ void StudyFile::finish(const StudyCourse& course) {
   write();
   const results::StudyStatistics statistics(table_);
   recorder_.datasets(statistics.datasets());
-  if (statistics.groups() > 0)
-    recorder_.attributes("/study/statistics", {{"confidence", table_.study().confidence}});
+  if (statistics.groups() > 0) recorder_.attributes("/study/statistics", {{"confidence", table_.study().confidence}});
   std::vector<results::Attribute> summary = results::summary_of(table_);
   for (const auto& [quantity, error] : model_.expected_errors) summary.push_back({"expected_error_" + quantity, error});
   summary.push_back({"runs", static_cast<long>(table_.finished_runs())});

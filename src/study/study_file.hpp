@@ -13,9 +13,9 @@
 
 namespace traverse::app {
 
-/// Collective. With study_resume: puts the finished runs of the results file at the scene's place into the table of rank
-/// 0; returns for every run, on every rank, whether it was there. InputError where the file is of another scene, or was
-/// computed by another model.
+/// Collective. With study_resume: puts the finished runs of the results file at the scene's place into the table of
+/// rank 0; returns for every run, on every rank, whether it was there. InputError where the file is of another scene,
+/// or was computed by another model.
 std::vector<char> runs_known(MPI_Comm comm, const Scene& scene, const results::Sweep::Model& model,
                              results::StudyTable& table);
 
@@ -31,7 +31,8 @@ class StudyFile {
   /// Collective. Begins the file, with the coordinates of all runs and what is known of them.
   StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::Sweep::Model& model,
             const results::StudyTable& table);
-  /// Writes what is new in the table, the first run at once, later ones every few seconds. On rank 0, which leaves with all others where the disk is full.
+  /// Writes what is new in the table, the first run at once, later ones every few seconds. On rank 0, which leaves with
+  /// all others where the disk is full.
   void update();
   /// Writes all, with summary and statistics. FileError.
   void finish(const StudyCourse& course);

@@ -13,13 +13,17 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t most_runners = 8, some_seeds = 8;
+constexpr std::size_t most_runners = 12, some_seeds = 8;
 
 bool names(const StudyDimension& dimension, const char* option) {
   return std::find(dimension.options.begin(), dimension.options.end(), option) != dimension.options.end();
 }
 bool is_speed(const StudyDimension& d) { return names(d, "train_speed") || names(d, "load_speed"); }
 bool is_seed(const StudyDimension& d) { return names(d, "track_seed"); }
+bool is_of_vehicles(const StudyDimension& d) {
+  return std::all_of(d.options.begin(), d.options.end(),
+                     [](const std::string& option) { return option.starts_with("vehicle_"); });
+}
 
 /// Train and forces that run together have one speed.
 void check_speeds(const Scene& scene) {
@@ -29,8 +33,9 @@ void check_speeds(const Scene& scene) {
       throw InputError(fmt::format("study_vary_{}: the train and the forces beside it run at one speed; add also: {}",
                                    d.name(), names(d, "train_speed") ? "load_speed" : "train_speed"));
   if (scene.train.speed != scene.load.speed)
-    throw InputError("study_vary: train_speed and load_speed differ; in a study the train and the forces beside it run "
-                     "at one speed");
+    throw InputError(
+        "study_vary: train_speed and load_speed differ; in a study the train and the forces beside it run "
+        "at one speed");
 }
 
 }  // namespace
@@ -39,11 +44,11 @@ StudyScenes::StudyScenes(const Scene& scene) : scene_(scene), chosen_(scene) {
   check_speeds(scene);
   const Study& study = *scene.study;
   const double speed = scene.vehicles.empty() ? scene.load.speed : scene.train.speed;
-  std::map<std::vector<double>, std::size_t> known;  // bases by what tells them apart
+  std::map<std::vector<double>, std::size_t> known, bridges;  // bases and bridges by what tells them apart
   std::set<double> speeds;
   for (std::size_t run = 0; run < study.runs(); ++run) {
-    StudyRun one{0, {speed, {}}};
-    std::vector<double> rest;
+    StudyRun one{0, 0, {speed, {}}};
+    std::vector<double> rest, of_bridge;
     for (const StudyDimension& d : study.dimensions) {
       const double value = study.value(run, d);
       if (is_speed(d))
@@ -52,12 +57,16 @@ StudyScenes::StudyScenes(const Scene& scene) : scene_(scene), chosen_(scene) {
         one.own.seed = static_cast<std::uint64_t>(value);
       else
         rest.push_back(value);
+      if (!is_speed(d) && !is_seed(d) && !is_of_vehicles(d)) of_bridge.push_back(value);
     }
     if (!(one.own.speed > 0.0))
       throw InputError(fmt::format("study_vary: run {} has the speed {:g} m/s; allowed: above 0", run, one.own.speed));
     const auto [base, is_new] = known.try_emplace(rest, first_run_.size());
     if (is_new) first_run_.push_back(run);
     one.base = base->second;
+    const auto [bridge, new_bridge] = bridges.try_emplace(of_bridge, first_of_bridge_.size());
+    if (new_bridge) first_of_bridge_.push_back(one.base);
+    one.bridge = bridge->second;
     runs_.push_back(one);
     if (one.own.seed && seeds_.size() < some_seeds &&
         std::find(seeds_.begin(), seeds_.end(), *one.own.seed) == seeds_.end())
@@ -97,10 +106,18 @@ std::vector<std::size_t> StudyScenes::extreme_bases() const {
   return {found.begin(), found.end()};
 }
 
-CaseRunner& StudyScenes::runner(std::size_t base_of_run, std::vector<std::string>* notes) {
-  for (auto& [known, runner] : runners_)
-    if (known == base_of_run) return *runner;
-  Scene scene = base(base_of_run);
+bool StudyScenes::beside(const Runner& a, const Runner& b) const {
+  const auto bridge = [&](const Runner& one) { return runs_[first_run_[one.base]].bridge; };
+  return a.base == b.base || (a.joined && b.joined && bridge(a) == bridge(b));
+}
+
+StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::string>* notes) {
+  for (const Runner& known : runners_)
+    if (known.base == wanted) return known;
+  // Every base of a bridge stands on the first one's, and goes beside it.
+  const std::size_t first = first_of_bridge_[runs_[first_run_[wanted]].bridge];
+  const std::shared_ptr<CaseRunner> model = wanted == first ? nullptr : runner(first).runs;
+  Scene scene = base(wanted);
   if (scene.mesh_open) set_mesh(scene, mesh_of(chosen_));
   if (!scene.time_step) scene.time_step = chosen_.time_step;
   if (scene.modes_open) scene.model_modes = chosen_.model_modes;
@@ -110,27 +127,39 @@ CaseRunner& StudyScenes::runner(std::size_t base_of_run, std::vector<std::string
   scene.vehicle_model = chosen_.vehicle_model;
   scene.most_defect = chosen_.most_defect;
   if (runners_.size() == most_runners) {
-    alone_ += runners_.front().second->alone();
-    runners_.pop_front();
+    const auto oldest = std::find_if(runners_.begin(), runners_.end(), [&](const Runner& one) {
+      return one.base != 0 && one.base != first;  // the first of all tells what runs take
+    });
+    alone_ += oldest->runs->alone();
+    runners_.erase(oldest);
   }
   std::vector<std::string> ignored;
-  auto made = std::make_unique<CaseRunner>(scene, notes != nullptr ? *notes : ignored);
-  return *runners_.emplace_back(base_of_run, std::move(made)).second;
+  const bool same_beam = model != nullptr && scene.beam->axial == model->axial();
+  auto made =
+      std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored, same_beam ? model->beam() : nullptr);
+  const bool joined = model == nullptr || (same_beam && made->join(*model));
+  return runners_.emplace_back(Runner{wanted, joined, std::move(made)});
 }
 
 long StudyScenes::alone() const {
   long sum = alone_;
-  for (const auto& one : runners_) sum += one.second->alone();
+  for (const Runner& one : runners_) sum += one.runs->alone();
   return sum;
+}
+
+bool StudyScenes::mixes(std::size_t width) const {
+  return width > 1 && bases() > first_of_bridge_.size() && runs_.size() < width * bases();
 }
 
 std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width) const {
   // So many tracks go together, so that each is made once and those in use fit into memory.
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> blocks;  // by base and block of seeds
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> blocks;  // by scene and block of seeds
   std::map<std::uint64_t, std::size_t> seeds;
+  const bool mixed = mixes(width);
   for (std::size_t i = 0; i < runs_.size(); ++i) {
-    const std::size_t seed = runs_[i].own.seed ? seeds.try_emplace(*runs_[i].own.seed, seeds.size()).first->second : 0;
-    blocks[{runs_[i].base, seed / width}].push_back(i);
+    const StudyRun& run = runs_[i];
+    const std::size_t seed = run.own.seed ? seeds.try_emplace(*run.own.seed, seeds.size()).first->second : 0;
+    blocks[{mixed ? run.bridge : run.base, seed / width}].push_back(i);
   }
   std::vector<std::vector<std::size_t>> groups;
   for (const auto& block : blocks) {

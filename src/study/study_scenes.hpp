@@ -4,7 +4,6 @@
 #include <deque>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "study/case_runner.hpp"
@@ -14,8 +13,9 @@ namespace traverse::app {
 
 /// A run of a study.
 struct StudyRun {
-  std::size_t base = 0;  // the scene that it is a run of
-  CaseRun own;           // its speed and the seed of its track
+  std::size_t base = 0;    // the scene that it is a run of
+  std::size_t bridge = 0;  // scenes with the same one differ in their vehicles' numbers alone
+  CaseRun own;             // its speed and the seed of its track
 };
 
 /// Runs that differ in speed and in the track's seed alone are runs of one scene, a base; bases differ in all else.
@@ -34,22 +34,34 @@ class StudyScenes {
 
   /// What was chosen for the study: mesh, step, modes and so on, as far as a base leaves them open.
   void choose(const Scene& chosen) { chosen_ = chosen; }
-  /// Ready to compute the runs of a base; the bases used last are kept.
-  CaseRunner& runner(std::size_t base, std::vector<std::string>* notes = nullptr);
+  /// Ready to compute the runs of a base.
+  struct Runner {
+    std::size_t base = 0;
+    bool joined = false;  // its runs go beside those of all other joined ones on its bridge
+    std::shared_ptr<CaseRunner> runs;
+  };
+  /// The bases used last are kept.
+  Runner runner(std::size_t base, std::vector<std::string>* notes = nullptr);
+  /// Whether runs of two bases go side by side.
+  bool beside(const Runner& a, const Runner& b) const;
 
-  /// Indices of runs that go together, those of a base one after another.
+  /// Whether runs of vehicles with different numbers go beside each other.
+  bool mixes(std::size_t width) const;
+  /// Indices of runs that go together, those of a bridge one after another.
   std::vector<std::vector<std::size_t>> groups(std::size_t width) const;
   long alone() const;  // runs that had to leave their group, on this rank
 
  private:
   const Scene& scene_;
   Scene chosen_;
-  std::vector<double> speeds_;          // of all runs, ascending
-  std::vector<std::uint64_t> seeds_;    // of some tracks
+  std::vector<double> speeds_;        // of all runs, ascending
+  std::vector<std::uint64_t> seeds_;  // of some tracks
   std::vector<StudyRun> runs_;
   std::vector<std::size_t> first_run_;  // of each base
-  std::deque<std::pair<std::size_t, std::unique_ptr<CaseRunner>>> runners_;
-  long alone_ = 0;  // of runners that are gone
+  /// The first base, which all are compared with, then those used last.
+  std::deque<Runner> runners_;
+  std::vector<std::size_t> first_of_bridge_;  // the first base of each bridge
+  long alone_ = 0;                            // of runners that are gone
 };
 
 }  // namespace traverse::app

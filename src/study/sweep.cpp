@@ -129,9 +129,9 @@ SharedWork work_of(const std::vector<Case>& cases, CaseRunner& runner, results::
   for (const Case& c : cases) work.pieces.push_back({c.speeds.size(), duration_of(c, runner)});
   work.take = [&](std::size_t piece, const std::function<void(double)>& reached) {
     const Case& c = cases[piece];
-    std::vector<CaseRun> runs;
-    for (const std::size_t i : c.speeds) runs.push_back({sweep.speed[i], {}});
-    const std::vector<CaseResult> results = runner.run_group(c.train, runs, reached);
+    std::vector<CaseRunner::Member> runs;
+    for (const std::size_t i : c.speeds) runs.push_back({&runner, {sweep.speed[i], {}}});
+    const std::vector<CaseResult> results = CaseRunner::run_together(c.train, runs, reached);
     for (std::size_t i = 0; i < results.size(); ++i) {
       if (!results[i].ended) continue;
       store(results[i], c.train, c.speeds[i], sweep);
@@ -208,9 +208,9 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
 
   const results::SweepCourse whole = {done[0], static_cast<long>(runner.speeds().size() * runner.trains()),
                                       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
-                                      failure.failed()  ? failure.message
-                                      : done[1] != 0        ? fmt::format("ended by signal {}", done[1])
-                                                            : "reached its end"};
+                                      failure.failed() ? failure.message
+                                      : done[1] != 0   ? fmt::format("ended by signal {}", done[1])
+                                                       : "reached its end"};
   try {
     results::record(sweep, recorder);
     recorder.finish_with(results::summary_of(sweep, whole), {"runs", "wall_seconds"});

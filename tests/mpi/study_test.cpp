@@ -16,8 +16,8 @@ void expect_same_study(const std::string& yaml, const Values& options, const std
   }
 }
 
-const std::vector<std::string> names = {"finished", "peak_deflection", "peak_acceleration", "peak_moment",
-                                        "peak_moment_time", "statistics/peak_deflection_mean"};
+const std::vector<std::string> names = {"finished",    "peak_deflection",  "peak_acceleration",
+                                        "peak_moment", "peak_moment_time", "statistics/peak_deflection_mean"};
 
 TEST(Ranks, StudyByElements) {
   expect_same_study(

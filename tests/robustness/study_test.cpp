@@ -58,7 +58,8 @@ TEST(StudyInput, IsRefusedInOneLine) {
       {"beam_mass: {from: 1, to: 2}", {"study_vary_beam_mass_from", "either step or count"}},
       {"load_speed: 0:10", {"study_vary_load_speed", "0 m/s", "above 0"}},
       {"load_speed: {from: 10, to: 60, count: 100000}, beam_mass: {from: 1, to: 2, count: 10000}",
-       {"1e+09 runs (100000 of load_speed times 10000 of beam_mass)", "allowed: at most 1e+06", "They would take 1388 h"}},
+       {"1e+09 runs (100000 of load_speed times 10000 of beam_mass)", "allowed: at most 1e+06",
+        "They would take 1388 h"}},
   };
   for (const auto& one : cases) {
     SCOPED_TRACE(one.vary);

@@ -1,11 +1,12 @@
 // Random streams, quantiles and their intervals.
+#include "results/study_statistics.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/random_stream.hpp"
-#include "results/study_statistics.hpp"
 
 namespace traverse::results {
 namespace {

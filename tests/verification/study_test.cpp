@@ -52,8 +52,7 @@ TEST(Study, RunsOfAGridAreThoseOfTheScenesAlone) {
         EXPECT_EQ(study("/study/foundation_vertical_k")[run], std::stod(k));
         EXPECT_NEAR(study("/study/load_speed")[run], std::stod(speed), 1e-12);
         EXPECT_EQ(study("/study/beam_EI")[run], std::stod(EI));
-        const Results alone =
-            run_yaml(scene, {{"foundation_vertical_k", k}, {"load_speed", speed}, {"beam_EI", EI}});
+        const Results alone = run_yaml(scene, {{"foundation_vertical_k", k}, {"load_speed", speed}, {"beam_EI", EI}});
         expect_run(study, run++, alone, 1e-9);
       }
 }
@@ -90,31 +89,34 @@ TEST(Study, OfAVehiclesFileAndOfWhatTakesTheSameValue) {
     }
 }
 
-const Values by_modes = {{"model_modes", "8"},   {"model_vehicles", "linear"},     {"ts_dt", "8e-4"},
-                         {"step_probes", "true"}, {"track_profile", "german_low"}};
+const Values by_modes = {{"model_modes", "8"},
+                         {"model_vehicles", "linear"},
+                         {"ts_dt", "8e-4"},
+                         {"step_probes", "true"},
+                         {"track_profile", "german_low"}};
 
 // Eight tracks in eight lanes, at two speeds of one class and one of another.
 TEST(Study, TracksInLanesAreThoseOfRunsAlone) {
-  Results study = run_yaml(coach, by_modes + Values{{"study_vary_track_seed", "1:10"},
-                                                    {"study_vary_train_speed", "60,76,80"}});
+  Results study =
+      run_yaml(coach, by_modes + Values{{"study_vary_track_seed", "1:10"}, {"study_vary_train_speed", "60,76,80"}});
   EXPECT_EQ(study("/study/shape"), (std::vector<double>{10, 3}));
   double worst = 0.0;
   for (const std::size_t seed : {1u, 4u, 10u}) {
-    Results single = run_yaml(coach, by_modes + Values{{"track_seed", std::to_string(seed)},
-                                                       {"sweep_speed", "76,80,4"}});
+    Results single =
+        run_yaml(coach, by_modes + Values{{"track_seed", std::to_string(seed)}, {"sweep_speed", "76,80,4"}});
     for (std::size_t i = 0; i < 2; ++i) {
       const std::size_t run = 3 * (seed - 1) + 1 + i;
       for (const char* name : {"peak_deflection", "peak_acceleration", "peak_moment"}) {
         const std::vector<double>&all = study(std::string("/study/") + name),
-                           &alone = single(std::string("/sweep/") + name);
+              &alone = single(std::string("/sweep/") + name);
         const std::size_t probes = alone.size() / 2;
         for (std::size_t p = 0; p < probes; ++p)
           worst = std::max(worst, std::abs(all[run * probes + p] / alone[i * probes + p] - 1.0));
       }
       for (const char* name : {"least_wheel_force", "greatest_wheel_force"})
-        worst = std::max(worst, std::abs(study(std::string("/study/") + name)[run] /
-                                             single(std::string("/sweep/") + name)[i] -
-                                         1.0));
+        worst = std::max(
+            worst,
+            std::abs(study(std::string("/study/") + name)[run] / single(std::string("/sweep/") + name)[i] - 1.0));
     }
   }
   record("runs side by side and alone", worst);
@@ -123,13 +125,40 @@ TEST(Study, TracksInLanesAreThoseOfRunsAlone) {
   EXPECT_GT(std::abs(forces_of_seeds[1] / forces_of_seeds[4] - 1.0), 1e-4) << "tracks differ";
 }
 
+// Eight trains whose vehicles differ in a number in eight lanes.
+TEST(Study, TrainsInLanesAreThoseOfRunsAlone) {
+  const Values draws = {{"study_vary_vehicle_coach_car_mass_normal", "47800,3000"},
+                        {"study_vary_vehicle_coach_wheelset_1_mass_uniform", "1500,2000"},
+                        {"study_draws", "5"}};
+  testing::internal::CaptureStdout();
+  Results study = run_yaml(coach, by_modes + draws);
+  const std::string said = testing::internal::GetCapturedStdout();
+  EXPECT_NE(said.find("runs that differ in speed, track and vehicles' numbers alone go side by side"), said.npos)
+      << said;
+  double worst = 0.0;
+  for (const std::size_t run : {0u, 2u, 4u}) {
+    Results alone = run_yaml(
+        coach,
+        by_modes + Values{{"vehicle_coach_car_mass", text(study("/study/vehicle_coach_car_mass")[run])},
+                          {"vehicle_coach_wheelset_1_mass", text(study("/study/vehicle_coach_wheelset_1_mass")[run])},
+                          {"study_vary_track_seed", "1"}});
+    for (const char* name : {"peak_deflection", "peak_acceleration", "peak_moment", "least_wheel_force"}) {
+      const std::vector<double>&all = study(std::string("/study/") + name), &one = alone(std::string("/study/") + name);
+      for (std::size_t p = 0; p < one.size(); ++p)
+        worst = std::max(worst, std::abs(all[run * one.size() + p] / one[p] - 1.0));
+    }
+  }
+  record("trains side by side and alone", worst);
+  EXPECT_LT(worst, 1e-9);
+}
+
 // Each by itself, driven by TS: steps lie elsewhere, so that what is left falls with their length.
 TEST(Study, TracksInLanesAgainstEachByItself) {
   double errors[2] = {};
   for (const int finer : {0, 1}) {
     const Values study = by_modes + Values{{"study_vary_track_seed", "3,7"}, {"ts_dt", finer == 1 ? "2e-4" : "8e-4"}};
-    Results beside = run_yaml(coach, study), alone = run_yaml(coach, study + Values{{"sweep_lanes", "0"},
-                                                                                    {"ts_dt", "2e-4"}});
+    Results beside = run_yaml(coach, study),
+            alone = run_yaml(coach, study + Values{{"sweep_lanes", "0"}, {"ts_dt", "2e-4"}});
     for (const char* name : {"peak_deflection", "peak_acceleration", "greatest_wheel_force"})
       errors[finer] = std::max(errors[finer], relative_difference(beside(std::string("/study/") + name),
                                                                   alone(std::string("/study/") + name)));
@@ -165,10 +194,9 @@ TEST(Study, DrawsKeepToTheirStreams) {
 // EN 1991-2: a study takes up what sweep_hslm_a and sweep_speed ask for.
 TEST(Study, TakesUpASweep) {
   Results sweep = run_yaml(bridge, {{"model_modes", "4"}, {"sweep_speed", "30,60,10"}, {"sweep_hslm_a", "2,7"}});
-  Results study = run_yaml(bridge, {{"model_modes", "4"},
-                                    {"sweep_speed", "30,60,10"},
-                                    {"sweep_hslm_a", "2,7"},
-                                    {"study_vary_beam_mass", "1e4"}});
+  Results study = run_yaml(
+      bridge,
+      {{"model_modes", "4"}, {"sweep_speed", "30,60,10"}, {"sweep_hslm_a", "2,7"}, {"study_vary_beam_mass", "1e4"}});
   EXPECT_EQ(study("/study/shape"), (std::vector<double>{2, 4, 1}));
   EXPECT_LT(relative_difference(study("/study/peak_deflection"), sweep("/sweep/peak_deflection")), 1e-12);
   EXPECT_LT(relative_difference(study("/study/peak_acceleration"), sweep("/sweep/peak_acceleration")), 1e-12);

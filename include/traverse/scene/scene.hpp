@@ -12,7 +12,7 @@
 #include "traverse/beam/model.hpp"
 #include "traverse/options/analyses.hpp"
 #include "traverse/options/options.hpp"
-#include "traverse/scene/study.hpp"
+#include "traverse/options/study.hpp"
 #include "traverse/track/profile.hpp"
 #include "traverse/train/vehicle.hpp"
 
@@ -21,6 +21,8 @@ namespace traverse::app {
 enum class Start { equilibrium, given };
 
 using options::Analysis;
+using options::Study;
+using options::StudyDimension;
 using train::Coupler;
 using train::Drive;
 using train::MovingLoad;
@@ -53,13 +55,13 @@ struct Roughness {
 
 /// Runs of one scene at many speeds, with many trains of forces, or both.
 struct Sweep {
-  std::vector<double> speeds;     // m/s; empty: that of the scene
-  std::vector<int> trains;        // HSLM-A, 1 to 10; empty: what the scene holds
-  std::vector<MovingLoad> loads;  // of each of these trains, at the scene's speed
-  std::size_t lanes = 8;          // runs side by side; 0: each by itself
-  std::string method;             // ts_type of those; empty: as TS takes it
-  double instants = 20.0;         // looked at in a period of the fastest mode, where modes move exactly in time
-  std::size_t runs = 0;           // of the study that these are a part of; 0: there are no others
+  std::vector<double> speeds;        // m/s; empty: that of the scene
+  std::vector<int> trains;           // HSLM-A, 1 to 10; empty: what the scene holds
+  std::vector<MovingLoad> loads;     // of each of these trains, at the scene's speed
+  std::size_t lanes = 8;             // runs side by side; 0: each by itself
+  std::string method;                // ts_type of those; empty: as TS takes it
+  double instants = 20.0;            // looked at in a period of the fastest mode, where modes move exactly in time
+  std::size_t runs = 0;              // of the study that these are a part of; 0: there are no others
   std::vector<std::uint64_t> seeds;  // of some tracks of the study, which differ in them; empty: the scene's own alone
 };
 
@@ -125,6 +127,8 @@ double shortest_wave(const Scene& scene);
 Scene read_scene(options::Options options);
 /// The scene of the options in force, which are those that put_into_petsc saw last.
 Scene read_scene();
+/// The options that a study varies with their values in one run, as a user would write them.
+std::vector<std::pair<std::string, std::string>> values_of_run(const Study& study, std::size_t run);
 /// The scene of a study with other values (as a user would write them) of some of its options; a sweep of itself alone.
 Scene read_scene_of_study(options::Options options, const std::vector<std::pair<std::string, std::string>>& values);
 

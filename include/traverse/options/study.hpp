@@ -1,4 +1,4 @@
-// A study: one scene with some of its numbers varied, in one dimension or in several.
+// A study: a scene with some of its options varied, in one dimension or in several.
 #pragma once
 
 #include <cstddef>
@@ -6,15 +6,15 @@
 #include <utility>
 #include <vector>
 
-namespace traverse::app {
+namespace traverse::options {
 
 /// A number that is varied.
 struct StudyDimension {
   std::vector<std::string> options;  // that take its values, the first one names the dimension
   std::string unit;
-  bool whole = false;           // whole numbers only
-  std::string law;              // "list", "uniform", "normal" or "lognormal", as drawn
-  std::vector<double> values;   // along its axis
+  bool whole = false;          // whole numbers only
+  std::string law;             // "list", "uniform", "normal" or "lognormal", as drawn
+  std::vector<double> values;  // along its axis
   std::size_t axis = 0;
 
   const std::string& name() const { return options.front(); }
@@ -28,10 +28,10 @@ struct Study {
   };
   std::vector<StudyDimension> dimensions;
   std::vector<Axis> axes;
-  std::vector<std::size_t> over;   // axes that statistics go over; empty: none
-  std::vector<double> quantiles;   // of the statistics
-  double confidence = 0.95;        // of their intervals
-  bool resume = false;             // the results file holds runs of it that need not be run again
+  std::vector<std::size_t> over;  // axes that statistics go over; empty: none
+  std::vector<double> quantiles;  // of the statistics
+  double confidence = 0.95;       // of their intervals
+  bool resume = false;            // the results file holds runs of it that need not be run again
 
   std::size_t runs() const {
     std::size_t product = 1;
@@ -48,7 +48,4 @@ struct Study {
   }
 };
 
-/// The options of a run and their values, as a user would write them.
-std::vector<std::pair<std::string, std::string>> values_of_run(const Study& study, std::size_t run);
-
-}  // namespace traverse::app
+}  // namespace traverse::options
