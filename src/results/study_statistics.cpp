@@ -19,10 +19,12 @@ double binomial(std::size_t n, std::size_t k, double p) {
                   (N - K) * std::log1p(-p));
 }
 
+/// "12.3", and "?" for what is not known.
+std::string number_text(double value) { return std::isnan(value) ? "?" : fmt::format("{:.4g}", value); }
+
 /// "12.3 [12.1, 12.6]".
 std::string with_interval(double scale, double value, double low, double high) {
-  const auto text = [&](double x) { return std::isnan(x) ? std::string("?") : fmt::format("{:.4g}", scale * x); };
-  return fmt::format("{:.4g} [{}, {}]", scale * value, text(low), text(high));
+  return fmt::format("{} [{}, {}]", number_text(scale * value), number_text(scale * low), number_text(scale * high));
 }
 
 }  // namespace
@@ -167,8 +169,8 @@ void StudyStatistics::print() const {
       for (std::size_t probe = 0; probe < column->width; ++probe)
         if (Numbers own = of(group, *column, probe); probe == 0 || own.mean > largest.mean) largest = std::move(own);
       if (largest.samples == 0) continue;
-      fmt::print("  {:<22}{:.4g}, {:.3g} {}", row.label, row.scale * largest.mean, row.scale * largest.deviation,
-                 row.unit);
+      fmt::print("  {:<22}{:.4g}, {} {}", row.label, row.scale * largest.mean,
+                 number_text(row.scale * largest.deviation), row.unit);
       for (std::size_t q = 0; q < study.quantiles.size(); ++q)
         fmt::print("   {:g} %: {}", 100.0 * study.quantiles[q],
                    with_interval(row.scale, largest.quantile[q], largest.low[q], largest.high[q]));

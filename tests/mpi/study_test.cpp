@@ -35,7 +35,7 @@ TEST(Ranks, StudyOfTracks) {
   expect_same_study("options_file: " TRAVERSE_SOURCE_DIR
                     "/options/scenes/three_span_train.yml\n"
                     "train_vehicles: coach\nscene_tail: 0\ntrack_profile: german_low\n",
-                    {{"ts_dt", "8e-4"},
+                    {{"ts_dt", "7e-4"},
                      {"model_modes", "6"},
                      {"model_vehicles", "linear"},
                      {"study_vary_track_seed", "1:20"},
