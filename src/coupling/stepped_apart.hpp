@@ -15,7 +15,7 @@ class SteppedApart {
   /// number any more.
   virtual bool step(double t, double h) = 0;
 
-  /// Writes v, w, p and p' of the system at the end of the last step, one behind the other.
+  /// Writes v, w, p and p' of the whole system at the end of the last step, one behind the other.
   virtual void tell(double* y) const = 0;
   /// Lost in dampers, and given by what holds the speed, since the start, J.
   virtual double dissipated() const = 0;

@@ -131,7 +131,7 @@ class System {
   }
   /// Collective. The method of the steps to come, for steps of 1 s.
   void begin_motion(const structure::Method& method);
-  // Steps apart (stepped_apart.hpp), from the first one on; on one rank.
+  // Steps apart (stepped_apart.hpp), from the first one on.
 
   /// After start, before begin_motion.
   void step_apart(std::unique_ptr<SteppedApart> apart) { apart_ = std::move(apart); }

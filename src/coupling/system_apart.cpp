@@ -10,6 +10,7 @@ bool System::try_apart(double t, double h, double* y) {
   fetch(y);
   defect_apart_ = apart_->defect();
   apart_.reset();
+  share_.deal(comm_, fleet_);
   evaluate_fleet(t, y);
   events_.accept(t);
   return false;
@@ -17,6 +18,7 @@ bool System::try_apart(double t, double h, double* y) {
 
 void System::fetch(double* y) {
   if (!apart_) return;
+  if (rank_ != 0) return;
   apart_->tell(y);
   motion_->dissipated = apart_->dissipated();
   motion_->worked = apart_->worked();

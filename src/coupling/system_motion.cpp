@@ -19,7 +19,7 @@ void System::begin_motion(const structure::Method& method) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
-  share_.deal(comm_, fleet_);
+  if (!apart_) share_.deal(comm_, fleet_);
   if (structure_) structure_->begin_motion(method);
 }
 

@@ -17,9 +17,9 @@ constexpr long size_of_one = (sizeof(One) + 63) / 64 * 8;
 long stepped_size(const Task& task) { return size_of_one + One(task, nullptr).size(); }
 void begin(const Task& task) { (new (task.work) One(task, task.work + size_of_one))->begin(); }
 /// Group::step.
-TaskInstant step(const Task& task, double to) {
+TaskInstant step(const Task& task, double to, bool from_kink, bool to_kink) {
   One& one = *reinterpret_cast<One*>(task.work);
-  one.step(to);
+  one.step(to, from_kink, to_kink);
   return one.instant();
 }
 TaskInstant instant(const Task& task) { return reinterpret_cast<const One*>(task.work)->instant(); }

@@ -79,16 +79,17 @@ class Group : CrossingAlgebra<W> {
     begin(state_);
     Powers::begin(state_);
   }
-  /// From where it is until all have gone `to` m. Where that fails, the crossing is where it was.
-  void step(double to) {
+  /// From where it is until all have gone `to` m. Where that fails, the crossing is where it was. from_kink, to_kink:
+  /// the surface may have a kink where the step begins or ends.
+  void step(double to, bool from_kink, bool to_kink) {
     State& s = state_;
     set_step(s, to - s.distance);
     Places::place_vehicles(s, s.distance);
-    Powers::begin_step(s);
+    if (from_kink) Powers::begin_behind_kink(s);
     for (int stage = 0; stage < s.task.method.stages; ++stage) {
       solve_stage(s, stage);
       if (!any(s.failed == fill(0.0))) return;
-      Powers::note(s, stage + 1);
+      Powers::note(s, stage + 1, to_kink && stage + 1 == s.task.method.stages);
     }
     finish_step(s);
     Powers::finish_step(s);
@@ -103,6 +104,8 @@ class Group : CrossingAlgebra<W> {
   }
 
  private:
+  static constexpr double same_step = 1e-10;  // far above what rounding leaves of differences of distances
+
   static void begin(State& s) {
     for (int i = 0; i < s.task.coordinates; ++i) {
       s.x[i] = s.w[i] = s.bent[i] = Lane{};
@@ -144,7 +147,7 @@ class Group : CrossingAlgebra<W> {
 
   static void set_step(State& s, double ds) {
     const double change = ds - s.ds;
-    if ((change < 0.0 ? -change : change) <= 1e-13 * ds) return;
+    if ((change < 0.0 ? -change : change) <= same_step * ds) return;
     s.hard = Mask{};
     renew_step(s, ds);
     s.yield_to_force = fill(1.0);

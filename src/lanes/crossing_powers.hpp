@@ -23,15 +23,17 @@ struct CrossingPowers : CrossingAlgebra<W> {
   static void begin(State& s) {
     s.all_lost = s.all_given = Lane{};
     s.lost[0] = Lane{};
+    begin_behind_kink(s);
   }
 
-  /// At the start of a step, where the surface may have a kink, its slopes are those in front of the wheels.
-  static void begin_step(State& s) { s.given[0] = given(s, 0, s.distance + beside, s.q); }
+  /// At the start of a step where the surface may have a kink: its slopes are those in front of the wheels.
+  static void begin_behind_kink(State& s) {
+    lean_beside(s, s.distance + beside, s.q);
+    s.given[0] = given(s, 0);
+  }
 
-  /// At a stage that is solved; the last one is the end of the step.
-  static void note(State& s, int stage) {
-    const TaskMethod& method = s.task.method;
-    const bool last = stage == method.stages;
+  /// At a stage that is solved. before_kink: the surface may have a kink there, and the wheels are still on this side.
+  static void note(State& s, int stage, bool before_kink) {
     Lane lost{};
     for (int v = 0; v < s.task.vehicles; ++v)
       if (s.awake[v] != 0) lost += lost_in_vehicle(s, v, stage);
@@ -40,7 +42,8 @@ struct CrossingPowers : CrossingAlgebra<W> {
       s.rhs[i] = s.task.exact_modes ? s.r[i] : s.r_still[i] + s.rate * s.b[stage][i];
     }
     s.lost[stage] = lost + lost_in_modes(s, s.rhs);
-    s.given[stage] = given(s, stage, s.start + method.time[stage - 1] * s.ds - (last ? beside : 0.0), s.scaled);
+    if (before_kink) lean_beside(s, s.start + s.task.method.time[stage - 1] * s.ds - beside, s.scaled);
+    s.given[stage] = given(s, stage);
   }
 
   static void finish_step(State& s) {
@@ -50,6 +53,7 @@ struct CrossingPowers : CrossingAlgebra<W> {
       s.all_given += method.power[j] * s.h * s.given[j];
     }
     s.lost[0] = s.lost[method.known - 1];
+    s.given[0] = s.given[method.known - 1];
   }
 
  private:
@@ -57,15 +61,11 @@ struct CrossingPowers : CrossingAlgebra<W> {
     const TaskVehicle& vehicle = s.task.vehicle[v];
     const TaskKind& kind = s.task.kind[vehicle.kind];
     const int f = kind.freedom, first = vehicle.first_coordinate;
-    const Lane *a = s.a[stage] + first, *w_still = s.still + 2 * first + f, *C = lanes(kind.C);
+    const Lane *a = s.a[stage] + first, *w_still = s.still + 2 * first + f;
     Lane* w = s.a_free + first;
     for (int i = 0; i < f; ++i) w[i] = w_still[i] + s.rate * a[i];
     Lane lost{};
-    for (int i = 0; i < f; ++i) {
-      Lane force{};
-      for (int j = 0; j < f; ++j) force += C[i * f + j] * w[j];
-      lost += w[i] * force;
-    }
+    for (int i = 0; i < kind.losses; ++i) lost += lanes(kind.loss)[i] * w[kind.loss_row[i]] * w[kind.loss_column[i]];
     return lost;
   }
 
@@ -81,33 +81,34 @@ struct CrossingPowers : CrossingAlgebra<W> {
     return lost;
   }
 
-  /// With wheels that have gone so far (m), the modes at q.
-  static Lane given(State& s, int stage, double gone, const Lane* q) {
+  static Lane given(State& s, int stage) {
     Lane given{};
     for (int v = 0; v < s.task.vehicles; ++v) {
       if (s.awake[v] == 0) continue;
       const TaskVehicle& vehicle = s.task.vehicle[v];
       const TaskKind& kind = s.task.kind[vehicle.kind];
-      for (int i = 0; i < kind.freedom; ++i) given += lanes(kind.driven)[i] * s.a[stage][vehicle.first_coordinate + i];
-      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + kind.wheels; ++j) {
-        const double x = s.task.x[j] + gone;
-        Lane height, slope;
-        track_at(s.task.heights, x, height, slope);
-        given += s.speed * s.F[j] * (slope + slope_of_bridge(s, x, s.piece[j], q));
-      }
+      const Lane* a = s.a[stage] + vehicle.first_coordinate;
+      for (int i = 0; i < kind.freedom; ++i) given += lanes(kind.driven)[i] * a[i];
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + kind.wheels; ++j)
+        given += s.speed * s.F[j] * s.lean[j];
     }
     return given;
   }
 
-  static Lane slope_of_bridge(State& s, double x, int piece, const Lane* q) {
+  /// The slopes of the surface under wheels that have gone so far (m), with the modes at q.
+  static void lean_beside(State& s, double gone, const Lane* q) {
     const TaskInfluence& line = s.task.influence;
-    Lane slope{};
-    if (x < line.breaks[0] || x > line.breaks[line.pieces]) return slope;
-    while (piece > 0 && x < line.breaks[piece]) --piece;
-    while (piece + 1 < line.pieces && x >= line.breaks[piece + 1]) ++piece;
-    influence_slope_at(line, x, piece, s.modes, s.g_slope);
-    for (int i = 0; i < s.modes; ++i) slope -= s.g_slope[i] * q[i];
-    return slope;
+    for (int j = 0; j < s.task.wheels; ++j) {
+      const double x = s.task.x[j] + gone;
+      Lane height;
+      track_at(s.task.heights, x, height, s.lean[j]);
+      if (x < line.breaks[0] || x > line.breaks[line.pieces]) continue;
+      int piece = s.piece[j];
+      while (piece > 0 && x < line.breaks[piece]) --piece;
+      while (piece + 1 < line.pieces && x >= line.breaks[piece + 1]) ++piece;
+      influence_slope_at(line, x, piece, s.modes, s.g_slope);
+      for (int i = 0; i < s.modes; ++i) s.lean[j] -= s.g_slope[i] * q[i];
+    }
   }
 };
 

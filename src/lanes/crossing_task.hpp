@@ -25,7 +25,11 @@ struct TaskKind {
   const double *M = nullptr, *C = nullptr, *K = nullptr, *r0 = nullptr, *G = nullptr;  // lanes, matrices by rows
   const double* G_along = nullptr;                  // the wheels move along the track by G_along x
   const int *G_row = nullptr, *G_column = nullptr;  // where G has entries
-  const double* bend = nullptr;    // of every coordinate: root of what its square puts the mechanism out of balance by
+  const double* bend = nullptr;  // of every coordinate: root of what its square puts the mechanism out of balance by
+  // Of C the part that loses energy: w^T C w is the sum of loss w_row w_column.
+  int losses = 0;
+  const int *loss_row = nullptr, *loss_column = nullptr;
+  const double* loss = nullptr;    // lanes
   const double* driven = nullptr;  // lanes: driven x'' is the power that holds the masses' speed along the track, N s
 };
 

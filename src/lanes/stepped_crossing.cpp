@@ -6,7 +6,8 @@ namespace traverse::lanes {
 
 // Compiled from crossing_kernel.cpp, once for each.
 TRAVERSE_LANES_DECLARE(long stepped_size(const Task& task); void begin(const Task& task);
-                       TaskInstant step(const Task& task, double to); TaskInstant instant(const Task& task);)
+                       TaskInstant step(const Task& task, double to, bool from_kink, bool to_kink);
+                       TaskInstant instant(const Task& task);)
 
 namespace {
 
@@ -29,8 +30,8 @@ SteppedCrossing::SteppedCrossing(CrossingPlan plan, TrainNumbers train, TrackNum
   now_ = TRAVERSE_LANES_CALL(instant(task_));
 }
 
-Trouble SteppedCrossing::step(double t) {
-  now_ = TRAVERSE_LANES_CALL(step(task_, run_[0].speed * t));
+Trouble SteppedCrossing::step(double t, bool from_kink, bool to_kink) {
+  now_ = TRAVERSE_LANES_CALL(step(task_, run_[0].speed * t, from_kink, to_kink));
   return static_cast<Trouble>(static_cast<int>(now_.failed));
 }
 

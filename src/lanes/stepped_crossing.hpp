@@ -15,8 +15,9 @@ class SteppedCrossing {
   SteppedCrossing(const SteppedCrossing&) = delete;
   SteppedCrossing& operator=(const SteppedCrossing&) = delete;
 
-  /// A step until t. Where there is trouble, all is as it was; but not_finite has no way back.
-  Trouble step(double t);
+  /// A step until t; from_kink, to_kink: the surface may have a kink under a wheel where it begins or ends. Where there
+  /// is trouble, all is as it was; but not_finite has no way back.
+  Trouble step(double t, bool from_kink, bool to_kink);
 
   /// One number of what TaskInstant names, after the last step.
   using Numbers = const double* TaskInstant::*;

@@ -6,13 +6,15 @@
 #include <cmath>
 
 #include "integrate/integrator_choice.hpp"
+#include "lanes/processor.hpp"
 #include "lanes/stepped_crossing.hpp"
 #include "lanes/train_numbers.hpp"
 
 namespace traverse::app {
 namespace {
 
-constexpr double no_step = 1e-9;  // of the shapes' largest values: surfaces that meet without a step
+constexpr double same_time = 1e-10;  // s
+constexpr double no_step = 1e-9;     // of the shapes' largest values: surfaces that meet without a step
 
 /// Whether wheels come onto the bridge, and leave it, without a step.
 bool level_ends(const structure::ModalBridge& bridge) {
@@ -32,21 +34,33 @@ bool level_ends(const structure::ModalBridge& bridge) {
   return at_ends <= no_step * largest;
 }
 
+/// Whether all ranks compute the same to the last bit.
+bool same_processors(MPI_Comm comm) {
+  const int own = static_cast<int>(lanes::best_target());
+  int bounds[2] = {own, -own};
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm);
+  return bounds[0] == -bounds[1];
+}
+
+/// Each rank takes all steps, as there is less in one than in a message.
 class ByLanes final : public coupling::SteppedApart {
  public:
   using Now = lanes::TaskInstant;
 
   ByLanes(const lanes::CrossingPlan& plan, lanes::TrainNumbers train, lanes::TrackNumbers track, std::vector<double> q,
-          double speed, train::Fleet fleet)
+          double speed, std::vector<double> kinks, train::Fleet fleet)
       : speed_(speed),
         modes_(plan.bridge->modes()),
         coordinates_(static_cast<std::size_t>(train.coordinates)),
         x_(train.x),
+        kinks_(std::move(kinks)),
         fleet_(std::move(fleet)),
         crossing_(plan, std::move(train), std::move(track), std::move(q), speed) {}
 
   bool step(double t, double h) override {
-    const lanes::Trouble trouble = crossing_.step(t + h);
+    const bool from_kink = at_kink(t);
+    const bool to_kink = at_kink(t + h);
+    const lanes::Trouble trouble = crossing_.step(t + h, from_kink, to_kink);
     if (trouble == lanes::not_finite)
       throw SolverError(fmt::format(
           "the motion has grown beyond all bounds by t = {} s: the step is too long; take a smaller -ts_dt", t + h));
@@ -78,10 +92,18 @@ class ByLanes final : public coupling::SteppedApart {
   double defect() override { return lanes::defect(fleet_, crossing_.bent()); }
 
  private:
+  /// Of times that ascend, but for the last one.
+  bool at_kink(double t) {
+    while (next_kink_ < kinks_.size() && kinks_[next_kink_] < t - same_time) ++next_kink_;
+    return next_kink_ < kinks_.size() && kinks_[next_kink_] <= t + same_time;
+  }
+
   double speed_, time_ = 0.0;
   std::size_t modes_, coordinates_;
-  std::vector<double> x_;  // m: of every wheel at t = 0
-  train::Fleet fleet_;     // as it started
+  std::vector<double> x_;      // m: of every wheel at t = 0
+  std::vector<double> kinks_;  // s, ascending: when a wheel is at a kink of the surface
+  std::size_t next_kink_ = 0;
+  train::Fleet fleet_;  // as it started
   lanes::SteppedCrossing crossing_;
 };
 
@@ -110,10 +132,9 @@ lanes::CrossingPlan lanes_plan(const Scene& scene, const SharedBeam& shared, con
 
 std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const SharedBeam& shared,
                                                  const coupling::System& system, const double* y, double end_time) {
-  int ranks = 1;
-  MPI_Comm_size(system.comm(), &ranks);
-  if (!scene.step_lanes || ranks > 1 || !lanes_obstacle(scene, shared).empty()) return nullptr;
-  if (!lanes::obstacle(system.fleet()).empty()) return nullptr;
+  if (!scene.step_lanes || !lanes_obstacle(scene, shared).empty() || !lanes::obstacle(system.fleet()).empty() ||
+      !same_processors(system.comm()))
+    return nullptr;
   train::Fleet fleet = system.fleet();
   lanes::TrainNumbers train = lanes::train_numbers(fleet);
   lanes::CrossingPlan plan = lanes_plan(scene, shared, system);
@@ -129,9 +150,13 @@ std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const Share
   } catch (const InputError&) {
     return nullptr;  // too long or too sharp
   }
-  std::vector<double> q(y, y + shared.modal->modes());
+  std::vector<double> q(shared.modal->modes());
+  int rank = 0;
+  MPI_Comm_rank(system.comm(), &rank);
+  if (rank == 0) std::copy_n(y, q.size(), q.begin());
+  MPI_Bcast(q.data(), static_cast<int>(q.size()), MPI_DOUBLE, 0, system.comm());
   return std::make_unique<ByLanes>(plan, std::move(train), std::move(track), std::move(q), scene.train.speed,
-                                   std::move(fleet));
+                                   system.known_events(end_time, scene.step_kinks), std::move(fleet));
 }
 
 }  // namespace traverse::app

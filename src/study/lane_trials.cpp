@@ -58,12 +58,13 @@ bool lose_contact(const std::vector<CrossingResult>& runs) {
                      [](const CrossingResult& run) { return run.trouble == lanes::contact_lost; });
 }
 
-LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance, std::size_t most)
+LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance)
     : scene_(std::move(scene)) {
   for (const std::vector<double>& group : speeds) {
     std::vector<LaneRun>& runs = groups_.emplace_back();
     for (const std::uint64_t seed : scene_.sweep->seeds)
-      if (group.size() == 1 && runs.size() + 1 < most) runs.push_back({group.front(), distance / group.front(), seed});
+      if (group.size() == 1 && runs.size() + 1 < lanes::widest)
+        runs.push_back({group.front(), distance / group.front(), seed});
     for (const double speed : group) runs.push_back({speed, distance / speed, {}});
   }
 }

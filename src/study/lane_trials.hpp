@@ -39,8 +39,8 @@ bool lose_contact(const std::vector<lanes::CrossingResult>& runs);
 class LaneTrials {
  public:
   /// Groups of speeds, those of a group in one class, or the slowest one first; distance: of every passage, m. A group
-  /// of one speed goes over the tracks of the scene's sweep too, its own track last, up to `most` of all.
-  LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance, std::size_t most);
+  /// of one speed goes over the tracks of the scene's sweep too, its own track last, as many as there are lanes.
+  LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance);
 
   /// Kept. Refused where runs cannot go side by side.
   const std::vector<lanes::CrossingResult>& run(const LaneModel& model);
