@@ -145,8 +145,8 @@ std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const Share
   lanes::TrackNumbers track;
   try {
     const double to = *front + scene.train.speed * end_time;
-    track = lanes::track_numbers(scene.profile, radius, *rear, to,
-                                 lanes::track_distance(scene.profile, radius, *rear, to));
+    track =
+        lanes::track_numbers(scene.profile, radius, *rear, to, lanes::track_distance(scene.profile, radius, *rear, to));
   } catch (const InputError&) {
     return nullptr;  // too long or too sharp
   }

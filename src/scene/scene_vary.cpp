@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "base/random_stream.hpp"
-#include "options/data_file.hpp"
 #include "results/terminal.hpp"
 #include "scene_parts.hpp"
+#include "vary_reader.hpp"
 
 namespace traverse::app {
 namespace {
@@ -19,10 +19,9 @@ using options::Kind;
 using options::Options;
 using options::Row;
 
-constexpr std::string_view prefix = "study_vary_";
-constexpr double most_runs = 1e6, most_study_peaks = 1e8;
+constexpr std::string_view prefix = VaryReader::prefix;
+constexpr double most_runs = VaryReader::most_values, most_study_peaks = 1e8;
 constexpr double quickest_run = 5e-3;  // s: of a train over a bridge, side by side with others
-constexpr double step_meets = 1e-3;    // of a step: ends are often rounded ones in km/h
 
 /// What an option of a study belongs to.
 struct Varied {
@@ -74,144 +73,6 @@ std::string not_to_vary(const Options& o, const std::string& option) {
   return row.count > 1 ? fmt::format("it takes {}, not one number", options::allowed(row)) : "it is no number";
 }
 
-/// Reads the numbers of one varied option.
-class Reader {
- public:
-  Reader(const Options& o, std::string option) : o_(o), option_(std::move(option)), row_(*o.find_known(option_)) {}
-
-  std::string name(std::string_view how = "") const {
-    return std::string(prefix) + option_ + (how.empty() ? "" : "_" + std::string(how));
-  }
-  bool has(std::string_view how = "") const { return o_.entries().has(name(how)); }
-  bool whole() const { return row_.kind == Kind::integer || row_.kind == Kind::integers; }
-  std::string_view unit() const { return row_.unit; }
-
-  /// A number in the option's unit; speeds may be given in km/h.
-  double number(const std::string& given, const std::string& word) const {
-    std::string digits = word;
-    double scale = 1.0, value = 0.0;
-    for (const auto& [ending, factor] : {std::pair{"km/h", 1.0 / 3.6}, std::pair{"m/s", 1.0}})
-      if (row_.unit == "m/s" && digits.ends_with(ending)) {
-        digits.resize(digits.size() - std::string_view(ending).size());
-        digits.resize(digits.find_last_not_of(' ') + 1);
-        scale = factor;
-      }
-    if (!options::parse_number(digits, value) || !options::is_quantity(value))
-      o_.refuse(given, fmt::format("'{}' is no finite number; wanted: values of {}, {}", word, option_,
-                                   options::allowed(row_)));
-    return scale * value;
-  }
-  double number(std::string_view how) const { return number(name(how), o_.text(name(how))); }
-
-  void check(const std::string& given, double value, const std::string& what = "", const char* advice = "") const {
-    if (row_.unit == "m/s" && value == 0.0) o_.refuse(given, "0 m/s: nothing would ever leave; allowed: above 0");
-    const bool fits = row_.range.holds(value) && (!whole() || (value == std::floor(value) && std::abs(value) < 2e9));
-    if (!fits)
-      o_.refuse(given, fmt::format("{}{:g} is no value of {}; allowed: {}{}", what, value, option_,
-                                   options::allowed(row_), advice));
-  }
-
-  /// from, from + step, ... up to `to`; empty and `count` too large where these are too many.
-  std::vector<double> range(const std::string& given, double from, double to, double step, double& count) const {
-    if (!(step > 0.0)) o_.refuse(given, fmt::format("the step is {:g}; allowed: above 0", step));
-    if (to < from) o_.refuse(given, fmt::format("an empty range: from {:g} is above to {:g}", from, to));
-    count = std::floor((to - from) / step + step_meets) + 1.0;
-    std::vector<double> values;
-    for (int i = 0; count <= most_runs && i < static_cast<int>(count); ++i) values.push_back(from + i * step);
-    return values;
-  }
-
-  /// A list, whose words may be from:to or from:to:step.
-  std::vector<double> list(double& count) const {
-    std::vector<double> values;
-    count = 0.0;
-    for (const std::string& word : o_.texts(name())) {
-      const std::size_t first = word.find(':'), second = word.find(':', first == word.npos ? first : first + 1);
-      if (first == word.npos) {
-        values.push_back(number(name(), word));
-        count += 1.0;
-        continue;
-      }
-      const std::string middle = word.substr(first + 1, second == word.npos ? word.npos : second - first - 1);
-      const double step = second == word.npos ? 1.0 : number(name(), word.substr(second + 1));
-      double own = 0.0;
-      const std::vector<double> more =
-          range(name(), number(name(), word.substr(0, first)), number(name(), middle), step, own);
-      values.insert(values.end(), more.begin(), more.end());
-      count += own;
-    }
-    if (count == 0.0) o_.refuse(name(), "an empty list; give values of " + option_);
-    return values;
-  }
-
-  /// from, to and step or count.
-  std::vector<double> block(double& count) const {
-    for (const char* end : {"from", "to"})
-      if (!has(end))
-        o_.refuse(name(has("from")   ? "from"
-                       : has("to")   ? "to"
-                       : has("step") ? "step"
-                                     : "count"),
-                  fmt::format("wanted: from, to, and step or count ({} is missing)", name(end)));
-    const double from = number("from"), to = number("to");
-    if (has("step") == has("count")) o_.refuse(name("from"), "wanted: from, to, and either step or count");
-    if (has("step")) return range(name("step"), from, to, number("step"), count);
-    const int wanted = o_.integer(name("count"));
-    if (to < from) o_.refuse(name("from"), fmt::format("an empty range: from {:g} is above to {:g}", from, to));
-    count = wanted;
-    std::vector<double> values;
-    for (int i = 0; i < wanted; ++i) values.push_back(wanted == 1 ? from : from + (to - from) * i / (wanted - 1));
-    return values;
-  }
-
-  /// "uniform", "normal" or "lognormal"; empty: listed.
-  std::string law() const {
-    for (const char* law : {"uniform", "normal", "lognormal"})
-      if (has(law)) return law;
-    return "";
-  }
-
-  std::vector<double> draws(std::uint64_t seed, std::size_t count) const {
-    const std::string of = law(), given = name(of);
-    const std::vector<std::string> words = o_.texts(given);
-    const double a = number(given, words[0]), b = number(given, words[1]);
-    const bool uniform = of == "uniform";
-    if (uniform ? !(b > a) : !(b > 0.0))
-      o_.refuse(given, uniform ? "wanted: the least, then the greatest value" : "allowed: a deviation above 0");
-    if (of == "lognormal" && !(a > 0.0)) o_.refuse(given, "allowed: a mean above 0");
-    if (whole() && !uniform) o_.refuse(given, "takes whole numbers; allowed: uniform, or a list");
-    const double wide = std::sqrt(std::log1p(b * b / (a * a)));
-    const base::RandomStream stream(seed, option_);
-    std::vector<double> values;
-    for (std::size_t i = 0; i < count; ++i) {
-      double value = 0.0;
-      if (uniform)
-        value = whole() ? std::floor(a + stream.uniform(i) * (b - a + 1.0)) : a + stream.uniform(i) * (b - a);
-      else if (of == "normal")
-        value = a + b * stream.normal(i);
-      else
-        value = a * std::exp(wide * stream.normal(i) - 0.5 * wide * wide);
-      check(given, value, fmt::format("draw {}: ", i + 1),
-            of == "normal" ? "; take lognormal, or a smaller deviation" : "");
-      values.push_back(value);
-    }
-    return values;
-  }
-
-  /// The ways in which the values are given, of which there may be one.
-  void check_one_way() const {
-    std::vector<std::string> ways;
-    for (const char* way : {"", "from", "uniform", "normal", "lognormal"})
-      if (has(way)) ways.push_back(name(way));
-    if (ways.size() > 1) o_.refuse(ways[1], "give either these or " + ways[0]);
-  }
-
- private:
-  const Options& o_;
-  std::string option_;
-  const Row& row_;
-};
-
 /// The options that study_vary_... names, in the order in which they are given.
 std::vector<std::string> varied_options(const Options& o) {
   std::vector<std::string> names;
@@ -249,6 +110,8 @@ class Axes {
   }
 
   void add_listed(StudyDimension dimension, double count) {
+    if (combine_ != "grid" && count > most_runs)
+      o_.refuse("study_combine", fmt::format("{} has {:g} values; allowed: {:g}", dimension.name(), count, most_runs));
     if (combine_ == "grid") {
       dimension.axis = study_.axes.size();
       study_.axes.push_back({dimension.name(), static_cast<std::size_t>(std::min(count, 1e15))});
@@ -264,7 +127,7 @@ class Axes {
     }
     study_.dimensions.push_back(std::move(dimension));
   }
-  void add_drawn(StudyDimension dimension, const Reader& reader) {
+  void add_drawn(StudyDimension dimension, const VaryReader& reader) {
     std::size_t count = draws_;
     if (combine_ == "together" && joint_) count = study_.axes[*joint_].length;
     if (count == 0) count = draws(dimension.name());
@@ -327,7 +190,7 @@ void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& stu
     axes.add_listed(std::move(dimension), count);
   }
   for (const std::string& option : varied_options(o)) {
-    const Reader reader(o, option);
+    const VaryReader reader(o, option);
     const std::string given = o.first_with_prefix(reader.name())->name;
     StudyDimension dimension{
         {option}, std::string(reader.unit().empty() ? "1" : reader.unit()), reader.whole(), "list", {}, 0};
