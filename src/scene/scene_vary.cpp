@@ -19,7 +19,7 @@ using options::Kind;
 using options::Options;
 using options::Row;
 
-constexpr std::string_view prefix = VaryReader::prefix;
+constexpr std::string_view study_prefix = VaryReader::prefix;
 constexpr double most_runs = VaryReader::most_values, most_study_peaks = 1e8;
 constexpr double quickest_run = 5e-3;  // s: of a train over a bridge, side by side with others
 
@@ -30,8 +30,8 @@ struct Varied {
 };
 
 std::optional<Varied> varied(const Options& o, const std::string& name) {
-  if (!name.starts_with(prefix)) return {};
-  const std::string rest = name.substr(prefix.size());
+  if (!name.starts_with(study_prefix)) return {};
+  const std::string rest = name.substr(study_prefix.size());
   if (o.find_known(rest) != nullptr) return Varied{rest, ""};
   for (const Row& row : options::vary_rows())
     if (const std::size_t own = row.name.size() + 1; rest.size() > own && rest.ends_with("_" + std::string(row.name)) &&
@@ -44,10 +44,10 @@ std::optional<Varied> varied(const Options& o, const std::string& name) {
 void declare_study(Options& o) {
   for (const options::Entry& entry : o.entries()) {
     const std::string& name = entry.name;
-    if (!name.starts_with(prefix)) continue;
+    if (!name.starts_with(study_prefix)) continue;
     const std::optional<Varied> what = varied(o, name);
     if (!what) {
-      std::string option = name.substr(prefix.size());
+      std::string option = name.substr(study_prefix.size());
       for (const Row& row : options::vary_rows())
         if (option.ends_with("_" + std::string(row.name))) option.resize(option.size() - row.name.size() - 1);
       const std::string near = o.nearest_known(option);
@@ -181,6 +181,27 @@ class Axes {
   std::optional<std::size_t> joint_;  // the axis that several dimensions share
 };
 
+/// A varied option, and those that take the same values, still without these; `taken`: options that are varied.
+StudyDimension dimension_of(const Options& o, const std::string& option, const VaryReader& reader,
+                            std::vector<std::string>& taken) {
+  const std::string given = o.first_with_prefix(reader.name())->name;
+  const std::string unit(reader.unit().empty() ? "1" : reader.unit());
+  StudyDimension dimension{{option}, unit, reader.whole(), "list", {}, 0};
+  if (reader.has("also"))
+    for (const std::string& other : o.texts(reader.name("also"))) {
+      if (o.find_known(other) == nullptr) o.refuse(reader.name("also"), "there is no option " + other);
+      dimension.options.push_back(other);
+    }
+  for (const std::string& one : dimension.options) {
+    if (const std::string why = not_to_vary(o, one); !why.empty())
+      o.refuse(given, fmt::format("{} cannot be varied: {}", one, why));
+    if (std::find(taken.begin(), taken.end(), one) != taken.end())
+      o.refuse(given, fmt::format("{} is varied twice", one));
+    taken.push_back(one);
+  }
+  return dimension;
+}
+
 void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& study) {
   Axes axes(o, study);
   std::vector<std::string> taken;
@@ -191,21 +212,7 @@ void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& stu
   }
   for (const std::string& option : varied_options(o)) {
     const VaryReader reader(o, option);
-    const std::string given = o.first_with_prefix(reader.name())->name;
-    StudyDimension dimension{
-        {option}, std::string(reader.unit().empty() ? "1" : reader.unit()), reader.whole(), "list", {}, 0};
-    if (reader.has("also"))
-      for (const std::string& other : o.texts(reader.name("also"))) {
-        if (o.find_known(other) == nullptr) o.refuse(reader.name("also"), "there is no option " + other);
-        dimension.options.push_back(other);
-      }
-    for (const std::string& one : dimension.options) {
-      if (const std::string why = not_to_vary(o, one); !why.empty())
-        o.refuse(given, fmt::format("{} cannot be varied: {}", one, why));
-      if (std::find(taken.begin(), taken.end(), one) != taken.end())
-        o.refuse(given, fmt::format("{} is varied twice", one));
-      taken.push_back(one);
-    }
+    StudyDimension dimension = dimension_of(o, option, reader, taken);
     reader.check_one_way();
     if (const std::string law = reader.law(); !law.empty()) {
       dimension.law = law;
@@ -213,6 +220,7 @@ void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& stu
     } else {
       double count = 0.0;
       dimension.values = reader.has() ? reader.list(count) : reader.block(count);
+      const std::string given = o.first_with_prefix(reader.name())->name;
       for (const double value : dimension.values) reader.check(given, value);
       axes.add_listed(std::move(dimension), count);
     }
@@ -250,7 +258,7 @@ void read_statistics(const Options& o, Study& study) {
 
 void check_study(const Options& o, const Scene& scene) {
   const Study& study = *scene.study;
-  const std::string first = o.first_with_prefix(prefix)->name;
+  const std::string first = o.first_with_prefix(study_prefix)->name;
   if (scene.analysis != Analysis::transient) o.refuse(first, "a study is of transient runs (scene_analysis)");
   if (!scene.beam) o.refuse(first, "a study is of a bridge's response: there is no beam (beam_spans)");
   for (const StudyDimension& d : study.dimensions)
@@ -264,7 +272,7 @@ void check_study(const Options& o, const Scene& scene) {
 
 }  // namespace
 
-bool asks_for_study(const Options& o) { return o.first_with_prefix(prefix) != nullptr; }
+bool asks_for_study(const Options& o) { return o.first_with_prefix(study_prefix) != nullptr; }
 
 Scene read_study(const Options& given) {
   Options o = given;

@@ -150,15 +150,28 @@ std::vector<std::vector<std::size_t>> unknown_of(std::vector<std::vector<std::si
   return groups;
 }
 
+/// Collective. Computes the groups and stores their numbers as they come. The failure of the earliest one.
+RunFailure compute(MPI_Comm comm, StudyScenes& scenes, const std::vector<std::vector<std::size_t>>& groups,
+                   results::StudyTable& table, StudyFile& file) {
+  const results::Stage stage("runs of the study");
+  Returns returns(comm, [&](const std::vector<double>& row) {
+    table.put(static_cast<std::size_t>(row.front()), row.data() + 1);
+    file.update();
+  });
+  const bool wheels = table.find("least_wheel_force") != nullptr;
+  RunFailure failure = share_runs(comm, study_work(scenes, groups, wheels, returns), scenes.quiet());
+  returns.finish();
+  return first_of(comm, std::move(failure));
+}
+
 }  // namespace
 
 int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  const bool wheels = has_wheels(given);
   StudyScenes scenes(given);
-  results::StudyTable table(*given.study, given.output.probes.size(), wheels);
+  results::StudyTable table(*given.study, given.output.probes.size(), has_wheels(given));
   for (const std::size_t base : scenes.extreme_bases()) scenes.base(base);  // all input is checked first
   std::vector<std::string> notes;
   SweepChoice choice = choose_for_study(scenes, notes);
@@ -174,24 +187,12 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   StudyFile file(comm, std::move(place), given, choice.model, table);
   const std::vector<std::vector<std::size_t>> groups = unknown_of(scenes.groups(first.width()), known);
   const auto begin = std::chrono::steady_clock::now();
-  long left_group = 0;
-  RunFailure failure;
-  {
-    const results::Stage stage("runs of the study");
-    Returns returns(comm, [&](const std::vector<double>& row) {
-      table.put(static_cast<std::size_t>(row.front()), row.data() + 1);
-      file.update();
-    });
-    failure = share_runs(comm, study_work(scenes, groups, wheels, returns), given.quiet);
-    returns.finish();
-    left_group = scenes.alone();
-  }
-  failure = first_of(comm, std::move(failure));
+  const RunFailure failure = compute(comm, scenes, groups, table, file);
   const int signal = signal_on_any(comm);
-  MPI_Allreduce(MPI_IN_PLACE, &left_group, 1, MPI_LONG, MPI_SUM, comm);
   StudyCourse course;
   course.known = std::count(known.begin(), known.end(), 1);
-  course.left_group = left_group;
+  course.left_group = scenes.alone();
+  MPI_Allreduce(MPI_IN_PLACE, &course.left_group, 1, MPI_LONG, MPI_SUM, comm);
   course.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   course.ended = failure.failed() ? failure.message
                  : signal != 0    ? fmt::format("ended by signal {}", signal)

@@ -25,6 +25,7 @@ class StudyScenes {
   explicit StudyScenes(const Scene& scene);
 
   const Study& study() const { return *scene_.study; }
+  bool quiet() const { return scene_.quiet; }
   const std::vector<StudyRun>& runs() const { return runs_; }
   std::size_t bases() const { return first_run_.size(); }
   /// A base as the user describes it, with all speeds of the study in its sweep.

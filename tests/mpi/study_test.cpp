@@ -43,5 +43,19 @@ TEST(Ranks, StudyOfTracks) {
                     with_wheels);
 }
 
+// More trains than a rank keeps.
+TEST(Ranks, StudyOfTrains) {
+  expect_same_study("options_file: " TRAVERSE_SOURCE_DIR
+                    "/options/scenes/three_span_train.yml\n"
+                    "train_vehicles: coach\nscene_tail: 0\nbeam_elements_per_span: 8\n",
+                    {{"ts_dt", "2e-3"},
+                     {"model_modes", "6"},
+                     {"model_vehicles", "linear"},
+                     {"study_vary_vehicle_coach_car_mass_normal", "47800,2000"},
+                     {"study_vary_train_speed", "70,80"},
+                     {"study_draws", "40"}},
+                    names);
+}
+
 }  // namespace
 }  // namespace traverse::test
