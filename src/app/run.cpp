@@ -4,6 +4,7 @@
 #include "results/stage.hpp"
 #include "study/lanes_choice.hpp"
 #include "study/study.hpp"
+#include "study/sweep.hpp"
 
 namespace traverse::app {
 
@@ -27,6 +28,7 @@ int run(MPI_Comm comm, const Scene& given) {
   MPI_Comm_rank(comm, &rank);
   const results::Heartbeat heartbeat(given.quiet || rank != 0);
   results::Place place = results::claim_place(comm, given.output.file);
+  if (given.study) return run_study(comm, given, std::move(place));
   if (given.sweep) return run_sweep(comm, given, std::move(place));
   Scene scene = given;
   std::vector<std::string> notes;

@@ -61,7 +61,7 @@ struct CrossingPlan {
   double level_until = 0.0;   // m: before it the track is level and the ground rigid
 };
 
-/// What is one run's own. The same vehicles at the same places in all runs of a group.
+/// What is one run's own. In all runs of a group vehicles with as many coordinates and wheels at the same places.
 struct CrossingRun {
   const TrainNumbers* train = nullptr;  // null: none
   const TrackNumbers* track = nullptr;  // null: level

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace traverse::lanes {
 namespace {
@@ -179,6 +180,10 @@ void CrossingNumbers::add_track() {
       std::all_of(runs_.begin(), runs_.end(), [&](const CrossingRun& run) { return run.track == track; });
   task_.heights = {static_cast<int>(track->values.size() / 2), shared, track->start, track->distance,
                    track->values.data()};
+  for (const CrossingRun& run : runs_)
+    if (run.track == nullptr || run.track->values.size() != track->values.size() || run.track->start != track->start ||
+        run.track->distance != track->distance)
+      throw std::logic_error("runs side by side over tracks with other stations");
   if (!shared)
     task_.heights.values =
         side_by_side(track->values.size(), [](const CrossingRun& run, std::size_t i) { return run.track->values[i]; });

@@ -182,9 +182,9 @@ double defect(train::Fleet& fleet, const std::vector<double>& x) {
   return largest;
 }
 
-TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to) {
+double track_distance(const track::Profile& profile, double radius, double from, double to) {
   TrackNumbers track;
-  if (profile.level()) return track;
+  if (profile.level()) return track.distance;
   track.start = from;
   track.distance = std::min(profile.resolution(), profile.shortest_wave() / stations_a_wave);
   while (off_between_stations(profile, radius, track, to) > most_off) {
@@ -192,15 +192,24 @@ TrackNumbers track_numbers(const track::Profile& profile, double radius, double 
     if ((to - from) / track.distance > most_stations)
       throw InputError("sweep_lanes: the track has corners that runs side by side cannot follow; allowed: 0");
   }
-  const double stations = std::ceil((to - from) / track.distance) + 1.0;
-  if (!(stations < most_stations))
+  if (!((to - from) / track.distance + 2.0 < most_stations))
     throw InputError("sweep_lanes: so long and so fine a track does not fit into memory beside others; allowed: 0");
-  const std::vector<track::Height> heights = profile.along(from, track.distance, static_cast<std::size_t>(stations));
+  return track.distance;
+}
+
+TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to, double distance) {
+  TrackNumbers track;
+  if (profile.level()) return track;
+  track.start = from;
+  track.distance = distance;
+  const double stations = std::ceil((to - from) / distance) + 1.0;
+  const std::vector<track::Height> heights = profile.along(from, distance, static_cast<std::size_t>(stations));
+  track.values.reserve(2 * heights.size());
   for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double x = from + static_cast<double>(i) * track.distance;
+    const double x = from + static_cast<double>(i) * distance;
     const auto [height, slope] = rolled(profile, radius, x, heights[i]);
     track.values.push_back(height);
-    track.values.push_back(slope * track.distance);
+    track.values.push_back(slope * distance);
   }
   return track;
 }

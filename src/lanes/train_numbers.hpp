@@ -20,8 +20,10 @@ TrainNumbers train_numbers(train::Fleet& fleet);
 double defect(train::Fleet& fleet, const std::vector<double>& x);
 
 /// What a wheel's lowest point follows on the track from x = `from` to `to` (m): the track itself, but where the wheel
-/// (radius in m) rolls over what is narrower than itself. InputError where cubics between stations would take more
-/// memory than they may.
-TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to);
+/// (radius in m) rolls over what is narrower than itself, with stations `distance` apart.
+TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to, double distance);
+/// How far apart stations may be for that, m. InputError where cubics between stations would take more memory than they
+/// may.
+double track_distance(const track::Profile& profile, double radius, double from, double to);
 
 }  // namespace traverse::lanes

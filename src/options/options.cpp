@@ -101,15 +101,19 @@ const Row& Options::row(std::string_view name) const {
   return *known;
 }
 
+std::string Options::nearest_known(const std::string& name) const {
+  std::vector<std::string> candidates;
+  for (const Row& fixed : fixed_rows()) candidates.emplace_back(fixed.name);
+  for (const auto& declared : declared_) candidates.push_back(declared.first);
+  for (const std::string_view common : common_petsc_names()) candidates.emplace_back(common);
+  std::sort(candidates.begin(), candidates.end());
+  return nearest(name, candidates);
+}
+
 void Options::check_names() const {
   for (const Entry& entry : entries_) {
     if (knows(entry.name) || owned_by_petsc(entry.name)) continue;
-    std::vector<std::string> candidates;
-    for (const Row& fixed : fixed_rows()) candidates.emplace_back(fixed.name);
-    for (const auto& declared : declared_) candidates.push_back(declared.first);
-    for (const std::string_view name : common_petsc_names()) candidates.emplace_back(name);
-    std::sort(candidates.begin(), candidates.end());
-    const std::string near = nearest(entry.name, candidates);
+    const std::string near = nearest_known(entry.name);
     const bool part = entry.name.starts_with("vehicle_");
     throw InputError(fmt::format("unknown option {}{}{}; -help lists them all", entry.given(),
                                  near.empty() ? "" : fmt::format("; did you mean {}?", near),

@@ -137,6 +137,9 @@ std::string help_text() {
   }
   out += "\nEach coupler NAME in the list of train_couplers, besides what a spring or a joint has\n";
   append_rows(out, coupler_rows(), "train_NAME_");
+  out += "\nEach option NAME that a study varies\n";
+  append_rows(out, {&vary_list_row(), 1}, "study_vary_NAME");
+  append_rows(out, vary_rows(), "study_vary_NAME_");
   out +=
       "\nOptions of PETSc and SLEPc pass on to them, -ts_type, -ts_adapt_type, -snes_rtol, -eps_tol, -log_view and so "
       "on.\n";

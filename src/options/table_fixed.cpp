@@ -137,8 +137,28 @@ constexpr Row run_rows[] = {
   {"sweep_lanes", choice, "", "8", any, "0 1 4 8", 0, "so many runs go side by side in the lanes of the processor's vectors, where they may; 0: each by itself, driven by TS"},
   {"sweep_instants", number, "", "20", {4.0, 1e4}, "", 0, "a period of the fastest mode is looked at so often where the bridge's modes move exactly in time; parabolas find the peaks between"},
 
+  {"study_combine", choice, "", "grid", any, "grid together random", 0, "of the options that study_vary lists: every combination, their lists side by side, or study_draws runs that draw from each list"},
+  {"study_draws", integer, "", "", {1, 1e6}, "", 0, "how many values are drawn of each random option"},
+  {"study_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "of the random draws; each option has a stream of its own"},
+  {"study_statistics_over", texts, "", "(track_seed and what is drawn)", any, "", 0, "options that mean, deviation and quantiles go over"},
+  {"study_statistics_quantiles", numbers, "1", "0.5,0.98", {0.0, 1.0, true}, "", 0, "which quantiles"},
+  {"study_statistics_confidence", number, "1", "0.95", {0.5, 0.9999}, "", 0, "of the intervals that hold the quantiles"},
+  {"study_resume", flag, "", "false", any, "", 0, "takes finished runs of the same study from the results file that is there"},
+
   {"help", text, "", "", any, "", 0, "prints this list; -help petsc: PETSc's options too"},
 };
+
+constexpr Row vary[] = {
+  {"from", text, "", "", any, "", 0, "the first value"},
+  {"to", text, "", "", any, "", 0, "the last one"},
+  {"step", text, "", "", any, "", 0, "from one to the next"},
+  {"count", integer, "", "", {1, 1e6}, "", 0, "how many, at equal distances, instead of a step"},
+  {"uniform", texts, "", "", any, "", 2, "draws values between these two"},
+  {"normal", texts, "", "", any, "", 2, "draws values with this mean and standard deviation"},
+  {"lognormal", texts, "", "", any, "", 2, "draws values above 0 with this mean and standard deviation"},
+  {"also", texts, "", "", any, "", 0, "further options that take the same values"},
+};
+constexpr Row vary_list = {"", texts, "", "", any, "", 0, "the values: a list, or from:to for whole numbers, from:to:step; speeds may be in km/h"};
 
 constexpr std::string_view petsc_prefixes[] = {
   "ts_", "snes_", "ksp_", "pc_", "mat_", "vec_", "eps_", "st_", "svd_", "pep_", "nep_", "bv_", "ds_", "rg_", "fn_",
@@ -175,6 +195,9 @@ std::span<const Row> fixed_rows() {
   }();
   return rows;
 }
+
+std::span<const Row> vary_rows() { return vary; }
+const Row& vary_list_row() { return vary_list; }
 
 bool owned_by_petsc(std::string_view name) {
   for (const std::string_view prefix : petsc_prefixes) {

@@ -151,6 +151,11 @@ void File::dataset(const std::string& name, const std::vector<hsize_t>& shape, c
   attribute(name, "unit", unit);
 }
 
+void File::rewrite(const std::string& name, const std::vector<double>& values) {
+  const Id data(check(H5Dopen2(id(), name.c_str(), H5P_DEFAULT)));
+  check(H5Dwrite(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
+}
+
 void File::table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows) {
   std::vector<std::string> valid;  // readers refuse what is no UTF-8
   for (const auto& [key, value] : rows) {

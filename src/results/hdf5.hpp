@@ -62,6 +62,8 @@ class File {
   /// A complete dataset with its attribute `unit`; groups on the way are made.
   void dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
                const std::string& unit);
+  /// The values of a dataset that is there, in their place: nothing of the file's structure changes.
+  void rewrite(const std::string& name, const std::vector<double>& values);
   /// Text in two columns, [n,2].
   void table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows);
 

@@ -144,6 +144,7 @@ Recorder::Recorder(MPI_Comm comm, Place place, const Layout& layout, const Pairs
   share_failure(comm, failure);
 }
 
+Recorder::Recorder(Recorder&& other) noexcept = default;
 Recorder::~Recorder() = default;
 
 void Recorder::add(const Sample& sample) {

@@ -112,6 +112,7 @@ class Recorder {
   Recorder(MPI_Comm comm, const std::string& file, const Layout& layout,
            const std::vector<std::pair<std::string, std::string>>& attributes,
            const std::vector<std::pair<std::string, std::string>>& options);
+  Recorder(Recorder&& other) noexcept;
   ~Recorder();  // flushes what is there; never throws
 
   /// Whether this rank writes a file: samples of the others need no values.
@@ -133,6 +134,8 @@ class Recorder {
     std::string unit;
   };
   void datasets(const std::vector<Dataset>& sets);
+  /// New values of datasets that are there, in the order given: a kill leaves each value as it was or as it is now.
+  void rewrite(const std::vector<Dataset>& sets);
   /// Adds an attribute to a group that is there.
   void attributes(const std::string& group, const std::vector<Attribute>& list);
   /// Writes everything still in memory, the summary as attributes, and closes the file. FileError when the disk fails.

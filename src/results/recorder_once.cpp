@@ -96,6 +96,14 @@ void Recorder::datasets(const std::vector<Dataset>& sets) {
   });
 }
 
+void Recorder::rewrite(const std::vector<Dataset>& sets) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const Dataset& set : sets) impl_->file.rewrite(set.name, set.values);
+    impl_->file.flush();
+  });
+}
+
 void Recorder::attributes(const std::string& group, const std::vector<Attribute>& list) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {

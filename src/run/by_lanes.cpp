@@ -144,7 +144,9 @@ std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const Share
   const double radius = fleet.vehicles.front().wheels.front().radius;
   lanes::TrackNumbers track;
   try {
-    track = lanes::track_numbers(scene.profile, radius, *rear, *front + scene.train.speed * end_time);
+    const double to = *front + scene.train.speed * end_time;
+    track =
+        lanes::track_numbers(scene.profile, radius, *rear, to, lanes::track_distance(scene.profile, radius, *rear, to));
   } catch (const InputError&) {
     return nullptr;  // too long or too sharp
   }

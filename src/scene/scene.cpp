@@ -171,6 +171,7 @@ std::vector<double> wheels_at_start(const Scene& scene) {
 }
 
 Scene read_scene(Options o) {
+  if (asks_for_study(o)) return read_study(o);
   Scene scene;
   const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
@@ -187,6 +188,8 @@ Scene read_scene(Options o) {
   read_output(o, scene);
   read_modal(o, scene);
   check_scene(o, scene);
+  if (const options::Entry* study = o.first_with_prefix("study_"))
+    scene.notes.push_back(study->name + " has no effect: study_vary names no option to vary");
   check_sense(o, vehicles, scene);
   check_size(o, scene);
   scene.options = o.all();

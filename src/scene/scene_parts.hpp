@@ -31,6 +31,11 @@ beam::Distribution read_distribution(const options::Options& options, const std:
 void read_train(const options::Options& options, const std::vector<std::string>& names, Scene& scene);
 void read_load(const options::Options& options, Scene& scene);
 void read_sweep(const options::Options& options, Scene& scene);  // before train and load: it may give their speed
+/// The speeds of sweep_speed, which is given.
+std::vector<double> read_speeds(const options::Options& options);
+bool asks_for_study(const options::Options& options);
+/// The scene of a study's first run, with the study.
+Scene read_study(const options::Options& options);
 /// Train A-N of EN 1991-2 with its first axle at `first`.
 MovingLoad hslm_load(int train, double first);
 void read_modal(const options::Options& options, Scene& scene);    // last: it depends on what moves

@@ -14,6 +14,8 @@ using options::Options;
 constexpr double most_speeds = 1e5;
 constexpr double meets = 1e-3;  // of a step: speeds in m/s are often rounded ones in km/h
 
+}  // namespace
+
 /// From, to, step: the last speed is `to` where the step meets it.
 std::vector<double> read_speeds(const Options& o) {
   const std::vector<double> range = o.numbers("sweep_speed");
@@ -25,8 +27,6 @@ std::vector<double> read_speeds(const Options& o) {
   for (int i = 0; i <= static_cast<int>(steps); ++i) speeds.push_back(from + i * step);
   return speeds;
 }
-
-}  // namespace
 
 void read_sweep(const Options& o, Scene& scene) {
   if (!o.has("sweep_speed") && !o.has("sweep_hslm_a")) return;

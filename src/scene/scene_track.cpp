@@ -23,7 +23,7 @@ std::optional<track::Spectrum> spectrum_of(const std::string& profile) {
   return {};
 }
 
-track::Profile rough(const Options& o, const Scene& scene, const track::Spectrum& spectrum) {
+Roughness rough(const Options& o, const Scene& scene, const track::Spectrum& spectrum) {
   std::vector<double> wavelengths = {spectrum.shortest, spectrum.longest};
   if (o.has("track_wavelengths")) {
     wavelengths = o.numbers("track_wavelengths");
@@ -32,8 +32,7 @@ track::Profile rough(const Options& o, const Scene& scene, const track::Spectrum
   const std::vector<double> wheels = wheels_at_start(scene);
   // From the foremost wheel on, so that the train starts on level track.
   const double start = wheels.empty() ? 0.0 : *std::max_element(wheels.begin(), wheels.end());
-  return track::Profile::rough(spectrum, wavelengths[0], wavelengths[1], start,
-                               static_cast<std::uint64_t>(o.integer("track_seed")));
+  return {spectrum, wavelengths[0], wavelengths[1], start};
 }
 
 }  // namespace
@@ -52,7 +51,8 @@ void read_track(const Options& o, Scene& scene) {
     scene.notes.push_back("track_wavelengths has no effect: track_profile is " + profile);
   if (profile == "none") return;
   if (spectrum) {
-    scene.profile = rough(o, scene, *spectrum);
+    scene.roughness = rough(o, scene, *spectrum);
+    scene.profile = scene.roughness->profile(static_cast<std::uint64_t>(o.integer("track_seed")));
     return;
   }
   if (profile.find_first_of("./") == std::string::npos) {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <set>
+#include <tuple>
 
 #include "integrate/modal_peaks.hpp"
 #include "lanes/processor.hpp"
@@ -19,91 +22,121 @@ namespace {
 constexpr double seconds_a_mode = 2e-9, seconds_a_probe = 4e-10;
 // Of a run side by side with seven others, a stage.
 constexpr double seconds_a_lane_vehicle = 2e-8, seconds_a_lane_mode = 4e-9;
+constexpr double rough_over_level = 3.5;  // no vehicle rests, and contacts take more iterations
 constexpr double coupled_over_uncoupled = 8.0;
 constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
 
 }  // namespace
 
-CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
-    : scene_(scene), speeds_(scene.sweep->speeds), loads_(scene.sweep->loads), shared_(PETSC_COMM_SELF, scene, notes) {
+CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam)
+    : scene_(scene), speeds_(scene.sweep->speeds), loads_(scene.sweep->loads), beam_(std::move(beam)) {
   if (speeds_.empty()) speeds_ = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
   if (loads_.empty()) loads_ = {scene.load};
   for (const double x : wheels_at_start(scene)) last_wheel_ = std::min(last_wheel_, x);
-  shared_.damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
-  shared_.prepare(scene_, notes);
-  if (scene_.exact_in_time())
-    shared_.modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
+  if (beam_ == nullptr) {
+    beam_ = std::make_shared<SharedBeam>(PETSC_COMM_SELF, scene_, notes);
+    beam_->damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
+    beam_->prepare(scene_, notes);
+  }
+  if (scene_.exact_in_time()) beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
   std::vector<std::string> ignored;
   for (std::size_t train = 0; train < trains(); ++train) {
-    for (const double speed : {speeds_.front(), speeds_.back()})
-      const Passage checked(scene_of(train, speed), shared_, train == 0 && speed == speeds_.front() ? notes : ignored);
+    for (const double speed : std::set{speeds_.front(), speeds_.back()})
+      const Passage checked(scene_of(train, {speed, {}}), *beam_,
+                            train == 0 && speed == speeds_.front() ? notes : ignored);
   }
   set_up_lanes();
 }
 
 void CaseRunner::set_up_lanes() {
   if (scene_.exact_in_time()) return;
-  why_no_lanes_ = scene_.sweep->lanes == 0 ? "sweep_lanes 0 asks for that" : lanes_obstacle(scene_, shared_);
+  why_no_lanes_ = scene_.sweep->lanes == 0 ? "sweep_lanes 0 asks for that" : lanes_obstacle(scene_, *beam_);
   if (!why_no_lanes_.empty()) return;
-  scene_of(0, speeds_.front());
-  lanes_.emplace(scene_, shared_);
+  scene_of(0, {speeds_.front(), {}});
+  lanes_.emplace(scene_, *beam_);
   why_no_lanes_ = lanes_->obstacle();
   if (!why_no_lanes_.empty()) return lanes_.reset();
   static_deflection_[0] = lanes_->static_deflection();
+  double past = 0.0;
+  for (const double speed : speeds_) past = std::max(past, speed * (duration(0, speed) + lanes_->steps().longest));
+  lanes_->expect(past);
 }
 
-std::vector<std::vector<std::size_t>> CaseRunner::groups() const {
+std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& runs, std::size_t most) {
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t i) {
+    return std::tuple(lanes::speed_class(runs[i].speed), runs[i].seed, runs[i].speed);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
   std::vector<std::vector<std::size_t>> groups;
-  std::size_t most = lanes_ ? scene_.sweep->lanes : 1;
-  if (scene_.exact_in_time() && !shared_.modal->dampers_couple())
-    most = std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
-  for (std::size_t i = 0; i < speeds_.size(); ++i) {
+  for (const std::size_t i : order) {
     const bool joins = !groups.empty() && groups.back().size() < most &&
-                       lanes::speed_class(speeds_[groups.back().front()]) == lanes::speed_class(speeds_[i]);
+                       lanes::speed_class(runs[groups.back().front()].speed) == lanes::speed_class(runs[i].speed);
     if (!joins) groups.emplace_back();
     groups.back().push_back(i);
   }
   return groups;
 }
 
-std::vector<CaseResult> CaseRunner::run_group(std::size_t train, const std::vector<std::size_t>& speeds,
-                                              const std::function<void(double)>& reached) {
+std::size_t CaseRunner::width() const {
+  if (scene_.exact_in_time() && !beam_->modal->dampers_couple())
+    return std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
+  return lanes_ ? scene_.sweep->lanes : 1;
+}
+
+std::vector<CaseResult> CaseRunner::run_together(std::size_t train, std::span<const Member> members,
+                                                 const std::function<void(double)>& reached) {
+  CaseRunner& first = *members.front().runner;
   std::vector<CaseResult> results;
-  std::vector<double> own, ends;
-  for (const std::size_t i : speeds) {
-    own.push_back(speeds_[i]);
-    ends.push_back(duration(train, speeds_[i]));
+  if (first.scene_.exact_in_time()) {
+    std::vector<CaseRun> runs;
+    for (const Member& member : members) runs.push_back(member.run);
+    return first.run_by_modes(train, runs);
   }
-  if (scene_.exact_in_time()) return run_by_modes(train, own);
-  if (!lanes_) {
-    for (const double speed : own) results.push_back(run(train, speed, reached));
-    return results;
-  }
-  for (const lanes::CrossingResult& crossing : lanes_->run(own, ends, lanes_->steps())) {
-    const double speed = own[results.size()];
-    if (caught_signal() != 0) return std::vector<CaseResult>(speeds.size());
-    if (crossing.trouble != lanes::none || lanes_->defect(crossing) > scene_.most_defect) {
-      ++alone_;
-      results.push_back(run(train, speed, reached));
-      continue;
+  if (first.lanes_) return run_in_lanes(train, members, reached);
+  for (const auto& [runner, one] : members) results.push_back(runner->run(train, one, reached));
+  return results;
+}
+
+std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<const Member> members,
+                                                 const std::function<void(double)>& reached) {
+  std::vector<SideBySide::Member> beside;
+  for (const auto& [runner, one] : members)
+    beside.push_back({&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed}});
+  std::vector<CaseResult> results;
+  for (const lanes::CrossingResult& crossing :
+       SideBySide::run(std::span<const SideBySide::Member>(beside), beside.front().lanes->steps())) {
+    if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
+    const auto& [runner, one] = members[results.size()];
+    if (crossing.trouble != lanes::none || runner->lanes_->defect(crossing) > runner->scene_.most_defect) {
+      ++runner->alone_;
+      results.push_back(runner->run(train, one, reached));
+    } else {
+      results.push_back(runner->result_of(crossing, train));
     }
-    CaseResult& result = results.emplace_back();
-    const auto peak = [](const lanes::CrossingPeak& p) { return integrate::Peak{p.value, p.time}; };
-    for (std::size_t p = 0; p < crossing.deflection.size(); ++p)
-      result.peaks.push_back({peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
-    result.static_deflection = static_deflection_[train];
-    result.least_wheel_force = crossing.least_force;
-    result.greatest_wheel_force = crossing.greatest_force;
-    result.ended = true;
   }
   return results;
 }
 
-const Scene& CaseRunner::scene_of(std::size_t train, double speed) {
+CaseResult CaseRunner::result_of(const lanes::CrossingResult& crossing, std::size_t train) const {
+  CaseResult result;
+  const auto peak = [](const lanes::CrossingPeak& p) { return integrate::Peak{p.value, p.time}; };
+  for (std::size_t p = 0; p < crossing.deflection.size(); ++p)
+    result.peaks.push_back({peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
+  result.static_deflection = static_deflection_.at(train);
+  result.least_wheel_force = crossing.least_force;
+  result.greatest_wheel_force = crossing.greatest_force;
+  result.ended = true;
+  return result;
+}
+
+const Scene& CaseRunner::scene_of(std::size_t train, const CaseRun& run) {
   scene_.load.forces = loads_[train].forces;
   scene_.load.positions = loads_[train].positions;
-  scene_.load.speed = scene_.load.forces.empty() ? 0.0 : speed;
-  scene_.train.speed = scene_.vehicles.empty() ? 0.0 : speed;
+  scene_.load.speed = scene_.load.forces.empty() ? 0.0 : run.speed;
+  scene_.train.speed = scene_.vehicles.empty() ? 0.0 : run.speed;
+  if (run.seed) scene_.profile = scene_.roughness->profile(*run.seed);
   return scene_;
 }
 
@@ -116,22 +149,23 @@ double CaseRunner::duration(std::size_t train, double speed) const {
 
 double CaseRunner::cost() const {
   if (scene_.exact_in_time()) {
-    const std::vector<double>& omega = shared_.modal->omega();
+    const std::vector<double>& omega = beam_->modal->omega();
     const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
     const double an_instant = seconds_a_mode + seconds_a_probe * static_cast<double>(scene_.output.probes.size());
-    const double coupled = shared_.modal->dampers_couple() ? coupled_over_uncoupled : 1.0;
+    const double coupled = beam_->modal->dampers_couple() ? coupled_over_uncoupled : 1.0;
     return coupled * instants * static_cast<double>(omega.size()) * an_instant;
   }
   if (lanes_) {
     const SideBySide::Steps steps = lanes_->steps();
     const double a_stage = seconds_a_lane_vehicle * static_cast<double>(scene_.train.vehicles.size()) +
-                           seconds_a_lane_mode * static_cast<double>(shared_.modal->modes());
-    return a_stage * static_cast<double>(steps.method.stages.size()) / steps.longest;
+                           seconds_a_lane_mode * static_cast<double>(beam_->modal->modes());
+    const double rough = scene_.profile.level() ? 1.0 : rough_over_level;
+    return rough * a_stage * static_cast<double>(steps.method.stages.size()) / steps.longest;
   }
   double bodies = 0.0;
   for (const int type : scene_.train.vehicles)
     bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
-  const double a_step = seconds_a_step + seconds_a_body * bodies + seconds_an_element * shared_.beam->mesh().elements();
+  const double a_step = seconds_a_step + seconds_a_body * bodies + seconds_an_element * beam_->beam->mesh().elements();
   return a_step / scene_.time_step.value_or(1.0);
 }
 
@@ -142,20 +176,21 @@ double CaseRunner::cost_of_all() const {
   return cost() * motion;
 }
 
-CaseResult CaseRunner::run(std::size_t train, double speed, const std::function<void(double)>& reached) {
-  return scene_.exact_in_time() ? run_by_modes(train, {speed}).front() : run_by_elements(train, speed, reached);
+CaseResult CaseRunner::run(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached) {
+  return scene_.exact_in_time() ? run_by_modes(train, {&run, 1}).front() : run_by_elements(train, run, reached);
 }
 
-CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const std::function<void(double)>& reached) {
+CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
+                                       const std::function<void(double)>& reached) {
   std::vector<std::string> ignored;
-  const Scene& scene = scene_of(train, speed);
+  const Scene& scene = scene_of(train, run);
   // Factorisations of other runs would serve shifts that are equal but for rounding: results would depend on which runs
   // this rank has had.
-  shared_.statics->forget_steps();
-  Passage passage(scene, shared_, ignored);
+  beam_->statics->forget_steps();
+  Passage passage(scene, *beam_, ignored);
   passage.start(ignored);
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
-  Watch watch(scene, passage.system(), shared_.bridge(), none);
+  Watch watch(scene, passage.system(), beam_->bridge(), none);
   CaseResult result;
   result.peaks.resize(scene.output.probes.size());
   const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
@@ -167,7 +202,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
   passage.run(sample, step);
   result.ended = caught_signal() == 0;
   if (!result.ended) return result;
-  if (passage.system().defect() > scene.most_defect) return run_with_mechanisms(train, speed, reached);
+  if (passage.system().defect() > scene.most_defect) return run_with_mechanisms(train, run, reached);
   check_balance(scene, watch.extremes());
   const Peaks& peaks = watch.finished_peaks();
   for (std::size_t p = 0; p < result.peaks.size(); ++p) {
@@ -196,29 +231,32 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, double speed, const st
 }
 
 // Linear vehicles have left out too much.
-CaseResult CaseRunner::run_with_mechanisms(std::size_t train, double speed,
+CaseResult CaseRunner::run_with_mechanisms(std::size_t train, const CaseRun& run,
                                            const std::function<void(double)>& reached) {
   scene_.vehicle_model = VehicleModel::full;
-  CaseResult result = run_by_elements(train, speed, reached);
+  CaseResult result = run_by_elements(train, run, reached);
   scene_.vehicle_model = VehicleModel::linear;
   return result;
 }
 
-std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, const std::vector<double>& speeds) {
+std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<const CaseRun> runs) {
   auto place = passages_.find(train);
   if (place == passages_.end()) {
-    const train::MovingLoad& load = scene_of(train, speeds.front()).load;
-    place = passages_.try_emplace(train, *shared_.modal, load, scene_.start == Start::equilibrium).first;
+    const train::MovingLoad& load = scene_of(train, runs.front()).load;
+    place = passages_.try_emplace(train, *beam_->modal, load, scene_.start == Start::equilibrium).first;
     static_deflection_[train] = place->second.static_peaks();
   }
-  std::vector<double> ends;
-  for (const double speed : speeds) ends.push_back(duration(train, speed));
+  std::vector<double> speeds, ends;
+  for (const CaseRun& one : runs) {
+    speeds.push_back(one.speed);
+    ends.push_back(duration(train, one.speed));
+  }
   std::vector<CaseResult> results(speeds.size());
   const auto going = [] { return caught_signal() == 0; };
   std::vector<std::vector<integrate::ProbePeaks>> peaks;
-  if (shared_.modal->dampers_couple())
+  if (beam_->modal->dampers_couple())
     for (std::size_t i = 0; i < speeds.size(); ++i)
-      peaks.push_back(integrate::modal_peaks(*shared_.modal, place->second.history(), speeds[i],
+      peaks.push_back(integrate::modal_peaks(*beam_->modal, place->second.history(), speeds[i],
                                              scene_.start == Start::equilibrium, ends[i], scene_.sweep->instants,
                                              going));
   else

@@ -58,17 +58,26 @@ bool lose_contact(const std::vector<CrossingResult>& runs) {
                      [](const CrossingResult& run) { return run.trouble == lanes::contact_lost; });
 }
 
+LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance)
+    : scene_(std::move(scene)) {
+  for (const std::vector<double>& group : speeds) {
+    std::vector<LaneRun>& runs = groups_.emplace_back();
+    for (const std::uint64_t seed : scene_.sweep->seeds)
+      if (group.size() == 1 && runs.size() + 1 < lanes::widest)
+        runs.push_back({group.front(), distance / group.front(), seed});
+    for (const double speed : group) runs.push_back({speed, distance / speed, {}});
+  }
+}
+
 const std::vector<CrossingResult>& LaneTrials::run(const LaneModel& model) {
   for (const Kept& known : kept_)
     if (known.model == model) return known.results;
   Setup& with_modes = setup(model);
   Kept& kept = kept_.emplace_back();
   kept.model = model;
-  for (const std::vector<double>& speeds : speeds_) {
-    std::vector<double> ends;
-    for (const double speed : speeds) ends.push_back(distance_ / speed);
+  for (const std::vector<LaneRun>& runs : groups_) {
     for (CrossingResult& result :
-         with_modes.lanes->run(speeds, ends, {model.method->make(model.method->parameter.value), model.step})) {
+         with_modes.lanes->run(runs, {model.method->make(model.method->parameter.value), model.step})) {
       if (result.trouble == lanes::none) kept.defect = std::max(kept.defect, with_modes.lanes->defect(result));
       kept.results.push_back(std::move(result));
     }

@@ -38,9 +38,9 @@ bool lose_contact(const std::vector<lanes::CrossingResult>& runs);
 /// Passages of one scene at some speeds.
 class LaneTrials {
  public:
-  /// Groups of speeds, those of a group in one class, or the slowest one first; distance: of every passage, m.
-  LaneTrials(Scene scene, std::vector<std::vector<double>> speeds, double distance)
-      : scene_(std::move(scene)), speeds_(std::move(speeds)), distance_(distance) {}
+  /// Groups of speeds, those of a group in one class, or the slowest one first; distance: of every passage, m. A group
+  /// of one speed goes over the tracks of the scene's sweep too, its own track last, as many as there are lanes.
+  LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance);
 
   /// Kept. Refused where runs cannot go side by side.
   const std::vector<lanes::CrossingResult>& run(const LaneModel& model);
@@ -69,8 +69,7 @@ class LaneTrials {
   Setup& setup(const LaneModel& model);
 
   Scene scene_;
-  std::vector<std::vector<double>> speeds_;
-  double distance_;
+  std::vector<std::vector<LaneRun>> groups_;
   std::map<std::pair<int, int>, std::unique_ptr<Setup>> setups_;  // by modes and elements
   std::deque<Kept> kept_;                                         // references to its entries stay
 };

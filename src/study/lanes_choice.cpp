@@ -64,7 +64,7 @@ std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, 
     for (std::size_t i = at; i > 0 && group.size() < most; --i)
       if (lanes::speed_class(speeds[i - 1]) == number) group.push_back(speeds[i - 1]);
     std::sort(group.begin(), group.end());
-    groups.push_back(group);
+    if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
   }
   return groups;
 }
@@ -290,7 +290,8 @@ class Chooser {
 
 std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes) {
   const std::vector<double>& speeds = given.sweep->speeds;
-  if (!open(given) || given.sweep->lanes == 0 || speeds.size() < fewest_runs) return std::nullopt;
+  if (!open(given) || given.sweep->lanes == 0 || std::max(given.sweep->runs, speeds.size()) < fewest_runs)
+    return std::nullopt;
   const results::Stage stage("trial runs side by side");
   const options::WithoutMonitors without_monitors;
   const auto refuse = [&](const std::string& why) {
@@ -299,12 +300,10 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
   };
   constexpr std::array methods = {"genalpha", "esdirk4"};
   const std::size_t n = speeds.size() - 1;
+  TrialSpeeds trials = {some_speeds(speeds, {0.0, 1.0}, trial_lanes), {}, some_speeds(speeds, {0.5}, lanes::widest)};
+  if (n > 0) trials.mixed = {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}};
   try {
-    Chooser chooser(given,
-                    {some_speeds(speeds, {0.0, 1.0}, trial_lanes),
-                     {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}},
-                     some_speeds(speeds, {0.5}, lanes::widest)},
-                    methods, false);
+    Chooser chooser(given, trials, methods, false);
     LanesChoice choice = chooser.choose();
     const Errors off = chooser.off_the_elements(some_speeds(speeds, {1.0}, trial_lanes).back().back());
     if (greatest(off) > given.accuracy)

@@ -62,7 +62,7 @@ std::vector<Sample> some_runs(CaseRunner& elements) {
   std::vector<Sample> samples;
   for (std::size_t i = 0; i < count; ++i) {
     const double speed = speeds[i * (speeds.size() - 1) / (count - 1)];
-    samples.push_back({i % elements.trains(), speed, elements.run(i % elements.trains(), speed)});
+    samples.push_back({i % elements.trains(), speed, elements.run(i % elements.trains(), {speed, {}})});
   }
   return samples;
 }
@@ -96,7 +96,7 @@ ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vec
       CaseRunner modes(by_modes, ignored);
       if (modes.cost() > elements.cost()) return {};
       double worst = 0.0;
-      for (const Sample& s : samples) worst = std::max(worst, difference(modes.run(s.train, s.speed), s.result));
+      for (const Sample& s : samples) worst = std::max(worst, difference(modes.run(s.train, {s.speed, {}}), s.result));
       if (worst > share_of_modes * scene.accuracy) continue;
       notes.push_back(fmt::format(
           "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "

@@ -11,7 +11,8 @@
 namespace traverse::app {
 namespace {
 
-constexpr double one_place = 1e-9;  // m: events nearer than that are one
+constexpr double one_place = 1e-9;         // m: events nearer than that are one
+constexpr double most_of_tracks = 2.56e8;  // bytes, of tracks that are kept
 
 }  // namespace
 
@@ -44,11 +45,28 @@ std::vector<double> SideBySide::events(double past) const {
   return events;
 }
 
-void SideBySide::make_track(double past) {
-  if (scene_.profile.level() || past <= track_past_) return;
-  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
-  track_ = lanes::track_numbers(scene_.profile, fleet_.vehicles.front().wheels.front().radius, *rear, *front + past);
+void SideBySide::expect(double past) {
+  tracks_.clear();
   track_past_ = past;
+  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
+  track_distance_ =
+      lanes::track_distance(scene_.profile, fleet_.vehicles.front().wheels.front().radius, *rear, *front + track_past_);
+}
+
+/// All tracks of a spectrum have their stations where the scene's own has.
+SideBySide::Track SideBySide::track(const std::optional<std::uint64_t>& seed, double past) {
+  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
+  const double radius = fleet_.vehicles.front().wheels.front().radius;
+  if (past > track_past_) expect(past);
+  const auto known = std::find_if(tracks_.begin(), tracks_.end(), [&](const auto& one) { return one.first == seed; });
+  if (known != tracks_.end()) return known->second;
+  const track::Profile other = seed ? scene_.roughness->profile(*seed) : track::Profile();
+  const lanes::TrackNumbers made =
+      lanes::track_numbers(seed ? other : scene_.profile, radius, *rear, *front + track_past_, track_distance_);
+  if (static_cast<double>((tracks_.size() + 1) * made.values.size() * sizeof(double)) > most_of_tracks &&
+      !tracks_.empty())
+    tracks_.pop_front();
+  return tracks_.emplace_back(seed, std::make_shared<lanes::TrackNumbers>(made)).second;
 }
 
 SideBySide::Steps SideBySide::steps() const {
@@ -56,25 +74,58 @@ SideBySide::Steps SideBySide::steps() const {
   return {row != nullptr ? row->make(row->parameter.value) : *integrate::own_method(), *scene_.time_step};
 }
 
-std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speeds, std::span<const double> ends,
-                                                   const Steps& steps) {
-  plan_.method = steps.method;
-  plan_.exact_modes = steps.method.stages.size() == 1;
-  const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(speeds.front()));
+std::vector<lanes::CrossingResult> SideBySide::run(std::span<const LaneRun> runs, const Steps& steps) {
+  std::vector<Member> members;
+  for (const LaneRun& run : runs) members.push_back({this, run});
+  return run(members, steps);
+}
+
+std::vector<lanes::CrossingResult> SideBySide::run(std::span<const Member> members, const Steps& steps) {
+  const SideBySide& first = *members.front().lanes;
+  lanes::CrossingPlan plan = first.plan_;
+  plan.method = steps.method;
+  plan.exact_modes = steps.method.stages.size() == 1;
+  const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(members.front().run.speed));
   double past = 0.0;
-  for (std::size_t i = 0; i < speeds.size(); ++i) past = std::max(past, speeds[i] * ends[i]);
-  plan_.stretches.clear();
+  for (const Member& member : members) past = std::max(past, member.run.speed * member.run.end);
   double from = 0.0;
-  for (const double event : events(past)) {
-    plan_.stretches.push_back({event, std::max(1L, static_cast<long>(std::ceil((event - from) / ds - one_place)))});
+  for (const double event : first.events(past)) {
+    plan.stretches.push_back({event, std::max(1L, static_cast<long>(std::ceil((event - from) / ds - one_place)))});
     from = event;
   }
   const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
-  if (last > 0) plan_.stretches.push_back({past, last});
-  make_track(past + ds);
-  std::vector<lanes::CrossingRun> runs;
-  for (std::size_t i = 0; i < speeds.size(); ++i) runs.push_back({&train_, &track_, nullptr, &q_, speeds[i], ends[i]});
-  return lanes::cross(plan_, runs);
+  if (last > 0) plan.stretches.push_back({from + static_cast<double>(last) * ds, last});
+  std::vector<Track> tracks;
+  std::vector<lanes::CrossingRun> crossings;
+  for (const auto& [lanes, run] : members) {
+    tracks.push_back(lanes->track(run.seed, past + ds));
+    crossings.push_back({&lanes->train_, tracks.back().get(), nullptr, &lanes->q_, run.speed, run.end});
+  }
+  return lanes::cross(plan, crossings);
+}
+
+bool SideBySide::join(const SideBySide& other) {
+  const auto same_kind = [](const lanes::VehicleNumbers& a, const lanes::VehicleNumbers& b) {
+    return a.freedom == b.freedom && a.wheels == b.wheels;
+  };
+  const auto same_vehicle = [](const lanes::TrainNumbers::Vehicle& a, const lanes::TrainNumbers::Vehicle& b) {
+    return a.kind == b.kind && a.first_coordinate == b.first_coordinate && a.first_wheel == b.first_wheel;
+  };
+  const auto near = [](double a, double b) { return std::abs(a - b) < one_place; };
+  const lanes::TrainNumbers& its = other.train_;
+  const bool same_train =
+      std::equal(train_.kinds.begin(), train_.kinds.end(), its.kinds.begin(), its.kinds.end(), same_kind) &&
+      std::equal(train_.vehicles.begin(), train_.vehicles.end(), its.vehicles.begin(), its.vehicles.end(),
+                 same_vehicle) &&
+      std::equal(train_.x.begin(), train_.x.end(), its.x.begin(), its.x.end(), near) && train_.hertz == its.hertz;
+  if (!same_train || plan_.bridge != other.plan_.bridge || plan_.kinks != other.plan_.kinks ||
+      plan_.level_until != other.plan_.level_until || scene_.output.probes != other.scene_.output.probes ||
+      track_past_ != other.track_past_ || track_distance_ != other.track_distance_)
+    return false;
+  train_.x = its.x;
+  train_.force_scale = its.force_scale;
+  for (std::size_t k = 0; k < train_.kinds.size(); ++k) train_.kinds[k].bend = its.kinds[k].bend;
+  return true;
 }
 
 std::vector<double> SideBySide::static_deflection() {

@@ -1,9 +1,14 @@
-// The runs of a sweep that go side by side in the lanes of the processor's vectors (lanes/crossing.hpp): one train of
-// linear vehicles over the modes of the bridge, at several speeds.
+// The runs of a sweep or a study that go side by side in the lanes of the processor's vectors (lanes/crossing.hpp): one
+// train of linear vehicles over the modes of the bridge, at several speeds and over several tracks.
 #pragma once
 
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coupling/system.hpp"
@@ -12,6 +17,12 @@
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
+
+/// What is one run's own.
+struct LaneRun {
+  double speed = 0.0, end = 0.0;      // m/s; s: when it ends
+  std::optional<std::uint64_t> seed;  // of its track; none: the scene's own
+};
 
 class SideBySide {
  public:
@@ -27,9 +38,20 @@ class SideBySide {
   };
   /// Those that the scene asks for.
   Steps steps() const;
-  /// At most lanes::widest speeds of a class (lanes/speed_class.hpp), and when each run ends.
-  std::vector<lanes::CrossingResult> run(std::span<const double> speeds, std::span<const double> ends,
-                                         const Steps& steps);
+  /// Tracks shall be known at once for all runs up to this distance gone (m), so that none depends on which runs come
+  /// first.
+  void expect(double past);
+  /// At most lanes::widest runs with speeds of a class (lanes/speed_class.hpp).
+  std::vector<lanes::CrossingResult> run(std::span<const LaneRun> runs, const Steps& steps);
+  /// The same of runs whose trains have numbers of their own; those of different trains have joined one and the same.
+  struct Member {
+    SideBySide* lanes;
+    LaneRun run;
+  };
+  static std::vector<lanes::CrossingResult> run(std::span<const Member> members, const Steps& steps);
+  /// From now on its runs may go beside those of another scene on the same bridge: what all lanes have in common it
+  /// takes from there. False where the trains differ in more than numbers.
+  bool join(const SideBySide& other);
   /// How far the mechanisms were out of balance in a run: lanes::defect.
   double defect(const lanes::CrossingResult& result) { return lanes::defect(fleet_, result.bent); }
   /// The largest deflection at rest of each probe while the train passes, m.
@@ -37,7 +59,8 @@ class SideBySide {
 
  private:
   std::vector<double> events(double past) const;
-  void make_track(double past);
+  using Track = std::shared_ptr<const lanes::TrackNumbers>;
+  Track track(const std::optional<std::uint64_t>& seed, double past);
 
   const Scene& scene_;
   const SharedBeam& shared_;
@@ -46,8 +69,10 @@ class SideBySide {
   train::Fleet fleet_;
   std::string obstacle_;
   lanes::TrainNumbers train_;
-  lanes::TrackNumbers track_;
-  double track_past_ = 0.0;  // m: distance that the track is known for
+  /// Tracks made last, which the next runs are likely to go over too.
+  std::deque<std::pair<std::optional<std::uint64_t>, Track>> tracks_;
+  double track_past_ = 0.0;      // m: distance that tracks are known for
+  double track_distance_ = 0.0;  // m: between their stations
   std::vector<double> q_;
   lanes::CrossingPlan plan_;
 };

@@ -5,300 +5,210 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
-#include <numeric>
 
-#include "case_runner.hpp"
-#include "deal.hpp"
-#include "modes_choice.hpp"
 #include "results/stage.hpp"
-#include "results/sweep.hpp"
 #include "results/terminal.hpp"
 #include "run/deflection_check.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
-#include "sweep_choice.hpp"
+#include "share_runs.hpp"
+#include "study/returns.hpp"
+#include "study/study_choice.hpp"
+#include "study/study_file.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
 namespace {
 
-constexpr int nobody = std::numeric_limits<int>::max();
-constexpr double worth_a_word = 10.0;  // s, from which on quicker ways are looked for
-constexpr double quicker_by = 0.2;     // of the time: what modes must do with
+constexpr double most_told = 5.0;  // values of a dimension that are listed one by one
 
-/// Runs of the sweep that one rank takes together.
-struct Case {
-  std::size_t train = 0;  // indices
-  std::vector<std::size_t> speeds;
-};
-
-/// s of motion, of all its runs.
-double duration_of(const Case& c, const CaseRunner& runner) {
-  double sum = 0.0;
-  for (const std::size_t i : c.speeds) sum += runner.duration(c.train, runner.speeds()[i]);
-  return sum;
+/// "track_seed: 1000 values from 1 to 1000".
+std::string words_of(const StudyDimension& d) {
+  const auto [least, greatest] = std::minmax_element(d.values.begin(), d.values.end());
+  if (d.law != "list")
+    return fmt::format("{}: {} draws ({}) from {:g} to {:g}", d.name(), d.values.size(), d.law, *least, *greatest);
+  if (static_cast<double>(d.values.size()) > most_told)
+    return fmt::format("{}: {} values from {:g} to {:g}", d.name(), d.values.size(), *least, *greatest);
+  std::string list;
+  for (const double value : d.values) list += fmt::format("{}{:g}", list.empty() ? "" : ", ", value);
+  return fmt::format("{}: {}", d.name(), list);
 }
 
-/// Longest first, so that no rank ends long after the others.
-std::vector<Case> cases_of(const CaseRunner& runner) {
-  std::vector<Case> cases;
-  for (std::size_t train = 0; train < runner.trains(); ++train)
-    for (const std::vector<std::size_t>& speeds : runner.groups()) cases.push_back({train, speeds});
-  std::stable_sort(cases.begin(), cases.end(),
-                   [&](const Case& a, const Case& b) { return duration_of(a, runner) > duration_of(b, runner); });
-  return cases;
-}
-
-std::vector<double> span_ends(const beam::BeamModel& beam) {
-  std::vector<double> ends = {beam.start};
-  for (const double span : beam.spans) ends.push_back(ends.back() + span);
-  return ends;
-}
-
-results::Sweep empty_sweep(const Scene& scene, const CaseRunner& runner, const results::Sweep::Model& model) {
-  results::Sweep sweep;
-  sweep.model = model;
-  sweep.speed = runner.speeds();
-  sweep.trains = scene.sweep->trains;
-  sweep.probes = scene.output.probes;
-  const std::size_t runs = sweep.rows() * sweep.speed.size();
-  const std::vector<double> none(runs * sweep.probes.size(), results::Sweep::not_run);
-  sweep.deflection = sweep.acceleration = sweep.moment = {none, none};
-  sweep.amplification = none;
-  sweep.static_deflection.assign(sweep.rows() * sweep.probes.size(), results::Sweep::not_run);
-  const auto rolls = [](const Vehicle& v) { return !v.wheels.empty(); };
-  if (std::any_of(scene.vehicles.begin(), scene.vehicles.end(), rolls))
-    for (std::vector<double>* values :
-         {&sweep.least_wheel_force, &sweep.greatest_wheel_force, &sweep.contact_losses, &sweep.longest_loss})
-      values->assign(runs, results::Sweep::not_run);
-  return sweep;
-}
-
-void store(const CaseResult& result, std::size_t train, std::size_t speed, results::Sweep& sweep) {
-  const std::size_t run = train * sweep.speed.size() + speed;
-  for (std::size_t p = 0; p < sweep.probes.size(); ++p) {
-    const std::size_t at = run * sweep.probes.size() + p;
-    const auto put = [&](const integrate::Peak& peak, results::Sweep::Peaks& into) {
-      into.value[at] = peak.value;
-      into.time[at] = peak.time;
-    };
-    put(result.peaks[p].deflection, sweep.deflection);
-    put(result.peaks[p].acceleration, sweep.acceleration);
-    put(result.peaks[p].moment, sweep.moment);
-    const double rest = result.static_deflection[p];
-    sweep.amplification[at] = rest > 0.0 ? result.peaks[p].deflection.value / rest : 0.0;
-    if (rest > 0.0) sweep.static_deflection[train * sweep.probes.size() + p] = rest;
-  }
-  if (sweep.least_wheel_force.empty()) return;
-  sweep.least_wheel_force[run] = result.least_wheel_force;
-  sweep.greatest_wheel_force[run] = result.greatest_wheel_force;
-  sweep.contact_losses[run] = result.contact_losses;
-  sweep.longest_loss[run] = result.longest_loss;
-}
-
-/// What went wrong on this rank, if anything.
-struct Failure {
-  int run = nobody;  // in the order of dealing
-  int status = 0;
-  std::string message;
-};
-
-/// Collective. The failure of the earliest run, the same on every rank.
-Failure first_of(MPI_Comm comm, Failure mine) {
-  int ranks = 1, rank = 0;
-  MPI_Comm_size(comm, &ranks);
-  MPI_Comm_rank(comm, &rank);
-  int place[2] = {mine.run, rank};
-  MPI_Allreduce(MPI_IN_PLACE, place, 1, MPI_2INT, MPI_MINLOC, comm);
-  if (place[0] == nobody) return {};
-  int sizes[2] = {static_cast<int>(mine.message.size()), mine.status};
-  MPI_Bcast(sizes, 2, MPI_INT, place[1], comm);
-  mine.message.resize(static_cast<std::size_t>(sizes[0]));
-  MPI_Bcast(mine.message.data(), sizes[0], MPI_CHAR, place[1], comm);
-  return {place[0], sizes[1], mine.message};
-}
-
-/// Collective. Each run's numbers from the rank that has them.
-void gather(MPI_Comm comm, results::Sweep& sweep) {
-  for (std::vector<double>* values :
-       {&sweep.deflection.value, &sweep.deflection.time, &sweep.acceleration.value, &sweep.acceleration.time,
-        &sweep.moment.value, &sweep.moment.time, &sweep.amplification, &sweep.static_deflection,
-        &sweep.least_wheel_force, &sweep.greatest_wheel_force, &sweep.contact_losses, &sweep.longest_loss}) {
-    std::vector<double> known(*values);
-    for (double& value : known)
-      if (value != value) value = -std::numeric_limits<double>::infinity();
-    MPI_Allreduce(MPI_IN_PLACE, known.data(), static_cast<int>(known.size()), MPI_DOUBLE, MPI_MAX, comm);
-    std::transform(known.begin(), known.end(), values->begin(), [](double value) {
-      return value == -std::numeric_limits<double>::infinity() ? results::Sweep::not_run : value;
-    });
-  }
-}
-
-std::string name_of(const Case& c, const results::Sweep& sweep) {
-  const double from = sweep.speed[c.speeds.front()], to = sweep.speed[c.speeds.back()];
-  const std::string train = sweep.trains.empty() ? "" : fmt::format(" of train A{}", sweep.trains[c.train]);
-  if (c.speeds.size() > 1)
-    return fmt::format("one of the runs{} at {:g} to {:g} m/s ({:g} to {:g} km/h)", train, from, to, 3.6 * from,
-                       3.6 * to);
-  return fmt::format("the run{} at {:g} m/s ({:g} km/h)", train, from, 3.6 * from);
-}
-
-/// How far the sweep is, by the time that its runs' motions last: runs are dealt longest first.
-class Course {
- public:
-  Course(const std::vector<Case>& cases, const CaseRunner& runner, int ranks, bool quiet)
-      : ranks_(static_cast<std::size_t>(ranks)), progress_(0.0, 1.0, quiet) {
-    for (const Case& c : cases) {
-      duration_.push_back(duration_of(c, runner));
-      until_.push_back(until_.back() + duration_.back());
-      runs_.push_back(runs_.back() + c.speeds.size());
-    }
-  }
-
-  /// So many runs are taken; this rank's own has `left` s to go, those of the others half of theirs.
-  void show(std::size_t taken, double left) {
-    if (taken == 0) return;
-    const double others = 0.5 * static_cast<double>(ranks_ - 1) * duration_[taken - 1];
-    const double done = std::max(until_[taken] - left - others, 0.0);
-    progress_.runs(done / until_.back(), runs_[taken > ranks_ ? taken - ranks_ : 0], runs_.back());
-  }
-  void done() { progress_.done(); }
-
- private:
-  std::size_t ranks_;
-  results::Progress progress_;
-  std::vector<double> duration_, until_{0.0};  // s, of the runs of each case, and of all cases before it
-  std::vector<std::size_t> runs_{0};           // in the cases before each
-};
-
-/// This rank's share of the runs.
-Failure run_share(const std::vector<Case>& cases, CaseRunner& runner, Deal& deal, Course& course, results::Sweep& sweep,
-                  long& runs) {
-  Failure failure;
-  while (const auto piece = deal.next()) {
-    const Case& c = cases[*piece];
-    const auto fail = [&](int status, const std::string& why) {
-      failure = {static_cast<int>(*piece), status, name_of(c, sweep) + " failed: " + why};
-      deal.stop();
-    };
-    try {
-      const double duration = duration_of(c, runner);
-      const std::vector<CaseResult> results = runner.run_group(
-          c.train, c.speeds, [&](double t) { course.show(deal.taken(), std::max(duration - t, 0.0)); });
-      for (std::size_t i = 0; i < results.size(); ++i) {
-        if (!results[i].ended) continue;
-        store(results[i], c.train, c.speeds[i], sweep);
-        ++runs;
-      }
-    } catch (const Error& error) {
-      fail(error.status(), error.what());
-    } catch (const std::exception& failed) {
-      const Error error = as_error(failed);
-      fail(error.status(), error.what());
-    }
-    if (caught_signal() != 0) deal.stop();
-    course.show(deal.taken(), 0.0);
-    results::Stage::advance(static_cast<double>(deal.taken()) / static_cast<double>(cases.size()));
-  }
-  return failure;
-}
-
-/// How many runs, what they will take and what would be quicker.
-void announce(const Scene& scene, const CaseRunner& runner, const results::Sweep::Model& model, int ranks,
-              std::vector<std::string>& notes) {
-  const auto& speeds = runner.speeds();
-  const double seconds = runner.cost_of_all() / ranks;
-  notes.push_back(fmt::format("sweep of {} runs: {} speed{} from {:g} to {:g} m/s, {} train{}; above for the first one",
-                              speeds.size() * runner.trains(), speeds.size(), speeds.size() == 1 ? "" : "s",
-                              speeds.front(), speeds.back(), runner.trains(), runner.trains() == 1 ? "" : "s"));
-  if (runner.has_lanes())
-    notes.push_back(fmt::format("up to {} runs go side by side, in the lanes of {} vectors", scene.sweep->lanes,
-                                lanes::instructions()));
-  else if (!scene.vehicles.empty() && scene.model_modes > 0)
-    notes.push_back("runs go one by one: " + runner.why_no_lanes());
-  const bool known = model.modes > 0 || model.time_step > 0.0;
-  notes.push_back(fmt::format("the sweep is {}{}", results::method_of(model),
-                              known ? ", which will take about " + results::duration_text(seconds) : ""));
+/// How many runs, what they will take, and how they go.
+void announce(const StudyScenes& scenes, const CaseRunner& first, const results::Sweep::Model& model, std::size_t known,
+              int ranks, std::vector<std::string>& notes) {
+  const std::size_t runs = scenes.runs().size();
+  std::string axes;
+  for (const Study::Axis& axis : scenes.study().axes)
+    axes += fmt::format("{}{} of {}", axes.empty() ? "" : " times ", axis.length, axis.name);
+  notes.push_back(fmt::format("study of {} runs ({}); above for the first one", runs, axes));
+  for (const StudyDimension& d : scenes.study().dimensions) notes.push_back(words_of(d));
+  if (known > 0) notes.push_back(fmt::format("{} of them are known from the results file that was there", known));
+  if (first.has_lanes())
+    notes.push_back(fmt::format(
+        "up to {} runs that differ in {} alone go side by side, in the lanes of {} vectors", first.width(),
+        scenes.mixes(first.width()) ? "speed, track and vehicles' numbers" : "speed and track", lanes::instructions()));
+  else if (!first.why_no_lanes().empty())
+    notes.push_back("runs go one by one: " + first.why_no_lanes());
+  double motion = 0.0;
+  for (const StudyRun& run : scenes.runs()) motion += first.duration(0, run.own.speed);
+  const double part = static_cast<double>(runs - known) / static_cast<double>(runs);
+  const bool told = model.modes > 0 || model.time_step > 0.0;
+  notes.push_back(fmt::format(
+      "the study is {}{}", results::method_of(model),
+      told ? ", which will take about " + results::duration_text(part * first.cost() * motion / ranks) : ""));
   if (ranks > 1)
     notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
-  if (!known || seconds < worth_a_word) return;
-  const std::optional<QuickerModes> quicker = quicker_modes(scene);
-  if (quicker && quicker->seconds < quicker_by * seconds * ranks)
-    notes.push_back(fmt::format("quicker: -model_modes {} (all modes up to {:.3g} Hz) would take about {}{}",
-                                quicker->modes, quicker->frequency, results::duration_text(quicker->seconds / ranks),
-                                scene.modes_open && model.accuracy == 0.0
-                                    ? "; with ts_dt and the elements left open, modes are taken where they do as well"
-                                    : ""));
+}
+
+/// A run's numbers in the order of the table, with its index before them.
+std::vector<double> row_of(std::size_t run, const CaseResult& result, const std::vector<double>& probes, bool wheels) {
+  std::vector<double> row = {static_cast<double>(run)};
+  const auto add = [&](auto get) {
+    for (std::size_t p = 0; p < probes.size(); ++p) row.push_back(get(p));
+  };
+  const auto or_unknown = [](double value) { return value > 0.0 ? value : results::StudyTable::not_run; };
+  add([&](std::size_t p) { return probes[p]; });
+  for (const auto quantity :
+       {&integrate::ProbePeaks::deflection, &integrate::ProbePeaks::acceleration, &integrate::ProbePeaks::moment}) {
+    add([&](std::size_t p) { return (result.peaks[p].*quantity).value; });
+    add([&](std::size_t p) { return (result.peaks[p].*quantity).time; });
+  }
+  add([&](std::size_t p) { return or_unknown(result.static_deflection[p]); });
+  add([&](std::size_t p) { return result.peaks[p].deflection.value / or_unknown(result.static_deflection[p]); });
+  if (wheels)
+    row.insert(row.end(),
+               {result.least_wheel_force, result.greatest_wheel_force, result.contact_losses, result.longest_loss});
+  return row;
+}
+
+std::string name_of(const Study& study, const std::vector<std::size_t>& group) {
+  if (group.size() == 1) return fmt::format("the run at {}", results::point_text(study, group.front()));
+  return fmt::format("one of the runs from {} to {}", results::point_text(study, group.front()),
+                     results::point_text(study, group.back()));
+}
+
+/// The runs of a group: side by side as far as they can be, the others by themselves.
+void run_pieces(StudyScenes& scenes, const std::vector<std::size_t>& group, const std::function<void(double)>& reached,
+                const std::function<void(std::size_t, const CaseResult&, const CaseRunner&)>& ended) {
+  std::vector<StudyScenes::Runner> runners;  // which stay as long as their runs
+  for (const std::size_t run : group) runners.push_back(scenes.runner(scenes.runs()[run].base));
+  std::vector<char> done(group.size(), 0);
+  for (std::size_t i = 0; i < group.size(); ++i) {
+    if (done[i] != 0) continue;
+    std::vector<CaseRunner::Member> members;
+    std::vector<std::size_t> places;
+    for (std::size_t j = i; j < group.size(); ++j) {
+      if (done[j] != 0 || !scenes.beside(runners[j], runners[i])) continue;
+      members.push_back({runners[j].runs.get(), scenes.runs()[group[j]].own});
+      places.push_back(j);
+      done[j] = 1;
+    }
+    const std::vector<CaseResult> results = CaseRunner::run_together(0, members, reached);
+    for (std::size_t j = 0; j < results.size(); ++j) ended(group[places[j]], results[j], *runners[places[j]].runs);
+  }
+}
+
+/// Computes groups of runs and hands their numbers in.
+SharedWork study_work(StudyScenes& scenes, const std::vector<std::vector<std::size_t>>& groups, bool wheels,
+                      Returns& returns) {
+  SharedWork work;
+  const CaseRunner& first = *scenes.runner(0).runs;
+  for (const std::vector<std::size_t>& group : groups) {
+    double duration = 0.0;
+    for (const std::size_t run : group) duration += first.duration(0, scenes.runs()[run].own.speed);
+    work.pieces.push_back({group.size(), duration});
+  }
+  work.take = [&, wheels](std::size_t piece, const std::function<void(double)>& reached) {
+    const std::vector<std::size_t>& group = groups[piece];
+    run_pieces(
+        scenes, group,
+        [&](double t) {
+          reached(t);
+          returns.collect();
+        },
+        [&](std::size_t run, const CaseResult& result, const CaseRunner& runner) {
+          if (result.ended) returns.send(row_of(run, result, runner.probes(), wheels));
+        });
+    returns.collect();
+  };
+  work.name = [&](std::size_t piece) { return name_of(scenes.study(), groups[piece]); };
+  return work;
+}
+
+bool has_wheels(const Scene& scene) {
+  return std::any_of(scene.vehicles.begin(), scene.vehicles.end(), [](const Vehicle& v) { return !v.wheels.empty(); });
+}
+
+/// Runs that are not known yet, in their groups.
+std::vector<std::vector<std::size_t>> unknown_of(std::vector<std::vector<std::size_t>> groups,
+                                                 const std::vector<char>& known) {
+  std::erase_if(groups, [&](const std::vector<std::size_t>& group) {
+    return std::all_of(group.begin(), group.end(), [&](std::size_t run) { return known[run] != 0; });
+  });
+  return groups;
+}
+
+/// Collective. Computes the groups and stores their numbers as they come. The failure of the earliest one.
+RunFailure compute(MPI_Comm comm, StudyScenes& scenes, const std::vector<std::vector<std::size_t>>& groups,
+                   results::StudyTable& table, StudyFile& file) {
+  const results::Stage stage("runs of the study");
+  Returns returns(comm, [&](const std::vector<double>& row) {
+    table.put(static_cast<std::size_t>(row.front()), row.data() + 1);
+    file.update();
+  });
+  const bool wheels = table.find("least_wheel_force") != nullptr;
+  RunFailure failure = share_runs(comm, study_work(scenes, groups, wheels, returns), scenes.quiet());
+  returns.finish();
+  return first_of(comm, std::move(failure));
 }
 
 }  // namespace
 
-int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
+int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
+  StudyScenes scenes(given);
+  results::StudyTable table(*given.study, given.output.probes.size(), has_wheels(given));
+  for (const std::size_t base : scenes.extreme_bases()) scenes.base(base);  // all input is checked first
   std::vector<std::string> notes;
-  const SweepChoice choice = choose_for_sweep(given, notes);
-  const Scene& scene = choice.scene;
-  CaseRunner runner(scene, notes);
-  notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+  SweepChoice choice = choose_for_study(scenes, notes);
+  scenes.choose(choice.scene);
+  const CaseRunner& first = *scenes.runner(0, &notes).runs;
+  notes.insert(notes.end(), given.notes.begin(), given.notes.end());
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
-  const std::vector<Case> cases = cases_of(runner);
-  announce(scene, runner, choice.model, ranks, notes);
+  const std::vector<char> known = runs_known(comm, given, choice.model, table);
+  announce(scenes, first, choice.model, table.finished_runs(), ranks, notes);
   print_notes(comm, notes);
 
   const SignalsNoted noted;
-  results::Layout layout;
-  layout.constants = stations(scene.output.probes, span_ends(*scene.beam));
-  results::Recorder recorder(comm, std::move(place), layout, attributes(comm, scene), scene.options);
-  results::Sweep sweep = empty_sweep(scene, runner, choice.model);
-  Course course(cases, runner, ranks, scene.quiet || rank != 0);
+  StudyFile file(comm, std::move(place), given, choice.model, table);
+  const std::vector<std::vector<std::size_t>> groups = unknown_of(scenes.groups(first.width()), known);
   const auto begin = std::chrono::steady_clock::now();
-  long done[3] = {0, 0, 0};  // runs, the signal that came, runs that left their group
-  Failure failure;
-  {
-    const results::Stage stage("runs of the sweep");
-    Deal deal(comm, cases.size());
-    failure = run_share(cases, runner, deal, course, sweep, done[0]);
-    done[1] = caught_signal();
-    done[2] = runner.alone();
-  }
-  course.done();
-  failure = first_of(comm, std::move(failure));
-  MPI_Allreduce(MPI_IN_PLACE, &done[0], 1, MPI_LONG, MPI_SUM, comm);
-  MPI_Allreduce(MPI_IN_PLACE, &done[1], 1, MPI_LONG, MPI_MAX, comm);
-  MPI_Allreduce(MPI_IN_PLACE, &done[2], 1, MPI_LONG, MPI_SUM, comm);
-  gather(comm, sweep);
-
-  const results::SweepCourse whole = {done[0], static_cast<long>(runner.speeds().size() * runner.trains()),
-                                      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(),
-                                      failure.run != nobody ? failure.message
-                                      : done[1] != 0        ? fmt::format("ended by signal {}", done[1])
-                                                            : "reached its end"};
+  const RunFailure failure = compute(comm, scenes, groups, table, file);
+  const int signal = signal_on_any(comm);
+  StudyCourse course;
+  course.known = std::count(known.begin(), known.end(), 1);
+  course.left_group = scenes.alone();
+  MPI_Allreduce(MPI_IN_PLACE, &course.left_group, 1, MPI_LONG, MPI_SUM, comm);
+  course.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  course.ended = failure.failed() ? failure.message
+                 : signal != 0    ? fmt::format("ended by signal {}", signal)
+                                  : "reached its end";
   try {
-    results::record(sweep, recorder);
-    recorder.finish_with(results::summary_of(sweep, whole), {"runs", "wall_seconds"});
+    file.finish(course);
   } catch (const FileError& error) {
     leave_together(comm, error);
   }
-  if (rank == 0) {
-    if (done[0] > 0) results::print_sweep(sweep);
-    if (done[2] > 0)
-      fmt::print("  {} of the runs left the others beside them, where wheels lost contact, and were taken alone\n",
-                 done[2]);
-    fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", done[0], whole.planned,
-               results::method_of(choice.model), whole.wall_seconds,
-               1e3 * whole.wall_seconds / static_cast<double>(std::max(done[0], 1L)), "the sweep", whole.ended,
-               scene.output.file.empty() ? "none" : scene.output.file);
-  }
-  if (failure.run != nobody) throw Error(failure.message, failure.status);
-  const std::vector<double>& peaks = sweep.deflection.value;  // std::fmax passes over runs without one
-  check_deflection(comm, scene, std::accumulate(peaks.begin(), peaks.end(), 0.0, [](double a, double b) {
-                     return std::fmax(a, b);
-                   }));
-  return done[1] == 0 ? 0 : 128 + static_cast<int>(done[1]);
+  if (rank == 0) print_study_course(table, choice.model, course, given.output.file);
+  if (failure.failed()) throw Error(failure.message, failure.status);
+  double deflection = 0.0;
+  if (results::StudyPlace largest; find_extreme(table, "peak_deflection", true, largest)) deflection = largest.value;
+  MPI_Bcast(&deflection, 1, MPI_DOUBLE, 0, comm);
+  check_deflection(comm, given, deflection);
+  return signal == 0 ? 0 : 128 + signal;
 }
 
 }  // namespace traverse::app

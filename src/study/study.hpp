@@ -1,4 +1,4 @@
-// A sweep: one scene at many speeds and with many trains of forces, its runs shared among the ranks.
+// A study: one scene with any of its numbers varied, its runs shared among the ranks.
 #pragma once
 
 #include <mpi.h>
@@ -8,9 +8,9 @@
 
 namespace traverse::app {
 
-/// Collective. Runs every combination, each on one rank, writes the peaks to `place` and prints a table. The same
-/// results on any number of ranks. A run that fails is named, what was computed until then is written, and the error
-/// thrown. Returns the exit status as `run` does.
-int run_sweep(MPI_Comm comm, const Scene& scene, results::Place place);
+/// Collective. Computes every run on one rank, writes their numbers to `place` as they come, and prints extremes and
+/// statistics. The same results on any number of ranks. A run that fails is named, what was computed until then is in
+/// the file, and the error thrown. Returns the exit status as `run` does.
+int run_study(MPI_Comm comm, const Scene& scene, results::Place place);
 
 }  // namespace traverse::app

@@ -89,15 +89,22 @@ std::string name_of(std::size_t quantity) {
 
 }  // namespace
 
+std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes) {
+  std::optional<LanesChoice> lanes = lanes_that_do(given, notes);
+  if (!lanes) return {};
+  SweepChoice choice{std::move(lanes->scene), {}};
+  choice.model = model_of(choice.scene);
+  choice.model.accuracy = given.accuracy;
+  for (std::size_t q = 0; q < quantities; ++q) choice.model.expected_errors.emplace_back(name_of(q), lanes->errors[q]);
+  return choice;
+}
+
 SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes) {
-  if (std::optional<LanesChoice> lanes = lanes_that_do(given, notes)) {
-    SweepChoice choice{std::move(lanes->scene), {}};
-    choice.model = model_of(choice.scene);
-    choice.model.accuracy = given.accuracy;
-    for (std::size_t q = 0; q < quantities; ++q)
-      choice.model.expected_errors.emplace_back(name_of(q), lanes->errors[q]);
-    return choice;
-  }
+  if (std::optional<SweepChoice> lanes = choose_side_by_side(given, notes)) return *lanes;
+  return choose_one_by_one(given, notes);
+}
+
+SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& notes) {
   SweepChoice choice{given, {}};
   const std::optional<Accuracy> all = choose_at_speeds(given, choice.scene, notes);
   if (!all) return {given, model_of(given)};

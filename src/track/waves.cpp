@@ -15,9 +15,20 @@ namespace {
 constexpr double table_stations_a_wave = 96.0;
 constexpr double farthest = 1e15;       // stations, beyond which there is nothing between two of them
 constexpr std::size_t kept = 4096;      // stations, a power of two
-constexpr std::size_t turned_on = 256;  // places that a wave is turned on to before it is looked at anew
+constexpr std::size_t turned_on = 256;  // times that a wave is turned on before it is looked at anew
+constexpr int places_at_once = 8;
 
 using Lanes = Eigen::Array<double, Waves::lanes, 1>;
+using Places = Eigen::Array<double, places_at_once, 1>;
+
+/// What turns a wave on from some places to the next ones, and its wavenumber with its square.
+struct Turn {
+  double cosine, sine, k, kk;
+};
+/// A wave at neighbouring places, times its amplitude.
+struct Turned {
+  Places cosine, sine;
+};
 
 /// Coefficients of sin(pi u)/u and cos(pi u) in powers of u^2.
 template <int terms>
@@ -33,9 +44,10 @@ constexpr auto sine_series = series<11>(std::numbers::pi, 1);
 constexpr auto cosine_series = series<11>(1.0, 0);
 
 /// sin and cos of 2 pi u for |u| <= 1/2, by their series at half the angle: good to 1e-15 and without branches.
-void sine_cosine(const Lanes& u, Lanes& sine, Lanes& cosine) {
-  const Lanes y = u * u;
-  Lanes s = Lanes::Constant(sine_series.back()), c = Lanes::Constant(cosine_series.back());
+template <class Array>
+void sine_cosine(const Array& u, Array& sine, Array& cosine) {
+  const Array y = u * u;
+  Array s = Array::Constant(sine_series.back()), c = Array::Constant(cosine_series.back());
   for (std::size_t n = sine_series.size() - 1; n-- > 0;) {
     s = s * y + sine_series[n];
     c = c * y + cosine_series[n];
@@ -59,7 +71,7 @@ Height Waves::sum(double s) const {
   for (std::size_t i = 0; i < amplitude_.size(); i += lanes) {
     const Eigen::Map<const Lanes> a(&amplitude_[i]), f(&frequency_[i]), p(&phase_[i]);
     const Lanes cycles = f * s + p;
-    sine_cosine(cycles - cycles.rint(), sine, cosine);
+    sine_cosine(Lanes(cycles - cycles.rint()), sine, cosine);
     const Lanes k = two_pi * f;
     value += a * cosine;
     slope -= k * a * sine;
@@ -70,28 +82,40 @@ Height Waves::sum(double s) const {
 
 std::vector<Height> Waves::sums(double s, double distance, std::size_t count) const {
   std::vector<Height> heights(count);
-  std::vector<std::array<Lanes, 3>> block(turned_on);
-  Lanes sine, cosine, turn_sine, turn_cosine;
-  for (std::size_t first = 0; first < count; first += turned_on) {
-    const std::size_t places = std::min(turned_on, count - first);
-    block.assign(turned_on, {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()});
-    for (std::size_t i = 0; i < amplitude_.size(); i += lanes) {
-      const Eigen::Map<const Lanes> a(&amplitude_[i]), f(&frequency_[i]), p(&phase_[i]);
-      const Lanes k = two_pi * f, ka = k * a, kka = k * ka, turn = f * distance;
-      const Lanes cycles = f * (s + static_cast<double>(first) * distance) + p;
-      sine_cosine(turn - turn.rint(), turn_sine, turn_cosine);
-      sine_cosine(cycles - cycles.rint(), sine, cosine);
-      for (std::size_t n = 0; n < places; ++n) {
-        block[n][0] += a * cosine;
-        block[n][1] -= ka * sine;
-        block[n][2] -= kka * cosine;
-        const Lanes next = cosine * turn_cosine - sine * turn_sine;
-        sine = sine * turn_cosine + cosine * turn_sine;
-        cosine = next;
+  const std::size_t waves = amplitude_.size();
+  std::vector<Turn> turns;
+  for (const double f : frequency_) {
+    const double cycles = f * static_cast<double>(places_at_once) * distance, k = two_pi * f;
+    const double angle = two_pi * (cycles - std::rint(cycles));
+    turns.push_back({std::cos(angle), std::sin(angle), k, k * k});
+  }
+  std::vector<Turned> turned(waves);
+  for (std::size_t first = 0; first < count; first += places_at_once) {
+    if (first % (turned_on * places_at_once) == 0) {
+      const Places along = s + distance * (static_cast<double>(first) + Places::LinSpaced(0.0, places_at_once - 1.0));
+      Places sine, cosine;
+      for (std::size_t i = 0; i < waves; ++i) {
+        const Places cycles = frequency_[i] * along + phase_[i];
+        sine_cosine(Places(cycles - cycles.rint()), sine, cosine);
+        turned[i].sine = amplitude_[i] * sine;
+        turned[i].cosine = amplitude_[i] * cosine;
       }
     }
-    for (std::size_t n = 0; n < places; ++n)
-      heights[first + n] = {block[n][0].sum(), block[n][1].sum(), block[n][2].sum()};
+    Places value = Places::Zero(), slope = Places::Zero(), curvature = Places::Zero();
+    for (std::size_t i = 0; i < waves; ++i) {
+      const Turn& turn = turns[i];
+      Turned& wave = turned[i];
+      value += wave.cosine;
+      slope -= turn.k * wave.sine;
+      curvature -= turn.kk * wave.cosine;
+      const Places next(wave.cosine * turn.cosine - wave.sine * turn.sine);
+      wave.sine = wave.sine * turn.cosine + wave.cosine * turn.sine;
+      wave.cosine = next;
+    }
+    for (std::size_t n = 0; n < std::min<std::size_t>(places_at_once, count - first); ++n) {
+      const auto at = static_cast<Eigen::Index>(n);
+      heights[first + n] = {value[at], slope[at], curvature[at]};
+    }
   }
   return heights;
 }

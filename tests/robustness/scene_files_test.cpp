@@ -54,6 +54,24 @@ TEST_P(SceneFile, RunsToItsEnd) {
 }
 INSTANTIATE_TEST_SUITE_P(Options, SceneFile, testing::ValuesIn(files_in("scenes")), stem);
 
+/// Every study with few runs.
+class StudyFile : public testing::TestWithParam<std::string> {};
+TEST_P(StudyFile, RunsToItsEnd) {
+  expect_three_lines(GetParam());
+  const Workplace workplace("");
+  std::vector<std::string> words = {"-options_file", GetParam(), "-output_file", "r.h5"};
+  if (stem({GetParam(), 0}) == "thousand_tracks")
+    for (const char* word : {"-study_vary_track_seed", "1:3", "-train_vehicles", "coach", "-accuracy", "3e-2"})
+      words.emplace_back(word);
+  const Outcome outcome = workplace.run(words);
+  expect_success(outcome);
+  EXPECT_NE(outcome.out.find("reached its end"), std::string::npos) << outcome.out;
+  Results results(workplace.path("r.h5"));
+  for (const double done : results("/study/finished")) EXPECT_EQ(done, 1.0);
+  EXPECT_GT(results("/study/statistics/peak_deflection_mean").size(), 0u);
+}
+INSTANTIATE_TEST_SUITE_P(Options, StudyFile, testing::ValuesIn(files_in("studies")), stem);
+
 class BridgeFile : public testing::TestWithParam<std::string> {};
 TEST_P(BridgeFile, CarriesAForce) {
   expect_three_lines(GetParam());

@@ -46,9 +46,9 @@ TEST(Waves, TableAgainstTheSum) {
 TEST(Waves, PlacesInARowAgainstTheSum) {
   const Waves waves = some_waves();
   const double height = 1e-4 * shortest, k = two_pi / shortest;
-  const std::vector<Height> row = waves.sums(-3.0, 0.01234, 1000);
-  ASSERT_EQ(row.size(), 1000U);
-  for (int i = 0; i < 1000; ++i) {
+  const std::vector<Height> row = waves.sums(-3.0, 0.01234, 5000);
+  ASSERT_EQ(row.size(), 5000U);
+  for (int i = 0; i < 5000; ++i) {
     const Height exact = waves.sum(-3.0 + 0.01234 * i), &is = row[static_cast<std::size_t>(i)];
     EXPECT_NEAR(is.value, exact.value, 1e-11 * height) << i;
     EXPECT_NEAR(is.slope, exact.slope, 1e-11 * height * k) << i;

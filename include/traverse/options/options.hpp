@@ -34,6 +34,10 @@ class Options {
   /// False when the name is known already.
   bool declare(const std::string& name, const Row& row);
   bool knows(std::string_view name) const { return find_known(name) != nullptr; }
+  /// The row of a name; null where nothing is known of it.
+  const Row* find_known(std::string_view name) const;
+  /// The known name that is nearest to one; empty where none is near.
+  std::string nearest_known(const std::string& name) const;
 
   /// Every option given must be known, or owned by PETSc. Throws naming the nearest known one.
   void check_names() const;
@@ -68,7 +72,6 @@ class Options {
   std::vector<std::pair<std::string, std::string>> all() const;
 
  private:
-  const Row* find_known(std::string_view name) const;
   const Row& row(std::string_view name) const;
   void check_value(const Entry& entry, const Row& row) const;
   std::string value_or_default(std::string_view name) const;

@@ -63,6 +63,10 @@ std::span<const Row> part_rows(Part part);
 /// Options train_<coupler>_<row>, besides those of springs and joints.
 std::span<const Row> coupler_rows();
 
+/// Options study_vary_<option>_<row>, and study_vary_<option> itself.
+std::span<const Row> vary_rows();
+const Row& vary_list_row();
+
 const Row* find_row(std::span<const Row> rows, std::string_view name);
 
 /// Whether PETSc or SLEPc own this name. Options that PETSc and this program both read, such as -ts_dt, count as

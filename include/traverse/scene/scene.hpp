@@ -2,6 +2,7 @@
 // options; the physics sees nothing but these structures.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 #include "traverse/beam/model.hpp"
 #include "traverse/options/analyses.hpp"
 #include "traverse/options/options.hpp"
+#include "traverse/options/study.hpp"
 #include "traverse/track/profile.hpp"
 #include "traverse/train/vehicle.hpp"
 
@@ -19,6 +21,8 @@ namespace traverse::app {
 enum class Start { equilibrium, given };
 
 using options::Analysis;
+using options::Study;
+using options::StudyDimension;
 using train::Coupler;
 using train::Drive;
 using train::MovingLoad;
@@ -38,14 +42,27 @@ struct Output {
   std::vector<double> probes;      // stations; default: the middle of every span (of the first 200)
 };
 
+/// The random running surfaces that one spectrum describes.
+struct Roughness {
+  track::Spectrum spectrum;
+  double shortest = 0.0, longest = 0.0;  // m: waves
+  double start = 0.0;                    // m: before it the track is level
+
+  track::Profile profile(std::uint64_t seed) const {
+    return track::Profile::rough(spectrum, shortest, longest, start, seed);
+  }
+};
+
 /// Runs of one scene at many speeds, with many trains of forces, or both.
 struct Sweep {
-  std::vector<double> speeds;     // m/s; empty: that of the scene
-  std::vector<int> trains;        // HSLM-A, 1 to 10; empty: what the scene holds
-  std::vector<MovingLoad> loads;  // of each of these trains, at the scene's speed
-  std::size_t lanes = 8;          // runs side by side; 0: each by itself
-  std::string method;             // ts_type of those; empty: as TS takes it
-  double instants = 20.0;         // looked at in a period of the fastest mode, where modes move exactly in time
+  std::vector<double> speeds;        // m/s; empty: that of the scene
+  std::vector<int> trains;           // HSLM-A, 1 to 10; empty: what the scene holds
+  std::vector<MovingLoad> loads;     // of each of these trains, at the scene's speed
+  std::size_t lanes = 8;             // runs side by side; 0: each by itself
+  std::string method;                // ts_type of those; empty: as TS takes it
+  double instants = 20.0;            // looked at in a period of the fastest mode, where modes move exactly in time
+  std::size_t runs = 0;              // of the study that these are a part of; 0: there are no others
+  std::vector<std::uint64_t> seeds;  // of some tracks of the study, which differ in them; empty: the scene's own alone
 };
 
 /// Vehicles as mechanisms, or linear, those that can be; automatic: linear where a search for the accuracy finds that
@@ -61,6 +78,7 @@ struct Scene {
   Train train;
   MovingLoad load;
   track::Profile profile;
+  std::optional<Roughness> roughness;  // that the profile is one of
   double gravity = 9.81;
   Analysis analysis = Analysis::transient;
   Start start = Start::equilibrium;
@@ -72,6 +90,7 @@ struct Scene {
   bool modes_open = false;               // a sweep may take modes where these do as well
   std::vector<double> damping_of_modes;  // ratio of each mode, the last one for all further modes; empty: Rayleigh's
   std::optional<Sweep> sweep;
+  std::optional<Study> study;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
   bool step_kinks = true;        // steps end where wheels pass kinks
@@ -108,5 +127,9 @@ double shortest_wave(const Scene& scene);
 Scene read_scene(options::Options options);
 /// The scene of the options in force, which are those that put_into_petsc saw last.
 Scene read_scene();
+/// The options that a study varies with their values in one run, as a user would write them.
+std::vector<std::pair<std::string, std::string>> values_of_run(const Study& study, std::size_t run);
+/// The scene of a study with other values (as a user would write them) of some of its options; a sweep of itself alone.
+Scene read_scene_of_study(options::Options options, const std::vector<std::pair<std::string, std::string>>& values);
 
 }  // namespace traverse::app

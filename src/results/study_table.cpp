@@ -1,0 +1,128 @@
+#include "results/study_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace traverse::results {
+
+StudyTable::StudyTable(const options::Study& study, std::size_t probes, bool wheels)
+    : study_(study), runs_(study.runs()), probes_(probes), finished_(runs_, 0.0) {
+  for (const StudyColumn& column : study_columns) {
+    if (column.of_wheels && !wheels) continue;
+    const std::size_t width = column.per_probe ? probes : 1;
+    columns_.push_back({&column, width, std::vector<double>(runs_ * width, not_run)});
+    width_ += width;
+  }
+}
+
+void StudyTable::put(std::size_t run, const double* row) {
+  for (Column& column : columns_) {
+    std::copy_n(row, column.width, column.values.begin() + static_cast<std::ptrdiff_t>(run * column.width));
+    row += column.width;
+  }
+  finished_[run] = 1.0;
+}
+
+std::size_t StudyTable::finished_runs() const {
+  return static_cast<std::size_t>(std::count(finished_.begin(), finished_.end(), 1.0));
+}
+
+const StudyTable::Column* StudyTable::find(const std::string& name) const {
+  const auto column =
+      std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.what->name == name; });
+  return column == columns_.end() ? nullptr : &*column;
+}
+
+std::vector<Recorder::Dataset> StudyTable::results() const {
+  std::vector<Recorder::Dataset> sets;
+  for (const Column& column : columns_) {
+    std::vector<std::size_t> shape = {runs_};
+    if (column.what->per_probe) shape.push_back(probes_);
+    sets.push_back({std::string("/study/") + column.what->name, shape, column.values, column.what->unit});
+  }
+  return sets;
+}
+
+std::vector<Recorder::Dataset> StudyTable::coordinates() const {
+  std::vector<Recorder::Dataset> sets;
+  for (const options::StudyDimension& dimension : study_.dimensions) {
+    std::vector<double> values(runs_);
+    for (std::size_t run = 0; run < runs_; ++run) values[run] = study_.value(run, dimension);
+    sets.push_back({"/study/" + dimension.name(), {runs_}, std::move(values), dimension.unit});
+  }
+  std::vector<double> shape;
+  for (const options::Study::Axis& axis : study_.axes) shape.push_back(static_cast<double>(axis.length));
+  sets.push_back({"/study/shape", {shape.size()}, shape, "1"});
+  return sets;
+}
+
+Recorder::Dataset StudyTable::finished() const { return {"/study/finished", {runs_}, finished_, "1"}; }
+
+bool find_extreme(const StudyTable& table, const std::string& name, bool largest, StudyPlace& place) {
+  const StudyTable::Column* column = table.find(name);
+  if (column == nullptr) return false;
+  std::size_t at = column->values.size();
+  for (std::size_t i = 0; i < column->values.size(); ++i) {
+    const double value = column->values[i];
+    if (std::isnan(value)) continue;
+    if (at == column->values.size() || (largest ? value > column->values[at] : value < column->values[at])) at = i;
+  }
+  if (at == column->values.size()) return false;
+  place = {at / column->width, at % column->width, column->values[at]};
+  return true;
+}
+
+std::string point_text(const options::Study& study, std::size_t run) {
+  std::string text;
+  for (const options::StudyDimension& d : study.dimensions)
+    text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", d.name(), study.value(run, d));
+  return text;
+}
+
+std::vector<Attribute> summary_of(const StudyTable& table) {
+  std::vector<Attribute> list;
+  StudyPlace place;
+  const StudyTable::Column& x = *table.find("probes_x");
+  const auto add = [&](const std::string& name, const std::string& column, bool largest) {
+    if (!find_extreme(table, column, largest, place)) return;
+    list.push_back({name, place.value});
+    list.push_back({name + "_run", static_cast<long>(place.run)});
+    if (table.find(column)->what->per_probe)
+      list.push_back({name + "_place", x.values[place.run * table.probes() + place.probe]});
+  };
+  add("deflection", "peak_deflection", true);
+  add("acceleration", "peak_acceleration", true);
+  add("moment", "peak_moment", true);
+  add("greatest_amplification", "amplification", true);
+  add("least_wheel_force", "least_wheel_force", false);
+  add("greatest_wheel_force", "greatest_wheel_force", true);
+  if (const StudyTable::Column* losses = table.find("contact_losses")) {
+    double sum = 0.0;
+    for (const double count : losses->values) sum += std::isnan(count) ? 0.0 : count;
+    list.push_back({"contact_losses", std::lround(sum)});
+  }
+  return list;
+}
+
+void print_study(const StudyTable& table) {
+  fmt::print("extremes of all runs\n");
+  StudyPlace place;
+  const auto print = [&](const char* label, const char* column, bool largest, double scale, const char* unit) {
+    if (!find_extreme(table, column, largest, place)) return;
+    const std::string value = fmt::format("{:.4g} {}", scale * place.value, unit);
+    std::string where;
+    if (table.probes() > 1 && table.find(column)->what->per_probe)
+      where = fmt::format("x = {:.4g} m, ", table.find("probes_x")->values[place.run * table.probes() + place.probe]);
+    fmt::print("  {:<22}{:<18}{}{}\n", label, value, where, point_text(table.study(), place.run));
+  };
+  print("peak deflection", "peak_deflection", true, 1e3, "mm");
+  print("peak acceleration", "peak_acceleration", true, 1.0, "m/s2");
+  print("peak moment", "peak_moment", true, 1e-3, "kN m");
+  print("greatest amplification", "amplification", true, 1.0, "");
+  print("least wheel force", "least_wheel_force", false, 1e-3, "kN");
+  print("greatest wheel force", "greatest_wheel_force", true, 1e-3, "kN");
+}
+
+}  // namespace traverse::results

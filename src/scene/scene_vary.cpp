@@ -1,0 +1,317 @@
+// study of a scene: which of its numbers are varied, and how.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "base/random_stream.hpp"
+#include "results/terminal.hpp"
+#include "scene_parts.hpp"
+#include "vary_reader.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Kind;
+using options::Options;
+using options::Row;
+
+constexpr std::string_view study_prefix = VaryReader::prefix;
+constexpr double most_runs = VaryReader::most_values, most_study_peaks = 1e8;
+constexpr double quickest_run = 5e-3;  // s: of a train over a bridge, side by side with others
+
+/// What an option of a study belongs to.
+struct Varied {
+  std::string option;    // that is varied
+  std::string_view how;  // "from", "normal", ...; empty: a list
+};
+
+std::optional<Varied> varied(const Options& o, const std::string& name) {
+  if (!name.starts_with(study_prefix)) return {};
+  const std::string rest = name.substr(study_prefix.size());
+  if (o.find_known(rest) != nullptr) return Varied{rest, ""};
+  for (const Row& row : options::vary_rows())
+    if (const std::size_t own = row.name.size() + 1; rest.size() > own && rest.ends_with("_" + std::string(row.name)) &&
+                                                     o.find_known(rest.substr(0, rest.size() - own)) != nullptr)
+      return Varied{rest.substr(0, rest.size() - own), row.name};
+  return {};
+}
+
+/// Makes the options of the varied quantities known.
+void declare_study(Options& o) {
+  for (const options::Entry& entry : o.entries()) {
+    const std::string& name = entry.name;
+    if (!name.starts_with(study_prefix)) continue;
+    const std::optional<Varied> what = varied(o, name);
+    if (!what) {
+      std::string option = name.substr(study_prefix.size());
+      for (const Row& row : options::vary_rows())
+        if (option.ends_with("_" + std::string(row.name))) option.resize(option.size() - row.name.size() - 1);
+      const std::string near = o.nearest_known(option);
+      o.refuse(name, fmt::format("there is no option {}{}", option,
+                                 near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+    }
+    const std::span<const Row> rows = options::vary_rows();
+    o.declare(name, what->how.empty() ? options::vary_list_row() : *options::find_row(rows, what->how));
+  }
+}
+
+/// Whether a study may vary it; why not, in words.
+std::string not_to_vary(const Options& o, const std::string& option) {
+  const Row& row = *o.find_known(option);
+  for (const char* own : {"study_", "sweep_", "output_", "scene_", "options_", "accuracy", "modes_"})
+    if (option.starts_with(own)) return "it is one of the whole study, not of a run";
+  const bool of_petsc = options::owned_by_petsc(option);
+  if (of_petsc && option != "ts_dt" && option != "ts_max_time") return "PETSc reads it once, for all runs";
+  if (of_petsc && o.entries().has(option)) return "it is given for all runs too: leave that out";
+  const bool number = row.kind == Kind::number || row.kind == Kind::integer || row.kind == Kind::number_or_file ||
+                      ((row.kind == Kind::numbers || row.kind == Kind::integers) && row.count <= 1);
+  if (number) return "";
+  return row.count > 1 ? fmt::format("it takes {}, not one number", options::allowed(row)) : "it is no number";
+}
+
+/// The options that study_vary_... names, in the order in which they are given.
+std::vector<std::string> varied_options(const Options& o) {
+  std::vector<std::string> names;
+  for (const options::Entry& entry : o.entries()) {
+    const std::optional<Varied> what = varied(o, entry.name);
+    if (what && std::find(names.begin(), names.end(), what->option) == names.end()) names.push_back(what->option);
+  }
+  return names;
+}
+
+/// The dimensions of sweep_speed and sweep_hslm_a, which a study takes up.
+std::vector<StudyDimension> swept_dimensions(const Options& o, const NamedVehicles& vehicles) {
+  std::vector<StudyDimension> dimensions;
+  if (o.has("sweep_hslm_a")) {
+    StudyDimension trains{{"load_hslm_a"}, "1", true, "list", {}, 0};
+    for (const int train : o.integers("sweep_hslm_a")) trains.values.push_back(train);
+    dimensions.push_back(std::move(trains));
+  }
+  if (o.has("sweep_speed")) {
+    const bool forces = o.has("load_forces") || o.has("load_hslm_a") || o.has("sweep_hslm_a");
+    StudyDimension speeds{{}, "m/s", false, "list", read_speeds(o), 0};
+    if (!vehicles.train.empty()) speeds.options.emplace_back("train_speed");
+    if (forces || speeds.options.empty()) speeds.options.emplace_back("load_speed");
+    dimensions.push_back(std::move(speeds));
+  }
+  return dimensions;
+}
+
+/// What study_combine makes of listed and drawn dimensions.
+class Axes {
+ public:
+  Axes(const Options& o, Study& study) : o_(o), study_(study), combine_(o.choice("study_combine")) {
+    seed_ = static_cast<std::uint64_t>(o.integer("study_seed"));
+    if (o.has("study_draws")) draws_ = static_cast<std::size_t>(o.integer("study_draws"));
+  }
+
+  void add_listed(StudyDimension dimension, double count) {
+    if (combine_ != "grid" && count > most_runs)
+      o_.refuse("study_combine", fmt::format("{} has {:g} values; allowed: {:g}", dimension.name(), count, most_runs));
+    if (combine_ == "grid") {
+      dimension.axis = study_.axes.size();
+      study_.axes.push_back({dimension.name(), static_cast<std::size_t>(std::min(count, 1e15))});
+      runs_ *= count;
+      sizes_ += fmt::format("{}{:g} of {}", sizes_.empty() ? "" : " times ", count, dimension.name());
+    } else if (combine_ == "together") {
+      join("row", static_cast<std::size_t>(count), dimension);
+      runs_ = count;
+    } else {
+      draw_from_list(dimension);
+      join("draw", draws(dimension.name()), dimension);
+      runs_ = static_cast<double>(draws_);
+    }
+    study_.dimensions.push_back(std::move(dimension));
+  }
+  void add_drawn(StudyDimension dimension, const VaryReader& reader) {
+    std::size_t count = draws_;
+    if (combine_ == "together" && joint_) count = study_.axes[*joint_].length;
+    if (count == 0) count = draws(dimension.name());
+    if (!joint_ && combine_ != "together") {
+      runs_ *= static_cast<double>(count);
+      sizes_ += fmt::format("{}{} draws", sizes_.empty() ? "" : " times ", count);
+    } else if (combine_ == "together") {
+      runs_ = static_cast<double>(count);
+    }
+    if (runs_ <= most_runs) dimension.values = reader.draws(seed_, count);
+    join(combine_ == "together" ? "row" : "draw", count, dimension);
+    study_.dimensions.push_back(std::move(dimension));
+  }
+  double runs() const { return runs_; }
+  const std::string& sizes() const { return sizes_; }
+
+ private:
+  std::size_t draws(const std::string& dimension) const {
+    if (draws_ == 0)
+      throw InputError(
+          fmt::format("study_draws is missing: how many values of {} are drawn; wanted: a whole number "
+                      "from 1 to {:g}",
+                      dimension, most_runs));
+    return draws_;
+  }
+  /// Puts a dimension on the axis that several share.
+  void join(const char* name, std::size_t length, StudyDimension& dimension) {
+    if (!joint_) {
+      joint_ = study_.axes.size();
+      study_.axes.push_back({name, length});
+    }
+    if (study_.axes[*joint_].length != length)
+      o_.refuse("study_combine", fmt::format("{} has {} values, those before it have {}; together they have as many",
+                                             dimension.name(), length, study_.axes[*joint_].length));
+    dimension.axis = *joint_;
+  }
+  void draw_from_list(StudyDimension& dimension) const {
+    const std::vector<double> list = std::move(dimension.values);
+    const base::RandomStream stream(seed_, dimension.name());
+    dimension.values.clear();
+    for (std::size_t i = 0; i < draws(dimension.name()); ++i)
+      dimension.values.push_back(list[static_cast<std::size_t>(stream.uniform(i) * static_cast<double>(list.size()))]);
+  }
+
+  const Options& o_;
+  Study& study_;
+  std::string combine_, sizes_;
+  std::uint64_t seed_ = 1;
+  std::size_t draws_ = 0;
+  double runs_ = 1.0;
+  std::optional<std::size_t> joint_;  // the axis that several dimensions share
+};
+
+/// A varied option, and those that take the same values, still without these; `taken`: options that are varied.
+StudyDimension dimension_of(const Options& o, const std::string& option, const VaryReader& reader,
+                            std::vector<std::string>& taken) {
+  const std::string given = o.first_with_prefix(reader.name())->name;
+  const std::string unit(reader.unit().empty() ? "1" : reader.unit());
+  StudyDimension dimension{{option}, unit, reader.whole(), "list", {}, 0};
+  if (reader.has("also"))
+    for (const std::string& other : o.texts(reader.name("also"))) {
+      if (o.find_known(other) == nullptr) o.refuse(reader.name("also"), "there is no option " + other);
+      dimension.options.push_back(other);
+    }
+  for (const std::string& one : dimension.options) {
+    if (const std::string why = not_to_vary(o, one); !why.empty())
+      o.refuse(given, fmt::format("{} cannot be varied: {}", one, why));
+    if (std::find(taken.begin(), taken.end(), one) != taken.end())
+      o.refuse(given, fmt::format("{} is varied twice", one));
+    taken.push_back(one);
+  }
+  return dimension;
+}
+
+void read_dimensions(const Options& o, const NamedVehicles& vehicles, Study& study) {
+  Axes axes(o, study);
+  std::vector<std::string> taken;
+  for (StudyDimension& dimension : swept_dimensions(o, vehicles)) {
+    taken.insert(taken.end(), dimension.options.begin(), dimension.options.end());
+    const double count = static_cast<double>(dimension.values.size());
+    axes.add_listed(std::move(dimension), count);
+  }
+  for (const std::string& option : varied_options(o)) {
+    const VaryReader reader(o, option);
+    StudyDimension dimension = dimension_of(o, option, reader, taken);
+    reader.check_one_way();
+    if (const std::string law = reader.law(); !law.empty()) {
+      dimension.law = law;
+      axes.add_drawn(std::move(dimension), reader);
+    } else {
+      double count = 0.0;
+      dimension.values = reader.has() ? reader.list(count) : reader.block(count);
+      const std::string given = o.first_with_prefix(reader.name())->name;
+      for (const double value : dimension.values) reader.check(given, value);
+      axes.add_listed(std::move(dimension), count);
+    }
+  }
+  if (axes.runs() > most_runs)
+    throw InputError(fmt::format(
+        "study_vary: {:.4g} runs ({}); allowed: at most {:g}. They would take {} even at {}", axes.runs(), axes.sizes(),
+        most_runs, results::duration_text(quickest_run * axes.runs()), results::duration_text(quickest_run) + " each"));
+}
+
+void read_statistics(const Options& o, Study& study) {
+  study.quantiles = o.numbers("study_statistics_quantiles");
+  study.confidence = o.number("study_statistics_confidence");
+  const auto add = [&](std::size_t axis) {
+    if (std::find(study.over.begin(), study.over.end(), axis) == study.over.end()) study.over.push_back(axis);
+  };
+  if (o.has("study_statistics_over")) {
+    for (const std::string& word : o.texts("study_statistics_over")) {
+      const auto named = [&](const StudyDimension& d) {
+        return std::find(d.options.begin(), d.options.end(), word) != d.options.end();
+      };
+      const auto found = std::find_if(study.dimensions.begin(), study.dimensions.end(), named);
+      if (found == study.dimensions.end())
+        o.refuse("study_statistics_over", fmt::format("'{}' is not varied; allowed: options of study_vary", word));
+      add(found->axis);
+    }
+  } else {
+    for (const StudyDimension& d : study.dimensions)
+      if (d.law != "list" || d.name() == "track_seed") add(d.axis);
+  }
+  if (study.over.empty() && o.has("study_statistics_quantiles"))
+    o.refuse("study_statistics_quantiles", "nothing is drawn; study_statistics_over says over which option they go");
+  std::sort(study.over.begin(), study.over.end());
+}
+
+void check_study(const Options& o, const Scene& scene) {
+  const Study& study = *scene.study;
+  const std::string first = o.first_with_prefix(study_prefix)->name;
+  if (scene.analysis != Analysis::transient) o.refuse(first, "a study is of transient runs (scene_analysis)");
+  if (!scene.beam) o.refuse(first, "a study is of a bridge's response: there is no beam (beam_spans)");
+  for (const StudyDimension& d : study.dimensions)
+    if (d.name() == "track_seed" && !scene.roughness)
+      o.refuse(first, fmt::format("track_seed has no effect: track_profile is {}", o.text("track_profile")));
+  const double peaks = static_cast<double>(study.runs()) * static_cast<double>(scene.output.probes.size());
+  if (peaks > most_study_peaks)
+    o.refuse(first, fmt::format("{} runs with {} probes each; allowed: at most {:g} of both multiplied", study.runs(),
+                                scene.output.probes.size(), most_study_peaks));
+}
+
+}  // namespace
+
+bool asks_for_study(const Options& o) { return o.first_with_prefix(study_prefix) != nullptr; }
+
+Scene read_study(const Options& given) {
+  Options o = given;
+  const NamedVehicles vehicles = declare_vehicles(o);
+  declare_couplers(o);
+  declare_study(o);
+  o.check_names();
+  o.check_values();
+  Study study;
+  read_dimensions(o, vehicles, study);
+  read_statistics(o, study);
+  study.resume = o.flag("study_resume");
+  std::vector<std::pair<std::string, std::string>> values = values_of_run(study, 0);
+  Scene scene = read_scene_of_study(given, values);
+  scene.study = std::move(study);
+  scene.options = o.all();
+  check_study(o, scene);
+  return scene;
+}
+
+std::vector<std::pair<std::string, std::string>> values_of_run(const Study& study, std::size_t run) {
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const StudyDimension& d : study.dimensions)
+    for (const std::string& option : d.options) values.emplace_back(option, fmt::format("{}", study.value(run, d)));
+  return values;
+}
+
+Scene read_scene_of_study(options::Options given, const std::vector<std::pair<std::string, std::string>>& values) {
+  options::Entries entries;
+  for (const options::Entry& entry : given.entries())
+    if (!entry.name.starts_with("study_") && entry.name != "sweep_speed" && entry.name != "sweep_hslm_a")
+      entries.set(entry);
+  for (const auto& [name, value] : values) entries.set({name, value, "a value of the study", 0});
+  Options o(std::move(entries));
+  Scene scene = read_scene(o);
+  scene.sweep.emplace();
+  scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
+  scene.sweep->instants = o.number("sweep_instants");
+  return scene;
+}
+
+}  // namespace traverse::app

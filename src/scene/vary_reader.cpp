@@ -1,0 +1,135 @@
+#include "vary_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "base/random_stream.hpp"
+#include "options/data_file.hpp"
+
+namespace traverse::app {
+namespace {
+constexpr double step_meets = 1e-3;  // of a step: ends are often rounded ones in km/h
+}
+
+std::string VaryReader::name(std::string_view how) const {
+  return std::string(prefix) + option_ + (how.empty() ? "" : "_" + std::string(how));
+}
+
+double VaryReader::number(const std::string& given, const std::string& word) const {
+  std::string digits = word;
+  double scale = 1.0, value = 0.0;
+  for (const auto& [ending, factor] : {std::pair{"km/h", 1.0 / 3.6}, std::pair{"m/s", 1.0}})
+    if (row_.unit == "m/s" && digits.ends_with(ending)) {
+      digits.resize(digits.size() - std::string_view(ending).size());
+      digits.resize(digits.find_last_not_of(' ') + 1);
+      scale = factor;
+    }
+  if (!options::parse_number(digits, value) || !options::is_quantity(value))
+    o_.refuse(given,
+              fmt::format("'{}' is no finite number; wanted: values of {}, {}", word, option_, options::allowed(row_)));
+  return scale * value;
+}
+
+void VaryReader::check(const std::string& given, double value, const std::string& what, const char* advice) const {
+  if (row_.unit == "m/s" && value == 0.0) o_.refuse(given, "0 m/s: nothing would ever leave; allowed: above 0");
+  const bool fits = row_.range.holds(value) && (!whole() || (value == std::floor(value) && std::abs(value) < 2e9));
+  if (!fits)
+    o_.refuse(given, fmt::format("{}{:g} is no value of {}; allowed: {}{}", what, value, option_,
+                                 options::allowed(row_), advice));
+}
+
+/// from, from + step, ... up to `to`.
+std::vector<double> VaryReader::range(const std::string& given, double from, double to, double step,
+                                      double& count) const {
+  if (!(step > 0.0)) o_.refuse(given, fmt::format("the step is {:g}; allowed: above 0", step));
+  if (to < from) o_.refuse(given, fmt::format("an empty range: from {:g} is above to {:g}", from, to));
+  count = std::floor((to - from) / step + step_meets) + 1.0;
+  std::vector<double> values;
+  for (int i = 0; count <= most_values && i < static_cast<int>(count); ++i) values.push_back(from + i * step);
+  return values;
+}
+
+std::vector<double> VaryReader::list(double& count) const {
+  std::vector<double> values;
+  count = 0.0;
+  for (const std::string& word : o_.texts(name())) {
+    const std::size_t first = word.find(':'), second = word.find(':', first == word.npos ? first : first + 1);
+    if (first == word.npos) {
+      values.push_back(number(name(), word));
+      count += 1.0;
+      continue;
+    }
+    const std::string middle = word.substr(first + 1, second == word.npos ? word.npos : second - first - 1);
+    const double step = second == word.npos ? 1.0 : number(name(), word.substr(second + 1));
+    double own = 0.0;
+    const std::vector<double> more =
+        range(name(), number(name(), word.substr(0, first)), number(name(), middle), step, own);
+    values.insert(values.end(), more.begin(), more.end());
+    count += own;
+  }
+  if (count == 0.0) o_.refuse(name(), "an empty list; give values of " + option_);
+  return values;
+}
+
+std::vector<double> VaryReader::block(double& count) const {
+  for (const char* end : {"from", "to"})
+    if (!has(end))
+      o_.refuse(name(has("from")   ? "from"
+                     : has("to")   ? "to"
+                     : has("step") ? "step"
+                                   : "count"),
+                fmt::format("wanted: from, to, and step or count ({} is missing)", name(end)));
+  const double from = number("from"), to = number("to");
+  if (has("step") == has("count")) o_.refuse(name("from"), "wanted: from, to, and either step or count");
+  if (has("step")) return range(name("step"), from, to, number("step"), count);
+  const int wanted = o_.integer(name("count"));
+  if (to < from) o_.refuse(name("from"), fmt::format("an empty range: from {:g} is above to {:g}", from, to));
+  count = wanted;
+  std::vector<double> values;
+  for (int i = 0; i < wanted; ++i) values.push_back(wanted == 1 ? from : from + (to - from) * i / (wanted - 1));
+  return values;
+}
+
+std::string VaryReader::law() const {
+  for (const char* law : {"uniform", "normal", "lognormal"})
+    if (has(law)) return law;
+  return "";
+}
+
+std::vector<double> VaryReader::draws(std::uint64_t seed, std::size_t count) const {
+  const std::string of = law(), given = name(of);
+  const std::vector<std::string> words = o_.texts(given);
+  const double a = number(given, words[0]), b = number(given, words[1]);
+  const bool uniform = of == "uniform";
+  if (uniform ? !(b > a) : !(b > 0.0))
+    o_.refuse(given, uniform ? "wanted: the least, then the greatest value" : "allowed: a deviation above 0");
+  if (of == "lognormal" && !(a > 0.0)) o_.refuse(given, "allowed: a mean above 0");
+  if (whole() && !uniform) o_.refuse(given, "takes whole numbers; allowed: uniform, or a list");
+  const double wide = std::sqrt(std::log1p(b * b / (a * a)));
+  const base::RandomStream stream(seed, option_);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < count; ++i) {
+    double value = 0.0;
+    if (uniform)
+      value = whole() ? std::floor(a + stream.uniform(i) * (b - a + 1.0)) : a + stream.uniform(i) * (b - a);
+    else if (of == "normal")
+      value = a + b * stream.normal(i);
+    else
+      value = a * std::exp(wide * stream.normal(i) - 0.5 * wide * wide);
+    check(given, value, fmt::format("draw {}: ", i + 1),
+          of == "normal" ? "; take lognormal, or a smaller deviation" : "");
+    values.push_back(value);
+  }
+  return values;
+}
+
+void VaryReader::check_one_way() const {
+  std::vector<std::string> ways;
+  for (const char* way : {"", "from", "uniform", "normal", "lognormal"})
+    if (has(way)) ways.push_back(name(way));
+  if (ways.size() > 1) o_.refuse(ways[1], "give either these or " + ways[0]);
+}
+
+}  // namespace traverse::app

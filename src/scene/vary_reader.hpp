@@ -1,0 +1,52 @@
+// The numbers that a study gives to one of the options that it varies.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "traverse/options/options.hpp"
+
+namespace traverse::app {
+
+/// Reads study_vary_OPTION, study_vary_OPTION_from and so on. InputError with one line that names what is wrong.
+class VaryReader {
+ public:
+  static constexpr std::string_view prefix = "study_vary_";
+  static constexpr double most_values = 1e6;
+
+  VaryReader(const options::Options& o, std::string option)
+      : o_(o), option_(std::move(option)), row_(*o.find_known(option_)) {}
+
+  std::string name(std::string_view how = "") const;
+  bool has(std::string_view how = "") const { return o_.entries().has(name(how)); }
+  bool whole() const { return row_.kind == options::Kind::integer || row_.kind == options::Kind::integers; }
+  std::string_view unit() const { return row_.unit; }
+
+  /// Refuses what is no value of the option.
+  void check(const std::string& given, double value, const std::string& what = "", const char* advice = "") const;
+  /// A list, whose words may be from:to or from:to:step. Where there are more than most_values, `count` says how many,
+  /// and not all of them come.
+  std::vector<double> list(double& count) const;
+  /// from, to and step or count; the same.
+  std::vector<double> block(double& count) const;
+  /// "uniform", "normal" or "lognormal"; empty: listed.
+  std::string law() const;
+  /// So many values by that law.
+  std::vector<double> draws(std::uint64_t seed, std::size_t count) const;
+  /// Values may be given in one way only.
+  void check_one_way() const;
+
+ private:
+  /// A number in the option's unit; speeds may be given in km/h.
+  double number(const std::string& given, const std::string& word) const;
+  double number(std::string_view how) const { return number(name(how), o_.text(name(how))); }
+  std::vector<double> range(const std::string& given, double from, double to, double step, double& count) const;
+
+  const options::Options& o_;
+  std::string option_;
+  const options::Row& row_;
+};
+
+}  // namespace traverse::app

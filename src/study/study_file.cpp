@@ -1,0 +1,228 @@
+#include "study/study_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "results/study_reader.hpp"
+#include "results/study_statistics.hpp"
+#include "run/outputs.hpp"
+#include "run/process.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double write_every = 5.0, cost_factor = 20.0;  // s, and times what writing takes
+
+std::vector<results::Attribute> attributes_of(const results::Sweep::Model& model) {
+  std::vector<results::Attribute> list = {{"modes", static_cast<long>(model.modes)}};
+  list.push_back({model.in_bays ? "elements_per_bay" : "elements_per_span", static_cast<long>(model.elements)});
+  if (model.time_step > 0.0) list.push_back({"time_step", model.time_step});
+  if (!model.method.empty()) list.push_back({"method", model.method});
+  if (model.accuracy > 0.0) list.push_back({"accuracy", model.accuracy});
+  return list;
+}
+
+/// Options that change no run.
+bool of_study_alone(const std::string& name, const Study& study) {
+  if (name.starts_with("study_") || name.starts_with("sweep_") || name == "scene_name" || name == "output_file" ||
+      name == "output_quiet" || name == "options_file")
+    return true;
+  return std::any_of(study.dimensions.begin(), study.dimensions.end(), [&](const StudyDimension& d) {
+    return std::find(d.options.begin(), d.options.end(), name) != d.options.end();
+  });
+}
+
+/// Why runs of the file are not those of this study; empty: they are.
+std::string contradiction(const results::StoredStudy& stored, const Scene& scene, const results::Sweep::Model& model) {
+  std::map<std::string, std::string> now(scene.options.begin(), scene.options.end());
+  for (const auto& [name, value] : stored.options) {
+    if (of_study_alone(name, *scene.study)) continue;
+    if (!now.contains(name)) return fmt::format("it was computed with {} = {}", name, value);
+    if (now[name] != value) return fmt::format("it was computed with {} = {}, not {}", name, value, now[name]);
+  }
+  for (const auto& [name, value] : now)
+    if (!of_study_alone(name, *scene.study) && !stored.options.contains(name))
+      return fmt::format("it was computed without {} = {}", name, value);
+  for (const StudyDimension& d : scene.study->dimensions)
+    if (!stored.datasets.contains(d.name())) return fmt::format("{} was not varied in it", d.name());
+  for (const results::Attribute& attribute : attributes_of(model)) {
+    const double* number = std::get_if<double>(&attribute.value);
+    const long* whole = std::get_if<long>(&attribute.value);
+    const auto known = stored.numbers.find(attribute.name);
+    if (number == nullptr && whole == nullptr) {
+      const auto text = stored.texts.find(attribute.name);
+      if (text == stored.texts.end() || text->second != std::get<std::string>(attribute.value))
+        return fmt::format("its runs have another {}", attribute.name);
+    } else if (known == stored.numbers.end() ||
+               known->second != (number != nullptr ? *number : static_cast<double>(*whole))) {
+      return fmt::format("its runs have another {}", attribute.name);
+    }
+  }
+  return "";
+}
+
+/// The finished runs of a file, by their coordinates.
+void take_over(const results::StoredStudy& stored, results::StudyTable& table) {
+  const Study& study = table.study();
+  const auto finished = stored.datasets.find("finished");
+  if (finished == stored.datasets.end()) return;
+  std::map<std::vector<double>, std::size_t> rows;
+  for (std::size_t row = 0; row < finished->second.size(); ++row) {
+    if (finished->second[row] != 1.0) continue;
+    std::vector<double> point;
+    for (const StudyDimension& d : study.dimensions) point.push_back(stored.datasets.at(d.name()).at(row));
+    rows.emplace(std::move(point), row);
+  }
+  for (std::size_t run = 0; run < table.runs(); ++run) {
+    std::vector<double> point, numbers;
+    for (const StudyDimension& d : study.dimensions) point.push_back(study.value(run, d));
+    const auto row = rows.find(point);
+    if (row == rows.end()) continue;
+    for (const results::StudyTable::Column& column : table.columns()) {
+      const auto found = stored.datasets.find(column.what->name);
+      if (found == stored.datasets.end() || found->second.size() != finished->second.size() * column.width) return;
+      const auto from = found->second.begin() + static_cast<std::ptrdiff_t>(row->second * column.width);
+      numbers.insert(numbers.end(), from, from + static_cast<std::ptrdiff_t>(column.width));
+    }
+    table.put(run, numbers.data());
+  }
+}
+
+}  // namespace
+
+std::vector<char> runs_known(MPI_Comm comm, const Scene& scene, const results::Sweep::Model& model,
+                             results::StudyTable& table) {
+  std::vector<char> known(table.runs(), 0);
+  if (!scene.study->resume) return known;
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  std::string why;
+  if (rank == 0) {
+    try {
+      const results::StoredStudy stored = results::read_study(scene.output.file);
+      if (!stored.datasets.empty()) why = contradiction(stored, scene, model);
+      if (why.empty() && !stored.datasets.empty()) take_over(stored, table);
+    } catch (const std::exception& error) {
+      why = error.what();
+    }
+    for (std::size_t run = 0; run < table.runs(); ++run) known[run] = table.finished(run) ? 1 : 0;
+  }
+  int size = static_cast<int>(why.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
+  why.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(why.data(), size, MPI_CHAR, 0, comm);
+  if (!why.empty())
+    throw InputError(fmt::format("study_resume: {} holds other runs: {}; leave study_resume out to begin anew",
+                                 scene.output.file, why));
+  MPI_Bcast(known.data(), static_cast<int>(known.size()), MPI_CHAR, 0, comm);
+  return known;
+}
+
+namespace {
+
+results::Layout layout_of(const Scene& scene) {
+  std::vector<double> ends = {scene.beam->start};
+  for (const double span : scene.beam->spans) ends.push_back(ends.back() + span);
+  results::Layout layout;
+  layout.constants = stations(scene.output.probes, ends);
+  return layout;
+}
+
+/// A copy of an interrupted study, as long as the file that replaces it is not on the disk.
+class Copy {
+ public:
+  Copy(const results::Place& place, bool wanted) : of_(wanted ? place.path() : "") {
+    std::error_code failed;
+    if (of_.empty()) return;
+    std::filesystem::copy_file(of_, of_ + ".before", std::filesystem::copy_options::overwrite_existing, failed);
+    if (failed) throw FileError(fmt::format("cannot copy the results file {}: {}", of_, failed.message()));
+  }
+  void remove() const {
+    std::error_code ignored;
+    if (!of_.empty()) std::filesystem::remove(of_ + ".before", ignored);
+  }
+
+ private:
+  std::string of_;
+};
+
+}  // namespace
+
+StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::Sweep::Model& model,
+                     const results::StudyTable& table)
+    : comm_(comm), table_(table), model_(model), recorder_([&] {
+        int rank = 0;
+        MPI_Comm_rank(comm, &rank);
+        const Copy copy(place, rank == 0 && table.finished_runs() > 0);
+        results::Recorder made(comm, std::move(place), layout_of(scene), attributes(comm, scene), scene.options);
+        made.datasets(table.coordinates());
+        made.datasets(table.results());
+        made.datasets({table.finished()});
+        copy.remove();
+        return made;
+      }()) {
+  std::string dimensions, axes;
+  for (const StudyDimension& d : table.study().dimensions) {
+    dimensions += (dimensions.empty() ? "" : ",") + d.name();
+    recorder_.attributes("/study/" + d.name(), {{"axis", static_cast<long>(d.axis)}, {"law", d.law}});
+  }
+  for (const Study::Axis& axis : table.study().axes) axes += (axes.empty() ? "" : ",") + axis.name;
+  recorder_.attributes("/study", {{"dimensions", dimensions}, {"axes", axes}});
+  recorder_.attributes("/study", attributes_of(model));
+  recorder_.rewrite({table.finished()});  // on the disk, with all that stands above
+}
+
+void StudyFile::write() {
+  const auto begin = std::chrono::steady_clock::now();
+  recorder_.rewrite(table_.results());
+  recorder_.rewrite({table_.finished()});  // once the rest is on the disk
+  written_ = std::chrono::steady_clock::now();
+  cost_ = std::chrono::duration<double>(written_ - begin).count();
+}
+
+void StudyFile::update() {
+  const double since = std::chrono::duration<double>(std::chrono::steady_clock::now() - written_).count();
+  if (cost_ > 0.0 && since < std::max(write_every, cost_factor * cost_)) return;
+  try {
+    write();
+  } catch (const FileError& error) {
+    leave_together(comm_, error);
+  }
+}
+
+void StudyFile::finish(const StudyCourse& course) {
+  if (!recorder_.writes()) return;
+  write();
+  const results::StudyStatistics statistics(table_);
+  recorder_.datasets(statistics.datasets());
+  if (statistics.groups() > 0) recorder_.attributes("/study/statistics", {{"confidence", table_.study().confidence}});
+  std::vector<results::Attribute> summary = results::summary_of(table_);
+  for (const auto& [quantity, error] : model_.expected_errors) summary.push_back({"expected_error_" + quantity, error});
+  summary.push_back({"runs", static_cast<long>(table_.finished_runs())});
+  summary.push_back({"runs_planned", static_cast<long>(table_.runs())});
+  summary.push_back({"runs_known", course.known});
+  summary.push_back({"wall_seconds", course.wall_seconds});
+  summary.push_back({"ended", course.ended});
+  recorder_.finish_with(summary, {"runs", "wall_seconds"});
+}
+
+void print_study_course(const results::StudyTable& table, const results::Sweep::Model& model, const StudyCourse& course,
+                        const std::string& file) {
+  if (table.finished_runs() > 0) results::print_study(table);
+  results::StudyStatistics(table).print();
+  if (course.left_group > 0)
+    fmt::print("  {} of the runs left the others beside them, where wheels lost contact, and were taken alone\n",
+               course.left_group);
+  const long done = static_cast<long>(table.finished_runs()) - course.known;
+  fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each{}\n  {:<22}{}\nresults  {}\n", done,
+             static_cast<long>(table.runs()) - course.known, results::method_of(model), course.wall_seconds,
+             1e3 * course.wall_seconds / static_cast<double>(std::max(done, 1L)),
+             course.known > 0 ? fmt::format(", and {} known before", course.known) : "", "the study", course.ended,
+             file.empty() ? "none" : file);
+}
+
+}  // namespace traverse::app

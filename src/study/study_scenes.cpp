@@ -1,0 +1,176 @@
+#include "study/study_scenes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "accuracy/trials.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr std::size_t most_runners = 12, some_seeds = 8;
+
+bool names(const StudyDimension& dimension, const char* option) {
+  return std::find(dimension.options.begin(), dimension.options.end(), option) != dimension.options.end();
+}
+bool is_speed(const StudyDimension& d) { return names(d, "train_speed") || names(d, "load_speed"); }
+bool is_seed(const StudyDimension& d) { return names(d, "track_seed"); }
+bool is_of_vehicles(const StudyDimension& d) {
+  return std::all_of(d.options.begin(), d.options.end(),
+                     [](const std::string& option) { return option.starts_with("vehicle_"); });
+}
+
+/// Train and forces that run together have one speed.
+void check_speeds(const Scene& scene) {
+  if (scene.vehicles.empty() || scene.load.forces.empty()) return;
+  for (const StudyDimension& d : scene.study->dimensions)
+    if (is_speed(d) && !(names(d, "train_speed") && names(d, "load_speed")))
+      throw InputError(fmt::format("study_vary_{}: the train and the forces beside it run at one speed; add also: {}",
+                                   d.name(), names(d, "train_speed") ? "load_speed" : "train_speed"));
+  if (scene.train.speed != scene.load.speed)
+    throw InputError(
+        "study_vary: train_speed and load_speed differ; in a study the train and the forces beside it run "
+        "at one speed");
+}
+
+}  // namespace
+
+StudyScenes::StudyScenes(const Scene& scene) : scene_(scene), chosen_(scene) {
+  check_speeds(scene);
+  const Study& study = *scene.study;
+  const double speed = scene.vehicles.empty() ? scene.load.speed : scene.train.speed;
+  std::map<std::vector<double>, std::size_t> known, bridges;  // bases and bridges by what tells them apart
+  std::set<double> speeds;
+  for (std::size_t run = 0; run < study.runs(); ++run) {
+    StudyRun one{0, 0, {speed, {}}};
+    std::vector<double> rest, of_bridge;
+    for (const StudyDimension& d : study.dimensions) {
+      const double value = study.value(run, d);
+      if (is_speed(d))
+        one.own.speed = value;
+      else if (is_seed(d))
+        one.own.seed = static_cast<std::uint64_t>(value);
+      else
+        rest.push_back(value);
+      if (!is_speed(d) && !is_seed(d) && !is_of_vehicles(d)) of_bridge.push_back(value);
+    }
+    if (!(one.own.speed > 0.0))
+      throw InputError(fmt::format("study_vary: run {} has the speed {:g} m/s; allowed: above 0", run, one.own.speed));
+    const auto [base, is_new] = known.try_emplace(rest, first_run_.size());
+    if (is_new) first_run_.push_back(run);
+    one.base = base->second;
+    const auto [bridge, new_bridge] = bridges.try_emplace(of_bridge, first_of_bridge_.size());
+    if (new_bridge) first_of_bridge_.push_back(one.base);
+    one.bridge = bridge->second;
+    runs_.push_back(one);
+    if (one.own.seed && seeds_.size() < some_seeds &&
+        std::find(seeds_.begin(), seeds_.end(), *one.own.seed) == seeds_.end())
+      seeds_.push_back(*one.own.seed);
+    speeds.insert(one.own.speed);
+  }
+  speeds_.assign(speeds.begin(), speeds.end());
+}
+
+Scene StudyScenes::base(std::size_t base) const {
+  Scene scene = read_scene_of_study(options::Options(options::in_force()), values_of_run(study(), first_run_[base]));
+  if (scene.output.probes.size() != scene_.output.probes.size())
+    throw InputError(fmt::format("output_probes: a run has {} probes, others have {}; name as many for all",
+                                 scene.output.probes.size(), scene_.output.probes.size()));
+  scene.sweep->speeds = speeds_;
+  scene.sweep->runs = runs_.size();
+  scene.sweep->seeds = seeds_;
+  if (const auto& own = runs_[first_run_[base]].own.seed) std::erase(scene.sweep->seeds, *own);
+  scene.name = scene_.name;
+  scene.quiet = scene_.quiet;
+  return scene;
+}
+
+std::vector<std::size_t> StudyScenes::extreme_bases() const {
+  std::set<std::size_t> found = {0};
+  if (bases() > 1)
+    for (const StudyDimension& d : study().dimensions) {
+      if (is_speed(d) || is_seed(d)) continue;
+      const auto less = [&](std::size_t a, std::size_t b) {
+        return study().value(first_run_[a], d) < study().value(first_run_[b], d);
+      };
+      std::vector<std::size_t> all(bases());
+      for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+      const auto [least, greatest] = std::minmax_element(all.begin(), all.end(), less);
+      found.insert({*least, *greatest});
+    }
+  return {found.begin(), found.end()};
+}
+
+bool StudyScenes::beside(const Runner& a, const Runner& b) const {
+  const auto bridge = [&](const Runner& one) { return runs_[first_run_[one.base]].bridge; };
+  return a.base == b.base || (a.joined && b.joined && bridge(a) == bridge(b));
+}
+
+StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::string>* notes) {
+  for (const Runner& known : runners_)
+    if (known.base == wanted) return known;
+  // Every base of a bridge stands on the first one's, and goes beside it.
+  const std::size_t first = first_of_bridge_[runs_[first_run_[wanted]].bridge];
+  const std::shared_ptr<CaseRunner> model = wanted == first ? nullptr : runner(first).runs;
+  Scene scene = base(wanted);
+  if (scene.mesh_open) set_mesh(scene, mesh_of(chosen_));
+  if (!scene.time_step) scene.time_step = chosen_.time_step;
+  if (scene.modes_open) scene.model_modes = chosen_.model_modes;
+  scene.sweep->method = chosen_.sweep->method;
+  scene.rest_tolerance = chosen_.rest_tolerance;
+  scene.step_probes = chosen_.step_probes;
+  scene.vehicle_model = chosen_.vehicle_model;
+  scene.most_defect = chosen_.most_defect;
+  if (runners_.size() == most_runners) {
+    const auto oldest = std::find_if(runners_.begin(), runners_.end(), [&](const Runner& one) {
+      return one.base != 0 && one.base != first;  // the first of all tells what runs take
+    });
+    alone_ += oldest->runs->alone();
+    runners_.erase(oldest);
+  }
+  std::vector<std::string> ignored;
+  const bool same_beam = model != nullptr && scene.beam->axial == model->axial();
+  auto made =
+      std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored, same_beam ? model->beam() : nullptr);
+  const bool joined = model == nullptr || (same_beam && made->join(*model));
+  return runners_.emplace_back(Runner{wanted, joined, std::move(made)});
+}
+
+long StudyScenes::alone() const {
+  long sum = alone_;
+  for (const Runner& one : runners_) sum += one.runs->alone();
+  return sum;
+}
+
+bool StudyScenes::mixes(std::size_t width) const {
+  return width > 1 && bases() > first_of_bridge_.size() && runs_.size() < width * bases();
+}
+
+std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width) const {
+  // So many tracks go together, so that each is made once and those in use fit into memory.
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> blocks;  // by scene and block of seeds
+  std::map<std::uint64_t, std::size_t> seeds;
+  const bool mixed = mixes(width);
+  for (std::size_t i = 0; i < runs_.size(); ++i) {
+    const StudyRun& run = runs_[i];
+    const std::size_t seed = run.own.seed ? seeds.try_emplace(*run.own.seed, seeds.size()).first->second : 0;
+    blocks[{mixed ? run.bridge : run.base, seed / width}].push_back(i);
+  }
+  std::vector<std::vector<std::size_t>> groups;
+  for (const auto& block : blocks) {
+    std::vector<CaseRun> own;
+    for (const std::size_t i : block.second) own.push_back(runs_[i].own);
+    for (std::vector<std::size_t>& group : group_runs(own, width)) {
+      for (std::size_t& i : group) i = block.second[i];
+      groups.push_back(std::move(group));
+    }
+  }
+  return groups;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,150 @@
+// Studies that do not get to their end, and are gone on with; studies that cannot be meant.
+#include <gtest/gtest.h>
+#include <hdf5.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+
+#include "support/program.hpp"
+#include "support/scene_run.hpp"
+
+namespace traverse::test {
+namespace {
+
+const std::string forces = std::string(two_spans) + "load: {forces: 1.0e5, speed: 40}\nts_dt: 2.0e-3\n";
+
+std::size_t finished(const std::string& file) {
+  const std::vector<double> values = Results(file)("/study/finished");
+  return static_cast<std::size_t>(std::count(values.begin(), values.end(), 1.0));
+}
+
+/// A file that a run holds open and has locked.
+std::size_t finished_so_far(const Workplace& workplace, const std::string& name) {
+  std::error_code failed;
+  const std::string copy = workplace.path("copy.h5");
+  std::filesystem::copy_file(workplace.path(name), copy, std::filesystem::copy_options::overwrite_existing, failed);
+  if (failed || std::filesystem::file_size(copy) == 0) return 0;
+  std::size_t found = 0;
+  H5E_BEGIN_TRY {  // HDF5 is silent about what is not there yet
+    try {
+      found = finished(copy);
+    } catch (const std::runtime_error&) {
+      found = 0;
+    }
+  }
+  H5E_END_TRY
+  return found;
+}
+
+std::string study(const char* what) { return forces + "study: {vary: {" + what + "}}\n"; }
+
+TEST(StudyInput, IsRefusedInOneLine) {
+  const struct {
+    const char* vary;
+    std::vector<std::string> parts;
+  } cases[] = {
+      {"trak_seed: 1:5", {"study_vary_trak_seed", "there is no option trak_seed", "did you mean track_seed?"}},
+      {"beam_mass: []", {"study_vary_beam_mass", "empty list"}},
+      {"beam_mass: {from: 2.0e3, to: 1.0e3, step: 10}", {"study_vary_beam_mass", "empty range"}},
+      {"load_speed: 10:5", {"study_vary_load_speed", "empty range"}},
+      {"beam_mass: [1.0e3, heavy]", {"study_vary_beam_mass", "'heavy' is no finite number", "beam_mass"}},
+      {"beam_mass: [1.0e3, -1]", {"study_vary_beam_mass", "-1 is no value of beam_mass", "above"}},
+      {"beam_mass: {normal: [1.0, 5.0]}", {"study_draws is missing"}},
+      {"support_types: [pinned]", {"support_types cannot be varied", "no number"}},
+      {"ts_dt: [1.0e-3, 2.0e-3]", {"ts_dt cannot be varied", "given for all runs too"}},
+      {"accuracy: [1.0e-3, 1.0e-2]", {"accuracy cannot be varied"}},
+      {"track_seed: 1:5", {"track_seed has no effect", "track_profile is none"}},
+      {"beam_mass: {from: 1, to: 2}", {"study_vary_beam_mass_from", "either step or count"}},
+      {"load_speed: 0:10", {"study_vary_load_speed", "0 m/s", "above 0"}},
+      {"load_speed: {from: 10, to: 60, count: 100000}, beam_mass: {from: 1, to: 2, count: 10000}",
+       {"1e+09 runs (100000 of load_speed times 10000 of beam_mass)", "allowed: at most 1e+06",
+        "They would take 1388 h"}},
+  };
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.vary);
+    const Workplace workplace(study(one.vary));
+    expect_refusal(workplace, workplace.run(), one.parts);
+  }
+}
+
+TEST(StudyInput, DrawsAreCheckedToo) {
+  const Workplace workplace(forces + "study: {vary: {beam_mass: {normal: [1.0, 5.0]}}, draws: 100}\n");
+  expect_refusal(workplace, workplace.run(), {"study_vary_beam_mass_normal", "draw ", "take lognormal"});
+  const Workplace unequal(forces + "study: {vary: {beam_mass: [1, 2], load_speed: [10, 20, 30]}, combine: together}\n");
+  expect_refusal(unequal, unequal.run(), {"study_combine", "load_speed has 3 values"});
+  const Workplace unvaried(study("beam_mass: [1000, 2000]"));
+  expect_refusal(unvaried, unvaried.run({"-study_statistics_over", "beam_EI"}), {"study_statistics_over", "beam_EI"});
+}
+
+// An explicit method with a step far too long fails by its own.
+TEST(StudyFails, ByOneRunThatIsNamed) {
+  const Workplace workplace(std::string(two_spans) +
+                            "load: {forces: 1.0e5, speed: 40}\nts_type: rk\nts_dt: 0.03\n"
+                            "study: {vary: {beam_mass: [1000, 2000]}}\n");
+  const Outcome outcome = workplace.run({"-output_file", "r.h5"});
+  EXPECT_NE(outcome.status, 0);
+  const std::vector<std::string> lines = complaints(outcome);
+  ASSERT_EQ(lines.size(), 1u) << outcome.err;
+  EXPECT_NE(lines[0].find("the run at beam_mass 1000 failed: "), std::string::npos) << lines[0];
+  EXPECT_EQ(Results(workplace.path("r.h5"))("/study/peak_deflection").size(), 4u) << "readable";
+}
+
+// Killed without warning: what is in the file stays, and the study goes on from there, on one rank and on two.
+TEST(StudyResumes, AfterAKill) {
+  const Workplace workplace(study("beam_mass: {from: 1.0e3, to: 2.0e3, count: 400}, load_speed: [30, 40]"));
+  Results whole = [&] {
+    expect_success(workplace.run({"-output_file", "whole.h5"}));
+    return Results(workplace.path("whole.h5"));
+  }();
+  for (const int ranks : {1, 2}) {
+    const std::string name = "r" + std::to_string(ranks) + ".h5", file = workplace.path(name);
+    Child child(workplace.command({"-output_file", name}), workplace.folder());
+    ASSERT_TRUE(child.wait_until([&] { return finished_so_far(workplace, name) > 0; }, 300.0)) << child.written("out");
+    child.kill(SIGKILL);
+    (void)child.wait();
+    const std::size_t before = finished(file);
+    EXPECT_GT(before, 0u);
+    EXPECT_LT(before, 800u);
+    const Outcome outcome = workplace.run({"-output_file", name, "-study_resume"}, ranks);
+    expect_success(outcome);
+    EXPECT_NE(outcome.out.find(std::to_string(before) + " of them are known"), std::string::npos) << outcome.out;
+    EXPECT_NE(outcome.out.find(std::to_string(800 - before) + " of " + std::to_string(800 - before) + " runs"),
+              std::string::npos)
+        << outcome.out;
+    Results resumed(file);
+    for (const char* set : {"/study/peak_deflection", "/study/peak_acceleration_time", "/study/finished"})
+      EXPECT_EQ(resumed(set), whole(set)) << set;
+    EXPECT_FALSE(workplace.has(name + ".before"));
+  }
+}
+
+// More values of the same quantities: only those are run that are new.
+TEST(StudyResumes, WithMoreRuns) {
+  const Workplace workplace(study("beam_mass: [1.0e3, 2.0e3]"));
+  expect_success(workplace.run({"-output_file", "r.h5"}));
+  const Outcome more = workplace.run({"-output_file", "r.h5", "-study_resume", "-study_vary_beam_mass", "2e3,3e3"});
+  expect_success(more);
+  EXPECT_NE(more.out.find("1 of 1 runs"), std::string::npos) << more.out;
+  EXPECT_EQ(finished(workplace.path("r.h5")), 2u);
+  // Of another scene nothing may be taken, and the file stays.
+  const Outcome other = workplace.run({"-output_file", "r.h5", "-study_resume", "-load_speed", "50"});
+  EXPECT_NE(other.status, 0);
+  ASSERT_EQ(complaints(other).size(), 1u) << other.err;
+  EXPECT_NE(other.err.find("it was computed with load_speed = 40, not 50"), std::string::npos) << other.err;
+  EXPECT_EQ(finished(workplace.path("r.h5")), 2u);
+}
+
+TEST(StudyEnds, ByASignalWithWhatItHas) {
+  const Workplace workplace(study("beam_mass: {from: 1.0e3, to: 2.0e3, count: 4000}"));
+  Child child(workplace.command({"-output_file", "r.h5", "-ts_dt", "1e-4"}), workplace.folder());
+  ASSERT_TRUE(child.wait_for(" of 4000 runs   ", 300.0));
+  child.kill(SIGTERM);
+  const Outcome outcome = child.wait();
+  EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
+  EXPECT_NE(outcome.out.find("ended by signal 15"), std::string::npos) << outcome.out;
+  EXPECT_LT(finished(workplace.path("r.h5")), 4000u);
+}
+
+}  // namespace
+}  // namespace traverse::test
