@@ -29,6 +29,12 @@ struct AddedSprings {
 
 class BeamOperator {
  public:
+  /// A matrix of this rank's rows, with the block that couples them to the rank on the left.
+  struct Matrix {
+    solve::BlockTridiagonal rows;
+    std::vector<double> left;
+  };
+
   explicit BeamOperator(const beam::Beam& beam);
 
   int unknowns() const { return nodes_ * block_; }  // on this rank
@@ -36,6 +42,13 @@ class BeamOperator {
   bool shared() const { return ranks_ > 1; }        // by several ranks
   /// This rank's columns as parts that do not touch, where they are solved so; else null.
   const solve::Parts* parts() const { return parts_ ? &*parts_ : nullptr; }
+
+  /// M, K* less K_aa, C* less the beams' b K_aa; null where there is none.
+  const Matrix& mass() const { return mass_; }
+  const Matrix* springs() const { return springs_ ? &*springs_ : nullptr; }
+  const Matrix* drag() const { return drag_ ? &*drag_ : nullptr; }
+  /// b of the beams' damping b K_aa for each unknown of a column, 0 for those without.
+  const std::vector<double>& stiffness_damping() const { return damped_part_; }
 
   /// Collective. The neighbours' columns at the borders of this rank's; left as they are where there is none.
   void borders(const double* x, double* left, double* right) const;
@@ -83,11 +96,6 @@ class BeamOperator {
   /// of its parts.
   struct Shifted {
     solve::BlockTridiagonal mass, damping, stiffness;
-  };
-  /// A matrix of this rank's rows, with the block that couples them to the rank on the left.
-  struct Matrix {
-    solve::BlockTridiagonal rows;
-    std::vector<double> left;
   };
   void find_parts(const beam::Beam& beam, const Shifted& all);
   BeamFactor new_factor() const;

@@ -102,15 +102,11 @@ class Bundle {
   Block<B> stored_inverse(std::size_t lane, std::ptrdiff_t k) const;
   std::vector<std::uint64_t> marks(const Slice<B>& slice) const;
   bool same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const;
-  bool same_pivots(std::ptrdiff_t k, std::ptrdiff_t period) const;
+  bool same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const;
   std::ptrdiff_t repeat(const Slice<B>& slice, std::ptrdiff_t from, std::ptrdiff_t period, std::array<Front, lanes>& fronts);
   bool eliminate_middle(const Slice<B>& slice, std::size_t part, Front* fronts, PivotRecord& record);
   void store_fill(const std::array<Front, lanes>& fronts);
 
-  const Stored& stored(std::ptrdiff_t k) const {
-    const auto before = [](std::ptrdiff_t step, const Stored& steps) { return step < steps.to; };
-    return *std::upper_bound(stored_.begin(), stored_.end() - 1, k, before);
-  }
   static const double* first(const std::vector<LaneEntry>& entries, std::ptrdiff_t entry, std::size_t lane) {
     return entries.data() == nullptr ? nullptr : (entries.data() + entry)->chain.data() + lane;
   }
@@ -144,7 +140,7 @@ class Bundle {
 
   // With D_k the pivot block, U_k the coupling to node k + 1 and S_k the coupling of the separator (rows) to node k
   // (columns), laid out as Factors says, the first two by places:
-  std::vector<Stored> stored_;      // of all steps
+  StoredSteps stored_;
   std::vector<LaneEntry> lower_;    // U_k^T D_k^{-1}
   std::vector<LaneEntry> inverse_;  // D_k^{-1}
   std::vector<LaneEntry> fill_;     // S_k D_k^{-1}

@@ -65,7 +65,7 @@ template <int B>
 bool Bundle<B>::eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>& fronts, PivotRecord& record) {
   const bool shares = steps_ > kept_whole;
   PeriodSearch search(shares ? marks(slice) : std::vector<std::uint64_t>{});
-  stored_.assign(1, {0, steps_, 0, steps_ + 1});
+  stored_.start(steps_);
   lower_.clear();
   inverse_.clear();
   lower_.reserve(static_cast<std::size_t>(steps_ * block_.area()));
@@ -76,7 +76,7 @@ bool Bundle<B>::eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>
       if (k < chain(lane).count && !eliminate_node(slice, lane, k, fronts[lane], record)) return false;
     }
     const std::ptrdiff_t p = search.period();
-    const bool repeats = p > 0 && same_rows(slice, k, p) && same_pivots(k, p);
+    const bool repeats = p > 0 && same_rows(slice, k, p) && same_pivots(slice, k, p);
     if (shares && search.repeated(k, repeats)) {
       k = repeat(slice, k + 1, p, fronts) - 1;
       search.go_on(k);

@@ -2,22 +2,18 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <limits>
+#include <span>
 
 #include "bundle.hpp"
 
 namespace traverse::solve {
 
-// Chains of fewer steps are kept whole: they stay in a cache anyway.
-inline constexpr std::ptrdiff_t kept_whole = 256;
-
-// Short periods are kept several times over, so that this many steps at least are swept in a row.
-inline constexpr std::ptrdiff_t steps_a_row = 64;
-
-// Largest difference of two entries of inverse pivot blocks that are taken to be the same, relative to the root of the
-// product of their diagonal entries.
-inline constexpr double same_pivot = 4.0 * std::numeric_limits<double>::epsilon();
+// Inverse pivot blocks of two steps are the same where they differ by no more than rounding leaves of them: what a change
+// of the matrix by `rounding`, relative to the roots of its diagonal entries, would do. Where pivots fall slowly along
+// a chain that nothing holds, such changes add up: so they must also be the same to `settled`, relative to themselves.
+inline constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+inline constexpr double settled = 1e-10;
 
 /// Couples a chain's node k (rows) to the next (columns).
 template <int B>
@@ -28,7 +24,7 @@ Block<B> Bundle<B>::coupling(const Slice<B>& slice, std::size_t lane, std::ptrdi
 
 template <int B>
 Block<B> Bundle<B>::stored_inverse(std::size_t lane, std::ptrdiff_t k) const {
-  const LaneEntry* from = inverse_.data() + stored(k).place(k) * block_.triangle();
+  const LaneEntry* from = inverse_.data() + stored_.at(k).place(k) * block_.triangle();
   Block<B> result(block_);
   for (int c = 0; c < block_.size(); ++c) {
     for (int r = 0; r < block_.size(); ++r) result(r, c) = from[packed(r, c)].chain[lane];
@@ -44,10 +40,7 @@ std::vector<std::uint64_t> Bundle<B>::marks(const Slice<B>& slice) const {
     for (std::ptrdiff_t k = 0; k < chain(lane).count; ++k) {
       std::uint64_t& mark = result[static_cast<std::size_t>(k)];
       for (const Block<B>& block : {slice.diagonal(node(lane, k)), coupling(slice, lane, k)}) {
-        for (std::ptrdiff_t e = 0; e < block_.area(); ++e) {
-          mark = (mark ^ std::bit_cast<std::uint64_t>(block.data()[e] + 0.0)) * 0x9e3779b97f4a7c15;  // -0 as 0
-          mark ^= mark >> 32;
-        }
+        mark = mark_of(mark, std::span(block.data(), static_cast<std::size_t>(block_.area())));
       }
     }
   }
@@ -67,14 +60,16 @@ bool Bundle<B>::same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_
 
 /// To rounding. The rows being the same, so are then the other numbers.
 template <int B>
-bool Bundle<B>::same_pivots(std::ptrdiff_t k, std::ptrdiff_t period) const {
+bool Bundle<B>::same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const {
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     if (k >= chain(lane).count) continue;
     const Block<B> now = stored_inverse(lane, k), before = stored_inverse(lane, k - period);
+    const Block<B> diagonal = slice.diagonal(node(lane, k));
     for (int c = 0; c < block_.size(); ++c) {
       for (int r = c; r < block_.size(); ++r) {
-        const double change = now(r, c) - before(r, c);
-        if (change * change > same_pivot * same_pivot * now(r, r) * now(c, c)) return false;
+        const double change = now(r, c) - before(r, c), size = now(r, r) * now(c, c);
+        const double part = std::min(settled * settled, rounding * rounding * diagonal(r, r) * diagonal(c, c) * size);
+        if (!(change * change <= part * size)) return false;
       }
     }
   }
@@ -89,18 +84,11 @@ std::ptrdiff_t Bundle<B>::repeat(const Slice<B>& slice, std::ptrdiff_t from, std
   std::ptrdiff_t to = from;
   while (to < steps_ && same_rows(slice, to, period)) ++to;
   if (to - from < period) return from;
-  const std::ptrdiff_t begin = from - period;
-  const std::ptrdiff_t copies = std::min((steps_a_row + period - 1) / period, (to - begin) / period);
-  const std::ptrdiff_t place = stored_.back().place(begin);
-  stored_.back().to = begin;
-  if (stored_.back().from == begin) stored_.pop_back();
-  stored_.push_back({begin, to, place, copies * period});
-  for (std::ptrdiff_t step = period; step < copies * period; ++step) {
+  for (std::ptrdiff_t more = stored_.repeat(from, to, period); more > 0; --more) {
     extend_store();
     std::copy_n(lower_.end() - (period + 1) * block_.area(), block_.area(), lower_.end() - block_.area());
     std::copy_n(inverse_.end() - (period + 1) * block_.triangle(), block_.triangle(), inverse_.end() - block_.triangle());
   }
-  if (to < steps_) stored_.push_back({to, steps_, place + copies * period, steps_ + 1});
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const std::ptrdiff_t past = std::min(to, chain(lane).count);
     for (std::ptrdiff_t k = from; k < past && fronts[lane].filling; ++k) {

@@ -42,7 +42,7 @@ class Filling {
 
 template <int B>
 Factors Bundle<B>::factors(std::size_t lane, std::ptrdiff_t k) const {
-  const std::ptrdiff_t place = stored(k).place(k);
+  const std::ptrdiff_t place = stored_.at(k).place(k);
   return {first(lower_, place * block_.area(), lane), first(inverse_, place * block_.triangle(), lane),
           k < reach_ ? first(fill_, k * block_.area(), lane) : nullptr};
 }
@@ -208,7 +208,7 @@ void Bundle<B>::forward(const Columns& x, Range window, NodeFiller* filler, Chai
         if ((now.chains >> lane & 1U) != 0) filling.advance(chain(lane), lane, now.to + 1);
       }
       for (Stretch row = now; row.from < now.to; row.from = row.to) {
-        row.to = std::min(now.to, stored(row.from).row_end(row.from));
+        row.to = std::min(now.to, stored_.at(row.from).row_end(row.from));
         row.to <= reach_ ? forward<true>(x, row, borders) : forward<false>(x, row, borders);
       }
     }
@@ -243,7 +243,7 @@ void Bundle<B>::backward(const Columns& x, Range window, const ChainBorders<B, C
     for (const std::ptrdiff_t from = now.from; now.to > from; now.to = now.from) {
       now.from = std::max(now.to - tile, from);
       for (Stretch row = now; row.to > now.from; row.to = row.from) {
-        row.from = std::max(now.from, stored(row.to - 1).row_begin(row.to - 1));
+        row.from = std::max(now.from, stored_.at(row.to - 1).row_begin(row.to - 1));
         row.to <= reach_ ? backward<true>(x, row, borders) : backward<false>(x, row, borders);
       }
     }

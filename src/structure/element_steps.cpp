@@ -22,7 +22,7 @@ void ElementStructure::begin_motion(const Method& method) {
   const bool heavy = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
   motion_.emplace(beam_, *statics_, heavy ? dead_load_.data() : nullptr);
   motion_->begin(method);
-  if (rest_tolerance_ == 0.0 || !motion_->fused()) return;
+  if (rest_tolerance_ == 0.0 || !motion_->plain()) return;
   int weighs = heavy ? 1 : 0;
   MPI_Allreduce(MPI_IN_PLACE, &weighs, 1, MPI_INT, MPI_MAX, beam_.comm());
   if (weighs != 0) {
@@ -91,8 +91,8 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
   before_.dissipated = dissipated_;
   before_.worked = worked_;
   if (keep) {
-    before_.first = fused() ? 2 * motion_->first() : 0;
-    before_.past = fused() ? 2 * motion_->past() : n_;
+    before_.first = fused() ? statics_->block() * motion_->first() : 0;
+    before_.past = fused() ? statics_->block() * motion_->past() : n_;
     before_.v.assign(v + before_.first, v + before_.past);
     before_.w.assign(w + before_.first, w + before_.past);
   }
