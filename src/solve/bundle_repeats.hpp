@@ -12,7 +12,7 @@ namespace traverse::solve {
 // Inverse pivot blocks of two steps are the same where they differ by no more than rounding leaves of them: what a change
 // of the matrix by `rounding`, relative to the roots of its diagonal entries, would do. Where pivots fall slowly along
 // a chain that nothing holds, such changes add up: so they must also be the same to `settled`, relative to themselves.
-inline constexpr double rounding = 4.0 * std::numeric_limits<double>::epsilon();
+inline constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 inline constexpr double settled = 1e-10;
 
 /// Couples a chain's node k (rows) to the next (columns).

@@ -109,6 +109,22 @@ struct BeamMotion::Tile {
   }
 };
 
+/// The scalar product of `nodes` columns of x and of forces.
+double BeamMotion::product_of(int block, int nodes, const Tile& x, const Tile& forces) {
+  double sum = 0.0;
+  for (int c = 0; c < block; ++c) {
+    constexpr int lanes = 8;
+    std::array<double, lanes> sums{};
+    const double *const a = x.plane[c].data() + 1, *const b = forces.plane[c].data();
+    int i = 0;
+    for (; i + lanes <= nodes; i += lanes)
+      for (int lane = 0; lane < lanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
+    for (; i < nodes; ++i) sums[0] += a[i] * b[i];
+    for (double part : sums) sum += part;
+  }
+  return sum;
+}
+
 void BeamMotion::Sum::add(double by, const Sum& other) {
   v += by * other.v;
   w += by * other.w;
@@ -379,6 +395,24 @@ std::pair<double, double> BeamMotion::state(std::size_t stage, const double* v, 
   return {at(s.v_still, view, i) + s.displacement * a, at(s.w_still, view, i) + s.rate * a};
 }
 
+double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
+  Sum rate = stages_[stage].w_still;
+  rate.add(stages_[stage].rate, stages_[stage].a);
+  view_ = view_of(v, w);
+  exchange_borders({&rate});
+  double power = 0.0;
+  Tile rates, none, force;
+  for (int first = 0; first < nodes_; first += tile) {
+    const int past = std::min(nodes_, first + tile);
+    combine(std::array{Summand{rate, ghosts_[0], rates}}, first, past);
+    none.clear(block_);
+    force.clear(block_);
+    add_forces(first, past, none, &rates, force);
+    power += product_of(block_, past - first, rates, force);
+  }
+  return power;
+}
+
 void BeamMotion::still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const {
   const Stage& s = stages_[stage];
   terms_of<2>({&s.v_still, &s.w_still}, view_of(v, w)).evaluate(0, n_, {v_still, w_still});
@@ -387,18 +421,12 @@ void BeamMotion::still(std::size_t stage, const double* v, const double* w, doub
 // Of displacements and rates on a tile, by the forces K* v and M w. Changes v.
 double BeamMotion::twice_energy(int first, int past, Tile& v, Tile& w) const {
   Tile force, moved = v;
-  const auto work = [&](const Tile& x) {
-    double sum = 0.0;
-    for (int c = 0; c < block_; ++c)
-      for (int i = 0; i < past - first; ++i) sum += x.plane[c][i + 1] * force.plane[c][i];
-    return sum;
-  };
   force.clear(block_);
   add_forces(first, past, v, nullptr, force);
-  const double strain = work(moved);
+  const double strain = product_of(block_, past - first, moved, force);
   force.clear(block_);
   products_->mass.add(first, past, w.planes(), force.planes());
-  return strain + work(w);
+  return strain + product_of(block_, past - first, w, force);
 }
 
 double BeamMotion::error_energy() {

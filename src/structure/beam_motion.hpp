@@ -49,8 +49,10 @@ class BeamMotion final : private solve::NodeFiller {
   /// Whether stages are solved by solve(); where not, the beam has hinges or a foundation that is not linear, and still()
   /// serves.
   bool fused() const { return products_.has_value(); }
-  /// Bending with Rayleigh's damping alone.
-  bool plain() const { return fused() && block_ == 2 && proportional_; }
+  /// Fused, with Rayleigh's damping alone: dissipation(), set_range() and step_free() are for these.
+  bool proportional() const { return fused() && proportional_; }
+  /// The same in bending alone.
+  bool plain() const { return proportional() && block_ == 2; }
 
   /// Collective. Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
   void solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads);
@@ -63,6 +65,8 @@ class BeamMotion final : private solve::NodeFiller {
     double rate = 0.0;   // W/s
   };
   Dissipation dissipation() const { return dissipation_; }
+  /// Collective. w^T C w of a solved stage, this rank's share; where fused.
+  double power(std::size_t stage, const double* v, const double* w);
 
   /// v~ and w~ of this rank's unknowns.
   void still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const;
@@ -129,6 +133,7 @@ class BeamMotion final : private solve::NodeFiller {
   void combine(const std::array<Summand, outputs>& sums, int first, int past) const;
   void add_elastic(int first, int past, Tile& v, const Tile* w, Tile& force) const;
   void add_forces(int first, int past, Tile& v, Tile* w, Tile& force) const;
+  static double product_of(int block, int nodes, const Tile& x, const Tile& forces);
   double twice_energy(int first, int past, Tile& v, Tile& w) const;
   double at(const Sum& sum, const View& view, int unknown) const;
   View view_of(const double* v, const double* w) const;

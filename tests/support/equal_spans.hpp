@@ -9,14 +9,15 @@
 
 namespace traverse::test {
 
-/// Spans of ten elements of 3 m, A = shift^2 M + K. A node's unknowns: deflection, rotation and, where there are hinges,
+/// Spans of elements of 3 m, A = shift^2 M + K. A node's unknowns: deflection, rotation and, where there are hinges,
 /// the rotation to the right of one.
 struct EqualSpans {
   int spans = 1000;
+  int elements = 10;        // a span
   double shift = 0.0;       // 1/s
   int odd_span = -1;        // of four elements
   bool elastic = false;     // every other pier is a spring
-  int spans_to_hinge = 0;   // a hinge in the middle of every so many spans; 0: none
+  int spans_to_hinge = 0;   // a hinge in every so many spans, near a pier; 0: none
   double jitter = 0.0;      // every entry is changed by up to this part of it
 
   struct Matrix {
@@ -27,12 +28,12 @@ struct EqualSpans {
   Matrix matrix() const {
     const int block = spans_to_hinge > 0 ? 3 : 2;
     std::vector<int> piers = {0};
-    for (int span = 0; span < spans; ++span) piers.push_back(piers.back() + (span == odd_span ? 4 : 10));
+    for (int span = 0; span < spans; ++span) piers.push_back(piers.back() + (span == odd_span ? 4 : elements));
     const int nodes = piers.back() + 1;
     Matrix result{solve::BlockTridiagonal(block, nodes), std::vector<char>(static_cast<std::size_t>(nodes * block), 0)};
     std::vector<char> hinged(static_cast<std::size_t>(nodes), 0);
     for (int span = 0; span < spans && block == 3; ++span) {
-      if (span % spans_to_hinge == 0 && span != odd_span) hinged[static_cast<std::size_t>(piers[span] + 5)] = 1;
+      if (span % spans_to_hinge == 0 && span != odd_span) hinged[static_cast<std::size_t>(piers[span] + 2)] = 1;
     }
     for (int node = 0; node < nodes; ++node) {
       if (block == 3 && hinged[static_cast<std::size_t>(node)] == 0) result.fixed[static_cast<std::size_t>(3 * node + 2)] = 1;
