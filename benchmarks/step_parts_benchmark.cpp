@@ -118,8 +118,8 @@ void measure(int size, Spans kind, int rounds, std::ofstream& table) {
     const double time = median(part.times);
     std::printf("%9d  %-17s %-32s %10.3f %10.3f %8.2f\n", unknowns, name_of(kind), part.name.c_str(), 1e6 * time,
                 1e9 * time / unknowns, time / reference);
-    table << unknowns << ',' << name_of(kind) << ',' << ranks() << ',' << coaches << ',' << part.name << ',' << time << ','
-          << 1e9 * time / unknowns << ',' << time / reference << '\n';
+    table << unknowns << ',' << name_of(kind) << ',' << ranks() << ',' << coaches << ',' << part.name << ',' << time
+          << ',' << 1e9 * time / unknowns << ',' << time / reference << '\n';
   }
 }
 
@@ -147,8 +147,8 @@ void measure_memory(int size, Spans kind, std::ofstream& table) {
   std::printf("%9d  %-17s resident bytes per unknown: %.0f built, %.0f after %d steps, %.0f after %d\n", unknowns,
               name_of(kind), built, after_few, few, after_many, 10 * few);
   for (const auto& [steps_taken, value] : {std::pair{0, built}, {few, after_few}, {10 * few, after_many}})
-    table << unknowns << ',' << name_of(kind) << ',' << ranks() << ",8,bytes after " << steps_taken << " steps,," << value
-          << ",\n";
+    table << unknowns << ',' << name_of(kind) << ',' << ranks() << ",8,bytes after " << steps_taken << " steps,,"
+          << value << ",\n";
 }
 
 void run(int argc, char** argv) {

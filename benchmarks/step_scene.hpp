@@ -50,8 +50,9 @@ struct StepScene {
                        ", EI: 3.795e11, mass: 3.0e4, continuity: " + (apart ? "simply_supported" : "continuous") +
                        "}\nsupport: {types: " + (apart ? "pinned" : "roller") + "}\nts: {max_time: 1.0}\n";
     if (track)
-      text += "track: {rail: {EI: 1.32476e7, mass: 121.28}, spacing: 0.6666666666666666, pad: {k: 6.5e7, c: 7.5e4}, "
-              "sleeper: {mass: 251.0}, ballast: {mass: 531.4, k: 1.3775e8, c: 5.88e4}}\n";
+      text +=
+          "track: {rail: {EI: 1.32476e7, mass: 121.28}, spacing: 0.6666666666666666, pad: {k: 6.5e7, c: 7.5e4}, "
+          "sleeper: {mass: 251.0}, ballast: {mass: 531.4, k: 1.3775e8, c: 5.88e4}}\n";
     if (coaches > 0)
       text += "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/s300.yml}}\ntrain: {vehicles: coach*" +
               std::to_string(coaches) + ", speed: 83.333}\n";

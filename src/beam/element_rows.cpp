@@ -71,7 +71,8 @@ void ElementRows::add_run(const Run& run, int first, int past, const Planes& x, 
 }
 
 void ElementRows::add(int first, int past, const Planes& x, const Planes& r) const {
-  for (const Run& run : runs_) run.u >= 0 ? add_run<true>(run, first, past, x, r) : add_run<false>(run, first, past, x, r);
+  for (const Run& run : runs_)
+    run.u >= 0 ? add_run<true>(run, first, past, x, r) : add_run<false>(run, first, past, x, r);
 }
 
 }  // namespace traverse::beam

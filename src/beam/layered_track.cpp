@@ -8,8 +8,8 @@
 namespace traverse::beam {
 namespace {
 
-/// A station moved by up to 1e-10 of its element, so that sleepers that stand alike are alike to the last bit: matrices and
-/// factors that repeat are kept once.
+/// A station moved by up to 1e-10 of its element, so that sleepers that stand alike are alike to the last bit: matrices
+/// and factors that repeat are kept once.
 Station on_grid(Station station) {
   constexpr double grid = 4294967296.0;
   station.xi = std::round(station.xi * grid) / grid;

@@ -43,6 +43,8 @@ class BeamOperator {
   /// This rank's columns as parts that do not touch, where they are solved so; else null.
   const solve::Parts* parts() const { return parts_ ? &*parts_ : nullptr; }
 
+  /// a where C* = a M + b K*, so that neither C* nor what follows of it is kept.
+  std::optional<double> mass_damping() const { return mass_damping_; }
   /// M, K* less K_aa, C* less the beams' b K_aa; null where there is none.
   const Matrix& mass() const { return mass_; }
   const Matrix* springs() const { return springs_ ? &*springs_ : nullptr; }
@@ -93,7 +95,7 @@ class BeamOperator {
     BeamFactor beam;
   };
   /// The matrices that factorisations are made of: of all this rank's columns, whose mass is kept apart, or of one kind
-  /// of its parts.
+  /// of its parts; the damping where it is not Rayleigh's alone.
   struct Shifted {
     solve::BlockTridiagonal mass, damping, stiffness;
   };
@@ -110,6 +112,7 @@ class BeamOperator {
   int left_rank_, right_rank_;  // neighbours with nodes, or MPI_PROC_NULL
   std::vector<char> fixed_;
   Matrix mass_;
+  std::optional<double> mass_damping_;
   std::optional<Matrix> springs_, drag_;  // C* = drag + b K_aa; null where there are none
   std::optional<solve::Parts> parts_;
   std::vector<Shifted> shifted_;  // one, or one a kind of part

@@ -1,5 +1,5 @@
-// Products with a block tridiagonal matrix whose blocks are mostly zero, many nodes at a time: the non-zero entries of a
-// row's blocks, each along all nodes. Where rows repeat along the beam their numbers are kept once.
+// Products with a block tridiagonal matrix whose blocks are mostly zero, many nodes at a time: the non-zero entries of
+// a row's blocks, each along all nodes. Where rows repeat along the beam their numbers are kept once.
 #pragma once
 
 #include <vector>
@@ -15,8 +15,8 @@ class BlockRows {
   /// left: the block that couples the neighbour rank's last column (rows) to the first (columns).
   BlockRows(const solve::BlockTridiagonal& rows, const std::vector<double>& left);
 
-  /// r += A x for the nodes [first, past), at most beam::tile. x begins at node first - 1 and ends at node past; what it
-  /// holds beyond the beam has to be finite. `r` begins at node first.
+  /// r += A x for the nodes [first, past), at most beam::tile. x begins at node first - 1 and ends at node past; what
+  /// it holds beyond the beam has to be finite. `r` begins at node first.
   void add(int first, int past, const beam::Planes& x, const beam::Planes& r) const;
 
  private:

@@ -3,8 +3,8 @@
 // A chain that starts beside a separator drags along a coupling to it, the fill. Under a large mass term the fill dies
 // out within tens of nodes and its tail is dropped; with springs alone it may reach the middle, and is kept whole.
 //
-// Where the rows of all chains repeat and so do their pivot blocks, to rounding, the numbers of one period stand for those
-// of all that follow (Stored): the solution is that of a matrix whose pivot blocks are changed by that much.
+// Where the rows of all chains repeat and so do their pivot blocks, to rounding, the numbers of one period stand for
+// those of all that follow (Stored): the solution is that of a matrix whose pivot blocks are changed by that much.
 #pragma once
 
 #include <algorithm>
@@ -97,13 +97,16 @@ class Bundle {
   }
   bool eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k, Front& front, PivotRecord& record);
   void extend_fill(const Block<B>& inverse, const Block<B>& upper, Front& front) const;
-  std::ptrdiff_t node(std::size_t lane, std::ptrdiff_t k) const { return chain(lane).first + k * chain(lane).direction; }
+  std::ptrdiff_t node(std::size_t lane, std::ptrdiff_t k) const {
+    return chain(lane).first + k * chain(lane).direction;
+  }
   Block<B> coupling(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k) const;
   Block<B> stored_inverse(std::size_t lane, std::ptrdiff_t k) const;
   std::vector<std::uint64_t> marks(const Slice<B>& slice) const;
   bool same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const;
   bool same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const;
-  std::ptrdiff_t repeat(const Slice<B>& slice, std::ptrdiff_t from, std::ptrdiff_t period, std::array<Front, lanes>& fronts);
+  std::ptrdiff_t repeat(const Slice<B>& slice, std::ptrdiff_t from, std::ptrdiff_t period,
+                        std::array<Front, lanes>& fronts);
   bool eliminate_middle(const Slice<B>& slice, std::size_t part, Front* fronts, PivotRecord& record);
   void store_fill(const std::array<Front, lanes>& fronts);
 

@@ -79,7 +79,7 @@ bool Bundle<B>::eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>
     const bool repeats = p > 0 && same_rows(slice, k, p) && same_pivots(slice, k, p);
     if (shares && search.repeated(k, repeats)) {
       k = repeat(slice, k + 1, p, fronts) - 1;
-      search.go_on(k);
+      search.go_on(k + 1);
     }
   }
   if (shares) {

@@ -9,9 +9,10 @@
 
 namespace traverse::solve {
 
-// Inverse pivot blocks of two steps are the same where they differ by no more than rounding leaves of them: what a change
-// of the matrix by `rounding`, relative to the roots of its diagonal entries, would do. Where pivots fall slowly along
-// a chain that nothing holds, such changes add up: so they must also be the same to `settled`, relative to themselves.
+// Inverse pivot blocks of two steps are the same where they differ by no more than rounding leaves of them: what a
+// change of the matrix by `rounding`, relative to the roots of its diagonal entries, would do. Where pivots fall slowly
+// along a chain that nothing holds, such changes add up: so they must also be the same to `settled`, relative to
+// themselves.
 inline constexpr double rounding = 64.0 * std::numeric_limits<double>::epsilon();
 inline constexpr double settled = 1e-10;
 
@@ -87,7 +88,8 @@ std::ptrdiff_t Bundle<B>::repeat(const Slice<B>& slice, std::ptrdiff_t from, std
   for (std::ptrdiff_t more = stored_.repeat(from, to, period); more > 0; --more) {
     extend_store();
     std::copy_n(lower_.end() - (period + 1) * block_.area(), block_.area(), lower_.end() - block_.area());
-    std::copy_n(inverse_.end() - (period + 1) * block_.triangle(), block_.triangle(), inverse_.end() - block_.triangle());
+    std::copy_n(inverse_.end() - (period + 1) * block_.triangle(), block_.triangle(),
+                inverse_.end() - block_.triangle());
   }
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const std::ptrdiff_t past = std::min(to, chain(lane).count);

@@ -53,11 +53,11 @@ class PeriodSearch {
     return false;
   }
 
-  /// The steps before k are settled.
+  /// The steps before k are settled, and that at k does not repeat: perhaps there is a longer period.
   void go_on(std::ptrdiff_t k) {
     since_ = 0;
     wait_ = first_look;
-    next_ = k + wait_;
+    look(k);
   }
 
  private:
@@ -117,8 +117,8 @@ class StoredSteps {
     return (copies - 1) * period;
   }
 
-  /// Settles all steps: mark(k) the same for equal ones, same(i, j) whether two are equal. Returns the step whose numbers
-  /// each place is to have.
+  /// Settles all steps: mark(k) the same for equal ones, same(i, j) whether two are equal. Returns the step whose
+  /// numbers each place is to have.
   template <class Mark, class Same>
   std::vector<std::ptrdiff_t> keep(std::ptrdiff_t steps, Mark mark, Same same) {
     start(steps);
@@ -138,7 +138,7 @@ class StoredSteps {
         for (std::ptrdiff_t more = repeat(k + 1, to, p); more > 0; --more) kept.push_back(kept.end()[-p]);
         k = to - 1;
       }
-      search.go_on(k);
+      search.go_on(k + 1);
     }
     return kept;
   }

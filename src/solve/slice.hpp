@@ -54,8 +54,11 @@ struct Slice {
     return result;
   }
 
-  /// Whether the diagonal blocks of two nodes, or their couplings to the nodes behind them, are the same to the last bit.
-  bool same_diagonal(std::ptrdiff_t a, std::ptrdiff_t b) const { return same_entries(matrix.diagonal, a, b) && same_fixed(a, b); }
+  /// Whether the diagonal blocks of two nodes, or their couplings to the nodes behind them, are the same to the last
+  /// bit.
+  bool same_diagonal(std::ptrdiff_t a, std::ptrdiff_t b) const {
+    return same_entries(matrix.diagonal, a, b) && same_fixed(a, b);
+  }
   bool same_upper(std::ptrdiff_t a, std::ptrdiff_t b) const {
     return same_entries(matrix.upper, a, b) && same_fixed(a, b) && same_fixed(a + 1, b + 1);
   }

@@ -139,7 +139,7 @@ BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* d
       n_(beam.local_unknowns()),
       nodes_(beam.local_columns()),
       past_(nodes_) {
-  proportional_ = op.springs() == nullptr && beam.rail() == nullptr;
+  proportional_ = op.mass_damping().has_value();
   if (beam::ElementRows::fit(beam) && !beam.model().foundation.nonlinear()) {
     const auto rows_of = [](const BeamOperator::Matrix* m) {
       return m != nullptr ? std::optional<BlockRows>(std::in_place, m->rows, m->left) : std::nullopt;
@@ -314,10 +314,19 @@ void BeamMotion::add_elastic(int first, int past, Tile& v, const Tile* w, Tile& 
   products_->elements.add(first, past, v.planes(), force.planes());
 }
 
+void BeamMotion::add_mass_damping(int first, int past, const Tile& w, Tile& force) const {
+  const double a = *operator_.mass_damping();
+  Tile scaled;
+  for (int c = 0; c < block_; ++c)
+    for (int i = 0; i < past - first + 2; ++i) scaled.plane[c][i] = a * w.plane[c][i];
+  products_->mass.add(first, past, scaled.planes(), force.planes());
+}
+
 // K* v + C* w, null: without C*. Changes v.
 void BeamMotion::add_forces(int first, int past, Tile& v, Tile* w, Tile& force) const {
   if (products_->springs) products_->springs->add(first, past, v.planes(), force.planes());
   if (w != nullptr && products_->drag) products_->drag->add(first, past, w->planes(), force.planes());
+  if (w != nullptr && proportional_) add_mass_damping(first, past, *w, force);
   add_elastic(first, past, v, w, force);
 }
 

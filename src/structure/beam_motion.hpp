@@ -8,8 +8,8 @@
 //   ((1 + a k1) M + (b k1 + k2) K) Z = P - K e,   e = v~ + (b - c (b k1 + k2)) w~
 //
 // without a product with M. So Z is kept of each stage in place of A; what is combined of accelerations is rewritten in
-// terms of w_n and these. With springs or dampers beside the beams, or a track that is damped in another way, A itself is
-// kept, of
+// terms of w_n and these. With springs or dampers beside the beams, or a track that is damped in another way, A itself
+// is kept, of
 //
 //   (M + k1 C + k2 K) A = P - K v~ - C w~
 #pragma once
@@ -46,8 +46,8 @@ class BeamMotion final : private solve::NodeFiller {
   /// What is kept of stage i, counted from 0: Z or A.
   double* kept(std::size_t stage) { return kept_[stage + 1].data(); }
 
-  /// Whether stages are solved by solve(); where not, the beam has hinges or a foundation that is not linear, and still()
-  /// serves.
+  /// Whether stages are solved by solve(); where not, the beam has hinges or a foundation that is not linear, and
+  /// still() serves.
   bool fused() const { return products_.has_value(); }
   /// Fused, with Rayleigh's damping alone: dissipation(), set_range() and step_free() are for these.
   bool proportional() const { return fused() && proportional_; }
@@ -132,6 +132,7 @@ class BeamMotion final : private solve::NodeFiller {
   template <std::size_t outputs>
   void combine(const std::array<Summand, outputs>& sums, int first, int past) const;
   void add_elastic(int first, int past, Tile& v, const Tile* w, Tile& force) const;
+  void add_mass_damping(int first, int past, const Tile& w, Tile& force) const;
   void add_forces(int first, int past, Tile& v, Tile* w, Tile& force) const;
   static double product_of(int block, int nodes, const Tile& x, const Tile& forces);
   double twice_energy(int first, int past, Tile& v, Tile& w) const;
@@ -145,7 +146,7 @@ class BeamMotion final : private solve::NodeFiller {
   const double* dead_load_;
   int block_;
   std::optional<Products> products_;
-  bool proportional_ = false;  // C = a M + b K
+  bool proportional_ = false;                                 // C = a M + b K
   std::vector<int> held_;                                     // local unknowns that stay zero
   std::array<std::vector<double>, most_accelerations> kept_;  // A_0, then one a stage
   int n_ = 0, nodes_ = 0;

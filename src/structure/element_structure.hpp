@@ -8,8 +8,8 @@
 // Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
 //
 // Stages of steps of a beam without hinges whose foundations are linear are fused with the solver's sweep (BeamMotion).
-// Where it has Rayleigh's damping alone, spans that do not touch those under the loads go through all stages of a step at once, and what is at rest stays out
-// of the steps (RestWindow).
+// Where it has Rayleigh's damping alone, spans that do not touch those under the loads go through all stages of a step
+// at once, and what is at rest stays out of the steps (RestWindow).
 #pragma once
 
 #include <array>

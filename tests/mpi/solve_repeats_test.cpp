@@ -28,11 +28,14 @@ Outcome solve_and_compare(const test::EqualSpans& bridge, int columns) {
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   const test::EqualSpans::Matrix whole = bridge.matrix();
   const int b = whole.A.block, begin = whole.A.nodes * rank / ranks, past = whole.A.nodes * (rank + 1) / ranks;
-  const auto part = [&](const auto& of, int size) { return std::vector(of.begin() + begin * size, of.begin() + past * size); };
+  const auto part = [&](const auto& of, int size) {
+    return std::vector(of.begin() + begin * size, of.begin() + past * size);
+  };
   solve::BlockTridiagonal A(b, past - begin);
   A.diagonal = part(whole.A.diagonal, b * b);
   A.upper = part(whole.A.upper, b * b);
-  const std::vector<double> load = test::random_load(whole.fixed), expected = test::solution_in_long_double(whole, load);
+  const std::vector<double> load = test::random_load(whole.fixed),
+                            expected = test::solution_in_long_double(whole, load);
   solve::SubstructuredCholesky cholesky(MPI_COMM_WORLD, b, past - begin);
   cholesky.factor(A, part(whole.fixed, b));
   std::vector<double> x;
@@ -83,6 +86,8 @@ TEST(FactorsThatRepeat, WithOneOddSpan) { expect_shared({.spans = 2000, .odd_spa
 TEST(FactorsThatRepeat, WithElasticSupportsAtEveryOtherPier) {
   expect_shared({.spans = 2000, .elastic = true}, 0.4, "elastic");
 }
-TEST(FactorsThatRepeat, WithHinges) { expect_shared({.spans = 3000, .elements = 6, .spans_to_hinge = 3}, 0.5, "hinges"); }
+TEST(FactorsThatRepeat, WithHinges) {
+  expect_shared({.spans = 3000, .elements = 6, .spans_to_hinge = 3}, 0.5, "hinges");
+}
 
 }  // namespace

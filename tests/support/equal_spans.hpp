@@ -13,12 +13,12 @@ namespace traverse::test {
 /// the rotation to the right of one.
 struct EqualSpans {
   int spans = 1000;
-  int elements = 10;        // a span
-  double shift = 0.0;       // 1/s
-  int odd_span = -1;        // of four elements
-  bool elastic = false;     // every other pier is a spring
-  int spans_to_hinge = 0;   // a hinge in every so many spans, near a pier; 0: none
-  double jitter = 0.0;      // every entry is changed by up to this part of it
+  int elements = 10;       // a span
+  double shift = 0.0;      // 1/s
+  int odd_span = -1;       // of four elements
+  bool elastic = false;    // every other pier is a spring
+  int spans_to_hinge = 0;  // a hinge in every so many spans, near a pier; 0: none
+  double jitter = 0.0;     // every entry is changed by up to this part of it
 
   struct Matrix {
     solve::BlockTridiagonal A;
@@ -36,7 +36,8 @@ struct EqualSpans {
       if (span % spans_to_hinge == 0 && span != odd_span) hinged[static_cast<std::size_t>(piers[span] + 2)] = 1;
     }
     for (int node = 0; node < nodes; ++node) {
-      if (block == 3 && hinged[static_cast<std::size_t>(node)] == 0) result.fixed[static_cast<std::size_t>(3 * node + 2)] = 1;
+      if (block == 3 && hinged[static_cast<std::size_t>(node)] == 0)
+        result.fixed[static_cast<std::size_t>(3 * node + 2)] = 1;
       if (node + 1 < nodes) add_element(result.A, node, hinged[static_cast<std::size_t>(node)] != 0 ? 2 : 1);
     }
     for (int pier = 0; pier <= spans; ++pier) {

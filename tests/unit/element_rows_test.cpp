@@ -61,19 +61,21 @@ void expect_same_products(const beam::BeamModel& model) {
   for (int size : {1, 7, 64, beam::tile}) {
     for (int first = 0; first < nodes; first += size) {
       const int past = std::min(nodes, first + size);
-      Tile damped, plain, rates, forces;  // x + b y, x, y
+      Tile damped, plain, rates, heavy, forces;  // x + b y, x, y, y with what M takes of it for damping
       for (int c = 0; c < b; ++c) {
-        for (Tile* of : {&damped, &plain, &rates}) (*of)[c].assign(static_cast<std::size_t>(past - first) + 2, 0.5);
+        for (Tile* of : {&damped, &plain, &rates, &heavy})
+          (*of)[c].assign(static_cast<std::size_t>(past - first) + 2, 0.5);
         forces[c].assign(static_cast<std::size_t>(past - first), 0.0);
         for (int node = std::max(first - 1, 0); node < std::min(past + 1, nodes); ++node) {
           const int i = node - first + 1, k = b * node + c;
           plain[c][i] = x[k];
           rates[c][i] = y[k];
+          heavy[c][i] = (1.0 + op.mass_damping().value_or(0.0)) * y[k];
           damped[c][i] = x[k] + op.stiffness_damping()[c] * y[k];
         }
       }
       elements.add(first, past, planes(damped), planes(forces));
-      mass.add(first, past, planes(rates), planes(forces));
+      mass.add(first, past, planes(heavy), planes(forces));
       for (std::size_t i = 0; i < others.size(); ++i)
         others[i].add(first, past, planes(springs && i == 0 ? plain : rates), planes(forces));
       for (int k = b * first; k < b * past; ++k)
