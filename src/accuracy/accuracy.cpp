@@ -116,6 +116,8 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
 
 Scene refined(const Scene& scene) {
   Scene fine = scene;
+  if (fine.modes_open) fine.model_modes = 0;
+  if (fine.model_modes == 0 && scene.model_modes > 0) fine.vehicle_model = VehicleModel::full;
   if (fine.beam->track)
     fine.beam->track->elements_per_bay *= 2;
   else

@@ -35,7 +35,8 @@ struct Accuracy {
 /// InputError as the scene's own run would throw it.
 Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
 
-/// The scene with twice the elements in every span (or sleeper bay) and half the step.
+/// The scene with twice the elements in every span (or sleeper bay) and half the step; where modes were chosen for it,
+/// by its elements and mechanisms.
 Scene refined(const Scene& scene);
 
 }  // namespace traverse::app

@@ -22,6 +22,7 @@
 // PETSc's own implicit integrators ask for y with G(t, y) = s y + c: `solve_stage` does the same once.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <limits>
@@ -34,6 +35,7 @@
 #include "coupling/contact_newton.hpp"
 #include "coupling/corner_events.hpp"
 #include "coupling/passing_weights.hpp"
+#include "coupling/stepped_apart.hpp"
 #include "methods/one_step_methods.hpp"
 #include "recovery/recovery.hpp"
 #include "structure/structure.hpp"
@@ -110,7 +112,7 @@ class System {
   /// Collective. How far the mechanisms have been from equilibrium in what was observed, over their weights: what
   /// linear vehicles leave out.
   double defect() const {
-    double largest = fleet_.defect();
+    double largest = std::max(fleet_.defect(), apart_ ? apart_->defect() : defect_apart_);
     MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm_);
     return largest;
   }
@@ -129,6 +131,18 @@ class System {
   }
   /// Collective. The method of the steps to come, for steps of 1 s.
   void begin_motion(const structure::Method& method);
+  // Steps apart (stepped_apart.hpp), from the first one on.
+
+  /// After start, before begin_motion.
+  void step_apart(std::unique_ptr<SteppedApart> apart) { apart_ = std::move(apart); }
+  /// Null: the system takes its steps itself.
+  const SteppedApart* apart() const { return apart_.get(); }
+  /// Takes the step that step_motion is to take, or goes on by itself from y at t, the start of that step: false then,
+  /// and a restart has to follow.
+  bool try_apart(double t, double h, double* y);
+  /// Writes where the steps apart have led into y. Does nothing where there are none.
+  void fetch(double* y);
+
   /// Whether the last step can be taken back.
   void keep_steps(bool keep) { keep_steps_ = keep; }
   /// Collective. Before the first step from a state, and where it was changed from outside.
@@ -145,9 +159,11 @@ class System {
   /// rest, and of the worst vehicle's, as a root of the mean of its masses' accelerations, measured by gravity and what
   /// they are.
   double step_error(const double* y);
-  /// Whether rate_of_motion serves: not where a method's own acceleration is another one than the state's.
+  /// Whether rate_of_motion serves: not where a method's own acceleration is another one than the state's, nor
+  /// for steps apart.
   bool knows_rate() const {
-    return motion_ && motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
+    return motion_ && !apart_ &&
+           motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
   }
   /// y' of the state that the last step led to, as `rate` gives it, but for D' and W', which are left 0.
   void rate_of_motion(const double* y, double* ydot) const;
@@ -251,6 +267,7 @@ class System {
   structure::ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
   void share_step();
+  void note_wheels_apart();
   void note_touched();
   void powers(const double* w, Terms terms, double& dissipation, double& work);
   Powers fleet_powers() const;
@@ -282,6 +299,8 @@ class System {
   std::vector<double> element_loads_;
   std::vector<structure::Reach> reaches_;
   std::unique_ptr<Motion> motion_;  // null before begin_motion
+  std::unique_ptr<SteppedApart> apart_;
+  double defect_apart_ = 0.0;
   bool keep_steps_ = false;
 };
 

@@ -33,6 +33,10 @@ void System::arrive(double t, const double* y) {
 }
 
 bool System::accept(double t, double* y) {
+  if (apart_) {
+    note_wheels_apart();
+    return false;
+  }
   if (motion_ && structure_) structure_->complete_step(y, y + n_);
   if (fleet_.vehicles.empty()) return false;
   arrive(t, y);

@@ -19,7 +19,7 @@ void System::begin_motion(const structure::Method& method) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
-  share_.deal(comm_, fleet_);
+  if (!apart_) share_.deal(comm_, fleet_);
   if (structure_) structure_->begin_motion(method);
 }
 
@@ -39,6 +39,7 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
 }
 
 void System::restart_motion(double t, double* y) {
+  if (apart_) return;
   Motion& m = *motion_;
   m.rate.resize(static_cast<std::size_t>(local_size()));
   rate(t, y, m.rate.data(), Terms::all);
@@ -71,6 +72,7 @@ void System::take_back_step(double* y) {
 }
 
 bool System::step_motion(double t, double h, double* y, const std::function<bool()>& good_enough) {
+  if (apart_) return true;  // try_apart has taken it
   Motion& m = *motion_;
   if (h != m.length) {
     m.method = m.unit;

@@ -154,6 +154,9 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
   const double slack = near_event * std::min({settings_.time_step, settings_.interval, settings_.end_time});
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::max(settings_.end_time, 1.0);
   std::size_t event = 0, passage = 0;
+  const auto look = [&](Purpose purpose) {  // steps apart are looked at one by one, at their ends
+    if (purpose != Purpose::look || system_.apart() == nullptr) sample_now(sample, purpose);
+  };
   long samples = 0;
   double t = 0.0;
   bool going = true;
@@ -193,9 +196,9 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
     }
     if (t == next_sample) {
       const bool stored = ++samples % settings_.stored == 0 && !beyond;
-      sample_now(sample, stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::look);
+      look(stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::look);
     } else if (passage < settings_.passages.size() && t == settings_.passages[passage]) {
-      sample_now(sample, Purpose::look);
+      look(Purpose::look);
     }
   }
   return t;
@@ -203,7 +206,9 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
 
 // TS takes single steps here, in which it calls none.
 void Stepper::show_to_monitors(double t) {
-  if (monitored_) check(TSMonitor(ts_, static_cast<PetscInt>(steps_), t, y_));
+  if (!monitored_) return;
+  fetch_steps_apart();
+  check(TSMonitor(ts_, static_cast<PetscInt>(steps_), t, y_));
 }
 
 // What comes next on the way to a target `left` s away: a rung of the ladder, or what is left shared evenly among the
@@ -223,13 +228,18 @@ void Stepper::take_step(double left) {
   const auto turn = next_turn(from, left);
   if (turn) left = turn->time - from;
   const double h = next_step(from, left);
+  if (system_.apart() != nullptr) {
+    Array y(y_);
+    if (!system_.try_apart(from, h, y.data)) check(TSRestartStep(ts_));
+  }
   if (multistep_ && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
   if (system_.begin_step(from, from + h)) {  // a jump: what is known of the rate belongs to its other side
     known_ = false;
     check(TSRestartStep(ts_));
   }
   const bool turns = turn && h == left;
-  const bool locating = settings_.contact_tolerance > 0.0 && system_.fleet().contacts() > 0;
+  const bool locating =
+      settings_.contact_tolerance > 0.0 && system_.fleet().contacts() > 0 && system_.apart() == nullptr;
   if (second_order_)
     system_.keep_steps(locating || turns);
   else if (locating || turns)
@@ -263,7 +273,14 @@ double Stepper::step_to(double end) {
   return t;
 }
 
+void Stepper::fetch_steps_apart() {
+  if (system_.apart() == nullptr || steps_ == 0) return;
+  Array y(y_);
+  system_.fetch(y.data);
+}
+
 void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
+  fetch_steps_apart();
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
   if (second_order_ && steps_ > 0 && system_.knows_rate()) {

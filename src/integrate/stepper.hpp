@@ -61,6 +61,7 @@ class Stepper {
   std::string method() const;                                      // e.g. "ARKIMEX 4, implicit"
   /// Whether steps that are too long would go unnoticed: those of an implicit method with one length.
   bool hides_long_steps() const { return implicit_ && !adaptive_; }
+  bool adaptive() const { return adaptive_; }      // steps by an error control
   bool high_order() const { return high_order_; }  // above 2
 
  private:
@@ -82,6 +83,7 @@ class Stepper {
   double step_again(double from, double end);
   void locate_contact_change(double from);
   double end_at_turn(double from, const coupling::CornerEvents::Turn& turn);
+  void fetch_steps_apart();
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y, const double* ydot) const;
   void rate(double t, Vec y, Vec ydot, coupling::Terms terms);

@@ -1,9 +1,6 @@
 #include "lanes/crossing.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-
+#include "lanes/crossing_numbers.hpp"
 #include "lanes/processor.hpp"
 
 namespace traverse::lanes {
@@ -11,227 +8,43 @@ namespace traverse::lanes {
 // Compiled from crossing_kernel.cpp, once for each.
 TRAVERSE_LANES_DECLARE(long work_size(const Task& task); void cross(const Task& task);)
 
-namespace {
-
-TaskMethod task_method(const structure::Method& method) {
-  TaskMethod t;
-  t.stages = static_cast<int>(method.stages.size());
-  t.known = method.step.known;
-  for (std::size_t i = 0; i < method.stages.size(); ++i) {
-    const structure::StageRule& rule = method.stages[i];
-    t.time[i] = rule.time;
-    t.w_in_v[i] = rule.w_in_v;
-    std::copy(rule.a_in_v.begin(), rule.a_in_v.end(), t.a_in_v[i]);
-    std::copy(rule.a_in_w.begin(), rule.a_in_w.end(), t.a_in_w[i]);
-    t.rate = rule.rate;
-    t.displacement = rule.displacement;
-  }
-  t.end_w_in_v = method.step.w_in_v;
-  std::copy(method.step.a_in_v.begin(), method.step.a_in_v.end(), t.end_a_in_v);
-  std::copy(method.step.a_in_w.begin(), method.step.a_in_w.end(), t.end_a_in_w);
-  std::copy(method.step.a_next.begin(), method.step.a_next.end(), t.a_next);
-  return t;
-}
-
-/// Where a matrix has entries.
-struct Pattern {
-  std::vector<int> row{0}, column;
-};
-
-template <class Has>
-Pattern pattern_of(int rows, int columns, Has has) {
-  Pattern p;
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < columns; ++j)
-      if (has(static_cast<std::size_t>(i * columns + j))) p.column.push_back(j);
-    p.row.push_back(static_cast<int>(p.column.size()));
-  }
-  return p;
-}
-
-/// The largest magnitude of each of the first channels at the breaks: of modes, whose waves are longer than elements.
-std::vector<double> largest_values(const structure::PiecewiseCubic& influence, std::size_t count) {
-  std::vector<double> largest(count, 0.0);
-  for (std::size_t piece = 0; piece < influence.pieces(); ++piece)
-    for (std::size_t i = 0; i < count; ++i)
-      largest[i] = std::max(largest[i], std::abs(influence.coefficients[4 * influence.channels * piece + i]));
-  return largest;
-}
-
-/// All that a Task points to.
-class Group {
- public:
-  Group(const CrossingPlan& plan, std::span<const CrossingRun> runs)
-      : plan_(plan),
-        runs_(runs),
-        width_(runs.size() > 4   ? 8
-               : runs.size() > 2 ? 4
-                                 : 2) {
-    task_.width = static_cast<int>(width_);
-    task_.method = task_method(plan.method);
-    task_.speed = side_by_side(1, [](const CrossingRun& run, std::size_t) { return run.speed; });
-    task_.end_time = side_by_side(1, [](const CrossingRun& run, std::size_t) { return run.end_time; });
-    if (runs.front().train != nullptr) add_train(*runs.front().train);
-    if (runs.front().forces != nullptr) add_forces(*runs.front().forces);
-    add_bridge(*plan.bridge);
-    add_track();
-    task_.stretches = static_cast<int>(plan.stretches.size());
-    task_.stretch = plan.stretches.data();
-    task_.kinks = static_cast<int>(plan.kinks.size());
-    task_.kink = plan.kinks.data();
-  }
-
-  std::vector<CrossingResult> run() {
-    const std::size_t probes = static_cast<std::size_t>(task_.probes.count);
-    Aligned peak(3 * probes * width_), time(3 * probes * width_), least(width_), greatest(width_), failed(width_);
-    Aligned bent(static_cast<std::size_t>(task_.coordinates) * width_);
-    task_.peak = peak.data();
-    task_.peak_time = time.data();
-    task_.least_force = least.data();
-    task_.greatest_force = greatest.data();
-    task_.bent = bent.data();
-    task_.failed = failed.data();
-    Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task_))));
-    task_.work = work.data();
-    TRAVERSE_LANES_CALL(cross(task_));
-    std::vector<CrossingResult> results(runs_.size());
-    for (std::size_t lane = 0; lane < runs_.size(); ++lane) {
-      CrossingResult& r = results[lane];
-      r.trouble = static_cast<Trouble>(static_cast<int>(failed.data()[lane]));
-      const auto peaks = [&](std::size_t first) {
-        std::vector<CrossingPeak> own(probes);
-        for (std::size_t p = 0; p < probes; ++p) {
-          const std::size_t at = (first + p) * width_ + lane;
-          own[p] = {peak.data()[at], time.data()[at]};
-        }
-        return own;
-      };
-      r.deflection = peaks(0);
-      r.acceleration = peaks(probes);
-      r.moment = peaks(2 * probes);
-      r.least_force = least.data()[lane];
-      r.greatest_force = greatest.data()[lane];
-      for (int i = 0; i < task_.coordinates; ++i)
-        r.bent.push_back(bent.data()[static_cast<std::size_t>(i) * width_ + lane]);
-    }
-    return results;
-  }
-
- private:
-  /// value(run, i) of every run, for i up to count.
-  template <class Value>
-  const double* side_by_side(std::size_t count, Value value) {
-    Aligned& numbers = *numbers_.emplace_back(std::make_unique<Aligned>(count * width_));
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t lane = 0; lane < width_; ++lane)
-        numbers.data()[i * width_ + lane] = value(runs_[std::min(lane, runs_.size() - 1)], i);
-    return numbers.data();
-  }
-
-  void add_train(const TrainNumbers& train) {
-    for (std::size_t k = 0; k < train.kinds.size(); ++k) {
-      const VehicleNumbers& kind = train.kinds[k];
-      const int f = kind.freedom;
-      const auto size = static_cast<std::size_t>(f);
-      const auto of = [&](std::vector<double> VehicleNumbers::*numbers, std::size_t count) {
-        return side_by_side(count,
-                            [=](const CrossingRun& run, std::size_t i) { return (run.train->kinds[k].*numbers)[i]; });
-      };
-      patterns_.push_back(std::make_unique<Pattern>(pattern_of(kind.wheels, f, [&](std::size_t i) {
-        return std::any_of(runs_.begin(), runs_.end(),
-                           [&](const CrossingRun& run) { return run.train->kinds[k].G[i] != 0.0; });
-      })));
-      const Pattern& wheels = *patterns_.back();
-      kinds_.push_back({f, kind.wheels, of(&VehicleNumbers::M, size * size), of(&VehicleNumbers::C, size * size),
-                        of(&VehicleNumbers::K, size * size), of(&VehicleNumbers::r0, size),
-                        of(&VehicleNumbers::G, size * static_cast<std::size_t>(kind.wheels)),
-                        of(&VehicleNumbers::G_along, size * static_cast<std::size_t>(kind.wheels)), wheels.row.data(),
-                        wheels.column.data(), kind.bend.data()});
-    }
-    for (const TrainNumbers::Vehicle& vehicle : train.vehicles) {
-      double foremost = -1e300;
-      for (int j = 0; j < train.kinds[vehicle.kind].wheels; ++j)
-        foremost = std::max(foremost, train.x[static_cast<std::size_t>(vehicle.first_wheel + j)]);
-      vehicles_.push_back({static_cast<int>(vehicle.kind), vehicle.first_coordinate, vehicle.first_wheel,
-                           std::max(0.0, plan_.level_until - foremost)});
-    }
-    task_.kinds = static_cast<int>(kinds_.size());
-    task_.kind = kinds_.data();
-    task_.vehicles = static_cast<int>(vehicles_.size());
-    task_.vehicle = vehicles_.data();
-    task_.wheels = static_cast<int>(train.x.size());
-    task_.coordinates = train.coordinates;
-    task_.x = train.x.data();
-    const auto of = [&](std::vector<double> TrainNumbers::*numbers) {
-      return side_by_side(train.x.size(),
-                          [=](const CrossingRun& run, std::size_t i) { return (run.train->*numbers)[i]; });
-    };
-    task_.penetration = of(&TrainNumbers::penetration);
-    task_.stiffness = of(&TrainNumbers::stiffness);
-    task_.hertz = train.hertz.data();
-    task_.force_scale = train.force_scale;
-  }
-
-  void add_forces(const ForceNumbers& forces) {
-    task_.loads = static_cast<int>(forces.x.size());
-    task_.load_x = forces.x.data();
-    task_.load =
-        side_by_side(forces.x.size(), [](const CrossingRun& run, std::size_t i) { return run.forces->force[i]; });
-  }
-
-  void add_bridge(const structure::ModalBridge& bridge) {
-    const std::size_t modes = bridge.modes();
-    task_.modes = static_cast<int>(modes);
-    task_.omega2 =
-        side_by_side(modes, [&](const CrossingRun&, std::size_t i) { return bridge.omega()[i] * bridge.omega()[i]; });
-    task_.coupled = bridge.coupled();
-    task_.damping = side_by_side(task_.coupled ? modes * modes : modes, [&](const CrossingRun&, std::size_t i) {
-      if (!task_.coupled) return 2.0 * bridge.sigma()[i];
-      const auto row = static_cast<Eigen::Index>(i / modes), column = static_cast<Eigen::Index>(i % modes);
-      return row == column ? 2.0 * bridge.sigma()[i / modes] : bridge.cross_damping()(row, column);
-    });
-    task_.exact_modes = plan_.exact_modes && !task_.coupled;
-    task_.q = side_by_side(modes, [](const CrossingRun& run, std::size_t i) { return (*run.q)[i]; });
-    const structure::PiecewiseCubic& influence = bridge.influence();
-    largest_ = largest_values(influence, modes);
-    task_.influence = {static_cast<int>(influence.pieces()), static_cast<int>(influence.channels),
-                       influence.breaks.data(), influence.coefficients.data(), largest_.data()};
-    const structure::ModalProbes& probes = bridge.probes();
-    task_.probes = {static_cast<int>(probes.count),
-                    probes.deflection.data(),
-                    probes.moment.data(),
-                    probes.moment_by_rate.data(),
-                    probes.moment_by_acceleration.data(),
-                    probes.deflection_by_rate.empty() ? nullptr : probes.deflection_by_rate.data()};
-  }
-
-  void add_track() {
-    const auto* track = runs_.front().track;
-    if (track == nullptr || track->values.empty()) return;
-    const bool shared =
-        std::all_of(runs_.begin(), runs_.end(), [&](const CrossingRun& run) { return run.track == track; });
-    task_.heights = {static_cast<int>(track->values.size() / 2), shared, track->start, track->distance,
-                     track->values.data()};
-    if (!shared)
-      task_.heights.values = side_by_side(track->values.size(),
-                                          [](const CrossingRun& run, std::size_t i) { return run.track->values[i]; });
-  }
-
-  const CrossingPlan& plan_;
-  std::span<const CrossingRun> runs_;
-  std::size_t width_;
-  std::vector<std::unique_ptr<Aligned>> numbers_;
-  std::vector<std::unique_ptr<Pattern>> patterns_;
-  std::vector<double> largest_;
-  std::vector<TaskKind> kinds_;
-  std::vector<TaskVehicle> vehicles_;
-  Task task_;
-};
-
-}  // namespace
-
 std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const CrossingRun> runs) {
-  return Group(plan, runs).run();
+  const std::size_t width = runs.size() > 4 ? 8 : runs.size() > 2 ? 4 : 2;
+  const CrossingNumbers numbers(plan, runs, width);
+  Task task = numbers.task();
+  const std::size_t probes = static_cast<std::size_t>(task.probes.count);
+  Aligned peak(3 * probes * width), time(3 * probes * width), least(width), greatest(width), failed(width);
+  Aligned bent(static_cast<std::size_t>(task.coordinates) * width);
+  task.peak = peak.data();
+  task.peak_time = time.data();
+  task.least_force = least.data();
+  task.greatest_force = greatest.data();
+  task.bent = bent.data();
+  task.failed = failed.data();
+  Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task))));
+  task.work = work.data();
+  TRAVERSE_LANES_CALL(cross(task));
+  std::vector<CrossingResult> results(runs.size());
+  for (std::size_t lane = 0; lane < runs.size(); ++lane) {
+    CrossingResult& r = results[lane];
+    r.trouble = static_cast<Trouble>(static_cast<int>(failed.data()[lane]));
+    const auto peaks = [&](std::size_t first) {
+      std::vector<CrossingPeak> own(probes);
+      for (std::size_t p = 0; p < probes; ++p) {
+        const std::size_t at = (first + p) * width + lane;
+        own[p] = {peak.data()[at], time.data()[at]};
+      }
+      return own;
+    };
+    r.deflection = peaks(0);
+    r.acceleration = peaks(probes);
+    r.moment = peaks(2 * probes);
+    r.least_force = least.data()[lane];
+    r.greatest_force = greatest.data()[lane];
+    for (int i = 0; i < task.coordinates; ++i)
+      r.bent.push_back(bent.data()[static_cast<std::size_t>(i) * width + lane]);
+  }
+  return results;
 }
 
 }  // namespace traverse::lanes

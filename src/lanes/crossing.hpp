@@ -21,6 +21,7 @@ struct VehicleNumbers {
   std::vector<double> G_along;  // of the wheels' motion along the track
   /// Of every coordinate x: by the square of bend*x the mechanism is out of balance, over its weight (1/m or 1/rad).
   std::vector<double> bend;
+  std::vector<double> driven;  // N s: driven x'' is the power that holds the masses' speed along the track
 };
 
 /// A train of such vehicles as it stands at t = 0.
@@ -36,6 +37,7 @@ struct TrainNumbers {
   std::vector<double> stiffness;       // of its contact, N/m^1.5 or N/m
   std::vector<char> hertz;             // whether it is the former
   double force_scale = 0.0;            // N, contact forces are judged by
+  double radius = 0.0;                 // m, of all wheels
 };
 
 /// Heights of the track that wheels follow: TaskHeights.

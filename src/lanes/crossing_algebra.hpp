@@ -182,6 +182,14 @@ struct CrossingAlgebra : Lanes<W> {
     return true;
   }
 
+  /// By how much the influence on the first `modes` channels rises at x, which is on that piece, for each metre.
+  static void influence_slope_at(const TaskInfluence& line, double x, int piece, int modes, double* slope) {
+    const int n = line.channels;
+    const double* c = line.coefficients + 4L * n * piece;
+    const double d = x - line.breaks[piece];
+    for (int i = 0; i < modes; ++i) slope[i] = c[n + i] + d * (2.0 * c[2 * n + i] + 3.0 * d * c[3 * n + i]);
+  }
+
   /// Height and slope of the track under a wheel at x.
   static void track_at(const TaskHeights& track, double x, Lane& height, Lane& slope) {
     height = slope = Lane{};

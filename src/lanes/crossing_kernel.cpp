@@ -7,4 +7,21 @@ namespace traverse::lanes::TRAVERSE_LANES_TARGET {
 long work_size(const Task& task) { return size_of_work<Group>(task); }
 void cross(const Task& task) { run_as_wide<Group>(task); }
 
+// A crossing by itself, in two lanes that are the same, step by step: it stands in front of its numbers in Task::work.
+namespace {
+using One = Group<2>;
+constexpr long size_of_one = (sizeof(One) + 63) / 64 * 8;
+}  // namespace
+
+/// Doubles that Task::work needs for that.
+long stepped_size(const Task& task) { return size_of_one + One(task, nullptr).size(); }
+void begin(const Task& task) { (new (task.work) One(task, task.work + size_of_one))->begin(); }
+/// Group::step.
+TaskInstant step(const Task& task, double to, bool from_kink, bool to_kink) {
+  One& one = *reinterpret_cast<One*>(task.work);
+  one.step(to, from_kink, to_kink);
+  return one.instant();
+}
+TaskInstant instant(const Task& task) { return reinterpret_cast<const One*>(task.work)->instant(); }
+
 }  // namespace traverse::lanes::TRAVERSE_LANES_TARGET

@@ -24,6 +24,7 @@
 #include "lanes/crossing_looks.hpp"
 #include "lanes/crossing_motion.hpp"
 #include "lanes/crossing_places.hpp"
+#include "lanes/crossing_powers.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -36,6 +37,7 @@ class Group : CrossingAlgebra<W> {
   using Motion = CrossingMotion<W>;
   using Looks = CrossingLooks<W>;
   using Places = CrossingPlaces<W>;
+  using Powers = CrossingPowers<W>;
   using Own::any;
   using Own::fill;
   using Own::invert;
@@ -47,6 +49,7 @@ class Group : CrossingAlgebra<W> {
 
  public:
   Group(const Task& task, double* work) : state_(task) { CrossingMemory<W>::lay_out(state_, work); }
+  static void* operator new(__SIZE_TYPE__, double* at) { return at; }
   long size() const { return state_.used * W; }
 
   void run() {
@@ -71,7 +74,38 @@ class Group : CrossingAlgebra<W> {
     Looks::give(s);
   }
 
+  // The same step by step, by somebody else's choice of steps, with the energies that come and go.
+  void begin() {
+    begin(state_);
+    Powers::begin(state_);
+  }
+  /// From where it is until all have gone `to` m. Where that fails, the crossing is where it was. from_kink, to_kink:
+  /// the surface may have a kink where the step begins or ends.
+  void step(double to, bool from_kink, bool to_kink) {
+    State& s = state_;
+    set_step(s, to - s.distance);
+    Places::place_vehicles(s, s.distance);
+    if (from_kink) Powers::begin_behind_kink(s);
+    for (int stage = 0; stage < s.task.method.stages; ++stage) {
+      solve_stage(s, stage);
+      if (!any(s.failed == fill(0.0))) return;
+      Powers::note(s, stage + 1, to_kink && stage + 1 == s.task.method.stages);
+    }
+    finish_step(s);
+    Powers::finish_step(s);
+    s.distance = to;
+    Looks::see(s);
+  }
+  TaskInstant instant() const {
+    const State& s = state_;
+    const auto numbers = [](const Lane* x) { return reinterpret_cast<const double*>(x); };
+    return {s.failed[0],     numbers(s.q), numbers(s.r),         numbers(s.x),         numbers(s.w),
+            numbers(s.bent), numbers(s.F), numbers(s.row_of[2]), numbers(&s.all_lost), numbers(&s.all_given)};
+  }
+
  private:
+  static constexpr double same_step = 1e-10;  // far above what rounding leaves of differences of distances
+
   static void begin(State& s) {
     for (int i = 0; i < s.task.coordinates; ++i) {
       s.x[i] = s.w[i] = s.bent[i] = Lane{};
@@ -113,7 +147,7 @@ class Group : CrossingAlgebra<W> {
 
   static void set_step(State& s, double ds) {
     const double change = ds - s.ds;
-    if ((change < 0.0 ? -change : change) <= 1e-13 * ds) return;
+    if ((change < 0.0 ? -change : change) <= same_step * ds) return;
     s.hard = Mask{};
     renew_step(s, ds);
     s.yield_to_force = fill(1.0);
@@ -166,14 +200,15 @@ class Group : CrossingAlgebra<W> {
     const bool last = stage + 1 == method.stages;
     Places::place(s, s.start + method.time[stage] * s.ds, last ? s.task.influence.channels : s.modes);
     const Rule rule = rule_for(s, method.w_in_v[stage], method.a_in_v[stage], method.a_in_w[stage], stage + 1);
-    for (int v = 0; v < s.task.vehicles; ++v)
-      if (s.awake[v] != 0) Motion::free_vehicle(s, v, stage + 1, rule);
     if (s.task.exact_modes) {
       Motion::free_exact_modes(s);
     } else {
       predict(stage + 1, s.modes, rule, s.q, s.r, s.b, 0, s.q_still, s.r_still);
       Motion::free_modes(s);
     }
+    Places::lean_with_bridge(s, s.start + method.time[stage] * s.ds, s.z);
+    for (int v = 0; v < s.task.vehicles; ++v)
+      if (s.awake[v] != 0) Motion::free_vehicle(s, v, stage + 1, rule);
     const double ahead = s.ds_before > 0.0 ? method.time[stage] * s.ds / s.ds_before : 0.0;
     for (int v = 0; v < s.task.vehicles; ++v) {
       if (s.awake[v] == 0) continue;
@@ -186,6 +221,7 @@ class Group : CrossingAlgebra<W> {
       }
     }
     Contacts::solve_contacts(s);
+    if (!any(s.failed == fill(0.0))) return;
     for (int v = 0; v < s.task.vehicles; ++v)
       if (s.awake[v] != 0) Motion::take_forces(s, v, stage + 1);
     if (s.task.exact_modes) return Motion::move_exact_modes(s);

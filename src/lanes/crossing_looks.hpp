@@ -21,6 +21,15 @@ struct CrossingLooks : CrossingAlgebra<W> {
   static constexpr double near = 0.9;   // of the largest magnitude so far: no parabola's vertex of less is larger
   static constexpr double alike = 4.0;  // see WheelExtremes
 
+  /// The responses of the probes, and whether the motion is finite.
+  static void see(State& s) {
+    see_probes(s);
+    Lane sum{};
+    for (int i = 0; i < s.modes; ++i) sum += s.q[i];
+    s.failed = sum - sum == Lane{} ? s.failed : fill(not_finite);
+  }
+
+  /// That, and the peaks so far.
   static void look(State& s, bool moved) {
     const Lane time = s.distance / s.speed;
     const Mask counts = time <= s.end_time * (1.0 + 1e-12);
@@ -29,14 +38,12 @@ struct CrossingLooks : CrossingAlgebra<W> {
     s.time[2] = time;
     ++s.known;
     ++s.looks;
+    see(s);
     look_at_probes(s, counts);
     if (moved) look_at_wheels(s, counts);
-    Lane sum{};
-    for (int i = 0; i < s.modes; ++i) sum += s.q[i];
-    s.failed = sum - sum == Lane{} ? s.failed : fill(not_finite);
   }
 
-  static void look_at_probes(State& s, Mask counts) {
+  static void see_probes(State& s) {
     const int n = s.task.probes.count, count = 3 * n;
     Lane* const oldest = s.row_of[0];
     s.row_of[0] = s.row_of[1];
@@ -69,8 +76,12 @@ struct CrossingLooks : CrossingAlgebra<W> {
       if (s.task.probes.deflection_by_rate == nullptr) continue;
       for (int p = 0; p < n; ++p) seen[p] += s.task.probes.deflection_by_rate[static_cast<long>(i) * n + p] * r;
     }
+  }
+
+  static void look_at_probes(State& s, Mask counts) {
+    const int n = s.task.probes.count, count = 3 * n;
     for (int i = 0; i < count; ++i) {
-      const Lane value = magnitude(seen[i]);
+      const Lane value = magnitude(s.row_of[2][i]);
       const Mask larger = counts & (value > s.peak[i]);
       s.peak[i] = larger ? value : s.peak[i];
       s.peak_time[i] = larger ? s.time[2] : s.peak_time[i];

@@ -93,10 +93,11 @@ struct CrossingMotion : CrossingAlgebra<W> {
     predict(known, f, rule, s.x + first, s.w + first, s.a, first, x, w);
     for (int i = 0; i < f; ++i) a[i] = own.alone[i];
     multiply(-1.0, own.by_state, f, 2 * f, x, a);
-    if (s.task.heights.stations > 0)
+    const bool leans = s.task.heights.stations > 0 || s.touching[v] != 0;
+    if (leans)
       for (int j = 0; j < kind.wheels; ++j) {
-        // The contact's force stands square on the track: it pushes along it by its slope, as it was last found.
-        const Lane push = s.track_slope[vehicle.first_wheel + j] * s.F[vehicle.first_wheel + j];
+        // The contact's force stands square on the surface: it pushes along it by its slope, as it was last found.
+        const Lane push = s.lean[vehicle.first_wheel + j] * s.F[vehicle.first_wheel + j];
         for (int i = 0; i < f; ++i) a[i] -= own.Y_along[i * kind.wheels + j] * push;
       }
     for (int j = 0; j < kind.wheels; ++j) {
@@ -106,10 +107,10 @@ struct CrossingMotion : CrossingAlgebra<W> {
         up += lanes(kind.G)[j * f + k] * (x[k] + s.d * a[k]);
       }
       s.free[vehicle.first_wheel + j] -= up;
-      if (s.task.heights.stations == 0) continue;
+      if (!leans) continue;
       Lane along{};
       for (int k = 0; k < f; ++k) along += lanes(kind.G_along)[j * f + k] * (x[k] + s.d * a[k]);
-      s.free[vehicle.first_wheel + j] += s.track_slope[vehicle.first_wheel + j] * along;
+      s.free[vehicle.first_wheel + j] += s.lean[vehicle.first_wheel + j] * along;
     }
   }
 

@@ -11,6 +11,7 @@ struct CrossingPlaces : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
   using Own::influence_at;
+  using Own::influence_slope_at;
   using Own::lanes;
   using Own::track_at;
   using typename Own::Lane;
@@ -30,7 +31,7 @@ struct CrossingPlaces : CrossingAlgebra<W> {
                       : 0;
         s.touching[v] = static_cast<char>(s.touching[v] | s.on[j]);
         Lane height;
-        track_at(s.task.heights, x, height, s.track_slope[j]);
+        track_at(s.task.heights, x, height, s.lean[j]);
         s.free[j] = s.offset[j] + height;
       }
     }
@@ -51,6 +52,22 @@ struct CrossingPlaces : CrossingAlgebra<W> {
   static void place_vehicles(State& s, double gone) {
     s.start = gone;
     for (int v = 0; v < s.task.vehicles; ++v) s.awake[v] = gone + 1e-9 >= s.task.vehicle[v].rests_until ? 1 : 0;
+  }
+
+  /// The slope of the bridge added to that of the track, with the modes at q: a wheel touches a slope ahead of its
+  /// centre, where that is higher.
+  static void lean_with_bridge(State& s, double gone, const Lane* q) {
+    for (int v = 0; v < s.task.vehicles; ++v) {
+      if (s.awake[v] == 0 || s.touching[v] == 0) continue;
+      const TaskVehicle& vehicle = s.task.vehicle[v];
+      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
+        if (s.on[j] == 0) continue;
+        influence_slope_at(s.task.influence, s.task.x[j] + gone, s.piece[j], s.modes, s.g_slope);
+        const Lane of_track = s.lean[j];
+        for (int i = 0; i < s.modes; ++i) s.lean[j] -= s.g_slope[i] * q[i];
+        s.free[j] += 0.5 * s.task.radius * (s.lean[j] * s.lean[j] - of_track * of_track);
+      }
+    }
   }
 
   /// By how much the bridge lifts a wheel with its modes at q, m.

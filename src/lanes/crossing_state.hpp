@@ -45,8 +45,10 @@ struct CrossingState {
   // Wheels, [wheel]. m: penetration over a level surface with the vehicle at rest, now, without contact forces, at the
   // end of the last step, and how it grew in that; N, N/m: force and tangent.
   Lane *offset = nullptr, *delta = nullptr, *free = nullptr, *end = nullptr, *slope = nullptr;
-  Lane *F = nullptr, *k = nullptr, *track_slope = nullptr;
+  Lane *F = nullptr, *k = nullptr,
+       *lean = nullptr;                         // lean: the slope of the surface, which the contact's normal follows
   double *g = nullptr, *load_g = nullptr;       // influence at each wheel and moving force: [wheel][channel]
+  double* g_slope = nullptr;                    // how the modes' rises, 1/m: [mode] of one wheel
   int *piece = nullptr, *load_piece = nullptr;  // of it, that each is on
   char *on = nullptr, *load_on = nullptr;       // whether it is on the bridge
 
@@ -65,6 +67,8 @@ struct CrossingState {
   Lane* row_of[3] = {};
   double s_before[2] = {};
   Lane *F0 = nullptr, *F1 = nullptr;
+  // W, at the start of a step and at its stages, and their integrals, J: CrossingPowers.
+  Lane lost[most_kept] = {}, given[most_kept] = {}, all_lost{}, all_given{};
   Lane *peak = nullptr, *peak_time = nullptr, least{}, greatest{};
 };
 
@@ -100,8 +104,8 @@ struct CrossingMemory {
     s.S = take_from<Lane>(work, s.used, W, modes * modes);
     s.S_inverse = take_from<Lane>(work, s.used, W, modes * (s.task.coupled ? modes : 1));
     s.factor = take_from<Lane>(work, s.used, W, modes * modes);
-    Lane** const of_wheels[] = {&s.offset, &s.delta,    &s.F,     &s.k,  &s.free, &s.end,        &s.slope,
-                                &s.yield,  &s.residual, &s.pivot, &s.F0, &s.F1,   &s.track_slope};
+    Lane** const of_wheels[] = {&s.offset, &s.delta,    &s.F,     &s.k,  &s.free, &s.end, &s.slope,
+                                &s.yield,  &s.residual, &s.pivot, &s.F0, &s.F1,   &s.lean};
     for (Lane** own : of_wheels) *own = take_from<Lane>(work, s.used, W, wheels);
     s.D_begin = take_from<long>(work, s.used, W, s.task.vehicles + 1);
     long entries = 0;
@@ -113,6 +117,7 @@ struct CrossingMemory {
     s.D = take_from<Lane>(work, s.used, W, entries);
     s.reduced = take_from<Lane>(work, s.used, W, wheels * modes);
     s.g = take_from<double>(work, s.used, W, wheels * s.task.influence.channels);
+    s.g_slope = take_from<double>(work, s.used, W, modes);
     s.load_g = take_from<double>(work, s.used, W, static_cast<long>(s.task.loads) * s.task.influence.channels);
     s.piece = take_from<int>(work, s.used, W, wheels);
     s.load_piece = take_from<int>(work, s.used, W, s.task.loads);

@@ -15,6 +15,7 @@ struct TaskMethod {
   double a_in_v[most_stages][most_kept] = {}, a_in_w[most_stages][most_kept] = {};
   double rate = 0.0, displacement = 0.0;  // of every stage
   double end_w_in_v = 0.0, end_a_in_v[most_kept] = {}, end_a_in_w[most_kept] = {}, a_next[most_kept] = {};
+  double power[most_kept] = {};  // integral over the step of a power known at the accelerations' states
 };
 
 /// Vehicles with the same numbers: M x'' + C x' + K x + r0 = G^T F, of `freedom` coordinates x and `wheels` contact
@@ -25,6 +26,11 @@ struct TaskKind {
   const double* G_along = nullptr;                  // the wheels move along the track by G_along x
   const int *G_row = nullptr, *G_column = nullptr;  // where G has entries
   const double* bend = nullptr;  // of every coordinate: root of what its square puts the mechanism out of balance by
+  // Of C the part that loses energy: w^T C w is the sum of loss w_row w_column.
+  int losses = 0;
+  const int *loss_row = nullptr, *loss_column = nullptr;
+  const double* loss = nullptr;    // lanes
+  const double* driven = nullptr;  // lanes: driven x'' is the power that holds the masses' speed along the track, N s
 };
 
 struct TaskVehicle {
@@ -76,6 +82,7 @@ struct Task {
   const double* stiffness = nullptr;    // lanes: of its contact, N/m^1.5 or N/m
   const char* hertz = nullptr;          // whether it is the former
   double force_scale = 0.0;             // N: what contact forces are judged by
+  double radius = 0.0;                  // m: of all wheels
 
   int loads = 0;                                    // moving forces
   const double *load_x = nullptr, *load = nullptr;  // m; lanes: N, downward
@@ -100,6 +107,17 @@ struct Task {
   double* bent = nullptr;    // coordinates of every vehicle where it was farthest from linear
   double* failed = nullptr;  // 0: none of what follows
   double* work = nullptr;    // as many numbers as work_size() says, aligned as a lane
+};
+
+/// What a crossing that is taken step by step is at, of two lanes that are the same: first entries of pairs.
+struct TaskInstant {
+  double failed = 0.0;
+  const double *q = nullptr, *q_rate = nullptr;  // of the modes
+  // Coordinates of every vehicle from where they started, m or rad, their rates, and Task::bent.
+  const double *x = nullptr, *x_rate = nullptr, *bent = nullptr;
+  const double* force = nullptr;                   // N, of each wheel
+  const double* response = nullptr;                // deflection of each probe, then acceleration, then moment
+  const double *lost = nullptr, *given = nullptr;  // J since the start: in dampers; by what holds the speed
 };
 
 enum Trouble { none = 0, contact_lost = 1, not_converged = 2, not_finite = 3 };

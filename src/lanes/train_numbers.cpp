@@ -76,6 +76,7 @@ VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
   v.G_along = rows_of_wheels(0);
   v.G = rows_of_wheels(1);
   v.bend = bend_of(vehicle);
+  v.driven.assign(of.driven.begin(), of.driven.end());
   return v;
 }
 
@@ -170,6 +171,7 @@ TrainNumbers train_numbers(train::Fleet& fleet) {
     }
   }
   train.coordinates = fleet.freedom();
+  train.radius = fleet.vehicles.front().wheels.front().radius;
   return train;
 }
 

@@ -116,6 +116,7 @@ constexpr Row run_rows[] = {
   {"contact_tolerance", number, "s", "(a thousandth of the step)", not_negative, "", 0, "steps end so close behind the loss or gain of a contact; 0: wherever they end"},
   {"step_kinks", flag, "", "true", any, "", 0, "steps end where wheels pass kinks of their way, such as span ends; needed for orders above 2"},
   {"step_probes", flag, "", "false", any, "", 0, "steps end where wheels pass probes, and peaks are looked for at every step, not among stored samples; so it is where accuracy chooses mesh or step"},
+  {"step_lanes", flag, "", "true", any, "", 0, "linear vehicles over modes are stepped by the kernel that runs of sweeps go side by side in, which is many times faster; peaks are looked for at every step then"},
   {"contact_impact_steps", integer, "", "20", {0, 100000}, "", 0, "steps that an impact after a separation takes at least; 0: as the step is"},
   {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where left open"},
   {"accuracy_report", flag, "", "false", any, "", 0, "runs the scene again, refined, and shows promised and true errors"},

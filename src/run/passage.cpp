@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "by_lanes.hpp"
 #include "results/stage.hpp"
 #include "run/peaks.hpp"
 #include "run/resolution.hpp"
@@ -44,6 +45,7 @@ std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBe
 
 Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes)
     : scene_(scene),
+      shared_(shared),
       still_(scene.analysis == Analysis::static_response),
       input_(system_input(scene, still_)),
       system_(shared.comm, carrier(scene, shared, input_), input_) {
@@ -100,6 +102,7 @@ void Passage::start(std::vector<std::string>& notes) {
   for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y)) notes.push_back(line);
   if (scene_.vehicle_model == VehicleModel::linear && !still_)
     for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(line);
+  if (!still_ && !stepper_->adaptive()) system_.step_apart(by_lanes(scene_, shared_, system_, y, plan_.end_time));
   if (!still_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);
 }

@@ -41,6 +41,7 @@ class Passage {
   void leave_out_rest(std::vector<std::string>& notes);
 
   const Scene& scene_;
+  const SharedBeam& shared_;
   bool still_;
   coupling::SystemInput input_;
   coupling::System system_;

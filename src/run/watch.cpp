@@ -56,7 +56,8 @@ void Watch::sample(const integrate::Instant& instant) {
     for (std::size_t i = 0; i < dragged_.size(); ++i) now_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   step(instant.time);  // the first instant is no step's end
-  note_peaks();
+  if (system_.apart() == nullptr) note_peaks();
+  note_worst();
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
   if (instant.purpose != integrate::Purpose::look) store(instant.purpose == integrate::Purpose::end);
 }
@@ -89,6 +90,7 @@ void Watch::drag(const double* drag) {
   for (std::size_t i = 0; i < a.size(); ++i) a[i] += drag[i];
 }
 
+// Of an instant that is the end of a step apart, or is observed.
 void Watch::note_peaks() {
   wheel_forces_.clear();
   const train::Fleet& fleet = system_.fleet();
@@ -98,6 +100,9 @@ void Watch::note_peaks() {
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
   peaks_.add(sample_.time, now_.probes, wheel_forces_);
+}
+
+void Watch::note_worst() {
   double deflected = 0.0;
   for (const beam::Response& probe : now_.probes) deflected = std::max(deflected, std::abs(probe.deflection));
   if (deflected > most_deflected_) {
@@ -135,6 +140,10 @@ void Watch::step(double t) {
   std::size_t wheel = 0;
   for (const train::WheelContact& c : fleet.wheels)
     if (!c.is_further) wheels_.add(wheel++, t, fleet.coordinates(c).x(), fleet.load(c).normal);
+  if (system_.apart() == nullptr || t <= last_apart_) return;
+  last_apart_ = sample_.time = t;
+  system_.apart()->see(now_.probes);
+  note_peaks();
 }
 
 void Watch::note_wheels() {

@@ -46,6 +46,7 @@ class Watch {
   void note_wheels();
   void store(bool end);
   void note_peaks();
+  void note_worst();
   void note_energy();
 
   const Scene& scene_;
@@ -69,6 +70,7 @@ class Watch {
   WorstInstant worst_;
   coupling::Energy energy_at_start_;
   bool first_ = true;
+  double last_apart_ = -1.0;  // s: when a step apart was seen last
 };
 
 /// SolverError where so much energy does not balance that the result is meaningless.

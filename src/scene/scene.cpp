@@ -44,6 +44,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.impact_steps = o.integer("contact_impact_steps");
   scene.step_kinks = o.flag("step_kinks");
   scene.step_probes = o.flag("step_probes");
+  scene.step_lanes = o.flag("step_lanes");
   scene.rest_tolerance = read_window(o);
   const std::string vehicles = o.choice("model_vehicles");
   scene.vehicle_model = vehicles == "linear" ? VehicleModel::linear

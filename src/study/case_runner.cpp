@@ -7,6 +7,7 @@
 #include "integrate/modal_peaks.hpp"
 #include "lanes/processor.hpp"
 #include "lanes/speed_class.hpp"
+#include "run/by_lanes.hpp"
 #include "run/signals.hpp"
 #include "run/watch.hpp"
 
@@ -42,10 +43,9 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes)
 
 void CaseRunner::set_up_lanes() {
   if (scene_.exact_in_time()) return;
-  why_no_lanes_ = scene_.sweep->lanes == 0 ? "sweep_lanes 0 asks for that" : SideBySide::obstacle(scene_, shared_);
+  why_no_lanes_ = scene_.sweep->lanes == 0 ? "sweep_lanes 0 asks for that" : lanes_obstacle(scene_, shared_);
   if (!why_no_lanes_.empty()) return;
   scene_of(0, speeds_.front());
-  shared_.modal->add_probes(scene_.output.probes, 0.0);
   lanes_.emplace(scene_, shared_);
   why_no_lanes_ = lanes_->obstacle();
   if (!why_no_lanes_.empty()) return lanes_.reset();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "accuracy/trials.hpp"
+#include "run/by_lanes.hpp"
 
 namespace traverse::app {
 
@@ -88,8 +89,7 @@ LaneTrials::Setup& LaneTrials::setup(const LaneModel& model) {
   place->shared.emplace(PETSC_COMM_SELF, place->scene, ignored);
   place->shared->damp(place->scene, true, ignored);
   place->shared->prepare(place->scene, ignored);
-  if (const std::string why = SideBySide::obstacle(place->scene, *place->shared); !why.empty()) throw Refused{why};
-  place->shared->modal->add_probes(place->scene.output.probes, 0.0);
+  if (const std::string why = lanes_obstacle(place->scene, *place->shared); !why.empty()) throw Refused{why};
   place->lanes.emplace(place->scene, *place->shared);
   if (!place->lanes->obstacle().empty()) throw Refused{place->lanes->obstacle()};
   return *place;

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <span>
 
 #include "accuracy/first_guess.hpp"
 #include "accuracy/trials.hpp"
@@ -19,18 +22,21 @@ using lanes::CrossingResult;
 using Errors = LaneErrors;
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
+constexpr std::size_t most_spans_alone = 16;  // from which on a single run by elements costs less than so many modes
+// Times its speed: the trials of a single run, whose peaks may agree by chance.
+constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
 constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4,
                  part_of_all = 0.95;     // of the wanted error
 constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
 constexpr int most_halvings = 8, most_shortenings = 6;
 constexpr double shorter = 0.7;  // a quarter of an error of fourth order
+constexpr double longer = 1.4;
 constexpr int fewest_modes = 4, most_modes = 128;
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
 bool open(const Scene& scene) {
-  return scene.sweep->lanes > 0 && scene.sweep->speeds.size() >= fewest_runs && !scene.vehicles.empty() &&
-         !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full && scene.beam &&
-         options::in_force().find("ts_type") == nullptr;
+  return !scene.vehicles.empty() && !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full &&
+         scene.beam && options::in_force().find("ts_type") == nullptr;
 }
 
 /// Neighbouring speeds of one class around each of the given places among all.
@@ -63,8 +69,8 @@ class Search {
  public:
   /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes
   /// and mesh change is seen there as well.
-  Search(LaneTrials& trials, LaneTrials& mixed, double accuracy)
-      : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
+  Search(LaneTrials& trials, LaneTrials& mixed, std::span<const char* const> methods, double accuracy)
+      : trials_(trials), mixed_(mixed), methods_(methods), accuracy_(accuracy) {}
 
   /// The cheapest model within the accuracy; empty: none.
   std::optional<LaneModel> run(double first_step) {
@@ -126,7 +132,7 @@ class Search {
       return static_cast<double>(m.method->make(m.method->parameter.value).stages.size()) / m.step;
     };
     LaneModel best = model;
-    for (const char* method : {"genalpha", "esdirk4"})
+    for (const char* method : methods_)
       for (const double factor : {2.0, 1.4, 1.0, 0.7, 0.5}) {
         const LaneModel tried = {model.modes, model.elements, structure::find_method(method), factor * model.step};
         if (solves(tried) >= solves(best)) continue;
@@ -139,6 +145,7 @@ class Search {
   }
 
   LaneTrials &trials_, &mixed_;
+  std::span<const char* const> methods_;
   double accuracy_;
   Errors modes_{}, steps_{}, mesh_{};
 };
@@ -172,76 +179,152 @@ std::string words_of(const Errors& errors) {
   return words;
 }
 
+/// Where wheels of a train have their trials: groups of speeds, and the passages' lengths, m.
+struct TrialSpeeds {
+  std::vector<std::vector<double>> beginnings, mixed, wholes;  // mixed: none where the beginnings serve for them
+};
+
+/// A choice on the way, or why there is none.
+struct NotChosen {
+  std::string why;
+};
+
+/// Chooses by trial runs of a scene with a sweep.
+class Chooser {
+ public:
+  /// alone: of a single passage, not of a sweep.
+  Chooser(const Scene& scene, const TrialSpeeds& speeds, std::span<const char* const> methods, bool alone)
+      : scene_(scene), fastest_(scene), methods_(methods), alone_(alone) {
+    fastest_.train.speed = scene.sweep->speeds.back();
+    for (const double x : wheels_at_start(fastest_)) whole_ = std::max(whole_, scene.beam->length() - x);
+    if (scene.end_time) whole_ = *scene.end_time * fastest_.train.speed;
+    distance_ = beginning(fastest_, whole_ / fastest_.train.speed) * fastest_.train.speed;
+    const Scene part = shortened(fastest_, distance_ / fastest_.train.speed);
+    beginnings_.emplace(part, speeds.beginnings, distance_);
+    if (!speeds.mixed.empty()) mixed_.emplace(part, speeds.mixed, distance_);
+    wholes_.emplace(scene, speeds.wholes, whole_);
+  }
+
+  LanesChoice choose() {
+    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, methods_, scene_.accuracy);
+    const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
+    const std::optional<LaneModel> found = search.run(first);
+    if (!found) throw NotChosen{"the peaks do not settle to the accuracy with up to 128 modes"};
+    model_ = *found;
+    if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
+    const double defect = beginnings_->defect(model_);
+    if (scene_.vehicle_model == VehicleModel::automatic && defect > most_defect(scene_))
+      throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
+    LanesChoice choice;
+    check_wholes(search, choice);
+    for (double& error : choice.errors) error += defect;
+    choice.scene = with(scene_, model_);
+    if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
+    choice.scene.step_probes = true;
+    return choice;
+  }
+
+  /// How far the model is from the elements and the mechanisms themselves in the last trial.
+  Errors off_the_elements(double speed) {
+    return app::off_the_elements(*beginnings_, model_, beginnings_->run(model_).back(), speed, distance_);
+  }
+  const LaneModel& model() const { return model_; }
+
+ private:
+  /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
+  /// should not cost several, against a longer one, by errors that fall at least with the third power.
+  void check_wholes(const Search& search, LanesChoice& choice) {
+    for (int i = 0; i <= most_shortenings; ++i) {
+      if (i > 0) model_.step *= shorter;
+      LaneModel other = model_;
+      other.method = structure::find_method("esdirk4");
+      other.step *= alone_ ? longer : 0.5;
+      Errors along = difference(wholes_->run(model_), wholes_->run(other));
+      for (double& error : along) error *= alone_ ? 1.0 / (longer * longer * longer - 1.0) : 1.0;
+      for (std::size_t q = 0; q < quantities; ++q)
+        choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
+      if (greatest(choice.errors) <= part_of_all * scene_.accuracy) break;
+    }
+    if (greatest(choice.errors) > part_of_all * scene_.accuracy)
+      throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(choice.errors))};
+    if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
+  }
+
+  const Scene& scene_;
+  Scene fastest_;
+  std::span<const char* const> methods_;
+  bool alone_;
+  double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
+  std::optional<LaneTrials> beginnings_, mixed_, wholes_;
+  LaneModel model_;
+};
+
 }  // namespace
 
 std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes) {
-  if (!open(given)) return std::nullopt;
+  const std::vector<double>& speeds = given.sweep->speeds;
+  if (!open(given) || given.sweep->lanes == 0 || speeds.size() < fewest_runs) return std::nullopt;
   const results::Stage stage("trial runs side by side");
   const options::WithoutMonitors without_monitors;
   const auto refuse = [&](const std::string& why) {
     notes.push_back("runs go one by one, not side by side by modes: " + why);
     return std::nullopt;
   };
-  const std::vector<double>& speeds = given.sweep->speeds;
-  Scene fast = given;
-  fast.train.speed = speeds.back();
-  double whole = 0.0;  // m: of a passage
-  for (const double x : wheels_at_start(fast)) whole = std::max(whole, given.beam->length() - x);
-  if (given.end_time) whole = *given.end_time * speeds.back();
-  const double distance = beginning(fast, whole / speeds.back()) * speeds.back();
+  constexpr std::array methods = {"genalpha", "esdirk4"};
+  const std::size_t n = speeds.size() - 1;
   try {
-    const Scene part = shortened(fast, distance / speeds.back());
-    LaneTrials trials(part, some_speeds(speeds, {0.0, 1.0}, trial_lanes), distance);
-    const std::size_t n = speeds.size() - 1;
-    LaneTrials mixed(part, {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}}, distance);
-    Search search(trials, mixed, given.accuracy);
-    const double first = first_step_factor * first_steps(fast, 0.0, whole / speeds.back()).first;
-    std::optional<LaneModel> model = search.run(first);
-    if (!model) return refuse("the peaks do not settle to the accuracy with up to 128 modes");
-    if (lose_contact(trials.run(*model))) return refuse("wheels lose contact");
-    const bool automatic = given.vehicle_model == VehicleModel::automatic;
-    if (automatic && trials.defect(*model) > most_defect(given))
-      return refuse(
-          fmt::format("linear vehicles are out of balance by {:.1g} of their weights", trials.defect(*model)));
-
-    // Whole passages: errors add up while the train crosses.
-    LaneTrials wholes(given, some_speeds(speeds, {0.5}, lanes::widest), whole);
-    const auto finer = [](LaneModel chosen) {
-      chosen.method = structure::find_method("esdirk4");
-      chosen.step *= 0.5;
-      return chosen;
-    };
-    LanesChoice choice;
-    for (int i = 0; i <= most_shortenings; ++i) {
-      if (i > 0) model->step *= shorter;
-      const Errors along = difference(wholes.run(*model), wholes.run(finer(*model)));
-      for (std::size_t q = 0; q < quantities; ++q)
-        choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
-      if (greatest(choice.errors) <= part_of_all * given.accuracy) break;
-    }
-    if (greatest(choice.errors) > part_of_all * given.accuracy)
-      return refuse(fmt::format("over whole passages errors add up to {}", words_of(choice.errors)));
-    if (lose_contact(wholes.run(*model))) return refuse("wheels lose contact");
-
-    const std::vector<CrossingResult>& beginnings = trials.run(*model);
-    const Errors off = off_the_elements(trials, *model, beginnings.back(),
-                                        some_speeds(speeds, {1.0}, trial_lanes).back().back(), distance);
+    Chooser chooser(given,
+                    {some_speeds(speeds, {0.0, 1.0}, trial_lanes),
+                     {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}},
+                     some_speeds(speeds, {0.5}, lanes::widest)},
+                    methods, false);
+    LanesChoice choice = chooser.choose();
+    const Errors off = chooser.off_the_elements(some_speeds(speeds, {1.0}, trial_lanes).back().back());
     if (greatest(off) > given.accuracy)
       return refuse(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
-    choice.scene = with(given, *model);
-    if (automatic) choice.scene.most_defect = most_defect(given);
-    choice.scene.step_probes = true;
     notes.push_back(fmt::format(
         "runs go side by side: {} modes from {} elements a span, linear vehicles, {} with steps of {:g} s or less ({})",
-        model->modes, mesh_of(choice.scene), model->method->name, model->step, lanes::instructions()));
+        chooser.model().modes, mesh_of(choice.scene), chooser.model().method->name, chooser.model().step,
+        lanes::instructions()));
     notes.push_back("expected errors of the peaks: " + words_of(choice.errors));
     notes.push_back(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
     return choice;
+  } catch (const NotChosen& none) {
+    return refuse(none.why);
   } catch (const LaneTrials::Refused& refused) {
     return refuse(refused.why);
   } catch (const Error& failed) {
     return refuse(failed.what());  // the runs one by one will say so too, if it is theirs
   }
+}
+
+std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::string>& notes) {
+  if (!open(given) || !given.step_lanes || given.analysis != Analysis::transient || given.beam->track ||
+      given.train.drive != Drive::constant || given.train.speed <= 0.0 || given.beam->spans.size() > most_spans_alone)
+    return std::nullopt;
+  const results::Stage stage("trial runs");
+  const options::WithoutMonitors without_monitors;
+  constexpr std::array methods = {"esdirk4"};  // which is what TS takes
+  const auto begin = std::chrono::steady_clock::now();
+  Scene scene = given;
+  scene.sweep.emplace();
+  for (const double part : beside) scene.sweep->speeds.push_back(part * given.train.speed);
+  const std::vector<std::vector<double>> speeds = some_speeds(scene.sweep->speeds, {0.0}, trial_lanes);
+  try {
+    Chooser chooser(scene, {speeds, {}, {{given.train.speed}}}, methods, true);
+    LanesChoice choice = chooser.choose();
+    choice.scene.sweep.reset();
+    notes.push_back(fmt::format(
+        "accuracy {:g}: {} modes from {} elements a span, linear vehicles, steps of {:g} s; trial runs took {:.2g} s",
+        given.accuracy, chooser.model().modes, mesh_of(choice.scene), chooser.model().step,
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
+    notes.push_back("expected errors of the peaks: " + words_of(choice.errors));
+    return choice;
+  } catch (const NotChosen&) {
+  } catch (const LaneTrials::Refused&) {
+  } catch (const Error&) {  // which the run itself will meet
+  }
+  return std::nullopt;
 }
 
 }  // namespace traverse::app

@@ -5,46 +5,15 @@
 
 #include "integrate/integrator_choice.hpp"
 #include "lanes/speed_class.hpp"
+#include "run/by_lanes.hpp"
 #include "run/passage.hpp"
 
 namespace traverse::app {
 namespace {
 
 constexpr double one_place = 1e-9;  // m: events nearer than that are one
-constexpr double no_step = 1e-9;    // of the shapes' largest values: surfaces that meet without a step
-
-/// Whether wheels come onto the bridge, and leave it, without a step.
-bool level_ends(const structure::ModalBridge& bridge) {
-  const structure::PiecewiseCubic& influence = bridge.influence();
-  double largest = 0.0, at_ends = 0.0;
-  for (std::size_t piece = 0; piece < influence.pieces(); ++piece) {
-    const double length = influence.breaks[piece + 1] - influence.breaks[piece];
-    for (std::size_t i = 0; i < bridge.modes(); ++i) {
-      const double* c = &influence.coefficients[4 * influence.channels * piece + i];
-      const std::size_t n = influence.channels;
-      const double left = c[0], right = c[0] + length * (c[n] + length * (c[2 * n] + length * c[3 * n]));
-      largest = std::max({largest, std::abs(left), std::abs(right)});
-      if (piece == 0) at_ends = std::max(at_ends, std::abs(left));
-      if (piece + 1 == influence.pieces()) at_ends = std::max(at_ends, std::abs(right));
-    }
-  }
-  return at_ends <= no_step * largest;
-}
 
 }  // namespace
-
-std::string SideBySide::obstacle(const Scene& scene, const SharedBeam& shared) {
-  if (!shared.modal) return "the bridge is taken by its elements, not by modes";
-  if (scene.vehicles.empty()) return "no vehicles run";
-  if (!scene.load.forces.empty()) return "forces move beside the vehicles";
-  if (scene.vehicle_model != VehicleModel::linear) return "vehicles are mechanisms, not linear";
-  if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
-  if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
-  if (scene.self_weight) return "the bridge's own weight bends it";
-  if (!integrate::own_method()) return "ts_type is one of PETSc's own";
-  if (!scene.time_step) return "the step is not known";
-  return level_ends(*shared.modal) ? "" : "wheels meet a step at the bridge's ends, which yield";
-}
 
 SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
     : scene_(scene),
@@ -59,9 +28,7 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
   if (!obstacle_.empty()) return;
   train_ = lanes::train_numbers(fleet_);
   q_.assign(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(shared.modal->modes()));
-  plan_.bridge = &*shared.modal;
-  plan_.kinks = system_.corners();
-  plan_.level_until = scene.profile.level() ? shared.beam->mesh().start() : -1e300;
+  plan_ = lanes_plan(scene, shared, system_);
 }
 
 /// Distances at which a wheel meets a corner of the surface or passes a probe.
@@ -103,7 +70,7 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const double> speed
     from = event;
   }
   const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
-  if (last > 0) plan_.stretches.push_back({from + static_cast<double>(last) * ds, last});
+  if (last > 0) plan_.stretches.push_back({past, last});
   make_track(past + ds);
   std::vector<lanes::CrossingRun> runs;
   for (std::size_t i = 0; i < speeds.size(); ++i) runs.push_back({&train_, &track_, nullptr, &q_, speeds[i], ends[i]});

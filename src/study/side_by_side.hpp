@@ -15,11 +15,8 @@ namespace traverse::app {
 
 class SideBySide {
  public:
-  /// Why the runs of a scene cannot go side by side, in words; empty: as far as the scene itself tells, they can.
-  static std::string obstacle(const Scene& scene, const SharedBeam& shared);
-
-  /// The train of a scene without obstacles, at its start. Errors as a run by itself would throw them. Scene and beam
-  /// must outlive it.
+  /// The train of a scene without lanes_obstacle, at its start. Errors as a run by itself would throw them. Scene and
+  /// beam must outlive it.
   SideBySide(const Scene& scene, const SharedBeam& shared);
 
   /// Why these vehicles on this bridge cannot; empty: they can.

@@ -43,5 +43,18 @@ TEST(Ranks, SweepOfVehicles) {
                    {{"ts_dt", "5e-3"}, {"ts_type", "cn"}, {"sweep_speed", "60,80,5"}}, with_wheels);
 }
 
+// Every rank takes all steps of a single run of linear vehicles over modes.
+TEST(Ranks, StepsTakenApart) {
+  const std::string yaml = "options_file: " TRAVERSE_SOURCE_DIR
+                           "/options/scenes/three_span_train.yml\n"
+                           "train_vehicles: coach*2\nscene_tail: 0\n";
+  const Values options = {{"ts_dt", "2e-3"}, {"model_modes", "8"}, {"model_vehicles", "linear"}};
+  Results all = run_yaml(yaml, options, MPI_COMM_WORLD);
+  Results one = run_yaml(yaml, options, MPI_COMM_SELF);
+  for (const char* name : {"/probes/deflection", "/probes/acceleration", "/vehicles/1/wheel_2/normal_force",
+                           "/vehicles/0/car/acceleration", "/energy/dissipated", "/energy/work"})
+    EXPECT_LT(relative_difference(all(name), one(name)), 1e-12) << name;
+}
+
 }  // namespace
 }  // namespace traverse::test

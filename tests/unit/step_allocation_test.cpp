@@ -7,6 +7,7 @@
 
 #include "base/petsc.hpp"
 #include "integrate/stepper.hpp"
+#include "run/by_lanes.hpp"
 #include "run/outputs.hpp"
 #include "run/passage.hpp"
 #include "support/counted_memory.hpp"
@@ -92,6 +93,10 @@ long allocations_of_steps(const Words& scene_words, const std::string& type, con
   double* y = stepper.state();
   (void)system.start(true, y);
   if (scene.vehicle_model == app::VehicleModel::linear) (void)system.linearise_vehicles(y);
+  if (scene.model_modes > 0 && scene.vehicle_model == app::VehicleModel::linear) {
+    system.step_apart(app::by_lanes(scene, shared, system, y, 0.1));
+    EXPECT_NE(system.apart(), nullptr);
+  }
   stepper.restore_state(&y);
   long before = 0, after = 0;
   stepper.run([](const Instant&) {},
@@ -130,6 +135,12 @@ TEST(Steps, OfLinearVehiclesTakeNoMemory) {
   for (const char* type : {"esdirk4", "genalpha"}) {
     EXPECT_EQ(allocations_of_steps(scene, type), 0) << type;
   }
+}
+
+TEST(Steps, TakenApartTakeNoMemory) {
+  Words scene = coaches_on_a_continuous_bridge();
+  scene.insert(scene.end(), {"-model_vehicles", "linear", "-model_modes", "12", "-ts_dt", "1e-3"});
+  for (const char* type : {"esdirk4", "genalpha"}) EXPECT_EQ(allocations_of_steps(scene, type), 0) << type;
 }
 
 // All that a results file holds of a train on a bridge, at one instant.

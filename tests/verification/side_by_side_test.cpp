@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 #include "support/curve.hpp"
 #include "support/paths.hpp"
@@ -43,6 +44,7 @@ double difference(const Peaks& a, const Peaks& b) {
 Values sweep(const char* speeds, const char* lanes, const char* step) {
   return {{"sweep_speed", speeds},
           {"sweep_lanes", lanes},
+          {"step_lanes", std::string_view(lanes) == "0" ? "false" : "true"},  // by themselves: all by TS
           {"ts_dt", step},
           {"model_vehicles", "linear"},
           {"model_modes", "8"}};

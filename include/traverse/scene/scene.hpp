@@ -75,6 +75,7 @@ struct Scene {
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
   bool step_kinks = true;        // steps end where wheels pass kinks
+  bool step_lanes = true;        // linear vehicles over modes are stepped by the kernel of runs side by side
   bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
   double rest_tolerance = -1.0;  // model_window; -1: auto
   VehicleModel vehicle_model = VehicleModel::full;

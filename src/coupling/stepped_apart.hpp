@@ -1,0 +1,34 @@
+// A system whose steps somebody else takes as a whole, who knows more of it than System does: linear vehicles over
+// modes. The system is told where it is when somebody looks, and when it has to go on by itself.
+#pragma once
+
+#include <span>
+
+#include "recovery/recovery.hpp"
+
+namespace traverse::coupling {
+
+class SteppedApart {
+ public:
+  virtual ~SteppedApart() = default;
+  /// The step from t to t + h; false where it cannot be taken, and all is as it was. SolverError where the motion is no
+  /// number any more.
+  virtual bool step(double t, double h) = 0;
+
+  /// Writes v, w, p and p' of the whole system at the end of the last step, one behind the other.
+  virtual void tell(double* y) const = 0;
+  /// Lost in dampers, and given by what holds the speed, since the start, J.
+  virtual double dissipated() const = 0;
+  virtual double worked() const = 0;
+  /// m, N: of an entry of Fleet::wheels.
+  struct Wheel {
+    double x = 0.0, force = 0.0;
+  };
+  virtual Wheel wheel(std::size_t wheel) const = 0;
+  /// Deflections, accelerations and moments of the probes, one entry each; the rest is left as it is.
+  virtual void see(std::span<beam::Response> probes) const = 0;
+  /// System::defect at the instant when the vehicles were farthest from linear.
+  virtual double defect() = 0;
+};
+
+}  // namespace traverse::coupling

@@ -1,0 +1,160 @@
+#include "run/by_lanes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/integrator_choice.hpp"
+#include "lanes/processor.hpp"
+#include "lanes/stepped_crossing.hpp"
+#include "lanes/train_numbers.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double same_time = 1e-10;  // s
+constexpr double no_step = 1e-9;     // of the shapes' largest values: surfaces that meet without a step
+
+/// Whether wheels come onto the bridge, and leave it, without a step.
+bool level_ends(const structure::ModalBridge& bridge) {
+  const structure::PiecewiseCubic& influence = bridge.influence();
+  double largest = 0.0, at_ends = 0.0;
+  for (std::size_t piece = 0; piece < influence.pieces(); ++piece) {
+    const double length = influence.breaks[piece + 1] - influence.breaks[piece];
+    for (std::size_t i = 0; i < bridge.modes(); ++i) {
+      const double* c = &influence.coefficients[4 * influence.channels * piece + i];
+      const std::size_t n = influence.channels;
+      const double left = c[0], right = c[0] + length * (c[n] + length * (c[2 * n] + length * c[3 * n]));
+      largest = std::max({largest, std::abs(left), std::abs(right)});
+      if (piece == 0) at_ends = std::max(at_ends, std::abs(left));
+      if (piece + 1 == influence.pieces()) at_ends = std::max(at_ends, std::abs(right));
+    }
+  }
+  return at_ends <= no_step * largest;
+}
+
+/// Whether all ranks compute the same to the last bit.
+bool same_processors(MPI_Comm comm) {
+  const int own = static_cast<int>(lanes::best_target());
+  int bounds[2] = {own, -own};
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm);
+  return bounds[0] == -bounds[1];
+}
+
+/// Each rank takes all steps, as there is less in one than in a message.
+class ByLanes final : public coupling::SteppedApart {
+ public:
+  using Now = lanes::TaskInstant;
+
+  ByLanes(const lanes::CrossingPlan& plan, lanes::TrainNumbers train, lanes::TrackNumbers track, std::vector<double> q,
+          double speed, std::vector<double> kinks, train::Fleet fleet)
+      : speed_(speed),
+        modes_(plan.bridge->modes()),
+        coordinates_(static_cast<std::size_t>(train.coordinates)),
+        x_(train.x),
+        kinks_(std::move(kinks)),
+        fleet_(std::move(fleet)),
+        crossing_(plan, std::move(train), std::move(track), std::move(q), speed) {}
+
+  bool step(double t, double h) override {
+    const bool from_kink = at_kink(t);
+    const bool to_kink = at_kink(t + h);
+    const lanes::Trouble trouble = crossing_.step(t + h, from_kink, to_kink);
+    if (trouble == lanes::not_finite)
+      throw SolverError(fmt::format(
+          "the motion has grown beyond all bounds by t = {} s: the step is too long; take a smaller -ts_dt", t + h));
+    if (trouble != lanes::none) return false;
+    time_ = t + h;
+    return true;
+  }
+  void tell(double* y) const override {
+    const auto write = [&](lanes::SteppedCrossing::Numbers numbers, std::size_t count) {
+      for (std::size_t i = 0; i < count; ++i) *y++ = crossing_.at(numbers, i);
+    };
+    write(&Now::q, modes_);
+    write(&Now::q_rate, modes_);
+    write(&Now::x, coordinates_);
+    write(&Now::x_rate, coordinates_);
+  }
+  double dissipated() const override { return crossing_.at(&Now::lost, 0); }
+  double worked() const override { return crossing_.at(&Now::given, 0); }
+  Wheel wheel(std::size_t wheel) const override {
+    return {x_[wheel] + speed_ * time_, crossing_.at(&Now::force, wheel)};
+  }
+  void see(std::span<beam::Response> probes) const override {
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+      probes[i].deflection = crossing_.at(&Now::response, i);
+      probes[i].acceleration = crossing_.at(&Now::response, probes.size() + i);
+      probes[i].moment = crossing_.at(&Now::response, 2 * probes.size() + i);
+    }
+  }
+  double defect() override { return lanes::defect(fleet_, crossing_.bent()); }
+
+ private:
+  /// Of times that ascend, but for the last one.
+  bool at_kink(double t) {
+    while (next_kink_ < kinks_.size() && kinks_[next_kink_] < t - same_time) ++next_kink_;
+    return next_kink_ < kinks_.size() && kinks_[next_kink_] <= t + same_time;
+  }
+
+  double speed_, time_ = 0.0;
+  std::size_t modes_, coordinates_;
+  std::vector<double> x_;      // m: of every wheel at t = 0
+  std::vector<double> kinks_;  // s, ascending: when a wheel is at a kink of the surface
+  std::size_t next_kink_ = 0;
+  train::Fleet fleet_;  // as it started
+  lanes::SteppedCrossing crossing_;
+};
+
+}  // namespace
+
+std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
+  if (!shared.modal) return "the bridge is taken by its elements, not by modes";
+  if (scene.vehicles.empty()) return "no vehicles run";
+  if (!scene.load.forces.empty()) return "forces move beside the vehicles";
+  if (scene.vehicle_model != VehicleModel::linear) return "vehicles are mechanisms, not linear";
+  if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
+  if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
+  if (scene.self_weight) return "the bridge's own weight bends it";
+  if (!integrate::own_method()) return "ts_type is one of PETSc's own";
+  if (!scene.time_step) return "the step is not known";
+  return level_ends(*shared.modal) ? "" : "wheels meet a step at the bridge's ends, which yield";
+}
+
+lanes::CrossingPlan lanes_plan(const Scene& scene, const SharedBeam& shared, const coupling::System& system) {
+  lanes::CrossingPlan plan;
+  plan.bridge = &*shared.modal;
+  plan.kinks = system.corners();
+  plan.level_until = scene.profile.level() ? shared.beam->mesh().start() : -1e300;
+  return plan;
+}
+
+std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const SharedBeam& shared,
+                                                 const coupling::System& system, const double* y, double end_time) {
+  if (!scene.step_lanes || !lanes_obstacle(scene, shared).empty() || !lanes::obstacle(system.fleet()).empty() ||
+      !same_processors(system.comm()))
+    return nullptr;
+  train::Fleet fleet = system.fleet();
+  lanes::TrainNumbers train = lanes::train_numbers(fleet);
+  lanes::CrossingPlan plan = lanes_plan(scene, shared, system);
+  plan.method = *integrate::own_method();
+  plan.exact_modes = plan.method.stages.size() == 1;
+  const auto [rear, front] = std::minmax_element(train.x.begin(), train.x.end());
+  const double radius = fleet.vehicles.front().wheels.front().radius;
+  lanes::TrackNumbers track;
+  try {
+    track = lanes::track_numbers(scene.profile, radius, *rear, *front + scene.train.speed * end_time);
+  } catch (const InputError&) {
+    return nullptr;  // too long or too sharp
+  }
+  std::vector<double> q(shared.modal->modes());
+  int rank = 0;
+  MPI_Comm_rank(system.comm(), &rank);
+  if (rank == 0) std::copy_n(y, q.size(), q.begin());
+  MPI_Bcast(q.data(), static_cast<int>(q.size()), MPI_DOUBLE, 0, system.comm());
+  return std::make_unique<ByLanes>(plan, std::move(train), std::move(track), std::move(q), scene.train.speed,
+                                   system.known_events(end_time, scene.step_kinks), std::move(fleet));
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,104 @@
+// Single runs of linear vehicles over modes by the lanes' kernel (step_lanes) against the same runs by the system
+// itself: the kernel takes the contact's normal by its first power, so that what is left falls with the bridge's slope.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/curve.hpp"
+#include "support/separations.hpp"
+
+namespace traverse::test {
+namespace {
+
+const Values linear = {{"model_vehicles", "linear"}, {"model_modes", "8"}, {"step_probes", "true"}};
+
+const char* const series[] = {"/probes/deflection", "/probes/moment", "/supports/reaction",
+                              "/vehicles/0/wheel_3/normal_force", "/vehicles/0/rear_bogie/acceleration"};
+
+/// The largest difference of these series, each over its own largest value.
+double difference(Results& a, Results& b) {
+  double worst = 0.0;
+  for (const char* name : series) worst = std::max(worst, relative_difference(a(name), b(name)));
+  return worst;
+}
+
+struct Pair {
+  Results apart, itself;
+};
+Pair run_both(const std::string& scene, const Values& options) {
+  return {run_scene(scene, options), run_scene(scene, options + Values{{"step_lanes", "false"}})};
+}
+
+void expect_same_motion(const char* name, const std::string& scene, const Values& options, double bound) {
+  Pair runs = run_both(scene, linear + options);
+  const double off = difference(runs.apart, runs.itself);
+  testing::Test::RecordProperty(name, text(off));
+  EXPECT_LT(off, bound) << name;
+  EXPECT_GT(off, 0.0) << "both are the same run";
+  EXPECT_LT(std::abs(peak(runs.apart("/balance/residual")).first), 1e-9 * peak(runs.apart("/balance/load")).first);
+  // What the kernel counts by first powers is what the energies miss.
+  EXPECT_LT(energy_error(runs.apart), 3e-4);
+}
+
+TEST(SteppedApart, CoachesOverThreeSpans) {
+  expect_same_motion("three spans", "three_span_train",
+                     {{"train_vehicles", "coach*2"}, {"scene_tail", "0.2"}, {"ts_dt", "2.5e-4"}}, 2e-5);
+}
+
+TEST(SteppedApart, RoughTrack) {
+  expect_same_motion("rough track", "three_span_train",
+                     {{"train_vehicles", "coach"},
+                      {"scene_tail", "0.1"},
+                      {"track_profile", "german_low"},
+                      {"track_seed", "3"},
+                      {"ts_dt", "2e-4"}},
+                     2e-4);
+}
+
+TEST(SteppedApart, OneSolveAStep) {
+  Pair runs = run_both(
+      "three_span_train",
+      linear + Values{{"train_vehicles", "coach"}, {"scene_tail", "0.1"}, {"ts_dt", "5e-5"}, {"ts_type", "genalpha"}});
+  EXPECT_LT(difference(runs.apart, runs.itself), 1e-3);  // the kernel's modes move exactly, those of the system do not
+  EXPECT_LT(energy_error(runs.apart), 3e-4);
+}
+
+// Wheels fly over the bump: from then on the system goes on by itself, and finds the same losses.
+TEST(SteppedApart, GivesBackWhereContactIsLost) {
+  Pair runs = run_both("three_span_train", linear + Values{{"train_vehicles", "coach"},
+                                                           {"scene_tail", "0.1"},
+                                                           {"track_profile", "bump"},
+                                                           {"track_bump_start", "20"},
+                                                           {"track_bump_length", "2"},
+                                                           {"track_bump_height", "4e-3"},
+                                                           {"ts_dt", "2.5e-4"}});
+  const std::vector<Separated> losses = separations(runs.apart), same = separations(runs.itself);
+  ASSERT_GT(losses.size(), 0U);
+  ASSERT_EQ(losses.size(), same.size());
+  for (std::size_t i = 0; i < losses.size(); ++i) {
+    EXPECT_NEAR(losses[i].start, same[i].start, 1e-5);
+    EXPECT_NEAR(losses[i].duration, same[i].duration, 1e-3 * same[i].duration + 1e-5);
+  }
+  EXPECT_LT(difference(runs.apart, runs.itself), 5e-3);
+}
+
+// Everything is left open: modes and linear vehicles are chosen for a single run, and keep to the accuracy against the
+// elements with the mechanisms.
+TEST(SteppedApart, ChosenByTheAccuracy) {
+  const Values scene = {{"train_vehicles", "coach*2"}, {"scene_tail", "0.2"}};
+  Results chosen = run_scene("fifty_metre_train", scene + Values{{"accuracy", "1e-3"}});
+  EXPECT_GT(chosen("/modes/frequency").size(), 3U);
+  Results exact = run_scene("fifty_metre_train", scene + Values{{"ts_dt", "1e-4"},
+                                                                {"beam_elements_per_span", "64"},
+                                                                {"model_vehicles", "full"},
+                                                                {"step_probes", "true"}});
+  for (const char* name : {"deflection", "acceleration", "moment", "greatest_wheel_force"}) {
+    const double off = std::abs(chosen.attribute("/summary", name) / exact.attribute("/summary", name) - 1.0);
+    RecordProperty(name, text(off));
+    EXPECT_LT(off, 1e-3) << name;
+  }
+}
+
+}  // namespace
+}  // namespace traverse::test
