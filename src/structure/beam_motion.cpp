@@ -3,127 +3,9 @@
 #include <algorithm>
 #include <tuple>
 
+#include "beam_motion_tile.hpp"
+
 namespace traverse::structure {
-namespace {
-
-constexpr int tile = beam::tile;
-constexpr int most_terms = most_accelerations + 2;  // with v and w
-
-template <class Call>
-void with_count(int count, Call call) {
-  switch (count) {
-    case 0:
-      return call(std::integral_constant<int, 0>());
-    case 1:
-      return call(std::integral_constant<int, 1>());
-    case 2:
-      return call(std::integral_constant<int, 2>());
-    case 3:
-      return call(std::integral_constant<int, 3>());
-    case 4:
-      return call(std::integral_constant<int, 4>());
-    case 5:
-      return call(std::integral_constant<int, 5>());
-    case 6:
-      return call(std::integral_constant<int, 6>());
-    case 7:
-      return call(std::integral_constant<int, 7>());
-    default:
-      return call(std::integral_constant<int, most_terms>());
-  }
-}
-
-// `outputs` sums of N vectors' entries [from, from + size) at once.
-template <int N, int outputs>
-void add_up(const std::array<const double*, most_terms>& vectors,
-            const std::array<std::array<double, outputs>, most_terms>& weight, std::ptrdiff_t from, int size,
-            const std::array<double*, outputs>& to) {
-  std::array<const double*, N> x;
-  for (int j = 0; j < N; ++j) x[j] = vectors[j] + from;
-#pragma GCC ivdep
-  for (int i = 0; i < size; ++i) {
-    std::array<double, outputs> sum{};
-    for (int j = 0; j < N; ++j)
-      for (int k = 0; k < outputs; ++k) sum[k] += weight[j][k] * x[j][i];
-    for (int k = 0; k < outputs; ++k) to[k][i] = sum[k];
-  }
-}
-
-/// body(the block's size as a constant, -1: another), so that what goes from columns to planes is straight code.
-template <class Body>
-void with_block(int block, Body body) {
-  switch (block) {
-    case 2:
-      return body(std::integral_constant<int, 2>());
-    case 3:
-      return body(std::integral_constant<int, 3>());
-    case 5:
-      return body(std::integral_constant<int, 5>());
-    case 7:
-      return body(std::integral_constant<int, 7>());
-    default:
-      return body(std::integral_constant<int, -1>());
-  }
-}
-
-}  // namespace
-
-/// Vectors and their weights in so many sums.
-template <int outputs>
-struct BeamMotion::Terms {
-  std::array<const double*, most_terms> x{};
-  std::array<std::array<double, outputs>, most_terms> weight{};
-  int count = 0;
-
-  void add(const double* vector, const std::array<double, outputs>& weights) {
-    if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0.0; })) return;
-    x[count] = vector;
-    weight[count++] = weights;
-  }
-  void evaluate(std::ptrdiff_t from, int size, const std::array<double*, outputs>& to) const {
-    with_count(count, [&](auto N) { add_up<N, outputs>(x, weight, from, size, to); });
-  }
-};
-
-/// The columns from the one before a tile to the one behind it, an array for each unknown.
-struct BeamMotion::Tile {
-  std::array<std::array<double, tile + 2>, beam::kinds> plane;
-
-  beam::Planes planes() {
-    beam::Planes result;
-    for (std::size_t c = 0; c < result.size(); ++c) result[c] = plane[c].data();
-    return result;
-  }
-  void clear(int block) {
-    for (int c = 0; c < block; ++c) plane[c].fill(0.0);
-  }
-  void separate(int block, const double* columns, int first, int count) {
-    with_block(block, [&](auto B) {
-      const int b = B > 0 ? B : block;
-      for (int i = 0; i < count; ++i)
-        for (int c = 0; c < b; ++c) plane[c][first + i] = columns[b * i + c];
-    });
-  }
-  void set(int block, int node, const double* column) {
-    for (int c = 0; c < block; ++c) plane[c][node] = column[c];
-  }
-};
-
-/// The scalar product of `nodes` columns of x and of forces.
-double BeamMotion::product_of(int block, int nodes, const Tile& x, const Tile& forces) {
-  double sum = 0.0;
-  for (int c = 0; c < block; ++c) {
-    constexpr int lanes = 8;
-    std::array<double, lanes> sums{};
-    const double *const a = x.plane[c].data() + 1, *const b = forces.plane[c].data();
-    int i = 0;
-    for (; i + lanes <= nodes; i += lanes)
-      for (int lane = 0; lane < lanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
-    for (; i < nodes; ++i) sums[0] += a[i] * b[i];
-    for (double part : sums) sum += part;
-  }
-  return sum;
-}
 
 void BeamMotion::Sum::add(double by, const Sum& other) {
   v += by * other.v;
@@ -185,20 +67,6 @@ void BeamMotion::begin(const Method& method) {
     w_error_.add(method.step.error_in_w[j], accelerations[j]);
   }
   for (std::size_t j = 0; j <= stages_.size(); ++j) kept_[j].resize(static_cast<std::size_t>(n_), 0.0);
-}
-
-template <int outputs>
-BeamMotion::Terms<outputs> BeamMotion::terms_of(const std::array<const Sum*, outputs>& sums, const View& view) const {
-  Terms<outputs> terms;
-  const auto add = [&](const double* vector, auto weight_of) {
-    std::array<double, outputs> weights;
-    for (int k = 0; k < outputs; ++k) weights[k] = weight_of(*sums[k]);
-    terms.add(vector, weights);
-  };
-  add(view.v, [](const Sum& s) { return s.v; });
-  add(view.w, [](const Sum& s) { return s.w; });
-  for (std::size_t j = 0; j <= stages_.size(); ++j) add(view.kept[j], [j](const Sum& s) { return s.kept[j]; });
-  return terms;
 }
 
 double BeamMotion::at(const Sum& sum, const View& view, int i) const {
@@ -283,27 +151,6 @@ void BeamMotion::exchange_borders(std::initializer_list<const Sum*> sums) {
   }
 }
 
-// Sums on a tile and its neighbours, with their values beyond the view's nodes.
-template <std::size_t outputs>
-void BeamMotion::combine(const std::array<Summand, outputs>& sums, int first, int past) const {
-  constexpr int count_of = static_cast<int>(outputs);
-  const int from = std::max(first - 1, view_.first), count = std::min(past + 1, view_.past) - from;
-  std::array<std::array<double, (tile + 2) * beam::kinds>, outputs> columns;
-  std::array<const Sum*, outputs> of;
-  std::array<double*, outputs> to;
-  for (std::size_t k = 0; k < outputs; ++k) {
-    of[k] = &sums[k].sum;
-    to[k] = columns[k].data();
-  }
-  terms_of<count_of>(of, view_).evaluate(block_ * static_cast<std::ptrdiff_t>(from - view_.first), block_ * count, to);
-  for (std::size_t k = 0; k < outputs; ++k) {
-    Tile& tile_of = sums[k].to;
-    tile_of.separate(block_, to[k], from - (first - 1), count);
-    if (first == view_.first) tile_of.set(block_, 0, sums[k].ghosts.data());
-    if (past == view_.past) tile_of.set(block_, past - first + 1, sums[k].ghosts.data() + beam::kinds);
-  }
-}
-
 // K_aa (v + b w), null: of v alone. Changes v.
 void BeamMotion::add_elastic(int first, int past, Tile& v, const Tile* w, Tile& force) const {
   for (int c = 0; c < block_ && w != nullptr; ++c) {
@@ -333,37 +180,6 @@ void BeamMotion::add_forces(int first, int past, Tile& v, Tile* w, Tile& force) 
 void BeamMotion::fill(std::ptrdiff_t first, std::ptrdiff_t past) {
   for (std::ptrdiff_t node = first; node < past; node += tile)
     fill_tile(static_cast<int>(node), static_cast<int>(std::min<std::ptrdiff_t>(past, node + tile)));
-}
-
-// w^T C w and 2 A_0^T C w.
-void BeamMotion::measure_dissipation(int first, int past, Tile& rate, Tile& force) {
-  Tile none;
-  none.clear(block_);
-  force.clear(block_);
-  const Sum of_w{0.0, 1.0, {}};
-  combine(std::array{Summand{of_w, ghosts_[1], rate}}, first, past);
-  add_forces(first, past, none, &rate, force);
-  const std::ptrdiff_t offset = block_ * static_cast<std::ptrdiff_t>(first - view_.first);
-  const double* const a0 = view_.kept[0] + offset;
-  constexpr int lanes = 8;
-  std::array<double, lanes> by_w{}, by_a{};
-  with_block(block_, [&](auto B) {
-    const int b = B > 0 ? B : block_;
-    for (int c = 0; c < b; ++c) {
-      const auto add = [&](int lane, int i) {
-        by_w[lane] += rate.plane[c][i + 1] * force.plane[c][i];
-        by_a[lane] += a0[b * i + c] * force.plane[c][i];
-      };
-      int i = 0;
-      for (; i + lanes <= past - first; i += lanes)
-        for (int lane = 0; lane < lanes; ++lane) add(lane, i + lane);
-      for (; i < past - first; ++i) add(0, i);
-    }
-  });
-  for (int lane = 0; lane < lanes; ++lane) {
-    dissipation_.power += by_w[lane];
-    dissipation_.rate += 2.0 * by_a[lane];
-  }
 }
 
 void BeamMotion::fill_tile(int first, int past) {
@@ -404,50 +220,9 @@ std::pair<double, double> BeamMotion::state(std::size_t stage, const double* v, 
   return {at(s.v_still, view, i) + s.displacement * a, at(s.w_still, view, i) + s.rate * a};
 }
 
-double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
-  Sum rate = stages_[stage].w_still;
-  rate.add(stages_[stage].rate, stages_[stage].a);
-  view_ = view_of(v, w);
-  exchange_borders({&rate});
-  double power = 0.0;
-  Tile rates, none, force;
-  for (int first = 0; first < nodes_; first += tile) {
-    const int past = std::min(nodes_, first + tile);
-    combine(std::array{Summand{rate, ghosts_[0], rates}}, first, past);
-    none.clear(block_);
-    force.clear(block_);
-    add_forces(first, past, none, &rates, force);
-    power += product_of(block_, past - first, rates, force);
-  }
-  return power;
-}
-
 void BeamMotion::still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const {
   const Stage& s = stages_[stage];
   terms_of<2>({&s.v_still, &s.w_still}, view_of(v, w)).evaluate(0, n_, {v_still, w_still});
-}
-
-// Of displacements and rates on a tile, by the forces K* v and M w. Changes v.
-double BeamMotion::twice_energy(int first, int past, Tile& v, Tile& w) const {
-  Tile force, moved = v;
-  force.clear(block_);
-  add_forces(first, past, v, nullptr, force);
-  const double strain = product_of(block_, past - first, moved, force);
-  force.clear(block_);
-  products_->mass.add(first, past, w.planes(), force.planes());
-  return strain + product_of(block_, past - first, w, force);
-}
-
-double BeamMotion::error_energy() {
-  exchange_borders({&v_error_, &w_error_});
-  Tile displacement, rate;
-  double twice = 0.0;
-  for (int first = first_; first < past_; first += tile) {
-    const int past = std::min(past_, first + tile);
-    combine(std::array{Summand{v_error_, ghosts_[0], displacement}, Summand{w_error_, ghosts_[1], rate}}, first, past);
-    twice += twice_energy(first, past, displacement, rate);
-  }
-  return 0.5 * twice;
 }
 
 void BeamMotion::error(const double* v, const double* w, double* error_of_v, double* error_of_w) const {
@@ -476,31 +251,6 @@ void BeamMotion::set_range(int first, int past) {
   ranged_ = true;
   first_ = first;
   past_ = past;
-}
-
-double BeamMotion::put_to_rest(int first, int past, const double* rest, double* v, double* w) {
-  double twice = 0.0;
-  for (int from = first; from < past; from += tile) {
-    const int to = std::min(past, from + tile), begin = std::max(from - 1, 0), end = std::min(to + 1, nodes_);
-    Tile displacement, rate;
-    displacement.clear(block_);
-    rate.clear(block_);
-    for (int node = begin; node < end; ++node) {
-      for (int c = 0; c < block_; ++c) {
-        const int i = node - (from - 1), k = block_ * node + c;
-        displacement.plane[c][i] = v[k] - (rest != nullptr ? rest[k] : 0.0);
-        rate.plane[c][i] = w[k];
-      }
-    }
-    twice += twice_energy(from, to, displacement, rate);
-  }
-  for (int k = block_ * first; k < block_ * past; ++k) {
-    v[k] = rest != nullptr ? rest[k] : 0.0;
-    w[k] = 0.0;
-    for (std::vector<double>& a : kept_)
-      if (!a.empty()) a[k] = 0.0;
-  }
-  return 0.5 * twice;
 }
 
 }  // namespace traverse::structure
