@@ -9,6 +9,7 @@
 
 #include <malloc.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -64,8 +65,8 @@ struct Steps {
   std::vector<double> start, y;
   double t = 0.0;
 
-  Steps(int unknowns, bool continuous, int coaches, const structure::Method& method)
-      : scene(unknowns, continuous, coaches), start(static_cast<std::size_t>(scene.system->local_size())) {
+  Steps(int unknowns, Spans kind, int coaches, const structure::Method& method)
+      : scene(unknowns, kind, coaches), start(static_cast<std::size_t>(scene.system->local_size())) {
     scene.system->start(true, start.data());
     scene.system->begin_motion(method);
     scene.beam->release_matrices();
@@ -88,8 +89,8 @@ struct Steps {
 };
 
 /// One kind of bridge at one size: lines of the table.
-void measure(int size, bool continuous, int rounds, std::ofstream& table) {
-  const StepScene bridge(size, continuous, 0);
+void measure(int size, Spans kind, int rounds, std::ofstream& table) {
+  const StepScene bridge(size, kind, 0);
   structure::BeamOperator op(*bridge.beam);
   const int unknowns = bridge.unknowns(), coaches = size < 1000 ? 1 : 8;
   const int solves = std::clamp(500'000 / unknowns, 3, 5'000), steps = std::clamp(100'000 / unknowns, 3, 100);
@@ -103,8 +104,8 @@ void measure(int size, bool continuous, int rounds, std::ofstream& table) {
     const std::string name = i.name;
     parts.push_back({name + " stage", [=] { return seconds(solves, [&] { stages->solve(); }) / count; }});
     parts.push_back({name + " end of the step", [=] { return seconds(solves, [&] { stages->finish(); }); }});
-    const auto bare = std::make_shared<Steps>(size, continuous, 0, i.method);
-    const auto laden = std::make_shared<Steps>(size, continuous, coaches, i.method);
+    const auto bare = std::make_shared<Steps>(size, kind, 0, i.method);
+    const auto laden = std::make_shared<Steps>(size, kind, coaches, i.method);
     parts.push_back({name + " step without vehicles", [=] { return bare->time(steps); }});
     parts.push_back({name + " step", [=] { return laden->time(steps); }});
   }
@@ -112,14 +113,13 @@ void measure(int size, bool continuous, int rounds, std::ofstream& table) {
   for (int round = 0; round < rounds; ++round)
     for (Part& part : parts) part.times.push_back(part.time());
   if (rank() != 0) return;
-  const char* kind = continuous ? "continuous" : "simply supported";
   const double reference = median(parts.front().times);
   for (const Part& part : parts) {
     const double time = median(part.times);
-    std::printf("%9d  %-17s %-32s %10.3f %10.3f %8.2f\n", unknowns, kind, part.name.c_str(), 1e6 * time,
+    std::printf("%9d  %-17s %-32s %10.3f %10.3f %8.2f\n", unknowns, name_of(kind), part.name.c_str(), 1e6 * time,
                 1e9 * time / unknowns, time / reference);
-    table << unknowns << ',' << kind << ',' << ranks() << ',' << coaches << ',' << part.name << ',' << time << ','
-          << 1e9 * time / unknowns << ',' << time / reference << '\n';
+    table << unknowns << ',' << name_of(kind) << ',' << ranks() << ',' << coaches << ',' << part.name << ',' << time
+          << ',' << 1e9 * time / unknowns << ',' << time / reference << '\n';
   }
 }
 
@@ -132,10 +132,10 @@ double resident() {
 }
 
 /// Eight coaches and esdirk4, everything that a run holds but the recorder.
-void measure_memory(int size, bool continuous, std::ofstream& table) {
+void measure_memory(int size, Spans kind, std::ofstream& table) {
   malloc_trim(0);  // what was freed before would serve again, unseen
   const double before = resident();
-  Steps steps(size, continuous, 8, structure::esdirk4());
+  Steps steps(size, kind, 8, structure::esdirk4());
   const int unknowns = steps.scene.unknowns(), few = size <= 100'000 ? 100 : 10;
   const auto bytes = [&] { return (resident() - before) * ranks() / unknowns; };
   const double built = bytes();
@@ -144,12 +144,11 @@ void measure_memory(int size, bool continuous, std::ofstream& table) {
   for (int i = 0; i < 9; ++i) (void)steps.time(few);
   const double after_many = bytes();
   if (rank() != 0) return;
-  const char* kind = continuous ? "continuous" : "simply supported";
-  std::printf("%9d  %-17s resident bytes per unknown: %.0f built, %.0f after %d steps, %.0f after %d\n", unknowns, kind,
-              built, after_few, few, after_many, 10 * few);
+  std::printf("%9d  %-17s resident bytes per unknown: %.0f built, %.0f after %d steps, %.0f after %d\n", unknowns,
+              name_of(kind), built, after_few, few, after_many, 10 * few);
   for (const auto& [steps_taken, value] : {std::pair{0, built}, {few, after_few}, {10 * few, after_many}})
-    table << unknowns << ',' << kind << ',' << ranks() << ",8,bytes after " << steps_taken << " steps,," << value
-          << ",\n";
+    table << unknowns << ',' << name_of(kind) << ',' << ranks() << ",8,bytes after " << steps_taken << " steps,,"
+          << value << ",\n";
 }
 
 void run(int argc, char** argv) {
@@ -159,13 +158,14 @@ void run(int argc, char** argv) {
   const int largest = argc > 2 ? std::atoi(argv[2]) : 1'000'000, smallest = argc > 3 ? std::atoi(argv[3]) : 10;
   const int rounds = argc > 4 ? std::max(1, std::atoi(argv[4])) : 15;
   table << "unknowns,bridge,ranks,coaches,part,seconds,per_unknown,of_bare_solve\n";
-  for (bool continuous : {true, false})
+  constexpr std::array kinds = {Spans::continuous, Spans::apart, Spans::under_track};
+  for (Spans kind : kinds)
     for (int size : {100'000, 1'000'000})
-      if (size <= largest && size >= smallest) measure_memory(size, continuous, table);
+      if (size <= largest && size >= smallest) measure_memory(size, kind, table);
   if (rank() == 0) std::printf("%9s  %-17s %-32s %10s %10s %8s\n", "unknowns", "", "", "us", "ns/unknown", "of solve");
   for (int size : {10, 100, 1000, 10'000, 100'000, 200'000, 1'000'000})
-    for (bool continuous : {true, false})
-      if (size <= largest && size >= smallest) measure(size, continuous, rounds, table);
+    for (Spans kind : kinds)
+      if (size <= largest && size >= smallest) measure(size, kind, rounds, table);
 }
 
 }  // namespace

@@ -29,18 +29,30 @@ inline int ranks() {
   return result;
 }
 
+/// Continuous spans, spans that do not touch, and continuous spans under a ballasted track.
+enum class Spans { continuous, apart, under_track };
+
+inline const char* name_of(Spans spans) {
+  return spans == Spans::continuous ? "continuous" : spans == Spans::apart ? "simply supported" : "layered track";
+}
+
 /// A bridge of about so many unknowns under so many coaches, the foremost wheel at its beginning.
 struct StepScene {
   std::unique_ptr<beam::Beam> beam;
   std::unique_ptr<coupling::System> system;
 
-  StepScene(int unknowns, bool continuous, int coaches) {
-    constexpr int elements = 10;
-    const int spans = std::max(1, unknowns / (continuous ? 2 * elements : 2 * elements + 2));
-    std::string text = "beam: {spans: 32.0*" + std::to_string(spans) +
-                       ", elements_per_span: " + std::to_string(std::min(elements, unknowns / 2 - 1)) +
-                       ", EI: 3.795e11, mass: 3.0e4, continuity: " + (continuous ? "continuous" : "simply_supported") +
-                       "}\nsupport: {types: " + (continuous ? "roller" : "pinned") + "}\nts: {max_time: 1.0}\n";
+  StepScene(int unknowns, Spans kind, int coaches) {
+    constexpr int elements = 10, a_span_under_track = 480;  // elements; unknowns on sleepers 0.667 m apart
+    const bool track = kind == Spans::under_track, apart = kind == Spans::apart;
+    const int a_span = track ? a_span_under_track : apart ? 2 * elements + 2 : 2 * elements;
+    std::string text = "beam: {spans: 32.0*" + std::to_string(std::max(1, unknowns / a_span)) +
+                       ", elements_per_span: " + std::to_string(std::clamp(unknowns / 2 - 1, 1, elements)) +
+                       ", EI: 3.795e11, mass: 3.0e4, continuity: " + (apart ? "simply_supported" : "continuous") +
+                       "}\nsupport: {types: " + (apart ? "pinned" : "roller") + "}\nts: {max_time: 1.0}\n";
+    if (track)
+      text +=
+          "track: {rail: {EI: 1.32476e7, mass: 121.28}, spacing: 0.6666666666666666, pad: {k: 6.5e7, c: 7.5e4}, "
+          "sleeper: {mass: 251.0}, ballast: {mass: 531.4, k: 1.3775e8, c: 5.88e4}}\n";
     if (coaches > 0)
       text += "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR "/options/vehicles/s300.yml}}\ntrain: {vehicles: coach*" +
               std::to_string(coaches) + ", speed: 83.333}\n";

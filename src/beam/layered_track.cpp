@@ -1,10 +1,20 @@
 #include "layered_track.hpp"
 
+#include <cmath>
+
 #include "assembly.hpp"
 #include "beam/shape.hpp"
 
 namespace traverse::beam {
 namespace {
+
+/// A station moved by up to 1e-10 of its element, so that sleepers that stand alike are alike to the last bit: matrices
+/// and factors that repeat are kept once.
+Station on_grid(Station station) {
+  constexpr double grid = 4294967296.0;
+  station.xi = std::round(station.xi * grid) / grid;
+  return station;
+}
 
 /// k (a - b)^2/2 between two unknowns: [k, -k; -k, k].
 std::array<double, 4> between(double k) { return {k, -k, -k, k}; }
@@ -61,7 +71,7 @@ std::vector<Sleeper> sleepers_of(const Line& bridge, int first, int past) {
     Sleeper s{rail.x(node), node, false, {}};
     s.on_bridge = s.x >= bridge.mesh.start() - rounding && s.x <= bridge.mesh.end() + rounding;
     // The right-hand one of two separate spans, as the numbering has it, whatever the rounding of x.
-    if (s.on_bridge) s.at = bridge.mesh.locate(s.x + rounding);
+    if (s.on_bridge) s.at = on_grid(bridge.mesh.locate(s.x + rounding));
     sleepers.push_back(s);
   }
   return sleepers;

@@ -66,7 +66,9 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
   mass_ = with_neighbour(read(beam.mass()));
   if (beam.springs() != nullptr) springs_ = with_neighbour(read(beam.springs()));
   const bool dampers = beam.dampers() != nullptr;
-  if (beam.rayleigh().a != 0.0 || dampers) {
+  const bool proportional = beam.springs() == nullptr && !dampers && beam.rail() == nullptr;
+  if (proportional) mass_damping_ = beam.rayleigh().a;
+  if (!proportional && (beam.rayleigh().a != 0.0 || dampers)) {
     solve::BlockTridiagonal drag = read(beam.beam_mass());
     drag.combine(beam.rayleigh().a, drag, dampers ? 1.0 : 0.0, dampers ? read(beam.dampers()) : drag, 0.0, drag);
     drag_ = with_neighbour(std::move(drag));
@@ -77,17 +79,18 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
         kind != beam::rail_u && kind != beam::rail_v && kind != beam::rail_theta && kind != beam::sleeper;
     damped_part_.push_back(bridge ? stiffness_damping_ : 0.0);
   }
-  damped_ = drag_ || stiffness_damping_ != 0.0;
+  damped_ = drag_ || mass_damping_.value_or(0.0) != 0.0 || stiffness_damping_ != 0.0;
   relative_.resize(unknowns());
-  Shifted all{{}, read(beam.damping()), read(beam.stiffness())};
+  Shifted all{{}, proportional ? solve::BlockTridiagonal() : read(beam.damping()), read(beam.stiffness())};
   find_parts(beam, all);
   if (!parts_) {
     shifted_.push_back(std::move(all));
   } else {
     for (int part : parts_->of_kind) {
       const solve::Parts::Part& its = parts_->parts[static_cast<std::size_t>(part)];
-      shifted_.push_back(
-          {solve::rows_of(mass_.rows, its), solve::rows_of(all.damping, its), solve::rows_of(all.stiffness, its)});
+      shifted_.push_back({solve::rows_of(mass_.rows, its),
+                          proportional ? solve::BlockTridiagonal() : solve::rows_of(all.damping, its),
+                          solve::rows_of(all.stiffness, its)});
     }
   }
   mass_factor_.emplace(new_factor());
@@ -107,7 +110,9 @@ void BeamOperator::find_parts(const beam::Beam& beam, const Shifted& all) {
   for (int begin : parts)
     if (begin >= beam.first_column() && begin <= beam.first_column() + nodes_)
       begins.push_back(begin - beam.first_column());
-  parts_ = solve::Parts::find(begins, {&mass_.rows, &all.damping, &all.stiffness}, fixed_);
+  std::vector<const solve::BlockTridiagonal*> matrices = {&mass_.rows, &all.stiffness};
+  if (!mass_damping_) matrices.push_back(&all.damping);
+  parts_ = solve::Parts::find(begins, matrices, fixed_);
 }
 
 BeamFactor BeamOperator::new_factor() const {
@@ -118,7 +123,11 @@ BeamFactor BeamOperator::new_factor() const {
 solve::BlockTridiagonal BeamOperator::shifted(std::size_t kind, double shift, double shift2) const {
   const Shifted& m = shifted_[kind];
   solve::BlockTridiagonal sum(block_, m.stiffness.nodes);
-  sum.combine(shift2, parts_ ? m.mass : mass_.rows, shift, m.damping, 1.0, m.stiffness);
+  const solve::BlockTridiagonal& mass = parts_ ? m.mass : mass_.rows;
+  if (mass_damping_)
+    sum.combine(shift2 + shift * *mass_damping_, mass, 0.0, mass, 1.0 + shift * stiffness_damping_, m.stiffness);
+  else
+    sum.combine(shift2, mass, shift, m.damping, 1.0, m.stiffness);
   return sum;
 }
 
@@ -163,6 +172,7 @@ void BeamOperator::multiply(double sign, const double* m, const double* c, const
   std::fill_n(r, unknowns(), 0.0);
   if (m != nullptr) product(mass_, sign, m, r);
   if (c != nullptr && drag_) product(*drag_, sign, c, r);
+  if (c != nullptr && mass_damping_.value_or(0.0) != 0.0) product(mass_, sign * *mass_damping_, c, r);
   if (k != nullptr && springs_) product(*springs_, sign, k, r);
   // The beams' elastic forces and their damping by b K_aa together.
   const bool damps = c != nullptr && stiffness_damping_ != 0.0;

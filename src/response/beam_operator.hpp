@@ -29,6 +29,12 @@ struct AddedSprings {
 
 class BeamOperator {
  public:
+  /// A matrix of this rank's rows, with the block that couples them to the rank on the left.
+  struct Matrix {
+    solve::BlockTridiagonal rows;
+    std::vector<double> left;
+  };
+
   explicit BeamOperator(const beam::Beam& beam);
 
   int unknowns() const { return nodes_ * block_; }  // on this rank
@@ -36,6 +42,15 @@ class BeamOperator {
   bool shared() const { return ranks_ > 1; }        // by several ranks
   /// This rank's columns as parts that do not touch, where they are solved so; else null.
   const solve::Parts* parts() const { return parts_ ? &*parts_ : nullptr; }
+
+  /// a where C* = a M + b K*, so that neither C* nor what follows of it is kept.
+  std::optional<double> mass_damping() const { return mass_damping_; }
+  /// M, K* less K_aa, C* less the beams' b K_aa; null where there is none.
+  const Matrix& mass() const { return mass_; }
+  const Matrix* springs() const { return springs_ ? &*springs_ : nullptr; }
+  const Matrix* drag() const { return drag_ ? &*drag_ : nullptr; }
+  /// b of the beams' damping b K_aa for each unknown of a column, 0 for those without.
+  const std::vector<double>& stiffness_damping() const { return damped_part_; }
 
   /// Collective. The neighbours' columns at the borders of this rank's; left as they are where there is none.
   void borders(const double* x, double* left, double* right) const;
@@ -80,14 +95,9 @@ class BeamOperator {
     BeamFactor beam;
   };
   /// The matrices that factorisations are made of: of all this rank's columns, whose mass is kept apart, or of one kind
-  /// of its parts.
+  /// of its parts; the damping where it is not Rayleigh's alone.
   struct Shifted {
     solve::BlockTridiagonal mass, damping, stiffness;
-  };
-  /// A matrix of this rank's rows, with the block that couples them to the rank on the left.
-  struct Matrix {
-    solve::BlockTridiagonal rows;
-    std::vector<double> left;
   };
   void find_parts(const beam::Beam& beam, const Shifted& all);
   BeamFactor new_factor() const;
@@ -102,6 +112,7 @@ class BeamOperator {
   int left_rank_, right_rank_;  // neighbours with nodes, or MPI_PROC_NULL
   std::vector<char> fixed_;
   Matrix mass_;
+  std::optional<double> mass_damping_;
   std::optional<Matrix> springs_, drag_;  // C* = drag + b K_aa; null where there are none
   std::optional<solve::Parts> parts_;
   std::vector<Shifted> shifted_;  // one, or one a kind of part

@@ -82,6 +82,11 @@ class SubstructuredCholesky {
   /// the solutions mean nothing. One for a diagonal matrix. The same on every rank.
   double pivot_ratio() const;
 
+  /// Numbers of the last factor that this rank keeps. Where a few hundred nodes or more repeat to the last bit, as on
+  /// equal spans, so do the factor's numbers after some ten periods, to rounding: one period of them is kept, as if the
+  /// pivots were changed by a few times 1e-16 of themselves.
+  std::size_t stored_numbers() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

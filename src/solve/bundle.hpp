@@ -2,13 +2,19 @@
 //
 // A chain that starts beside a separator drags along a coupling to it, the fill. Under a large mass term the fill dies
 // out within tens of nodes and its tail is dropped; with springs alone it may reach the middle, and is kept whole.
+//
+// Where the rows of all chains repeat and so do their pivot blocks, to rounding, the numbers of one period stand for
+// those of all that follow (Stored): the solution is that of a matrix whose pivot blocks are changed by that much.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "panel.hpp"
 #include "parts.hpp"
+#include "repeats.hpp"
 #include "slice.hpp"
 #include "small_block.hpp"
 #include "solve/block_tridiagonal.hpp"
@@ -47,6 +53,8 @@ class Bundle {
   /// False, and noted in the record, when a part is not positive definite.
   bool factor(const Slice<B>& slice, PivotRecord& record);
   const SchurPart<B>& schur(std::size_t part) const { return schur_[part]; }
+  /// Numbers kept of the chains.
+  std::size_t stored_numbers() const { return lanes * (lower_.size() + inverse_.size() + fill_.size()); }
 
   /// First half of a solve within a window: eliminates the inner nodes, written by the filler, unless null, before.
   /// borders, out: what is added to the separators' right-hand sides.
@@ -82,19 +90,35 @@ class Bundle {
   }
 
   const Chain& chain(std::size_t lane) const { return parts_[lane / 2].chains[lane % 2]; }
+  bool eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>& fronts, PivotRecord& record);
+  void extend_store() {
+    lower_.resize(lower_.size() + static_cast<std::size_t>(block_.area()));
+    inverse_.resize(inverse_.size() + static_cast<std::size_t>(block_.triangle()));
+  }
   bool eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k, Front& front, PivotRecord& record);
   void extend_fill(const Block<B>& inverse, const Block<B>& upper, Front& front) const;
+  std::ptrdiff_t node(std::size_t lane, std::ptrdiff_t k) const {
+    return chain(lane).first + k * chain(lane).direction;
+  }
+  Block<B> coupling(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k) const;
+  Block<B> stored_inverse(std::size_t lane, std::ptrdiff_t k) const;
+  std::vector<std::uint64_t> marks(const Slice<B>& slice) const;
+  bool same_rows(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const;
+  bool same_pivots(const Slice<B>& slice, std::ptrdiff_t k, std::ptrdiff_t period) const;
+  std::ptrdiff_t repeat(const Slice<B>& slice, std::ptrdiff_t from, std::ptrdiff_t period,
+                        std::array<Front, lanes>& fronts);
   bool eliminate_middle(const Slice<B>& slice, std::size_t part, Front* fronts, PivotRecord& record);
   void store_fill(const std::array<Front, lanes>& fronts);
 
-  static const double* first(const std::vector<LaneEntry>& entries, std::size_t lane) {
-    return entries.empty() ? nullptr : entries.data()->chain.data() + lane;
+  static const double* first(const std::vector<LaneEntry>& entries, std::ptrdiff_t entry, std::size_t lane) {
+    return entries.data() == nullptr ? nullptr : (entries.data() + entry)->chain.data() + lane;
   }
-  Factors factors(std::size_t lane) const { return {first(lower_, lane), first(inverse_, lane), first(fill_, lane)}; }
+  Factors factors(std::size_t lane, std::ptrdiff_t k) const;
   double* address(const Columns& x, std::ptrdiff_t node) const { return x.x + (node - x.origin) * block_.size(); }
-  LaneSweep<B> lane_sweep(const Columns& x) const;
+  // Of the steps from k on, counted from there.
+  LaneSweep<B> lane_sweep(const Columns& x, std::ptrdiff_t k) const;
   template <int C, std::size_t N>
-  ColumnSweep<B, C, N> column_sweep(const Columns& x, std::size_t lane) const;
+  ColumnSweep<B, C, N> column_sweep(const Columns& x, std::size_t lane, std::ptrdiff_t k) const;
   template <int C, class Body>
   void along_columns(const Columns& x, const Stretch& steps, Body body) const;
   template <bool Fill, int C>
@@ -113,11 +137,13 @@ class Bundle {
   Extent<B> block_;
   std::array<Part, parts_a_bundle> parts_;
   Range nodes_;
+  std::ptrdiff_t steps_ = 0;     // of the longest chain
   std::ptrdiff_t together_ = 0;  // steps that all chains take, none of them to a middle
   std::ptrdiff_t reach_ = 0;     // nodes a chain with fill: the longest fill's, the others padded with zeros
 
   // With D_k the pivot block, U_k the coupling to node k + 1 and S_k the coupling of the separator (rows) to node k
-  // (columns), laid out as Factors says:
+  // (columns), laid out as Factors says, the first two by places:
+  StoredSteps stored_;
   std::vector<LaneEntry> lower_;    // U_k^T D_k^{-1}
   std::vector<LaneEntry> inverse_;  // D_k^{-1}
   std::vector<LaneEntry> fill_;     // S_k D_k^{-1}

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bundle.hpp"
+#include "bundle_repeats.hpp"
 
 namespace traverse::solve {
 
@@ -34,28 +34,20 @@ Bundle<B>::Bundle(Extent<B> block, const std::array<Part, parts_a_bundle>& parts
   }
   for (const Part& part : parts_) nodes_.past = std::max(nodes_.past, part.nodes.past);
   together_ = std::max<std::ptrdiff_t>(0, shortest - 1);
-  lower_.resize(static_cast<std::size_t>(longest * block_.area()));
-  inverse_.resize(static_cast<std::size_t>(longest * block_.triangle()));
+  steps_ = longest;
 }
 
 template <int B>
 bool Bundle<B>::factor(const Slice<B>& slice, PivotRecord& record) {
   const Block<B> zero(block_);
   std::array<Front, lanes> fronts;
-  std::ptrdiff_t longest = 0;
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const Chain& here = chain(lane);
     Block<B> fill = zero;
     if (here.bordered) fill = here.direction > 0 ? slice.upper(here.first - 1) : slice.upper(here.first).transpose();
     fronts[lane] = {zero, fill, zero, zero, {}, here.bordered};
-    longest = std::max(longest, here.count);
   }
-  // All chains in one loop, for the divisions of one to run while the others wait for their own.
-  for (std::ptrdiff_t k = 0; k < longest; ++k) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      if (k < chain(lane).count && !eliminate_node(slice, lane, k, fronts[lane], record)) return false;
-    }
-  }
+  if (!eliminate_chains(slice, fronts, record)) return false;
   store_fill(fronts);
   for (std::size_t part = 0; part < parts_a_bundle; ++part) {
     if (parts_[part].middle >= 0 && !eliminate_middle(slice, part, &fronts[2 * part], record)) return false;
@@ -65,6 +57,35 @@ bool Bundle<B>::factor(const Slice<B>& slice, PivotRecord& record) {
     }
   }
   whole_ = plan(nodes_);
+  return true;
+}
+
+// All chains in one loop, for the divisions of one to run while the others wait for their own.
+template <int B>
+bool Bundle<B>::eliminate_chains(const Slice<B>& slice, std::array<Front, lanes>& fronts, PivotRecord& record) {
+  const bool shares = steps_ > kept_whole;
+  PeriodSearch search(shares ? marks(slice) : std::vector<std::uint64_t>{});
+  stored_.start(steps_);
+  lower_.clear();
+  inverse_.clear();
+  lower_.reserve(static_cast<std::size_t>(steps_ * block_.area()));
+  inverse_.reserve(static_cast<std::size_t>(steps_ * block_.triangle()));
+  for (std::ptrdiff_t k = 0; k < steps_; ++k) {
+    extend_store();
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      if (k < chain(lane).count && !eliminate_node(slice, lane, k, fronts[lane], record)) return false;
+    }
+    const std::ptrdiff_t p = search.period();
+    const bool repeats = p > 0 && same_rows(slice, k, p) && same_pivots(slice, k, p);
+    if (shares && search.repeated(k, repeats)) {
+      k = repeat(slice, k + 1, p, fronts) - 1;
+      search.go_on(k + 1);
+    }
+  }
+  if (shares) {
+    lower_.shrink_to_fit();
+    inverse_.shrink_to_fit();
+  }
   return true;
 }
 
@@ -82,18 +103,16 @@ void Bundle<B>::store_fill(const std::array<Front, lanes>& fronts) {
 template <int B>
 TRAVERSE_FLATTEN bool Bundle<B>::eliminate_node(const Slice<B>& slice, std::size_t lane, std::ptrdiff_t k, Front& front,
                                                 PivotRecord& record) {
-  const Chain& here = chain(lane);
-  const std::ptrdiff_t node = here.first + k * here.direction;
-  Block<B> inverse = slice.diagonal(node);
+  Block<B> inverse = slice.diagonal(node(lane, k));
   inverse -= front.update;
-  if (!invert(inverse, slice, node, record)) return false;
-  const Block<B> upper = here.direction > 0 ? slice.upper(node) : slice.upper(node - 1).transpose();
+  if (!invert(inverse, slice, node(lane, k), record)) return false;
+  const Block<B> upper = coupling(slice, lane, k);
   const Block<B> lower = upper.transpose() * inverse;
-  LaneEntry* stored = lower_.data() + k * block_.area();
-  for (std::ptrdiff_t e = 0; e < block_.area(); ++e) stored[e].chain[lane] = lower.data()[e];
-  stored = inverse_.data() + k * block_.triangle();
+  LaneEntry* last = lower_.data() + lower_.size() - block_.area();
+  for (std::ptrdiff_t e = 0; e < block_.area(); ++e) last[e].chain[lane] = lower.data()[e];
+  last = inverse_.data() + inverse_.size() - block_.triangle();
   for (int r = 0; r < block_.size(); ++r) {
-    for (int c = 0; c <= r; ++c) stored[packed(r, c)].chain[lane] = inverse(r, c);
+    for (int c = 0; c <= r; ++c) last[packed(r, c)].chain[lane] = inverse(r, c);
   }
   front.update = lower * upper;
   if (front.filling) extend_fill(inverse, upper, front);

@@ -41,19 +41,25 @@ class Filling {
 };
 
 template <int B>
-LaneSweep<B> Bundle<B>::lane_sweep(const Columns& x) const {
-  LaneSweep<B> result = {block_, factors(0), {}};
-  for (std::size_t lane = 0; lane < lanes; ++lane) result.x[lane] = address(x, chain(lane).first);
+Factors Bundle<B>::factors(std::size_t lane, std::ptrdiff_t k) const {
+  const std::ptrdiff_t place = stored_.at(k).place(k);
+  return {first(lower_, place * block_.area(), lane), first(inverse_, place * block_.triangle(), lane),
+          k < reach_ ? first(fill_, k * block_.area(), lane) : nullptr};
+}
+
+template <int B>
+LaneSweep<B> Bundle<B>::lane_sweep(const Columns& x, std::ptrdiff_t k) const {
+  LaneSweep<B> result = {block_, factors(0, k), {}};
+  for (std::size_t lane = 0; lane < lanes; ++lane) result.x[lane] = address(x, node(lane, k));
   return result;
 }
 
 template <int B>
 template <int C, std::size_t N>
-ColumnSweep<B, C, N> Bundle<B>::column_sweep(const Columns& x, std::size_t lane) const {
-  ColumnSweep<B, C, N> result = {block_, factors(lane), {}, x.stride};
+ColumnSweep<B, C, N> Bundle<B>::column_sweep(const Columns& x, std::size_t lane, std::ptrdiff_t k) const {
+  ColumnSweep<B, C, N> result = {block_, factors(lane, k), {}, x.stride};
   for (std::size_t j = 0; j < N; ++j) {
-    const Chain& here = chain(lane + j);
-    result.x[j] = {address(x, here.first), std::ptrdiff_t{here.direction} * block_.size()};
+    result.x[j] = {address(x, node(lane + j, k)), std::ptrdiff_t{chain(lane + j).direction} * block_.size()};
   }
   return result;
 }
@@ -64,9 +70,9 @@ template <int C, class Body>
 void Bundle<B>::along_columns(const Columns& x, const Stretch& steps, Body body) const {
   for (std::size_t lane = 0; lane < lanes; lane += 2) {
     const unsigned chains = (steps.chains >> lane) & 3U;
-    if (chains == 3U) body(column_sweep<C, 2>(x, lane), lane);
-    if (chains == 1U) body(column_sweep<C, 1>(x, lane), lane);
-    if (chains == 2U) body(column_sweep<C, 1>(x, lane + 1), lane + 1);
+    if (chains == 3U) body(column_sweep<C, 2>(x, lane, steps.from), lane);
+    if (chains == 1U) body(column_sweep<C, 1>(x, lane, steps.from), lane);
+    if (chains == 2U) body(column_sweep<C, 1>(x, lane + 1, steps.from), lane + 1);
   }
 }
 
@@ -77,7 +83,7 @@ void Bundle<B>::forward(const Columns& x, const Stretch& steps, ChainBorders<B, 
     if (steps.chains == all_chains && steps.to <= together_) {
       Borders<LaneSweep<B>> border;
       if constexpr (Fill) border[0].gather(block_, [&](int lane) { return borders[lane].lane.data(); });
-      sweep_forward<Fill>(lane_sweep(x), steps.from, steps.to, border);
+      sweep_forward<Fill>(lane_sweep(x, steps.from), 0, steps.to - steps.from, border);
       if constexpr (Fill) border[0].scatter(block_, [&](int lane) { return borders[lane].lane.data(); });
       return;
     }
@@ -85,7 +91,7 @@ void Bundle<B>::forward(const Columns& x, const Stretch& steps, ChainBorders<B, 
   along_columns<C>(x, steps, [&](const auto& sweep, std::size_t lane) {
     Borders<std::decay_t<decltype(sweep)>> border;
     for (std::size_t j = 0; j < border.size(); ++j) border[j].copy(block_, borders[lane + j]);
-    sweep_forward<Fill>(sweep, steps.from, steps.to, border);
+    sweep_forward<Fill>(sweep, 0, steps.to - steps.from, border);
     for (std::size_t j = 0; j < border.size(); ++j) borders[lane + j].copy(block_, border[j]);
   });
 }
@@ -97,14 +103,14 @@ void Bundle<B>::backward(const Columns& x, const Stretch& steps, const ChainBord
     if (steps.chains == all_chains && steps.to <= together_) {
       Borders<LaneSweep<B>> border;
       border[0].gather(block_, [&](int lane) { return borders[lane].lane.data(); });
-      sweep_backward<Fill>(lane_sweep(x), steps.from, steps.to, border);
+      sweep_backward<Fill>(lane_sweep(x, steps.from), 0, steps.to - steps.from, border);
       return;
     }
   }
   along_columns<C>(x, steps, [&](const auto& sweep, std::size_t lane) {
     Borders<std::decay_t<decltype(sweep)>> border;
     for (std::size_t j = 0; j < border.size(); ++j) border[j].copy(block_, borders[lane + j]);
-    sweep_backward<Fill>(sweep, steps.from, steps.to, border);
+    sweep_backward<Fill>(sweep, 0, steps.to - steps.from, border);
   });
 }
 
@@ -113,24 +119,22 @@ template <int B>
 template <int C>
 void Bundle<B>::forward_end(const Columns& x, std::size_t lane, std::ptrdiff_t k, Panel<B, C>& border) const {
   if (k >= reach_) return;
-  const ColumnSweep<B, C, 1> sweep = column_sweep<C, 1>(x, lane);
+  const ColumnSweep<B, C, 1> sweep = column_sweep<C, 1>(x, lane, k);
   Panel<B, C> y;
-  sweep.load(y, 0, k);
-  border.subtract(block_, sweep.entries(sweep.factors.fill, 0, k * block_.area()), y);
+  sweep.load(y, 0, 0);
+  border.subtract(block_, sweep.entries(sweep.factors.fill, 0, 0), y);
 }
 
 /// x_k = D_k^{-1} y_k - F_k^T border: the solution behind it vanishes.
 template <int B>
 template <int C>
 void Bundle<B>::backward_end(const Columns& x, std::size_t lane, std::ptrdiff_t k, const Panel<B, C>& border) const {
-  const ColumnSweep<B, C, 1> sweep = column_sweep<C, 1>(x, lane);
+  const ColumnSweep<B, C, 1> sweep = column_sweep<C, 1>(x, lane, k);
   Panel<B, C> y, value;
-  sweep.load(y, 0, k);
-  value.multiply_symmetric(block_, sweep.entries(sweep.factors.inverse, 0, k * block_.triangle()), y);
-  if (k < reach_) {
-    value.subtract_transposed(block_, sweep.entries(sweep.factors.fill, 0, k * block_.area()), border);
-  }
-  sweep.store(value, 0, k);
+  sweep.load(y, 0, 0);
+  value.multiply_symmetric(block_, sweep.entries(sweep.factors.inverse, 0, 0), y);
+  if (k < reach_) value.subtract_transposed(block_, sweep.entries(sweep.factors.fill, 0, 0), border);
+  sweep.store(value, 0, 0);
 }
 
 template <int B>
@@ -151,7 +155,7 @@ template <int B>
 template <int C, bool Packed>
 TRAVERSE_FLATTEN void Bundle<B>::solve_alone(double* x, std::ptrdiff_t stride) const {
   const std::ptrdiff_t step = block_.size() * (Packed ? C : 1);  // NOLINT(bugprone-branch-clone): alike for C = 1
-  const Factors all = factors(0);
+  const Factors all = factors(0, 0);
   const std::ptrdiff_t longer = chain(0).count;
   const std::ptrdiff_t shorter = chain(1).count;
   const ChainUnknowns right = {x, step};
@@ -203,7 +207,10 @@ void Bundle<B>::forward(const Columns& x, Range window, NodeFiller* filler, Chai
       for (std::size_t lane = 0; lane < lanes; ++lane) {
         if ((now.chains >> lane & 1U) != 0) filling.advance(chain(lane), lane, now.to + 1);
       }
-      now.to <= reach_ ? forward<true>(x, now, borders) : forward<false>(x, now, borders);
+      for (Stretch row = now; row.from < now.to; row.from = row.to) {
+        row.to = std::min(now.to, stored_.at(row.from).row_end(row.from));
+        row.to <= reach_ ? forward<true>(x, row, borders) : forward<false>(x, row, borders);
+      }
     }
   }
   for (std::size_t lane = 0; lane < lanes; ++lane) {
@@ -235,7 +242,10 @@ void Bundle<B>::backward(const Columns& x, Range window, const ChainBorders<B, C
     Stretch now = steps.stretches[i];
     for (const std::ptrdiff_t from = now.from; now.to > from; now.to = now.from) {
       now.from = std::max(now.to - tile, from);
-      now.to <= reach_ ? backward<true>(x, now, borders) : backward<false>(x, now, borders);
+      for (Stretch row = now; row.to > now.from; row.to = row.from) {
+        row.from = std::max(now.from, stored_.at(row.to - 1).row_begin(row.to - 1));
+        row.to <= reach_ ? backward<true>(x, row, borders) : backward<false>(x, row, borders);
+      }
     }
   }
 }

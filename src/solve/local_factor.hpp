@@ -28,6 +28,12 @@ class LocalFactor {
   /// One part without separators, whose solve_alone is the short way.
   const Bundle<B>* alone() const { return parts_ == 1 && !follows_ && !followed_ ? &bundles_.front() : nullptr; }
 
+  std::size_t stored_numbers() const {
+    std::size_t sum = coarse_ ? coarse_->stored_numbers() : 0;
+    for (const Bundle<B>& bundle : bundles_) sum += bundle.stored_numbers();
+    return sum;
+  }
+
   /// Room for a solve in so many columns.
   void reserve(int columns);
 

@@ -54,6 +54,15 @@ struct Slice {
     return result;
   }
 
+  /// Whether the diagonal blocks of two nodes, or their couplings to the nodes behind them, are the same to the last
+  /// bit.
+  bool same_diagonal(std::ptrdiff_t a, std::ptrdiff_t b) const {
+    return same_entries(matrix.diagonal, a, b) && same_fixed(a, b);
+  }
+  bool same_upper(std::ptrdiff_t a, std::ptrdiff_t b) const {
+    return same_entries(matrix.upper, a, b) && same_fixed(a, b) && same_fixed(a + 1, b + 1);
+  }
+
   /// The entry that the pivot of this unknown is compared with.
   double reference(std::ptrdiff_t node, int i) const {
     if (original != nullptr) return original[node * block().size() + i];
@@ -65,6 +74,17 @@ struct Slice {
   bool is_fixed(std::ptrdiff_t node, int i) const {
     if (node == matrix.nodes) return ((next_fixed >> i) & 1U) != 0;
     return fixed != nullptr && fixed[node * block().size() + i] != 0;
+  }
+  bool same_fixed(std::ptrdiff_t a, std::ptrdiff_t b) const {
+    if (fixed == nullptr && next_fixed == 0) return true;
+    for (int i = 0; i < block().size(); ++i) {
+      if (is_fixed(a, i) != is_fixed(b, i)) return false;
+    }
+    return true;
+  }
+  bool same_entries(const std::vector<double>& entries, std::ptrdiff_t a, std::ptrdiff_t b) const {
+    const double* const first = entries.data() + a * block().area();
+    return std::equal(first, first + block().area(), entries.data() + b * block().area());
   }
 };
 

@@ -45,6 +45,7 @@ class AnySubstructure {
   virtual void factor(const BlockTridiagonal& A, const std::vector<char>& fixed) = 0;
   virtual void solve(const Request& request) = 0;
   virtual double pivot_ratio() const = 0;
+  virtual std::size_t stored_numbers() const = 0;
 };
 
 template <int B>
@@ -54,6 +55,7 @@ class Substructure final : public AnySubstructure {
   void factor(const BlockTridiagonal& A, const std::vector<char>& fixed) override;
   void solve(const Request& request) override;
   double pivot_ratio() const override { return record_.smallest_ratio; }
+  std::size_t stored_numbers() const override { return local_ ? local_->stored_numbers() : 0; }
 
  private:
   std::uint64_t next_fixed(const std::vector<char>& fixed) const;

@@ -68,5 +68,6 @@ void SubstructuredCholesky::solve_local(double* x, int columns, std::ptrdiff_t f
 }
 
 double SubstructuredCholesky::pivot_ratio() const { return impl_->substructure->pivot_ratio(); }
+std::size_t SubstructuredCholesky::stored_numbers() const { return impl_->substructure->stored_numbers(); }
 
 }  // namespace traverse::solve

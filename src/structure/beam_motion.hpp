@@ -8,9 +8,13 @@
 //   ((1 + a k1) M + (b k1 + k2) K) Z = P - K e,   e = v~ + (b - c (b k1 + k2)) w~
 //
 // without a product with M. So Z is kept of each stage in place of A; what is combined of accelerations is rewritten in
-// terms of w_n and these.
+// terms of w_n and these. With springs or dampers beside the beams, or a track that is damped in another way, A itself
+// is kept, of
+//
+//   (M + k1 C + k2 K) A = P - K v~ - C w~
 #pragma once
 
+#include <initializer_list>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,6 +22,7 @@
 #include "beam/element_rows.hpp"
 #include "methods/one_step_methods.hpp"
 #include "response/beam_operator.hpp"
+#include "response/block_rows.hpp"
 
 namespace traverse::structure {
 
@@ -38,12 +43,16 @@ class BeamMotion final : private solve::NodeFiller {
   /// Nodal accelerations at the start of the step, this rank's unknowns.
   double* start_acceleration() { return kept_[0].data(); }
   const double* start_acceleration() const { return kept_[0].data(); }
-  /// What is kept of stage i, counted from 0: Z where fused, else A.
+  /// What is kept of stage i, counted from 0: Z or A.
   double* kept(std::size_t stage) { return kept_[stage + 1].data(); }
 
-  /// Whether stages are solved by solve(); where not, the beam has more than bending and Rayleigh's damping, and
+  /// Whether stages are solved by solve(); where not, the beam has hinges or a foundation that is not linear, and
   /// still() serves.
-  bool fused() const { return rows_.has_value(); }
+  bool fused() const { return products_.has_value(); }
+  /// Fused, with Rayleigh's damping alone: dissipation(), set_range() and step_free() are for these.
+  bool proportional() const { return fused() && proportional_; }
+  /// The same in bending alone.
+  bool plain() const { return proportional() && block_ == 2; }
 
   /// Collective. Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
   void solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads);
@@ -56,6 +65,8 @@ class BeamMotion final : private solve::NodeFiller {
     double rate = 0.0;   // W/s
   };
   Dissipation dissipation() const { return dissipation_; }
+  /// Collective. w^T C w of a solved stage, this rank's share; where fused.
+  double power(std::size_t stage, const double* v, const double* w);
 
   /// v~ and w~ of this rank's unknowns.
   void still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const;
@@ -98,26 +109,44 @@ class BeamMotion final : private solve::NodeFiller {
     std::array<const double*, most_accelerations> kept{};
     int first = 0, past = 0;
   };
-  struct Tile;  // deflections and rotations of the nodes of a tile and their neighbours
+  struct Tile;
+  struct Products {
+    beam::ElementRows elements;
+    BlockRows mass;
+    std::optional<BlockRows> springs, drag;
+  };
   template <int outputs>
   struct Terms;
 
   void fill(std::ptrdiff_t first, std::ptrdiff_t past) override;
   void fill_tile(int first, int past);
-  using Ghosts = std::array<double, 4>;  // (v, theta) of the nodes next to this rank's, left and right
-  void measure_dissipation(int first, int past, Tile& elastic, Tile& force);
+  using Ghosts = std::array<double, 2 * static_cast<std::size_t>(beam::kinds)>;  // columns next to this rank's
+  struct Summand {
+    const Sum& sum;
+    const Ghosts& ghosts;
+    Tile& to;
+  };
+  void measure_dissipation(int first, int past, Tile& rate, Tile& force);
   template <int outputs>
   Terms<outputs> terms_of(const std::array<const Sum*, outputs>& sums, const View& view) const;
-  void combine(const Sum& sum, int first, int past, const Ghosts& ghosts, Tile& to) const;
+  template <std::size_t outputs>
+  void combine(const std::array<Summand, outputs>& sums, int first, int past) const;
+  void add_elastic(int first, int past, Tile& v, const Tile* w, Tile& force) const;
+  void add_mass_damping(int first, int past, const Tile& w, Tile& force) const;
+  void add_forces(int first, int past, Tile& v, Tile* w, Tile& force) const;
+  static double product_of(int block, int nodes, const Tile& x, const Tile& forces);
+  double twice_energy(int first, int past, Tile& v, Tile& w) const;
   double at(const Sum& sum, const View& view, int unknown) const;
   View view_of(const double* v, const double* w) const;
   void end_step(const View& view, int begin, int end, double* v, double* w, double* a) const;
-  void exchange_borders(const Sum& first_sum, const Sum& second_sum);
+  void exchange_borders(std::initializer_list<const Sum*> sums);
 
   const beam::Beam& beam_;
   BeamOperator& operator_;
   const double* dead_load_;
-  std::optional<beam::ElementRows> rows_;
+  int block_;
+  std::optional<Products> products_;
+  bool proportional_ = false;                                 // C = a M + b K
   std::vector<int> held_;                                     // local unknowns that stay zero
   std::array<std::vector<double>, most_accelerations> kept_;  // A_0, then one a stage
   int n_ = 0, nodes_ = 0;
@@ -132,7 +161,7 @@ class BeamMotion final : private solve::NodeFiller {
   bool measure_ = false;    // the dissipation at the start of the step
   bool measuring_ = false;  // in this stage
   const std::vector<NodalLoad>* loads_ = nullptr;
-  std::array<Ghosts, 2> ghosts_{};  // of e and of w, or of the errors of v and w
+  std::array<Ghosts, 3> ghosts_{};  // of e, w and w~, or of the errors of v and w
   double* target_ = nullptr;        // where the view begins
   Dissipation dissipation_;
   std::array<std::vector<double>, most_accelerations> scratch_;  // of step_free

@@ -22,7 +22,7 @@ void ElementStructure::begin_motion(const Method& method) {
   const bool heavy = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
   motion_.emplace(beam_, *statics_, heavy ? dead_load_.data() : nullptr);
   motion_->begin(method);
-  if (rest_tolerance_ == 0.0 || !motion_->fused()) return;
+  if (rest_tolerance_ == 0.0 || !motion_->plain()) return;
   int weighs = heavy ? 1 : 0;
   MPI_Allreduce(MPI_IN_PLACE, &weighs, 1, MPI_INT, MPI_MAX, beam_.comm());
   if (weighs != 0) {
@@ -82,7 +82,7 @@ void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
 }
 
 void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) {
-  if (fused()) {
+  if (proportional()) {
     set_ranges(loaded);
     const double interval = method_.stages.size() == 1 ? measured_steps * length_ : 0.0;
     measuring_ = statics_->damped() && (to_measure_ || unmeasured_ > 0.999 * interval);
@@ -91,8 +91,8 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
   before_.dissipated = dissipated_;
   before_.worked = worked_;
   if (keep) {
-    before_.first = fused() ? 2 * motion_->first() : 0;
-    before_.past = fused() ? 2 * motion_->past() : n_;
+    before_.first = proportional() ? statics_->block() * motion_->first() : 0;
+    before_.past = proportional() ? statics_->block() * motion_->past() : n_;
     before_.v.assign(v + before_.first, v + before_.past);
     before_.w.assign(w + before_.first, w + before_.past);
   }
@@ -108,6 +108,8 @@ void ElementStructure::end_stage(std::size_t i, const double* v, const double* w
     for (int k = 0; k < n_; ++k) a[k] = stage_.shift2 * z_[k];
     for (int k = 0; k < n_; ++k) w_still_[k] += method_.stages[i].rate * a[k];
     powers.beam = dissipation(w_still_.data());
+  } else if (!proportional() && statics_->damped()) {
+    powers.beam = motion_->power(i, v, w);
   }
   for (const NodalLoad& force : nodal_forces_)
     powers.forces += force.force * motion_->state(i, v, w, force.unknown).second;
@@ -127,7 +129,7 @@ void ElementStructure::finish_step(double* v, double* w) {
 void ElementStructure::complete_step(double* v, double* w) {
   if (!incomplete_) return;
   incomplete_ = false;
-  if (!fused()) return;
+  if (!proportional()) return;
   BeamMotion::Dissipation dissipation = motion_->dissipation();
   for (const auto& [first, past] : free_) motion_->step_free(first, past, v, w, dissipation);
   if (measuring_) {
@@ -147,11 +149,11 @@ void ElementStructure::take_back_step(double* v, double* w) {
 }
 
 void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) {
-  if (fused() && stepped_) add_dissipation(measure_dissipation(w));
+  if (proportional() && stepped_) add_dissipation(measure_dissipation(w));
   std::copy_n(a, n_, motion_->start_acceleration());
   powers_[0] = {};
-  if (!fused()) powers_[0].beam = dissipation(w);
-  if (fused() && unmeasured_ > 0.0) add_dissipation(measure_dissipation(w));
+  if (!proportional()) powers_[0].beam = dissipation(w);
+  if (proportional() && unmeasured_ > 0.0) add_dissipation(measure_dissipation(w));
   to_measure_ = true;
   stepped_ = false;
   if (!window_) return;

@@ -206,7 +206,7 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   }
   if (nonlinear_) e.strain += nonlinear_->energy();
   if (!motion_) return e;
-  e.dissipated = fused() ? dissipated_until(measure_dissipation(w)) : dissipated_;
+  e.dissipated = proportional() ? dissipated_until(measure_dissipation(w)) : dissipated_;
   if (window_) e.dissipated += window_->energy_left();
   e.work = worked_;
   return e;

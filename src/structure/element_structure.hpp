@@ -7,9 +7,9 @@
 // A = s2 M + s C* + K* gives z without contacts, the columns of A^-1 at elements their compliance. Around this goes a
 // Newton iteration for foundations that are not linear, where there are some (NonlinearFoundation).
 //
-// Stages of steps of a beam in bending with Rayleigh's damping alone are fused with the solver's sweep (BeamMotion).
-// Spans that do not touch those under the loads go through all stages of a step at once, and what is at rest stays out
-// of the steps (RestWindow).
+// Stages of steps of a beam without hinges whose foundations are linear are fused with the solver's sweep (BeamMotion).
+// Where it has Rayleigh's damping alone, spans that do not touch those under the loads go through all stages of a step
+// at once, and what is at rest stays out of the steps (RestWindow).
 #pragma once
 
 #include <array>
@@ -83,6 +83,7 @@ class ElementStructure final : public Structure {
   };
 
   bool fused() const { return motion_ && motion_->fused(); }
+  bool proportional() const { return motion_ && motion_->proportional(); }
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                   double* w_elements) const override;
   void external_load(double* nodal) const;

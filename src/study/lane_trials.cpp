@@ -77,7 +77,7 @@ const std::vector<CrossingResult>& LaneTrials::run(const LaneModel& model) {
   kept.model = model;
   for (const std::vector<LaneRun>& runs : groups_) {
     for (CrossingResult& result :
-         with_modes.lanes->run(runs, {model.method->make(model.method->parameter.value), model.step})) {
+         with_modes.lanes->run(runs, {model.method->make(model.method->parameter.value), model.step, true})) {
       if (result.trouble == lanes::none) kept.defect = std::max(kept.defect, with_modes.lanes->defect(result));
       kept.results.push_back(std::move(result));
     }

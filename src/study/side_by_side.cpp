@@ -94,7 +94,8 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const Member> membe
     from = event;
   }
   const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
-  if (last > 0) plan.stretches.push_back({from + static_cast<double>(last) * ds, last});
+  // Runs that end elsewhere must not shape each other's steps.
+  if (last > 0) plan.stretches.push_back({steps.all_to_one_end ? past : from + static_cast<double>(last) * ds, last});
   std::vector<Track> tracks;
   std::vector<lanes::CrossingRun> crossings;
   for (const auto& [lanes, run] : members) {

@@ -33,8 +33,9 @@ class SideBySide {
   /// Why these vehicles on this bridge cannot; empty: they can.
   const std::string& obstacle() const { return obstacle_; }
   struct Steps {
-    structure::Method method;  // for steps of 1 s
-    double longest = 0.0;      // s
+    structure::Method method;     // for steps of 1 s
+    double longest = 0.0;         // s
+    bool all_to_one_end = false;  // all runs go equally far, and are to be seen there exactly
   };
   /// Those that the scene asks for.
   Steps steps() const;

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "response/beam_operator.hpp"
+#include "response/block_rows.hpp"
 
 namespace traverse {
 namespace {
@@ -31,46 +32,90 @@ beam::BeamModel spans(std::vector<double> lengths, int elements, bool separate) 
   return model;
 }
 
-// Rows in tiles of every size against the operator's products.
+// K* x + C* y + M y in tiles of every size against the operator's products.
 void expect_same_products(const beam::BeamModel& model) {
   beam::Beam beam(PETSC_COMM_SELF, model);
   beam.set_rayleigh({0.3, 2e-3});
   ASSERT_TRUE(beam::ElementRows::fit(beam));
-  const beam::ElementRows rows(beam);
   const structure::BeamOperator op(beam);
-  const int nodes = beam.local_columns(), n = op.unknowns();
+  const beam::ElementRows elements(beam);
+  const structure::BlockRows mass(op.mass().rows, op.mass().left);
+  std::vector<structure::BlockRows> others;
+  for (const auto* m : {op.springs(), op.drag()})
+    if (m != nullptr) others.emplace_back(m->rows, m->left);
+  const bool springs = op.springs() != nullptr;
+  const int nodes = beam.local_columns(), n = op.unknowns(), b = op.block();
   std::vector<double> x = numbers(n, 1), y = numbers(n, 2), expected(x.size()), inertia(x.size());
   for (int i = 0; i < n; ++i)
     if (beam.fixed()[i] != 0) x[i] = y[i] = 0.0;
-  op.multiply(1.0, nullptr, nullptr, x.data(), expected.data());
+  op.multiply(1.0, nullptr, y.data(), x.data(), expected.data());
   op.multiply(1.0, y.data(), nullptr, nullptr, inertia.data());
-  double largest = 0.0;
-  for (int i = 0; i < n; ++i) largest = std::max(largest, std::abs(expected[i] += inertia[i]));
-  for (int size : {1, 7, 64, beam::ElementRows::tile}) {
+  std::vector<double> largest(static_cast<std::size_t>(b), 0.0);
+  for (int i = 0; i < n; ++i) largest[i % b] = std::max(largest[i % b], std::abs(expected[i] += inertia[i]));
+  using Tile = std::array<std::vector<double>, beam::kinds>;
+  const auto planes = [](Tile& of) {
+    beam::Planes result;
+    for (std::size_t c = 0; c < of.size(); ++c) result[c] = of[c].data();
+    return result;
+  };
+  for (int size : {1, 7, 64, beam::tile}) {
     for (int first = 0; first < nodes; first += size) {
-      const int past = std::min(nodes, first + size), count = past - first;
-      std::array<std::vector<double>, 6> apart;
-      for (auto& part : apart) part.assign(static_cast<std::size_t>(count) + 2, 0.5);
-      for (int node = std::max(first - 1, 0); node < std::min(past + 1, nodes); ++node)
-        for (int which = 0; which < 2; ++which) {
-          apart[which][node - first + 1] = x[2 * node + which];
-          apart[2 + which][node - first + 1] = y[2 * node + which];
+      const int past = std::min(nodes, first + size);
+      Tile damped, plain, rates, heavy, forces;  // x + b y, x, y, y with what M takes of it for damping
+      for (int c = 0; c < b; ++c) {
+        for (Tile* of : {&damped, &plain, &rates, &heavy})
+          (*of)[c].assign(static_cast<std::size_t>(past - first) + 2, 0.5);
+        forces[c].assign(static_cast<std::size_t>(past - first), 0.0);
+        for (int node = std::max(first - 1, 0); node < std::min(past + 1, nodes); ++node) {
+          const int i = node - first + 1, k = b * node + c;
+          plain[c][i] = x[k];
+          rates[c][i] = y[k];
+          heavy[c][i] = (1.0 + op.mass_damping().value_or(0.0)) * y[k];
+          damped[c][i] = x[k] + op.stiffness_damping()[c] * y[k];
         }
-      rows.multiply(first, past, {apart[0].data(), apart[1].data()}, {apart[2].data(), apart[3].data()},
-                    {apart[4].data(), apart[5].data()});
-      for (int node = first; node < past; ++node)
-        for (int which = 0; which < 2; ++which)
-          if (beam.fixed()[2 * node + which] == 0) {
-            ASSERT_NEAR(apart[4 + which][node - first], expected[2 * node + which], 1e-12 * largest)
-                << "node " << node << " in tiles of " << size;
-          }
+      }
+      elements.add(first, past, planes(damped), planes(forces));
+      mass.add(first, past, planes(heavy), planes(forces));
+      for (std::size_t i = 0; i < others.size(); ++i)
+        others[i].add(first, past, planes(springs && i == 0 ? plain : rates), planes(forces));
+      for (int k = b * first; k < b * past; ++k)
+        if (beam.fixed()[k] == 0) {
+          ASSERT_NEAR(forces[k % b][k / b - first], expected[k], 1e-12 * largest[k % b])
+              << "column " << k / b << ", unknown " << k % b << " in tiles of " << size;
+        }
     }
   }
+}
+
+beam::BeamModel on_track(beam::BeamModel model) {
+  model.track.emplace();
+  model.track->rail_EI = 1.2e7;
+  model.track->rail_mass = 120.0;
+  model.track->ballast = beam::Layer{3e7, 4e4};
+  model.track->subballast = beam::Layer{1e8, 3e4};
+  model.track->pad = {6e7, 2e4};
+  model.track->sleeper_mass = 300.0;
+  model.track->ballast_mass = 500.0;
+  return model;
 }
 
 TEST(ElementRows, ContinuousUniform) { expect_same_products(spans({20, 20, 20}, 50, false)); }
 TEST(ElementRows, SeparateSpans) { expect_same_products(spans({20, 20, 20, 20}, 9, true)); }
 TEST(ElementRows, SpansOfDifferentLengths) { expect_same_products(spans({20, 31, 20, 17}, 60, false)); }
+
+TEST(ElementRows, ManyEqualSpans) { expect_same_products(spans(std::vector<double>(60, 20.0), 10, false)); }
+TEST(ElementRows, AlongTheBeamToo) {
+  beam::BeamModel model = spans({20, 31, 20}, 60, false);
+  model.axial = true;
+  model.EA = 4e10;
+  expect_same_products(model);
+}
+TEST(ElementRows, OnABedWithSprings) {
+  beam::BeamModel model = spans(std::vector<double>(40, 20.0), 10, false);
+  model.foundation.vertical_bed = beam::Bed{2e6, 3e4};
+  expect_same_products(model);
+}
+TEST(ElementRows, UnderALayeredTrack) { expect_same_products(on_track(spans({18, 24, 18}, 10, false))); }
 
 // Parts of a kind share a factor: solutions with and without, and a run of spans alone.
 TEST(SeparateParts, SolveAsTheWhole) {

@@ -1,0 +1,16 @@
+// Numbers of a few consecutive nodes, an array for each unknown of a column, for products with many nodes at a time.
+#pragma once
+
+#include <array>
+
+#include "beam/line.hpp"
+
+namespace traverse::beam {
+
+/// The arrays, by the unknown's place in a column.
+using Planes = std::array<double*, kinds>;
+
+/// Most nodes of one call with planes.
+inline constexpr int tile = 128;
+
+}  // namespace traverse::beam

@@ -1,0 +1,147 @@
+// What the parts of BeamMotion share: sums of vectors on a tile, and a tile's columns unknown by unknown.
+#pragma once
+
+#include <algorithm>
+#include <type_traits>
+
+#include "structure/beam_motion.hpp"
+
+namespace traverse::structure {
+
+inline constexpr int tile = beam::tile;
+inline constexpr int most_terms = most_accelerations + 2;  // with v and w
+
+template <class Call>
+void with_count(int count, Call call) {
+  switch (count) {
+    case 0:
+      return call(std::integral_constant<int, 0>());
+    case 1:
+      return call(std::integral_constant<int, 1>());
+    case 2:
+      return call(std::integral_constant<int, 2>());
+    case 3:
+      return call(std::integral_constant<int, 3>());
+    case 4:
+      return call(std::integral_constant<int, 4>());
+    case 5:
+      return call(std::integral_constant<int, 5>());
+    case 6:
+      return call(std::integral_constant<int, 6>());
+    case 7:
+      return call(std::integral_constant<int, 7>());
+    default:
+      return call(std::integral_constant<int, most_terms>());
+  }
+}
+
+// `outputs` sums of N vectors' entries [from, from + size) at once.
+template <int N, int outputs>
+void add_up(const std::array<const double*, most_terms>& vectors,
+            const std::array<std::array<double, outputs>, most_terms>& weight, std::ptrdiff_t from, int size,
+            const std::array<double*, outputs>& to) {
+  std::array<const double*, N> x;
+  for (int j = 0; j < N; ++j) x[j] = vectors[j] + from;
+#pragma GCC ivdep
+  for (int i = 0; i < size; ++i) {
+    std::array<double, outputs> sum{};
+    for (int j = 0; j < N; ++j)
+      for (int k = 0; k < outputs; ++k) sum[k] += weight[j][k] * x[j][i];
+    for (int k = 0; k < outputs; ++k) to[k][i] = sum[k];
+  }
+}
+
+/// body(the block's size as a constant, -1: another), so that what goes from columns to planes is straight code.
+template <class Body>
+void with_block(int block, Body body) {
+  switch (block) {
+    case 2:
+      return body(std::integral_constant<int, 2>());
+    case 3:
+      return body(std::integral_constant<int, 3>());
+    case 5:
+      return body(std::integral_constant<int, 5>());
+    case 7:
+      return body(std::integral_constant<int, 7>());
+    default:
+      return body(std::integral_constant<int, -1>());
+  }
+}
+
+/// Vectors and their weights in so many sums.
+template <int outputs>
+struct BeamMotion::Terms {
+  std::array<const double*, most_terms> x{};
+  std::array<std::array<double, outputs>, most_terms> weight{};
+  int count = 0;
+
+  void add(const double* vector, const std::array<double, outputs>& weights) {
+    if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0.0; })) return;
+    x[count] = vector;
+    weight[count++] = weights;
+  }
+  void evaluate(std::ptrdiff_t from, int size, const std::array<double*, outputs>& to) const {
+    with_count(count, [&](auto N) { add_up<N, outputs>(x, weight, from, size, to); });
+  }
+};
+
+/// The columns from the one before a tile to the one behind it, an array for each unknown.
+struct BeamMotion::Tile {
+  std::array<std::array<double, tile + 2>, beam::kinds> plane;
+
+  beam::Planes planes() {
+    beam::Planes result;
+    for (std::size_t c = 0; c < result.size(); ++c) result[c] = plane[c].data();
+    return result;
+  }
+  void clear(int block) {
+    for (int c = 0; c < block; ++c) plane[c].fill(0.0);
+  }
+  void separate(int block, const double* columns, int first, int count) {
+    with_block(block, [&](auto B) {
+      const int b = B > 0 ? B : block;
+      for (int i = 0; i < count; ++i)
+        for (int c = 0; c < b; ++c) plane[c][first + i] = columns[b * i + c];
+    });
+  }
+  void set(int block, int node, const double* column) {
+    for (int c = 0; c < block; ++c) plane[c][node] = column[c];
+  }
+};
+
+template <int outputs>
+BeamMotion::Terms<outputs> BeamMotion::terms_of(const std::array<const Sum*, outputs>& sums, const View& view) const {
+  Terms<outputs> terms;
+  const auto add = [&](const double* vector, auto weight_of) {
+    std::array<double, outputs> weights;
+    for (int k = 0; k < outputs; ++k) weights[k] = weight_of(*sums[k]);
+    terms.add(vector, weights);
+  };
+  add(view.v, [](const Sum& s) { return s.v; });
+  add(view.w, [](const Sum& s) { return s.w; });
+  for (std::size_t j = 0; j <= stages_.size(); ++j) add(view.kept[j], [j](const Sum& s) { return s.kept[j]; });
+  return terms;
+}
+
+// Sums on a tile and its neighbours, with their values beyond the view's nodes.
+template <std::size_t outputs>
+void BeamMotion::combine(const std::array<Summand, outputs>& sums, int first, int past) const {
+  constexpr int count_of = static_cast<int>(outputs);
+  const int from = std::max(first - 1, view_.first), count = std::min(past + 1, view_.past) - from;
+  std::array<std::array<double, (tile + 2) * beam::kinds>, outputs> columns;
+  std::array<const Sum*, outputs> of;
+  std::array<double*, outputs> to;
+  for (std::size_t k = 0; k < outputs; ++k) {
+    of[k] = &sums[k].sum;
+    to[k] = columns[k].data();
+  }
+  terms_of<count_of>(of, view_).evaluate(block_ * static_cast<std::ptrdiff_t>(from - view_.first), block_ * count, to);
+  for (std::size_t k = 0; k < outputs; ++k) {
+    Tile& tile_of = sums[k].to;
+    tile_of.separate(block_, to[k], from - (first - 1), count);
+    if (first == view_.first) tile_of.set(block_, 0, sums[k].ghosts.data());
+    if (past == view_.past) tile_of.set(block_, past - first + 1, sums[k].ghosts.data() + beam::kinds);
+  }
+}
+
+}  // namespace traverse::structure

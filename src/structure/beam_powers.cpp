@@ -1,0 +1,121 @@
+// Powers and energies of the beam in motion, tile by tile.
+#include <algorithm>
+
+#include "beam_motion_tile.hpp"
+
+namespace traverse::structure {
+
+/// The scalar product of `nodes` columns of x and of forces.
+double BeamMotion::product_of(int block, int nodes, const Tile& x, const Tile& forces) {
+  double sum = 0.0;
+  for (int c = 0; c < block; ++c) {
+    constexpr int lanes = 8;
+    std::array<double, lanes> sums{};
+    const double *const a = x.plane[c].data() + 1, *const b = forces.plane[c].data();
+    int i = 0;
+    for (; i + lanes <= nodes; i += lanes)
+      for (int lane = 0; lane < lanes; ++lane) sums[lane] += a[i + lane] * b[i + lane];
+    for (; i < nodes; ++i) sums[0] += a[i] * b[i];
+    for (double part : sums) sum += part;
+  }
+  return sum;
+}
+
+// w^T C w and 2 A_0^T C w.
+void BeamMotion::measure_dissipation(int first, int past, Tile& rate, Tile& force) {
+  Tile none;
+  none.clear(block_);
+  force.clear(block_);
+  const Sum of_w{0.0, 1.0, {}};
+  combine(std::array{Summand{of_w, ghosts_[1], rate}}, first, past);
+  add_forces(first, past, none, &rate, force);
+  const std::ptrdiff_t offset = block_ * static_cast<std::ptrdiff_t>(first - view_.first);
+  const double* const a0 = view_.kept[0] + offset;
+  constexpr int lanes = 8;
+  std::array<double, lanes> by_w{}, by_a{};
+  with_block(block_, [&](auto B) {
+    const int b = B > 0 ? B : block_;
+    for (int c = 0; c < b; ++c) {
+      const auto add = [&](int lane, int i) {
+        by_w[lane] += rate.plane[c][i + 1] * force.plane[c][i];
+        by_a[lane] += a0[b * i + c] * force.plane[c][i];
+      };
+      int i = 0;
+      for (; i + lanes <= past - first; i += lanes)
+        for (int lane = 0; lane < lanes; ++lane) add(lane, i + lane);
+      for (; i < past - first; ++i) add(0, i);
+    }
+  });
+  for (int lane = 0; lane < lanes; ++lane) {
+    dissipation_.power += by_w[lane];
+    dissipation_.rate += 2.0 * by_a[lane];
+  }
+}
+
+double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
+  Sum rate = stages_[stage].w_still;
+  rate.add(stages_[stage].rate, stages_[stage].a);
+  view_ = view_of(v, w);
+  exchange_borders({&rate});
+  double power = 0.0;
+  Tile rates, none, force;
+  for (int first = 0; first < nodes_; first += tile) {
+    const int past = std::min(nodes_, first + tile);
+    combine(std::array{Summand{rate, ghosts_[0], rates}}, first, past);
+    none.clear(block_);
+    force.clear(block_);
+    add_forces(first, past, none, &rates, force);
+    power += product_of(block_, past - first, rates, force);
+  }
+  return power;
+}
+
+// Of displacements and rates on a tile, by the forces K* v and M w. Changes v.
+double BeamMotion::twice_energy(int first, int past, Tile& v, Tile& w) const {
+  Tile force, moved = v;
+  force.clear(block_);
+  add_forces(first, past, v, nullptr, force);
+  const double strain = product_of(block_, past - first, moved, force);
+  force.clear(block_);
+  products_->mass.add(first, past, w.planes(), force.planes());
+  return strain + product_of(block_, past - first, w, force);
+}
+
+double BeamMotion::error_energy() {
+  exchange_borders({&v_error_, &w_error_});
+  Tile displacement, rate;
+  double twice = 0.0;
+  for (int first = first_; first < past_; first += tile) {
+    const int past = std::min(past_, first + tile);
+    combine(std::array{Summand{v_error_, ghosts_[0], displacement}, Summand{w_error_, ghosts_[1], rate}}, first, past);
+    twice += twice_energy(first, past, displacement, rate);
+  }
+  return 0.5 * twice;
+}
+
+double BeamMotion::put_to_rest(int first, int past, const double* rest, double* v, double* w) {
+  double twice = 0.0;
+  for (int from = first; from < past; from += tile) {
+    const int to = std::min(past, from + tile), begin = std::max(from - 1, 0), end = std::min(to + 1, nodes_);
+    Tile displacement, rate;
+    displacement.clear(block_);
+    rate.clear(block_);
+    for (int node = begin; node < end; ++node) {
+      for (int c = 0; c < block_; ++c) {
+        const int i = node - (from - 1), k = block_ * node + c;
+        displacement.plane[c][i] = v[k] - (rest != nullptr ? rest[k] : 0.0);
+        rate.plane[c][i] = w[k];
+      }
+    }
+    twice += twice_energy(from, to, displacement, rate);
+  }
+  for (int k = block_ * first; k < block_ * past; ++k) {
+    v[k] = rest != nullptr ? rest[k] : 0.0;
+    w[k] = 0.0;
+    for (std::vector<double>& a : kept_)
+      if (!a.empty()) a[k] = 0.0;
+  }
+  return 0.5 * twice;
+}
+
+}  // namespace traverse::structure
