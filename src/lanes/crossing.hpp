@@ -34,6 +34,7 @@ struct TrainNumbers {
   std::vector<Vehicle> vehicles;
   int coordinates = 0;
   std::vector<double> x, penetration;  // m: of every wheel
+  std::vector<double> arm;             // m: its radius less that
   std::vector<double> stiffness;       // of its contact, N/m^1.5 or N/m
   std::vector<char> hertz;             // whether it is the former
   double force_scale = 0.0;            // N, contact forces are judged by
@@ -58,7 +59,8 @@ struct CrossingPlan {
   bool exact_modes = false;  // of a method with one solve a step: it steps vehicles and contacts alone
   std::vector<TaskStretch> stretches;
   std::vector<double> kinks;  // m: stations at which the surface has a corner, ascending
-  double level_until = 0.0;   // m: before it the track is level and the ground rigid
+  bool one_track = true;  // of all runs that results are to be compared with: wheels load the bridge where they touch
+  double level_until = 0.0;  // m: before it the track is level and the ground rigid
 };
 
 /// What is one run's own. In all runs of a group vehicles with as many coordinates and wheels at the same places.

@@ -20,7 +20,7 @@ struct CrossingPlaces : CrossingAlgebra<W> {
   /// radius at rest. Where runs have tracks of their own that is left out.
   static double touched(const State& s, int j, double gone) {
     const double x = s.task.x[j] + gone;
-    return s.task.heights.shared ? x + (s.task.radius - lanes(s.task.penetration)[j][0]) * s.lean[j][0] : x;
+    return s.task.arm != nullptr ? x + s.task.arm[j] * s.lean[j][0] : x;
   }
 
   /// Wheels and forces when all have gone so far (m), with so many channels of the influence. Fills `free` with the
@@ -71,7 +71,7 @@ struct CrossingPlaces : CrossingAlgebra<W> {
         influence_slope_at(s.task.influence, touched(s, j, gone), s.piece[j], s.modes, s.g_slope);
         Lane of_bridge{};
         for (int i = 0; i < s.modes; ++i) of_bridge -= s.g_slope[i] * q[i];
-        const Lane rise = 0.5 * of_bridge + (s.task.heights.shared ? Lane{} : s.lean[j]);
+        const Lane rise = 0.5 * of_bridge + (s.task.arm != nullptr ? Lane{} : s.lean[j]);
         s.free[j] += s.task.radius * of_bridge * rise;
         s.lean[j] += of_bridge;
       }

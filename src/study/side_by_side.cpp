@@ -86,6 +86,7 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const Member> membe
   plan.method = steps.method;
   plan.exact_modes = steps.method.stages.size() == 1;
   const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(members.front().run.speed));
+  plan.one_track = std::none_of(members.begin(), members.end(), [](const Member& m) { return m.run.seed.has_value(); });
   double past = 0.0;
   for (const Member& member : members) past = std::max(past, member.run.speed * member.run.end);
   double from = 0.0;
@@ -124,6 +125,7 @@ bool SideBySide::join(const SideBySide& other) {
       track_past_ != other.track_past_ || track_distance_ != other.track_distance_)
     return false;
   train_.x = its.x;
+  train_.arm = its.arm;
   train_.force_scale = its.force_scale;
   for (std::size_t k = 0; k < train_.kinds.size(); ++k) train_.kinds[k].bend = its.kinds[k].bend;
   return true;
