@@ -59,8 +59,7 @@ struct CrossingPlan {
   bool exact_modes = false;  // of a method with one solve a step: it steps vehicles and contacts alone
   std::vector<TaskStretch> stretches;
   std::vector<double> kinks;  // m: stations at which the surface has a corner, ascending
-  bool one_track = true;  // of all runs that results are to be compared with: wheels load the bridge where they touch
-  double level_until = 0.0;  // m: before it the track is level and the ground rigid
+  double level_until = 0.0;   // m: before it the track is level and the ground rigid
 };
 
 /// What is one run's own. In all runs of a group vehicles with as many coordinates and wheels at the same places.

@@ -40,7 +40,7 @@ std::vector<double> largest_values(const structure::PiecewiseCubic& influence, s
 }  // namespace
 
 CrossingNumbers::CrossingNumbers(const CrossingPlan& plan, std::span<const CrossingRun> runs, std::size_t width)
-    : runs_(runs), width_(width), level_until_(plan.level_until), one_track_(plan.one_track) {
+    : runs_(runs), width_(width), level_until_(plan.level_until) {
   task_.width = static_cast<int>(width_);
   task_.method = task_method(plan.method);
   task_.speed = side_by_side(1, [](const CrossingRun& run, std::size_t) { return run.speed; });
@@ -138,6 +138,7 @@ void CrossingNumbers::add_train(const TrainNumbers& train) {
   task_.hertz = train.hertz.data();
   task_.force_scale = train.force_scale;
   task_.radius = train.radius;
+  task_.arm = train.arm.data();
 }
 
 void CrossingNumbers::add_forces(const ForceNumbers& forces) {
@@ -184,7 +185,6 @@ void CrossingNumbers::add_track() {
     if (run.track == nullptr || run.track->values.size() != track->values.size() || run.track->start != track->start ||
         run.track->distance != track->distance)
       throw std::logic_error("runs side by side over tracks with other stations");
-  if (shared && one_track_) task_.arm = runs_.front().train->arm.data();
   if (!shared)
     task_.heights.values =
         side_by_side(track->values.size(), [](const CrossingRun& run, std::size_t i) { return run.track->values[i]; });

@@ -42,7 +42,6 @@ class CrossingNumbers {
   std::vector<TaskKind> kinds_;
   std::vector<TaskVehicle> vehicles_;
   double level_until_;
-  bool one_track_;
   Task task_;
 };
 

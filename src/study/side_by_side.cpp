@@ -86,7 +86,6 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const Member> membe
   plan.method = steps.method;
   plan.exact_modes = steps.method.stages.size() == 1;
   const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(members.front().run.speed));
-  plan.one_track = std::none_of(members.begin(), members.end(), [](const Member& m) { return m.run.seed.has_value(); });
   double past = 0.0;
   for (const Member& member : members) past = std::max(past, member.run.speed * member.run.end);
   double from = 0.0;
