@@ -32,9 +32,7 @@ constexpr double first_step_factor = 4;  // times the step that the accuracy's s
 constexpr int most_halvings = 8, most_shortenings = 6;
 constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 constexpr double longer = 1.4;
-// Of a single run: more modes cost more than elements, and its trials show less than those of a sweep.
-constexpr int most_modes_alone = 64;
-constexpr double part_alone = 0.5;
+constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
 constexpr int fewest_modes = 4, most_modes = 128;
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
@@ -84,8 +82,8 @@ class Search {
  public:
   /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes
   /// and mesh change is seen there as well.
-  Search(LaneTrials& trials, LaneTrials& mixed, std::span<const char* const> methods, int most, double accuracy)
-      : trials_(trials), mixed_(mixed), methods_(methods), most_modes_(most), accuracy_(accuracy) {}
+  Search(LaneTrials& trials, LaneTrials& mixed, std::span<const char* const> methods, double accuracy)
+      : trials_(trials), mixed_(mixed), methods_(methods), accuracy_(accuracy) {}
 
   /// The cheapest model within the accuracy; empty: none.
   std::optional<LaneModel> run(double first_step) {
@@ -115,7 +113,7 @@ class Search {
     return false;
   }
   bool add_modes(LaneModel& model) {
-    for (int modes = fewest_modes; 2 * modes <= most_modes_; modes *= 2) {
+    for (int modes = fewest_modes; 2 * modes <= most_modes; modes *= 2) {
       LaneModel more = model;
       more.modes = 2 * modes;
       more.elements = mesh_for(trials_.scene(), more.modes);
@@ -161,7 +159,6 @@ class Search {
 
   LaneTrials &trials_, &mixed_;
   std::span<const char* const> methods_;
-  int most_modes_;
   double accuracy_;
   Errors modes_{}, steps_{}, mesh_{};
 };
@@ -222,7 +219,7 @@ class Chooser {
   }
 
   LanesChoice choose() {
-    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, methods_, alone_ ? most_modes_alone : most_modes,
+    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, methods_,
                   (alone_ ? part_alone : 1.0) * scene_.accuracy);
     const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
     const std::optional<LaneModel> found = search.run(first);
