@@ -36,6 +36,11 @@ void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
   recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
 }
 
+bool limits_deck_acceleration(const Scene& scene) {
+  return std::any_of(scene.limits.begin(), scene.limits.end(),
+                     [](const options::VerdictLimit& limit) { return limit.quantity == "deck_acceleration"; });
+}
+
 double total(MPI_Comm comm, double share) {
   MPI_Allreduce(MPI_IN_PLACE, &share, 1, MPI_DOUBLE, MPI_SUM, comm);
   return share;
@@ -76,7 +81,7 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
 /// The exit status; none where linear vehicles have left out more than they may.
 std::optional<int> run_once(Job& job) {
   const MPI_Comm comm = job.comm;
-  const Scene& scene = job.scene;
+  Scene scene = job.scene;
   const Accuracy& accuracy = job.accuracy;
   SharedBeam& shared = job.beam;
   std::vector<std::string>& notes = job.notes;
@@ -84,13 +89,15 @@ std::optional<int> run_once(Job& job) {
   MPI_Comm_rank(comm, &rank);
   const bool still = scene.analysis == Analysis::static_response;
   const beam::Beam* beam = shared.bridge();
+  bool cheap = false;
   if (beam != nullptr) {
     const std::vector<int>& elements = beam->model().elements;  // of which one may have no two frequencies
-    const bool cheap =
-        beam->mesh().nodes() <= nodes_for_a_check && *std::min_element(elements.begin(), elements.end()) > 1;
+    cheap = beam->mesh().nodes() <= nodes_for_a_check && *std::min_element(elements.begin(), elements.end()) > 1;
     shared.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
   }
   shared.prepare(scene, notes);
+  const double counting = frequency_that_counts(scene, shared, cheap || limits_deck_acceleration(scene), notes);
+  if (counting > 0.0) scene.looks = spacing_for(counting);
   Passage passage(scene, shared, notes);  // everything is checked before anything is computed
   coupling::System& system = passage.system();
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
@@ -100,6 +107,10 @@ std::optional<int> run_once(Job& job) {
         fmt::format("static deflections: relative error about {:.1g}, by rounding in the many elements "
                     "between supports",
                     system.static_error()));
+  const std::string trouble =
+      counting > 0.0 ? no_filter(counting, passage.plan(), scene.output.probes.size()) : std::string();
+  const bool filtered = counting > 0.0 && trouble.empty();
+  if (!trouble.empty()) notes.push_back("deck accelerations are not low-passed: " + trouble);
   print_notes(comm, notes);
 
   std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
@@ -110,6 +121,8 @@ std::optional<int> run_once(Job& job) {
   store_modes(shared, recorder);
   if (shared.beam) shared.beam->release_matrices();
   Watch watch(scene, system, beam, recorder, &outputs);
+  if (filtered && rank == 0) watch.keep_accelerations({counting, passage.plan(), scene.output.probes});
+  if (!scene.limits.empty()) watch.judge();
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
   double reached = 0.0;
@@ -132,10 +145,14 @@ std::optional<int> run_once(Job& job) {
     summary.static_error = system.static_error();
     summary.expected_errors = accuracy.expected();
     summary.ended = ended;
+    const bool repeated = reaches_end && summary.linear_defect > scene.most_defect;
+    const std::vector<results::Verdict> verdicts =
+        reaches_end && !repeated ? watch.verdicts(summary) : std::vector<results::Verdict>();
+    results::record_verdicts(recorder, verdicts);
     recorder.finish(summary);
     progress.done();
-    const bool repeated = reaches_end && summary.linear_defect > scene.most_defect;
     if (rank == 0 && !repeated) results::print_summary(summary, scene.output.file);
+    if (rank == 0) results::print_verdicts(verdicts);
     return summary;
   };
   int stopped = 0;

@@ -17,7 +17,7 @@ constexpr double phase_at_once = 1e5;  // rad of the highest mode between looks 
 
 ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridge& bridge,
                            structure::BeamOperator& statics, const coupling::SystemInput& input, bool equilibrium,
-                           double end_time, double interval)
+                           double end_time, double interval, long stored)
     : system_(system),
       bridge_(bridge),
       statics_(statics),
@@ -25,7 +25,8 @@ ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridg
       history_(bridge.influence(), input.load),
       motion_(bridge, history_, input.load.speed, equilibrium),
       end_time_(end_time),
-      interval_(interval) {
+      interval_(interval),
+      stored_(stored) {
   const auto n = static_cast<std::size_t>(system_.structure_unknowns());
   sagging_.assign(n, 0.0);
   if (input.self_weight) {
@@ -69,7 +70,8 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
     system_.begin_step(t - 2.0 * just_before * end_time_, t);
     ++steps_;
     show_to_monitors();
-    sample_now(sample, beyond ? Purpose::end : Purpose::sample);
+    const bool stored = steps_ % stored_ == 0 && !beyond;
+    sample_now(sample, stored ? Purpose::sample : t == end_time_ ? Purpose::end : Purpose::look);
     going = step(t, steps_) && !stopped_at_limit();
   }
   return motion_.time();

@@ -13,7 +13,7 @@ class ModalStepper {
  public:
   /// Collective. `system` holds the same beam under the same load, without vehicles.
   ModalStepper(coupling::System& system, const structure::ModalBridge& bridge, structure::BeamOperator& statics,
-               const coupling::SystemInput& input, bool equilibrium, double end_time, double interval);
+               const coupling::SystemInput& input, bool equilibrium, double end_time, double interval, long stored = 1);
 
   /// As Stepper::run; a step is what lies between two samples. The nodal displacements are those of the modes and, with
   /// K* v = P for what the forces P do to all others, balance P exactly; velocities and accelerations are the modes'.
@@ -38,6 +38,7 @@ class ModalStepper {
   PetscInt most_steps_ = 0;
   double most_at_once_ = 0.0;  // s
   double end_time_, interval_;
+  long stored_;                                  // one in so many of the samples at the interval is stored
   std::vector<double> sagging_;                  // m, of this rank's unknowns: of the beam's own weight
   std::vector<double> y_, ydot_, drag_, force_;  // as Instant has them; nodal forces and what they do at rest
   double at_start_ = 0.0;                        // J, in the static correction

@@ -37,15 +37,15 @@ std::vector<Mode> lowest(const std::vector<Segment>& segments, int count) {
   return modes;
 }
 
-/// The lowest frequencies of one segment that differ and are not zero: two, or as many as it has.
-std::vector<double> distinct_of(const Segment& s) {
-  for (int count = 2 + static_cast<int>(s.rigid.size());; count *= 2) {
+/// The lowest frequencies of one segment that differ and are not zero: `wanted`, or as many as it has.
+std::vector<double> distinct_of(const Segment& s, std::size_t wanted) {
+  for (int count = static_cast<int>(wanted + s.rigid.size());; count *= 2) {
     std::vector<double> found;
     for (const Eigenpair& pair : lowest_modes(s, count)) {
       const bool repeated = !found.empty() && pair.omega <= found.back() * (1.0 + distinct);
       if (pair.omega > 0.0 && !repeated) found.push_back(pair.omega);
     }
-    if (found.size() >= 2 || count >= s.size()) return found;
+    if (found.size() >= wanted || count >= s.size()) return found;
   }
 }
 
@@ -132,22 +132,28 @@ Modes natural_modes(const beam::Beam& beam, int count, const beam::ShapePoints& 
   return modes_of(beam, count, &points);
 }
 
-std::pair<double, double> distinct_pair(const beam::Beam& beam) {
+std::vector<double> distinct_frequencies(const beam::Beam& beam, std::size_t count) {
   std::vector<double> all;
   for (const Segment& s : transverse_segments(beam)) {
-    const auto some = distinct_of(s);
+    const auto some = distinct_of(s, count);
     all.insert(all.end(), some.begin(), some.end());
   }
   std::sort(all.begin(), all.end());
-  const auto second =
-      std::find_if(all.begin(), all.end(), [&](double omega) { return omega > all.front() * (1.0 + distinct); });
-  if (second == all.end()) {
+  std::vector<double> found;
+  for (const double omega : all)
+    if (found.size() < count && (found.empty() || omega > found.back() * (1.0 + distinct))) found.push_back(omega);
+  return found;
+}
+
+std::pair<double, double> distinct_pair(const beam::Beam& beam) {
+  const std::vector<double> found = distinct_frequencies(beam, 2);
+  if (found.size() < 2) {
     throw InputError(
-        "beam_damping_ratios: the mesh has " + std::string(all.empty() ? "no" : "only one") +
+        "beam_damping_ratios: the mesh has " + std::string(found.empty() ? "no" : "only one") +
         " natural frequency of bending, and two distinct ones are needed; raise beam_elements_per_span, or "
         "give beam_rayleigh instead");
   }
-  return {all.front(), *second};
+  return {found[0], found[1]};
 }
 
 beam::Rayleigh rayleigh(double omega1, double omega2, double zeta1, double zeta2) {

@@ -76,6 +76,10 @@ DampedModes damped_modes(const beam::Beam& beam, int count, const beam::ShapePoi
 /// Whether C* has any entry that is not zero. Collective, after Beam::set_rayleigh.
 bool damped(const beam::Beam& beam);
 
+/// The first `count` distinct non-zero natural frequencies of bending (rad/s) or as many as there are, as distinct_pair
+/// has them.
+std::vector<double> distinct_frequencies(const beam::Beam& beam, std::size_t count);
+
 /// The first two distinct non-zero natural frequencies of bending (rad/s), however often each one occurs; distinct:
 /// by more than 1e-6 of their value. Motion along x is left out, so that damping does not depend on whether it is
 /// modelled. Throws InputError where there are not two: with one or two free unknowns.

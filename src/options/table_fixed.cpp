@@ -127,9 +127,13 @@ constexpr Row run_rows[] = {
   {"model_vehicles", choice, "", "auto", any, "auto full linear", 0, "vehicles as mechanisms, or those that can be with constant matrices about their start: exact up to squares of angles; auto: where the trial runs of accuracy find that it does not matter"},
   {"model_window", text, "", "auto", any, "", 0, "leave out of the steps what moves less than this part of the largest motion; auto: 1e-9 where spans do not touch; 0: nothing"},
 
+  {"limits", file, "", "", any, "", 0, "a file of limits, such as options/limits/en1990.yml, that the run is checked against when it has ended"},
+
   {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},
   {"output_interval", number, "s", "(from the step)", positive, "", 0, "between stored samples"},
   {"output_probes", numbers, "m", "(middle of each span, of 200)", not_negative, "", 0, "stations on the beam where the response is stored"},
+  {"output_lowpass", text, "Hz", "auto", any, "", 0, "frequency up to which deck accelerations count: their peak is given without a filter and with a low-pass there; auto: the greatest of 30 Hz, 1.5 f1 and f3; none: without alone"},
+  {"output_lowpass_series", flag, "", "false", any, "", 0, "stores the filtered accelerations beside the others"},
   {"output_quiet", flag, "", "false", any, "", 0, "no progress on the terminal"},
 
   {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step"},

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -65,9 +66,16 @@ struct Extreme {
   double time = 0.0;
   double place = 0.0;  // station, m
 };
+/// The peak of a filtered quantity.
+struct LowPassed {
+  Extreme extreme;
+  double frequency = 0.0, interval = 0.0;  // Hz of the filter, s between the instants that it was given
+  std::string filter;                      // its name
+};
 struct Summary {
   bool probes = false;  // whether there are any: without them there are no peaks
   Extreme deflection, acceleration, moment;
+  std::optional<LowPassed> low_passed;  // acceleration
   double static_deflection = 0.0;  // largest |static deflection| at the same station with the same loads; 0: unknown
   double amplification = 0.0;      // |deflection| over static; 0: unknown
   double least_wheel_force = 0.0, greatest_wheel_force = 0.0;
@@ -134,6 +142,8 @@ class Recorder {
     std::string unit;
   };
   void datasets(const std::vector<Dataset>& sets);
+  /// Texts in two columns, each with its path in the file.
+  void tables(const std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::string>>>>& tables);
   /// New values of datasets that are there, in the order given: a kill leaves each value as it was or as it is now.
   void rewrite(const std::vector<Dataset>& sets);
   /// Adds an attribute to a group that is there.

@@ -96,6 +96,15 @@ void Recorder::datasets(const std::vector<Dataset>& sets) {
   });
 }
 
+void Recorder::tables(
+    const std::vector<std::pair<std::string, std::vector<std::pair<std::string, std::string>>>>& tables) {
+  if (impl_ == nullptr) return;
+  impl_->attempt([&] {
+    for (const auto& [name, rows] : tables) impl_->file.table(name, rows);
+    impl_->file.flush();
+  });
+}
+
 void Recorder::rewrite(const std::vector<Dataset>& sets) {
   if (impl_ == nullptr) return;
   impl_->attempt([&] {

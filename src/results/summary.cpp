@@ -19,6 +19,12 @@ std::vector<Attribute> attributes_of(const Summary& summary) {
   if (summary.probes) {
     extreme("deflection", summary.deflection);
     extreme("acceleration", summary.acceleration);
+    if (summary.low_passed) {
+      extreme("acceleration_lowpass", summary.low_passed->extreme);
+      add("acceleration_lowpass_frequency", summary.low_passed->frequency);
+      add("acceleration_lowpass_interval", summary.low_passed->interval);
+      add("acceleration_lowpass_filter", summary.low_passed->filter);
+    }
     extreme("moment", summary.moment);
     if (summary.static_deflection > 0.0) add("static_deflection", summary.static_deflection);
     if (summary.amplification > 0.0) add("amplification", summary.amplification);

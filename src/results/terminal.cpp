@@ -57,6 +57,9 @@ void print_beam(const Summary& summary) {
   if (!moved && summary.moment.value == 0.0) return;
   line("peak deflection", extreme_text(summary.deflection, 1e3, "mm"));
   line("peak acceleration", extreme_text(summary.acceleration, 1.0, "m/s2"));
+  if (summary.low_passed)
+    line(fmt::format("  up to {:.4g} Hz", summary.low_passed->frequency),
+         extreme_text(summary.low_passed->extreme, 1.0, "m/s2"));
   line("peak moment", extreme_text(summary.moment, 1e-3, "kN m"));
   if (summary.static_deflection > 0.0) {
     line("static deflection", fmt::format("{:.4g} mm", 1e3 * summary.static_deflection));

@@ -54,7 +54,7 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
   std::string method;
   if (scene.exact_in_time()) {
     modal_.emplace(system_, *shared.modal, *shared.statics, input_, scene.start == Start::equilibrium, plan_.end_time,
-                   plan_.interval);
+                   plan_.interval, plan_.stored);
     method = modal_->method();
   } else {
     leave_out_rest(notes);

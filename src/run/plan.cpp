@@ -74,6 +74,14 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
   return step;
 }
 
+// How many evenly spaced looks there are among so many steps: no further apart than wanted, each at the end of a step.
+long looks_among(long steps, double step, double longest) {
+  const double most = std::min(static_cast<double>(steps), longest / step * (1.0 + 1e-9));
+  for (long each = static_cast<long>(most); each > 1; --each)
+    if (steps % each == 0) return steps / each;
+  return steps;
+}
+
 // The motion between samples is known: they are as far apart as a curve needs.
 void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector<std::string>& notes) {
   plan.interval = plan.time_step =
@@ -83,6 +91,8 @@ void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector
         fmt::format("samples every {:g} s: from the first period; output_interval changes it, which "
                     "changes nothing in the motion",
                     plan.interval));
+  plan.stored = static_cast<long>(std::max(1.0, std::ceil(plan.interval / scene.looks * (1.0 - 1e-9))));
+  plan.interval /= static_cast<double>(plan.stored);
 }
 
 double sample_next_to_end(const Plan& plan) {
@@ -121,17 +131,17 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
                                 *scene.output.interval));
   if (scene.output.interval) {
     plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
-    if (scene.step_probes) {
-      plan.stored = static_cast<long>(std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9)));
-      plan.interval /= static_cast<double>(plan.stored);
-    }
+    const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9))));
+    plan.stored =
+        scene.step_probes ? steps : looks_among(steps, plan.interval / static_cast<double>(steps), scene.looks);
+    plan.interval /= static_cast<double>(plan.stored);
     if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
-    const double steps = std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples));
-    plan.stored = scene.step_probes ? static_cast<long>(steps) : 1;
-    plan.interval = plan.time_step * (scene.step_probes ? 1.0 : steps);
+    const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples)));
+    plan.stored = scene.step_probes ? steps : looks_among(steps, plan.time_step, scene.looks);
+    plan.interval = plan.time_step * static_cast<double>(steps / plan.stored);
   }
   move_end_to_sample(plan);
   return plan;

@@ -58,6 +58,7 @@ void Watch::sample(const integrate::Instant& instant) {
   step(instant.time);  // the first instant is no step's end
   if (system_.apart() == nullptr) note_peaks();
   note_worst();
+  if (judge_) judge_->sample(instant.time, beam.v);
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
   if (instant.purpose != integrate::Purpose::look) store(instant.purpose == integrate::Purpose::end);
 }
@@ -100,6 +101,7 @@ void Watch::note_peaks() {
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
   peaks_.add(sample_.time, now_.probes, wheel_forces_);
+  if (deck_) deck_->add(sample_.time, now_.probes);
 }
 
 void Watch::note_worst() {
@@ -139,7 +141,11 @@ void Watch::step(double t) {
   const train::Fleet& fleet = system_.fleet();
   std::size_t wheel = 0;
   for (const train::WheelContact& c : fleet.wheels)
-    if (!c.is_further) wheels_.add(wheel++, t, fleet.coordinates(c).x(), fleet.load(c).normal);
+    if (!c.is_further) {
+      const double force = fleet.load(c).normal;
+      if (judge_) judge_->wheel(wheel, t, force);
+      wheels_.add(wheel++, t, fleet.coordinates(c).x(), force);
+    }
   if (system_.apart() == nullptr || t <= last_apart_) return;
   last_apart_ = sample_.time = t;
   system_.apart()->see(now_.probes);
@@ -200,6 +206,10 @@ results::Summary Watch::finish() {
     summary_.acceleration = extreme(acceleration);
     summary_.moment = extreme(moment);
   }
+  if (deck_) {
+    deck_->finish(summary_);
+    if (scene_.output.low_passed_series) recorder_.datasets({deck_->stored()});
+  }
   finished_extremes();
   if (beam_ == nullptr) return summary_;
   int some = worst_.v.empty() && beam_->local_unknowns() > 0 ? 0 : 1;
@@ -211,6 +221,10 @@ results::Summary Watch::finish() {
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
   recorder_.shape(shape_of(*beam_, scene_, worst_));
   return summary_;
+}
+
+std::vector<results::Verdict> Watch::verdicts(const results::Summary& summary) const {
+  return judge_ ? judge_->verdicts(summary, peaks_) : std::vector<results::Verdict>();
 }
 
 }  // namespace traverse::app

@@ -10,9 +10,11 @@
 #include "recovery/viscous_lag.hpp"
 #include "results/recorder.hpp"
 #include "results/terminal.hpp"
+#include "run/deck_acceleration.hpp"
 #include "run/outputs.hpp"
 #include "run/peaks.hpp"
 #include "run/plan.hpp"
+#include "run/verdicts.hpp"
 #include "run/wheel_extremes.hpp"
 #include "run/worst_shape.hpp"
 #include "traverse/scene/scene.hpp"
@@ -26,11 +28,19 @@ class Watch {
   Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
         const Outputs* outputs = nullptr);
 
+  /// The deck's accelerations are filtered when the run has ended.
+  void keep_accelerations(DeckAcceleration deck) { deck_ = std::move(deck); }
+
+  /// The run is judged by the scene's limits when it has ended.
+  void judge() { judge_.emplace(scene_, system_.fleet(), beam_); }
+
   void sample(const integrate::Instant& instant);
   /// To be called at the end of every step, also of one that ends at a sample.
   void step(double t);
   /// Collective. The summary so far, and the shape at the worst instant into the recorder.
   results::Summary finish();
+  /// After finish, which gave this summary.
+  std::vector<results::Verdict> verdicts(const results::Summary& summary) const;
   /// Of the latest instant that was seen, s.
   double last_time() const { return sample_.time; }
   const results::Summary& extremes() const { return summary_; }
@@ -58,6 +68,8 @@ class Watch {
   const Outputs* outputs_;  // null where this rank writes no file
   std::vector<beam::Response> dragged_;
   Peaks peaks_;
+  std::optional<DeckAcceleration> deck_;
+  std::optional<Judge> judge_;
   WheelExtremes wheels_;
   train::WheelPaths paths_;  // where wheels are free to change their distances
   std::vector<double> wheel_forces_;

@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "limits.hpp"
+#include "options/read_verdict_limits.hpp"
 #include "scene_parts.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
@@ -83,6 +84,37 @@ void read_probes(const Options& o, Scene& scene) {
   }
 }
 
+constexpr double most_frequency = 1e6;  // Hz
+
+// The frequency up to which accelerations count: none where the run decides, 0 where they are not filtered.
+std::optional<double> read_low_pass(const Options& o) {
+  const std::string value = o.text("output_lowpass");
+  if (value == "auto") return {};
+  if (value == "none") return 0.0;
+  char* end = nullptr;
+  const double frequency = std::strtod(value.c_str(), &end);
+  if (value.empty() || *end != 0 || !(frequency > 0.0 && frequency <= most_frequency))
+    o.refuse("output_lowpass",
+             fmt::format("allowed: auto, none, or a frequency above 0 and up to {:g} (Hz)", most_frequency));
+  return frequency;
+}
+
+void read_filter(const Options& o, Scene& scene) {
+  scene.output.low_pass = read_low_pass(o);
+  scene.output.low_passed_series = o.flag("output_lowpass_series");
+  for (const char* name : {"output_lowpass", "output_lowpass_series"})
+    if (o.has(name) && (!scene.beam || scene.analysis != Analysis::transient || scene.sweep))
+      scene.notes.push_back(std::string(name) + " has no effect: it is for single transient runs over a bridge");
+}
+
+void read_limits(const Options& o, Scene& scene) {
+  if (!o.has("limits")) return;
+  scene.limits = options::read_verdict_limits(o.path("limits"));
+  if (scene.analysis == Analysis::transient && !scene.sweep) return;
+  scene.limits.clear();
+  scene.notes.emplace_back("limits has no effect: single transient runs are checked against limits");
+}
+
 bool has_control_character(const std::string& text) {
   return std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
 }
@@ -102,6 +134,8 @@ void read_output(const Options& o, Scene& scene) {
   scene.output.interval = o.optional_number("output_interval");
   scene.quiet = o.flag("output_quiet");
   read_probes(o, scene);
+  read_filter(o, scene);
+  read_limits(o, scene);
 }
 
 /// A run ends when the last wheel or force has left the beam, or when the user says.

@@ -288,6 +288,9 @@ Scene read_study(const Options& given) {
   std::vector<std::pair<std::string, std::string>> values = values_of_run(study, 0);
   Scene scene = read_scene_of_study(given, values);
   scene.study = std::move(study);
+  scene.limits.clear();
+  for (const char* name : {"limits", "output_lowpass", "output_lowpass_series"})
+    if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: it is for single transient runs");
   scene.options = o.all();
   check_study(o, scene);
   return scene;

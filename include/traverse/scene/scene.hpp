@@ -13,6 +13,7 @@
 #include "traverse/options/analyses.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/options/study.hpp"
+#include "traverse/options/verdict_limit.hpp"
 #include "traverse/track/profile.hpp"
 #include "traverse/train/vehicle.hpp"
 
@@ -40,6 +41,8 @@ struct Output {
   std::string file;                // HDF5; empty: none
   std::optional<double> interval;  // s; left out: chosen with the step
   std::vector<double> probes;      // stations; default: the middle of every span (of the first 200)
+  std::optional<double> low_pass;  // Hz, up to which deck accelerations count; 0: all; left out: as EN 1990 has it
+  bool low_passed_series = false;  // filtered accelerations are stored
 };
 
 /// The random running surfaces that one spectrum describes.
@@ -93,7 +96,8 @@ struct Scene {
   std::optional<Study> study;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
-  bool step_kinks = true;        // steps end where wheels pass kinks
+  bool step_kinks = true;                                  // steps end where wheels pass kinks
+  double looks = std::numeric_limits<double>::infinity();  // s: longest between instants at which responses are seen
   bool step_lanes = true;        // linear vehicles over modes are stepped by the kernel of runs side by side
   bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
   double rest_tolerance = -1.0;  // model_window; -1: auto
@@ -104,6 +108,7 @@ struct Scene {
   bool mesh_open = false;        // its elements are chosen from the accuracy
   bool accuracy_report = false;  // a refined run at the end shows the true errors
   Output output;
+  std::vector<options::VerdictLimit> limits;                 // that a single run is checked against
   bool quiet = false;                                        // -output_quiet: no progress
   std::vector<std::string> notes;                            // what was chosen and why, one line each
   std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too

@@ -1,0 +1,43 @@
+// Limits that users set to what a run shows, and the quantities that a limit may be of.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace traverse::options {
+
+/// A limit: the quantity is kept as long as it does not exceed `value`.
+struct VerdictLimit {
+  std::string clause;    // where it comes from, e.g. "EN 1990 A2.4.4.2.1"
+  std::string quantity;  // one of limit_quantities
+  double value = 0.0;    // in the unit of its quantity
+  std::string text;      // what it means, in the user's words
+};
+
+struct LimitQuantity {
+  std::string_view name;  // as the user writes it
+  std::string_view unit;  // "1" for a ratio
+  std::string_view words;
+};
+
+/// How each follows from a run stands in src/run/verdicts.cpp.
+inline constexpr LimitQuantity limit_quantities[] = {
+    {"deck_acceleration", "m/s2", "largest vertical acceleration of the probes, low-passed (output_lowpass)"},
+    {"unfiltered_deck_acceleration", "m/s2", "the same without a filter"},
+    {"deflection_over_span", "1", "largest deflection of a probe over the length of its span"},
+    {"end_rotation", "rad", "largest rotation of the deck at either end of the bridge"},
+    {"joint_rotation", "rad", "largest difference of the rotations on the two sides of a joint between two decks"},
+    {"car_acceleration", "m/s2", "largest vertical acceleration of the heaviest body of a vehicle, at its centre"},
+    {"wheel_unloading", "1", "largest part of a wheel's force at the start that it loses"},
+    {"contact_loss", "s", "longest time that a wheel is off the track"},
+    {"amplification", "1", "largest deflection over the largest static one at its probe"},
+};
+
+/// Null where there is none.
+constexpr const LimitQuantity* limit_quantity(std::string_view name) {
+  for (const LimitQuantity& row : limit_quantities)
+    if (row.name == name) return &row;
+  return nullptr;
+}
+
+}  // namespace traverse::options

@@ -1,0 +1,63 @@
+#include "results/verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::results {
+namespace {
+
+std::string with_unit(double value, const std::string& unit) {
+  return unit == "1" ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+}
+
+std::string verdict_line(const Verdict& v) {
+  std::string line =
+      fmt::format("{}  {} {}  limit {}", v.word(), v.limit.clause, v.limit.quantity, with_unit(v.limit.value, v.unit));
+  if (!v.judged()) {
+    line += ": " + v.found.why;
+  } else {
+    line += fmt::format(", found {}, margin {:.3g} %", with_unit(v.found.value, v.unit), 100.0 * v.margin());
+    if (!v.found.place.empty()) line += ", " + v.found.place;
+    if (std::isfinite(v.found.time)) line += fmt::format(", t = {:.6g} s", v.found.time);
+  }
+  return v.limit.text.empty() ? line : line + " (" + v.limit.text + ")";
+}
+
+}  // namespace
+
+std::string Verdict::word() const { return !judged() ? "not judged" : kept() ? "kept" : "broken"; }
+
+void print_verdicts(const std::vector<Verdict>& verdicts) {
+  if (verdicts.empty()) return;
+  fmt::print("verdicts\n");
+  for (const Verdict& v : verdicts) fmt::print("  {}\n", printable(verdict_line(v)));
+  std::fflush(stdout);
+}
+
+void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts) {
+  if (verdicts.empty()) return;
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::pair<std::string, std::string>> clause, quantity, verdict;
+  std::vector<double> value, limit, margin, time;
+  for (const Verdict& v : verdicts) {
+    clause.emplace_back(v.limit.clause, v.limit.text);
+    quantity.emplace_back(v.limit.quantity, v.unit);
+    verdict.emplace_back(v.word(), v.judged() ? v.found.place : v.found.why);
+    value.push_back(v.found.value);
+    limit.push_back(v.limit.value);
+    margin.push_back(v.judged() ? v.margin() : unknown);
+    time.push_back(v.found.time);
+  }
+  recorder.tables({{"/verdicts/clause", clause}, {"/verdicts/quantity", quantity}, {"/verdicts/verdict", verdict}});
+  const std::vector<std::size_t> shape = {verdicts.size()};
+  recorder.datasets({{"/verdicts/value", shape, value, "as /verdicts/quantity"},
+                     {"/verdicts/limit", shape, limit, "as /verdicts/quantity"},
+                     {"/verdicts/margin", shape, margin, "1"},
+                     {"/verdicts/time", shape, time, "s"}});
+}
+
+}  // namespace traverse::results

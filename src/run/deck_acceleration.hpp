@@ -1,0 +1,52 @@
+// The deck's acceleration as practice judges it: up to a frequency that counts, above which it is filtered out.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "results/recorder.hpp"
+#include "run/plan.hpp"
+#include "run/shared_beam.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// Collective, after SharedBeam::prepare. The frequency (Hz) up to which accelerations count in this scene; 0: they are
+/// not filtered. As the scene says, else the greatest of 30 Hz, 1.5 f1 and f3, of the bridge's distinct frequencies of
+/// bending. affordable: whether to compute these. Says in `notes` what was chosen.
+double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool affordable,
+                             std::vector<std::string>& notes);
+
+/// Longest distance between instants, s, at which an acceleration is filtered well.
+double spacing_for(double frequency);
+
+/// Why a run of this plan cannot be filtered at this frequency; empty where it can.
+std::string no_filter(double frequency, const Plan& plan, std::size_t probes);
+
+/// Keeps the acceleration of every probe at the plan's interval until the end of the run, when it is filtered. Eight
+/// bytes an instant and probe, `most_kept` at most.
+class DeckAcceleration {
+ public:
+  static constexpr double most_kept = 33554432.0;  // numbers, 256 MB
+
+  DeckAcceleration(double frequency, const Plan& plan, const std::vector<double>& stations);
+
+  /// Takes an instant at a multiple of the plan's interval, and leaves out the others.
+  void add(double t, std::span<const beam::Response> probes);
+  /// After the last instant, once: filters all series and puts their peak into the summary.
+  void finish(results::Summary& summary);
+  /// After finish. The filtered series at the stored samples.
+  results::Recorder::Dataset stored() const;
+
+ private:
+  double frequency_, interval_;
+  std::size_t stored_each_;
+  std::vector<double> stations_;
+  std::vector<double> kept_;  // a row of probes for each instant
+  std::size_t instants_ = 0;
+};
+
+}  // namespace traverse::app
