@@ -34,6 +34,7 @@ struct TrainNumbers {
   std::vector<Vehicle> vehicles;
   int coordinates = 0;
   std::vector<double> x, penetration;  // m: of every wheel
+  std::vector<double> arm;             // m: its radius less that
   std::vector<double> stiffness;       // of its contact, N/m^1.5 or N/m
   std::vector<char> hertz;             // whether it is the former
   double force_scale = 0.0;            // N, contact forces are judged by

@@ -2,7 +2,7 @@
 // modes.
 #pragma once
 
-#include "lanes/crossing_state.hpp"
+#include "lanes/crossing_influence.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -11,6 +11,7 @@ template <int W>
 struct CrossingContacts : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
+  using Influence = CrossingInfluence<W>;
   using Own::any;
   using Own::factorise;
   using Own::fill;
@@ -75,8 +76,7 @@ struct CrossingContacts : CrossingAlgebra<W> {
       const TaskVehicle& vehicle = s.task.vehicle[v];
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
         if (s.on[j] == 0) continue;
-        const double* g = s.g + static_cast<long>(j) * s.task.influence.channels;
-        for (int i = 0; i < s.modes; ++i) s.rhs[i] += g[i] * s.F[j];
+        Influence::push(s, j, s.F[j], s.rhs);
       }
     }
     s.moved = push ? Lane{} : s.moved;
@@ -100,17 +100,7 @@ struct CrossingContacts : CrossingAlgebra<W> {
     for (int i = 0; i < w; ++i) {
       Lane c = s.free[first + i] - s.delta[first + i];
       for (int k = 0; k < w; ++k) c -= H[i * w + k] * s.F[first + k];
-      if (s.on[first + i] != 0) {
-        const double* g = s.g + static_cast<long>(first + i) * s.task.influence.channels;
-        Lane height{}, more{};
-        int k = 0;
-        for (; k + 2 <= s.modes; k += 2) {
-          height += g[k] * s.p[k];
-          more += g[k + 1] * s.p[k + 1];
-        }
-        for (; k < s.modes; ++k) height += g[k] * s.p[k];
-        c -= height + more;
-      }
+      if (s.on[first + i] != 0) c -= Influence::weigh(s, first + i, s.p);
       off[i] = c;
     }
     Mask wrong{};
@@ -197,8 +187,10 @@ struct CrossingContacts : CrossingAlgebra<W> {
   static void reduce(State& s, int first, int w, const Lane* L, Lane* rows) {
     for (int i = 0; i < w; ++i) {
       Lane* row = rows + i * s.modes;
-      const double* g = s.g + static_cast<long>(first + i) * s.task.influence.channels;
-      for (int k = 0; k < s.modes; ++k) row[k] = s.on[first + i] != 0 ? fill(g[k]) : Lane{};
+      if (s.on[first + i] != 0)
+        Influence::copy(s, first + i, row);
+      else
+        for (int k = 0; k < s.modes; ++k) row[k] = Lane{};
       for (int j = 0; j < i; ++j) {
         const Lane* before = rows + j * s.modes;
         const Lane entry = L[i * w + j];

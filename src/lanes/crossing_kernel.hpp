@@ -138,7 +138,7 @@ class Group : CrossingAlgebra<W> {
     s.known = s.looks = s.seen = 0;
     // The wheels' heights over the bridge as it stands.
     Places::place(s, 0.0, s.task.influence.channels);
-    Places::lean_with_bridge(s, 0.0, s.q);
+    Places::lean_with_bridge(s, s.q);
     for (int j = 0; j < s.task.wheels; ++j) {
       s.delta[j] = s.end[j] = lanes(s.task.penetration)[j] * (1.0 + 0.5 * s.lean[j] * s.lean[j]);
       s.offset[j] = s.delta[j] - s.free[j] - Places::surface(s, j, s.q);
@@ -209,7 +209,7 @@ class Group : CrossingAlgebra<W> {
       predict(stage + 1, s.modes, rule, s.q, s.r, s.b, 0, s.q_still, s.r_still);
       Motion::free_modes(s);
     }
-    Places::lean_with_bridge(s, s.start + method.time[stage] * s.ds, s.z);
+    Places::lean_with_bridge(s, s.z);
     for (int v = 0; v < s.task.vehicles; ++v)
       if (s.awake[v] != 0) Motion::free_vehicle(s, v, stage + 1, rule);
     const double ahead = s.ds_before > 0.0 ? method.time[stage] * s.ds / s.ds_before : 0.0;

@@ -138,6 +138,7 @@ void CrossingNumbers::add_train(const TrainNumbers& train) {
   task_.hertz = train.hertz.data();
   task_.force_scale = train.force_scale;
   task_.radius = train.radius;
+  task_.arm = train.arm.data();
 }
 
 void CrossingNumbers::add_forces(const ForceNumbers& forces) {

@@ -1,7 +1,7 @@
 // Where wheels and forces are, on the bridge and on the track (crossing_kernel.hpp).
 #pragma once
 
-#include "lanes/crossing_state.hpp"
+#include "lanes/crossing_influence.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -16,13 +16,6 @@ struct CrossingPlaces : CrossingAlgebra<W> {
   using Own::track_at;
   using typename Own::Lane;
 
-  /// Where a wheel touches the track, m: on a slope, in lean[j], ahead of its centre, by what a tyre leaves of its
-  /// radius at rest. Where runs have tracks of their own that is left out.
-  static double touched(const State& s, int j, double gone) {
-    const double x = s.task.x[j] + gone;
-    return s.task.heights.shared ? x + (s.task.radius - lanes(s.task.penetration)[j][0]) * s.lean[j][0] : x;
-  }
-
   /// Wheels and forces when all have gone so far (m), with so many channels of the influence. Fills `free` with the
   /// penetration over a bridge at rest.
   static void place(State& s, double gone, int channels) {
@@ -34,10 +27,9 @@ struct CrossingPlaces : CrossingAlgebra<W> {
         Lane height;
         track_at(s.task.heights, s.task.x[j] + gone, height, s.lean[j]);
         s.free[j] = s.offset[j] + height;
-        s.on[j] = influence_at(s.task.influence, touched(s, j, gone), &s.piece[j], channels,
-                               s.g + static_cast<long>(j) * s.task.influence.channels)
-                      ? 1
-                      : 0;
+        double* g = s.g + static_cast<long>(j) * s.task.influence.channels;
+        s.on[j] = influence_at(s.task.influence, s.task.x[j] + gone, &s.piece[j], channels, g) ? 1 : 0;
+        if (s.on[j] != 0) place_ahead(s, j, gone, g);
         s.touching[v] = static_cast<char>(s.touching[v] | s.on[j]);
       }
     }
@@ -60,19 +52,28 @@ struct CrossingPlaces : CrossingAlgebra<W> {
     for (int v = 0; v < s.task.vehicles; ++v) s.awake[v] = gone + 1e-9 >= s.task.vehicle[v].rests_until ? 1 : 0;
   }
 
+  /// How the influence rises at a wheel, and what it is where the wheel touches the track's slope.
+  static void place_ahead(State& s, int j, double gone, const double* g) {
+    double* slope = s.g_slope + static_cast<long>(j) * s.modes;
+    influence_slope_at(s.task.influence, s.task.x[j] + gone, s.piece[j], s.modes, slope);
+    if (s.g_ahead == nullptr) return;
+    const Lane ahead = s.task.arm[j] * s.lean[j];
+    Lane* there = s.g_ahead + static_cast<long>(j) * s.modes;
+    for (int i = 0; i < s.modes; ++i) there[i] = g[i] + ahead * slope[i];
+  }
+
   /// The slope of the bridge added to that of the track, with the modes at q: a wheel touches a slope ahead of its
   /// centre, where that is higher.
-  static void lean_with_bridge(State& s, double gone, const Lane* q) {
+  static void lean_with_bridge(State& s, const Lane* q) {
     for (int v = 0; v < s.task.vehicles; ++v) {
       if (s.awake[v] == 0 || s.touching[v] == 0) continue;
       const TaskVehicle& vehicle = s.task.vehicle[v];
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
         if (s.on[j] == 0) continue;
-        influence_slope_at(s.task.influence, touched(s, j, gone), s.piece[j], s.modes, s.g_slope);
+        const double* slope = s.g_slope + static_cast<long>(j) * s.modes;
         Lane of_bridge{};
-        for (int i = 0; i < s.modes; ++i) of_bridge -= s.g_slope[i] * q[i];
-        const Lane rise = 0.5 * of_bridge + (s.task.heights.shared ? Lane{} : s.lean[j]);
-        s.free[j] += s.task.radius * of_bridge * rise;
+        for (int i = 0; i < s.modes; ++i) of_bridge -= slope[i] * q[i];
+        s.free[j] += 0.5 * s.task.radius * of_bridge * of_bridge;
         s.lean[j] += of_bridge;
       }
     }
@@ -80,11 +81,7 @@ struct CrossingPlaces : CrossingAlgebra<W> {
 
   /// By how much the bridge lifts a wheel with its modes at q, m.
   static Lane surface(const State& s, int j, const Lane* q) {
-    Lane height{};
-    if (s.on[j] == 0) return height;
-    const double* g = s.g + static_cast<long>(j) * s.task.influence.channels;
-    for (int i = 0; i < s.modes; ++i) height -= g[i] * q[i];
-    return height;
+    return s.on[j] == 0 ? Lane{} : -CrossingInfluence<W>::weigh(s, j, q);
   }
 };
 

@@ -106,8 +106,9 @@ struct CrossingPowers : CrossingAlgebra<W> {
       int piece = s.piece[j];
       while (piece > 0 && x < line.breaks[piece]) --piece;
       while (piece + 1 < line.pieces && x >= line.breaks[piece + 1]) ++piece;
-      influence_slope_at(line, x, piece, s.modes, s.g_slope);
-      for (int i = 0; i < s.modes; ++i) s.lean[j] -= s.g_slope[i] * q[i];
+      double* rises = s.g_slope + static_cast<long>(j) * s.modes;
+      influence_slope_at(line, x, piece, s.modes, rises);
+      for (int i = 0; i < s.modes; ++i) s.lean[j] -= rises[i] * q[i];
     }
   }
 };

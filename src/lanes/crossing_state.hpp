@@ -46,9 +46,11 @@ struct CrossingState {
   // end of the last step, and how it grew in that; N, N/m: force and tangent.
   Lane *offset = nullptr, *delta = nullptr, *free = nullptr, *end = nullptr, *slope = nullptr;
   Lane *F = nullptr, *k = nullptr,
-       *lean = nullptr;                         // lean: the slope of the surface, which the contact's normal follows
-  double *g = nullptr, *load_g = nullptr;       // influence at each wheel and moving force: [wheel][channel]
-  double* g_slope = nullptr;                    // how the modes' rises, 1/m: [mode] of one wheel
+       *lean = nullptr;                    // lean: the slope of the surface, which the contact's normal follows
+  double *g = nullptr, *load_g = nullptr;  // influence at each wheel and moving force: [wheel][channel]
+  double* g_slope = nullptr;               // how the modes' rises, 1/m: [wheel][mode]
+  // The modes' where the wheel touches, which on a track's slope is ahead of its centre: [wheel][mode]; null: no track.
+  Lane* g_ahead = nullptr;
   int *piece = nullptr, *load_piece = nullptr;  // of it, that each is on
   char *on = nullptr, *load_on = nullptr;       // whether it is on the bridge
 
@@ -117,7 +119,8 @@ struct CrossingMemory {
     s.D = take_from<Lane>(work, s.used, W, entries);
     s.reduced = take_from<Lane>(work, s.used, W, wheels * modes);
     s.g = take_from<double>(work, s.used, W, wheels * s.task.influence.channels);
-    s.g_slope = take_from<double>(work, s.used, W, modes);
+    s.g_slope = take_from<double>(work, s.used, W, wheels * modes);
+    if (s.task.heights.stations > 0) s.g_ahead = take_from<Lane>(work, s.used, W, wheels * modes);
     s.load_g = take_from<double>(work, s.used, W, static_cast<long>(s.task.loads) * s.task.influence.channels);
     s.piece = take_from<int>(work, s.used, W, wheels);
     s.load_piece = take_from<int>(work, s.used, W, s.task.loads);

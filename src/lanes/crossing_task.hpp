@@ -83,6 +83,7 @@ struct Task {
   const char* hertz = nullptr;          // whether it is the former
   double force_scale = 0.0;             // N: what contact forces are judged by
   double radius = 0.0;                  // m: of all wheels
+  const double* arm = nullptr;          // m: from each wheel's centre down to the track at rest
 
   int loads = 0;                                    // moving forces
   const double *load_x = nullptr, *load = nullptr;  // m; lanes: N, downward

@@ -165,6 +165,7 @@ TrainNumbers train_numbers(train::Fleet& fleet) {
       const train::WheelContact& contact = fleet.wheels[static_cast<std::size_t>(vehicle.first_wheel) + j];
       train.x.push_back(fleet.coordinates(contact).x());
       train.penetration.push_back(contact.kinematics.penetration);
+      train.arm.push_back(vehicle.wheels[j].radius - contact.kinematics.penetration);
       train.stiffness.push_back(contact.law.stiffness);
       train.hertz.push_back(contact.law.kind == contact::LawKind::hertz ? 1 : 0);
       train.force_scale = std::max(train.force_scale, contact.force.normal);

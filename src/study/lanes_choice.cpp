@@ -23,7 +23,7 @@ using lanes::CrossingResult;
 using Errors = LaneErrors;
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
-constexpr std::size_t most_spans_alone = 16;  // from which on a single run by elements costs less than so many modes
+constexpr std::size_t most_spans_alone = 2;  // each wants some sixteen modes; more spans cost less by elements
 // Times its speed: the trials of a single run, whose peaks may agree by chance.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
 constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4,
@@ -32,6 +32,9 @@ constexpr double first_step_factor = 4;  // times the step that the accuracy's s
 constexpr int most_halvings = 8, most_shortenings = 6;
 constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 constexpr double longer = 1.4;
+// Of a single run: more modes cost more than elements, and its trials show less than those of a sweep.
+constexpr int most_modes_alone = 64;
+constexpr double part_alone = 0.5;
 constexpr int fewest_modes = 4, most_modes = 128;
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
@@ -81,8 +84,8 @@ class Search {
  public:
   /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes
   /// and mesh change is seen there as well.
-  Search(LaneTrials& trials, LaneTrials& mixed, std::span<const char* const> methods, double accuracy)
-      : trials_(trials), mixed_(mixed), methods_(methods), accuracy_(accuracy) {}
+  Search(LaneTrials& trials, LaneTrials& mixed, std::span<const char* const> methods, int most, double accuracy)
+      : trials_(trials), mixed_(mixed), methods_(methods), most_modes_(most), accuracy_(accuracy) {}
 
   /// The cheapest model within the accuracy; empty: none.
   std::optional<LaneModel> run(double first_step) {
@@ -112,7 +115,7 @@ class Search {
     return false;
   }
   bool add_modes(LaneModel& model) {
-    for (int modes = fewest_modes; 2 * modes <= most_modes; modes *= 2) {
+    for (int modes = fewest_modes; 2 * modes <= most_modes_; modes *= 2) {
       LaneModel more = model;
       more.modes = 2 * modes;
       more.elements = mesh_for(trials_.scene(), more.modes);
@@ -158,6 +161,7 @@ class Search {
 
   LaneTrials &trials_, &mixed_;
   std::span<const char* const> methods_;
+  int most_modes_;
   double accuracy_;
   Errors modes_{}, steps_{}, mesh_{};
 };
@@ -218,7 +222,8 @@ class Chooser {
   }
 
   LanesChoice choose() {
-    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, methods_, scene_.accuracy);
+    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, methods_, alone_ ? most_modes_alone : most_modes,
+                  (alone_ ? part_alone : 1.0) * scene_.accuracy);
     const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
     const std::optional<LaneModel> found = search.run(first);
     if (!found) throw NotChosen{"the peaks do not settle to the accuracy with up to 128 modes"};

@@ -124,6 +124,7 @@ bool SideBySide::join(const SideBySide& other) {
       track_past_ != other.track_past_ || track_distance_ != other.track_distance_)
     return false;
   train_.x = its.x;
+  train_.arm = its.arm;
   train_.force_scale = its.force_scale;
   for (std::size_t k = 0; k < train_.kinds.size(); ++k) train_.kinds[k].bend = its.kinds[k].bend;
   return true;
