@@ -17,9 +17,12 @@ import matplotlib.pyplot as plt  # noqa: E402
 import runs  # noqa: E402
 
 
+BRIDGES = ("continuous", "simply supported", "layered track")
+
+
 def picture(lines, file):
-    figure, all_axes = plt.subplots(1, 2, figsize=(11, 4.5), sharey=True, layout="constrained")
-    for axes, bridge in zip(all_axes, ("continuous", "simply supported")):
+    figure, all_axes = plt.subplots(1, len(BRIDGES), figsize=(15, 4.5), sharey=True, layout="constrained")
+    for axes, bridge in zip(all_axes, BRIDGES):
         curves = {}
         for r in lines:
             if r["bridge"] == bridge:
@@ -27,10 +30,10 @@ def picture(lines, file):
         for i, (part, points) in enumerate(curves.items()):
             style = "-" if part.startswith("esdirk4") else "--" if part.startswith("genalpha") else ":"
             axes.loglog(*zip(*points), style, marker="o", markersize=3, label=part, color=f"C{i % 5}")
-        axes.set(title=f"{bridge} spans", xlabel="unknowns")
+        axes.set(title=bridge, xlabel="unknowns")
         axes.grid(True, alpha=0.4)
     all_axes[0].set_ylabel("ns per unknown")
-    all_axes[1].legend(fontsize=7)
+    all_axes[-1].legend(fontsize=7)
     figure.savefig(file, dpi=120)
     print(file)
 
@@ -46,7 +49,7 @@ def main():
     with open(table, newline="") as file:
         lines = [r for r in csv.DictReader(file) if r["seconds"]]
     print("\nstage over bare solve, and cost of a step per unknown over that at 10,000 unknowns (or next to that)")
-    for bridge in ("continuous", "simply supported"):
+    for bridge in BRIDGES:
         of = {(int(r["unknowns"]), r["part"]): r for r in lines if r["bridge"] == bridge}
         sizes = sorted({size for size, part in of if part == "bare solve"})
         middle = min(sizes, key=lambda size: abs(size - 10_000))

@@ -9,6 +9,7 @@ namespace traverse::coupling {
 namespace {
 
 constexpr double same_position = 1e-9;  // m or rad: a step's last stage is its end
+constexpr double same_length = 1e-10;   // relative, of steps whose ends are rounded
 
 }  // namespace
 
@@ -74,7 +75,7 @@ void System::take_back_step(double* y) {
 bool System::step_motion(double t, double h, double* y, const std::function<bool()>& good_enough) {
   if (apart_) return true;  // try_apart has taken it
   Motion& m = *motion_;
-  if (h != m.length) {
+  if (std::abs(h - m.length) > same_length * m.length) {
     m.method = m.unit;
     m.method.scale_to(h);
     m.length = h;

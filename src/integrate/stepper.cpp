@@ -179,10 +179,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
     stop_at(settings_.events, event);
     stop_at(settings_.passages, passage);
     while (going && t < target) {
-      take_step(target - t);
-      PetscReal now = 0.0;
-      check(TSGetTime(ts_, &now));
-      t = now;
+      t = take_step(t, target - t);
       if (t > target - rounding) {
         t = target;
         check(TSSetTime(ts_, t));
@@ -221,10 +218,8 @@ double Stepper::next_step(double from, double left) const {
   return shared_evenly(left, wanted);
 }
 
-// One step no longer than what is left to the next target.
-void Stepper::take_step(double left) {
-  PetscReal from = 0.0;
-  check(TSGetTime(ts_, &from));
+// One step from where TS is, no longer than what is left to the next target. Returns the time reached.
+double Stepper::take_step(double from, double left) {
   const auto turn = next_turn(from, left);
   if (turn) left = turn->time - from;
   const double h = next_step(from, left);
@@ -244,28 +239,27 @@ void Stepper::take_step(double left) {
     system_.keep_steps(locating || turns);
   else if (locating || turns)
     check(VecCopy(y_, before_));
-  double t = step_to(turns ? turn->time : from + h);
+  double t = step_to(from, turns ? turn->time : from + h);
   PetscReal next = 0.0;
   check(TSGetTimeStep(ts_, &next));
-  if (locating) locate_contact_change(from);
-  check(TSGetTime(ts_, &t));
-  if (turns && std::abs(t - turn->time) < turn->tolerance) t = end_at_turn(from, *turn);
+  if (locating) t = locate_contact_change(from, t);
+  if (turns && std::abs(t - turn->time) < turn->tolerance) t = end_at_turn(from, t, *turn);
   last_step_ = t - from;
   if (adaptive_) next_step_ = h < left || next < next_step_ ? next : std::max(next_step_, next);
   next_step_ = std::min(next_step_, settings_.time_step);
   ++steps_;
+  return t;
 }
 
-// From where TS is to `end` or, where that cannot be solved, not as far. Returns the time reached.
-double Stepper::step_to(double end) {
-  PetscReal t = 0.0;
-  check(TSGetTime(ts_, &t));
-  const double h = end - t;
+// From where TS is, `from`, to `end` or, where that cannot be solved, not as far. Returns the time reached.
+double Stepper::step_to(double from, double end) {
+  const double h = end - from;
   system_.begin_trial();
   check(TSSetTimeStep(ts_, h));
   check(TSStep(ts_));
   TSConvergedReason reason = TS_CONVERGED_ITERATING;
   check(TSGetConvergedReason(ts_, &reason));
+  PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
   if (reason < 0)
     throw SolverError("the step of " + std::to_string(h) + " s at t = " + std::to_string(t) +

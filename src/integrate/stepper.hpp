@@ -76,13 +76,13 @@ class Stepper {
   void advance(double target);
   double next_step(double from, double left) const;
   void show_to_monitors(double t);
-  void take_step(double left);
-  double step_to(double end);
+  double take_step(double from, double left);
+  double step_to(double from, double end);
   std::optional<coupling::CornerEvents::Turn> next_turn(double from, double left);
-  double arrive();
+  void arrive(double t);
   double step_again(double from, double end);
-  void locate_contact_change(double from);
-  double end_at_turn(double from, const coupling::CornerEvents::Turn& turn);
+  double locate_contact_change(double from, double full);
+  double end_at_turn(double from, double at, const coupling::CornerEvents::Turn& turn);
   void fetch_steps_apart();
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y, const double* ydot) const;

@@ -24,13 +24,10 @@ std::optional<coupling::CornerEvents::Turn> Stepper::next_turn(double from, doub
   return system_.next_turn(from, left, y.data);
 }
 
-// Sets the vehicles to where the step has led. Returns the time.
-double Stepper::arrive() {
-  PetscReal t = 0.0;
-  check(TSGetTime(ts_, &t));
+// Sets the vehicles to where the step has led.
+void Stepper::arrive(double t) {
   ReadArray y(y_);
   system_.arrive(t, y.data);
-  return t;
 }
 
 // Takes the step from `from` again, to another end. Returns the time reached.
@@ -44,28 +41,30 @@ double Stepper::step_again(double from, double end) {
   check(TSSetTime(ts_, from));
   check(TSRestartStep(ts_));
   known_ = false;
-  step_to(end);
-  return arrive();
+  const double reached = step_to(from, end);
+  arrive(reached);
+  return reached;
 }
 
 // Takes the step from `from` again, shorter, where a contact is lost or gained in it: until it ends just behind the
-// first loss, or just before the first gain, since a stiff contact must not be met in a long step.
-void Stepper::locate_contact_change(double from) {
-  const double full = arrive();
+// first loss, or just before the first gain, since a stiff contact must not be met in a long step. `full`: where it
+// ended at first. Returns the time reached.
+double Stepper::locate_contact_change(double from, double full) {
+  arrive(full);
   auto change = system_.contacts().change(full, settings_.contact_tolerance);
-  if (!change) return;
+  if (!change) return full;
   coupling::ChangeBracket bracket(system_, *change, from, full, settings_.contact_tolerance);
   double at = full;
   for (int i = 0; i < most_trials && !bracket.found(); ++i) {
     at = step_again(from, bracket.trial());
     bracket.tried(at, system_.contacts().change(at, settings_.contact_tolerance));
   }
-  if (at != bracket.end()) step_again(from, bracket.end());
+  return at != bracket.end() ? step_again(from, bracket.end()) : at;
 }
 
-// Takes the step from `from` again where the wheel turns about its corner at another time than was expected.
-double Stepper::end_at_turn(double from, const coupling::CornerEvents::Turn& turn) {
-  double at = arrive();
+// Takes the step from `from` to `at` again where the wheel turns about its corner at another time than was expected.
+double Stepper::end_at_turn(double from, double at, const coupling::CornerEvents::Turn& turn) {
+  arrive(at);
   for (int i = 0; i < most_turn_trials; ++i) {
     double found = 0.0;
     {

@@ -6,43 +6,16 @@
 #include <limits>
 #include <string>
 
+#include "response/tile.hpp"
+
 namespace traverse::structure {
 namespace {
 
 constexpr std::size_t kept_factors = 12;
-constexpr int most_refinements = 30;        // of a static solution
-constexpr double refined = 4e-16;           // relative correction that is rounding
-constexpr double stagnant = 0.5;            // corrections that do not halve do not converge
-constexpr double most_static_error = 0.1;   // relative
-constexpr int most_unknowns = beam::kinds;  // of a column
-
-// r += sign*A x for the nodes of one rank; the neighbours' border nodes come in `left` and `right` (null: none).
-// B > 0 fixes the block size at compile time.
-template <int B>
-void block_product(const solve::BlockTridiagonal& A, double sign, const double* x, const double* left,
-                   const double* right, const double* left_upper, double* r) {
-  const int b = B > 0 ? B : A.block;
-  const int bb = b * b;
-  for (int i = 0; i < A.nodes; ++i) {
-    const double* D = A.diagonal.data() + static_cast<std::ptrdiff_t>(i) * bb;
-    const double* xi = x + static_cast<std::ptrdiff_t>(i) * b;
-    const double* U = A.upper.data() + static_cast<std::ptrdiff_t>(i) * bb;
-    const double* next = i + 1 < A.nodes ? xi + b : right;
-    const double* L = i > 0 ? U - bb : left_upper;
-    const double* previous = i > 0 ? xi - b : left;
-    double* ri = r + static_cast<std::ptrdiff_t>(i) * b;
-    std::array<double, (B > 0 ? B : most_unknowns)> sum{};
-    for (int col = 0; col < b; ++col)  // down the columns, as they are stored
-      for (int row = 0; row < b; ++row) sum[row] += D[row + col * b] * xi[col];
-    if (next != nullptr)
-      for (int col = 0; col < b; ++col)
-        for (int row = 0; row < b; ++row) sum[row] += U[row + col * b] * next[col];
-    if (previous != nullptr && L != nullptr)
-      for (int row = 0; row < b; ++row)
-        for (int col = 0; col < b; ++col) sum[row] += L[col + row * b] * previous[col];
-    for (int row = 0; row < b; ++row) ri[row] += sign * sum[row];
-  }
-}
+constexpr int most_refinements = 30;       // of a static solution
+constexpr double refined = 4e-16;          // relative correction that is rounding
+constexpr double stagnant = 0.5;           // corrections that do not halve do not converge
+constexpr double most_static_error = 0.1;  // relative
 
 }  // namespace
 
@@ -139,7 +112,8 @@ BeamOperator::Matrix BeamOperator::with_neighbour(solve::BlockTridiagonal rows) 
     std::copy_n(rows.upper.data() + static_cast<std::ptrdiff_t>(rows.nodes - 1) * bb, bb, send.data());
   MPI_Sendrecv(send.data(), bb, MPI_DOUBLE, right_rank_, 0, left.data(), bb, MPI_DOUBLE, left_rank_, 0, comm_,
                MPI_STATUS_IGNORE);
-  return {std::move(rows), std::move(left)};
+  BlockRows products(rows, left);
+  return {std::move(rows), std::move(left), std::move(products)};
 }
 
 void BeamOperator::borders(const double* x, double* left, double* right) const {
@@ -157,15 +131,17 @@ void BeamOperator::exchange(const double* first, const double* last, int count, 
 
 void BeamOperator::product(const Matrix& A, double sign, const double* x, double* r) const {
   borders(x, halo_.data(), halo_.data() + block_);
-  const int b = block_;
-  const double* left = left_rank_ != MPI_PROC_NULL ? halo_.data() : nullptr;
-  const double* right = right_rank_ != MPI_PROC_NULL ? halo_.data() + b : nullptr;
-  const auto kernel = b == 2   ? block_product<2>
-                      : b == 3 ? block_product<3>
-                      : b == 5 ? block_product<5>
-                      : b == 7 ? block_product<7>
-                               : block_product<0>;
-  kernel(A.rows, sign, x, left, right, A.left.data(), r);
+  Tile of_x, of_r;
+  for (int first = 0; first < nodes_; first += beam::tile) {
+    const int past = std::min(nodes_, first + beam::tile);
+    const int from = std::max(first - 1, 0), to = std::min(past + 1, nodes_);
+    of_x.separate(block_, x + block_ * static_cast<std::ptrdiff_t>(from), from - (first - 1), to - from);
+    if (first == 0) of_x.set(block_, 0, halo_.data());
+    if (past == nodes_) of_x.set(block_, past - first + 1, halo_.data() + block_);
+    of_r.clear(block_, past - first);
+    A.products.add(first, past, of_x.planes(), of_r.planes());
+    of_r.add_to(block_, past - first, sign, r + block_ * static_cast<std::ptrdiff_t>(first));
+  }
 }
 
 void BeamOperator::multiply(double sign, const double* m, const double* c, const double* k, double* r) const {

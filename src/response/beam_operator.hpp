@@ -8,6 +8,7 @@
 
 #include "beam/internal_forces.hpp"
 #include "response/beam_factor.hpp"
+#include "response/block_rows.hpp"
 #include "solve/block_tridiagonal.hpp"
 
 namespace traverse::structure {
@@ -33,6 +34,7 @@ class BeamOperator {
   struct Matrix {
     solve::BlockTridiagonal rows;
     std::vector<double> left;
+    BlockRows products;  // of these with vectors
   };
 
   explicit BeamOperator(const beam::Beam& beam);

@@ -12,6 +12,7 @@ namespace traverse::structure {
 
 class BlockRows {
  public:
+  BlockRows() = default;
   /// left: the block that couples the neighbour rank's last column (rows) to the first (columns).
   BlockRows(const solve::BlockTridiagonal& rows, const std::vector<double>& left);
 

@@ -190,8 +190,9 @@ void Substructure<B>::solve(const Request& request) {
     throw std::logic_error("a window beyond this rank's nodes");
   }
   const FlushDenormals flush;
-  const bool whole = request.filler == nullptr && request.window.past - request.window.first == partition_.nodes;
+  const bool whole = request.window.past - request.window.first == partition_.nodes;
   if (const Bundle<B>* alone = local_ && whole ? local_->alone() : nullptr; alone != nullptr) {
+    if (request.filler != nullptr) request.filler->fill(0, partition_.nodes);  // few enough to stay in the cache
     in_batches(request.columns, [&](auto C, int column) { alone->template solve_alone<C>(from(request.x, column)); });
     return;
   }

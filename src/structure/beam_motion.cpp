@@ -22,13 +22,7 @@ BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* d
       nodes_(beam.local_columns()),
       past_(nodes_) {
   proportional_ = op.mass_damping().has_value();
-  if (beam::ElementRows::fit(beam) && !beam.model().foundation.nonlinear()) {
-    const auto rows_of = [](const BeamOperator::Matrix* m) {
-      return m != nullptr ? std::optional<BlockRows>(std::in_place, m->rows, m->left) : std::nullopt;
-    };
-    products_.emplace(Products{beam::ElementRows(beam), BlockRows(op.mass().rows, op.mass().left),
-                               rows_of(op.springs()), rows_of(op.drag())});
-  }
+  if (beam::ElementRows::fit(beam) && !beam.model().foundation.nonlinear()) elements_.emplace(beam);
   for (int i = 0; i < n_; ++i)
     if (beam.fixed()[i] != 0) held_.push_back(i);
 }
@@ -54,6 +48,10 @@ void BeamMotion::begin(const Method& method) {
     const double c = a / (1.0 + a * rule.rate);
     stage.a.kept[stages_.size() + 1] = 1.0;
     stage.a.add(-c, stage.w_still);
+    stage.v = stage.v_still;
+    stage.v.add(rule.displacement, stage.a);
+    stage.w = stage.w_still;
+    stage.w.add(rule.rate, stage.a);
     stage.e = stage.v_still;
     stage.e.add(b - c * (b * rule.rate + rule.displacement), stage.w_still);
     stages_.push_back(stage);
@@ -158,7 +156,7 @@ void BeamMotion::add_elastic(int first, int past, Tile& v, const Tile* w, Tile& 
     if (b == 0.0) continue;
     for (int i = 0; i < past - first + 2; ++i) v.plane[c][i] += b * w->plane[c][i];
   }
-  products_->elements.add(first, past, v.planes(), force.planes());
+  elements_->add(first, past, v.planes(), force.planes());
 }
 
 void BeamMotion::add_mass_damping(int first, int past, const Tile& w, Tile& force) const {
@@ -166,13 +164,14 @@ void BeamMotion::add_mass_damping(int first, int past, const Tile& w, Tile& forc
   Tile scaled;
   for (int c = 0; c < block_; ++c)
     for (int i = 0; i < past - first + 2; ++i) scaled.plane[c][i] = a * w.plane[c][i];
-  products_->mass.add(first, past, scaled.planes(), force.planes());
+  operator_.mass().products.add(first, past, scaled.planes(), force.planes());
 }
 
 // K* v + C* w, null: without C*. Changes v.
 void BeamMotion::add_forces(int first, int past, Tile& v, Tile* w, Tile& force) const {
-  if (products_->springs) products_->springs->add(first, past, v.planes(), force.planes());
-  if (w != nullptr && products_->drag) products_->drag->add(first, past, w->planes(), force.planes());
+  const BeamOperator::Matrix *const springs = operator_.springs(), *const drag = operator_.drag();
+  if (springs != nullptr) springs->products.add(first, past, v.planes(), force.planes());
+  if (w != nullptr && drag != nullptr) drag->products.add(first, past, w->planes(), force.planes());
   if (w != nullptr && proportional_) add_mass_damping(first, past, *w, force);
   add_elastic(first, past, v, w, force);
 }
@@ -186,7 +185,7 @@ void BeamMotion::fill_tile(int first, int past) {
   const int nodes = past - first;
   Tile elastic, rate, force;
   if (measuring_) measure_dissipation(first, past, rate, force);
-  force.clear(block_);
+  force.clear(block_, nodes);
   const Summand of_e{stage_->e, ghosts_[0], elastic}, of_w{stage_->w_still, ghosts_[2], rate};
   if (proportional_) {
     combine(std::array{of_e}, first, past);
@@ -215,9 +214,12 @@ void BeamMotion::fill_tile(int first, int past) {
 
 std::pair<double, double> BeamMotion::state(std::size_t stage, const double* v, const double* w, int i) const {
   const Stage& s = stages_[stage];
-  const View view = view_of(v, w);
-  const double a = at(s.a, view, i);
-  return {at(s.v_still, view, i) + s.displacement * a, at(s.w_still, view, i) + s.rate * a};
+  double of_v = s.v.v * v[i] + s.v.w * w[i], of_w = s.w.v * v[i] + s.w.w * w[i];
+  for (std::size_t j = 0; j < stage + 2; ++j) {
+    of_v += s.v.kept[j] * kept_[j][i];
+    of_w += s.w.kept[j] * kept_[j][i];
+  }
+  return {of_v, of_w};
 }
 
 void BeamMotion::still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const {

@@ -22,7 +22,7 @@
 #include "beam/element_rows.hpp"
 #include "methods/one_step_methods.hpp"
 #include "response/beam_operator.hpp"
-#include "response/block_rows.hpp"
+#include "response/tile.hpp"
 
 namespace traverse::structure {
 
@@ -48,7 +48,7 @@ class BeamMotion final : private solve::NodeFiller {
 
   /// Whether stages are solved by solve(); where not, the beam has hinges or a foundation that is not linear, and
   /// still() serves.
-  bool fused() const { return products_.has_value(); }
+  bool fused() const { return elements_.has_value(); }
   /// Fused, with Rayleigh's damping alone: dissipation(), set_range() and step_free() are for these.
   bool proportional() const { return fused() && proportional_; }
   /// The same in bending alone.
@@ -102,18 +102,13 @@ class BeamMotion final : private solve::NodeFiller {
   };
   struct Stage {
     Sum v_still, w_still, a, e;
+    Sum v, w;                               // once it is solved
     double rate = 0.0, displacement = 0.0;  // k1, k2
   };
   struct View {  // the vectors of the nodes [first, past)
     const double *v = nullptr, *w = nullptr;
     std::array<const double*, most_accelerations> kept{};
     int first = 0, past = 0;
-  };
-  struct Tile;
-  struct Products {
-    beam::ElementRows elements;
-    BlockRows mass;
-    std::optional<BlockRows> springs, drag;
   };
   template <int outputs>
   struct Terms;
@@ -145,7 +140,7 @@ class BeamMotion final : private solve::NodeFiller {
   BeamOperator& operator_;
   const double* dead_load_;
   int block_;
-  std::optional<Products> products_;
+  std::optional<beam::ElementRows> elements_;                 // where fused
   bool proportional_ = false;                                 // C = a M + b K
   std::vector<int> held_;                                     // local unknowns that stay zero
   std::array<std::vector<double>, most_accelerations> kept_;  // A_0, then one a stage

@@ -1,4 +1,4 @@
-// What the parts of BeamMotion share: sums of vectors on a tile, and a tile's columns unknown by unknown.
+// What the parts of BeamMotion share: sums of vectors on a tile.
 #pragma once
 
 #include <algorithm>
@@ -51,23 +51,6 @@ void add_up(const std::array<const double*, most_terms>& vectors,
   }
 }
 
-/// body(the block's size as a constant, -1: another), so that what goes from columns to planes is straight code.
-template <class Body>
-void with_block(int block, Body body) {
-  switch (block) {
-    case 2:
-      return body(std::integral_constant<int, 2>());
-    case 3:
-      return body(std::integral_constant<int, 3>());
-    case 5:
-      return body(std::integral_constant<int, 5>());
-    case 7:
-      return body(std::integral_constant<int, 7>());
-    default:
-      return body(std::integral_constant<int, -1>());
-  }
-}
-
 /// Vectors and their weights in so many sums.
 template <int outputs>
 struct BeamMotion::Terms {
@@ -82,30 +65,6 @@ struct BeamMotion::Terms {
   }
   void evaluate(std::ptrdiff_t from, int size, const std::array<double*, outputs>& to) const {
     with_count(count, [&](auto N) { add_up<N, outputs>(x, weight, from, size, to); });
-  }
-};
-
-/// The columns from the one before a tile to the one behind it, an array for each unknown.
-struct BeamMotion::Tile {
-  std::array<std::array<double, tile + 2>, beam::kinds> plane;
-
-  beam::Planes planes() {
-    beam::Planes result;
-    for (std::size_t c = 0; c < result.size(); ++c) result[c] = plane[c].data();
-    return result;
-  }
-  void clear(int block) {
-    for (int c = 0; c < block; ++c) plane[c].fill(0.0);
-  }
-  void separate(int block, const double* columns, int first, int count) {
-    with_block(block, [&](auto B) {
-      const int b = B > 0 ? B : block;
-      for (int i = 0; i < count; ++i)
-        for (int c = 0; c < b; ++c) plane[c][first + i] = columns[b * i + c];
-    });
-  }
-  void set(int block, int node, const double* column) {
-    for (int c = 0; c < block; ++c) plane[c][node] = column[c];
   }
 };
 

@@ -24,8 +24,8 @@ double BeamMotion::product_of(int block, int nodes, const Tile& x, const Tile& f
 // w^T C w and 2 A_0^T C w.
 void BeamMotion::measure_dissipation(int first, int past, Tile& rate, Tile& force) {
   Tile none;
-  none.clear(block_);
-  force.clear(block_);
+  none.clear(block_, past - first + 2);
+  force.clear(block_, past - first);
   const Sum of_w{0.0, 1.0, {}};
   combine(std::array{Summand{of_w, ghosts_[1], rate}}, first, past);
   add_forces(first, past, none, &rate, force);
@@ -53,8 +53,7 @@ void BeamMotion::measure_dissipation(int first, int past, Tile& rate, Tile& forc
 }
 
 double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
-  Sum rate = stages_[stage].w_still;
-  rate.add(stages_[stage].rate, stages_[stage].a);
+  const Sum& rate = stages_[stage].w;
   view_ = view_of(v, w);
   exchange_borders({&rate});
   double power = 0.0;
@@ -62,8 +61,8 @@ double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
   for (int first = 0; first < nodes_; first += tile) {
     const int past = std::min(nodes_, first + tile);
     combine(std::array{Summand{rate, ghosts_[0], rates}}, first, past);
-    none.clear(block_);
-    force.clear(block_);
+    none.clear(block_, past - first + 2);
+    force.clear(block_, past - first);
     add_forces(first, past, none, &rates, force);
     power += product_of(block_, past - first, rates, force);
   }
@@ -73,11 +72,11 @@ double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
 // Of displacements and rates on a tile, by the forces K* v and M w. Changes v.
 double BeamMotion::twice_energy(int first, int past, Tile& v, Tile& w) const {
   Tile force, moved = v;
-  force.clear(block_);
+  force.clear(block_, past - first);
   add_forces(first, past, v, nullptr, force);
   const double strain = product_of(block_, past - first, moved, force);
-  force.clear(block_);
-  products_->mass.add(first, past, w.planes(), force.planes());
+  force.clear(block_, past - first);
+  operator_.mass().products.add(first, past, w.planes(), force.planes());
   return strain + product_of(block_, past - first, w, force);
 }
 
@@ -98,8 +97,8 @@ double BeamMotion::put_to_rest(int first, int past, const double* rest, double* 
   for (int from = first; from < past; from += tile) {
     const int to = std::min(past, from + tile), begin = std::max(from - 1, 0), end = std::min(to + 1, nodes_);
     Tile displacement, rate;
-    displacement.clear(block_);
-    rate.clear(block_);
+    displacement.clear(block_, to - from + 2);
+    rate.clear(block_, to - from + 2);
     for (int node = begin; node < end; ++node) {
       for (int c = 0; c < block_; ++c) {
         const int i = node - (from - 1), k = block_ * node + c;

@@ -32,6 +32,41 @@ beam::BeamModel spans(std::vector<double> lengths, int elements, bool separate) 
   return model;
 }
 
+// r += factor A x.
+void add_product(const solve::BlockTridiagonal& A, double factor, const std::vector<double>& x,
+                 std::vector<double>& r) {
+  const int b = A.block;
+  for (int i = 0; i < A.nodes; ++i)
+    for (int row = 0; row < b; ++row)
+      for (int column = 0; column < b; ++column) {
+        const int place = i * b * b + row + column * b, next = (i + 1) * b;
+        r[i * b + row] += factor * A.diagonal[place] * x[i * b + column];
+        if (i + 1 == A.nodes) continue;
+        r[i * b + row] += factor * A.upper[place] * x[next + column];
+        r[next + column] += factor * A.upper[place] * x[i * b + row];
+      }
+}
+
+// The operator's products C* y + K* x and M y against the matrices' blocks and the assembled stiffness.
+void expect_products_of_blocks(const structure::BeamOperator& op, const beam::Beam& beam, const std::vector<double>& x,
+                               const std::vector<double>& y, const std::vector<double>& forces,
+                               const std::vector<double>& inertia) {
+  const int b = op.block();
+  std::vector<double> by_blocks(x.size()), mass(x.size()), largest(static_cast<std::size_t>(b)), heaviest(largest);
+  add_product(op.mass().rows, 1.0, y, mass);
+  add_product(solve::BlockTridiagonal::from(beam.stiffness(), b), 1.0, x, by_blocks);
+  add_product(solve::BlockTridiagonal::from(beam.damping(), b), 1.0, y, by_blocks);
+  for (int i = 0; i < op.unknowns(); ++i) {
+    largest[i % b] = std::max(largest[i % b], std::abs(by_blocks[i]));
+    heaviest[i % b] = std::max(heaviest[i % b], std::abs(mass[i]));
+  }
+  for (int i = 0; i < op.unknowns(); ++i) {
+    if (beam.fixed()[i] != 0) continue;
+    ASSERT_NEAR(forces[i], by_blocks[i], 1e-11 * largest[i % b]) << "unknown " << i;
+    ASSERT_NEAR(inertia[i], mass[i], 1e-14 * heaviest[i % b]) << "unknown " << i;
+  }
+}
+
 // K* x + C* y + M y in tiles of every size against the operator's products.
 void expect_same_products(const beam::BeamModel& model) {
   beam::Beam beam(PETSC_COMM_SELF, model);
@@ -39,10 +74,10 @@ void expect_same_products(const beam::BeamModel& model) {
   ASSERT_TRUE(beam::ElementRows::fit(beam));
   const structure::BeamOperator op(beam);
   const beam::ElementRows elements(beam);
-  const structure::BlockRows mass(op.mass().rows, op.mass().left);
-  std::vector<structure::BlockRows> others;
+  const structure::BlockRows& mass = op.mass().products;
+  std::vector<const structure::BlockRows*> others;
   for (const auto* m : {op.springs(), op.drag()})
-    if (m != nullptr) others.emplace_back(m->rows, m->left);
+    if (m != nullptr) others.push_back(&m->products);
   const bool springs = op.springs() != nullptr;
   const int nodes = beam.local_columns(), n = op.unknowns(), b = op.block();
   std::vector<double> x = numbers(n, 1), y = numbers(n, 2), expected(x.size()), inertia(x.size());
@@ -50,6 +85,7 @@ void expect_same_products(const beam::BeamModel& model) {
     if (beam.fixed()[i] != 0) x[i] = y[i] = 0.0;
   op.multiply(1.0, nullptr, y.data(), x.data(), expected.data());
   op.multiply(1.0, y.data(), nullptr, nullptr, inertia.data());
+  expect_products_of_blocks(op, beam, x, y, expected, inertia);
   std::vector<double> largest(static_cast<std::size_t>(b), 0.0);
   for (int i = 0; i < n; ++i) largest[i % b] = std::max(largest[i % b], std::abs(expected[i] += inertia[i]));
   using Tile = std::array<std::vector<double>, beam::kinds>;
@@ -77,7 +113,7 @@ void expect_same_products(const beam::BeamModel& model) {
       elements.add(first, past, planes(damped), planes(forces));
       mass.add(first, past, planes(heavy), planes(forces));
       for (std::size_t i = 0; i < others.size(); ++i)
-        others[i].add(first, past, planes(springs && i == 0 ? plain : rates), planes(forces));
+        others[i]->add(first, past, planes(springs && i == 0 ? plain : rates), planes(forces));
       for (int k = b * first; k < b * past; ++k)
         if (beam.fixed()[k] == 0) {
           ASSERT_NEAR(forces[k % b][k / b - first], expected[k], 1e-12 * largest[k % b])

@@ -1,0 +1,61 @@
+// The columns of a tile unknown by unknown, as products with many nodes at a time take them.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+#include "beam/planes.hpp"
+
+namespace traverse::structure {
+
+/// body(the block's size as a constant, -1: another), so that what goes from columns to planes is straight code.
+template <class Body>
+void with_block(int block, Body body) {
+  switch (block) {
+    case 2:
+      return body(std::integral_constant<int, 2>());
+    case 3:
+      return body(std::integral_constant<int, 3>());
+    case 5:
+      return body(std::integral_constant<int, 5>());
+    case 7:
+      return body(std::integral_constant<int, 7>());
+    default:
+      return body(std::integral_constant<int, -1>());
+  }
+}
+
+/// The columns from the one before a tile to the one behind it, an array for each unknown.
+struct Tile {
+  std::array<std::array<double, beam::tile + 2>, beam::kinds> plane;
+
+  beam::Planes planes() {
+    beam::Planes result;
+    for (std::size_t c = 0; c < result.size(); ++c) result[c] = plane[c].data();
+    return result;
+  }
+  void clear(int block, int count) {
+    for (int c = 0; c < block; ++c) std::fill_n(plane[c].begin(), count, 0.0);
+  }
+  void separate(int block, const double* columns, int first, int count) {
+    with_block(block, [&](auto B) {
+      const int b = B > 0 ? B : block;
+      for (int i = 0; i < count; ++i)
+        for (int c = 0; c < b; ++c) plane[c][first + i] = columns[b * i + c];
+    });
+  }
+  /// columns += factor * those of the first `count`.
+  void add_to(int block, int count, double factor, double* columns) const {
+    with_block(block, [&](auto B) {
+      const int b = B > 0 ? B : block;
+      for (int i = 0; i < count; ++i)
+        for (int c = 0; c < b; ++c) columns[b * i + c] += factor * plane[c][i];
+    });
+  }
+  void set(int block, int node, const double* column) {
+    for (int c = 0; c < block; ++c) plane[c][node] = column[c];
+  }
+};
+
+}  // namespace traverse::structure
