@@ -303,7 +303,8 @@ std::vector<std::pair<std::string, std::string>> values_of_run(const Study& stud
   return values;
 }
 
-Scene read_scene_of_study(options::Options given, const std::vector<std::pair<std::string, std::string>>& values) {
+Scene read_scene_of_study(const options::Options& given,
+                          const std::vector<std::pair<std::string, std::string>>& values) {
   options::Entries entries;
   for (const options::Entry& entry : given.entries())
     if (!entry.name.starts_with("study_") && entry.name != "sweep_speed" && entry.name != "sweep_hslm_a")

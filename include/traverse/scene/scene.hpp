@@ -135,6 +135,7 @@ Scene read_scene();
 /// The options that a study varies with their values in one run, as a user would write them.
 std::vector<std::pair<std::string, std::string>> values_of_run(const Study& study, std::size_t run);
 /// The scene of a study with other values (as a user would write them) of some of its options; a sweep of itself alone.
-Scene read_scene_of_study(options::Options options, const std::vector<std::pair<std::string, std::string>>& values);
+Scene read_scene_of_study(const options::Options& given,
+                          const std::vector<std::pair<std::string, std::string>>& values);
 
 }  // namespace traverse::app
