@@ -96,7 +96,9 @@ std::optional<int> run_once(Job& job) {
     shared.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
   }
   shared.prepare(scene, notes);
-  const double counting = frequency_that_counts(scene, shared, cheap || limits_deck_acceleration(scene), notes);
+  const bool limited = limits_deck_acceleration(scene);
+  const double counting =
+      limited || scene.output.low_pass_asked ? frequency_that_counts(scene, shared, cheap || limited, notes) : 0.0;
   if (counting > 0.0) scene.looks = spacing_for(counting);
   Passage passage(scene, shared, notes);  // everything is checked before anything is computed
   coupling::System& system = passage.system();

@@ -132,7 +132,7 @@ constexpr Row run_rows[] = {
   {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},
   {"output_interval", number, "s", "(from the step)", positive, "", 0, "between stored samples"},
   {"output_probes", numbers, "m", "(middle of each span, of 200)", not_negative, "", 0, "stations on the beam where the response is stored"},
-  {"output_lowpass", text, "Hz", "auto", any, "", 0, "frequency up to which deck accelerations count: their peak is given without a filter and with a low-pass there; auto: the greatest of 30 Hz, 1.5 f1 and f3; none: without alone"},
+  {"output_lowpass", text, "Hz", "auto", any, "", 0, "frequency up to which deck accelerations count: their peak is given without a filter and, where this, output_lowpass_series or limits ask for it, with a low-pass there; auto: the greatest of 30 Hz, 1.5 f1 and f3; none: without alone"},
   {"output_lowpass_series", flag, "", "false", any, "", 0, "stores the filtered accelerations beside the others"},
   {"output_quiet", flag, "", "false", any, "", 0, "no progress on the terminal"},
 

@@ -76,8 +76,8 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
 
 // How many evenly spaced looks there are among so many steps: no further apart than wanted, each at the end of a step.
 long looks_among(long steps, double step, double longest) {
-  const double most = std::min(static_cast<double>(steps), longest / step * (1.0 + 1e-9));
-  for (long each = static_cast<long>(most); each > 1; --each)
+  const double fit = std::min(static_cast<double>(steps), longest / step * (1.0 + 1e-9));
+  for (long each = static_cast<long>(fit); each > 1; --each)
     if (steps % each == 0) return steps / each;
   return steps;
 }
@@ -141,7 +141,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   } else {
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples)));
     plan.stored = scene.step_probes ? steps : looks_among(steps, plan.time_step, scene.looks);
-    plan.interval = plan.time_step * static_cast<double>(steps / plan.stored);
+    plan.interval = plan.time_step * static_cast<double>(steps) / static_cast<double>(plan.stored);
   }
   move_end_to_sample(plan);
   return plan;

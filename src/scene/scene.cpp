@@ -102,6 +102,7 @@ std::optional<double> read_low_pass(const Options& o) {
 void read_filter(const Options& o, Scene& scene) {
   scene.output.low_pass = read_low_pass(o);
   scene.output.low_passed_series = o.flag("output_lowpass_series");
+  scene.output.low_pass_asked = o.has("output_lowpass") || scene.output.low_passed_series;
   for (const char* name : {"output_lowpass", "output_lowpass_series"})
     if (o.has(name) && (!scene.beam || scene.analysis != Analysis::transient || scene.sweep))
       scene.notes.push_back(std::string(name) + " has no effect: it is for single transient runs over a bridge");

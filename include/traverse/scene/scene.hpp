@@ -42,6 +42,7 @@ struct Output {
   std::optional<double> interval;  // s; left out: chosen with the step
   std::vector<double> probes;      // stations; default: the middle of every span (of the first 200)
   std::optional<double> low_pass;  // Hz, up to which deck accelerations count; 0: all; left out: as EN 1990 has it
+  bool low_pass_asked = false;     // else deck accelerations are filtered where limits ask for it
   bool low_passed_series = false;  // filtered accelerations are stored
 };
 
