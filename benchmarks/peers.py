@@ -2,15 +2,18 @@
 """Prints wall times against those of VBI-2D, TTB-2D and ROSE, same size and steps, then at equal error: factors, errors.
 /usr/bin/python3 benchmarks/peers.py [BUILD_FOLDER] [OUT_FOLDER] [ROUNDS] [--smallest]; writes peers.csv and peers.png.
 
-The peers' seconds were measured once on one core of another machine of this kind, and are not repeated here; ours are
-medians of ROUNDS (7) runs, all cases of a kind in turn, of the time loop with all results stored at every step. Of the
-settings that are tried for equal error those that the program refuses, as too long a step, are left out and counted.
+The peers' seconds are those of OUT_FOLDER/peers_here.csv where benchmarks/peers_here.py has measured them on this
+machine, else those that were measured once on one core of another machine of this kind; the table says which. Ours are
+medians of ROUNDS (7) runs, all cases of a kind in turn, with all results stored at every step. Loop stands against
+loop, and where the peer's whole run is known, it stands against our whole process, start included. Of the settings that
+are tried for equal error those that the program refuses, as too long a step, are left out and counted.
 """
 
+import csv
 import itertools
 import os
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import matplotlib
 
@@ -36,13 +39,16 @@ ON_THE_BRIDGE = {
 class Case:
     name: str
     program: str
-    seconds: float       # the peer's
+    seconds: float       # the peer's, of its time loop
     error: float         # the peer's, of the peak deflection; what equal error means
     references: list     # m, converged peak at every probe
     same: dict           # the peer's mesh and steps
     models: dict         # what equal error is looked for with: name, options
     grid: dict           # and their values, all combined; from coarse to fine
     interval: float      # s, the peer's step
+    whole: float = 0.0   # s, the peer's whole run; 0: not known
+    machine: str = "another machine"  # that the peer's seconds are from
+    modes: int = 0       # at the same size and steps: so many modes under linear vehicles as well; 0: not tried
 
 
 def grid_of(option, values, steps):
@@ -58,9 +64,11 @@ AS_THE_PEERS_TRACK = {"track_elements_per_bay": 2}  # TTB-2D has 1,918 unknowns 
 
 CASES = [
     Case("R3, 60 elements", "VBI-2D", 0.89, 2e-4, [-4.18626809e-4],
-         SPRUNG_MASS["sprung mass"] | {"beam_elements_per_span": 60}, SPRUNG_MASS, SPRUNG_MASS_GRID, 1e-3),
+         SPRUNG_MASS["sprung mass"] | {"beam_elements_per_span": 60}, SPRUNG_MASS, SPRUNG_MASS_GRID, 1e-3,
+         modes=16),
     Case("R3, 960 elements", "VBI-2D", 16.9, 2e-4, [-4.18626809e-4],
-         SPRUNG_MASS["sprung mass"] | {"beam_elements_per_span": 960}, SPRUNG_MASS, SPRUNG_MASS_GRID, 1e-3),
+         SPRUNG_MASS["sprung mass"] | {"beam_elements_per_span": 960}, SPRUNG_MASS, SPRUNG_MASS_GRID, 1e-3,
+         modes=16),
     # The peer rounds the span to 50.1 m: 5.5e-3 of the peak. (At that span its own error is 1.8e-4.)
     Case("R8, ballasted bridge", "TTB-2D", 17.1, 5e-3, [-5.38333e-4],
          R8 | AS_THE_PEERS_TRACK | {"ts_max_time": 3.961},
@@ -92,9 +100,25 @@ def error(case, run):
     return max(off) / max(abs(value) for value in case.references)
 
 
+def timed_here(cases, folder):
+    """The cases with the peers' seconds of this machine, where these were measured."""
+    file = os.path.join(folder, "peers_here.csv")
+    if not os.path.exists(file):
+        return cases
+    with open(file, newline="") as table:
+        here = {line["case"]: line for line in csv.DictReader(table)}
+    return [replace(case, seconds=float(here[case.name]["seconds of the loop"]),
+                    whole=float(here[case.name]["seconds in all"]), machine="this machine")
+            if case.name in here else case for case in cases]
+
+
 def same_size(build, folder, rounds, case):
     options = case.same | {"ts_dt": case.interval, "output_interval": case.interval}
-    measured = runs.in_turn(build, {name: options | kind for name, kind in INTEGRATORS.items()}, rounds, folder)
+    kinds = dict(INTEGRATORS)
+    if case.modes:
+        kinds |= {f"{name}, {case.modes} modes": kind | {"model_modes": case.modes, "model_vehicles": "linear"}
+                  for name, kind in INTEGRATORS.items()}
+    measured = runs.in_turn(build, {name: options | kind for name, kind in kinds.items()}, rounds, folder)
     for name, (seconds, run) in measured.items():
         yield row(case, "same size and steps", name, seconds, run, error(case, run))
 
@@ -135,14 +159,16 @@ def equal_error(build, folder, rounds, case, model, options, grid):
 
 
 def row(case, kind, how, seconds, run, off):
+    whole = case.whole / run.process_seconds if case.whole else None
     print(f"{case.name:24}{kind:21}{run.unknowns:7}{run.steps:7}{1e3 * seconds:10.3g}{case.seconds / seconds:9.4g}"
-          f"{off:10.1e}  {how}", flush=True)
+          f"{'' if whole is None else format(whole, '.3g'):>8}{off:10.1e}  {how}", flush=True)
     return [case.name, case.program, case.seconds, case.error, kind, how, run.unknowns, run.steps, seconds,
-            case.seconds / seconds, off, run.process_seconds]
+            case.seconds / seconds, off, run.process_seconds, whole, case.machine]
 
 
 def picture(rows, file):
     names = list(dict.fromkeys(r[0] for r in rows))
+    machines = {r[0]: r[13] for r in rows}
     kinds = {"esdirk4": "same size and steps, esdirk4", "genalpha": "same size and steps, genalpha"}
     figure, axes = plt.subplots(figsize=(9, 4.5), layout="constrained")
     series = {label: [next(r[9] for r in rows if r[0] == n and r[5] == how) for n in names]
@@ -156,8 +182,8 @@ def picture(rows, file):
         places = [x + 0.2 * (i - 1.5) for x, factor in enumerate(factors) if factor]
         bars = axes.bar(places, [factor for factor in factors if factor], 0.19, label=label)
         axes.bar_label(bars, fmt="%.0f", fontsize=7)
-    axes.set(yscale="log", ylabel="the peer's wall time (another machine) over ours")
-    axes.set_xticks(range(len(names)), names, fontsize=8)
+    axes.set(yscale="log", ylabel="the peer's wall time over ours")
+    axes.set_xticks(range(len(names)), [f"{name}\n(peer on {machines[name]})" for name in names], fontsize=8)
     axes.grid(True, axis="y", alpha=0.4)
     axes.legend(fontsize=8, loc="upper right")
     figure.savefig(file, dpi=120)
@@ -185,16 +211,20 @@ def main():
     arguments = runs.parser(__doc__)
     arguments.add_argument("rounds", nargs="?", type=int, default=7, metavar="ROUNDS")
     given = runs.given(arguments)
-    print(f"{'':45}{'size':>7}{'steps':>7}{'ms':>10}{'factor':>9}{'error':>10}  (the peers' seconds: another machine)")
+    cases = timed_here(CASES, given.out)
+    for case in cases:
+        print(f"{case.name}: {case.program} took {case.seconds:g} s in its loop on {case.machine}"
+              + (f", {case.whole:g} s in all" if case.whole else ""))
+    print(f"{'':45}{'size':>7}{'steps':>7}{'ms':>10}{'factor':>9}{'whole':>8}{'error':>10}")
     with tempfile.TemporaryDirectory() as folder:
         if given.smallest:
-            rows = measured(given.build, folder, 1, CASES[0::2], [(CASES[2], COACH_OFF_TRACK)], finest_of)
+            rows = measured(given.build, folder, 1, cases[0::2], [(cases[2], COACH_OFF_TRACK)], finest_of)
         else:
-            off_track = [(CASES[2], COACH_OFF_TRACK), (CASES[3], COACHES_OFF_TRACK)]
-            rows = measured(given.build, folder, given.rounds, CASES, off_track, dict)
+            off_track = [(cases[2], COACH_OFF_TRACK), (cases[3], COACHES_OFF_TRACK)]
+            rows = measured(given.build, folder, given.rounds, cases, off_track, dict)
     runs.write_table(os.path.join(given.out, "peers.csv"),
                      ["case", "peer", "peer's seconds", "peer's error", "kind", "how", "unknowns", "steps", "seconds",
-                      "factor", "error", "seconds of the process"], rows)
+                      "factor", "error", "seconds of the process", "factor of the whole", "the peer's machine"], rows)
     picture(rows, os.path.join(given.out, "peers.png"))
 
 

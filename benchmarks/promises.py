@@ -2,7 +2,7 @@
 """Whether -accuracy keeps its promise: scenes at several accuracies, each against a run that is refined until it settles.
 /usr/bin/python3 benchmarks/promises.py [BUILD_FOLDER] [OUT_FOLDER] [--quick] [--drawn FIRST LAST] [--finest] [--smallest]
 
-Twenty-two written scenes, or with --drawn those drawn at random with these numbers; --finest adds an accuracy of 1e-5,
+Twenty-six written scenes, or with --drawn those drawn at random with these numbers; --finest adds an accuracy of 1e-5,
 --quick takes four scenes at 1e-2 and 1e-3, --smallest one scene at 1e-2.
 Prints, for every scene and accuracy, the largest true error of what is promised over the accuracy, what is not promised,
 and the seconds of the trial runs, the time loop and the process (two scenes run at once). Writes promises.csv.
@@ -23,7 +23,8 @@ from scene_texts import beam, car, coaches, drawn
 
 QUANTITIES = {"deflection": "deflection", "acceleration": "acceleration", "moment": "moment",
               "wheel force": "greatest_wheel_force"}
-SIMPLE = "[pinned, roller]"
+SIMPLE, FIVE = "[pinned, roller]", "[pinned, roller, roller, roller, roller]"
+VEHICLES = os.path.join(runs.ROOT, "options", "vehicles")
 SCENES = {
     "coach, 32 m": beam(32.0, 2.5e11, 3e4, SIMPLE, 0.02) + coaches("velaro", 1, 70.0) + "scene: {tail: 0.5}\n",
     "two coaches, three spans": beam([40.0, 50.0, 40.0], 4e11, 2.5e4, "[pinned, roller, roller, roller]", 0.01)
@@ -61,6 +62,16 @@ SCENES = {
     "HSLM-A3": beam(20.0, 1.5e10, 1e4, SIMPLE, 0.01) + "load: {hslm_a: 3, speed: 60.0}\n",
     "eight coaches": beam([30.0, 30.0], 2e11, 2.5e4, "[pinned, roller, roller]", 0.015) + coaches("velaro", 8, 90.0),
     "stiff contact": beam(25.0, 8.3e9, 2303.0, SIMPLE, 0.02) + car("linear", 1.6e9, 5750.0, 1e3, 1.6e6, 1e4, 27.8),
+    # What comes late in the run and is unlike all before.
+    "late bump": beam([30.0] * 4, 2e11, 2e4, FIVE, 0.01) + car("hertz", 3.6e10, 12e3, 1500.0, 1.2e6, 2e4, 60.0)
+    + "track:\n  profile: bump\n  bump: {start: 100.0, length: 2.0, height: 0.012}\n",
+    "late stiff coach": beam([30.0] * 4, 2e11, 2e4, FIVE, 0.01)
+    + coaches("velaro", 5, 70.0).replace("train:", f"  other: {{file: {VEHICLES}/y25_wagon.yml}}\ntrain:").replace(
+        "coach*5", "[coach, coach, coach, coach, other]"),
+    "short span first": beam([12.0, 40.0, 40.0, 40.0], 2e11, 2e4, FIVE, 0.01) + coaches("velaro", 2, 70.0),
+    "late prop": beam([30.0] * 4, 2e10, 1e4, FIVE, 0.02)
+    + "foundation:\n  vertical: {x: 105.0, k: 2.0e8, c: 1.0e5, one_sided: true}\n"
+    + car("hertz", 3e10, 15e3, 1200.0, 1.5e6, 2e4, 45.0, -2.0),
 }
 REFERENCE = (50, 4e-4)  # elements in the longest span and s, halved
 ON_BED, WITH_HINGE = 300, 25

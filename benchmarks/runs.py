@@ -107,12 +107,15 @@ class Run:
 
 
 def unknowns(text):
-    """Of all nodes, held ones included, of sleepers, ballast and vehicles, from what the program says it modelled."""
+    """Of all nodes, held ones included, or modes, of sleepers, ballast and vehicles, as the program says it modelled."""
 
     def number(pattern):
         found = re.search(pattern, text)
         return int(found.group(1)) if found else 0
 
+    modes = number(r"the bridge by (\d+) modes")
+    if modes:
+        return modes + number(r"degrees of freedom (\d+)")
     spans = number(r"(\d+) spans? \(each of its own\)") or 1
     per_node = number(r"elements, (\d+) unknowns a node") or 2
     total = per_node * (number(r"spans?[^,]*, (\d+) elements") + spans) + number(r"degrees of freedom (\d+)")

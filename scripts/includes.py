@@ -15,7 +15,7 @@ import sys
 
 # From the top layer down: a room includes headers of rooms that stand behind it, never before it.
 # The options stand above what they describe: their tables take the names of joints and foundations from there.
-LAYERS = ["app", "study", "accuracy", "run", "scene", "results", "lanes", "integrate", "coupling", "structure", "response",
+LAYERS = ["app", "study", "accuracy", "run", "scene", "norm", "results", "lanes", "integrate", "coupling", "structure", "response",
           "train", "options", "contact", "multibody", "track", "modes", "recovery", "beam", "solve", "methods", "base"]
 WITHOUT_PETSC = {"multibody", "contact", "track"}
 GREATEST_SHARE = 0.10  # of all lines, in one room
@@ -139,7 +139,7 @@ def shares(sources):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     arguments.add_argument("--limit-rooms", action="store_true",
-                           help=f"fail where a room has more than {GREATEST_SHARE:.0%} of all lines")
+                           help=f"fail where a room has more than {GREATEST_SHARE:.0%}% of all lines")
     arguments.add_argument("root", nargs="?", type=pathlib.Path, default=pathlib.Path(__file__).parent.parent)
     chosen = arguments.parse_args()
     sources = Sources(chosen.root.resolve())

@@ -7,7 +7,6 @@ and accelerations over time; or natural shapes; or the peaks of a sweep over the
 
 import argparse
 import sys
-from typing import NamedTuple
 
 import h5py
 import matplotlib
@@ -15,77 +14,15 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
-from matplotlib.transforms import ScaledTranslation, blended_transform_factory  # noqa: E402
+from matplotlib.transforms import blended_transform_factory  # noqa: E402
+from picture_axes import (  # noqa: E402
+    COLOURS, GREY, LABEL_SIZE, PALE, STYLES, End, label_at_ends, time_panel)
 from picture_data import (  # noqa: E402
     MOST_CURVES, MOST_TRAINS, MOST_WHEELS, Results, car_body, choose, choose_probes, envelope, natural, ordinal,
-    place_in_words, spread, thin)
+    place_in_words)
+from picture_model import Model, draw_forces, draw_foundation, draw_supports, symbols_in_words  # noqa: E402
 from picture_words import (  # noqa: E402
     method_in_words, modes_in_words, summary_in_words, sweep_in_words, worst_in_words)
-
-# Okabe and Ito's colours, told apart by colour-blind readers; the darker ones first, they carry text.
-COLOURS = ["#0072B2", "#D55E00", "#007A59", "#A8578A", "#8A6A00", "#3A3A3A"]
-STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2))]  # where there are more curves than colours
-GREY, PALE = "#666666", "#B8B8B8"
-LABEL_SIZE = 10
-
-plt.rcParams.update({
-    "font.family": "DejaVu Sans", "font.size": 11, "axes.titlesize": 13, "axes.titleweight": "bold",
-    "axes.titlelocation": "left", "axes.titlepad": 8, "axes.grid": True, "grid.color": "#DDDDDD",
-    "grid.linewidth": 0.6, "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#888888",
-    "text.parse_math": False,  # a scene's name may hold $
-    "axes.axisbelow": True, "lines.linewidth": 1.5, "lines.solid_joinstyle": "round", "axes.xmargin": 0.0,
-})
-
-
-class End(NamedTuple):
-    """The end of a curve, with the curve's name and looks. x: as a part of the axes' width."""
-    value: float
-    name: str
-    colour: str
-    style: object = "-"
-    x: float = 1.0
-
-
-def label_at_ends(ax, ends):
-    """Names right of the axes, each joined to the end of its curve."""
-    low, high = ax.get_ylim()
-    height = ax.get_position().height * ax.figure.get_figheight() * 72  # points
-    gap = 1.5 * LABEL_SIZE / height
-    places = spread([(end.value - low) / (high - low) for end in ends], gap, 0.03, 0.97)
-    for end, place in zip(ends, places):
-        early = end.x < 1.0  # the line to the name must not look like the curve
-        line = {"arrowstyle": "-", "color": PALE if early else end.colour, "lw": 0.9, "ls": ":" if early else end.style, "shrinkA": 1, "shrinkB": 0,
-                "relpos": (0.0, 0.5)}
-        ax.annotate(end.name, xy=(end.x, (end.value - low) / (high - low)), xytext=(1.035, place),
-                    xycoords="axes fraction", textcoords="axes fraction", va="center", color=end.colour,
-                    fontsize=LABEL_SIZE, annotation_clip=False, arrowprops=line)
-
-
-def time_panel(ax, results, title, unit, curves, band=None, worst=None):
-    """curves: (name, values); band: (name, least, greatest)."""
-    ax.set_title(title)
-    ax.set_ylabel(unit)
-    time, ends = results.time, []
-    if band is not None:
-        name, least, greatest = band
-        t, lower = thin(time, least)
-        u, upper = thin(time, greatest)
-        grid = np.union1d(t, u)
-        ax.fill_between(grid, np.interp(grid, t, lower), np.interp(grid, u, upper), color=PALE, alpha=0.55, lw=0)
-        ends.append(End(0.5 * (least[-1] + greatest[-1]), name, GREY))
-    for (name, values), colour in zip(curves, COLOURS):
-        ax.plot(*thin(time, values), color=colour)
-        ends.append(End(values[-1], name, colour))
-    if worst is not None and time[0] <= worst <= time[-1]:
-        ax.axvline(worst, color=GREY, lw=0.9, ls=(0, (4, 3)))
-        ax.text(1.0, 1.03, "dashed: worst instant", transform=ax.transAxes, ha="right", va="bottom", fontsize=9,
-                color=GREY)
-    if len(time) > 1:
-        ax.set_xlim(time[0], time[-1])
-    low, high = ax.get_ylim()
-    if low > 0.0 and low < 0.6 * high:
-        ax.set_ylim(0.0, high)
-    label_at_ends(ax, ends)
 
 
 def draw_deflection(ax, results, worst):
@@ -94,6 +31,40 @@ def draw_deflection(ax, results, worst):
     note = "" if len(chosen) == values.shape[1] else f" ({len(chosen)} of {values.shape[1]} places)"
     curves = [(place_in_words(results.probes[i], results.supports), values[:, i]) for i in chosen]
     time_panel(ax, results, f"Deflection of the bridge, upward positive{note}", "mm", curves, worst=worst)
+
+
+# What a crossing shows when asked: the dataset, its title, unit and the factor to it.
+ASKED = {"acceleration": ("Vertical acceleration of the bridge, unfiltered", "m/s²", 1.0),
+         "moment": ("Bending moment of the bridge, positive in sagging", "kN m", 1e-3),
+         "shear": ("Shear force of the bridge", "kN", 1e-3)}
+
+
+STATIC = {"deflection": ("Static deflection wherever the load stands, upward positive", "mm", 1e3),
+          "moment": ("Bending moment, positive in sagging", "kN m", 1e-3), "shear": ("Shear force", "kN", 1e-3)}
+
+
+def draw_asked(ax, results, name):
+    title, unit, factor = ASKED[name]
+    values = factor * results.over_time(results.file[f"probes/{name}"])
+    chosen = choose_probes(results, np.abs(values).max(axis=0))
+    note = "" if len(chosen) == values.shape[1] else f" ({len(chosen)} of {values.shape[1]} places)"
+    time_panel(ax, results, title + note, unit,
+               [(place_in_words(results.probes[i], results.supports), values[:, i]) for i in chosen])
+
+
+def draw_bearings(ax, results):
+    """Supports, and springs of the foundation, those that carry most."""
+    found = []
+    if "supports/reaction" in results.file:
+        forces = 1e-3 * results.over_time(results.file["supports/reaction"])[:, :, 1]
+        found += [(f"support at {x:.6g} m", forces[:, i]) for i, x in enumerate(results.supports) if forces[:, i].any()]
+    if "foundation/vertical/force" in results.file:
+        forces = 1e-3 * results.over_time(results.file["foundation/vertical/force"])
+        found += [(f"spring at {x:.6g} m", forces[:, i])
+                  for i, x in enumerate(results.values("foundation/vertical/x"))]
+    chosen = choose(len(found), MOST_CURVES, np.array([np.abs(values).max() for _, values in found]))
+    note = "" if len(chosen) == len(found) else f" ({len(chosen)} of {len(found)})"
+    time_panel(ax, results, f"Bearing forces on the bridge, upward positive{note}", "kN", [found[i] for i in chosen])
 
 
 def draw_wheels(ax, results, wheels):
@@ -136,37 +107,40 @@ def draw_accelerations(ax, results, cars):
     time_panel(ax, results, title, "m/s²", [("first car", series[0]), ("last car", series[-1])], band)
 
 
-def draw_supports(ax, results, low, high):
-    """Under the undeflected line, in the shapes that engineers draw."""
-    if results.supports is None:
-        return
-    markers = {"pinned": "^", "roller": "o", "clamped": "s", "guided": "D"}
-    points = blended_transform_factory(ax.transData, ax.transData) + ScaledTranslation(
-        0, -6.5 / 72, ax.figure.dpi_scale_trans)
-    for x, kind in zip(results.supports, results.support_types()):
-        if low <= x <= high and kind != "free":
-            ax.plot([x], [0.0], markers.get(kind, "^"), ms=11, color="white", mec="#333333", mew=1.4, transform=points,
-                    clip_on=False, zorder=5)
+def draw_symbols(ax, results, low, high):
+    """Supports, springs and hinges under the undeflected line; in words what has been drawn."""
+    model = Model(results)
+    return symbols_in_words(draw_foundation(ax, model, low, high) | draw_supports(ax, model, low, high))
 
 
 def draw_train(ax, results, time):
-    """Where the vehicles stand at that time, as boxes above the bridge."""
-    if results.rows == 0 or not results.vehicles:
-        return
-    row = int(np.argmin(np.abs(results.time - time)))
+    """Where vehicles and forces stand at that time, as boxes and arrows above the bridge."""
     above = blended_transform_factory(ax.transData, ax.transAxes)
     low, high = ax.get_xlim()
     middle = []
-    for vehicle in results.vehicles:
+    row = int(np.argmin(np.abs(results.time - time))) if results.rows else 0
+    for vehicle in results.vehicles if results.rows else []:
         xs = [vehicle[name]["position"][row, 0] for name in vehicle if "position" in vehicle[name]]
         if not xs or max(xs) < low or min(xs) > high:
             continue
         left, width = max(min(xs), low), max(min(max(xs), high) - max(min(xs), low), 0.004 * (high - low))
         ax.add_patch(plt.Rectangle((left, 0.80), width, 0.07, transform=above, color="#9DB7C9", lw=0))
         middle.append(left + width / 2)
+    forces = Model(results).forces_at(time, results.options)
+    places = forces[:, 0]
+    there = (places >= low) & (places <= high)
+    draw_forces(ax, places[there], forces[there, 1], 0.14, 0.76, above)
+    middle += list(places[there])
     if middle:
-        ax.text(np.clip(np.mean(middle), low, high), 0.885, "the train", transform=above, ha="center", va="bottom",
+        name = what_moves(results, len(forces))
+        ax.text(np.clip(np.mean(middle), low, high), 0.915, name, transform=above, ha="center", va="bottom",
                 fontsize=9, color=GREY)
+
+
+def what_moves(results, forces):
+    """'the train' only where there is one."""
+    vehicles = "the train" if len(results.vehicles) > 1 else "the vehicle" if results.vehicles else ""
+    return " and ".join(filter(None, (vehicles, "moving forces" if forces > 1 else "a moving force" if forces else "")))
 
 
 def draw_shape(ax, results):
@@ -184,9 +158,10 @@ def draw_shape(ax, results):
     ax.plot(x[inside], shape[inside], color=COLOURS[0], lw=3.2, solid_capstyle="round")
     deepest, highest = min(shape.min(), 0.0), max(shape.max(), 0.0)
     height = max(deepest * -1.0, highest, 1e-9)
-    ax.set_ylim(deepest - 0.35 * height, highest + (0.75 if results.vehicles else 0.3) * height)
+    moves = results.vehicles or Model(results).forces
+    ax.set_ylim(deepest - 0.35 * height, highest + (0.75 if moves else 0.3) * height)
     ax.set_xlim(low - 0.02 * (high - low), high + 0.02 * (high - low))
-    draw_supports(ax, results, low, high)
+    symbols = draw_symbols(ax, results, low, high)
     draw_train(ax, results, time)
     worst = int(np.argmax(np.abs(shape)))
     if np.any(shape):
@@ -199,7 +174,8 @@ def draw_shape(ax, results):
     scale = (np.ptp(ax.get_xlim()) / width) / (1e-3 * np.ptp(ax.get_ylim()) / (box.height * ax.figure.get_figheight()))
     ax.set_title(f"The bridge at its worst instant, {time:.4g} s" if results.rows > 1 else "The bridge under its load")
     times = f"{float(f'{scale:.2g}'):,.0f}"
-    said = f"Deflection is drawn\n{times} times too large.\nTriangles, circles and\nsquares are supports.{note}"
+    listed = "".join(f"\n{symbol}" for symbol in symbols.split("    ") if symbol)
+    said = f"Deflection is drawn\n{times} times too large.{listed}{note}"
     ax.text(1.035, 0.5, said, transform=ax.transAxes, va="center", fontsize=LABEL_SIZE, color=GREY, linespacing=1.4)
     ax.set_ylabel("mm")
     ax.set_xlabel("place along the track (m)")
@@ -238,6 +214,33 @@ def draw_sweep(ax, results):
     label_at_ends(ax, ends)
 
 
+def draw_study(ax, results):
+    """The greatest deflection over what is varied most, a curve for each value of the rest."""
+    from traverse_report import curves, source  # which draw with this file's means
+    study = source.Source(results.file.filename)
+    values = 1e3 * study.runs.of_run("peak_deflection")
+    drawn = curves.over_x(ax, study, "peak_deflection", values, "mm", []) if study.runs.x_name else 0
+    if not drawn:
+        ax.plot(np.sort(values), np.linspace(0.0, 1.0, len(values)), color=COLOURS[0])
+        ax.set(xlabel="greatest deflection (mm)", ylabel="part of the runs that stay below")
+    over = f"; thick: the greatest of all {' and '.join(study.runs.over)}, dotted: the median"
+    over = over if study.runs.over and drawn else ""
+    lines = f", a curve for each {study.runs.lines_in_words()}" if study.runs.line_names and drawn else ""
+    ax.set_title(f"Greatest deflection of the bridge{lines}{over}", fontsize=11)
+
+
+def draw_static(ax, results, name):
+    """Least and greatest along the bridge of every load, wherever it stands."""
+    _, unit, factor = STATIC[name]
+    x, values = results.values("static/x"), factor * results.values(f"static/{name}")
+    for i, (load, _) in enumerate(results.file["static/load"].asstr()[:]):
+        for side in (0, 1):
+            ax.plot(x, values[i, :, side], color=COLOURS[i % len(COLOURS)], label=None if side else load)
+    ax.axhline(0.0, color=PALE, lw=1.0)
+    ax.set(title=STATIC[name][0], ylabel=unit, xlabel="place along the bridge (m)", xlim=(x[0], x[-1]))
+    ax.legend(loc="center left", bbox_to_anchor=(1.03, 0.5), frameon=False, fontsize=LABEL_SIZE)
+
+
 def draw_modes(figure, results):
     """The first shapes, two a row; or the frequencies alone."""
     frequency, shapes = results.values("modes/frequency"), results.values("modes/shape")
@@ -259,7 +262,7 @@ def draw_modes(figure, results):
         ax.set_ylim(-1.25, 1.25)
         ax.set_yticks([])
         ax.set_xlim(x[0] - 0.02 * np.ptp(x), x[-1] + 0.02 * np.ptp(x))
-        draw_supports(ax, results, x[0], x[-1])
+        draw_symbols(ax, results, x[0], x[-1])
         along = ", along the track" if axial is not None and axial[i] else ""
         ax.set_title(f"{frequency[i]:.4g} Hz{along}" if frequency[i] > 0.0 else f"free motion{along}")
         if i >= count - 2:
@@ -273,8 +276,12 @@ def heading(figure, results, modes_only):
         title += ": natural shapes of the bridge"
     elif results.options.get("scene_analysis") == "static":
         title += ", at rest"
+    elif results.options.get("scene_analysis") == "envelope":
+        title += ", largest static effects"
     elif "sweep/speed" in results.file:
         title += f", {sweep_in_words(results)}"
+    elif "study/finished" in results.file:
+        title += f", a study of {len(results.file['study/finished']):,} runs"
     elif speed:
         title += f", {3.6 * speed:.4g} km/h"
     figure.text(0.06, 1.0 - 0.30 / figure.get_figheight(), title, fontsize=18, weight="bold", va="top")
@@ -282,7 +289,7 @@ def heading(figure, results, modes_only):
     if not summary and results.rows:
         said.append(f"the run did not reach its end; drawn as far as {results.time[-1]:.4g} s")
     if modes_only and "modes/shape" in results.file:
-        said = ["each drawn to the same greatest height; circles, triangles and squares are supports"]
+        said = ["each drawn to the same greatest height; circles, triangles and squares are supports, zigzags springs"]
     figure.text(0.06, 1.0 - 0.68 / figure.get_figheight(), "; ".join(said), fontsize=11.5, color=GREY, va="top")
     attrs = results.file.attrs
     foot = f"{attrs.get('program', 'traverse')} {attrs.get('version', '')}"
@@ -294,7 +301,18 @@ def heading(figure, results, modes_only):
     figure.text(0.94, 0.16 / figure.get_figheight(), foot, fontsize=8.5, color=GREY, ha="right")
 
 
-def panels(results):
+def asked_panels(results, asked):
+    """Of those asked for by name what the file holds."""
+    found = []
+    for name in asked:
+        if name == "bearings" and ("supports/reaction" in results.file or "foundation/vertical/force" in results.file):
+            found.append(lambda ax, worst: draw_bearings(ax, results))
+        elif name != "bearings" and f"probes/{name}" in results.file:
+            found.append(lambda ax, worst, name=name: draw_asked(ax, results, name))
+    return found if results.rows > 1 else []
+
+
+def panels(results, asked=()):
     """What the file offers, top to bottom, as functions of the axes and the worst instant."""
     file, found = results.file, []
     if "shape/deflection" in file and len(file["shape/x"]) > 1:
@@ -304,6 +322,7 @@ def panels(results):
     cars = [vehicle[name] for vehicle in results.vehicles if (name := car_body(vehicle)) is not None]
     if results.rows > 1 and "probes/deflection" in file and len(results.probes):
         found.append(lambda ax, worst: draw_deflection(ax, results, worst))
+    found += asked_panels(results, asked)
     if results.rows > 0 and wheels:
         drawing = draw_wheels if results.rows > 1 else draw_static_wheels
         found.append(lambda ax, worst: drawing(ax, results, wheels))
@@ -311,15 +330,19 @@ def panels(results):
         found.append(lambda ax, worst: draw_accelerations(ax, results, cars))
     if "sweep/peak_deflection" in file:
         found.append(lambda ax, worst: draw_sweep(ax, results))
+    if "study/finished" in file:
+        found.append(lambda ax, worst: draw_study(ax, results))
+    if not found and "static/x" in file:
+        found += [lambda ax, worst, name=name: draw_static(ax, results, name) for name in STATIC]
     return found
 
 
-def draw(results, out):
-    found = panels(results)
+def draw(results, out, asked=()):
+    found = panels(results, asked)
     modes_only = not found and "modes/frequency" in results.file
     if not found and not modes_only:
         raise ValueError("holds nothing that could be drawn")
-    sweep_only = len(found) == 1 and "sweep/peak_deflection" in results.file
+    sweep_only = len(found) == 1 and ("sweep/peak_deflection" in results.file or "study/finished" in results.file)
     taller = 1.75 if sweep_only else 0.0  # ten names beside the curves
     height = 7.5 if modes_only else 1.45 + 2.75 * len(found) + taller
     figure = plt.figure(figsize=(11.5, height))
@@ -342,10 +365,17 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("results", help="a results file (HDF5)")
     parser.add_argument("out", help="the picture: .png, .pdf or .svg")
+    parser.add_argument("--panels", default="", metavar="LIST", help="what a crossing shows besides, with commas between: "
+                        f"{', '.join([*ASKED, 'bearings'])}")
     arguments = parser.parse_args()
+    asked = [name for name in arguments.panels.split(",") if name]
+    for name in asked:
+        if name not in ASKED and name != "bearings":
+            print(f"picture.py: --panels {name}: allowed: {', '.join([*ASKED, 'bearings'])}", file=sys.stderr)
+            return 1
     try:
         with h5py.File(arguments.results, "r", locking=False) as file:
-            draw(Results(file), arguments.out)
+            draw(Results(file), arguments.out, asked)
     except (OSError, ValueError) as error:
         print(f"picture.py: {arguments.results}: {error}", file=sys.stderr)
         return 1

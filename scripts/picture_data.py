@@ -2,6 +2,7 @@
 
 import re
 
+import h5py
 import numpy as np
 
 MOST_CURVES = 6
@@ -49,6 +50,14 @@ class Results:
         types = self.options.get("support_types", "").replace(" ", "").split(",")
         count = 0 if self.supports is None else len(self.supports)
         return types if len(types) == count else types[:1] * count
+
+
+def opened(path):
+    """The file, which a run may be writing; ValueError where it cannot be read."""
+    try:
+        return h5py.File(path, "r", locking=False)
+    except OSError:
+        raise ValueError("is no results file that can be read") from None
 
 
 def natural(name):

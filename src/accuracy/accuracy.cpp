@@ -57,13 +57,28 @@ const options::Entry* own_measure() {
   return options::in_force().find("ts_arkimex_fully_implicit");
 }
 
+std::string stored_name(std::size_t quantity) {
+  std::string name = quantity_names[quantity];
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+std::string Accuracy::withdrawn(int contact_losses) {
+  const auto kept = [](const Promise& p) { return p.present && p.kept; };
+  if (!measured || contact_losses == 0 || lost_contact || std::none_of(promises.begin(), promises.end(), kept))
+    return {};
+  for (Promise& promise : promises) promise.kept = false;
+  return fmt::format(
+      "nothing is promised after all: wheels lost contact {} times, which no trial run has seen; "
+      "-accuracy_report shows the errors",
+      contact_losses);
+}
+
 std::vector<std::pair<std::string, double>> Accuracy::expected() const {
   std::vector<std::pair<std::string, double>> list;
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!measured || !promises[q].present || !promises[q].kept) continue;
-    std::string name = quantity_names[q];
-    std::replace(name.begin(), name.end(), ' ', '_');
-    list.emplace_back(name, promises[q].expected);
+    list.emplace_back(stored_name(q), promises[q].expected);
   }
   return list;
 }
@@ -115,8 +130,10 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
 
 Scene refined(const Scene& scene) {
   Scene fine = scene;
-  if (fine.modes_open) fine.model_modes = 0;
-  if (fine.model_modes == 0 && scene.model_modes > 0) fine.vehicle_model = VehicleModel::full;
+  if (scene.modes_open && scene.model_modes > 0) {  // both were chosen together
+    fine.model_modes = 0;
+    fine.vehicle_model = VehicleModel::full;
+  }
   if (fine.beam->track)
     fine.beam->track->elements_per_bay *= 2;
   else

@@ -24,9 +24,15 @@ struct Promise {
   std::string why_not;    // where it is not promised
 };
 
+/// A quantity's name in options and the results file.
+std::string stored_name(std::size_t quantity);
+
 struct Accuracy {
   bool measured = false;  // false: nothing was open, or there is nothing to measure
   std::array<Promise, quantities> promises;
+  bool lost_contact = false;  // wheels did in trial runs
+  /// After the run, which lost contact so often: where no trial run did, nothing is promised any more. Says so, or "".
+  std::string withdrawn(int contact_losses);
   /// Name in the results file and expected error of each quantity that is promised.
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took

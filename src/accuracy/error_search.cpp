@@ -9,6 +9,7 @@
 
 #include "base/whole.hpp"
 #include "first_guess.hpp"
+#include "horizon.hpp"
 #include "run/plan.hpp"
 
 namespace traverse::app {
@@ -30,12 +31,27 @@ constexpr double passed_over = 2.0;      // times the wanted error, on the way t
 constexpr double share_between = 0.5;    // of the wanted error, where it is only known for shorter and longer steps
 constexpr double most_growth = 4.0;
 constexpr int most_elements_a_bay = 8, most_elements_in_all = 1200;
+constexpr double track_order = 3.0;       // of a track's mesh, supposed
+constexpr double most_beginnings = 10.0;  // that trial runs may last, to see what comes later
+constexpr double usual_trials = 4.0;
 
 /// The largest number of two digits that does not exceed x.
 double two_digits(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
   return std::floor(x / unit * (1.0 + 1e-9)) * unit;
 }
+
+/// Whether there are supports whose dampers act only while they are touched: then accelerations jump.
+bool dampers_let_go(const beam::Foundation& foundation) {
+  bool found = false;
+  for_points(foundation, [&](const beam::FoundationKind&, const auto& points) {
+    for (const beam::PointFoundation& point : points)
+      found = found || (point.c > 0.0 && (point.law.one_sided || point.law.gap > 0.0));
+  });
+  return found;
+}
+
+double first_omega(const SharedBeam& shared) { return shared.omega ? shared.omega->first : 0.0; }
 
 int most_trial_elements(const Scene& scene) {
   const int dense = most_elements_in_all / static_cast<int>(std::min<std::size_t>(scene.beam->spans.size(), 1000));
@@ -48,21 +64,28 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
     : comm_(comm),
       scene_(scene),
       end_(end),
-      horizon_(beginning(scene, end)),
-      trials_(comm, shortened(scene, horizon_)),
+      horizon_(until_all_is_met(shared)),
+      trials_(comm, shortened(moved_up(scene), horizon_)),
       open_mesh_(scene.mesh_open),
       open_step_(!scene.time_step),
       wanted_((scene.accuracy > small_error ? usual_share : small_share) * scene.accuracy),
       mesh_(mesh_of(scene)),
       most_elements_(most_trial_elements(scene)) {
   for (Promise& p : promises_) p.present = p.kept = true;
-  const double omega = shared.omega ? shared.omega->first : 0.0;
+  for (ErrorLaw& e : space_)
+    if (scene.beam->track) e.order = track_order;
+  const double omega = first_omega(shared);
   const FirstSteps steps = first_steps(scene, omega, horizon_);
   longest_step_ = steps.longest;
   shortest_ = open_step_ ? steps.why : "the step is given";
   first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.time_step;
   const double decay = 0.5 * (shared.rayleigh.a + shared.rayleigh.b * omega * omega);
-  growth_ = std::clamp(std::min(end, decay > 0.0 ? 1.0 / decay : end) / horizon_, 1.0, most_growth);
+  const double left = end - moved_by();
+  growth_ = std::clamp(std::min(left, decay > 0.0 ? 1.0 / decay : left) / horizon_, 1.0, most_growth);
+  const std::vector<std::string>& asked = scene.accuracy_of;
+  for (std::size_t q = 0; q < quantities && !asked.empty(); ++q)
+    if (std::find(asked.begin(), asked.end(), stored_name(q)) == asked.end())
+      refuse(q, "accuracy_of does not ask for it");
   if (!follows_contacts(scene, step_))
     refuse(wheel_force, fmt::format("the contact vibrates at {:.3g} Hz, which steps of {:.2g} s do not follow",
                                     contact_frequency(scene) / (2.0 * std::numbers::pi), step_));
@@ -72,9 +95,32 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
     refuse(acceleration, "without damping that grows with the frequency the accelerations of all modes have no sum");
 }
 
+/// How much later than the run its trials begin, s.
+double ErrorSearch::moved_by() const { return beginning(scene_, end_) - beginning(moved_up(scene_), end_); }
+
+/// The end of trial runs, s: the beginning, or as much later as it takes to see what is unlike all before.
+double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
+  const Scene scene = moved_up(scene_);
+  const double first = beginning(scene, end_);
+  const double step = scene_.time_step.value_or(first_steps(scene_, first_omega(shared), first).first);
+  double until = first;
+  for (const Meeting& meeting : met_later(scene, first, end_ - moved_by())) {
+    const Trials longer(comm_, shortened(scene, meeting.until));
+    if (meeting.until <= most_beginnings * first ||
+        usual_trials * longer.seconds(mesh_of(scene_), step) < hardly_anything) {
+      until = meeting.until;
+    } else if (unseen_.empty()) {
+      unseen_ = meeting.what;
+    }
+  }
+  return until;
+}
+
 void ErrorSearch::run() {
   search();
   refuse_what_is_given();
+  for (std::size_t q = 0; q < quantities && !unseen_.empty(); ++q)
+    refuse(q, "trial runs would have to go on too long to see " + unseen_);
 }
 
 // Where trial runs become too many, what was measured has to do.
@@ -147,6 +193,7 @@ double ErrorSearch::excess(const Errors& errors) const {
 }
 
 void ErrorSearch::apply(Scene& scene, Accuracy& result) {
+  result.lost_contact = trials_.lost_contact();
   const double longer = factor_of_step(), fewer = factor_of_elements();
   const double step = open_step_ ? two_digits(step_ * longer) : step_;
   int mesh = mesh_;
@@ -186,7 +233,8 @@ void ErrorSearch::measure() {
 ErrorLaw ErrorSearch::error_in_time(Quantity q) {
   const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
   // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
-  const double most = q != moment || !undamped_ ? highest_order : time_[q].size > 0.0 ? 2.0 : 1.0;
+  double most = q != moment || !undamped_ ? highest_order : time_[q].size > 0.0 ? 2.0 : 1.0;
+  if (q == acceleration && dampers_let_go(scene_.beam->foundation)) most = 1.0;
   return error_from(growth_ * change, step_, time_[q], most);
 }
 
@@ -199,11 +247,17 @@ ErrorLaw ErrorSearch::error_in_space(Quantity q) {
   return error_from(std::pow(growth_, 0.75) * change, 1.0 / mesh_, space_[q]);
 }
 
+/// Of a quantity's error. A track's mesh, of which there are so few to choose from, may have what the step leaves.
+double ErrorSearch::allowed(const Errors& errors, std::size_t q) const {
+  const bool few_meshes = &errors == &space_ && scene_.beam->track;
+  return few_meshes ? wanted_ + std::max(0.0, wanted_ - time_[q].value) : wanted_;
+}
+
 /// Times the step (or the element) at which all that is promised keeps its share.
 double ErrorSearch::room(const Errors& errors) const {
   double least = at_most * farthest_guess;
   for (std::size_t q = 0; q < quantities; ++q)
-    if (promised(q)) least = std::min(least, errors[q].room(wanted_));
+    if (promised(q)) least = std::min(least, errors[q].room(allowed(errors, q)));
   return least;
 }
 
@@ -219,8 +273,9 @@ double ErrorSearch::room_to_coarsen(const Errors& errors) const {
 bool ErrorSearch::within_reach(const Errors& errors) const {
   for (std::size_t q = 0; q < quantities; ++q) {
     const ErrorLaw& e = errors[q];
-    if (!promised(q) || e.room(wanted_) >= 1.0) continue;
-    if ((e.known && e.order < 1.0) || e.room(wanted_) < 1.0 / (e.known ? farthest : supposed)) return false;
+    const double room = e.room(allowed(errors, q));
+    if (!promised(q) || room >= 1.0) continue;
+    if ((e.known && e.order < 1.0) || room < 1.0 / (e.known ? farthest : supposed)) return false;
   }
   return true;
 }

@@ -30,6 +30,8 @@ class ErrorSearch {
  private:
   using Errors = std::array<ErrorLaw, quantities>;
 
+  double moved_by() const;
+  double until_all_is_met(const SharedBeam& shared);
   void refine();
   void search();
   [[noreturn]] void refuse_scene() const;
@@ -45,6 +47,7 @@ class ErrorSearch {
   bool promised(std::size_t q) const { return promises_[q].present && promises_[q].kept; }
   bool within_reach(const Errors& errors) const;
   bool worth_it(double step, int mesh) const;
+  double allowed(const Errors& errors, std::size_t q) const;
   double room(const Errors& errors) const;
   double room_to_coarsen(const Errors& errors) const;
   double factor_of_step() const;
@@ -53,7 +56,9 @@ class ErrorSearch {
 
   MPI_Comm comm_;
   const Scene& scene_;
-  double end_, horizon_;  // s, of the run and of trials
+  double end_;          // of the run, s
+  std::string unseen_;  // what no trial run sees, in words; empty: nothing
+  double horizon_;      // of trial runs, s
   Trials trials_;
   bool open_mesh_, open_step_;
   bool undamped_ = false;  // no damping grows with the frequency

@@ -17,16 +17,24 @@ namespace {
 constexpr int first_bay = 2;
 constexpr int most_in_a_span = 100000;   // a span, as beam_elements_per_span allows
 constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 EI/k)^(1/4)
-constexpr double trial_steps_a_period = 12.0, steps_a_crossing = 24.0, trial_steps_a_wave = 20.0, steps_a_sleeper = 8.0;
+constexpr double trial_steps_a_period = 12.0, steps_a_crossing = 24.0, trial_steps_a_wave = 20.0;
 constexpr double part_of_run = 1e-2;
 // Step times frequency of the contacts, rad, at an accuracy of 1e-2 and at the finest; it falls as accuracy^0.22, which
 // is what coaches on Hertz wheels were found to need.
 constexpr double contact_angle = 1.0, least_contact_angle = 0.15, contact_power = 0.22;
 constexpr double coarse = 5e-3;  // from which on the vibration on a track hardly counts
+// Steps a sleeper that is passed at that accuracy; they grow as accuracy^-0.4.
+constexpr double steps_a_sleeper = 8.0, sleeper_power = 0.4;
 constexpr double finest = 64.0;  // times what all the rest needs
 
 double contact_angle_of(double accuracy) {
   return contact_angle * std::clamp(std::pow(accuracy / 1e-2, contact_power), least_contact_angle, 1.0);
+}
+
+/// Whether nothing stirs the vibration of wheels on their contacts, or not so that it counts: on a layered track the
+/// rail goes on over the bridge's ends, and the deflection under the wheels moves with them from the start.
+bool unstirred(const Scene& scene) {
+  return scene.beam->track && (scene.accuracy >= coarse || std::isinf(shortest_wave(scene)));
 }
 
 /// The fastest fading of bending on the beam's beds, 1/m, and the kind of foundation that makes it. Vertical springs at
@@ -105,11 +113,12 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
   }
   if (scene.output.interval) no_longer_than(*scene.output.interval, *scene.output.interval, "output_interval is");
   const double contact = contact_frequency(scene);
-  // On a track the rail goes on over the bridge's ends: nothing stirs the contacts there.
-  if (scene.beam->track && greatest_speed(scene) > 0.0) {
-    const double sleeper = scene.beam->track->spacing / greatest_speed(scene) / steps_a_sleeper;
-    if (contact == 0.0 || scene.accuracy >= coarse)
-      return {std::min(step, sleeper), step, sleeper < step ? "the sleepers are passed so fast" : why};
+  if (scene.beam->track && greatest_speed(scene) > 0.0 && (contact == 0.0 || unstirred(scene))) {
+    const double steps = steps_a_sleeper * std::pow(std::min(scene.accuracy / coarse, 1.0), -sleeper_power);
+    const double sleeper = scene.beam->track->spacing / greatest_speed(scene) / steps;
+    if (sleeper >= step) return {step, step, why};
+    // Halvings of the longest step, so that this one is among those that are tried.
+    return {step * std::exp2(-std::round(std::log2(step / sleeper))), step, "the sleepers are passed so fast"};
   }
   if (contact == 0.0) return {step, step, why};
   const double vibration = std::max(contact_angle_of(scene.accuracy) / contact, step / finest);
@@ -119,7 +128,7 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
 }
 
 bool follows_contacts(const Scene& scene, double step) {
-  return contact_frequency(scene) * step <= 2.0 * contact_angle || (scene.beam->track && scene.accuracy >= coarse);
+  return contact_frequency(scene) * step <= 2.0 * contact_angle || unstirred(scene);
 }
 
 }  // namespace traverse::app

@@ -21,8 +21,7 @@ constexpr std::size_t few_stations = 100;
 constexpr int least_elements = 4;
 constexpr double solves_a_step = 5.0;           // of the beam, by the default method
 constexpr double steps_a_factorisation = 30.0;  // that would cost as much as a step of a new length
-constexpr std::size_t crossed_in_full = 3;      // spans
-constexpr double behind = 1.1;                  // spans, until what the last wheel does as it leaves is seen
+constexpr double lead = 12.0;                   // bays before the bridge: the start has died away by then
 
 bool is_node(const beam::BeamModel& beam, double x) {
   double left = 0.0;
@@ -37,14 +36,6 @@ bool is_node(const beam::BeamModel& beam, double x) {
 double foremost(const Scene& scene, std::size_t vehicle) {
   const std::vector<double> wheels = wheels_at_start(scene, vehicle);
   return wheels.empty() ? 0.0 : *std::max_element(wheels.begin(), wheels.end());
-}
-
-/// x at t = 0 of what of the first vehicle has to have crossed: its last wheel, in a train its middle.
-double last_to_watch(const Scene& scene) {
-  const std::vector<double> wheels = wheels_at_start(scene, 0);
-  if (wheels.empty()) return 0.0;
-  const auto [rear, front] = std::minmax_element(wheels.begin(), wheels.end());
-  return scene.train.vehicles.size() < 3 ? *rear : 0.5 * (*front + *rear);
 }
 
 void leave_out_vehicles(Scene& scene, double end) {
@@ -113,19 +104,19 @@ int mesh_of(const Scene& scene) {
                            : *std::max_element(scene.beam->elements.begin(), scene.beam->elements.end());
 }
 
-double beginning(const Scene& scene, double end) {
-  const std::vector<double>& spans = scene.beam->spans;
-  const double reach = behind * (spans.size() <= crossed_in_full ? scene.beam->length() : spans[0]);
-  const auto crossing = [&](double rear, double speed) { return speed > 0.0 ? (reach - rear) / speed : end; };
-  double until = 0.0;
-  if (!scene.train.vehicles.empty())
-    until = scene.train.drive == train::Drive::constant ? crossing(last_to_watch(scene), scene.train.speed) : end;
-  if (!scene.load.forces.empty()) {
-    std::vector<double> positions = scene.load.positions;
-    std::sort(positions.begin(), positions.end(), std::greater<>());
-    until = std::max(until, crossing(positions[std::min<std::size_t>(3, positions.size() - 1)], scene.load.speed));
-  }
-  return until > 0.0 && until < end ? until : end;
+Scene moved_up(const Scene& scene) {
+  Scene part = scene;
+  if (!scene.beam->track || scene.train.vehicles.empty() || !scene.load.forces.empty() || !scene.profile.level() ||
+      scene.train.drive != train::Drive::constant)
+    return part;
+  const std::vector<double> wheels = wheels_at_start(scene);
+  const double front = *std::max_element(wheels.begin(), wheels.end());
+  beam::LayeredTrack& track = *part.beam->track;
+  const double bays = std::min(std::floor(-front / track.spacing - lead), std::floor(track.approach / track.spacing));
+  if (!(bays > 0.0)) return part;
+  track.approach -= bays * track.spacing;
+  for (double& x : part.train.positions) x += bays * track.spacing;
+  return part;
 }
 
 Scene shortened(const Scene& scene, double end) {
@@ -155,15 +146,22 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
            steps_a_factorisation * static_cast<double>(passage.system().factorisations());
   };
   const results::Stage stage("time steps");
-  passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
-              [&](double t, long) {
-                watch.step(t);
-                results::Stage::advance(t / passage.plan().end_time);
-                result.complete = steps_so_far() <= most_steps;
-                return result.complete;
-              });
+  bool balanced = true;
+  passage.run(
+      [&](const integrate::Instant& instant) {
+        watch.sample(instant);
+        balanced = passage.system().defect() <= scene.most_defect;
+      },
+      [&](double t, long) {
+        watch.step(t);
+        results::Stage::advance(t / passage.plan().end_time);
+        result.complete = balanced && steps_so_far() <= most_steps;
+        return result.complete;
+      });
   result.steps = steps_so_far();
   result.defect = passage.system().defect();
+  for (const train::Separation& s : passage.system().contacts().separations().list())
+    result.lost_contact = result.lost_contact || !s.from_start;
   result.peaks = watch.finished_peaks();
   return result;
 }
@@ -198,7 +196,10 @@ const Peaks& Trials::run(int elements, double step) {
   set_mesh(scene, elements);
   scene.time_step = step;
   scene.output.interval = steps_a_check * step;
-  if (scene.vehicle_model == VehicleModel::automatic) scene.vehicle_model = VehicleModel::linear;
+  if (scene.vehicle_model == VehicleModel::automatic) {
+    scene.vehicle_model = VehicleModel::linear;
+    scene.most_defect = most_defect(scene_);
+  }
   const double a_step = seconds_a_step(elements), most_steps = (most_seconds - spent_) / a_step;
   RunPeaks result;
   try {
@@ -208,6 +209,7 @@ const Peaks& Trials::run(int elements, double step) {
     result.peaks = Peaks::of_failure();  // too long a step, most likely
   }
   spent_ += result.steps * a_step;
+  lost_contact_ = lost_contact_ || result.lost_contact;
   if (scene_.vehicle_model == VehicleModel::automatic && result.defect > most_defect(scene_))
     throw OutOfBalance{result.defect};
   if (!result.complete) throw TooMuchWork();

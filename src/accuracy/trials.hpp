@@ -19,8 +19,9 @@ int mesh_of(const Scene& scene);
 /// of whose elements errors fall slowly.
 int aligned_mesh(const Scene& scene, int elements);
 
-/// When the first vehicle, or the first forces, have crossed two spans (one where there is only one), s; at most `end`.
-double beginning(const Scene& scene, double end);
+/// The scene with a train that comes over a level layered track some bays before the bridge, where it starts farther
+/// off, and with so much less of the track: what it does until then tells nothing new.
+Scene moved_up(const Scene& scene);
 
 /// The part of the scene that moves until then: vehicles that come onto the beam later and spans that nothing reaches
 /// are left out.
@@ -31,7 +32,8 @@ struct RunPeaks {
   Peaks peaks;
   double steps = 0.0;    // taken, those that were taken again for a contact's change too
   bool complete = true;  // false: ended at the limit of its steps
-  double defect = 0.0;   // of linear vehicles, coupling::System::defect
+  bool lost_contact = false;
+  double defect = 0.0;  // of linear vehicles, coupling::System::defect
 };
 
 /// Collective. A run of the scene, whose step is given, sampled at every step.
@@ -59,6 +61,7 @@ class Trials {
   const Peaks& run(int elements, double step);
   bool has(int elements, double step) const { return kept_.contains({elements, step}); }
   std::size_t count() const { return kept_.size(); }
+  bool lost_contact() const { return lost_contact_; }  // wheels did in one of them
   /// An estimate of what a run takes, or of what all took so far, s: by counting, since decisions must not depend on
   /// the clock.
   double seconds(int elements, double step) const;
@@ -70,6 +73,7 @@ class Trials {
   MPI_Comm comm_;
   Scene scene_;
   std::map<std::pair<int, double>, Peaks> kept_;
+  bool lost_contact_ = false;
   double spent_ = 0.0;  // s, estimated from the steps that were taken
 };
 

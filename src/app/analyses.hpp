@@ -30,6 +30,7 @@ struct Job {
 // Collective. Each writes the results file and the summary, and returns the exit status as `run` does.
 int run_in_time(Job job);  // the motion in time, or rest at t = 0
 int run_modes(Job job);
+int run_envelope(Job job);  // the largest static effects of the loads, wherever they stand
 
 struct AnalysisRun {
   options::Analysis analysis;
@@ -40,6 +41,7 @@ inline constexpr AnalysisRun analysis_runs[] = {
     {options::Analysis::transient, run_in_time},
     {options::Analysis::modes, run_modes},
     {options::Analysis::static_response, run_in_time},
+    {options::Analysis::static_envelope, run_envelope},
 };
 
 constexpr const AnalysisRun* run_of(options::Analysis analysis) {

@@ -1,7 +1,13 @@
 #include "traverse/app/run.hpp"
 
+#include <fmt/format.h>
+
+#include "accuracy/trials.hpp"
 #include "analyses.hpp"
 #include "results/stage.hpp"
+#include "run/active_ranks.hpp"
+#include "run/by_spans.hpp"
+#include "run/rank_choice.hpp"
 #include "study/lanes_choice.hpp"
 #include "study/study.hpp"
 #include "study/sweep.hpp"
@@ -21,6 +27,27 @@ Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& not
   return accuracy;
 }
 
+/// Linear vehicles over spans that do not touch go many times as fast. What they leave out is computed; where that is
+/// too much the run is repeated with the mechanisms.
+void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
+  if (scene.vehicle_model != VehicleModel::automatic || scene.analysis != Analysis::transient || !scene.step_lanes ||
+      scene.all_ranks || !spans_obstacle(scene).empty())
+    return;
+  scene.vehicle_model = VehicleModel::linear;
+  scene.most_defect = most_defect(scene);
+  notes.push_back(fmt::format(
+      "vehicles are taken as linear as long as they are out of balance by less than {:.1g} of their weights; "
+      "-model_vehicles full keeps the mechanisms",
+      scene.most_defect));
+}
+
+RankChoice ranks_for(MPI_Comm comm, const Scene& scene) {
+  if (scene.analysis == Analysis::transient) return choose_ranks(comm, scene);
+  RankChoice all;
+  MPI_Comm_size(comm, &all.ranks);
+  return all;
+}
+
 }  // namespace
 
 int run(MPI_Comm comm, const Scene& given) {
@@ -30,12 +57,21 @@ int run(MPI_Comm comm, const Scene& given) {
   results::Place place = results::claim_place(comm, given.output.file);
   if (given.study) return run_study(comm, given, std::move(place));
   if (given.sweep) return run_sweep(comm, given, std::move(place));
-  Scene scene = given;
-  std::vector<std::string> notes;
-  const Accuracy accuracy = choose_model(comm, scene, notes);
-  SharedBeam shared(comm, scene, notes);
-  notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-  return run_of(scene.analysis)->run({comm, scene, std::move(place), accuracy, shared, std::move(notes)});
+  // Chosen before trial runs, which are runs as well, and again when these have chosen the model.
+  const RankChoice at_first = ranks_for(comm, given);
+  return run_on_first(comm, at_first.ranks, [&](MPI_Comm some) {
+    Scene scene = given;
+    std::vector<std::string> notes;
+    const Accuracy accuracy = choose_model(some, scene, notes);
+    take_linear_vehicles(scene, notes);
+    const RankChoice ranks = ranks_for(some, scene);
+    if (const std::string& said = ranks.said.empty() ? at_first.said : ranks.said; !said.empty()) notes.push_back(said);
+    return run_on_first(some, ranks.ranks, [&](MPI_Comm fewer) {
+      SharedBeam shared(fewer, scene, notes);
+      notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
+      return run_of(scene.analysis)->run({fewer, scene, std::move(place), accuracy, shared, std::move(notes)});
+    });
+  });
 }
 
 }  // namespace traverse::app

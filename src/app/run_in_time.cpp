@@ -13,6 +13,8 @@
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
 #include "run/deflection_check.hpp"
+#include "run/model_record.hpp"
+#include "run/norm_run.hpp"
 #include "run/outputs.hpp"
 #include "run/passage.hpp"
 #include "run/process.hpp"
@@ -34,11 +36,6 @@ void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
   if (shared.modal)
     modes = modes::as_stored(*shared.beam, shared.modal->basis(), beam::ShapePoints(shared.beam->mesh()));
   recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
-}
-
-bool limits_deck_acceleration(const Scene& scene) {
-  return std::any_of(scene.limits.begin(), scene.limits.end(),
-                     [](const options::VerdictLimit& limit) { return limit.quantity == "deck_acceleration"; });
 }
 
 double total(MPI_Comm comm, double share) {
@@ -82,7 +79,7 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
 std::optional<int> run_once(Job& job) {
   const MPI_Comm comm = job.comm;
   Scene scene = job.scene;
-  const Accuracy& accuracy = job.accuracy;
+  Accuracy accuracy = job.accuracy;
   SharedBeam& shared = job.beam;
   std::vector<std::string>& notes = job.notes;
   int rank = 0;
@@ -100,6 +97,8 @@ std::optional<int> run_once(Job& job) {
   const double counting =
       limited || scene.output.low_pass_asked ? frequency_that_counts(scene, shared, cheap || limited, notes) : 0.0;
   if (counting > 0.0) scene.looks = spacing_for(counting);
+  const bool wheels = filters_wheels(scene);
+  if (wheels) scene.looks = std::min(scene.looks, spacing_for(scene.output.wheel_low_pass));
   Passage passage(scene, shared, notes);  // everything is checked before anything is computed
   coupling::System& system = passage.system();
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
@@ -113,6 +112,10 @@ std::optional<int> run_once(Job& job) {
       counting > 0.0 ? no_filter(counting, passage.plan(), scene.output.probes.size()) : std::string();
   const bool filtered = counting > 0.0 && trouble.empty();
   if (!trouble.empty()) notes.push_back("deck accelerations are not low-passed: " + trouble);
+  const std::size_t wheel_count = wheels_at_start(scene).size();
+  const std::string no_wheels =
+      wheels ? no_filter(scene.output.wheel_low_pass, passage.plan(), wheel_count, "wheels") : std::string();
+  if (!no_wheels.empty()) notes.push_back("wheel forces are not low-passed: " + no_wheels);
   print_notes(comm, notes);
 
   std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
@@ -120,10 +123,13 @@ std::optional<int> run_once(Job& job) {
   results::Layout layout = outputs.layout();
   if (!still) layout.interval = passage.plan().interval * static_cast<double>(passage.plan().stored);
   results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
+  record_model(scene, notes, recorder);
   store_modes(shared, recorder);
   if (shared.beam) shared.beam->release_matrices();
   Watch watch(scene, system, beam, recorder, &outputs);
   if (filtered && rank == 0) watch.keep_accelerations({counting, passage.plan(), scene.output.probes});
+  if (wheels && no_wheels.empty() && rank == 0)
+    watch.keep_wheel_forces({scene.output.wheel_low_pass, scene.output.unloading_level, passage.plan(), wheel_count});
   if (!scene.limits.empty()) watch.judge();
   results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
@@ -145,15 +151,25 @@ std::optional<int> run_once(Job& job) {
     if (system.structure() != nullptr && system.structure()->energy_left())
       summary.energy_left = total(comm, *system.structure()->energy_left());
     summary.static_error = system.static_error();
+    const std::string withdrawn = accuracy.withdrawn(summary.contact_losses);
     summary.expected_errors = accuracy.expected();
     summary.ended = ended;
     const bool repeated = reaches_end && summary.linear_defect > scene.most_defect;
-    const std::vector<results::Verdict> verdicts =
-        reaches_end && !repeated ? watch.verdicts(summary) : std::vector<results::Verdict>();
+    const bool judged = reaches_end && !repeated;
+    std::vector<results::Verdict> verdicts = judged ? watch.verdicts(summary) : std::vector<results::Verdict>();
+    std::optional<norm::NormCheck> check;
+    if (judged && scene.norm) {
+      check.emplace(norm_check(scene, {train_at_rest("train", system.weights().all())}));
+      if (compares_with_lm71(scene)) check->judge(passed_once(scene, watch.finished_peaks()));
+      check->find(verdicts);
+      check->record(recorder);
+    }
     results::record_verdicts(recorder, verdicts);
     recorder.finish(summary);
     progress.done();
     if (rank == 0 && !repeated) results::print_summary(summary, scene.output.file);
+    if (rank == 0 && !repeated && !withdrawn.empty()) fmt::print("  note: {}\n", withdrawn);
+    if (rank == 0 && check) check->print();
     if (rank == 0) results::print_verdicts(verdicts);
     return summary;
   };

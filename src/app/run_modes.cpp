@@ -8,6 +8,7 @@
 #include "results/recorder.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
+#include "run/model_record.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
@@ -48,6 +49,7 @@ int run_modes(Job job) {
   if (scene.output.file.empty()) return 0;
   const SignalsNoted noted;  // a moment, and the file is complete
   results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
+  record_model(scene, notes, recorder);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);
   if (damping) recorder.damped_modes(damped);
   recorder.finish_with({{"ended", "reached its end"}});

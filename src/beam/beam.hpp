@@ -97,6 +97,9 @@ class Beam {
   /// P must hold the load on held unknowns too. Where spans are separate both spans' parts are added.
   void reactions(const double* v, const double* w, const double* a, const double* P,
                  std::vector<std::array<double, 3>>& out) const;
+  /// Adds `factor` times a reaction at rest (component 0 fx, 1 fy, 2 moment), as a form of this rank's nodal
+  /// displacements, to `forces`. Loads on the held unknowns are no part of it.
+  void add_reaction_form(int span_end, int component, double factor, double* forces) const;
 
  private:
   /// Coefficients of one free local unknown in the row of one held unknown, eq. 18.

@@ -13,4 +13,7 @@ using Planes = std::array<double*, kinds>;
 /// Most nodes of one call with planes.
 inline constexpr int tile = 128;
 
+/// Nodes that products take at a time; as many numbers behind those of a call may be read, whatever they are.
+inline constexpr int abreast = 32;
+
 }  // namespace traverse::beam

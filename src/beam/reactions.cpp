@@ -37,6 +37,12 @@ void Beam::note_reactions(const Slice& slice, const Rows& mass, const Rows& beam
   }
 }
 
+void Beam::add_reaction_form(int span_end, int component, double factor, double* forces) const {
+  const std::size_t slot = index(3 * span_end + component);
+  for (const ReactionTerm& t : reaction_terms_)
+    if (t.slot == slot) forces[t.unknown] += factor * t.stiffness;
+}
+
 void Beam::reactions(const double* v, const double* w, const double* a, const double* P,
                      std::vector<std::array<double, 3>>& out) const {
   out.resize(mesh().span_ends().size());

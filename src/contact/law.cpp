@@ -7,6 +7,8 @@
 namespace traverse::contact {
 namespace {
 
+constexpr int most_iterations = 50;
+constexpr double settled = 1e-16;
 constexpr double slowest_approach = 1e-3;  // m/s: gentler touches are damped as this one
 
 /// k*alpha^n and its derivative at alpha > 0.
@@ -15,10 +17,17 @@ struct Elastic {
   double slope = 0.0;  // N/m
 };
 
-Elastic elastic(const Law& law, double alpha) {
+Elastic elastic_alone(const Law& law, double alpha) {
   if (law.kind == LawKind::linear) return {law.stiffness * alpha, law.stiffness};
   const double root = std::sqrt(alpha);
   return {law.stiffness * alpha * root, 1.5 * law.stiffness * root};
+}
+
+/// The same at a penetration that the seat takes part in.
+Elastic elastic(const Law& law, double penetration) {
+  if (law.seat == 0.0) return elastic_alone(law, penetration);
+  const auto [force, slope] = elastic_alone(law, own_penetration(law, penetration));
+  return {force, slope / (1.0 + law.seat * slope)};
 }
 
 /// Eq. 45, or hysteresis damping: the force and its derivatives before it is held at zero.
@@ -77,10 +86,26 @@ Force operator-(const Force& f) {
           -f.tangential_by_sliding};
 }
 
+// Newton for r with r^2 + seat*k*r^3 = penetration, a convex line: from the right it comes down without passing it.
+double own_penetration(const Law& law, double penetration) {
+  if (law.seat == 0.0 || !(penetration > 0.0)) return penetration;
+  const double yielding = law.seat * law.stiffness;
+  if (law.kind == LawKind::linear) return penetration / (1.0 + yielding);
+  double root = std::sqrt(penetration);
+  for (int i = 0; i < most_iterations; ++i) {
+    const double excess = root * root * (1.0 + yielding * root) - penetration;
+    const double step = excess / (root * (2.0 + 3.0 * yielding * root));
+    root -= step;
+    if (step <= settled * root) break;
+  }
+  return root * root;
+}
+
 double potential(const Law& law, double penetration) {
   if (!(penetration > 0.0)) return 0.0;
-  if (law.kind == LawKind::linear) return 0.5 * law.stiffness * penetration * penetration;
-  return 0.4 * law.stiffness * penetration * penetration * std::sqrt(penetration);
+  const double alpha = own_penetration(law, penetration);
+  const double force = elastic_alone(law, alpha).force;
+  return (law.kind == LawKind::linear ? 0.5 : 0.4) * force * alpha + 0.5 * law.seat * force * force;
 }
 
 double penetration_at_rest(const Law& law, double normal) {

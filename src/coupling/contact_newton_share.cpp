@@ -9,7 +9,7 @@ namespace traverse::coupling {
 unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, unsigned signs) {
   if (s.share == nullptr) return signs;
   const int m = s.compliance != nullptr ? 2 * s.per_node : 0;
-  const auto numbers = [m](const train::Contact& c) { return 6 + (c.law.friction > 0.0 ? 2 * m : m); };
+  const auto numbers = [m](const train::Contact& c) { return 7 + (c.law.friction > 0.0 ? 2 * m : m); };
   const auto each = [&](int k, auto number) {
     number(contacts_.yield(k).residual);
     Eigen::VectorXd& own = contacts_.yield(k).c;
@@ -22,6 +22,7 @@ unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, 
       number(fleet.x(c));
       number(fleet.x_rate(c));
       number(c.active);
+      number(c.law.seat);
       for (int j = 0; j < m; ++j) number(c.touch.normal_on_beam[j]);
       for (int j = 0; c.law.friction > 0.0 && j < m; ++j) number(c.touch.tangent_on_beam[j]);
     }

@@ -30,6 +30,8 @@ class PassingWeights {
     wheels_ = wheels;
   }
 
+  const std::vector<PassingWeight>& all() const { return weights_; }
+
   /// Whether they keep their distances.
   bool pass_together(const train::WheelPaths& paths) const;
   /// Collective. Largest magnitude of the static deflection at a station under all of them, the structure's own weight

@@ -1,10 +1,13 @@
 // A system whose steps somebody else takes as a whole, who knows more of it than System does: linear vehicles over
-// modes. The system is told where it is when somebody looks, and when it has to go on by itself.
+// modes, or over spans that do not touch. The system is told where it is when somebody looks, and when it has to go on
+// by itself.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "recovery/recovery.hpp"
+#include "structure/structure.hpp"
 
 namespace traverse::coupling {
 
@@ -15,8 +18,14 @@ class SteppedApart {
   /// number any more.
   virtual bool step(double t, double h) = 0;
 
-  /// Writes v, w, p and p' of the whole system at the end of the last step, one behind the other.
+  /// Writes v, w, p and p' of the whole system at the end of the last step, one behind the other: into what was told
+  /// before, or, at first, into the start.
   virtual void tell(double* y) const = 0;
+  /// The same of w and w', of the structure alone, under these loads of the contacts: into what was told before or, at
+  /// first, into what System::rate gives of the start. False where that is not known.
+  virtual bool tell_rate(const structure::ElementLoads& /*contacts*/, double* /*ydot*/) const { return false; }
+  /// The structure's energies where it is told, J; null where these are not known.
+  virtual std::optional<structure::StructureEnergy> energy() const { return std::nullopt; }
   /// Lost in dampers, and given by what holds the speed, since the start, J.
   virtual double dissipated() const = 0;
   virtual double worked() const = 0;

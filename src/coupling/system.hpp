@@ -102,7 +102,8 @@ class System {
   /// Writes the start: static equilibrium at t = 0 with the drives at rest (the beam deflected under the train),
   /// then the train's speed; or positions and velocities as given, made consistent with the constraints.
   /// SolverError when there is no equilibrium. Returns one line a joint with redundant equations.
-  std::vector<std::string> start(bool equilibrium, double* y);
+  /// stays: no motion follows, and the deflection of a rail does not go along with the wheels.
+  std::vector<std::string> start(bool equilibrium, double* y, bool stays = false);
 
   /// Collective. After start: takes vehicles as linear about it, those that can be. Returns Fleet::linearise's lines.
   std::vector<std::string> linearise_vehicles(const double* y) {
@@ -159,6 +160,8 @@ class System {
   /// rest, and of the worst vehicle's, as a root of the mean of its masses' accelerations, measured by gravity and what
   /// they are.
   double step_error(const double* y);
+  /// Of steps apart: writes the structure's part of y' of where they have led, y, into ydot (SteppedApart::tell_rate).
+  bool fetch_rate(double t, const double* y, double* ydot);
   /// Whether rate_of_motion serves: not where a method's own acceleration is another one than the state's, nor
   /// for steps apart.
   bool knows_rate() const {
@@ -248,11 +251,13 @@ class System {
   void expect_weights();
   void find_equilibrium(double* y);
   bool weigh_at_rest();
-  void stand_still();
+  void stand_still(const train::Train& train);
+  void go_with_the_train(double* w);
   void go_on_from(std::vector<double> p);
   [[noreturn]] void refuse_start(Solution found) const;
   void add_flats(const train::WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
+  double inner_EI() const;
   void note_weights();
   void share_coordinates(const double* y);
   Solution settle(Terms terms, double tie = 0.0);

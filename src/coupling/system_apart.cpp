@@ -10,18 +10,24 @@ bool System::try_apart(double t, double h, double* y) {
   fetch(y);
   defect_apart_ = apart_->defect();
   apart_.reset();
-  share_.deal(comm_, fleet_);
+  if (motion_) share_.deal(comm_, fleet_);  // else begin_motion does
   evaluate_fleet(t, y);
   events_.accept(t);
   return false;
 }
 
 void System::fetch(double* y) {
-  if (!apart_) return;
-  if (rank_ != 0) return;
+  if (!apart_ || rank_ != 0) return;
   apart_->tell(y);
+  if (!motion_) return;  // no step was taken yet
   motion_->dissipated = apart_->dissipated();
   motion_->worked = apart_->worked();
+}
+
+bool System::fetch_rate(double t, const double* y, double* ydot) {
+  if (!apart_) return false;
+  evaluate_fleet(t, y);
+  return apart_->tell_rate(contact_loads(), ydot);
 }
 
 // Places and forces of the wheels, for those who look at them after every step.

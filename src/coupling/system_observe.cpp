@@ -27,7 +27,11 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
 
 Energy System::energy(const double* y) {
   structure::StructureEnergy s;
-  if (structure_) s = structure_->energy(y, y + n_);
+  const std::optional<structure::StructureEnergy> told = apart_ ? apart_->energy() : std::nullopt;
+  if (told)
+    s = *told;
+  else if (structure_)
+    s = structure_->energy(y, y + n_);
   if (motion_) {
     s.dissipated += motion_->dissipated;
     s.work += motion_->worked;

@@ -10,7 +10,7 @@ namespace {
 constexpr double infinite = std::numeric_limits<double>::infinity();
 }  // namespace
 
-std::vector<std::string> System::start(bool equilibrium, double* y) {
+std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) {
   std::fill_n(y, local_size(), 0.0);
   const bool weighed = !equilibrium && weigh_at_rest();
   if (equilibrium) {
@@ -21,7 +21,10 @@ std::vector<std::string> System::start(bool equilibrium, double* y) {
     structure_->end_stage(y, y + n_);
   }
   fleet_.start_moving();
-  if (equilibrium) fleet_.let_wheels_roll();
+  if (equilibrium) {
+    fleet_.let_wheels_roll();
+    if (!stays) go_with_the_train(y + n_);
+  }
   std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
   fleet_.start_rolling();
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());

@@ -36,22 +36,6 @@ ModalMotion::ModalMotion(const structure::ModalBridge& bridge, const ForceHistor
 }
 
 /// e^(-sigma t) (cos, sin) of the damped frequency, or the hyperbolic functions of an overdamped mode.
-ModalMotion::Propagator ModalMotion::propagator(double omega, double sigma, double dt) {
-  const double square = (omega - sigma) * (omega + sigma);
-  double even = 0.0, odd = 0.0;  // e^(-sigma t) cos, e^(-sigma t) sin over its frequency
-  if (square > 0.0) {
-    const double damped = std::sqrt(square), decay = std::exp(-sigma * dt);
-    even = decay * std::cos(damped * dt);
-    odd = decay * std::sin(damped * dt) / damped;
-  } else {
-    const double kappa = std::sqrt(-square), slow = std::exp(-omega * omega / (sigma + kappa) * dt);
-    const double ratio = std::exp(-2.0 * kappa * dt);
-    even = 0.5 * slow * (1.0 + ratio);
-    odd = kappa * dt > 1e-8 ? -0.5 * slow * std::expm1(-2.0 * kappa * dt) / kappa : slow * dt;
-  }
-  return {even + sigma * odd, odd, -omega * omega * odd, even - sigma * odd};
-}
-
 void ModalMotion::expect(double dt) {
   expected_dt_ = dt;
   if (coupled_) {
@@ -60,7 +44,7 @@ void ModalMotion::expect(double dt) {
   }
   expected_.clear();
   for (std::size_t i = 0; i < modes_.size(); ++i)
-    expected_.push_back(propagator(bridge_.omega()[i], bridge_.sigma()[i], dt));
+    expected_.push_back(free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt));
 }
 
 // The polynomial that solves the equation of motion with the interval's force; what is left oscillates freely.
@@ -145,7 +129,7 @@ void ModalMotion::move(double dt) {
     return note_free();
   }
   for (std::size_t i = 0; i < modes_.size(); ++i) {
-    const Propagator a = expected ? expected_[i] : propagator(bridge_.omega()[i], bridge_.sigma()[i], dt);
+    const FreeOscillation a = expected ? expected_[i] : free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt);
     Mode& mode = modes_[i];
     const double u = mode.u;
     mode.u = a.uu * u + a.uw * mode.w;
@@ -161,9 +145,9 @@ void ModalMotion::move_counting(double dt) {
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const double omega = bridge_.omega()[i], sigma = bridge_.sigma()[i];
     const auto& p = modes_[i].particular;
-    std::array<Propagator, points.size()> inner{};
-    for (std::size_t k = 0; k < points.size(); ++k) inner[k] = propagator(omega, sigma, points[k] * h);
-    const Propagator step = propagator(omega, sigma, h);
+    std::array<FreeOscillation, points.size()> inner{};
+    for (std::size_t k = 0; k < points.size(); ++k) inner[k] = free_oscillation(omega, sigma, points[k] * h);
+    const FreeOscillation step = free_oscillation(omega, sigma, h);
     for (long part = 0; part < parts; ++part) {
       const double from = time_ - begin + static_cast<double>(part) * h;
       const double u = modes_[i].u, w = modes_[i].w;

@@ -11,6 +11,7 @@
 
 #include "integrate/coupled_oscillation.hpp"
 #include "integrate/force_history.hpp"
+#include "integrate/free_oscillation.hpp"
 #include "structure/modal_bridge.hpp"
 
 namespace traverse::integrate {
@@ -43,15 +44,10 @@ class ModalMotion {
   double work() const { return work_; }              // J, of the forces on the modes' motion
 
  private:
-  /// u(t + dt) = {uu, uw; wu, ww} (u, u') of a free oscillation.
-  struct Propagator {
-    double uu, uw, wu, ww;
-  };
   struct Mode {
     std::array<double, 4> particular{};  // by powers of the time since the interval's start
     double u = 0.0, w = 0.0;             // the free oscillation and its rate, now
   };
-  static Propagator propagator(double omega, double sigma, double dt);
   void enter(std::size_t interval);
   void enter_coupled();
   void move(double dt);
@@ -68,7 +64,7 @@ class ModalMotion {
   double time_ = 0.0;
   std::vector<Mode> modes_;
   std::vector<double> q_, rate_, acceleration_;
-  std::vector<Propagator> expected_;
+  std::vector<FreeOscillation> expected_;
   double expected_dt_ = -1.0;
   double highest_ = 0.0;  // rad/s
   bool counting_ = false;

@@ -2,10 +2,9 @@
 
 #include <petsc/private/tsimpl.h>
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <string_view>
 
@@ -19,7 +18,6 @@ namespace traverse::integrate {
 namespace {
 
 using base::check;
-using base::guard;
 using coupling::Terms;
 
 constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS wants some bound
@@ -27,6 +25,7 @@ constexpr int most_rejections = 12;                                      // of o
 constexpr double near_event = 1e-3;     // of a step: events closer than this share the end of a step
 constexpr double restart_growth = 2.0;  // steps of a multistep method may not grow faster
 constexpr long steps_unseen = 16;       // between two looks at the bounds of the motion, which cost a pass over it
+constexpr double kept_step = 1e-7;      // of a step: lengths that need no other factorisation
 
 bool has_type(TS ts, const char* type) {
   PetscBool same = PETSC_FALSE;
@@ -187,7 +186,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       Array y(y_);
       const bool rewritten = system_.accept(t, y.data);
       if (rewritten) check(TSRestartStep(ts_));
-      if (steps_ % steps_unseen == 0) check_bounds(t, y.data, nullptr);
+      if (steps_ % steps_unseen == 0 && system_.apart() == nullptr) check_bounds(t, y.data, nullptr);
       show_to_monitors(t);
       going = step(t, steps_) && !stopped_at_limit();
     }
@@ -209,13 +208,18 @@ void Stepper::show_to_monitors(double t) {
 }
 
 // What comes next on the way to a target `left` s away: a rung of the ladder, or what is left shared evenly among the
-// steps that it takes.
+// steps that it takes. Where the target moves a little, the step stays, and with it the beam's factorisation.
 double Stepper::next_step(double from, double left) const {
-  const double limit = system_.contacts().step_limit(from),
-               impact = system_.contacts().time_to_impact(settings_.contact_tolerance);
+  double limit = std::numeric_limits<double>::infinity(), impact = limit;
+  if (system_.apart() == nullptr) {  // contacts are held while steps are taken apart
+    limit = system_.contacts().step_limit(from);
+    impact = system_.contacts().time_to_impact(settings_.contact_tolerance);
+  }
   if (ladder_) return std::min(ladder_->towards(left, limit), impact);
   const double wanted = std::min({adaptive_ ? next_step_ : settings_.time_step, limit, impact});
-  return shared_evenly(left, wanted);
+  const double even = shared_evenly(left, wanted);
+  const bool held = even < left && last_step_ <= wanted && std::abs(even - last_step_) <= kept_step * last_step_;
+  return held ? last_step_ : even;
 }
 
 // One step from where TS is, no longer than what is left to the next target. Returns the time reached.
@@ -273,6 +277,13 @@ void Stepper::fetch_steps_apart() {
   system_.fetch(y.data);
 }
 
+bool Stepper::fetch_rate_apart(double t) {
+  if (steps_ == 0) return false;
+  ReadArray y(y_);
+  Array ydot(rate_);
+  return system_.fetch_rate(t, y.data, ydot.data);
+}
+
 void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   fetch_steps_apart();
   PetscReal t = 0.0;
@@ -281,22 +292,21 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purp
     ReadArray in(y_);
     Array out(rate_);
     system_.rate_of_motion(in.data, out.data);
-  } else {
+  } else if (!fetch_rate_apart(t)) {
     rate(t, y_, rate_, Terms::all);
   }
   ReadArray y(y_);
   ReadArray ydot(rate_);
-  check_bounds(t, y.data, ydot.data);
+  if (system_.apart() == nullptr || steps_ == 0) check_bounds(t, y.data, ydot.data);
   sample({t, y.data, ydot.data, nullptr, purpose});
 }
 
 // SolverError where the motion is no number any more, or the beam deflects by more than its length. ydot: or null.
 void Stepper::check_bounds(double t, const double* y, const double* ydot) const {
-  const int n = system_.local_size();
-  double bounds[2] = {0.0, 0.0};  // of the sum of all entries, of the beam's displacements
-  for (int i = 0; i < n; ++i) bounds[0] += std::abs(y[i]);
-  for (int i = 0; i < n && ydot != nullptr; ++i) bounds[0] += std::abs(ydot[i]);
-  for (int i = 0; i < system_.structure_unknowns(); ++i) bounds[1] = std::max(bounds[1], std::abs(y[i]));
+  const auto abs = [](const double* x, int size) { return Eigen::Map<const Eigen::ArrayXd>(x, size).abs(); };
+  const int n = system_.local_size(), unknowns = system_.structure_unknowns();
+  double bounds[2] = {abs(y, n).sum(), unknowns > 0 ? abs(y, unknowns).maxCoeff() : 0.0};  // of displacements
+  if (ydot != nullptr) bounds[0] += abs(ydot, n).sum();
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, system_.comm());
   const bool off = system_.beam() != nullptr && bounds[1] > system_.beam()->model().length();
   if (t == 0.0 && off)
@@ -306,101 +316,6 @@ void Stepper::check_bounds(double t, const double* y, const double* ydot) const 
   if (!std::isfinite(bounds[0]) || off)
     throw SolverError("the motion has grown beyond all bounds by t = " + std::to_string(t) +
                       " s: the step is too long for this integrator; take a smaller -ts_dt or an implicit -ts_type");
-}
-
-// --- what TS calls -------------------------------------------------------------------------------------------------
-
-// Whether the last solved stage is the state asked for: its rate is known then.
-bool Stepper::remembered(double t, const double* y) const {
-  int same = known_ && std::abs(t - known_t_) <= 1e-13 * std::max(1.0, std::abs(t)) &&
-                     std::memcmp(y, known_y_.data(), known_y_.size() * sizeof(double)) == 0
-                 ? 1
-                 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &same, 1, MPI_INT, MPI_MIN, system_.comm());
-  return same != 0;
-}
-
-void Stepper::rate(double t, Vec y, Vec ydot, Terms terms) {
-  ReadArray in(y);
-  Array out(ydot);
-  if (terms == implicit_terms_ && remembered(t, in.data))
-    std::copy(known_rate_.begin(), known_rate_.end(), out.data);
-  else
-    system_.rate(t, in.data, out.data, terms);
-}
-
-// F = y' - G, or, inside a stage solve, only a note of what is asked.
-void Stepper::implicit_residual(double t, Vec y, Vec ydot, Vec residual) {
-  if (request_.recording) {
-    request_.t = t;
-    request_.start = y != request_.unknown;
-    if (request_.start) {  // PETSc 3.20 and later: ARKIMEX asks for the y' of its first explicit stage
-      PetscReal now = 0.0;
-      check(TSGetTime(ts_, &now));
-      return rate(now, y, residual, implicit_terms_);
-    }
-    ReadArray xdot(ydot);
-    std::copy_n(xdot.data, stage_c_.size(), stage_c_.begin());
-    return;
-  }
-  rate(t, y, residual, implicit_terms_);
-  check(VecAYPX(residual, -1.0, ydot));
-}
-
-void Stepper::solve_stage(SNES snes, Vec x) {
-  request_.recording = true;
-  request_.unknown = x;
-  check(SNESComputeFunction(snes, x, residual_));
-  if (request_.start) {
-    request_.recording = false;
-    return check(VecCopy(residual_, x));
-  }
-  check(SNESComputeJacobian(snes, x, jacobian_, jacobian_));
-  request_.recording = false;
-  Vec right_side = nullptr;
-  check(SNESGetRhs(snes, &right_side));
-  Array y(x);
-  const std::size_t n = stage_c_.size();
-  for (std::size_t i = 0; i < n; ++i) stage_c_[i] -= request_.shift * y.data[i];
-  if (right_side != nullptr) {
-    ReadArray b(right_side);
-    for (std::size_t i = 0; i < n; ++i) stage_c_[i] -= b.data[i];
-  }
-  if (!system_.solve_stage(request_.t, request_.shift, stage_c_.data(), y.data, implicit_terms_)) {
-    known_ = false;
-    check(SNESSetConvergedReason(snes, SNES_DIVERGED_MAX_IT));
-    return;
-  }
-  known_ = true;
-  known_t_ = request_.t;
-  for (std::size_t i = 0; i < n; ++i) {
-    known_y_[i] = y.data[i];
-    known_rate_[i] = request_.shift * y.data[i] + stage_c_[i];
-  }
-}
-
-PetscErrorCode Stepper::ifunction(TS, PetscReal t, Vec y, Vec ydot, Vec residual, void* context) {
-  return guard([&] { static_cast<Stepper*>(context)->implicit_residual(t, y, ydot, residual); });
-}
-
-PetscErrorCode Stepper::ijacobian(TS, PetscReal, Vec, Vec, PetscReal shift, Mat, Mat, void* context) {
-  static_cast<Stepper*>(context)->request_.shift = shift;
-  return 0;
-}
-
-PetscErrorCode Stepper::rhs_function(TS, PetscReal t, Vec y, Vec ydot, void* context) {
-  return guard([&] {
-    auto& self = *static_cast<Stepper*>(context);
-    self.rate(t, y, ydot, self.implicit_ ? Terms::contact : Terms::all);
-  });
-}
-
-PetscErrorCode Stepper::shell_solve(SNES snes, Vec x) {
-  return guard([&] {
-    void* context = nullptr;
-    check(SNESShellGetContext(snes, &context));
-    static_cast<Stepper*>(context)->solve_stage(snes, x);
-  });
 }
 
 }  // namespace traverse::integrate

@@ -73,7 +73,6 @@ class Stepper {
   };
 
   void set_up_type();
-  void advance(double target);
   double next_step(double from, double left) const;
   void show_to_monitors(double t);
   double take_step(double from, double left);
@@ -84,6 +83,7 @@ class Stepper {
   double locate_contact_change(double from, double full);
   double end_at_turn(double from, double at, const coupling::CornerEvents::Turn& turn);
   void fetch_steps_apart();
+  bool fetch_rate_apart(double t);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y, const double* ydot) const;
   void rate(double t, Vec y, Vec ydot, coupling::Terms terms);

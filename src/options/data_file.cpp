@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <string_view>
+#include <utility>
 
 #include "traverse/base/error.hpp"
 
@@ -52,6 +54,19 @@ bool parse_number(const std::string& word, double& number) {
   if (begin != end && *begin == '+') ++begin;
   const auto [stop, code] = std::from_chars(begin, end, number);
   return code == std::errc() && stop == end && begin != end && std::isfinite(number);
+}
+
+bool parse_speed(std::string word, double& number) {
+  double scale = 1.0;
+  for (const auto& [ending, factor] : {std::pair{"km/h", 1.0 / 3.6}, std::pair{"m/s", 1.0}})
+    if (word.ends_with(ending)) {
+      word.resize(word.size() - std::string_view(ending).size());
+      word.resize(word.find_last_not_of(' ') + 1);
+      scale = factor;
+    }
+  if (!parse_number(word, number)) return false;
+  number *= scale;
+  return true;
 }
 
 std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most,

@@ -21,5 +21,7 @@ bool is_quantity(double number);
 
 /// A finite number that fills the whole word; false otherwise.
 bool parse_number(const std::string& word, double& number);
+/// The same of a speed in m/s, which may be written in km/h: "300 km/h".
+bool parse_speed(std::string word, double& number);
 
 }  // namespace traverse::options

@@ -217,7 +217,8 @@ std::vector<std::string> Options::list(std::string_view name) const {
 double Options::to_number(std::string_view name, const std::string& word) const {
   double value = 0.0;
   const Row& known = row(name);
-  if (!parse_number(word, value)) {
+  const bool speeds = known.kind == Kind::numbers && known.unit == "m/s";
+  if (!(speeds ? parse_speed(word, value) : parse_number(word, value))) {
     refuse(name, fmt::format("'{}' is no finite number; allowed: {}", word, allowed(known)));
   }
   if (!known.range.holds(value)) refuse(name, "allowed: " + allowed(known));

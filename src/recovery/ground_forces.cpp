@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "base/dot.hpp"
 #include "beam/assembly.hpp"
 #include "beam/layered_track.hpp"
 #include "beam/point_shape.hpp"
@@ -103,11 +104,10 @@ void GroundForces::add_track() {
 void GroundForces::evaluate(const double* v, const double* w, const double* a) {
   std::fill(sums_.begin(), sums_.end(), 0.0);
   for (const Term& t : terms_) sums_[t.sum] -= t.c * w[t.unknown] + t.k * v[t.unknown];
-  for (std::size_t i = 0; i < masses_[0].size(); ++i) {
-    sums_[inertia_] -= masses_[0][i] * a[i];
-    sums_[inertia_ + 1] -= masses_[1][i] * a[i];
-    sums_[drag_] -= bridge_masses_[0][i] * w[i];
-    sums_[drag_ + 1] -= bridge_masses_[1][i] * w[i];
+  for (const std::size_t direction : {0U, 1U}) {
+    if (direction == 0 && beam_.layout().place[u] < 0) continue;
+    sums_[inertia_ + direction] = -base::dot(masses_[direction], a);
+    if (beam_.rayleigh().a != 0.0) sums_[drag_ + direction] = -base::dot(bridge_masses_[direction], w);
   }
   MPI_Allreduce(MPI_IN_PLACE, sums_.data(), static_cast<int>(sums_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
 }

@@ -260,12 +260,15 @@ Forces Recovery::inside(std::size_t station, double x, ElementLoad load) const {
   return {added.moment, added.shear, added.axial_force};
 }
 
-double Recovery::deflection_inside(std::size_t station, const ElementLoad& load) const {
+Response Recovery::inside_response(std::size_t station, const ElementLoad& load) const {
   const Section& s = sections_[station];
-  if (load.element != s.at.element) return 0.0;
   Response added;
-  s.add_load(load, added);
-  return added.deflection;
+  if (load.element == s.at.element) s.add_load(load, added);
+  return added;
+}
+
+double Recovery::deflection_inside(std::size_t station, const ElementLoad& load) const {
+  return inside_response(station, load).deflection;
 }
 
 double Recovery::add_deflection_form(std::size_t station, double factor, double* forces) const {

@@ -65,7 +65,9 @@ class Recovery {
   }
   /// What a load adds to the forces by acting inside the station's element, if it stood at x: none elsewhere.
   Forces inside(std::size_t station, double x, ElementLoad load) const;
-  /// What such a load adds to the station's deflection, m.
+  /// What a load adds to the response of a station by acting inside its element: nothing elsewhere.
+  Response inside_response(std::size_t station, const ElementLoad& load) const;
+  /// The same of the deflection, m.
   double deflection_inside(std::size_t station, const ElementLoad& load) const;
   /// Adds `factor` times the deflection of a station on the bridge, as a form of this rank's nodal displacements, to
   /// `forces`. Returns what the beam's weight adds to the deflection between nodes, m.

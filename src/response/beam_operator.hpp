@@ -2,6 +2,7 @@
 // whose factorisations are kept per shift s.
 #pragma once
 
+#include <algorithm>
 #include <list>
 #include <optional>
 #include <vector>
@@ -85,6 +86,10 @@ class BeamOperator {
   }
   /// Changes whenever `factored` hands out another factorisation.
   long factor_stamp() const { return stamp_; }
+  /// Whether the factorisation of that stamp may be handed out again.
+  bool keeps(long stamp) const {
+    return std::any_of(factors_.begin(), factors_.end(), [&](const Factor& f) { return f.stamp == stamp; });
+  }
   long factorisations() const { return factorisations_; }  // so far
   bool damped() const { return damped_; }
   mutable long solves = 0;  // beam solves so far, for the summary

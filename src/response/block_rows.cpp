@@ -26,13 +26,16 @@ struct RowReader {
 
 BlockRows::BlockRows(const solve::BlockTridiagonal& rows, const std::vector<double>& left) {
   const RowReader entry{rows, left};
-  for (int row = 0; row < rows.block; ++row)
+  for (int row = 0; row < rows.block; ++row) {
+    row_begins_.push_back(static_cast<int>(entries_.size()));
     for (int column = 0; column < rows.block; ++column)
       for (int shift = 0; shift < 3; ++shift) {
         std::ptrdiff_t i = 0;
         while (i < rows.nodes && entry(i, row, column, shift) == 0.0) ++i;
         if (i < rows.nodes) entries_.push_back({row, column, shift, {}});
       }
+  }
+  row_begins_.push_back(static_cast<int>(entries_.size()));
   const auto mark = [&](std::ptrdiff_t i) {
     std::uint64_t result = 0;
     for (const Entry& e : entries_) result = solve::mark_of(result, std::array{entry(i, e.row, e.column, e.shift)});
@@ -45,19 +48,34 @@ BlockRows::BlockRows(const solve::BlockTridiagonal& rows, const std::vector<doub
   };
   for (std::ptrdiff_t i : stored_.keep(rows.nodes, mark, same))
     for (Entry& e : entries_) e.along.push_back(entry(i, e.row, e.column, e.shift));
+  for (Entry& e : entries_) {
+    const auto nonzero = [](double number) { return number != 0.0; };
+    e.from = std::find_if(e.along.begin(), e.along.end(), nonzero) - e.along.begin();
+    e.to = e.along.rend() - std::find_if(e.along.rbegin(), e.along.rend(), nonzero);
+    e.along.resize(e.along.size() + beam::abreast, 0.0);
+  }
 }
 
+// A few nodes at a time, whose sums stay in registers while the entries of a row go by.
 void BlockRows::add(int first, int past, const beam::Planes& x, const beam::Planes& r) const {
   for (std::ptrdiff_t begin = first; begin < past;) {
     const solve::Stored& stored = stored_.at(begin);
-    const std::ptrdiff_t end = std::min<std::ptrdiff_t>(past, stored.row_end(begin));
-    const int count = static_cast<int>(end - begin);
-    for (const Entry& e : entries_) {
-      const double* const a = e.along.data() + stored.place(begin);
-      const double* const from = x[e.column] + (begin - first) + e.shift;
-      double* const to = r[e.row] + (begin - first);
-#pragma GCC ivdep
-      for (int i = 0; i < count; ++i) to[i] += a[i] * from[i];
+    const std::ptrdiff_t end = std::min<std::ptrdiff_t>(past, stored.row_end(begin)), place = stored.place(begin);
+    for (std::ptrdiff_t from = begin; from < end; from += beam::abreast) {
+      const auto count = static_cast<int>(std::min<std::ptrdiff_t>(beam::abreast, end - from));
+      const std::ptrdiff_t at = place + (from - begin);
+      for (std::size_t row = 0; row + 1 < row_begins_.size(); ++row) {
+        std::array<double, beam::abreast> sums{};
+        for (int k = row_begins_[row]; k < row_begins_[row + 1]; ++k) {
+          const Entry& e = entries_[k];
+          if (e.to <= at || at + count <= e.from) continue;
+          const double* const a = e.along.data() + at;
+          const double* const of = x[e.column] + (from - first) + e.shift;
+          for (int i = 0; i < beam::abreast; ++i) sums[i] += a[i] * of[i];
+        }
+        double* const to = r[row] + (from - first);
+        for (int i = 0; i < count; ++i) to[i] += sums[i];
+      }
     }
     begin = end;
   }

@@ -44,8 +44,15 @@ void Compliance::prepare(double shift, double shift2, const AddedSprings* added,
   std::swap(before_.elements, elements_);
   if (!same_factor) {
     of_slot_.assign(of_slot_.size(), columns_.end());
-    for (auto c = columns_.begin(); c != columns_.end(); ++c)
+    for (auto c = columns_.begin(); c != columns_.end();) {
       if (c->stamp == stamp) of_slot_[c->slot] = c;
+      if (operator_.keeps(c->stamp)) {
+        ++c;
+      } else {
+        kept_ -= c->values.size();
+        c = columns_.erase(c);
+      }
+    }
   }
   stamp_ = stamp;
   elements_ = elements;
@@ -72,7 +79,8 @@ void Compliance::prepare(double shift, double shift2, const AddedSprings* added,
 int Compliance::reach(double shift, double shift2) {
   if (operator_.parts() != nullptr) return 0;
   const BeamFactor& factor = operator_.factored(shift, shift2);
-  if (operator_.factor_stamp() != reach_stamp_) (void)solve_window(factor, line_.mesh.elements() / 2);
+  if (operator_.factor_stamp() != reach_stamp_)
+    for (const int quarter : {1, 2, 3}) (void)solve_window(factor, quarter * line_.mesh.elements() / 4);
   reach_stamp_ = operator_.factor_stamp();
   return static_cast<int>(std::min<std::ptrdiff_t>(margin_, beam_.columns())) + 2;
 }

@@ -17,11 +17,17 @@ using Clock = std::chrono::steady_clock;
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 using hdf5::Series;
 
-constexpr std::size_t kBlockRows = 256;
-constexpr std::size_t kBlockBytes = std::size_t{64} << 20;
+// Rows between two writes: many where rows are short, since each write asks HDF5 for every dataset.
+constexpr std::size_t kBlockRows = 256, kMostRows = 1024;
+constexpr std::size_t kShortBlock = std::size_t{1} << 20, kBlockBytes = std::size_t{64} << 20;
 // A slow run writes before its block is full, as long as writing takes less than a twentieth of the time.
 constexpr double kLongestWait = 5.0;  // s
 constexpr double kCostFactor = 20.0;
+
+std::size_t rows_of_block(std::size_t row_bytes) {
+  const std::size_t rows = std::clamp(kShortBlock / row_bytes, kBlockRows, kMostRows);
+  return std::clamp<std::size_t>(kBlockBytes / row_bytes, 1, rows);
+}
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -40,7 +46,7 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, 
     : file(std::move(place)),
       layout(given),
       width(given.width()),
-      block_rows(std::clamp<std::size_t>(kBlockBytes / (sizeof(double) * (1 + width)), 1, kBlockRows)) {
+      block_rows(rows_of_block(sizeof(double) * (1 + width))) {
   attempt([&] {
     file.attribute("/", "program", "traverse");
     file.attribute("/", "version", TRAVERSE_VERSION);

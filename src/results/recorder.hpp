@@ -72,6 +72,21 @@ struct LowPassed {
   double frequency = 0.0, interval = 0.0;  // Hz of the filter, s between the instants that it was given
   std::string filter;                      // its name
 };
+/// The largest part of its force at the start that a wheel has lost.
+struct Unloading {
+  double value = 0.0, time = 0.0;  // s
+  std::string wheel{};             // "vehicle 3, rear_wheel"
+};
+/// The same of low-passed forces, and how long one was unloaded.
+struct FilteredUnloading {
+  Unloading extreme;
+  double frequency = 0.0, interval = 0.0;  // Hz of the filter, s between the instants that it was given
+  std::string filter;                      // its name
+  double level = 0.0;                      // from which on a wheel counts as unloaded
+  double longest = 0.0;                    // s without a break
+  double longest_from = 0.0;               // s
+  std::string longest_wheel;
+};
 struct Summary {
   bool probes = false;  // whether there are any: without them there are no peaks
   Extreme deflection, acceleration, moment;
@@ -80,7 +95,9 @@ struct Summary {
   double amplification = 0.0;      // |deflection| over static; 0: unknown
   double least_wheel_force = 0.0, greatest_wheel_force = 0.0;
   double least_wheel_force_time = 0.0;
-  std::string least_wheel;  // e.g. "vehicle 3, rear_wheel"
+  std::string least_wheel;             // e.g. "vehicle 3, rear_wheel"
+  std::optional<Unloading> unloading;  // of forces as they are, at the ends of steps; not where none is at rest first
+  std::optional<FilteredUnloading> filtered_unloading;
   int contact_losses = 0;
   double longest_loss = 0.0;      // s
   double energy_residual = 0.0;   // largest |residual|, J

@@ -125,7 +125,7 @@ std::vector<Recorder::Dataset> StudyStatistics::datasets() const {
         high.insert(high.end(), numbers.high.begin(), numbers.high.end());
       }
     std::vector<std::size_t> shape = {g};
-    if (column.what->per_probe) shape.push_back(table_.probes());
+    for (const std::size_t size : column.shape()) shape.push_back(size);
     std::vector<std::size_t> with_quantiles = shape;
     with_quantiles.push_back(k);
     const std::string name = folder + column.what->name;

@@ -7,11 +7,14 @@
 
 namespace traverse::results {
 
-StudyTable::StudyTable(const options::Study& study, std::size_t probes, bool wheels)
-    : study_(study), runs_(study.runs()), probes_(probes), finished_(runs_, 0.0) {
+StudyTable::StudyTable(const options::Study& study, std::size_t probes, bool wheels,
+                       const std::vector<options::VerdictLimit>& limits)
+    : study_(study), runs_(study.runs()), probes_(probes), limits_(limits), finished_(runs_, 0.0) {
   for (const StudyColumn& column : study_columns) {
-    if (column.of_wheels && !wheels) continue;
-    const std::size_t width = column.per_probe ? probes : 1;
+    if ((column.of_wheels && !wheels) || (column.each == StudyColumn::limit && limits.empty())) continue;
+    const std::size_t width = column.each == StudyColumn::probe   ? probes
+                              : column.each == StudyColumn::limit ? limits.size()
+                                                                  : 1;
     columns_.push_back({&column, width, std::vector<double>(runs_ * width, not_run)});
     width_ += width;
   }
@@ -39,7 +42,7 @@ std::vector<Recorder::Dataset> StudyTable::results() const {
   std::vector<Recorder::Dataset> sets;
   for (const Column& column : columns_) {
     std::vector<std::size_t> shape = {runs_};
-    if (column.what->per_probe) shape.push_back(probes_);
+    for (const std::size_t size : column.shape()) shape.push_back(size);
     sets.push_back({std::string("/study/") + column.what->name, shape, column.values, column.what->unit});
   }
   return sets;
@@ -59,6 +62,14 @@ std::vector<Recorder::Dataset> StudyTable::coordinates() const {
 }
 
 Recorder::Dataset StudyTable::finished() const { return {"/study/finished", {runs_}, finished_, "1"}; }
+
+std::vector<Verdict> StudyTable::verdicts() const {
+  if (limits_.empty()) return {};
+  Judged judged(limits_, 0);
+  judged.value = find("judged")->values;
+  judged.x = find("judged_x")->values;
+  return worst_of(judged, [this](std::size_t run) { return point_text(study_, run); });
+}
 
 bool find_extreme(const StudyTable& table, const std::string& name, bool largest, StudyPlace& place) {
   const StudyTable::Column* column = table.find(name);
@@ -89,7 +100,7 @@ std::vector<Attribute> summary_of(const StudyTable& table) {
     if (!find_extreme(table, column, largest, place)) return;
     list.push_back({name, place.value});
     list.push_back({name + "_run", static_cast<long>(place.run)});
-    if (table.find(column)->what->per_probe)
+    if (table.find(column)->what->each == StudyColumn::probe)
       list.push_back({name + "_place", x.values[place.run * table.probes() + place.probe]});
   };
   add("deflection", "peak_deflection", true);
@@ -113,7 +124,7 @@ void print_study(const StudyTable& table) {
     if (!find_extreme(table, column, largest, place)) return;
     const std::string value = fmt::format("{:.4g} {}", scale * place.value, unit);
     std::string where;
-    if (table.probes() > 1 && table.find(column)->what->per_probe)
+    if (table.probes() > 1 && table.find(column)->what->each == StudyColumn::probe)
       where = fmt::format("x = {:.4g} m, ", table.find("probes_x")->values[place.run * table.probes() + place.probe]);
     fmt::print("  {:<22}{:<18}{}{}\n", label, value, where, point_text(table.study(), place.run));
   };

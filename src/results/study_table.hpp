@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "results/recorder.hpp"
+#include "results/verdict.hpp"
 #include "traverse/options/study.hpp"
 
 namespace traverse::results {
@@ -14,33 +15,38 @@ namespace traverse::results {
 struct StudyColumn {
   const char* name;  // of its dataset
   const char* unit;
-  bool per_probe;   // else one number a run
-  bool of_wheels;   // only where there are any
-  bool for_people;  // statistics are made of it
+  enum Each { run, probe, limit } each;  // what has a number of its own
+  bool of_wheels;                        // only where there are any
+  bool for_people;                       // statistics are made of it
 };
 inline constexpr StudyColumn study_columns[] = {
-    {"probes_x", "m", true, false, false},
-    {"peak_deflection", "m", true, false, true},
-    {"peak_deflection_time", "s", true, false, false},
-    {"peak_acceleration", "m/s2", true, false, true},
-    {"peak_acceleration_time", "s", true, false, false},
-    {"peak_moment", "N m", true, false, true},
-    {"peak_moment_time", "s", true, false, false},
-    {"static_deflection", "m", true, false, false},
-    {"amplification", "1", true, false, true},
-    {"least_wheel_force", "N", false, true, true},
-    {"greatest_wheel_force", "N", false, true, true},
-    {"contact_losses", "1", false, true, false},
-    {"longest_loss", "s", false, true, false},
+    {"probes_x", "m", StudyColumn::probe, false, false},
+    {"peak_deflection", "m", StudyColumn::probe, false, true},
+    {"peak_deflection_time", "s", StudyColumn::probe, false, false},
+    {"peak_acceleration", "m/s2", StudyColumn::probe, false, true},
+    {"peak_acceleration_time", "s", StudyColumn::probe, false, false},
+    {"peak_moment", "N m", StudyColumn::probe, false, true},
+    {"peak_moment_time", "s", StudyColumn::probe, false, false},
+    {"static_deflection", "m", StudyColumn::probe, false, false},
+    {"amplification", "1", StudyColumn::probe, false, true},
+    {"least_wheel_force", "N", StudyColumn::run, true, true},
+    {"greatest_wheel_force", "N", StudyColumn::run, true, true},
+    {"contact_losses", "1", StudyColumn::run, true, false},
+    {"longest_loss", "s", StudyColumn::run, true, false},
+    {"judged", "as /verdicts/quantity", StudyColumn::limit, false, true},
+    {"judged_x", "m", StudyColumn::limit, false, false},
 };
 
 class StudyTable {
  public:
   static constexpr double not_run = std::numeric_limits<double>::quiet_NaN();
 
-  StudyTable(const options::Study& study, std::size_t probes, bool wheels);
+  StudyTable(const options::Study& study, std::size_t probes, bool wheels,
+             const std::vector<options::VerdictLimit>& limits = {});
 
   const options::Study& study() const { return study_; }
+  /// A verdict on each limit, of all runs that have ended.
+  std::vector<Verdict> verdicts() const;
   std::size_t runs() const { return runs_; }
   std::size_t probes() const { return probes_; }
   /// Numbers in a row: those of each column, per probe or one, in the columns' order.
@@ -53,6 +59,11 @@ class StudyTable {
     const StudyColumn* what;
     std::size_t width;           // numbers a run
     std::vector<double> values;  // [runs, width], not_run where a run has not ended
+
+    /// Of its dataset, behind the number of runs or of groups of these.
+    std::vector<std::size_t> shape() const {
+      return what->each == StudyColumn::run ? std::vector<std::size_t>() : std::vector<std::size_t>{width};
+    }
   };
   const std::vector<Column>& columns() const { return columns_; }
   /// A column by its name; null where it is not there.
@@ -66,6 +77,7 @@ class StudyTable {
  private:
   const options::Study& study_;
   std::size_t runs_, probes_, width_ = 0;
+  std::vector<options::VerdictLimit> limits_;
   std::vector<Column> columns_;
   std::vector<double> finished_;
 };

@@ -35,6 +35,26 @@ std::vector<Attribute> attributes_of(const Summary& summary) {
     add("least_wheel", summary.least_wheel);
     add("greatest_wheel_force", summary.greatest_wheel_force);
   }
+  if (summary.unloading) {
+    add("wheel_unloading", summary.unloading->value);
+    add("wheel_unloading_time", summary.unloading->time);
+    add("wheel_unloading_wheel", summary.unloading->wheel);
+  }
+  if (summary.filtered_unloading) {
+    const FilteredUnloading& filtered = *summary.filtered_unloading;
+    add("wheel_unloading_lowpass", filtered.extreme.value);
+    add("wheel_unloading_lowpass_time", filtered.extreme.time);
+    add("wheel_unloading_lowpass_wheel", filtered.extreme.wheel);
+    add("wheel_unloading_lowpass_frequency", filtered.frequency);
+    add("wheel_unloading_lowpass_interval", filtered.interval);
+    add("wheel_unloading_lowpass_filter", filtered.filter);
+    add("unloading_level", filtered.level);
+    add("unloading_longest", filtered.longest);
+    if (filtered.longest > 0.0) {
+      add("unloading_longest_from", filtered.longest_from);
+      add("unloading_longest_wheel", filtered.longest_wheel);
+    }
+  }
   add("contact_losses", static_cast<long>(summary.contact_losses));
   add("longest_loss", summary.longest_loss);
   add("energy_residual", summary.energy_residual);

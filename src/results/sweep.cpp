@@ -1,12 +1,12 @@
 #include "results/sweep.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
+
+#include "results/terminal.hpp"
 
 namespace traverse::results {
 namespace {
@@ -108,7 +108,7 @@ bool find_among(const Sweep& sweep, const std::vector<double>& values, std::size
   return true;
 }
 
-using Row = std::array<std::string, 6>;
+using Row = std::vector<std::string>;
 
 /// Of a train whose largest deflection is at `place`.
 Row row_of(const Sweep& sweep, std::size_t train, const SweepPlace& place) {
@@ -141,6 +141,7 @@ bool find_largest(const Sweep& sweep, const std::vector<double>& values, SweepPl
 
 void record(const Sweep& sweep, Recorder& recorder) {
   std::vector<Recorder::Dataset> sets = {{"/sweep/speed", {sweep.speed.size()}, sweep.speed, "m/s"}};
+  if (sweep.refined) sets.push_back({"/sweep/added", {sweep.speed.size()}, sweep.refined->added, "1"});
   if (!sweep.trains.empty())
     sets.push_back({"/sweep/hslm_a", {sweep.trains.size()}, {sweep.trains.begin(), sweep.trains.end()}, "1"});
   const std::vector<std::size_t> shape = {sweep.rows(), sweep.speed.size(), sweep.probes.size()};
@@ -160,6 +161,11 @@ void record(const Sweep& sweep, Recorder& recorder) {
   of_runs("greatest_wheel_force", sweep.greatest_wheel_force, "N");
   of_runs("contact_losses", sweep.contact_losses, "1");
   of_runs("longest_loss", sweep.longest_loss, "s");
+  if (!sweep.judged.limits.empty()) {
+    const std::vector<std::size_t> of_limits = {shape[0], shape[1], sweep.judged.limits.size()};
+    sets.push_back({"/sweep/judged", of_limits, sweep.judged.value, "as /verdicts/quantity"});
+    sets.push_back({"/sweep/judged_x", of_limits, sweep.judged.x, "m"});
+  }
   recorder.datasets(sets);
   recorder.attributes("/sweep", attributes_of(sweep.model));
 }
@@ -170,6 +176,7 @@ std::vector<Attribute> summary_of(const Sweep& sweep, const SweepCourse& course)
   add_wheels(sweep, list);
   for (const auto& [quantity, error] : sweep.model.expected_errors)
     list.push_back({"expected_error_" + quantity, error});
+  if (sweep.refined) add_to(list, *sweep.refined);
   list.push_back({"runs", course.runs});
   list.push_back({"runs_planned", course.planned});
   list.push_back({"wall_seconds", course.wall_seconds});
@@ -184,14 +191,18 @@ void print_sweep(const Sweep& sweep) {
   for (std::size_t train = 0; train < sweep.rows(); ++train)
     if (SweepPlace place; find_largest(sweep, sweep.deflection.value, train, place))
       rows.push_back(row_of(sweep, train, place));
-  for (std::size_t column = 0; column < rows.front().size(); ++column) {
-    std::size_t width = 0;
-    for (const Row& row : rows) width = std::max(width, row[column].size());
-    for (Row& row : rows) row[column] = fmt::format("{:>{}}", row[column], width);
-  }
-  for (const Row& row : rows) fmt::print("  {}\n", fmt::join(row, "  "));
+  print_columns(std::move(rows));
   print_wheels(sweep);
+  if (sweep.refined) print(*sweep.refined);
   std::fflush(stdout);
+}
+
+std::vector<Verdict> verdicts_of(const Sweep& sweep) {
+  return worst_of(sweep.judged, [&sweep](std::size_t run) {
+    const double speed = sweep.speed[run % sweep.speed.size()];
+    const std::string train = sweep.trains.empty() ? "" : train_of(sweep, run / sweep.speed.size()) + " ";
+    return fmt::format("{}at {:.5g} m/s ({:.4g} km/h)", train, speed, 3.6 * speed);
+  });
 }
 
 std::string method_of(const Sweep::Model& model) {

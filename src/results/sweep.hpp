@@ -2,13 +2,26 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "results/recorder.hpp"
+#include "results/verdict.hpp"
 
 namespace traverse::results {
+
+/// Speeds that were added near the peaks.
+struct Refined {
+  std::vector<double> added;  // of every speed: 1 where it was not asked for, else 0
+  double wanted = 0.0;        // relative, of every peak over the speed
+  double uncertainty = 0.0;   // the same, what is left
+  std::string curve{};        // whose it is
+};
+void print(const Refined& refined);
+/// speeds_added, peak_uncertainty, peak_uncertainty_of.
+void add_to(std::vector<Attribute>& summary, const Refined& refined);
 
 struct Sweep {
   static constexpr double not_run = std::numeric_limits<double>::quiet_NaN();
@@ -26,6 +39,10 @@ struct Sweep {
   // [trains][speeds], all empty without vehicles that roll: N, N, losses of contact of all wheels, s.
   std::vector<double> least_wheel_force, greatest_wheel_force, contact_losses, longest_loss;
 
+  Judged judged;  // by the scene's limits, runs as [trains][speeds]
+
+  std::optional<Refined> refined;  // where speeds were to be added
+
   /// How every run is computed.
   struct Model {
     int modes = 0;           // 0: by elements
@@ -40,6 +57,10 @@ struct Sweep {
 
   std::size_t rows() const { return trains.empty() ? 1 : trains.size(); }
 };
+
+/// The same trains and probes at the speeds of both, ascending; no speed is in both. Model and refinement are those of
+/// `a`.
+Sweep joined(const Sweep& a, const Sweep& b);
 
 /// Where one number of a sweep belongs.
 struct SweepPlace {
@@ -65,6 +86,8 @@ std::vector<Attribute> summary_of(const Sweep& sweep, const SweepCourse& course)
 /// Peaks of each train over all speeds and probes, each with its own speed and probe, and the amplification of the
 /// largest deflection beside it.
 void print_sweep(const Sweep& sweep);
+/// A verdict on each limit, of the whole sweep.
+std::vector<Verdict> verdicts_of(const Sweep& sweep);
 /// "by 3 modes", "by 24 elements a span and steps of 0.00055 s".
 std::string method_of(const Sweep::Model& model);
 

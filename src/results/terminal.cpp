@@ -1,6 +1,7 @@
 #include "results/terminal.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <mpi.h>
 #include <unistd.h>
 
@@ -75,6 +76,18 @@ void print_wheels(const Summary& summary) {
        fmt::format("{:<18}{}, t = {:.6g} s", fmt::format("{:.4g} kN", 1e-3 * summary.least_wheel_force),
                    summary.least_wheel, summary.least_wheel_force_time));
   line("greatest wheel force", fmt::format("{:.4g} kN", 1e-3 * summary.greatest_wheel_force));
+  const auto lost = [](const Unloading& u) {
+    return fmt::format("{:<18}{}, t = {:.6g} s", fmt::format("{:.4g}", u.value), u.wheel, u.time);
+  };
+  if (summary.unloading) line("wheel unloading", lost(*summary.unloading));
+  if (summary.filtered_unloading) {
+    const FilteredUnloading& filtered = *summary.filtered_unloading;
+    line(fmt::format("  up to {:.4g} Hz", filtered.frequency), lost(filtered.extreme));
+    line(fmt::format("  above {:.4g}", filtered.level),
+         filtered.longest == 0.0 ? "never"
+                                 : fmt::format("{:<18}{}, from t = {:.6g} s", duration_text(filtered.longest),
+                                               filtered.longest_wheel, filtered.longest_from));
+  }
   line("contact losses", summary.contact_losses == 0 ? "none"
                                                      : fmt::format("{:<18}the longest {}", summary.contact_losses,
                                                                    duration_text(summary.longest_loss)));
@@ -146,6 +159,15 @@ void print_with_damping(const modes::Modes& modes, const modes::DampedModes& dam
 }
 
 }  // namespace
+
+void print_columns(std::vector<std::vector<std::string>> rows) {
+  for (std::size_t column = 0; column < rows.front().size(); ++column) {
+    std::size_t width = 0;
+    for (const auto& row : rows) width = std::max(width, row[column].size());
+    for (auto& row : rows) row[column] = fmt::format("{:>{}}", row[column], width);
+  }
+  for (const auto& row : rows) fmt::print("  {}\n", fmt::join(row, "  "));
+}
 
 void print_modelled(const std::vector<std::string>& lines) {
   if (!is_first_rank() || lines.empty()) return;

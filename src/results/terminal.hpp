@@ -16,6 +16,9 @@ std::string duration_text(double seconds);
 /// "modelled" lines: each one a thing and, after it, why or how it was chosen.
 void print_modelled(const std::vector<std::string>& lines);
 
+/// A table: each column as wide as its longest text, which stands on the right.
+void print_columns(std::vector<std::vector<std::string>> rows);
+
 /// Progress with the time left: on a terminal one line rewritten, otherwise a line every tenth of the run and every
 /// half minute, and none for runs that end within two seconds. Costs nothing measurable when called every step.
 class Progress {

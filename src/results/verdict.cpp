@@ -21,15 +21,40 @@ std::string verdict_line(const Verdict& v) {
     line += ": " + v.found.why;
   } else {
     line += fmt::format(", found {}, margin {:.3g} %", with_unit(v.found.value, v.unit), 100.0 * v.margin());
-    if (!v.found.place.empty()) line += ", " + v.found.place;
+    if (const std::string place = v.found.place(); !place.empty()) line += ", " + place;
     if (std::isfinite(v.found.time)) line += fmt::format(", t = {:.6g} s", v.found.time);
+    if (v.broken_in > 0) line += fmt::format(", broken in {} of {} runs", v.broken_in, v.runs);
   }
   return v.limit.text.empty() ? line : line + " (" + v.limit.text + ")";
 }
 
 }  // namespace
 
+std::string Finding::place() const {
+  if (std::isnan(x)) return thing;
+  return fmt::format("{}{}x = {:.6g} m", thing, thing.empty() ? "" : ", ", x);
+}
+
 std::string Verdict::word() const { return !judged() ? "not judged" : kept() ? "kept" : "broken"; }
+
+std::vector<Verdict> worst_of(const Judged& judged, const std::function<std::string(std::size_t)>& run_text) {
+  const std::size_t count = judged.limits.size();
+  std::vector<Verdict> verdicts;
+  for (std::size_t l = 0; l < count; ++l) {
+    Verdict verdict{judged.limits[l], std::string(options::limit_quantity(judged.limits[l].quantity)->unit), {}, 0, 0};
+    for (std::size_t i = l; i < judged.value.size(); i += count) {
+      if (std::isnan(judged.value[i])) continue;
+      ++verdict.runs;
+      if (judged.value[i] > verdict.limit.value) ++verdict.broken_in;
+      if (judged.value[i] <= verdict.found.value) continue;
+      verdict.found = {judged.value[i], Finding::unknown, judged.x[i], run_text(i / count), ""};
+    }
+    if (std::isnan(verdict.found.value))
+      verdict.found.why = judged.why[l].empty() ? "no run knows it; a single run says why" : judged.why[l];
+    verdicts.push_back(verdict);
+  }
+  return verdicts;
+}
 
 void print_verdicts(const std::vector<Verdict>& verdicts) {
   if (verdicts.empty()) return;
@@ -42,22 +67,26 @@ void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts) {
   if (verdicts.empty()) return;
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::pair<std::string, std::string>> clause, quantity, verdict;
-  std::vector<double> value, limit, margin, time;
+  std::vector<double> value, limit, margin, time, runs, broken_in;
   for (const Verdict& v : verdicts) {
     clause.emplace_back(v.limit.clause, v.limit.text);
     quantity.emplace_back(v.limit.quantity, v.unit);
-    verdict.emplace_back(v.word(), v.judged() ? v.found.place : v.found.why);
+    verdict.emplace_back(v.word(), v.judged() ? v.found.place() : v.found.why);
     value.push_back(v.found.value);
     limit.push_back(v.limit.value);
     margin.push_back(v.judged() ? v.margin() : unknown);
     time.push_back(v.found.time);
+    runs.push_back(static_cast<double>(v.runs));
+    broken_in.push_back(static_cast<double>(v.broken_in));
   }
   recorder.tables({{"/verdicts/clause", clause}, {"/verdicts/quantity", quantity}, {"/verdicts/verdict", verdict}});
   const std::vector<std::size_t> shape = {verdicts.size()};
   recorder.datasets({{"/verdicts/value", shape, value, "as /verdicts/quantity"},
                      {"/verdicts/limit", shape, limit, "as /verdicts/quantity"},
                      {"/verdicts/margin", shape, margin, "1"},
-                     {"/verdicts/time", shape, time, "s"}});
+                     {"/verdicts/time", shape, time, "s"},
+                     {"/verdicts/runs", shape, runs, "1"},
+                     {"/verdicts/broken_in", shape, broken_in, "1"}});
 }
 
 }  // namespace traverse::results

@@ -1,6 +1,7 @@
 // What a run says of the limits that the user has set.
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -12,16 +13,22 @@ namespace traverse::results {
 
 /// The greatest value that a run has seen of a quantity, or why there is none.
 struct Finding {
-  double value = std::numeric_limits<double>::quiet_NaN();  // a magnitude
-  double time = std::numeric_limits<double>::quiet_NaN();   // s
-  std::string place;                                        // "x = 12.5 m", "vehicle 3, rear_wheel"
-  std::string why;                                          // it is not known; empty: it is
+  static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  double value = unknown;  // a magnitude
+  double time = unknown;   // s
+  double x = unknown;      // m, of a place on the bridge
+  std::string thing{};     // what else it belongs to: "vehicle 3, rear_wheel"; "train A3 at 64 m/s (230 km/h)"
+  std::string why{};       // it is not known; empty: it is
+
+  /// "x = 12.5 m", "vehicle 3, rear_wheel"
+  std::string place() const;
 };
 
 struct Verdict {
   options::VerdictLimit limit;
   std::string unit;
   Finding found;
+  std::size_t runs = 1, broken_in = 0;  // runs that know the quantity, and those that break the limit
 
   bool judged() const { return found.why.empty(); }
   bool kept() const { return found.value <= limit.value; }
@@ -33,6 +40,19 @@ struct Verdict {
 
 /// One line each.
 void print_verdicts(const std::vector<Verdict>& verdicts);
+
+/// What many runs have found of each limit.
+struct Judged {
+  std::vector<options::VerdictLimit> limits;
+  std::vector<double> value, x;  // [runs][limits], Finding::unknown where a run does not know; m
+  std::vector<std::string> why;  // [limits], of runs that do not know
+
+  Judged() = default;
+  Judged(const std::vector<options::VerdictLimit>& by, std::size_t runs)
+      : limits(by), value(runs * by.size(), Finding::unknown), x(value), why(by.size()) {}
+};
+/// A verdict on each limit by the run with the greatest value; run_text(i) names run i.
+std::vector<Verdict> worst_of(const Judged& judged, const std::function<std::string(std::size_t)>& run_text);
 
 /// Into /verdicts of the file.
 void record_verdicts(Recorder& recorder, const std::vector<Verdict>& verdicts);

@@ -30,6 +30,8 @@ std::vector<double> distinct_of_modes(const std::vector<double>& omega) {
   return found;
 }
 
+}  // namespace
+
 std::vector<double> first_frequencies(const SharedBeam& shared) {
   std::vector<double> found;
   if (shared.modal)
@@ -42,7 +44,10 @@ std::vector<double> first_frequencies(const SharedBeam& shared) {
   return found;
 }
 
-}  // namespace
+bool limits_deck_acceleration(const Scene& scene) {
+  return std::any_of(scene.limits.begin(), scene.limits.end(),
+                     [](const options::VerdictLimit& limit) { return limit.quantity == "deck_acceleration"; });
+}
 
 double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool affordable,
                              std::vector<std::string>& notes) {
@@ -66,13 +71,13 @@ double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool 
 
 double spacing_for(double frequency) { return 1.0 / (wanted_instants * frequency); }
 
-std::string no_filter(double frequency, const Plan& plan, std::size_t probes) {
+std::string no_filter(double frequency, const Plan& plan, std::size_t series, const char* what) {
   if (plan.interval > 1.0 / (least_instants * frequency))
     return fmt::format("samples or steps of {:g} s are too long for {:g} Hz; allowed: at most {:g} s", plan.interval,
                        frequency, 1.0 / (least_instants * frequency));
-  const double numbers = static_cast<double>(probes) * (1.0 + plan.end_time / plan.interval);
+  const double numbers = static_cast<double>(series) * (1.0 + plan.end_time / plan.interval);
   if (numbers > DeckAcceleration::most_kept)
-    return fmt::format("{} probes at {:.3g} instants take more than {:.0f} MB; take fewer output_probes", probes,
+    return fmt::format("{} {} at {:.3g} instants take more than {:.0f} MB; take fewer of them", series, what,
                        1.0 + plan.end_time / plan.interval, DeckAcceleration::most_kept * sizeof(double) / 1048576.0);
   return {};
 }
@@ -93,24 +98,14 @@ void DeckAcceleration::add(double t, std::span<const beam::Response> probes) {
 }
 
 void DeckAcceleration::finish(results::Summary& summary) {
-  const LowPass filter(frequency_, interval_);
-  const std::size_t n = stations_.size();
-  std::vector<double> series(instants_);
-  for (std::size_t p = 0; p < n; ++p) {
-    for (std::size_t k = 0; k < instants_; ++k) series[k] = kept_[k * n + p];
-    filter.apply(series);
-    for (std::size_t k = 0; k < instants_; ++k) kept_[k * n + p] = series[k];
-  }
-  Peaks peaks(std::vector<std::vector<double>>(n), 0);
-  std::vector<beam::Response> probes(n);
-  for (std::size_t k = 0; k < instants_; ++k) {
-    for (std::size_t p = 0; p < n; ++p) probes[p].acceleration = kept_[k * n + p];
-    peaks.add(static_cast<double>(k) * interval_, probes, {});
-  }
-  peaks.finish();
-  const Peak& peak = peaks.largest(acceleration);
-  summary.low_passed = {
-      {peak.value, peak.time, stations_[static_cast<std::size_t>(peak.place)]}, frequency_, interval_, low_pass_name};
+  LowPass(frequency_, interval_).apply(kept_, stations_.size());
+  summary.low_passed = peak_of(kept_, stations_, frequency_, interval_);
+}
+
+results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,
+                           double interval) {
+  const Peak peak = largest_peak(rows, stations.size(), interval);
+  return {{peak.value, peak.time, stations[static_cast<std::size_t>(peak.place)]}, frequency, interval, low_pass_name};
 }
 
 results::Recorder::Dataset DeckAcceleration::stored() const {

@@ -14,6 +14,12 @@
 
 namespace traverse::app {
 
+/// Whether a limit of the scene is on filtered accelerations.
+bool limits_deck_acceleration(const Scene& scene);
+
+/// Collective. Hz, ascending: the first three distinct frequencies of bending; with model_modes those of its modes.
+std::vector<double> first_frequencies(const SharedBeam& shared);
+
 /// Collective, after SharedBeam::prepare. The frequency (Hz) up to which accelerations count in this scene; 0: they are
 /// not filtered. As the scene says, else the greatest of 30 Hz, 1.5 f1 and f3, of the bridge's distinct frequencies of
 /// bending. affordable: whether to compute these. Says in `notes` what was chosen.
@@ -23,8 +29,13 @@ double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool 
 /// Longest distance between instants, s, at which an acceleration is filtered well.
 double spacing_for(double frequency);
 
-/// Why a run of this plan cannot be filtered at this frequency; empty where it can.
-std::string no_filter(double frequency, const Plan& plan, std::size_t probes);
+/// Why so many series of a run of this plan cannot be filtered at this frequency; empty where they can. what: "probes",
+/// which fewer output_probes make fewer, or "wheels".
+std::string no_filter(double frequency, const Plan& plan, std::size_t series, const char* what = "probes");
+
+/// The peak of accelerations that have been filtered; rows: of all stations at each instant.
+results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,
+                           double interval);
 
 /// Keeps the acceleration of every probe at the plan's interval until the end of the run, when it is filtered. Eight
 /// bytes an instant and probe, `most_kept` at most.

@@ -30,8 +30,7 @@ void DeckRotations::add(double t, const double* v) {
     slopes_[i] = local >= 0 ? v[local] : 0.0;
   }
   MPI_Allreduce(MPI_IN_PLACE, slopes_.data(), static_cast<int>(slopes_.size()), MPI_DOUBLE, MPI_SUM, beam_.comm());
-  for (std::size_t i = 0; i < 2; ++i) ends_.note(std::abs(slopes_[i]), t, i);
-  for (std::size_t i = 0; i < x_.size(); ++i) joints_.note(std::abs(slopes_[2 * i + 3] - slopes_[2 * i + 2]), t, i);
+  note(t, slopes_);
 }
 
 CarAccelerations::CarAccelerations(const train::Fleet& fleet) : fleet_(fleet) {
@@ -54,13 +53,6 @@ void CarAccelerations::add(double t) {
 
 const std::string& CarAccelerations::body(std::size_t vehicle) const {
   return fleet_.members[vehicle].type->mechanism.bodies[heaviest_[vehicle]].name;
-}
-
-void WheelUnloading::add(std::size_t wheel, double t, double force) {
-  if (at_start_[wheel] <= 0.0)
-    at_start_[wheel] = force;
-  else
-    largest_.note(std::max(0.0, 1.0 - force / at_start_[wheel]), t, wheel);
 }
 
 }  // namespace traverse::app

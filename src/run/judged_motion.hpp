@@ -1,7 +1,9 @@
-// Extremes that only limits ask for: rotations of the deck, accelerations of cars, forces that wheels lose.
+// Extremes that only limits ask for: rotations of the deck, accelerations of cars.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +31,13 @@ class DeckRotations {
   explicit DeckRotations(const beam::Beam& beam);
   /// Collective. v: this rank's displacements.
   void add(double t, const double* v);
+  /// The same from rotations that are known, rad, in the order of unknowns().
+  void note(double t, std::span<const double> slopes) {
+    for (std::size_t i = 0; i < 2; ++i) ends_.note(std::abs(slopes[i]), t, i);
+    for (std::size_t i = 0; i < x_.size(); ++i) joints_.note(std::abs(slopes[2 * i + 3] - slopes[2 * i + 2]), t, i);
+  }
+  /// Of the ends, then of the left and right side of each joint.
+  const std::vector<int>& unknowns() const { return unknowns_; }
 
   const Largest& at_ends() const { return ends_; }      // which: 0 left, 1 right
   const Largest& at_joints() const { return joints_; }  // which: of joints()
@@ -36,7 +45,7 @@ class DeckRotations {
 
  private:
   const beam::Beam& beam_;
-  std::vector<int> unknowns_;   // of the ends, then of the left and right side of each joint
+  std::vector<int> unknowns_;
   std::vector<double> slopes_;  // rad, of these
   std::vector<double> x_;       // m
   Largest ends_, joints_;
@@ -54,19 +63,6 @@ class CarAccelerations {
  private:
   const train::Fleet& fleet_;
   std::vector<std::size_t> heaviest_;  // of each vehicle's own bodies
-  Largest largest_;
-};
-
-/// How much of its force at the start each wheel loses.
-class WheelUnloading {
- public:
-  explicit WheelUnloading(std::size_t wheels) : at_start_(wheels, 0.0) {}
-  void add(std::size_t wheel, double t, double force);
-
-  const Largest& largest() const { return largest_; }  // over the force at the start; which: the wheel
-
- private:
-  std::vector<double> at_start_;  // N
   Largest largest_;
 };
 

@@ -17,16 +17,19 @@ class LowPass {
   /// frequency in Hz, of which a series at `interval` (s) has to hold more than two instants a period.
   LowPass(double frequency, double interval);
 
-  /// Filters a series in place. Beyond both ends it goes on as its mirror image through the last value, and the filter
-  /// starts as if that had held forever: neither end brings a transient with it.
-  void apply(std::vector<double>& series) const;
+  /// Filters series in place, `count` of them side by side in the rows of [instants][count]. Beyond both ends they go
+  /// on as their mirror images through the last value, and the filter starts as if that had held forever: neither end
+  /// brings a transient with it.
+  void apply(std::vector<double>& series, std::size_t count = 1) const;
 
  private:
   /// y_k = b (x_k + 2 x_(k-1) + x_(k-2)) - a1 y_(k-1) - a2 y_(k-2), which leaves a constant as it is.
   struct Section {
     double b = 0.0, a1 = 0.0, a2 = 0.0;
   };
-  void pass(std::vector<double>& series) const;
+  void pass(double* row, std::ptrdiff_t to_next, std::size_t rows, std::size_t count) const;
+  template <std::size_t Width>
+  void pass(double* row, std::ptrdiff_t to_next, std::size_t rows) const;
 
   std::array<Section, 2> sections_;
   std::size_t margin_ = 0;  // instants beyond either end

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "by_lanes.hpp"
+#include "by_spans.hpp"
 #include "results/stage.hpp"
 #include "run/peaks.hpp"
 #include "run/resolution.hpp"
@@ -46,7 +47,7 @@ std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBe
 Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes)
     : scene_(scene),
       shared_(shared),
-      still_(scene.analysis == Analysis::static_response),
+      still_(scene.analysis != Analysis::transient),
       input_(system_input(scene, still_)),
       system_(shared.comm, carrier(scene, shared, input_), input_) {
   check_mesh(scene, notes);
@@ -99,12 +100,23 @@ void Passage::start(std::vector<std::string>& notes) {
     return;
   }
   double* y = stepper_->state();
-  for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y)) notes.push_back(line);
+  for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y, still_))
+    notes.push_back(line);
   if (scene_.vehicle_model == VehicleModel::linear && !still_)
     for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(line);
-  if (!still_ && !stepper_->adaptive()) system_.step_apart(by_lanes(scene_, shared_, system_, y, plan_.end_time));
+  if (!still_ && !stepper_->adaptive()) step_apart(y, notes);
   if (!still_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);
+}
+
+// Linear vehicles over modes of the bridge, or over spans that do not touch, have ways of their own.
+void Passage::step_apart(const double* y, std::vector<std::string>& notes) {
+  std::unique_ptr<coupling::SteppedApart> apart = by_lanes(scene_, shared_, system_, y, plan_.end_time);
+  if (!apart && (apart = by_spans(scene_, shared_, system_, y, plan_.end_time)))
+    notes.push_back(
+        fmt::format("spans do not touch: each is stepped by the modes of its elements under the train, {}",
+                    scene_.rest_tolerance == 0.0 ? "and all others beside" : "and rings exactly behind it"));
+  system_.step_apart(std::move(apart));
 }
 
 void Passage::run(const std::function<void(const integrate::Instant&)>& sample,

@@ -39,6 +39,7 @@ class Passage {
 
  private:
   void leave_out_rest(std::vector<std::string>& notes);
+  void step_apart(const double* y, std::vector<std::string>& notes);
 
   const Scene& scene_;
   const SharedBeam& shared_;

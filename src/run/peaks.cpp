@@ -109,6 +109,22 @@ void Peaks::finish() {
     wheels_[i].finish([&](double value, double at) { note(wheel_force, i, value, at); });
 }
 
+Peak largest_peak(std::span<const double> rows, std::size_t series, double interval) {
+  const std::vector<double> smooth;
+  Peak largest;
+  for (std::size_t i = 0; i < series; ++i) {
+    Curve curve;
+    const auto note = [&](double value, double time) {
+      if (std::abs(value) > std::abs(largest.value)) largest = {value, time, static_cast<int>(i)};
+    };
+    double t = 0.0;
+    for (std::size_t at = i, k = 0; at < rows.size(); at += series, t = static_cast<double>(++k) * interval)
+      curve.add(t, rows[at], smooth, note);
+    curve.finish(note);
+  }
+  return largest;
+}
+
 double peak_difference(const Peaks& rough, const Peaks& fine, Quantity q) {
   const double largest = std::abs(fine.largest(q).value);
   return largest == 0.0 ? 0.0 : std::abs(std::abs(rough.largest(q).value) - largest) / largest;

@@ -90,6 +90,10 @@ class Peaks {
   std::array<std::vector<Peak>, quantities> each_;
 };
 
+/// The extreme of largest magnitude of series side by side, rows of `series` at instants `interval` s apart from 0 on;
+/// place: which series.
+Peak largest_peak(std::span<const double> rows, std::size_t series, double interval);
+
 /// The relative difference of the largest extremes of two runs, or, where that is larger, twice the root mean square of
 /// the differences of all extremes above 0.6 of the largest one that both runs have within `reach` s of each other: the
 /// largest two may agree by chance. Wheel forces are compared by how they vary about the weight. 0 where there are no

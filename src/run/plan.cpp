@@ -110,6 +110,14 @@ void move_end_to_sample(Plan& plan) {
 
 bool Plan::ends_at_sample() const { return end_time == sample_next_to_end(*this); }
 
+Plan plan_exact_in_time(const Scene& scene, double end_time, double first_period, std::vector<std::string>& notes) {
+  Plan plan;
+  plan.end_time = end_time;
+  plan_modal(scene, first_period, plan, notes);
+  move_end_to_sample(plan);
+  return plan;
+}
+
 Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
                std::vector<std::string>& notes) {
   Plan plan;
@@ -120,11 +128,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
     throw InputError(
         "scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
         "or ts_max_time in s above 0");
-  if (scene.exact_in_time()) {
-    plan_modal(scene, first_period, plan, notes);
-    move_end_to_sample(plan);
-    return plan;
-  }
+  if (scene.exact_in_time()) return plan_exact_in_time(scene, plan.end_time, first_period, notes);
   check_step(scene, plan);
   if (scene.output.interval && *scene.output.interval > plan.end_time)
     notes.push_back(fmt::format("output_interval {:g} s is longer than the run: of its series only the start is stored",

@@ -24,4 +24,7 @@ struct Plan {
 Plan make_plan(const Scene& scene, const coupling::System& system, double first_period,
                std::vector<std::string>& notes);
 
+/// The same of a scene that is exact in time, whose end is known.
+Plan plan_exact_in_time(const Scene& scene, double end_time, double first_period, std::vector<std::string>& notes);
+
 }  // namespace traverse::app

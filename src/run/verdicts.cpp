@@ -15,7 +15,7 @@ using results::Finding;
 struct Findings {
   const Judge& judge;
   const results::Summary& summary;
-  const Peaks& peaks;
+  std::span<const Peak> deflections;  // the largest one of each probe
 
   Finding deck_acceleration() const {
     if (!summary.probes) return no_bridge();
@@ -27,11 +27,10 @@ struct Findings {
 
   Finding deflection_over_span() const {
     if (!summary.probes) return no_bridge();
-    Finding found{0.0, 0.0, "", ""};
-    const std::vector<Peak>& each = peaks.largest_of_each(deflection);
-    for (std::size_t p = 0; p < each.size(); ++p) {
-      const double ratio = std::abs(each[p].value) / span_of(judge.scene_.output.probes[p]);
-      if (p == 0 || ratio > found.value) found = {ratio, each[p].time, station(judge.scene_.output.probes[p]), ""};
+    Finding found;
+    for (std::size_t p = 0; p < deflections.size(); ++p) {
+      const double ratio = std::abs(deflections[p].value) / span_of(judge.scene_.output.probes[p]);
+      if (p == 0 || ratio > found.value) found = at(ratio, deflections[p].time, judge.scene_.output.probes[p]);
     }
     return found;
   }
@@ -39,50 +38,73 @@ struct Findings {
   Finding end_rotation() const {
     if (!judge.rotations_ || !judge.rotations_->at_ends().known()) return no_bridge();
     const Largest& largest = judge.rotations_->at_ends();
-    return {largest.value, largest.time, station(largest.which == 0 ? 0.0 : judge.scene_.beam->length()), ""};
+    return at(largest.value, largest.time, largest.which == 0 ? 0.0 : judge.scene_.beam->length());
   }
 
   Finding joint_rotation() const {
     if (!judge.rotations_) return no_bridge();
     const Largest& largest = judge.rotations_->at_joints();
     if (!largest.known()) return unknown("no two decks meet at a joint");
-    return {largest.value, largest.time, station(judge.rotations_->joints()[largest.which]), ""};
+    return at(largest.value, largest.time, judge.rotations_->joints()[largest.which]);
   }
 
   Finding car_acceleration() const {
     const Largest& largest = judge.cars_.largest();
     if (!largest.known()) return unknown("the scene has no vehicles");
-    return {largest.value, largest.time, fmt::format("vehicle {}, {}", largest.which, judge.cars_.body(largest.which)),
-            ""};
+    return of(largest, fmt::format("vehicle {}, {}", largest.which, judge.cars_.body(largest.which)));
   }
 
   Finding wheel_unloading() const {
-    const Largest& largest = judge.unloading_.largest();
-    if (!largest.known()) return unknown("the scene has no wheels");
-    if (judge.scene_.start == Start::given) return unknown("with scene_start given no wheel force at rest is known");
-    return {largest.value, largest.time, wheel_name(largest.which), ""};
+    if (!summary.unloading) return no_wheels();
+    return {summary.unloading->value, summary.unloading->time, Finding::unknown, summary.unloading->wheel, ""};
+  }
+
+  Finding filtered_wheel_unloading() const {
+    if (!summary.filtered_unloading) return not_filtered();
+    const results::Unloading& found = summary.filtered_unloading->extreme;
+    return {found.value, found.time, Finding::unknown, found.wheel, ""};
+  }
+
+  Finding unloading_time() const {
+    if (!summary.filtered_unloading) return not_filtered();
+    const results::FilteredUnloading& found = *summary.filtered_unloading;
+    const double from = found.longest > 0.0 ? found.longest_from : Finding::unknown;
+    return {found.longest, from, Finding::unknown, found.longest_wheel, ""};
   }
 
   Finding contact_loss() const {
     if (summary.least_wheel.empty()) return unknown("the scene has no wheels");
-    return {summary.longest_loss, std::numeric_limits<double>::quiet_NaN(), "", ""};
+    return of({summary.longest_loss, Finding::unknown, 0}, "");
   }
 
   Finding amplification() const {
     if (!summary.probes) return no_bridge();
     if (summary.amplification <= 0.0) return unknown("the static deflection is not known");
-    return {summary.amplification, summary.deflection.time, station(summary.deflection.place), ""};
+    return at(summary.amplification, summary.deflection.time, summary.deflection.place);
   }
 
+  /// Found by norm::NormCheck, where there is one.
+  Finding of_norm() const { return unknown("static effects of EN 1991-2 are not computed here"); }
+
  private:
-  static std::string station(double x) { return fmt::format("x = {:.6g} m", x); }
+  static Finding at(double value, double time, double x) { return {value, time, x, "", ""}; }
   static Finding at(const results::Extreme& extreme) {
-    return {std::abs(extreme.value), extreme.time, station(extreme.place), ""};
+    return at(std::abs(extreme.value), extreme.time, extreme.place);
+  }
+  static Finding of(const Largest& largest, const std::string& thing) {
+    return {largest.value, largest.time, Finding::unknown, thing, ""};
   }
   static Finding unknown(const char* why) {
     Finding found;
     found.why = why;
     return found;
+  }
+  Finding no_wheels() const {
+    return unknown(judge.scene_.start == Start::given ? "with scene_start given no wheel force at rest is known"
+                                                      : "the scene has no wheels");
+  }
+  Finding not_filtered() const {
+    return summary.unloading ? unknown("wheel forces are not low-passed in this run") : no_wheels();
   }
   static Finding no_bridge() { return unknown("the scene has no bridge with probes"); }
 
@@ -94,16 +116,6 @@ struct Findings {
       left += span;
     }
     return std::isfinite(length) ? length : judge.scene_.beam->spans.back();
-  }
-
-  std::string wheel_name(std::size_t wanted) const {
-    std::size_t wheel = 0;
-    for (std::size_t i = 0; i < judge.fleet_.wheels.size(); ++i) {
-      const train::WheelContact& c = judge.fleet_.wheels[i];
-      if (!c.is_further && wheel++ == wanted)
-        return fmt::format("vehicle {}, {}", judge.fleet_.member(static_cast<int>(i)), judge.fleet_.wheel(c).name);
-    }
-    return "";
   }
 };
 
@@ -122,8 +134,14 @@ constexpr FindingRow finding_rows[] = {
     {"joint_rotation", &Findings::joint_rotation},
     {"car_acceleration", &Findings::car_acceleration},
     {"wheel_unloading", &Findings::wheel_unloading},
+    {"filtered_wheel_unloading", &Findings::filtered_wheel_unloading},
+    {"unloading_time", &Findings::unloading_time},
     {"contact_loss", &Findings::contact_loss},
     {"amplification", &Findings::amplification},
+    {"lm71_deflection_over_span", &Findings::of_norm},
+    {"lm71_end_rotation", &Findings::of_norm},
+    {"lm71_joint_rotation", &Findings::of_norm},
+    {"train_over_lm71", &Findings::of_norm},
 };
 
 constexpr const FindingRow* row_of(std::string_view quantity) {
@@ -139,7 +157,7 @@ static_assert(std::all_of(std::begin(options::limit_quantities), std::end(option
 }  // namespace
 
 Judge::Judge(const Scene& scene, const train::Fleet& fleet, const beam::Beam* beam)
-    : scene_(scene), fleet_(fleet), cars_(fleet), unloading_(fleet.wheels.size()) {
+    : scene_(scene), fleet_(fleet), cars_(fleet) {
   if (beam != nullptr) rotations_.emplace(*beam);
 }
 
@@ -148,12 +166,13 @@ void Judge::sample(double t, const double* v) {
   cars_.add(t);
 }
 
-std::vector<results::Verdict> Judge::verdicts(const results::Summary& summary, const Peaks& peaks) const {
-  const Findings findings{*this, summary, peaks};
+std::vector<results::Verdict> Judge::verdicts(const results::Summary& summary,
+                                              std::span<const Peak> deflections) const {
+  const Findings findings{*this, summary, deflections};
   std::vector<results::Verdict> list;
   for (const options::VerdictLimit& limit : scene_.limits)
     list.push_back({limit, std::string(options::limit_quantity(limit.quantity)->unit),
-                    (findings.*row_of(limit.quantity)->find)()});
+                    (findings.*row_of(limit.quantity)->find)(), 1, 0});
   return list;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "results/verdict.hpp"
@@ -19,11 +20,11 @@ class Judge {
 
   /// Collective. An observed instant; v: this rank's displacements of the structure.
   void sample(double t, const double* v);
-  /// The end of a step, of the wheels in the order of the fleet.
-  void wheel(std::size_t wheel, double t, double force) { unloading_.add(wheel, t, force); }
+  /// The same where only rotations at the rotations' unknowns are known, rad.
+  void rotations(double t, std::span<const double> slopes) { rotations_->note(t, slopes); }
 
-  /// After the last instant.
-  std::vector<results::Verdict> verdicts(const results::Summary& summary, const Peaks& peaks) const;
+  /// After the last instant. deflections: the largest one of each probe.
+  std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Peak> deflections) const;
 
  private:
   friend struct Findings;
@@ -32,7 +33,6 @@ class Judge {
   const train::Fleet& fleet_;
   std::optional<DeckRotations> rotations_;
   CarAccelerations cars_;
-  WheelUnloading unloading_;
 };
 
 }  // namespace traverse::app

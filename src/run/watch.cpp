@@ -14,6 +14,8 @@ constexpr double unbalanced = 0.05, unbalanced_mechanism = 0.005;
 constexpr double diverged = 1.0;   // the same while the run goes on, when they have changed little as yet
 constexpr double rounding = 1e-9;  // of the energies themselves
 
+constexpr double most_static_work = 2e5;  // probes times nodes, up to which static deflections are for every probe
+
 }  // namespace
 
 void check_balance(const Scene& scene, const results::Summary& summary) {
@@ -31,7 +33,8 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
       system_(system),
       beam_(beam),
       recorder_(recorder),
-      outputs_(recorder.writes() ? outputs : nullptr) {
+      outputs_(recorder.writes() ? outputs : nullptr),
+      recorded_(outputs != nullptr) {
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     now_.ground.emplace(*beam);
@@ -41,7 +44,9 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
   const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
   peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
+  envelope_ = Envelope(passages_of(scene));
   wheels_ = WheelExtremes(wheel_count_, system.corners());
+  unloading_ = WheelUnloading(wheel_count_);
 }
 
 void Watch::sample(const integrate::Instant& instant) {
@@ -101,6 +106,7 @@ void Watch::note_peaks() {
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
   peaks_.add(sample_.time, now_.probes, wheel_forces_);
+  envelope_.add(sample_.time, now_.probes);
   if (deck_) deck_->add(sample_.time, now_.probes);
 }
 
@@ -140,10 +146,12 @@ void Watch::note_energy() {
 void Watch::step(double t) {
   const train::Fleet& fleet = system_.fleet();
   std::size_t wheel = 0;
+  const bool kept = filtered_wheels_ && filtered_wheels_->wants(t);
   for (const train::WheelContact& c : fleet.wheels)
     if (!c.is_further) {
       const double force = fleet.load(c).normal;
-      if (judge_) judge_->wheel(wheel, t, force);
+      unloading_.add(wheel, t, force);
+      if (kept) filtered_wheels_->add(force);
       wheels_.add(wheel++, t, fleet.coordinates(c).x(), force);
     }
   if (system_.apart() == nullptr || t <= last_apart_) return;
@@ -158,13 +166,12 @@ void Watch::note_wheels() {
   summary_.greatest_wheel_force =
       std::max({summary_.greatest_wheel_force, peaks_.largest(wheel_force).value, wheels_.greatest().force});
   const WheelExtreme& least = wheels_.least();
-  int wheel = 0;
-  for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
-    const train::WheelContact& c = fleet.wheels[i];
-    if (c.is_further || wheel++ != least.wheel) continue;
-    summary_.least_wheel_force_time = least.time;
-    summary_.least_wheel = "vehicle " + std::to_string(fleet.member(static_cast<int>(i))) + ", " + fleet.wheel(c).name;
-  }
+  if (least.wheel < 0) return;
+  summary_.least_wheel_force_time = least.time;
+  summary_.least_wheel = wheel_name(fleet, static_cast<std::size_t>(least.wheel));
+  const Largest& lost = unloading_.largest();
+  if (lost.known() && scene_.start == Start::equilibrium)
+    summary_.unloading = {lost.value, lost.time, wheel_name(fleet, lost.which)};
 }
 
 void Watch::note_separations() {
@@ -210,6 +217,7 @@ results::Summary Watch::finish() {
     deck_->finish(summary_);
     if (scene_.output.low_passed_series) recorder_.datasets({deck_->stored()});
   }
+  if (filtered_wheels_) summary_.filtered_unloading = filtered_wheels_->finish(system_.fleet());
   finished_extremes();
   if (beam_ == nullptr) return summary_;
   int some = worst_.v.empty() && beam_->local_unknowns() > 0 ? 0 : 1;
@@ -220,11 +228,23 @@ results::Summary Watch::finish() {
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
   recorder_.shape(shape_of(*beam_, scene_, worst_));
+  recorder_.datasets(envelope_.datasets());
+  note_static_deflections();
   return summary_;
 }
 
+// Of every probe, where that takes no time.
+void Watch::note_static_deflections() {
+  const std::vector<double>& probes = scene_.output.probes;
+  const auto size = static_cast<double>(probes.size()) * beam_->mesh().nodes();
+  if (!recorded_ || summary_.static_deflection <= 0.0 || size > most_static_work) return;
+  std::vector<double> deflections;
+  for (const double x : probes) deflections.push_back(system_.weights().static_peak(x, paths_, sample_.time));
+  recorder_.datasets({{"/envelope/static_deflection", {probes.size()}, std::move(deflections), "m"}});
+}
+
 std::vector<results::Verdict> Watch::verdicts(const results::Summary& summary) const {
-  return judge_ ? judge_->verdicts(summary, peaks_) : std::vector<results::Verdict>();
+  return judge_ ? judge_->verdicts(summary, peaks_.largest_of_each(deflection)) : std::vector<results::Verdict>();
 }
 
 }  // namespace traverse::app

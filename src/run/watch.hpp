@@ -11,11 +11,13 @@
 #include "results/recorder.hpp"
 #include "results/terminal.hpp"
 #include "run/deck_acceleration.hpp"
+#include "run/envelope.hpp"
 #include "run/outputs.hpp"
 #include "run/peaks.hpp"
 #include "run/plan.hpp"
 #include "run/verdicts.hpp"
 #include "run/wheel_extremes.hpp"
+#include "run/wheel_unloading.hpp"
 #include "run/worst_shape.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -30,6 +32,9 @@ class Watch {
 
   /// The deck's accelerations are filtered when the run has ended.
   void keep_accelerations(DeckAcceleration deck) { deck_ = std::move(deck); }
+
+  /// The wheels' forces are filtered when the run has ended.
+  void keep_wheel_forces(FilteredWheels wheels) { filtered_wheels_ = std::move(wheels); }
 
   /// The run is judged by the scene's limits when it has ended.
   void judge() { judge_.emplace(scene_, system_.fleet(), beam_); }
@@ -58,6 +63,7 @@ class Watch {
   void note_peaks();
   void note_worst();
   void note_energy();
+  void note_static_deflections();
 
   const Scene& scene_;
   coupling::System& system_;
@@ -66,11 +72,15 @@ class Watch {
   std::optional<beam::Recovery> recovery_, rail_recovery_;
   std::optional<beam::ViscousLag> lag_;
   const Outputs* outputs_;  // null where this rank writes no file
+  bool recorded_;           // whether some rank stores samples
   std::vector<beam::Response> dragged_;
   Peaks peaks_;
+  Envelope envelope_;
   std::optional<DeckAcceleration> deck_;
   std::optional<Judge> judge_;
   WheelExtremes wheels_;
+  WheelUnloading unloading_;
+  std::optional<FilteredWheels> filtered_wheels_;
   train::WheelPaths paths_;  // where wheels are free to change their distances
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;

@@ -17,6 +17,9 @@ namespace {
 using options::Options;
 
 constexpr std::size_t most_default_probes = 200;
+constexpr double most_even_probes = 1e5;
+constexpr double one_station = 1e-9;        // m: stations nearer than that are one
+constexpr double nearly_one = 1.0 - 1e-12;  // of the parts of a span
 
 constexpr double most_left_out = 0.1;
 
@@ -46,42 +49,60 @@ void read_run(const Options& o, Scene& scene) {
   scene.step_kinks = o.flag("step_kinks");
   scene.step_probes = o.flag("step_probes");
   scene.step_lanes = o.flag("step_lanes");
+  scene.all_ranks = o.choice("step_ranks") == "all";
   scene.rest_tolerance = read_window(o);
   const std::string vehicles = o.choice("model_vehicles");
   scene.vehicle_model = vehicles == "linear" ? VehicleModel::linear
                         : vehicles == "auto" ? VehicleModel::automatic
                                              : VehicleModel::full;
   scene.accuracy = o.number("accuracy");
+  if (o.has("accuracy_of")) scene.accuracy_of = o.texts("accuracy_of");
   scene.accuracy_report = o.flag("accuracy_report");
 }
 
+/// Evenly in every span, both ends included.
+void add_even_probes(const Options& o, const std::vector<double>& spans, std::vector<double>& probes) {
+  const double spacing = o.number("output_probes_spacing");
+  double count = 1.0, left = 0.0;
+  for (const double span : spans) count += std::ceil(span / spacing * nearly_one);
+  if (count > most_even_probes)
+    o.refuse("output_probes_spacing", fmt::format("{:.3g} stations; allowed: at most {:g}", count, most_even_probes));
+  for (const double span : spans) {
+    const double parts = std::ceil(span / spacing * nearly_one);
+    for (double i = left == 0.0 ? 0.0 : 1.0; i <= parts; ++i) probes.push_back(left + span * i / parts);
+    left += span;
+  }
+  probes.back() = left;
+}
+
 void read_probes(const Options& o, Scene& scene) {
+  const bool named = o.has("output_probes"), even = o.has("output_probes_spacing");
   if (!scene.beam) {
-    if (o.has("output_probes")) o.refuse("output_probes", "there is no beam to probe (beam_spans)");
+    if (named || even)
+      o.refuse(named ? "output_probes" : "output_probes_spacing", "there is no beam to probe (beam_spans)");
     return;
   }
   const std::vector<double>& spans = scene.beam->spans;
+  std::vector<double>& probes = scene.output.probes;
   double length = 0.0;
   for (const double span : spans) {
-    if (!o.has("output_probes") && scene.output.probes.size() < most_default_probes) {
-      scene.output.probes.push_back(length + 0.5 * span);
-    }
+    if (!named && !even && probes.size() < most_default_probes) probes.push_back(length + 0.5 * span);
     length += span;
   }
-  if (!o.has("output_probes")) {
-    if (spans.size() > most_default_probes) {
-      scene.notes.push_back(
-          fmt::format("probes: the middle of the first {} of {} spans", most_default_probes, spans.size()));
-    }
-    return;
-  }
-  scene.output.probes = o.numbers("output_probes");
-  for (double& x : scene.output.probes) {
-    if (x > length * (1.0 + 1e-12)) {
+  if (!named && !even && spans.size() > most_default_probes)
+    scene.notes.push_back(
+        fmt::format("probes: the middle of the first {} of {} spans", most_default_probes, spans.size()));
+  if (named) probes = o.numbers("output_probes");
+  for (double& x : probes) {
+    if (x > length * (1.0 + 1e-12))
       o.refuse("output_probes", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x, length));
-    }
     x = std::min(x, length);
   }
+  if (!even) return;
+  add_even_probes(o, spans, probes);
+  std::sort(probes.begin(), probes.end());
+  const auto same = [](double a, double b) { return b - a < one_station; };
+  probes.erase(std::unique(probes.begin(), probes.end(), same), probes.end());
 }
 
 constexpr double most_frequency = 1e6;  // Hz
@@ -104,16 +125,32 @@ void read_filter(const Options& o, Scene& scene) {
   scene.output.low_passed_series = o.flag("output_lowpass_series");
   scene.output.low_pass_asked = o.has("output_lowpass") || scene.output.low_passed_series;
   for (const char* name : {"output_lowpass", "output_lowpass_series"})
-    if (o.has(name) && (!scene.beam || scene.analysis != Analysis::transient || scene.sweep))
-      scene.notes.push_back(std::string(name) + " has no effect: it is for single transient runs over a bridge");
+    if (o.has(name) && (!scene.beam || scene.analysis != Analysis::transient))
+      scene.notes.push_back(std::string(name) + " has no effect: it is for transient runs over a bridge");
+  if (scene.output.low_passed_series && scene.sweep)
+    scene.notes.emplace_back("output_lowpass_series has no effect: sweeps store no series");
 }
 
 void read_limits(const Options& o, Scene& scene) {
   if (!o.has("limits")) return;
   scene.limits = options::read_verdict_limits(o.path("limits"));
-  if (scene.analysis == Analysis::transient && !scene.sweep) return;
+  if (scene.analysis == Analysis::transient) return;
+  if (scene.analysis == Analysis::static_envelope) {
+    std::erase_if(scene.limits, [](const auto& limit) { return !options::limit_quantity(limit.quantity)->of_norm; });
+    return;
+  }
   scene.limits.clear();
-  scene.notes.emplace_back("limits has no effect: single transient runs are checked against limits");
+  scene.notes.emplace_back("limits has no effect: transient runs are checked against limits");
+}
+
+void read_wheel_filter(const Options& o, Scene& scene) {
+  scene.output.wheel_low_pass = o.number("output_wheel_lowpass");
+  scene.output.wheels_filtered = o.has("output_wheel_lowpass") || o.has("output_unloading_level");
+  scene.output.unloading_level = o.number("output_unloading_level");
+  if (scene.output.wheels_filtered && (scene.vehicles.empty() || scene.analysis != Analysis::transient))
+    scene.notes.emplace_back("output_wheel_lowpass has no effect: it is for transient runs with vehicles");
+  if (scene.output.wheels_filtered && scene.sweep && scene.limits.empty())
+    scene.notes.emplace_back("output_wheel_lowpass has no effect: in sweeps and studies it is for limits");
 }
 
 bool has_control_character(const std::string& text) {
@@ -137,6 +174,7 @@ void read_output(const Options& o, Scene& scene) {
   read_probes(o, scene);
   read_filter(o, scene);
   read_limits(o, scene);
+  read_wheel_filter(o, scene);
 }
 
 /// A run ends when the last wheel or force has left the beam, or when the user says.
@@ -222,6 +260,8 @@ Scene read_scene(Options o) {
   decide_axial(o, scene);
   read_output(o, scene);
   read_modal(o, scene);
+  read_damping_bound(o, scene);
+  read_norm(o, scene);
   check_scene(o, scene);
   if (const options::Entry* study = o.first_with_prefix("study_"))
     scene.notes.push_back(study->name + " has no effect: study_vary names no option to vary");

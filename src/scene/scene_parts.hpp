@@ -31,17 +31,20 @@ beam::Distribution read_distribution(const options::Options& options, const std:
 void read_train(const options::Options& options, const std::vector<std::string>& names, Scene& scene);
 void read_load(const options::Options& options, Scene& scene);
 void read_sweep(const options::Options& options, Scene& scene);  // before train and load: it may give their speed
+inline constexpr std::size_t fewest_to_refine = 3;               // speeds, between which others can be added
 /// The speeds of sweep_speed, which is given.
 std::vector<double> read_speeds(const options::Options& options);
 bool asks_for_study(const options::Options& options);
 /// The scene of a study's first run, with the study.
 Scene read_study(const options::Options& options);
-/// Train A-N of EN 1991-2 with its first axle at `first`.
-MovingLoad hslm_load(int train, double first);
-void read_modal(const options::Options& options, Scene& scene);    // last: it depends on what moves
-void read_track(const options::Options& options, Scene& scene);    // after train: the roughness begins before it
-void read_layers(const options::Options& options, Scene& scene);   // after train and load: the track is as long
-void decide_axial(const options::Options& options, Scene& scene);  // after beam and train
+/// The option that says which forces move, of which one may be given; empty: none.
+std::string load_option(const options::Options& options);
+void read_modal(const options::Options& options, Scene& scene);          // last: it depends on what moves
+void read_track(const options::Options& options, Scene& scene);          // after train: the roughness begins before it
+void read_layers(const options::Options& options, Scene& scene);         // after train and load: the track is as long
+void decide_axial(const options::Options& options, Scene& scene);        // after beam and train
+void read_damping_bound(const options::Options& options, Scene& scene);  // after modal
+void read_norm(const options::Options& options, Scene& scene);           // after beam and output, whose limits it reads
 /// Refuses what can run but cannot be meant, notes what is possible but unusual. Last.
 void check_sense(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
 

@@ -22,6 +22,10 @@ std::vector<double> read_speeds(const Options& o) {
   const double from = range[0], to = range[1], step = range[2];
   if (to < from) o.refuse("sweep_speed", "from is above to; wanted: from, to, step");
   const double steps = std::floor((to - from) / step + meets);
+  if (to > from && steps < 1.0)
+    o.refuse("sweep_speed", fmt::format("the step of {:g} m/s is longer than all from {:g} to {:g} m/s; wanted: from, "
+                                        "to, step",
+                                        step, from, to));
   if (steps > most_speeds) o.refuse("sweep_speed", fmt::format("{:g} speeds; allowed: {:g}", steps, most_speeds));
   std::vector<double> speeds;
   for (int i = 0; i <= static_cast<int>(steps); ++i) speeds.push_back(from + i * step);
@@ -29,7 +33,10 @@ std::vector<double> read_speeds(const Options& o) {
 }
 
 void read_sweep(const Options& o, Scene& scene) {
-  if (!o.has("sweep_speed") && !o.has("sweep_hslm_a")) return;
+  if (!o.has("sweep_speed") && !o.has("sweep_hslm_a")) {
+    if (o.has("sweep_refine")) scene.notes.emplace_back("sweep_refine has no effect: sweep_speed gives no speeds");
+    return;
+  }
   const char* given = o.has("sweep_speed") ? "sweep_speed" : "sweep_hslm_a";
   if (scene.analysis != Analysis::transient) o.refuse(given, "a sweep is of transient runs (scene_analysis)");
   if (!o.has("beam_spans")) o.refuse(given, "a sweep is of a bridge's response: there is no beam (beam_spans)");
@@ -37,8 +44,14 @@ void read_sweep(const Options& o, Scene& scene) {
   scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
   scene.sweep->instants = o.number("sweep_instants");
   if (o.has("sweep_speed")) scene.sweep->speeds = read_speeds(o);
+  if (o.has("sweep_refine")) {
+    scene.sweep->refine = o.number("sweep_refine");
+    if (scene.sweep->speeds.size() < fewest_to_refine)
+      o.refuse("sweep_refine",
+               fmt::format("sweep_speed gives {} speeds; wanted: at least {}, between which it adds others",
+                           scene.sweep->speeds.size(), fewest_to_refine));
+  }
   if (!o.has("sweep_hslm_a")) return;
-  if (o.has("load_hslm_a")) o.refuse("load_hslm_a", "give either load_hslm_a or sweep_hslm_a");
   scene.sweep->trains = o.integers("sweep_hslm_a");
   std::vector<int> sorted = scene.sweep->trains;
   std::sort(sorted.begin(), sorted.end());
@@ -63,7 +76,7 @@ void read_modal(const Options& o, Scene& scene) {
   }
   if (!scene.beam) o.refuse("model_modes", "needs a beam (beam_spans), whose modes these are");
   if (scene.vehicles.empty() && scene.load.forces.empty())
-    o.refuse("model_modes", "needs vehicles (train_vehicles) or moving forces (load_forces or load_hslm_a)");
+    o.refuse("model_modes", "needs vehicles (train_vehicles) or moving forces (load_forces, load_hslm_a, ...)");
   if (scene.beam->track) o.refuse("model_modes", "with a layered track: not there yet; allowed: auto or 0");
   if (scene.beam->foundation.nonlinear())
     o.refuse("model_modes", "the foundation is one-sided, has a gap or a cubic term; allowed: auto or 0");

@@ -2,14 +2,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <utility>
 
+#include "load_models.hpp"
 #include "scene_parts.hpp"
 
 namespace traverse::app {
 namespace {
 
 using options::Options;
+
+constexpr double most_forces = 1e5;
 
 /// x of the front wheel's centre relative to the origin; 0 without wheels.
 double front_of(const Vehicle& vehicle) {
@@ -62,53 +66,41 @@ std::vector<double> read_positions(const Options& o, const Scene& scene) {
   return x;
 }
 
-/// Forces and positions relative to the first axle, backward negative (EN 1991-2, table 8.4 and figure 8.12).
-struct Axles {
-  double force = 0.0;  // N
-  std::vector<double> offsets;
-};
-
-Axles hslm_a(int train) {
-  struct Type {
-    int coaches;
-    double length, bogie, force;  // m, m, kN
-  };
-  static constexpr std::array<Type, 10> types = {{{18, 18.0, 2.0, 170.0},
-                                                  {17, 19.0, 3.5, 200.0},
-                                                  {16, 20.0, 2.0, 180.0},
-                                                  {15, 21.0, 3.0, 190.0},
-                                                  {14, 22.0, 2.0, 170.0},
-                                                  {13, 23.0, 2.0, 180.0},
-                                                  {13, 24.0, 2.0, 190.0},
-                                                  {12, 25.0, 2.5, 190.0},
-                                                  {11, 26.0, 2.0, 210.0},
-                                                  {11, 27.0, 2.0, 210.0}}};
-  const auto [coaches, length, bogie, force] = types[static_cast<std::size_t>(train - 1)];
-  constexpr std::array power_car = {0.0, 3.0, 14.0, 17.0};
-  constexpr double coupling = 3.525;  // from a power car's last axle to the first one of the end coach
-  const double whole = 2.0 * power_car.back() + coupling + (coaches + 2) * length;
-  std::vector<double> behind(power_car.begin(), power_car.end());
-  behind.push_back(power_car.back() + coupling);
-  behind.push_back(power_car.back() + coupling + bogie);
-  const std::size_t mirrored = behind.size();
-  for (int i = 1; i <= coaches + 1; ++i) {  // bogies between two coaches
-    const double centre = power_car.back() + 0.5 * coupling + i * length;
-    behind.push_back(centre - 0.5 * bogie);
-    behind.push_back(centre + 0.5 * bogie);
-  }
-  for (std::size_t i = mirrored; i-- > 0;) behind.push_back(whole - behind[i]);
-  Axles axles{force * 1e3, {}};
-  for (const double x : behind) axles.offsets.push_back(-x);
-  return axles;
-}
-
 /// x of the first axle at t = 0.
 double read_first_axle(const Options& o, const std::string& trains) {
-  if (o.has("load_forces")) o.refuse(trains, "give either load_forces or " + trains);
   if (!o.has("load_positions")) return 0.0;
   const std::vector<double> given = o.numbers("load_positions");
   if (given.size() != 1) o.refuse("load_positions", "with " + trains + ": one number, x of the first axle at t = 0");
   return given.front();
+}
+
+MovingLoad placed(const AxleList& axles, double first) {
+  MovingLoad load{axles.forces, axles.offsets, 0.0};
+  for (double& x : load.positions) x += first;
+  return load;
+}
+
+/// Over three sleepers (EN 1991-2, 6.3.6.1). from_zero: the foremost part stands where the foremost force stood.
+void spread(double spacing, bool from_zero, MovingLoad& load) {
+  MovingLoad parts;
+  for (std::size_t i = 0; i < load.forces.size(); ++i)
+    for (const auto& [part, ahead] : {std::pair{0.25, 1.0}, {0.5, 0.0}, {0.25, -1.0}}) {
+      parts.forces.push_back(part * load.forces[i]);
+      parts.positions.push_back(load.positions[i] + (ahead - (from_zero ? 1.0 : 0.0)) * spacing);
+    }
+  load.forces = parts.forces;
+  load.positions = parts.positions;
+}
+
+/// The train that an option other than load_forces and sweep_hslm_a asks for.
+AxleList named_train(const Options& o, const std::string& option) {
+  if (option == "load_hslm_a") return hslm_a(o.integer(option));
+  if (option == "load_en15528") return en15528(o.text(option), o.integer("load_wagons"));
+  if (option == "load_file") return read_axles(o.path(option));
+  const std::vector<double> given = o.numbers(option);  // load_hslm_b
+  if (given[0] != std::floor(given[0]) || given[0] > most_forces)
+    o.refuse(option, fmt::format("allowed: a whole number of forces up to {:g}, and their distance in m", most_forces));
+  return hslm_b(static_cast<int>(given[0]), given[1]);
 }
 
 void read_forces(const Options& o, MovingLoad& load) {
@@ -187,26 +179,36 @@ void read_train(const Options& o, const std::vector<std::string>& names, Scene& 
   scene.train.speed = needed || o.has("train_speed") ? o.number("train_speed") : 0.0;
 }
 
-MovingLoad hslm_load(int train, double first) {
-  const Axles axles = hslm_a(train);
-  MovingLoad load;
-  for (const double offset : axles.offsets) load.positions.push_back(first + offset);
-  load.forces.assign(axles.offsets.size(), axles.force);
-  return load;
+std::string load_option(const Options& o) {
+  std::string given;
+  for (const char* option : {"load_forces", "load_hslm_a", "load_hslm_b", "load_en15528", "load_file", "sweep_hslm_a"})
+    if (o.has(option)) {
+      if (!given.empty()) o.refuse(option, fmt::format("give either {} or {}", given, option));
+      given = option;
+    }
+  return given;
 }
 
 void read_load(const Options& o, Scene& scene) {
   const bool swept = scene.sweep && !scene.sweep->trains.empty();
-  const std::string option = swept ? "sweep_hslm_a" : o.has("load_hslm_a") ? "load_hslm_a" : "load_forces";
-  if (!o.has(option)) return;
+  const std::string option = swept ? "sweep_hslm_a" : load_option(o);
+  if (option.empty()) return;
   if (option == "load_forces") {
     read_forces(o, scene.load);
   } else {
     const double first = read_first_axle(o, option);
-    scene.load = hslm_load(swept ? scene.sweep->trains.front() : o.integer(option), first);
+    scene.load = placed(swept ? hslm_a(scene.sweep->trains.front()) : named_train(o, option), first);
     if (swept)
-      for (const int train : scene.sweep->trains) scene.sweep->loads.push_back(hslm_load(train, first));
+      for (const int train : scene.sweep->trains) scene.sweep->loads.push_back(placed(hslm_a(train), first));
   }
+  if (o.has("load_spread")) {
+    const double spacing = o.number("load_spread");
+    spread(spacing, !o.has("load_positions"), scene.load);
+    if (swept)
+      for (MovingLoad& load : scene.sweep->loads) spread(spacing, !o.has("load_positions"), load);
+  }
+  if (option != "load_en15528" && o.has("load_wagons"))
+    scene.notes.emplace_back("load_wagons has no effect: it is for load_en15528");
   if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
   const bool needed = scene.analysis == Analysis::transient && !o.has("train_speed");
   if (scene.sweep && !scene.sweep->speeds.empty()) {

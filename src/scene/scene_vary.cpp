@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 
 #include "base/random_stream.hpp"
@@ -92,7 +93,7 @@ std::vector<StudyDimension> swept_dimensions(const Options& o, const NamedVehicl
     dimensions.push_back(std::move(trains));
   }
   if (o.has("sweep_speed")) {
-    const bool forces = o.has("load_forces") || o.has("load_hslm_a") || o.has("sweep_hslm_a");
+    const bool forces = !load_option(o).empty();
     StudyDimension speeds{{}, "m/s", false, "list", read_speeds(o), 0};
     if (!vehicles.train.empty()) speeds.options.emplace_back("train_speed");
     if (forces || speeds.options.empty()) speeds.options.emplace_back("load_speed");
@@ -256,6 +257,27 @@ void read_statistics(const Options& o, Study& study) {
   std::sort(study.over.begin(), study.over.end());
 }
 
+void read_refinement(const Options& o, Study& study) {
+  const char* option = o.has("study_refine") ? "study_refine" : "sweep_refine";
+  if (!o.has(option)) return;
+  study.refine = o.number(option);
+  const auto is_speed = [](const StudyDimension& d) { return d.name() == "train_speed" || d.name() == "load_speed"; };
+  const auto speeds = std::find_if(study.dimensions.begin(), study.dimensions.end(), is_speed);
+  if (speeds == study.dimensions.end() || speeds->law != "list")
+    o.refuse(option, "no list of speeds is varied; wanted: train_speed, load_speed or sweep_speed");
+  if (std::count_if(study.dimensions.begin(), study.dimensions.end(),
+                    [&](const StudyDimension& d) { return d.axis == speeds->axis; }) > 1)
+    o.refuse(option,
+             fmt::format("{} goes side by side with other options; wanted: study_combine grid", speeds->name()));
+  if (std::set<double>(speeds->values.begin(), speeds->values.end()).size() != speeds->values.size() ||
+      speeds->values.size() < fewest_to_refine)
+    o.refuse(option, fmt::format("{} has {} values; wanted: at least {}, each once, between which others are added",
+                                 speeds->name(), speeds->values.size(), fewest_to_refine));
+  study.speeds = static_cast<std::size_t>(speeds - study.dimensions.begin());
+  if (std::find(study.over.begin(), study.over.end(), speeds->axis) != study.over.end())
+    o.refuse(option, "statistics go over the speed (study_statistics_over)");
+}
+
 void check_study(const Options& o, const Scene& scene) {
   const Study& study = *scene.study;
   const std::string first = o.first_with_prefix(study_prefix)->name;
@@ -284,13 +306,17 @@ Scene read_study(const Options& given) {
   Study study;
   read_dimensions(o, vehicles, study);
   read_statistics(o, study);
+  read_refinement(o, study);
   study.resume = o.flag("study_resume");
   std::vector<std::pair<std::string, std::string>> values = values_of_run(study, 0);
   Scene scene = read_scene_of_study(given, values);
   scene.study = std::move(study);
-  scene.limits.clear();
-  for (const char* name : {"limits", "output_lowpass", "output_lowpass_series"})
-    if (o.has(name)) scene.notes.push_back(std::string(name) + " has no effect: it is for single transient runs");
+  if (o.has("output_lowpass_series"))
+    scene.notes.emplace_back("output_lowpass_series has no effect: studies store no series");
+  if (scene.norm) {
+    scene.norm.reset();
+    scene.notes.emplace_back("studies have no static effects and no verdict of EN 1991-2: sweeps and single runs do");
+  }
   scene.options = o.all();
   check_study(o, scene);
   return scene;
@@ -307,7 +333,8 @@ Scene read_scene_of_study(const options::Options& given,
                           const std::vector<std::pair<std::string, std::string>>& values) {
   options::Entries entries;
   for (const options::Entry& entry : given.entries())
-    if (!entry.name.starts_with("study_") && entry.name != "sweep_speed" && entry.name != "sweep_hslm_a")
+    if (!entry.name.starts_with("study_") && entry.name != "sweep_speed" && entry.name != "sweep_refine" &&
+        entry.name != "sweep_hslm_a")
       entries.set(entry);
   for (const auto& [name, value] : values) entries.set({name, value, "a value of the study", 0});
   Options o(std::move(entries));

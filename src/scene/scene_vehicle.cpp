@@ -132,8 +132,9 @@ NamedVehicles declare_vehicles(Options& o) {
     others.push_back(name);
     types.push_back(name);
   }
-  const bool loads = o.has("load_forces") || o.has("load_hslm_a");
-  if (!o.entries().has("train_vehicles") && !loads && others.size() == 1) return {others, {}};
+  const std::string loads = load_option(o);
+  if (!o.entries().has("train_vehicles") && (loads.empty() || loads == "sweep_hslm_a") && others.size() == 1)
+    return {others, {}};
   return {train, others};
 }
 

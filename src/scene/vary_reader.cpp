@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
 
 #include "base/random_stream.hpp"
 #include "options/data_file.hpp"
@@ -18,18 +17,12 @@ std::string VaryReader::name(std::string_view how) const {
 }
 
 double VaryReader::number(const std::string& given, const std::string& word) const {
-  std::string digits = word;
-  double scale = 1.0, value = 0.0;
-  for (const auto& [ending, factor] : {std::pair{"km/h", 1.0 / 3.6}, std::pair{"m/s", 1.0}})
-    if (row_.unit == "m/s" && digits.ends_with(ending)) {
-      digits.resize(digits.size() - std::string_view(ending).size());
-      digits.resize(digits.find_last_not_of(' ') + 1);
-      scale = factor;
-    }
-  if (!options::parse_number(digits, value) || !options::is_quantity(value))
+  double value = 0.0;
+  const bool parsed = row_.unit == "m/s" ? options::parse_speed(word, value) : options::parse_number(word, value);
+  if (!parsed || !options::is_quantity(value))
     o_.refuse(given,
               fmt::format("'{}' is no finite number; wanted: values of {}, {}", word, option_, options::allowed(row_)));
-  return scale * value;
+  return value;
 }
 
 void VaryReader::check(const std::string& given, double value, const std::string& what, const char* advice) const {

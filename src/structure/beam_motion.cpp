@@ -184,7 +184,7 @@ void BeamMotion::fill(std::ptrdiff_t first, std::ptrdiff_t past) {
 void BeamMotion::fill_tile(int first, int past) {
   const int nodes = past - first;
   Tile elastic, rate, force;
-  if (measuring_) measure_dissipation(first, past, rate, force);
+  if (measuring_) measure_dissipation(first, past, ghosts_[1], rate, force);
   force.clear(block_, nodes);
   const Summand of_e{stage_->e, ghosts_[0], elastic}, of_w{stage_->w_still, ghosts_[2], rate};
   if (proportional_) {

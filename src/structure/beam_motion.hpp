@@ -49,10 +49,8 @@ class BeamMotion final : private solve::NodeFiller {
   /// Whether stages are solved by solve(); where not, the beam has hinges or a foundation that is not linear, and
   /// still() serves.
   bool fused() const { return elements_.has_value(); }
-  /// Fused, with Rayleigh's damping alone: dissipation(), set_range() and step_free() are for these.
+  /// Fused, with Rayleigh's damping alone: step_free() is for these.
   bool proportional() const { return fused() && proportional_; }
-  /// The same in bending alone.
-  bool plain() const { return proportional() && block_ == 2; }
 
   /// Collective. Z of a stage under the dead load and `loads` (ascending unknowns; no contacts).
   void solve(std::size_t stage, const double* v, const double* w, const std::vector<NodalLoad>& loads);
@@ -62,9 +60,11 @@ class BeamMotion final : private solve::NodeFiller {
   /// was solved last.
   struct Dissipation {
     double power = 0.0;  // W
-    double rate = 0.0;   // W/s
+    double rate = 0.0;   // W/s, with Rayleigh's damping alone
   };
   Dissipation dissipation() const { return dissipation_; }
+  /// Collective. The same of the nodes [first, past) between steps, with the acceleration at the start of the next one.
+  Dissipation dissipation(int first, int past, const double* v, const double* w);
   /// Collective. w^T C w of a solved stage, this rank's share; where fused.
   double power(std::size_t stage, const double* v, const double* w);
 
@@ -73,6 +73,11 @@ class BeamMotion final : private solve::NodeFiller {
   /// v and w of a solved stage at one unknown.
   std::pair<double, double> state(std::size_t stage, const double* v, const double* w, int unknown) const;
 
+  /// Collective. Strain energy of the springs and beams and kinetic energy, J: this rank's share; where fused.
+  struct Energy {
+    double strain = 0.0, kinetic = 0.0;
+  };
+  Energy energy(const double* v, const double* w);
   /// Energy of the step's error as StepRule's embedded method estimates it, J: this rank's share. Once all stages are
   /// solved. Only where fused; elsewhere error() serves, of v and w of this rank's unknowns.
   double error_energy();
@@ -121,7 +126,7 @@ class BeamMotion final : private solve::NodeFiller {
     const Ghosts& ghosts;
     Tile& to;
   };
-  void measure_dissipation(int first, int past, Tile& rate, Tile& force);
+  void measure_dissipation(int first, int past, const Ghosts& ghosts, Tile& rate, Tile& force);
   template <int outputs>
   Terms<outputs> terms_of(const std::array<const Sum*, outputs>& sums, const View& view) const;
   template <std::size_t outputs>
@@ -130,7 +135,8 @@ class BeamMotion final : private solve::NodeFiller {
   void add_mass_damping(int first, int past, const Tile& w, Tile& force) const;
   void add_forces(int first, int past, Tile& v, Tile* w, Tile& force) const;
   static double product_of(int block, int nodes, const Tile& x, const Tile& forces);
-  double twice_energy(int first, int past, Tile& v, Tile& w) const;
+  Energy energy_of(int first, int past, Tile& v, Tile& w) const;
+  Energy energy_of(const Sum& displacement, const Sum& rate, int first, int past);
   double at(const Sum& sum, const View& view, int unknown) const;
   View view_of(const double* v, const double* w) const;
   void end_step(const View& view, int begin, int end, double* v, double* w, double* a) const;

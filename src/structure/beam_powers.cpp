@@ -21,14 +21,18 @@ double BeamMotion::product_of(int block, int nodes, const Tile& x, const Tile& f
   return sum;
 }
 
-// w^T C w and 2 A_0^T C w.
-void BeamMotion::measure_dissipation(int first, int past, Tile& rate, Tile& force) {
+// w^T C w and, with Rayleigh's damping alone, 2 A_0^T C w. ghosts: w beside this rank's columns.
+void BeamMotion::measure_dissipation(int first, int past, const Ghosts& ghosts, Tile& rate, Tile& force) {
   Tile none;
   none.clear(block_, past - first + 2);
   force.clear(block_, past - first);
   const Sum of_w{0.0, 1.0, {}};
-  combine(std::array{Summand{of_w, ghosts_[1], rate}}, first, past);
+  combine(std::array{Summand{of_w, ghosts, rate}}, first, past);
   add_forces(first, past, none, &rate, force);
+  if (!proportional_) {
+    dissipation_.power += product_of(block_, past - first, rate, force);
+    return;
+  }
   const std::ptrdiff_t offset = block_ * static_cast<std::ptrdiff_t>(first - view_.first);
   const double* const a0 = view_.kept[0] + offset;
   constexpr int lanes = 8;
@@ -58,8 +62,8 @@ double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
   exchange_borders({&rate});
   double power = 0.0;
   Tile rates, none, force;
-  for (int first = 0; first < nodes_; first += tile) {
-    const int past = std::min(nodes_, first + tile);
+  for (int first = first_; first < past_; first += tile) {
+    const int past = std::min(past_, first + tile);
     combine(std::array{Summand{rate, ghosts_[0], rates}}, first, past);
     none.clear(block_, past - first + 2);
     force.clear(block_, past - first);
@@ -69,31 +73,56 @@ double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
   return power;
 }
 
-// Of displacements and rates on a tile, by the forces K* v and M w. Changes v.
-double BeamMotion::twice_energy(int first, int past, Tile& v, Tile& w) const {
-  Tile force, moved = v;
+BeamMotion::Dissipation BeamMotion::dissipation(int first, int past, const double* v, const double* w) {
+  const Sum rate{0.0, 1.0, {}};
+  view_ = view_of(v, w);
+  exchange_borders({&rate});
+  dissipation_ = {};
+  Tile rates, force;
+  for (int from = first; from < past; from += tile)
+    measure_dissipation(from, std::min(past, from + tile), ghosts_[0], rates, force);
+  return dissipation_;
+}
+
+// Of displacements and rates on a tile, by the forces K* v and M w.
+BeamMotion::Energy BeamMotion::energy_of(int first, int past, Tile& v, Tile& w) const {
+  Energy energy;
+  Tile force;
   force.clear(block_, past - first);
   add_forces(first, past, v, nullptr, force);
-  const double strain = product_of(block_, past - first, moved, force);
+  energy.strain = 0.5 * product_of(block_, past - first, v, force);
   force.clear(block_, past - first);
   operator_.mass().products.add(first, past, w.planes(), force.planes());
-  return strain + product_of(block_, past - first, w, force);
+  energy.kinetic = 0.5 * product_of(block_, past - first, w, force);
+  return energy;
+}
+
+BeamMotion::Energy BeamMotion::energy_of(const Sum& displacement, const Sum& rate, int first, int past) {
+  exchange_borders({&displacement, &rate});
+  Tile v, w;
+  Energy energy;
+  for (int from = first; from < past; from += tile) {
+    const int to = std::min(past, from + tile);
+    combine(std::array{Summand{displacement, ghosts_[0], v}, Summand{rate, ghosts_[1], w}}, from, to);
+    const Energy more = energy_of(from, to, v, w);
+    energy.strain += more.strain;
+    energy.kinetic += more.kinetic;
+  }
+  return energy;
+}
+
+BeamMotion::Energy BeamMotion::energy(const double* v, const double* w) {
+  view_ = view_of(v, w);
+  return energy_of({1.0, 0.0, {}}, {0.0, 1.0, {}}, 0, nodes_);
 }
 
 double BeamMotion::error_energy() {
-  exchange_borders({&v_error_, &w_error_});
-  Tile displacement, rate;
-  double twice = 0.0;
-  for (int first = first_; first < past_; first += tile) {
-    const int past = std::min(past_, first + tile);
-    combine(std::array{Summand{v_error_, ghosts_[0], displacement}, Summand{w_error_, ghosts_[1], rate}}, first, past);
-    twice += twice_energy(first, past, displacement, rate);
-  }
-  return 0.5 * twice;
+  const Energy energy = energy_of(v_error_, w_error_, first_, past_);
+  return energy.strain + energy.kinetic;
 }
 
 double BeamMotion::put_to_rest(int first, int past, const double* rest, double* v, double* w) {
-  double twice = 0.0;
+  double energy = 0.0;
   for (int from = first; from < past; from += tile) {
     const int to = std::min(past, from + tile), begin = std::max(from - 1, 0), end = std::min(to + 1, nodes_);
     Tile displacement, rate;
@@ -106,7 +135,8 @@ double BeamMotion::put_to_rest(int first, int past, const double* rest, double* 
         rate.plane[c][i] = w[k];
       }
     }
-    twice += twice_energy(from, to, displacement, rate);
+    const Energy more = energy_of(from, to, displacement, rate);
+    energy += more.strain + more.kinetic;
   }
   for (int k = block_ * first; k < block_ * past; ++k) {
     v[k] = rest != nullptr ? rest[k] : 0.0;
@@ -114,7 +144,7 @@ double BeamMotion::put_to_rest(int first, int past, const double* rest, double* 
     for (std::vector<double>& a : kept_)
       if (!a.empty()) a[k] = 0.0;
   }
-  return 0.5 * twice;
+  return energy;
 }
 
 }  // namespace traverse::structure

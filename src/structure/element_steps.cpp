@@ -22,7 +22,7 @@ void ElementStructure::begin_motion(const Method& method) {
   const bool heavy = std::any_of(dead_load_.begin(), dead_load_.end(), [](double load) { return load != 0.0; });
   motion_.emplace(beam_, *statics_, heavy ? dead_load_.data() : nullptr);
   motion_->begin(method);
-  if (rest_tolerance_ == 0.0 || !motion_->plain()) return;
+  if (rest_tolerance_ == 0.0 || !motion_->fused()) return;
   int weighs = heavy ? 1 : 0;
   MPI_Allreduce(MPI_IN_PLACE, &weighs, 1, MPI_INT, MPI_MAX, beam_.comm());
   if (weighs != 0) {
@@ -60,10 +60,13 @@ std::pair<int, int> ElementStructure::loaded_columns(const std::vector<Reach>& l
   return {low, high};
 }
 
+int ElementStructure::local_node(int column) const {
+  return std::clamp(column - beam_.first_column(), 0, beam_.local_columns());
+}
+
 // What the stages of the coming step are solved for, and what moves freely during it.
 void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
   const auto [low, high] = loaded_columns(loaded);
-  const auto local = [&](int column) { return std::clamp(column - beam_.first_column(), 0, beam_.local_columns()); };
   const bool parts = statics_->parts() != nullptr;
   int first = 0, past = beam_.columns();
   if (window_) {
@@ -73,26 +76,27 @@ void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
     past = window_->past();
   }
   free_ = {};
-  if (parts && !measures_errors_) {  // else a step is judged by all that moves
-    free_ = {{{local(first), local(low < high ? low : past)}, {local(low < high ? high : past), local(past)}}};
-    motion_->set_range(local(low), local(high));
-  } else if (parts || window_) {
-    motion_->set_range(local(first), local(past));
+  if (parts && motion_->proportional() && !measures_errors_) {  // else a step is judged by all that moves
+    free_ = {{{local_node(first), local_node(low < high ? low : past)},
+              {local_node(low < high ? high : past), local_node(past)}}};
+    motion_->set_range(local_node(low), local_node(high));
+  } else if (window_ || (parts && motion_->proportional())) {
+    motion_->set_range(local_node(first), local_node(past));
   }
 }
 
 void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) {
-  if (proportional()) {
+  if (fused()) {
     set_ranges(loaded);
-    const double interval = method_.stages.size() == 1 ? measured_steps * length_ : 0.0;
-    measuring_ = statics_->damped() && (to_measure_ || unmeasured_ > 0.999 * interval);
+    const double interval = method_.stages.size() == 1 && motion_->proportional() ? measured_steps * length_ : 0.0;
+    measuring_ = measured_between_steps() && statics_->damped() && (to_measure_ || unmeasured_ > 0.999 * interval);
     motion_->measure(measuring_);
   }
   before_.dissipated = dissipated_;
   before_.worked = worked_;
   if (keep) {
-    before_.first = proportional() ? statics_->block() * motion_->first() : 0;
-    before_.past = proportional() ? statics_->block() * motion_->past() : n_;
+    before_.first = fused() ? statics_->block() * motion_->first() : 0;
+    before_.past = fused() ? statics_->block() * motion_->past() : n_;
     before_.v.assign(v + before_.first, v + before_.past);
     before_.w.assign(w + before_.first, w + before_.past);
   }
@@ -108,7 +112,7 @@ void ElementStructure::end_stage(std::size_t i, const double* v, const double* w
     for (int k = 0; k < n_; ++k) a[k] = stage_.shift2 * z_[k];
     for (int k = 0; k < n_; ++k) w_still_[k] += method_.stages[i].rate * a[k];
     powers.beam = dissipation(w_still_.data());
-  } else if (!proportional() && statics_->damped()) {
+  } else if (!measured_between_steps() && statics_->damped()) {
     powers.beam = motion_->power(i, v, w);
   }
   for (const NodalLoad& force : nodal_forces_)
@@ -129,14 +133,15 @@ void ElementStructure::finish_step(double* v, double* w) {
 void ElementStructure::complete_step(double* v, double* w) {
   if (!incomplete_) return;
   incomplete_ = false;
-  if (!proportional()) return;
-  BeamMotion::Dissipation dissipation = motion_->dissipation();
-  for (const auto& [first, past] : free_) motion_->step_free(first, past, v, w, dissipation);
-  if (measuring_) {
-    add_dissipation(dissipation);
-    measuring_ = to_measure_ = false;
+  if (fused()) {
+    BeamMotion::Dissipation dissipation = motion_->dissipation();
+    for (const auto& [first, past] : free_) motion_->step_free(first, past, v, w, dissipation);
+    if (measuring_) {
+      add_dissipation(dissipation);
+      measuring_ = to_measure_ = false;
+    }
+    unmeasured_ += length_;
   }
-  unmeasured_ += length_;
   if (window_) window_->close(*motion_, v, w);
 }
 
@@ -149,11 +154,11 @@ void ElementStructure::take_back_step(double* v, double* w) {
 }
 
 void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) {
-  if (proportional() && stepped_) add_dissipation(measure_dissipation(w));
+  if (stepped_) measure_dissipation(v, w);
   std::copy_n(a, n_, motion_->start_acceleration());
   powers_[0] = {};
-  if (!proportional()) powers_[0].beam = dissipation(w);
-  if (proportional() && unmeasured_ > 0.0) add_dissipation(measure_dissipation(w));
+  if (!measured_between_steps()) powers_[0].beam = dissipation(w);
+  if (unmeasured_ > 0.0) measure_dissipation(v, w);
   to_measure_ = true;
   stepped_ = false;
   if (!window_) return;
@@ -161,28 +166,26 @@ void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, doub
   window_->begin(*motion_, v, w, low, high);
 }
 
-// What is lost until a state where that is known: the trapezoidal rule with its correction by the rates, of order 4.
-double ElementStructure::dissipated_until(const BeamMotion::Dissipation& now) const {
-  return dissipated_ + 0.5 * unmeasured_ * (measured_.power + now.power) +
-         unmeasured_ * unmeasured_ / 12.0 * (measured_.rate - now.rate);
-}
-
+// What is lost until now: the trapezoidal rule, with Rayleigh's damping alone corrected by the rates to order 4. Strong
+// dampers make rates that long steps do not resolve.
 void ElementStructure::add_dissipation(const BeamMotion::Dissipation& now) {
-  dissipated_ = dissipated_until(now);
+  dissipated_ += 0.5 * unmeasured_ * (measured_.power + now.power);
+  if (motion_->proportional()) dissipated_ += unmeasured_ * unmeasured_ / 12.0 * (measured_.rate - now.rate);
   measured_ = now;
   unmeasured_ = 0.0;
 }
 
-BeamMotion::Dissipation ElementStructure::measure_dissipation(const double* w) {
-  BeamMotion::Dissipation d;
-  if (!statics_->damped()) return d;
-  statics_->multiply(1.0, nullptr, w, nullptr, work_.data());
-  const double* a = motion_->start_acceleration();
-  for (int i = 0; i < n_; ++i) {
-    d.power += w[i] * work_[i];
-    d.rate += 2.0 * a[i] * work_[i];
-  }
-  return d;
+// Whether what is lost is measured between steps. Else the method's stages add it up: where dampers are strong and
+// steps of several stages long, that is far closer.
+bool ElementStructure::measured_between_steps() const {
+  return fused() && (motion_->proportional() || method_.stages.size() == 1);
+}
+
+// Between steps, of all that moves.
+void ElementStructure::measure_dissipation(const double* v, const double* w) {
+  if (!measured_between_steps() || !statics_->damped()) return;
+  add_dissipation(motion_->dissipation(window_ ? local_node(window_->first()) : 0,
+                                       window_ ? local_node(window_->past()) : beam_.local_columns(), v, w));
 }
 
 double ElementStructure::error_energy(const double* v, const double* w) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "base/dot.hpp"
 #include "beam/shape.hpp"
 
 namespace traverse::structure {
@@ -71,7 +72,7 @@ double ElementStructure::dissipation(const double* w) {
   double sum = 0.0;
   if (statics_->damped()) {
     statics_->multiply(1.0, nullptr, w, nullptr, work_.data());
-    for (int i = 0; i < n_; ++i) sum += w[i] * work_[i];
+    sum = base::dot(work_, w);
   }
   return nonlinear_ ? sum + nonlinear_->dissipation() : sum;
 }
@@ -197,16 +198,21 @@ std::string ElementStructure::trouble() const { return nonlinear_ ? nonlinear_->
 
 StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   StructureEnergy e;
-  statics_->multiply(1.0, w, nullptr, nullptr, work_.data());
-  for (int i = 0; i < n_; ++i) e.kinetic += 0.5 * w[i] * work_[i];
-  statics_->multiply(1.0, nullptr, nullptr, v, work_.data());
-  for (int i = 0; i < n_; ++i) {
-    e.strain += 0.5 * v[i] * work_[i];
-    e.potential -= v[i] * dead_load_[i];
+  e.potential = -base::dot(dead_load_, v);
+  if (motion_ && motion_->fused()) {
+    const BeamMotion::Energy energy = motion_->energy(v, w);
+    e.strain = energy.strain;
+    e.kinetic = energy.kinetic;
+  } else {
+    statics_->multiply(1.0, w, nullptr, nullptr, work_.data());
+    e.kinetic = 0.5 * base::dot(work_, w);
+    statics_->multiply(1.0, nullptr, nullptr, v, work_.data());
+    e.strain = 0.5 * base::dot(work_, v);
   }
   if (nonlinear_) e.strain += nonlinear_->energy();
   if (!motion_) return e;
-  e.dissipated = proportional() ? dissipated_until(measure_dissipation(w)) : dissipated_;
+  measure_dissipation(v, w);
+  e.dissipated = dissipated_;
   if (window_) e.dissipated += window_->energy_left();
   e.work = worked_;
   return e;

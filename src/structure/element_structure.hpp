@@ -83,14 +83,14 @@ class ElementStructure final : public Structure {
   };
 
   bool fused() const { return motion_ && motion_->fused(); }
-  bool proportional() const { return motion_ && motion_->proportional(); }
   void add_values(const std::vector<int>& elements, const double* v, const double* w, double* v_elements,
                   double* w_elements) const override;
   void external_load(double* nodal) const;
   void load_of_stills();
   double dissipation(const double* w);
-  BeamMotion::Dissipation measure_dissipation(const double* w);
-  double dissipated_until(const BeamMotion::Dissipation& now) const;
+  int local_node(int column) const;
+  bool measured_between_steps() const;
+  void measure_dissipation(const double* v, const double* w);
   void add_dissipation(const BeamMotion::Dissipation& now);
   std::pair<int, int> loaded_columns(const std::vector<Reach>& loaded) const;
   void set_ranges(const std::vector<Reach>& loaded);
@@ -112,8 +112,8 @@ class ElementStructure final : public Structure {
   std::vector<int> watched_;     // columns of probes
   std::vector<double> rest_;     // deflections under its own weight alone; empty: none
   std::array<Powers, most_accelerations> powers_;
-  /// Integrals of this rank's powers, J. Of a fused beam what is lost is known up to `unmeasured_` s ago, when it was
-  /// `measured_`.
+  /// Integrals of this rank's powers, J. What is lost, where it is measured, is known up to `unmeasured_` s ago, when
+  /// it was `measured_`.
   double dissipated_ = 0.0, worked_ = 0.0, unmeasured_ = 0.0;
   BeamMotion::Dissipation measured_;
   bool measuring_ = false, to_measure_ = true;

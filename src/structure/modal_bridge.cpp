@@ -1,46 +1,17 @@
 #include "structure/modal_bridge.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "beam/shape.hpp"
+#include "beam/cubic.hpp"
 
 namespace traverse::structure {
 namespace {
 
 using base::check;
-using Polynomial = std::array<double, 4>;  // by powers
-
 constexpr double negligible = 1e-6;  // damping between two modes that is none, over the geometric mean of their own
-
-/// The polynomial of x - d.
-Polynomial shifted(const Polynomial& c, double d) {
-  return {c[0] + d * (c[1] + d * (c[2] + d * c[3])), c[1] + d * (2.0 * c[2] + 3.0 * d * c[3]), c[2] + 3.0 * d * c[3],
-          c[3]};
-}
-
-/// From the values and slopes at both ends of an element of length h.
-Polynomial hermite_cubic(const std::array<double, 4>& end, double h) {
-  const double rise = (end[2] - end[0]) / h;
-  return {end[0], end[1], (3.0 * rise - 2.0 * end[1] - end[3]) / h, (end[1] + end[3] - 2.0 * rise) / (h * h)};
-}
-
-/// Through four points inside a piece of length h, at whose ends a response may jump.
-template <class Response>
-Polynomial cubic_through(double h, Response response) {
-  Eigen::Matrix4d powers;
-  Eigen::Vector4d values;
-  for (int i = 0; i < 4; ++i) {
-    const double xi = (2.0 * i + 1.0) / 8.0;
-    powers.row(i) << 1.0, xi, xi * xi, xi * xi * xi;
-    values[i] = response(xi * h);
-  }
-  const Eigen::Vector4d c = powers.partialPivLu().solve(values);
-  return {c[0], c[1] / h, c[2] / (h * h), c[3] / (h * h * h)};
-}
 
 base::Handle<Vec> vector(MPI_Comm comm, const double* local, int size) {
   base::Handle<Vec> v;
@@ -53,7 +24,7 @@ base::Handle<Vec> vector(MPI_Comm comm, const double* local, int size) {
 ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios)
     : beam_(beam), statics_(statics), basis_(modes::bending_basis(beam, count)) {
   set_damping(ratios);
-  set_influence(lines_of_modes(), {});
+  influence_ = influence_of(lines_of_modes(), {});
 }
 
 std::vector<ModalBridge::Line> ModalBridge::lines_of_modes() const {
@@ -160,7 +131,25 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   std::vector<Line> lines = lines_of_modes();
   for (const auto quantity : {&beam::Response::deflection, &beam::Response::moment})
     for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
-  set_influence(lines, stations);
+  influence_ = influence_of(lines, stations);
+}
+
+ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, double gravity) {
+  ModalSlopes slopes;
+  slopes.count = unknowns.size();
+  for (const auto& shape : basis_.shape)
+    for (const int unknown : unknowns) slopes.of_q.push_back(shape[static_cast<std::size_t>(unknown)]);
+  const std::vector<double> weight = sagging(gravity);
+  std::vector<Line> lines = lines_of_modes();
+  for (const int unknown : unknowns) {
+    const auto u = static_cast<std::size_t>(unknown);
+    slopes.weight.push_back(weight[u]);
+    std::vector<double> load(basis_.shape.front().size(), 0.0);
+    load[u] = 1.0;
+    lines.push_back(line_of(load, [&](std::size_t mode) { return basis_.shape[mode][u]; }));
+  }
+  slopes.influence = influence_of(lines, {});
+  return slopes;
 }
 
 void ModalBridge::note_forms(beam::Recovery& recovery) {
@@ -204,13 +193,18 @@ void ModalBridge::note_others(beam::Recovery& recovery) {
   }
 }
 
+/// Displacements by the beam's own weight, of all ranks' unknowns.
+std::vector<double> ModalBridge::sagging(double gravity) {
+  std::vector<double> weight(basis_.shape.front().size(), 0.0);
+  beam_.add_self_weight(gravity, weight.data() + static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block());
+  return static_solution(weight);
+}
+
 void ModalBridge::note_weight(beam::Recovery& recovery, double gravity) {
   const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
-  std::vector<double> weight(basis_.shape.front().size(), 0.0);
-  beam_.add_self_weight(gravity, weight.data() + begin);
-  const std::vector<double> sagging = static_solution(weight), zero(beam_.local_unknowns(), 0.0);
+  const std::vector<double> sagged = sagging(gravity), zero(beam_.local_unknowns(), 0.0);
   std::vector<beam::Response> seen;
-  recovery.evaluate(sagging.data() + begin, zero.data(), zero.data(), {}, seen);
+  recovery.evaluate(sagged.data() + begin, zero.data(), zero.data(), {}, seen);
   for (const beam::Response& r : seen) {
     probes_.weight_deflection.push_back(r.deflection);
     probes_.weight_moment.push_back(r.moment);
@@ -230,22 +224,31 @@ ModalBridge::Line ModalBridge::correction_of(beam::Recovery& recovery, std::size
     recovery.evaluate(unit.data(), zero.data(), zero.data(), {}, seen);
     load[static_cast<std::size_t>(unknown)] = seen[p].*quantity;
   }
-  Line line{static_solution(load), p, quantity};
-  for (double& value : line.nodal) value = -value;
   const std::vector<double>& form = quantity == &beam::Response::deflection ? probes_.deflection : probes_.moment;
+  Line line = line_of(load, [&](std::size_t mode) { return form[mode * probes_.count + p]; });
+  line.probe = p;
+  line.direct = quantity;
+  return line;
+}
+
+/// What a unit downward force does to the sum of displacements times `load`, whose form in the modes is given, less the
+/// modes' share.
+ModalBridge::Line ModalBridge::line_of(const std::vector<double>& load,
+                                       const std::function<double(std::size_t)>& form) {
+  Line line{static_solution(load)};
+  for (double& value : line.nodal) value = -value;
   for (std::size_t i = 0; i < modes(); ++i) {
-    const double share = form[i * probes_.count + p] / (basis_.omega[i] * basis_.omega[i]);
+    const double share = form(i) / (basis_.omega[i] * basis_.omega[i]);
     for (std::size_t k = 0; k < line.nodal.size(); ++k) line.nodal[k] += share * basis_.shape[i][k];
   }
   return line;
 }
 
-void ModalBridge::set_influence(const std::vector<Line>& lines, const std::vector<double>& stations) {
+PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const {
   const beam::Mesh& mesh = beam_.mesh();
   std::vector<beam::Recovery> recoveries;
   for (const double x : stations) recoveries.emplace_back(beam_, std::vector<double>{x}, 0.0);
-  const std::vector<double> zero(beam_.local_unknowns(), 0.0);
-  influence_ = {{mesh.start()}, lines.size(), {}};
+  PiecewiseCubic influence = {{mesh.start()}, lines.size(), {}};
   for (int e = 0; e < mesh.elements(); ++e) {
     const beam::Element& element = mesh.element(e);
     std::vector<double> ends = {element.length};  // of the pieces, from the element's left end
@@ -256,28 +259,27 @@ void ModalBridge::set_influence(const std::vector<Line>& lines, const std::vecto
     const auto unknowns = beam_.bridge().transverse(e);
     double left = 0.0;
     for (const double right : ends) {
-      const std::size_t piece = influence_.coefficients.size();
-      influence_.breaks.push_back(right == element.length ? mesh.x(element.left + 1) : element.x + right);
-      influence_.coefficients.resize(piece + 4 * lines.size());
+      const std::size_t piece = influence.coefficients.size();
+      influence.breaks.push_back(right == element.length ? mesh.x(element.left + 1) : element.x + right);
+      influence.coefficients.resize(piece + 4 * lines.size());
       for (std::size_t channel = 0; channel < lines.size(); ++channel) {
         const Line& line = lines[channel];
         std::array<double, 4> nodal{};
         for (std::size_t k = 0; k < 4; ++k) nodal[k] = line.nodal[static_cast<std::size_t>(unknowns[k])];
-        Polynomial cubic = shifted(hermite_cubic(nodal, element.length), left);
+        beam::Cubic cubic = beam::shifted(beam::hermite_cubic(nodal, element.length), left);
         if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
-          const Polynomial more = cubic_through(right - left, [&](double x) {
-            std::vector<beam::Response> seen;
-            recoveries[line.probe].evaluate(zero.data(), zero.data(), zero.data(),
-                                            {{e, (left + x) / element.length, 0.0, -1.0, 0.0}}, seen);
-            return seen.front().*line.direct;
+          const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {
+            const beam::ElementLoad unit = {e, (left + x) / element.length, 0.0, -1.0, 0.0};
+            return recoveries[line.probe].inside_response(0, unit).*line.direct;
           });
           for (std::size_t k = 0; k < 4; ++k) cubic[k] += more[k];
         }
-        for (std::size_t k = 0; k < 4; ++k) influence_.coefficients[piece + k * lines.size() + channel] = cubic[k];
+        for (std::size_t k = 0; k < 4; ++k) influence.coefficients[piece + k * lines.size() + channel] = cubic[k];
       }
       left = right;
     }
   }
+  return influence;
 }
 
 }  // namespace traverse::structure

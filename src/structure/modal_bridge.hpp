@@ -12,6 +12,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,15 @@ struct ModalProbes {
   std::vector<double> weight_deflection, weight_moment;  // m, N m at each station: of the beam's own weight
 };
 
+/// Rotations at nodes as linear forms of the modes' coordinates.
+struct ModalSlopes {
+  std::size_t count = 0;
+  std::vector<double> of_q;    // [mode][rotation]
+  std::vector<double> weight;  // rad, of the beam's own weight
+  /// As ModalBridge::influence, the rotations behind the modal forces.
+  PiecewiseCubic influence;
+};
+
 class ModalBridge {
  public:
   /// Collective. The `count` lowest modes of bending with all copies of the last frequency. `ratios`: damping ratios of
@@ -50,6 +60,9 @@ class ModalBridge {
   /// Collective. Adds the response at stations to the forms, and its static correction to the influence. gravity: 0
   /// without self-weight.
   void add_probes(const std::vector<double>& stations, double gravity);
+
+  /// Collective. Rotations of nodes given by their unknowns, where dampers do not couple modes.
+  ModalSlopes slopes(const std::vector<int>& unknowns, double gravity);
 
   std::size_t modes() const { return basis_.omega.size(); }
   const modes::Basis& basis() const { return basis_; }
@@ -93,8 +106,10 @@ class ModalBridge {
   void note_weight(beam::Recovery& recovery, double gravity);
   Line correction_of(beam::Recovery& recovery, std::size_t probe, double beam::Response::*quantity);
   std::vector<Line> lines_of_modes() const;
-  void set_influence(const std::vector<Line>& lines, const std::vector<double>& stations);
+  Line line_of(const std::vector<double>& load, const std::function<double(std::size_t)>& form);
+  PiecewiseCubic influence_of(const std::vector<Line>& lines, const std::vector<double>& stations) const;
   std::vector<double> static_solution(const std::vector<double>& load);
+  std::vector<double> sagging(double gravity);
 
   const beam::Beam& beam_;
   BeamOperator& statics_;

@@ -3,19 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace traverse::structure {
 namespace {
 constexpr int steps_between_looks = 16;  // at the whole window, for the largest deflection and velocity
 }
 
-RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance,
-                       const std::vector<int>& watched, const double* rest)
+RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> watched,
+                       const double* rest)
     : beam_(beam),
       parts_(op.parts() != nullptr),
       shared_(op.shared()),
       tolerance_(tolerance),
-      watched_(watched),
+      watched_(std::move(watched)),
       rest_(rest),
       past_(beam.columns()) {
   std::sort(watched_.begin(), watched_.end());
@@ -23,12 +24,13 @@ RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double to
 
 int RestWindow::local(int column) const { return std::clamp(column - beam_.first_column(), 0, beam_.local_columns()); }
 
-// (v, theta) of the nodes [first, past) and their rates: the largest of each kind.
+// Of the nodes [first, past).
 void RestWindow::note_largest(const double* v, const double* w, int first, int past) {
-  for (int i = 2 * first; i < 2 * past; ++i) {
-    double* largest = largest_.data() + 2 * (i % 2);
-    largest[0] = std::max(largest[0], std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)));
-    largest[1] = std::max(largest[1], std::abs(w[i]));
+  const int block = beam_.block();
+  for (int i = block * first; i < block * past; ++i) {
+    Largest& largest = largest_[static_cast<std::size_t>(i % block)];
+    largest.displacement = std::max(largest.displacement, std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)));
+    largest.rate = std::max(largest.rate, std::abs(w[i]));
   }
 }
 
@@ -36,10 +38,11 @@ bool RestWindow::rests(int first, int past, const double* v, const double* w) co
   const int from = first + beam_.first_column(), to = past + beam_.first_column();
   const auto watched = std::lower_bound(watched_.begin(), watched_.end(), from);
   const double limit = watched != watched_.end() && *watched < to ? std::min(quiet, tolerance_) : tolerance_;
-  for (int i = 2 * first; i < 2 * past; ++i) {
-    const double* largest = largest_.data() + 2 * (i % 2);
-    if (std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)) > limit * largest[0] ||
-        std::abs(w[i]) > limit * largest[1])
+  const int block = beam_.block();
+  for (int i = block * first; i < block * past; ++i) {
+    const Largest& largest = largest_[static_cast<std::size_t>(i % block)];
+    if (std::abs(v[i] - (rest_ != nullptr ? rest_[i] : 0.0)) > limit * largest.displacement ||
+        std::abs(w[i]) > limit * largest.rate)
       return false;
   }
   return true;
@@ -99,7 +102,8 @@ void RestWindow::close(BeamMotion& motion, double* v, double* w) {
 }
 
 void RestWindow::agree() {
-  MPI_Allreduce(MPI_IN_PLACE, largest_.data(), static_cast<int>(largest_.size()), MPI_DOUBLE, MPI_MAX, beam_.comm());
+  MPI_Allreduce(MPI_IN_PLACE, largest_.data(), 2 * static_cast<int>(largest_.size()), MPI_DOUBLE, MPI_MAX,
+                beam_.comm());
 }
 
 }  // namespace traverse::structure

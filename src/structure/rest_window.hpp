@@ -13,9 +13,10 @@ namespace traverse::structure {
 
 class RestWindow {
  public:
-  /// tolerance: of the largest deflection and the largest velocity so far; below it nodes are at rest. `watched`: the
-  /// columns of probes, which rest only below `quiet`. rest: deflections at rest, this rank's, null for 0; kept.
-  RestWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, const std::vector<int>& watched,
+  /// tolerance: of the largest displacement and velocity so far of each unknown of a column; below it nodes are at
+  /// rest. `watched`: the columns of probes, which rest only below `quiet`. rest: displacements at rest, this rank's,
+  /// null for 0; kept.
+  RestWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> watched,
              const double* rest);
 
   static constexpr double quiet = 1e-9;
@@ -47,10 +48,13 @@ class RestWindow {
   double tolerance_;
   std::vector<int> watched_;  // ascending
   const double* rest_;
-  int first_ = 0, past_ = 0;         // columns: [first, past)
-  int low_ = 0, high_ = 0;           // with loads in the last step
-  std::array<double, 4> largest_{};  // deflection and its rate, rotation and its rate
-  double energy_left_ = 0.0;         // this rank's share
+  int first_ = 0, past_ = 0;  // columns: [first, past)
+  int low_ = 0, high_ = 0;    // with loads in the last step
+  struct Largest {
+    double displacement = 0.0, rate = 0.0;
+  };
+  std::array<Largest, beam::kinds> largest_{};  // of each unknown of a column
+  double energy_left_ = 0.0;                    // this rank's share
   int steps_ = 0;
 };
 

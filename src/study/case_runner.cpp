@@ -22,8 +22,10 @@ namespace {
 constexpr double seconds_a_mode = 2e-9, seconds_a_probe = 4e-10;
 // Of a run side by side with seven others, a stage.
 constexpr double seconds_a_lane_vehicle = 2e-8, seconds_a_lane_mode = 4e-9;
+constexpr double alone_over_beside = 20.0;
 constexpr double rough_over_level = 3.5;  // no vehicle rests, and contacts take more iterations
 constexpr double coupled_over_uncoupled = 8.0;
+constexpr double seconds_a_look = 1e-7;  // of limits at a run by modes
 constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
 
 }  // namespace
@@ -38,7 +40,10 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std:
     beam_->damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
     beam_->prepare(scene_, notes);
   }
+  set_up_limits(notes);
   if (scene_.exact_in_time()) beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
+  if (scene_.exact_in_time() && scene_.judges_runs() && !beam_->modal->dampers_couple())
+    force_findings_.emplace(scene_, *beam_, counting_);
   std::vector<std::string> ignored;
   for (std::size_t train = 0; train < trains(); ++train) {
     for (const double speed : std::set{speeds_.front(), speeds_.back()})
@@ -48,9 +53,19 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std:
   set_up_lanes();
 }
 
+void CaseRunner::set_up_limits(std::vector<std::string>& notes) {
+  if (filters_wheels(scene_)) scene_.looks = spacing_for(scene_.output.wheel_low_pass);
+  if (!limits_deck_acceleration(scene_)) return;
+  counting_ = frequency_that_counts(scene_, *beam_, true, notes);
+  if (counting_ > 0.0) scene_.looks = std::min(scene_.looks, spacing_for(counting_));
+}
+
 void CaseRunner::set_up_lanes() {
   if (scene_.exact_in_time()) return;
-  why_no_lanes_ = scene_.sweep->lanes == 0 ? "sweep_lanes 0 asks for that" : lanes_obstacle(scene_, *beam_);
+  why_no_lanes_ = lanes_obstacle(scene_, *beam_);
+  by_kernel_ = why_no_lanes_.empty();
+  if (scene_.judges_runs()) why_no_lanes_ = "limits are judged by whole runs";
+  if (scene_.sweep->lanes == 0) why_no_lanes_ = "sweep_lanes 0 asks for that";
   if (!why_no_lanes_.empty()) return;
   scene_of(0, {speeds_.front(), {}});
   lanes_.emplace(scene_, *beam_);
@@ -80,7 +95,7 @@ std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& run
 }
 
 std::size_t CaseRunner::width() const {
-  if (scene_.exact_in_time() && !beam_->modal->dampers_couple())
+  if (by_modes_alone() && !beam_->modal->dampers_couple())
     return std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
   return lanes_ ? scene_.sweep->lanes : 1;
 }
@@ -89,13 +104,16 @@ std::vector<CaseResult> CaseRunner::run_together(std::size_t train, std::span<co
                                                  const std::function<void(double)>& reached) {
   CaseRunner& first = *members.front().runner;
   std::vector<CaseResult> results;
-  if (first.scene_.exact_in_time()) {
+  if (first.by_modes_alone()) {
     std::vector<CaseRun> runs;
     for (const Member& member : members) runs.push_back(member.run);
-    return first.run_by_modes(train, runs);
+    results = first.run_by_modes(train, runs);
+  } else if (first.lanes_) {
+    results = run_in_lanes(train, members, reached);
+  } else {
+    for (const auto& [runner, one] : members) results.push_back(runner->run(train, one, reached));
   }
-  if (first.lanes_) return run_in_lanes(train, members, reached);
-  for (const auto& [runner, one] : members) results.push_back(runner->run(train, one, reached));
+  for (CaseResult& result : results) result.findings.resize(first.scene_.limits.size());  // unknown where not judged
   return results;
 }
 
@@ -153,14 +171,16 @@ double CaseRunner::cost() const {
     const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
     const double an_instant = seconds_a_mode + seconds_a_probe * static_cast<double>(scene_.output.probes.size());
     const double coupled = beam_->modal->dampers_couple() ? coupled_over_uncoupled : 1.0;
-    return coupled * instants * static_cast<double>(omega.size()) * an_instant;
+    const double looks = force_findings_ ? 1.0 / scene_.looks : 0.0;
+    return coupled * instants * static_cast<double>(omega.size()) * an_instant +
+           (std::isfinite(looks) ? looks * seconds_a_look : 0.0);
   }
-  if (lanes_) {
-    const SideBySide::Steps steps = lanes_->steps();
+  if (by_kernel_) {
+    const double alone = lanes_ ? 1.0 : alone_over_beside;
     const double a_stage = seconds_a_lane_vehicle * static_cast<double>(scene_.train.vehicles.size()) +
                            seconds_a_lane_mode * static_cast<double>(beam_->modal->modes());
     const double rough = scene_.profile.level() ? 1.0 : rough_over_level;
-    return rough * a_stage * static_cast<double>(steps.method.stages.size()) / steps.longest;
+    return alone * rough * a_stage * static_cast<double>(method_of(scene_).stages.size()) / *scene_.time_step;
   }
   double bodies = 0.0;
   for (const int type : scene_.train.vehicles)
@@ -177,7 +197,7 @@ double CaseRunner::cost_of_all() const {
 }
 
 CaseResult CaseRunner::run(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached) {
-  return scene_.exact_in_time() ? run_by_modes(train, {&run, 1}).front() : run_by_elements(train, run, reached);
+  return by_modes_alone() ? run_by_modes(train, {&run, 1}).front() : run_by_elements(train, run, reached);
 }
 
 CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
@@ -191,6 +211,13 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
   passage.start(ignored);
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
   Watch watch(scene, passage.system(), beam_->bridge(), none);
+  if (counting_ > 0.0 && no_filter(counting_, passage.plan(), scene.output.probes.size()).empty())
+    watch.keep_accelerations({counting_, passage.plan(), scene.output.probes});
+  const Output& out = scene.output;
+  const std::size_t wheels = wheels_at_start(scene).size();
+  if (filters_wheels(scene) && no_filter(out.wheel_low_pass, passage.plan(), wheels, "wheels").empty())
+    watch.keep_wheel_forces({out.wheel_low_pass, out.unloading_level, passage.plan(), wheels});
+  if (scene.judges_runs()) watch.judge();
   CaseResult result;
   result.peaks.resize(scene.output.probes.size());
   const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
@@ -212,6 +239,8 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
     };
     result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
   }
+  if (scene.judges_runs())
+    for (const results::Verdict& verdict : watch.verdicts(watch.finish())) result.findings.push_back(verdict.found);
   const results::Summary& extremes = watch.finished_extremes();
   result.least_wheel_force = extremes.least_wheel_force;
   result.greatest_wheel_force = extremes.greatest_wheel_force;
@@ -265,6 +294,9 @@ std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<co
     results[i].peaks = peaks[i];
     results[i].static_deflection = static_deflection_[train];
     results[i].ended = caught_signal() == 0;
+    if (!force_findings_ || !results[i].ended) continue;
+    scene_of(train, runs[i]);
+    results[i].findings = force_findings_->of(train, ends[i], results[i].peaks, results[i].static_deflection);
   }
   return results;
 }

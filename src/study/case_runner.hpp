@@ -12,8 +12,10 @@
 
 #include "integrate/probe_peaks.hpp"
 #include "lanes/force_passages.hpp"
+#include "results/verdict.hpp"
 #include "run/passage.hpp"
 #include "side_by_side.hpp"
+#include "study/force_findings.hpp"
 
 namespace traverse::app {
 
@@ -23,7 +25,8 @@ struct CaseResult {
   std::vector<double> static_deflection;                       // m, of each probe; 0: unknown
   double least_wheel_force = 0.0, greatest_wheel_force = 0.0;  // N
   double contact_losses = 0.0, longest_loss = 0.0;             // of all wheels; s
-  bool ended = false;                                          // false: a signal came first
+  std::vector<results::Finding> findings;  // of each limit of the scene; none where no run is judged
+  bool ended = false;                      // false: a signal came first
 };
 
 /// What is one run's own, besides its train of forces.
@@ -83,6 +86,9 @@ class CaseRunner {
                                               const std::function<void(double)>& reached);
   CaseResult result_of(const lanes::CrossingResult& crossing, std::size_t train) const;
   void set_up_lanes();
+  void set_up_limits(std::vector<std::string>& notes);
+  /// Whether runs are exact in time, and their modes tell all that is asked.
+  bool by_modes_alone() const { return scene_.exact_in_time() && (!scene_.judges_runs() || force_findings_); }
 
   Scene scene_;
   std::vector<double> speeds_;
@@ -91,8 +97,11 @@ class CaseRunner {
   std::shared_ptr<SharedBeam> beam_;
   std::map<std::size_t, std::vector<double>> static_deflection_;  // of each train
   std::map<std::size_t, lanes::ForcePassages> passages_;          // of moving forces by modes
+  std::optional<ForceFindings> force_findings_;                   // where limits are set to such runs
   std::optional<SideBySide> lanes_;
   std::string why_no_lanes_;
+  bool by_kernel_ = false;  // of the lanes, be it alone
+  double counting_ = 0.0;   // Hz, up to which limits count accelerations; 0: they are not filtered
   long alone_ = 0;
 };
 

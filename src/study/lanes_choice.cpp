@@ -10,6 +10,7 @@
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
+#include "accuracy/horizon.hpp"
 #include "accuracy/trials.hpp"
 #include "lanes/speed_class.hpp"
 #include "results/stage.hpp"
@@ -192,7 +193,7 @@ std::string words_of(const Errors& errors) {
   return words;
 }
 
-/// Where wheels of a train have their trials: groups of speeds, and the passages' lengths, m.
+/// Where wheels of a train have their trials: groups of speeds, m/s.
 struct TrialSpeeds {
   std::vector<std::vector<double>> beginnings, mixed, wholes;  // mixed: none where the beginnings serve for them
 };
@@ -310,10 +311,10 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     const Errors off = chooser.off_the_elements(some_speeds(speeds, {1.0}, trial_lanes).back().back());
     if (greatest(off) > given.accuracy)
       return refuse(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
-    notes.push_back(fmt::format(
-        "runs go side by side: {} modes from {} elements a span, linear vehicles, {} with steps of {:g} s or less ({})",
-        chooser.model().modes, mesh_of(choice.scene), chooser.model().method->name, chooser.model().step,
-        lanes::instructions()));
+    notes.push_back(
+        fmt::format("{}: {} modes from {} elements a span, linear vehicles, {} with steps of {:g} s or less ({})",
+                    given.limits.empty() ? "runs go side by side" : "by modes", chooser.model().modes,
+                    mesh_of(choice.scene), chooser.model().method->name, chooser.model().step, lanes::instructions()));
     notes.push_back("expected errors of the peaks: " + words_of(choice.errors));
     notes.push_back(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
     return choice;
@@ -339,11 +340,11 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
   try {
     Chooser chooser(scene, {speeds, {}, {{given.train.speed}}}, methods, true);
     LanesChoice choice = chooser.choose();
+    if (!follows_contacts(given, chooser.model().step)) return std::nullopt;  // peaks may agree by chance
     choice.scene.sweep.reset();
     notes.push_back(fmt::format(
         "accuracy {:g}: {} elements a span, of these {} modes, linear vehicles, steps of {:g} s; {} trial runs of "
-        "{:.3g} s "
-        "took {:.2g} s",
+        "{:.3g} s took {:.2g} s",
         given.accuracy, mesh_of(choice.scene), chooser.model().modes, chooser.model().step, chooser.trials(),
         chooser.horizon(), std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     notes.push_back("expected errors of the peaks: " + words_of(choice.errors));

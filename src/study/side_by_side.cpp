@@ -69,10 +69,12 @@ SideBySide::Track SideBySide::track(const std::optional<std::uint64_t>& seed, do
   return tracks_.emplace_back(seed, std::make_shared<lanes::TrackNumbers>(made)).second;
 }
 
-SideBySide::Steps SideBySide::steps() const {
-  const structure::MethodRow* row = structure::find_method(scene_.sweep->method);
-  return {row != nullptr ? row->make(row->parameter.value) : *integrate::own_method(), *scene_.time_step};
+structure::Method method_of(const Scene& scene) {
+  const structure::MethodRow* row = structure::find_method(scene.sweep->method);
+  return row != nullptr ? row->make(row->parameter.value) : *integrate::own_method();
 }
+
+SideBySide::Steps SideBySide::steps() const { return {method_of(scene_), *scene_.time_step}; }
 
 std::vector<lanes::CrossingResult> SideBySide::run(std::span<const LaneRun> runs, const Steps& steps) {
   std::vector<Member> members;

@@ -24,6 +24,9 @@ struct LaneRun {
   std::optional<std::uint64_t> seed;  // of its track; none: the scene's own
 };
 
+/// Of the runs of a sweep, for steps of 1 s.
+structure::Method method_of(const Scene& scene);
+
 class SideBySide {
  public:
   /// The train of a scene without lanes_obstacle, at its start. Errors as a run by itself would throw them. Scene and

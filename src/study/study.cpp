@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
 
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
@@ -16,6 +19,7 @@
 #include "study/returns.hpp"
 #include "study/study_choice.hpp"
 #include "study/study_file.hpp"
+#include "study/study_refinement.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
@@ -51,6 +55,9 @@ void announce(const StudyScenes& scenes, const CaseRunner& first, const results:
         scenes.mixes(first.width()) ? "speed, track and vehicles' numbers" : "speed and track", lanes::instructions()));
   else if (!first.why_no_lanes().empty())
     notes.push_back("runs go one by one: " + first.why_no_lanes());
+  if (scenes.study().refine > 0.0)
+    notes.push_back(
+        fmt::format("speeds are added until the peaks over the speed are known to {:g}", scenes.study().refine));
   double motion = 0.0;
   for (const StudyRun& run : scenes.runs()) motion += first.duration(0, run.own.speed);
   const double part = static_cast<double>(runs - known) / static_cast<double>(runs);
@@ -80,6 +87,8 @@ std::vector<double> row_of(std::size_t run, const CaseResult& result, const std:
   if (wheels)
     row.insert(row.end(),
                {result.least_wheel_force, result.greatest_wheel_force, result.contact_losses, result.longest_loss});
+  for (const results::Finding& finding : result.findings) row.push_back(finding.value);
+  for (const results::Finding& finding : result.findings) row.push_back(finding.x);
   return row;
 }
 
@@ -164,44 +173,124 @@ RunFailure compute(MPI_Comm comm, StudyScenes& scenes, const std::vector<std::ve
   return first_of(comm, std::move(failure));
 }
 
+/// What is run together: the scene, whose study has more speeds from round to round.
+struct Round {
+  explicit Round(Scene with)
+      : scene(std::move(with)),
+        scenes(scene),
+        table(*scene.study, scene.output.probes.size(), has_wheels(scene), scene.limits) {}
+
+  const Scene scene;
+  StudyScenes scenes;
+  results::StudyTable table;
+};
+
+/// Collective. The next speeds, as rank 0 knows the peaks; none: they are known well enough, or these are too many.
+std::vector<double> next_speeds(MPI_Comm comm, const Round& round, std::size_t most, results::Refined& refined) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  std::vector<double> next;
+  if (rank == 0) {
+    const std::vector<double> speeds = speeds_of(*round.scene.study);
+    const Refinement found = refine(speeds, curves_of(round.table), refined.wanted);
+    refined.uncertainty = found.uncertainty;
+    refined.curve = found.curve;
+    if (speeds.size() + found.speeds.size() <= most) next = found.speeds;
+  }
+  int size = static_cast<int>(next.size());
+  MPI_Bcast(&size, 1, MPI_INT, 0, comm);
+  next.resize(static_cast<std::size_t>(size));
+  MPI_Bcast(next.data(), size, MPI_DOUBLE, 0, comm);
+  return next;
+}
+
+/// Collective. Rounds of runs; the last one, with all runs of those before it, is left in `round`, its file in `file`.
+class Rounds {
+ public:
+  Rounds(MPI_Comm comm, const SweepChoice& choice, results::StoredStudy stored, const std::vector<std::string>& notes)
+      : comm_(comm), choice_(choice), stored_(std::move(stored)), notes_(notes) {}
+
+  RunFailure run(std::unique_ptr<Round>& round, std::vector<char> known, results::Place place,
+                 std::optional<StudyFile>& file, StudyCourse& course) {
+    course.known = std::count(known.begin(), known.end(), 1);
+    const std::vector<double> given =
+        round->scene.study->refine > 0.0 ? speeds_of(*round->scene.study) : std::vector<double>();
+    results::Refined refined;
+    refined.wanted = round->scene.study->refine;
+    while (true) {
+      file.emplace(comm_, std::move(place), round->scene, choice_.model, round->table, notes_);
+      const std::size_t width = round->scenes.runner(0).runs->width();
+      RunFailure failure =
+          compute(comm_, round->scenes, unknown_of(round->scenes.groups(width), known), round->table, *file);
+      course.left_group += round->scenes.alone();
+      if (refined.wanted == 0.0) return failure;
+      const bool ends = failure.failed() || signal_on_any(comm_) != 0;
+      const std::vector<double> next =
+          ends ? std::vector<double>() : next_speeds(comm_, *round, most_speeds(given.size()), refined);
+      if (next.empty()) {
+        for (const double speed : speeds_of(*round->scene.study))
+          refined.added.push_back(std::binary_search(given.begin(), given.end(), speed) ? 0.0 : 1.0);
+        course.refined = std::move(refined);
+        return failure;
+      }
+      Scene scene = round->scene;
+      scene.study = with_speeds(*scene.study, next);
+      auto more = std::make_unique<Round>(std::move(scene));
+      more->scenes.choose(choice_.scene);
+      const std::vector<char> before = take_known(comm_, stored_of(round->table), more->table);
+      known = take_known(comm_, stored_, more->table);
+      course.known += std::count(known.begin(), known.end(), 1) - std::count(before.begin(), before.end(), 1);
+      file.reset();
+      place = results::claim_place(comm_, round->scene.output.file);
+      round = std::move(more);
+    }
+  }
+
+ private:
+  MPI_Comm comm_;
+  const SweepChoice& choice_;
+  results::StoredStudy stored_;  // by a run before this one
+  const std::vector<std::string>& notes_;
+};
+
 }  // namespace
 
 int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   int rank = 0, ranks = 1;
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
-  StudyScenes scenes(given);
-  results::StudyTable table(*given.study, given.output.probes.size(), has_wheels(given));
+  auto round = std::make_unique<Round>(given);
+  StudyScenes& scenes = round->scenes;
   for (const std::size_t base : scenes.extreme_bases()) scenes.base(base);  // all input is checked first
   std::vector<std::string> notes;
-  SweepChoice choice = choose_for_study(scenes, notes);
+  const SweepChoice choice = choose_for_study(scenes, notes);
   scenes.choose(choice.scene);
   const CaseRunner& first = *scenes.runner(0, &notes).runs;
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
-  const std::vector<char> known = runs_known(comm, given, choice.model, table);
-  announce(scenes, first, choice.model, table.finished_runs(), ranks, notes);
+  results::StoredStudy stored = stored_of(comm, given, choice.model);
+  const std::vector<char> known = take_known(comm, stored, round->table);
+  announce(scenes, first, choice.model, round->table.finished_runs(), ranks, notes);
   print_notes(comm, notes);
 
   const SignalsNoted noted;
-  StudyFile file(comm, std::move(place), given, choice.model, table);
-  const std::vector<std::vector<std::size_t>> groups = unknown_of(scenes.groups(first.width()), known);
   const auto begin = std::chrono::steady_clock::now();
-  const RunFailure failure = compute(comm, scenes, groups, table, file);
-  const int signal = signal_on_any(comm);
   StudyCourse course;
-  course.known = std::count(known.begin(), known.end(), 1);
-  course.left_group = scenes.alone();
+  std::optional<StudyFile> file;
+  const RunFailure failure =
+      Rounds(comm, choice, std::move(stored), notes).run(round, known, std::move(place), file, course);
+  const int signal = signal_on_any(comm);
   MPI_Allreduce(MPI_IN_PLACE, &course.left_group, 1, MPI_LONG, MPI_SUM, comm);
   course.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   course.ended = failure.failed() ? failure.message
                  : signal != 0    ? fmt::format("ended by signal {}", signal)
                                   : "reached its end";
   try {
-    file.finish(course);
+    file->finish(course);
   } catch (const FileError& error) {
     leave_together(comm, error);
   }
+  const results::StudyTable& table = round->table;
   if (rank == 0) print_study_course(table, choice.model, course, given.output.file);
   if (failure.failed()) throw Error(failure.message, failure.status);
   double deflection = 0.0;

@@ -6,9 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <string_view>
 
-#include "results/study_reader.hpp"
 #include "results/study_statistics.hpp"
+#include "run/model_record.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
 
@@ -94,22 +95,19 @@ void take_over(const results::StoredStudy& stored, results::StudyTable& table) {
 
 }  // namespace
 
-std::vector<char> runs_known(MPI_Comm comm, const Scene& scene, const results::Sweep::Model& model,
-                             results::StudyTable& table) {
-  std::vector<char> known(table.runs(), 0);
-  if (!scene.study->resume) return known;
+results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results::Sweep::Model& model) {
+  results::StoredStudy stored;
+  if (!scene.study->resume) return stored;
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   std::string why;
   if (rank == 0) {
     try {
-      const results::StoredStudy stored = results::read_study(scene.output.file);
+      stored = results::read_study(scene.output.file);
       if (!stored.datasets.empty()) why = contradiction(stored, scene, model);
-      if (why.empty() && !stored.datasets.empty()) take_over(stored, table);
     } catch (const std::exception& error) {
       why = error.what();
     }
-    for (std::size_t run = 0; run < table.runs(); ++run) known[run] = table.finished(run) ? 1 : 0;
   }
   int size = static_cast<int>(why.size());
   MPI_Bcast(&size, 1, MPI_INT, 0, comm);
@@ -118,8 +116,26 @@ std::vector<char> runs_known(MPI_Comm comm, const Scene& scene, const results::S
   if (!why.empty())
     throw InputError(fmt::format("study_resume: {} holds other runs: {}; leave study_resume out to begin anew",
                                  scene.output.file, why));
+  return stored;
+}
+
+std::vector<char> take_known(MPI_Comm comm, const results::StoredStudy& stored, results::StudyTable& table) {
+  take_over(stored, table);
+  std::vector<char> known(table.runs());
+  for (std::size_t run = 0; run < table.runs(); ++run) known[run] = table.finished(run) ? 1 : 0;
   MPI_Bcast(known.data(), static_cast<int>(known.size()), MPI_CHAR, 0, comm);
   return known;
+}
+
+results::StoredStudy stored_of(const results::StudyTable& table) {
+  results::StoredStudy stored;
+  const auto add = [&stored](const results::Recorder::Dataset& set) {
+    stored.datasets[set.name.substr(std::string_view("/study/").size())] = set.values;
+  };
+  for (const results::Recorder::Dataset& set : table.coordinates()) add(set);
+  for (const results::Recorder::Dataset& set : table.results()) add(set);
+  add(table.finished());
+  return stored;
 }
 
 namespace {
@@ -153,12 +169,13 @@ class Copy {
 }  // namespace
 
 StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::Sweep::Model& model,
-                     const results::StudyTable& table)
+                     const results::StudyTable& table, const std::vector<std::string>& notes)
     : comm_(comm), table_(table), model_(model), recorder_([&] {
         int rank = 0;
         MPI_Comm_rank(comm, &rank);
         const Copy copy(place, rank == 0 && table.finished_runs() > 0);
         results::Recorder made(comm, std::move(place), layout_of(scene), attributes(comm, scene), scene.options);
+        record_model(scene, notes, made);
         made.datasets(table.coordinates());
         made.datasets(table.results());
         made.datasets({table.finished()});
@@ -200,8 +217,10 @@ void StudyFile::finish(const StudyCourse& course) {
   const results::StudyStatistics statistics(table_);
   recorder_.datasets(statistics.datasets());
   if (statistics.groups() > 0) recorder_.attributes("/study/statistics", {{"confidence", table_.study().confidence}});
+  results::record_verdicts(recorder_, table_.verdicts());
   std::vector<results::Attribute> summary = results::summary_of(table_);
   for (const auto& [quantity, error] : model_.expected_errors) summary.push_back({"expected_error_" + quantity, error});
+  if (course.refined) results::add_to(summary, *course.refined);
   summary.push_back({"runs", static_cast<long>(table_.finished_runs())});
   summary.push_back({"runs_planned", static_cast<long>(table_.runs())});
   summary.push_back({"runs_known", course.known});
@@ -213,7 +232,9 @@ void StudyFile::finish(const StudyCourse& course) {
 void print_study_course(const results::StudyTable& table, const results::Sweep::Model& model, const StudyCourse& course,
                         const std::string& file) {
   if (table.finished_runs() > 0) results::print_study(table);
+  if (course.refined) results::print(*course.refined);
   results::StudyStatistics(table).print();
+  if (table.finished_runs() > 0) results::print_verdicts(table.verdicts());
   if (course.left_group > 0)
     fmt::print("  {} of the runs left the others beside them, where wheels lost contact, and were taken alone\n",
                course.left_group);

@@ -4,33 +4,41 @@
 #include <mpi.h>
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "results/study_reader.hpp"
 #include "results/study_table.hpp"
 #include "results/sweep.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
 
-/// Collective. With study_resume: puts the finished runs of the results file at the scene's place into the table of
-/// rank 0; returns for every run, on every rank, whether it was there. InputError where the file is of another scene,
-/// or was computed by another model.
-std::vector<char> runs_known(MPI_Comm comm, const Scene& scene, const results::Sweep::Model& model,
-                             results::StudyTable& table);
+/// Collective. With study_resume: what the results file at the scene's place holds of this study, on rank 0; else
+/// nothing. InputError where the file is of another scene, or was computed by another model.
+results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results::Sweep::Model& model);
+
+/// Collective. Puts the finished runs that are known into the table of rank 0; returns for every run, on every rank,
+/// whether it is finished.
+std::vector<char> take_known(MPI_Comm comm, const results::StoredStudy& stored, results::StudyTable& table);
+
+/// The runs of a table as a file holds them.
+results::StoredStudy stored_of(const results::StudyTable& table);
 
 /// How the study went.
 struct StudyCourse {
   long known = 0, left_group = 0;  // runs that were in the file; that had to leave those beside them
   double wall_seconds = 0.0;
-  std::string ended;  // "reached its end", or why it stopped
+  std::string ended;                          // "reached its end", or why it stopped
+  std::optional<results::Refined> refined{};  // where speeds were to be added
 };
 
 class StudyFile {
  public:
   /// Collective. Begins the file, with the coordinates of all runs and what is known of them.
   StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::Sweep::Model& model,
-            const results::StudyTable& table);
+            const results::StudyTable& table, const std::vector<std::string>& notes);
   /// Writes what is new in the table, the first run at once, later ones every few seconds. On rank 0, which leaves with
   /// all others where the disk is full.
   void update();

@@ -81,12 +81,6 @@ results::Sweep::Model model_of(const Scene& scene) {
   return model;
 }
 
-std::string name_of(std::size_t quantity) {
-  std::string name = quantity_names[quantity];
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
-}
-
 }  // namespace
 
 std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes) {
@@ -95,7 +89,8 @@ std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<s
   SweepChoice choice{std::move(lanes->scene), {}};
   choice.model = model_of(choice.scene);
   choice.model.accuracy = given.accuracy;
-  for (std::size_t q = 0; q < quantities; ++q) choice.model.expected_errors.emplace_back(name_of(q), lanes->errors[q]);
+  for (std::size_t q = 0; q < quantities; ++q)
+    choice.model.expected_errors.emplace_back(stored_name(q), lanes->errors[q]);
   return choice;
 }
 

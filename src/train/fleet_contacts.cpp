@@ -26,6 +26,7 @@ void Fleet::add_patch(WheelContact& c, int element, double start, double low, do
   patch.height = surface_height_;
   patch.x = mesh_->element(element).x;
   patch.length = mesh_->element(element).length;
+  if (inner_EI_ > 0.0) patch.yield = patch.length * patch.length * patch.length / (3.0 * inner_EI_);
 }
 
 // The patches within [low, high] under a contact at x: the one there, and its neighbour across a kink between `from`
@@ -173,6 +174,7 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
     c.active = i;
     c.touch = candidate;
   }
+  c.law.seat = c.touch.seat;
   add_shape(c);
   return true;
 }
@@ -227,12 +229,12 @@ bool Fleet::touch(int per_node, const double* v, const double* w) {
 }
 
 WheelLoad Fleet::load(const WheelContact& c) const {
-  WheelLoad sum{c.force.normal, c.force.tangential, c.kinematics.penetration};
+  WheelLoad sum{c.force.normal, c.force.tangential, contact::own_penetration(c.law, c.kinematics.penetration)};
   for (int i = 0; c.further > 0 && i < 2 * (track::most_points - 1); ++i) {
     const WheelContact& more = wheels[static_cast<std::size_t>(c.further + i)];
     sum.normal += more.force.normal;
     sum.tangential += more.force.tangential;
-    sum.penetration = std::max(sum.penetration, more.kinematics.penetration);
+    sum.penetration = std::max(sum.penetration, contact::own_penetration(more.law, more.kinematics.penetration));
   }
   return sum;
 }
@@ -246,6 +248,7 @@ void Fleet::note_sides() {
 
 void Fleet::add_load(const Contact& c, double normal, double tangential, Eigen::VectorXd& Q) {
   Q.segment<3>(3 * c.body) -= normal * c.touch.normal_on_body + tangential * c.touch.tangent_on_body;
+  Q[3 * c.body] += 0.5 * c.sign * c.touch.seat_by_x * normal * normal;
   if (c.other_body == multibody::ground) return;
   Q.segment<3>(3 * c.other_body) -= normal * c.touch.normal_on_other + tangential * c.touch.tangent_on_other;
 }

@@ -33,7 +33,10 @@ double MovingVehicle::step_error(const double* off, const double* pdd) const {
 
 void Fleet::rest_where(const Fleet& other) {
   for (std::size_t k = 0; k < vehicles.size(); ++k) vehicles[k].state.q = other.vehicles[k].state.q;
-  for (int i = 0; i < contacts(); ++i) contact(i).kinematics = other.contact(i).kinematics;
+  for (int i = 0; i < contacts(); ++i) {
+    contact(i).kinematics = other.contact(i).kinematics;
+    contact(i).law.seat = other.contact(i).law.seat;
+  }
 }
 
 void Fleet::start_moving() {

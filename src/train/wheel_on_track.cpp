@@ -108,11 +108,14 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
   const Eigen::Vector2d tau(n.y(), -n.x());
 
   Eigen::Vector2d relative = qd.head<2>();  // of the centre against the surface's material
-  out.xi = 0.0;
+  out.xi = out.seat = out.seat_by_x = 0.0;
   out.station = x;
   out.ahead = x - c.x();
   if (patch.element >= 0) {
     out.xi = (x - patch.x) * surface.per_length;
+    const double hump = out.xi * (1.0 - out.xi);
+    out.seat = patch.yield * hump * hump * hump;
+    out.seat_by_x = patch.yield * 3.0 * hump * hump * (1.0 - 2.0 * out.xi) * surface.per_length;
     const beam::Hermite psi = beam::hermite(out.xi, patch.length);
     const int o = block - 2;
     const std::array<int, 4> place = {o, o + 1, block + o, block + o + 1};

@@ -2,6 +2,11 @@
 // normal through the wheel's centre. Penetration and sliding speed come with the directions in which they change,
 // and the contact force acts along exactly these directions on the wheel's body and on the beam element, so that
 // action and reaction cancel to rounding and the power of the pair is -f_n alpha' - f_t beta' (paper, eqs. 45-50).
+//
+// v is the element's cubic. Under a force inside it the element sinks further, as a beam clamped at its nodes does: by
+// h^3 xi^3 (1 - xi)^3/(3 EI) a newton at the force itself. Where that counts it is condensed into the contact, as a
+// seat in series with the law (contact::Law::seat): it has no mass, so that it needs no unknowns. Its energy s f^2/2
+// changes with the place too: the wheel is driven on by f^2/2 ds/dx, which is what the slope of that shape makes of f.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,6 +22,7 @@ struct Patch {
   int element = -1;              // -1: rigid ground
   double x = 0.0, length = 0.0;  // of the element, m
   double height = 0.0;           // of the surface above the beam's neutral axis, m
+  double yield = 0.0;            // length^3/(3 EI), m/N, where the element's inner shape counts
   double low = 0.0, high = 0.0;  // stations between which the piece reaches; a wheel beyond touches its corner
   double start = 0.0;            // where Find::closest_within and farthest_within begin to look
 };
@@ -35,6 +41,7 @@ struct Touch {
   std::array<double, most_element_unknowns> tangent_on_beam{};  // d beta' / d(their rates)
   double xi = 0.0;                                              // of the contact point in the element
   double station = 0.0;                                         // x of the contact point on the undeformed track, m
+  double seat = 0.0, seat_by_x = 0.0;  // what the element yields there between its ends, m/N, and d/dx of it, 1/N
   double ahead = 0.0;  // of it before the wheel's centre, m; where the next search for the closest point begins
 };
 

@@ -29,6 +29,19 @@ TEST(Ranks, StudyByElements) {
       {}, names);
 }
 
+// Each round's speeds follow from the peaks of those before.
+TEST(Ranks, RefinedStudy) {
+  std::vector<std::string> with_speeds(names.begin(), names.end() - 1);
+  with_speeds.emplace_back("load_speed");
+  expect_same_study(
+      "beam: {spans: [20.0, 25.0], EI: 1.0e10, mass: 1.0e4, damping_ratios: 0.02, elements_per_span: 6}\n"
+      "support: {types: [pinned, roller, roller]}\n"
+      "load: {hslm_a: 3, speed: 50.0}\n"
+      "model: {modes: 4}\n"
+      "study: {vary: {beam_mass: [1.0e4, 1.1e4], load_speed: [40, 50, 60, 70]}, refine: 1.0e-3}\n",
+      {}, with_speeds);
+}
+
 TEST(Ranks, StudyOfTracks) {
   std::vector<std::string> with_wheels = names;
   with_wheels.emplace_back("least_wheel_force");

@@ -30,6 +30,28 @@ TEST(Ranks, SweepByModes) {
   expect_same_bits(bridge, {{"model_modes", "4"}, {"sweep_speed", "30,60,2"}, {"sweep_hslm_a", "1,5,9"}}, names);
 }
 
+// Each round's speeds follow from the peaks of those before.
+TEST(Ranks, RefinedSweep) {
+  std::vector<std::string> refined = names;
+  refined.emplace_back("added");
+  expect_same_bits(
+      bridge, {{"model_modes", "4"}, {"sweep_speed", "30,60,6"}, {"sweep_hslm_a", "1,9"}, {"sweep_refine", "1e-3"}},
+      refined);
+}
+
+TEST(Ranks, SweepIsJudged) {
+  std::vector<std::string> judged = names;
+  judged.emplace_back("judged");
+  for (const char* model : {"4", "0"})
+    expect_same_bits(std::string(bridge) + "beam_continuity: simply_supported\n",
+                     {{"model_modes", model},
+                      {"ts_dt", "2e-3"},
+                      {"limits", TRAVERSE_SOURCE_DIR "/tests/data/limits_of_forces.yml"},
+                      {"sweep_speed", "40,60,10"},
+                      {"sweep_hslm_a", "1,9"}},
+                     judged);
+}
+
 TEST(Ranks, SweepByElements) {
   expect_same_bits(bridge, {{"ts_dt", "5e-3"}, {"sweep_speed", "40,60,5"}, {"sweep_hslm_a", "3,8"}}, names);
 }

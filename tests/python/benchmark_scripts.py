@@ -13,10 +13,10 @@ SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file_
 BUILD = pathlib.Path(os.environ["TRAVERSE_BINARY"]).parent
 
 
-def start(name, *words):
-    """The finished process of benchmarks/NAME.py."""
+def start(name, *words, more=()):
+    """The finished process of benchmarks/NAME.py; more: of its environment."""
     command = [sys.executable, "-B", str(SOURCE / "benchmarks" / (name + ".py")), *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True)
+    return subprocess.run(command, capture_output=True, text=True, env=os.environ | dict(more))
 
 
 class InAFolder(unittest.TestCase):

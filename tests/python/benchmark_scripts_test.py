@@ -3,6 +3,7 @@
 import contextlib
 import importlib
 import io
+import os
 import pathlib
 import sys
 import unittest
@@ -16,27 +17,69 @@ sys.path.insert(0, str(SOURCE / "benchmarks"))
 # Those that need a benchmark program are tested by tests/benchmarks/programs_test.py.
 WITH_PROGRAMS = {"step_parts": "step_parts_benchmark", "ranks": "step_parts_benchmark",
                  "scaling": "step_parts_benchmark"}
+OF_OTHERS = {"peers_here"}  # runs no program of ours
 PARTS = {"runs", "scene_texts", "beam_solver_picture"}  # imported by the others, or draws a table that is given
 
 
 class Scripts(InAFolder):
     def test_peers(self):
-        text = self.run_smallest("peers")
+        with open(self.folder / "peers_here.csv", "w") as file:
+            file.write("case,peer,seconds of the loop,seconds in all,instants\n"
+                       '"R8, ballasted bridge",TTB-2D,12.5,20.25,3962\n')
+        done = self.start_smallest("peers")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        text = done.stdout
         rows = self.table("peers.csv", ["case", "peer", "peer's seconds", "peer's error", "kind", "how", "unknowns",
-                                        "steps", "seconds", "factor", "error", "seconds of the process"])
+                                        "steps", "seconds", "factor", "error", "seconds of the process",
+                                        "factor of the whole", "the peer's machine"])
+        for row in rows:
+            here = row["case"].startswith("R8")
+            self.assertEqual(row["the peer's machine"], "this machine" if here else "another machine")
+            if here:
+                self.assertAlmostEqual(float(row["factor"]) * float(row["seconds"]), 12.5, places=9)
+                self.assertAlmostEqual(float(row["factor of the whole"]) * float(row["seconds of the process"]), 20.25)
+            else:
+                self.assertEqual(row["factor of the whole"], "")
         self.assertNotIn("none of the grid is right", text)
         self.assert_positive(rows, "unknowns", "steps", "seconds", "factor", "seconds of the process")
         equal = [row for row in rows if row["kind"] == "equal error"]
         same = [row for row in rows if row["kind"] == "same size and steps"]
-        self.assertEqual((len(same), len(equal)), (6, 5))
+        self.assertEqual((len(same), len(equal)), (8, 5))
         for row in equal:
             self.assert_errors([row], "error", float(row["peer's error"]))
         self.assert_errors(same, "error", 5e-4)
-        sizes = {row["case"]: (int(row["unknowns"]), int(row["steps"])) for row in same}
+        modal = [row for row in same if row["how"].endswith("modes")]
+        self.assertEqual({(int(row["unknowns"]), int(row["steps"])) for row in modal}, {(16 + 1, 1000)})  # no step ends at the contacts' changes
+        sizes = {row["case"]: (int(row["unknowns"]), int(row["steps"])) for row in same if row not in modal}
         # The peers' own: VBI-2D with 60 elements, TTB-2D with 1,918 unknowns (a joint less), ROSE with 100 elements.
         self.assertEqual(sizes, {"R3, 60 elements": (2 * 61 + 1, 1001), "R8, ballasted bridge": (1920, 3961),
                                  "R7, 100 elements": (2 * 101 + 2, 2000)})
         self.assert_picture("peers.png")
+
+    def test_peers_here(self):
+        """An Octave that shows what it was asked for, and peers' folders with no more than the calls of their loops."""
+        calls = {"VBI/A02_Calculations.m": "[Sol] = B49_Coup_solver(Calc,Veh,Beam);\n",
+                 "TTB/B00_Calculations.m": "B67_PlotModel(x);\n[M] = B55_ModelBC(M,Beam,Track);\n"
+                                           "[Sol] = B65_DynamicCalcCoupledFaster(Veh);\n"}
+        for name, lines in calls.items():
+            (self.folder / name).parent.mkdir()
+            (self.folder / name).write_text(lines)
+        octave = self.folder / "octave-cli"
+        octave.write_text(f"#!/bin/sh\nfor file; do :; done\ncat \"$file\" >>{self.folder}/asked\n"
+                          "echo our seconds 1.5 2.25 1001\n")
+        octave.chmod(0o755)
+        path = {"PATH": f"{self.folder}:{os.environ['PATH']}"}
+        done = start("peers_here", self.folder / "VBI", self.folder / "TTB", self.folder, "1", more=path)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        rows = self.table("peers_here.csv", ["case", "peer", "seconds of the loop", "seconds in all", "instants"])
+        self.assertEqual([list(row.values())[1:] for row in rows],
+                         [["VBI-2D", "1.5", "2.25", "1001"]] * 2 + [["TTB-2D", "1.5", "2.25", "1001"]])
+        asked = (self.folder / "asked").read_text()
+        self.assertEqual(asked.count("our_loop = tic();\n[Sol] = B49_Coup_solver(Calc,Veh,Beam);\nour_loop = toc"), 2)
+        self.assertIn("Track.Rail.BC.DOF_fixed = zeros(1, 0);\n[M] = B55_ModelBC", asked)
+        self.assertNotIn("B67_Plot", asked)
+        self.assertEqual(start("peers_here", self.folder, self.folder / "TTB").stderr,
+                         f"peers_here.py: {self.folder} holds no A02_Calculations.m: it is not the peer's folder\n")
 
     def test_promises(self):
         text = self.run_smallest("promises")
@@ -120,6 +163,13 @@ class Scripts(InAFolder):
         self.assert_errors(rows, "peaks wrong by", 1e-2)
         self.assert_picture("long_bridge.png")
 
+    def test_same_on_ranks(self):
+        self.run_smallest("same_on_ranks")
+        rows = self.table("same_on_ranks.csv", ["ranks", "deflections differ by", "all series differ by"])
+        self.assertEqual([row["ranks"] for row in rows], ["2", "4", "8"])
+        self.assert_errors(rows, "deflections differ by", 1e-11)
+        self.assert_errors(rows, "all series differ by", 1e-6)
+
     def test_beam_solver_picture(self):
         table = self.folder / "times.csv"
         lines = [f"{n},{name},{ns},1" for n in (20, 200, 2000) for name, ns in (("traverse", 1.4), ("moving it", 0.4))]
@@ -170,7 +220,7 @@ class Arguments(InAFolder):
 
     def test_scripts_say_what_they_take(self):
         for path in (SOURCE / "benchmarks").glob("*.py"):
-            if path.stem not in PARTS:
+            if path.stem not in PARTS | OF_OTHERS:
                 text = self.complaint(path.stem, "--help")
                 for word in (path.name, "BUILD_FOLDER", "OUT_FOLDER", "--smallest"):
                     self.assertIn(word, text)

@@ -40,6 +40,8 @@ class Install(unittest.TestCase):
 
             program = folder / "prefix/bin/traverse"
             self.assertIn("traverse", succeed(program, "-version"))
+            said = succeed(folder / "prefix/bin/traverse-report", folder / "embed_20.h5", "-o", folder / "installed")
+            self.assertIn("installed.pdf", said)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,9 @@
 
 #include <string>
 
+#include "support/curve.hpp"
 #include "support/program.hpp"
+#include "support/scene_run.hpp"
 
 namespace traverse::test {
 namespace {
@@ -33,6 +35,20 @@ TEST(AccuracyOption, NamesWhatItCannotPromise) {
   const Outcome coarse = workplace.run({"-beam_elements_per_span", "2"});
   expect_success(coarse);
   EXPECT_TRUE(says(coarse, "the 2 elements a span, which are given, leave an error")) << coarse.out;
+}
+
+// Fewer peaks that are asked for: longer steps, and no promise of the others.
+TEST(AccuracyOption, OfSomePeaks) {
+  const Workplace workplace(damped_span);
+  const Values by_elements = {{"model_modes", "0"}, {"accuracy", "1e-4"}};
+  Results all = run_yaml(damped_span, by_elements);
+  Results deflection = run_yaml(damped_span, by_elements + Values{{"accuracy_of", "deflection"}});
+  EXPECT_LT(deflection.attribute("/", "steps"), 0.7 * all.attribute("/", "steps"));
+  const Outcome outcome = workplace.run({"-accuracy_of", "deflection,moment", "-accuracy_report"});
+  expect_success(outcome);
+  EXPECT_TRUE(says(outcome, "not promised: acceleration: accuracy_of does not ask for it")) << outcome.out;
+  const Workplace fresh(damped_span);
+  expect_refusal(fresh, fresh.run({"-accuracy_of", "speed"}), {"accuracy_of", "'speed' is not allowed"});
 }
 
 // A trial run that fails is no failure of the run: its step was too long.

@@ -137,7 +137,7 @@ TEST(Signals, EndTheRunInOrder) {
 // mpirun passes the signal on, and kills a second later the ranks that have not ended.
 TEST(Signals, EndTheRunOnTwoRanks) {
   const Workplace workplace(endless_scene());
-  Child child(workplace.command({"-ts_dt", "1e-3"}, 2), workplace.folder());
+  Child child(workplace.command({"-ts_dt", "1e-3", "-step_ranks", "all"}, 2), workplace.folder());
   const std::size_t instants = wait_for_instants(child, workplace);
   child.kill(SIGTERM);
   const Outcome outcome = child.wait();
@@ -149,7 +149,7 @@ TEST(Signals, EndTheRunOnTwoRanks) {
 TEST(Signals, ToOneRankEndTheRunOnBothInOrder) {
   const Workplace workplace(endless_scene());
   const std::string line = "echo $$ > rank_$OMPI_COMM_WORLD_RANK; exec \"$0\" \"$@\"";
-  Child child(behind(line, workplace.command({"-ts_dt", "1e-3"}, 2)), workplace.folder());
+  Child child(behind(line, workplace.command({"-ts_dt", "1e-3", "-step_ranks", "all"}, 2)), workplace.folder());
   const std::size_t instants = wait_for_instants(child, workplace);
   pid_t rank = 0;
   std::ifstream(workplace.path("rank_1")) >> rank;

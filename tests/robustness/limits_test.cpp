@@ -34,6 +34,8 @@ TEST(TooMany, ElementsModesRunsAndStations) {
                  {"beam_elements_per_span", "at most 2e+07"});
   expect_refused(scene, {"-" + spring + "x", "0,25", "-" + spring + "spacing", "1e-7", "-" + spring + "k", "1"},
                  {spring + "spacing", "2.5e+08 stations"});
+  expect_refused(scene, {"-output_probes_spacing", "1e-6"},
+                 {"output_probes_spacing", "4e+07 stations", "at most 100000"});
   expect_refused(scene, {"-sweep_speed", "1,10000,0.1", "-output_probes", "12.5*10000"},
                  {"sweep_speed", "at most 1e+08"});
   expect_refused(scene,

@@ -42,8 +42,12 @@ TEST_P(SceneFile, RunsToItsEnd) {
   const Workplace workplace("");
   const Outcome outcome = workplace.run({"-options_file", GetParam(), "-ts_max_time", "0.2", "-output_file", "r.h5"});
   expect_success(outcome);
-  EXPECT_NE(outcome.out.find("reached its end"), std::string::npos) << outcome.out;
   Results results(workplace.path("r.h5"));
+  if (outcome.out.find("largest static effects") != std::string::npos) {
+    EXPECT_GT(results("/static/moment").size(), 0u);
+    return;
+  }
+  EXPECT_NE(outcome.out.find("reached its end"), std::string::npos) << outcome.out;
   const bool sweep = outcome.out.find("  the sweep ") != std::string::npos;
   if (sweep) {
     EXPECT_GT(results("/sweep/peak_deflection").size(), 0u);
@@ -54,21 +58,44 @@ TEST_P(SceneFile, RunsToItsEnd) {
 }
 INSTANTIATE_TEST_SUITE_P(Options, SceneFile, testing::ValuesIn(files_in("scenes")), stem);
 
+/// What makes a study of many runs one of few.
+std::vector<std::string> fewer_runs(const std::string& study) {
+  if (study == "thousand_tracks")
+    return {"-study_vary_track_seed", "1:3", "-train_vehicles", "coach", "-accuracy", "3e-2"};
+  if (study == "twenty_tracks")
+    return {"-study_vary_track_seed",
+            "1:2",
+            "-study_vary_train_speed_step",
+            "80 km/h",
+            "-train_vehicles",
+            "coach",
+            "-accuracy",
+            "3e-2"};
+  if (study == "truck_class_c") return {"-study_vary_track_seed", "1:2", "-study_vary_train_speed_step", "80 km/h"};
+  if (study == "bearing_stiffness") return {"-study_vary_load_speed_step", "70"};
+  if (study == "en1991_bridge" || study == "hslm_envelope")
+    return {"-sweep_speed", "50,80,15", "-sweep_hslm_a", "1,10"};
+  return {};
+}
+
 /// Every study with few runs.
 class StudyFile : public testing::TestWithParam<std::string> {};
 TEST_P(StudyFile, RunsToItsEnd) {
   expect_three_lines(GetParam());
   const Workplace workplace("");
   std::vector<std::string> words = {"-options_file", GetParam(), "-output_file", "r.h5"};
-  if (stem({GetParam(), 0}) == "thousand_tracks")
-    for (const char* word : {"-study_vary_track_seed", "1:3", "-train_vehicles", "coach", "-accuracy", "3e-2"})
-      words.emplace_back(word);
+  for (const std::string& word : fewer_runs(stem({GetParam(), 0}))) words.push_back(word);
   const Outcome outcome = workplace.run(words);
   expect_success(outcome);
   EXPECT_NE(outcome.out.find("reached its end"), std::string::npos) << outcome.out;
   Results results(workplace.path("r.h5"));
+  if (outcome.out.find("  the sweep ") != std::string::npos) {
+    for (const double peak : results("/sweep/peak_deflection")) EXPECT_GE(peak, 0.0);
+    return;
+  }
   for (const double done : results("/study/finished")) EXPECT_EQ(done, 1.0);
-  EXPECT_GT(results("/study/statistics/peak_deflection_mean").size(), 0u);
+  if (outcome.out.find("statistics over") != std::string::npos)
+    EXPECT_GT(results("/study/statistics/peak_deflection_mean").size(), 0u);
 }
 INSTANTIATE_TEST_SUITE_P(Options, StudyFile, testing::ValuesIn(files_in("studies")), stem);
 

@@ -77,6 +77,30 @@ TEST(StudyInput, DrawsAreCheckedToo) {
   expect_refusal(unvaried, unvaried.run({"-study_statistics_over", "beam_EI"}), {"study_statistics_over", "beam_EI"});
 }
 
+TEST(StudyInput, SpeedsToRefineAreAListOfTheirOwn) {
+  const struct {
+    const char* vary;
+    std::vector<std::string> parts;
+  } cases[] = {
+      {"beam_mass: [1000, 2000, 3000]", {"study_refine", "no list of speeds is varied"}},
+      {"load_speed: [30, 40]", {"study_refine", "load_speed has 2 values", "at least 3"}},
+      {"load_speed: [30, 40, 30]", {"study_refine", "each once"}},
+  };
+  for (const auto& one : cases) {
+    SCOPED_TRACE(one.vary);
+    const Workplace workplace(study(one.vary));
+    expect_refusal(workplace, workplace.run({"-study_refine", "1e-2"}), one.parts);
+  }
+  const Workplace together(forces + "study: {vary: {beam_mass: [1, 2, 3], load_speed: [10, 20, 30]}}\n");
+  expect_refusal(together, together.run({"-study_refine", "1e-2", "-study_combine", "together"}),
+                 {"study_refine", "load_speed goes side by side"});
+  const Workplace swept(forces);
+  expect_refusal(swept, swept.run({"-sweep_speed", "30,40,10", "-sweep_refine", "1e-2"}),
+                 {"sweep_refine", "2 speeds", "at least 3"});
+  expect_refusal(swept, swept.run({"-sweep_speed", "30,40,1", "-sweep_refine", "0"}), {"sweep_refine", "allowed"});
+  EXPECT_NE(swept.run({"-sweep_refine", "1e-2"}).out.find("sweep_refine has no effect"), std::string::npos);
+}
+
 // An explicit method with a step far too long fails by its own.
 TEST(StudyFails, ByOneRunThatIsNamed) {
   const Workplace workplace(std::string(two_spans) +
@@ -144,6 +168,24 @@ TEST(StudyEnds, ByASignalWithWhatItHas) {
   EXPECT_EQ(outcome.status, 128 + SIGTERM) << outcome.err;
   EXPECT_NE(outcome.out.find("ended by signal 15"), std::string::npos) << outcome.out;
   EXPECT_LT(finished(workplace.path("r.h5")), 4000u);
+}
+
+// The speeds that were added are in the file, and are not computed again.
+TEST(StudyResumes, WithTheSpeedsThatWereAdded) {
+  const Workplace workplace(study("beam_mass: [1000, 1500], load_speed: [30, 40, 50, 60]"));
+  const std::vector<std::string> words = {"-output_file", "r.h5", "-study_refine", "1e-3"};
+  expect_success(workplace.run(words));
+  const std::vector<double> speeds = Results(workplace.path("r.h5"))("/study/load_speed");
+  const std::vector<double> peaks = Results(workplace.path("r.h5"))("/study/peak_moment");
+  EXPECT_GT(speeds.size(), 8u);
+  std::vector<std::string> again = words;
+  again.emplace_back("-study_resume");
+  const Outcome outcome = workplace.run(again);
+  expect_success(outcome);
+  EXPECT_NE(outcome.out.find("0 of 0 runs"), std::string::npos) << outcome.out;
+  Results resumed(workplace.path("r.h5"));
+  EXPECT_EQ(resumed("/study/load_speed"), speeds);
+  EXPECT_EQ(resumed("/study/peak_moment"), peaks);
 }
 
 }  // namespace

@@ -31,6 +31,11 @@ Law impact() {
   return law;
 }
 
+Law on_a_seat(Law law) {
+  law.seat = 0.3 / (law.kind == LawKind::linear ? law.stiffness : 1e9);
+  return law;
+}
+
 void expect_derivatives(const Law& law, const Kinematics& k, double approach) {
   const double da = 1e-6 * k.penetration, dr = 1e-6, ds = 1e-7;
   const Force f = force(law, k, approach);
@@ -56,6 +61,24 @@ TEST(ContactLaw, DerivativesMatchDifferences) {
   expect_derivatives(linear(), k, 0.0);
   expect_derivatives(impact(), k, 0.2);
   expect_derivatives(impact(), {1.2e-4, -0.1, -0.03}, 0.2);
+  for (const Law& law : {hertz(), linear(), impact()}) expect_derivatives(on_a_seat(law), k, 0.2);
+}
+
+// In series: the law at its own part of the penetration, the seat at the rest.
+TEST(ContactLaw, SharesThePenetrationWithItsSeat) {
+  for (Law law : {hertz(), linear()}) {
+    law.damping = 0.0;
+    const Law seated = on_a_seat(law);
+    for (const double penetration : {1e-9, 2e-5, 1.2e-4, 3e-3}) {
+      const double normal = force(seated, {penetration, 0.0, 0.0}, 0.0).normal;
+      const double own = penetration - seated.seat * normal;
+      EXPECT_NEAR(normal, force(law, {own, 0.0, 0.0}, 0.0).normal, 1e-12 * normal);
+      EXPECT_NEAR(own_penetration(seated, penetration), own, 1e-12 * penetration);
+      EXPECT_LT(own, penetration);
+      const double stored = potential(law, own) + 0.5 * seated.seat * normal * normal;
+      EXPECT_NEAR(potential(seated, penetration), stored, 1e-12 * stored);
+    }
+  }
 }
 
 TEST(ContactLaw, NeverPulls) {

@@ -20,7 +20,7 @@ std::vector<double> numbers(int count, unsigned seed) {
   return x;
 }
 
-beam::BeamModel spans(std::vector<double> lengths, int elements, bool separate) {
+beam::BeamModel spans(const std::vector<double>& lengths, int elements, bool separate) {
   beam::BeamModel model;
   model.spans = lengths;
   model.elements.assign(lengths.size(), elements);
@@ -100,7 +100,7 @@ void expect_same_products(const beam::BeamModel& model) {
       Tile damped, plain, rates, heavy, forces;  // x + b y, x, y, y with what M takes of it for damping
       for (int c = 0; c < b; ++c) {
         for (Tile* of : {&damped, &plain, &rates, &heavy})
-          (*of)[c].assign(static_cast<std::size_t>(past - first) + 2, 0.5);
+          (*of)[c].assign(static_cast<std::size_t>(past - first) + 2 + beam::abreast, 0.5);
         forces[c].assign(static_cast<std::size_t>(past - first), 0.0);
         for (int node = std::max(first - 1, 0); node < std::min(past + 1, nodes); ++node) {
           const int i = node - first + 1, k = b * node + c;

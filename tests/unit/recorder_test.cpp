@@ -23,7 +23,7 @@ using namespace traverse::results::testing;  // NOLINT: the helpers of this file
 namespace fs = std::filesystem;
 
 // Samples that the recorder writes at a time; fewer when they come slowly, as on a busy machine.
-constexpr long kBlock = 256;
+constexpr long kBlock = 1024;
 
 class RecorderTest : public ::testing::Test {
  protected:

@@ -248,8 +248,14 @@ TEST(SceneSweep, SpeedsAndTrains) {
   EXPECT_EQ(s.sweep->loads[1].forces.size(), 50u);
   EXPECT_EQ(scene_with({{"sweep_speed", "10,26,5"}}).sweep->speeds, (std::vector<double>{10, 15, 20, 25}));
   EXPECT_EQ(scene_of(beam_yaml + "load: {speed: 30}\nsweep: {hslm_a: 4}\n").sweep->trains, (std::vector<int>{4}));
+  const std::vector<double> speeds = scene_with({{"sweep_speed", "36 km/h,90km/h,5 m/s"}}).sweep->speeds;
+  ASSERT_EQ(speeds.size(), 4U);
+  EXPECT_NEAR(speeds[0], 10.0, 1e-14);
+  EXPECT_NEAR(speeds[3], 25.0, 1e-14);
+  EXPECT_PRED2(contains, refused_with("sweep_speed", "36 mph,90,5"), "'36 mph' is no finite number");
   EXPECT_PRED2(contains, refused_with("sweep_speed", "20,10,5"), "from is above to");
   EXPECT_PRED2(contains, refused_with("sweep_speed", "10,20"), "3 numbers");
+  EXPECT_PRED2(contains, refused_with("sweep_speed", "50,60,70"), "the step of 70 m/s is longer");
   EXPECT_PRED2(contains, refused_with("sweep_hslm_a", "1,1"), "every train once");
   EXPECT_PRED2(contains, refused_with("sweep_hslm_a", "0"), "from 1 to 10");
   EXPECT_PRED2(contains, refused(beam_yaml + "load: {hslm_a: 1}\nsweep: {hslm_a: 2, speed: [10, 20, 5]}\n"), "either");

@@ -26,6 +26,7 @@ vehicle:
          law + R"(}
 train: {vehicles: [mass, mass], positions: [-1.0, -3.5], speed: 38.0}
 scene: {tail: 0.2}
+step: {lanes: false}
 )";
 }
 

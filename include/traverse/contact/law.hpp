@@ -15,6 +15,8 @@ constexpr double damper_ramp = 1e-9;
 /// Normal force k*alpha^n + c*alpha_rate, n = 1.5 (hertz) or 1 (linear), never below zero, zero when apart.
 /// With a hysteresis d instead of c: k*alpha^n*(1 + d*rate/approach_speed).
 /// Friction: mu0*tanh(sliding/transition_speed)*normal, against the sliding.
+/// On a seat that yields by `seat` times the elastic force the elastic law and the seat share the penetration:
+/// penetration = alpha + seat*k*alpha^n. Damper and hysteresis act on the whole of it.
 struct Law {
   LawKind kind = LawKind::hertz;
   double stiffness = 0.0;            // N/m^1.5 or N/m
@@ -22,6 +24,7 @@ struct Law {
   std::optional<double> hysteresis;  // d
   double friction = 0.0;             // mu0
   double transition_speed = 0.01;    // m/s
+  double seat = 0.0;                 // m/N
 };
 
 /// Contact kinematics: penetration (positive when touching), its rate, and the sliding speed.
@@ -59,7 +62,10 @@ double normal_tendency(const Law& law, const Kinematics& kinematics, double appr
 /// the compression (Hertz: 2.9432 times the greatest penetration over the speed).
 double impact_duration(const Law& law, double mass, double speed);
 
-/// Elastic energy stored at a penetration: integral of k*alpha^n, J.
+/// The part of a penetration that is the surfaces' own, alpha: all but what the seat yields, m.
+double own_penetration(const Law& law, double penetration);
+
+/// Elastic energy stored at a penetration, the seat's included: integral of k*alpha^n over the penetration, J.
 double potential(const Law& law, double penetration);
 
 /// Penetration at which the law gives `normal` at rest.

@@ -5,7 +5,7 @@
 
 namespace traverse::options {
 
-enum class Analysis { transient, modes, static_response };
+enum class Analysis { transient, modes, static_response, static_envelope };
 
 struct AnalysisRow {
   Analysis analysis;
@@ -18,6 +18,7 @@ inline constexpr AnalysisRow analyses[] = {
     {Analysis::transient, "transient", "the motion in time"},
     {Analysis::modes, "modes", "natural frequencies and shapes"},
     {Analysis::static_response, "static", "rest where the loads stand at t = 0"},
+    {Analysis::static_envelope, "envelope", "the largest static effects of the loads, wherever they stand"},
 };
 
 /// Of a name in the list; the default otherwise.

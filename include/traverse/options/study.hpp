@@ -31,6 +31,8 @@ struct Study {
   std::vector<std::size_t> over;  // axes that statistics go over; empty: none
   std::vector<double> quantiles;  // of the statistics
   double confidence = 0.95;       // of their intervals
+  double refine = 0.0;            // of each peak over the speed, to which speeds are added; 0: none are
+  std::size_t speeds = 0;         // the dimension that these are added to
   bool resume = false;            // the results file holds runs of it that need not be run again
 
   std::size_t runs() const {

@@ -18,6 +18,7 @@ struct LimitQuantity {
   std::string_view name;  // as the user writes it
   std::string_view unit;  // "1" for a ratio
   std::string_view words;
+  bool of_norm = false;  // by the static effects of EN 1991-2, not by a run
 };
 
 /// How each follows from a run stands in src/run/verdicts.cpp.
@@ -29,8 +30,18 @@ inline constexpr LimitQuantity limit_quantities[] = {
     {"joint_rotation", "rad", "largest difference of the rotations on the two sides of a joint between two decks"},
     {"car_acceleration", "m/s2", "largest vertical acceleration of the heaviest body of a vehicle, at its centre"},
     {"wheel_unloading", "1", "largest part of a wheel's force at the start that it loses"},
+    {"filtered_wheel_unloading", "1", "the same of low-passed forces (output_wheel_lowpass)"},
+    {"unloading_time", "s",
+     "longest time that a wheel's low-passed force lacks more than output_unloading_level of it"},
     {"contact_loss", "s", "longest time that a wheel is off the track"},
     {"amplification", "1", "largest deflection over the largest static one at its probe"},
+    {"lm71_deflection_over_span", "1", "static deflection under LM71 times alpha and Phi over the length of its span",
+     true},
+    {"lm71_end_rotation", "rad", "static rotation of the deck at the bridge's ends under LM71 times alpha and Phi",
+     true},
+    {"lm71_joint_rotation", "rad",
+     "difference of static rotations of two decks at a joint under LM71 times alpha and Phi", true},
+    {"train_over_lm71", "1", "dynamic effect of the trains over Phi times LM71, EN 1991-2 6.4.6.5", true},
 };
 
 /// Null where there is none.

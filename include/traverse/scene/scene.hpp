@@ -2,6 +2,7 @@
 // options; the physics sees nothing but these structures.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "traverse/beam/model.hpp"
 #include "traverse/options/analyses.hpp"
+#include "traverse/options/norm_rules.hpp"
 #include "traverse/options/options.hpp"
 #include "traverse/options/study.hpp"
 #include "traverse/options/verdict_limit.hpp"
@@ -44,6 +46,9 @@ struct Output {
   std::optional<double> low_pass;  // Hz, up to which deck accelerations count; 0: all; left out: as EN 1990 has it
   bool low_pass_asked = false;     // else deck accelerations are filtered where limits ask for it
   bool low_passed_series = false;  // filtered accelerations are stored
+  double wheel_low_pass = 20.0;    // Hz, up to which wheel forces count
+  bool wheels_filtered = false;    // asked for; else where limits ask for it
+  double unloading_level = 0.6;    // part of its force from which on a wheel counts as unloaded
 };
 
 /// The random running surfaces that one spectrum describes.
@@ -62,6 +67,7 @@ struct Sweep {
   std::vector<double> speeds;        // m/s; empty: that of the scene
   std::vector<int> trains;           // HSLM-A, 1 to 10; empty: what the scene holds
   std::vector<MovingLoad> loads;     // of each of these trains, at the scene's speed
+  double refine = 0.0;               // of each peak over the speed, to which speeds are added; 0: none are
   std::size_t lanes = 8;             // runs side by side; 0: each by itself
   std::string method;                // ts_type of those; empty: as TS takes it
   double instants = 20.0;            // looked at in a period of the fastest mode, where modes move exactly in time
@@ -100,20 +106,29 @@ struct Scene {
   bool step_kinks = true;                                  // steps end where wheels pass kinks
   double looks = std::numeric_limits<double>::infinity();  // s: longest between instants at which responses are seen
   bool step_lanes = true;        // linear vehicles over modes are stepped by the kernel of runs side by side
+  bool all_ranks = false;        // take the steps, whether that is faster or not
   bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
   double rest_tolerance = -1.0;  // model_window; -1: auto
   VehicleModel vehicle_model = VehicleModel::full;
   /// What linear vehicles may be out of balance by over their weights; beyond, the run is repeated with the mechanisms.
   double most_defect = std::numeric_limits<double>::infinity();
   double accuracy = 1e-3;
-  bool mesh_open = false;        // its elements are chosen from the accuracy
-  bool accuracy_report = false;  // a refined run at the end shows the true errors
+  std::vector<std::string> accuracy_of;  // peaks, as in the option's list; empty: all
+  bool mesh_open = false;                // its elements are chosen from the accuracy
+  bool accuracy_report = false;          // a refined run at the end shows the true errors
   Output output;
-  std::vector<options::VerdictLimit> limits;                 // that a single run is checked against
+  std::vector<options::VerdictLimit> limits;                 // that runs are checked against
+  std::optional<options::NormRules> norm;                    // static effects and the verdict of EN 1991-2 are wanted
   bool quiet = false;                                        // -output_quiet: no progress
   std::vector<std::string> notes;                            // what was chosen and why, one line each
   std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
 
+  /// Whether limits ask something of runs: those of the norm alone are judged by static effects.
+  bool judges_runs() const {
+    return std::any_of(limits.begin(), limits.end(), [](const options::VerdictLimit& limit) {
+      return !options::limit_quantity(limit.quantity)->of_norm;
+    });
+  }
   /// Modes under moving forces alone, whose motion is known exactly.
   bool exact_in_time() const { return model_modes > 0 && vehicles.empty(); }
 };

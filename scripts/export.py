@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+"""What a results file holds, for other programs: export.py RESULTS.h5 [--series NAME...] [-o FOLDER]
+
+Writes a CSV file for each name: a series over time such as probes/deflection, a group of them such as vehicles/0,
+sweep, study, or another table that --list names; without names, all there is. Heads hold names and units, the first
+column is the time. --xdmf writes the bridge and the vehicles over time for ParaView, NAME.xdmf beside its data NAME.xdmf.h5.
+"""
+
+import argparse
+import csv
+import pathlib
+import sys
+
+import export_tables
+import h5py
+from export_xdmf import write_xdmf
+from picture_data import Results, opened
+
+
+def listed(file):
+    """A line for each name: shape and unit of a series, what else there is."""
+    for name in export_tables.names(file):
+        dataset = file[name]
+        if isinstance(dataset, h5py.Dataset):
+            yield f"{name:44}{' x '.join(map(str, dataset.shape)):>14}  {dataset.attrs.get('unit', '')}"
+        else:
+            yield name
+
+
+def all_names(file):
+    """One table a group, of the vehicles one each."""
+    series = export_tables.series_names(file)
+    groups = ["/".join(name.split("/")[:2 if name.startswith("vehicles/") else 1]) for name in series]
+    others = [name for name in export_tables.names(file) if name not in series]
+    return list(dict.fromkeys(groups)) + others
+
+
+def write_csv(file, name, folder):
+    """The path of the written table."""
+    table = export_tables.table_of(file, name)
+    path = folder / f"{name.strip('/').replace('/', '_')}.csv"
+    with open(path, "w", newline="", encoding="utf-8") as out:
+        writer = csv.writer(out)
+        writer.writerow(table.heads)
+        writer.writerows(table.rows())
+    return path
+
+
+def export(given):
+    """Lines that say what has been written."""
+    with opened(given.results) as file:
+        if given.list:
+            return list(listed(file))
+        folder = pathlib.Path(given.o or ".")
+        wanted = given.series if given.series or given.xdmf else all_names(file)
+        if not wanted and not given.xdmf:
+            raise ValueError("holds neither series over time nor a sweep or a study")
+        tables = [export_tables.table_of(file, name) for name in wanted]  # all are known before one is written
+        folder.mkdir(parents=True, exist_ok=True)
+        written = [write_csv(file, name, folder) for name in wanted]
+        if given.xdmf:
+            written += write_xdmf(Results(file), folder / f"{pathlib.Path(given.results).stem}.xdmf",
+                                  given.exaggeration, given.every)
+        return written
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("results", metavar="RESULTS.h5")
+    parser.add_argument("--series", nargs="+", default=[], metavar="NAME", help="what to write; left out: all")
+    parser.add_argument("-o", metavar="FOLDER", help="left out: the current one")
+    parser.add_argument("--list", action="store_true", help="names what there is and writes nothing")
+    parser.add_argument("--xdmf", action="store_true", help="writes NAME.xdmf, for ParaView")
+    parser.add_argument("--exaggeration", type=float, default=1.0, metavar="X",
+                        help="of vertical displacements in --xdmf; left out: 1")
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="of the samples in --xdmf every N-th")
+    given = parser.parse_args()
+    try:
+        print(*export(given), sep="\n")
+    except (OSError, ValueError) as error:
+        print(f"export.py: {given.results}: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,97 @@
+"""XDMF of a run for ParaView: the bridge as a polyline and the bodies of vehicles as points, over time."""
+
+import pathlib
+import xml.etree.ElementTree as tree
+
+import h5py
+import numpy as np
+from picture_motion import Motion
+
+OF_BRIDGE = ("deflection", "velocity", "acceleration", "moment", "shear")  # those that the file holds at stations
+
+
+def in_space(x, y):
+    """[..., 3] with z = 0."""
+    return np.stack([x, y, np.zeros_like(y)], axis=-1)
+
+
+def bridge_of(motion, rows, exaggeration):
+    """Datasets of the bridge at its stations: points, displacement as a vector, and each series with its unit."""
+    probes = motion.results.file["probes"]
+    deflection = motion.at_stations[rows]
+    x = np.broadcast_to(motion.stations, deflection.shape)
+    data = {"points": in_space(x, exaggeration * deflection), "displacement (m)": in_space(0.0 * x, deflection)}
+    for name in OF_BRIDGE:
+        if name in probes:
+            data[f"{name} ({probes[name].attrs.get('unit', '')})"] = motion.results.over_time(probes[name])[rows]
+    return data
+
+
+def vehicles_of(motion, rows, exaggeration):
+    """Datasets of all bodies; nothing where there are none."""
+    if not motion.bodies:
+        return {}
+    position = np.stack([body.position[rows] for body in motion.bodies], axis=1)
+    sway = position[..., 1] - [body.height for body in motion.bodies]
+    data = {"points": in_space(position[..., 0], position[..., 1] + (exaggeration - 1.0) * sway),
+            "displacement (m)": in_space(0.0 * sway, sway), "angle (rad)": position[..., 2],
+            "vehicle": np.broadcast_to([float(body.vehicle) for body in motion.bodies], sway.shape)}
+    groups = [motion.results.vehicles[body.vehicle][body.name] for body in motion.bodies]
+    if all("velocity" in group for group in groups):
+        velocity = np.stack([motion.results.over_time(group["velocity"])[rows] for group in groups], axis=1)
+        data["body velocity (m/s)"] = in_space(velocity[..., 0], velocity[..., 1])
+    return data
+
+
+def add_item(parent, file, place, values):
+    """The dataset at that place of the open file, written there and named in the parent."""
+    if place not in file:
+        file[place] = values
+    kind = "Int" if values.dtype.kind == "i" else "Float"
+    item = tree.SubElement(parent, "DataItem", Format="HDF", NumberType=kind, Precision="8",
+                           Dimensions=" ".join(map(str, values.shape)))
+    item.text = f"{pathlib.Path(file.filename).name}:/{place}"
+
+
+def add_grid(parent, name, topology, data, file, row):
+    """The points of one instant with what is known at them. A dataset an instant: not every reader takes parts."""
+    grid = tree.SubElement(parent, "Grid", Name=name, GridType="Uniform")
+    count = data["points"].shape[1]
+    shape = (1, count) if topology == "Polyline" else (count, 1)
+    cells = tree.SubElement(grid, "Topology", TopologyType=topology, NumberOfElements=str(shape[0]),
+                            NodesPerElement=str(shape[1]))
+    add_item(cells, file, f"{name}/cells", np.arange(count).reshape(shape))
+    add_item(tree.SubElement(grid, "Geometry", GeometryType="XYZ"), file, f"{name}/{row}/points", data["points"][row])
+    for what, values in data.items():
+        if what != "points":
+            kind = "Vector" if values.ndim == 3 else "Scalar"
+            attribute = tree.SubElement(grid, "Attribute", Name=what, AttributeType=kind, Center="Node")
+            add_item(attribute, file, f"{name}/{row}/{path_of(what)}", values[row])
+
+
+def path_of(what):
+    """A dataset's name without its unit."""
+    return what.split(" (")[0]
+
+
+def write_xdmf(results, path, exaggeration=1.0, every=1):
+    """Writes PATH, and PATH.h5 with the data; both are returned."""
+    if every < 1 or not np.isfinite(exaggeration):
+        raise ValueError("--every: a number of samples from 1; --exaggeration: a number")
+    motion = Motion(results)
+    rows = slice(None, None, every)
+    parts = {"bridge": ("Polyline", bridge_of(motion, rows, exaggeration)),
+             "vehicles": ("Polyvertex", vehicles_of(motion, rows, exaggeration))}
+    parts = {name: part for name, part in parts.items() if part[1]}
+    root = tree.Element("Xdmf", Version="3.0")
+    steps = tree.SubElement(tree.SubElement(root, "Domain"), "Grid", Name=results.scene(), GridType="Collection",
+                            CollectionType="Temporal")
+    with h5py.File(f"{path}.h5", "w") as out:
+        for row, time in enumerate(motion.time[rows]):
+            step = tree.SubElement(steps, "Grid", Name=f"{time:.9g} s", GridType="Collection", CollectionType="Spatial")
+            tree.SubElement(step, "Time", Value=repr(float(time)))
+            for name, (topology, data) in parts.items():
+                add_grid(step, name, topology, data, out, row)
+    tree.indent(root)
+    tree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    return [path, pathlib.Path(f"{path}.h5")]

@@ -1,0 +1,73 @@
+"""Axes as pictures and reports have them: colours, curves over time, and names at the ends of curves."""
+
+from typing import NamedTuple
+
+import matplotlib.pyplot as plt
+import numpy as np
+from picture_data import spread, thin
+
+# Okabe and Ito's colours, told apart by colour-blind readers; the darker ones first, they carry text.
+COLOURS = ["#0072B2", "#D55E00", "#007A59", "#A8578A", "#8A6A00", "#3A3A3A"]
+STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2))]  # where there are more curves than colours
+GREY, PALE = "#666666", "#B8B8B8"
+LABEL_SIZE = 10
+
+plt.rcParams.update({
+    "font.family": "DejaVu Sans", "font.size": 11, "axes.titlesize": 13, "axes.titleweight": "bold",
+    "axes.titlelocation": "left", "axes.titlepad": 8, "axes.grid": True, "grid.color": "#DDDDDD",
+    "grid.linewidth": 0.6, "axes.spines.top": False, "axes.spines.right": False, "axes.edgecolor": "#888888",
+    "text.parse_math": False,  # a scene's name may hold $
+    "axes.axisbelow": True, "lines.linewidth": 1.5, "lines.solid_joinstyle": "round", "axes.xmargin": 0.0,
+})
+
+
+class End(NamedTuple):
+    """The end of a curve, with the curve's name and looks. x: as a part of the axes' width."""
+    value: float
+    name: str
+    colour: str
+    style: object = "-"
+    x: float = 1.0
+
+
+def label_at_ends(ax, ends):
+    """Names right of the axes, each joined to the end of its curve."""
+    low, high = ax.get_ylim()
+    height = ax.get_position().height * ax.figure.get_figheight() * 72  # points
+    gap = 1.5 * LABEL_SIZE / height
+    places = spread([(end.value - low) / (high - low) for end in ends], gap, 0.03, 0.97)
+    for end, place in zip(ends, places):
+        early = end.x < 1.0  # the line to the name must not look like the curve
+        line = {"arrowstyle": "-", "color": PALE if early else end.colour, "lw": 0.9,
+                "ls": ":" if early else end.style, "shrinkA": 1, "shrinkB": 0,
+                "relpos": (0.0, 0.5)}
+        ax.annotate(end.name, xy=(end.x, (end.value - low) / (high - low)), xytext=(1.035, place),
+                    xycoords="axes fraction", textcoords="axes fraction", va="center", color=end.colour,
+                    fontsize=LABEL_SIZE, annotation_clip=False, arrowprops=line)
+
+
+def time_panel(ax, results, title, unit, curves, band=None, worst=None):
+    """curves: (name, values); band: (name, least, greatest)."""
+    ax.set_title(title)
+    ax.set_ylabel(unit)
+    time, ends = results.time, []
+    if band is not None:
+        name, least, greatest = band
+        t, lower = thin(time, least)
+        u, upper = thin(time, greatest)
+        grid = np.union1d(t, u)
+        ax.fill_between(grid, np.interp(grid, t, lower), np.interp(grid, u, upper), color=PALE, alpha=0.55, lw=0)
+        ends.append(End(0.5 * (least[-1] + greatest[-1]), name, GREY))
+    for (name, values), colour in zip(curves, COLOURS):
+        ax.plot(*thin(time, values), color=colour)
+        ends.append(End(values[-1], name, colour))
+    if worst is not None and time[0] <= worst <= time[-1]:
+        ax.axvline(worst, color=GREY, lw=0.9, ls=(0, (4, 3)))
+        ax.text(1.0, 1.03, "dashed: worst instant", transform=ax.transAxes, ha="right", va="bottom", fontsize=9,
+                color=GREY)
+    if len(time) > 1:
+        ax.set_xlim(time[0], time[-1])
+    low, high = ax.get_ylim()
+    if low > 0.0 and low < 0.6 * high:
+        ax.set_ylim(0.0, high)
+    label_at_ends(ax, ends)

@@ -1,0 +1,185 @@
+"""The model as results files hold it under /model, and its symbols: supports, springs, hinges, vehicles, forces."""
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.patches import Circle, FancyBboxPatch
+from matplotlib.transforms import ScaledTranslation
+
+DARK, GREY, BODY, FORCE = "#333333", "#666666", "#C9D8E3", "#B03A00"
+MOST_SYMBOLS = 80  # of one kind that are drawn one by one
+MARKERS = {"pinned": "^", "roller": "o", "clamped": "s", "guided": "D"}
+WORDS = {"pinned": "pinned", "roller": "roller", "clamped": "clamped", "guided": "guided: slides up and down",
+         "vertical": "spring", "longitudinal": "spring along the track", "rotational": "spring against rotation",
+         "hinge": "hinge", "separate": "joint of separate spans"}
+
+
+class Model:
+    """What /model says; of a file without it, what its options say of the supports."""
+
+    def __init__(self, results):
+        file = results.file
+        self.group = file["model"] if "model" in file else {}
+        self.span_ends = np.zeros(0) if results.supports is None else np.asarray(results.supports, dtype=float)
+        kinds = results.support_types() if results.supports is not None else []
+        self.supports = [(kind, "") for kind in (kinds if len(kinds) == len(self.span_ends) else [])]
+        if "supports" in self.group:
+            self.supports = [tuple(row) for row in self.group["supports"].asstr()[:]]
+        if not len(self.span_ends) and "spans" in self.group:
+            self.span_ends = np.concatenate([[0.0], np.cumsum(self.group["spans"][:])])
+        self.hinges = self.array("hinges")
+        self.notes = [row[1] for row in self.group["notes"].asstr()[:]] if "notes" in self.group else []
+        self.foundation = {kind: data[:] for kind, data in self.group.get("foundation", {}).items()}
+        self.train = self.array("train", 2)
+        forces = self.group.get("forces", {})
+        self.forces = {name: forces[name][:] for name in sorted(forces, key=lambda name: (len(name), name))}
+
+    def array(self, name, columns=1):
+        empty = np.zeros((0, columns) if columns > 1 else 0)
+        return self.group[name][:] if name in self.group else empty
+
+    def rows(self, index, name, columns):
+        """Of the vehicle type with that index."""
+        group = self.group[f"vehicles/{int(index)}"]
+        return group[name][:] if name in group else np.zeros((0, columns))
+
+    def type_name(self, index):
+        return str(self.group[f"vehicles/{int(index)}/names"].asstr()[0, 0])
+
+    def body_names(self, index):
+        return list(self.group[f"vehicles/{int(index)}/names"].asstr()[:, 1])
+
+    def forces_at(self, time, options):
+        """[f, 2]: of the moving forces their places at that time, m, and their size, N."""
+        forces = self.forces.get("load", np.zeros((0, 2)))
+        speed = float(options.get("load_speed", 0.0)) if len(forces) else 0.0
+        return np.column_stack([forces[:, 0] + time * speed, forces[:, 1]])
+
+    def length(self):
+        return float(self.span_ends[-1] - self.span_ends[0]) if len(self.span_ends) else 0.0
+
+
+def draw_points(ax, at, points, width=1.0, colour=DARK):
+    """A line through points that are given in 1/72 inch from the place `at` of the axes."""
+    dx, dy = np.asarray(points, dtype=float).T / 72.0
+    place = ax.figure.dpi_scale_trans + ScaledTranslation(*at, ax.transData)
+    ax.add_line(Line2D(dx, dy, color=colour, lw=width, transform=place, clip_on=False, zorder=5))
+
+
+def draw_spring(ax, x, kind, low=-2.0):
+    """One of a foundation's points at x: upright, lying, or a coil."""
+    t = np.linspace(0.0, 1.0, 11)
+    side = 3.2 * np.array([0, 0, 1, -1, 1, -1, 1, -1, 1, 0, 0])
+    if kind == "vertical":
+        draw_points(ax, (x, 0.0), np.stack([side, low - 15.0 * t], axis=1))
+        draw_points(ax, (x, 0.0), [(-5.5, low - 15.0), (5.5, low - 15.0)], 1.8)
+    elif kind == "longitudinal":
+        draw_points(ax, (x, 0.0), np.stack([4.0 + 15.0 * t, low - 5.0 + side], axis=1))
+        draw_points(ax, (x, 0.0), [(19.0, low - 10.0), (19.0, low)], 1.8)
+    else:
+        angle = np.linspace(0.5 * np.pi, 4.5 * np.pi, 60)
+        radius = np.linspace(1.5, 6.0, 60)
+        coil = np.stack([radius * np.cos(angle), low - 7.0 + radius * np.sin(angle)], axis=1)
+        draw_points(ax, (x, 0.0), coil)
+
+
+def draw_foundation(ax, model, low, high):
+    """Points as springs, beds as rows of them; returns the kinds that were drawn."""
+    drawn = set()
+    for kind, data in model.foundation.items():
+        base = kind.replace("_bed", "")
+        places = np.linspace(low, high, 32)[1:-1] if kind.endswith("_bed") else np.unique(data[:, 0])
+        places = places[(places >= low) & (places <= high)]
+        if len(places) > MOST_SYMBOLS:
+            places = places[np.linspace(0, len(places) - 1, MOST_SYMBOLS).round().astype(int)]
+        for x in places:
+            draw_spring(ax, x, base)
+        if len(places):
+            drawn.add(base)
+    return drawn
+
+
+def draw_supports(ax, model, low, high):
+    """Under the line, in the shapes that engineers draw; returns the kinds that were drawn."""
+    drawn = set()
+    place = ax.transData + ScaledTranslation(0, -6.5 / 72, ax.figure.dpi_scale_trans)
+    for i, (x, (kind, joint)) in enumerate(zip(model.span_ends, model.supports)):
+        if not low <= x <= high:
+            continue
+        if kind in MARKERS:
+            ax.plot([x], [0.0], MARKERS[kind], ms=11, color="white", mec=DARK, mew=1.4, transform=place, clip_on=False,
+                    zorder=6)
+            drawn.add(kind)
+        if joint in ("hinge", "separate"):
+            draw_hinge(ax, x, joint)
+            drawn.add(joint)
+    for x in model.hinges[(model.hinges >= low) & (model.hinges <= high)]:
+        draw_hinge(ax, x, "hinge")
+        drawn.add("hinge")
+    return drawn
+
+
+def draw_hinge(ax, x, joint):
+    if joint == "hinge":
+        ax.plot([x], [0.0], "o", ms=6.5, color="white", mec=DARK, mew=1.3, zorder=7, clip_on=False)
+    else:
+        draw_points(ax, (x, 0.0), [(-1.3, -4.0), (-1.3, 7.0)], 1.0)
+        draw_points(ax, (x, 0.0), [(1.3, -4.0), (1.3, 7.0)], 1.0)
+
+
+def symbols_in_words(kinds):
+    """'▲ pinned   ● roller   spring', of what has been drawn."""
+    shapes = {"pinned": "△ ", "roller": "○ ", "clamped": "□ ", "guided": "◇ ", "hinge": "∘ ", "separate": "‖ "}
+    return "    ".join(shapes.get(kind, "") + WORDS[kind] for kind in WORDS if kind in kinds)
+
+
+def body_boxes(model, index):
+    """{body: (x, y, width, height)} of every body that something but a wheel is fixed to, as it is drawn: the hull of
+    its centre, its springs and joints. Bodies without a height are 0.5 m high."""
+    bodies, wheels = model.rows(index, "bodies", 3), model.rows(index, "wheels", 3)
+    points = [[(x, y)] for x, y, _ in bodies]
+    for x1, y1, x2, y2, first, second in model.rows(index, "springs", 6):
+        for body, at in ((first, (x1, y1)), (second, (x2, y2))):
+            if body >= 0:
+                points[int(body)].append(at)
+    for x, y, first, second in model.rows(index, "joints", 4):
+        for body in (first, second):
+            if body >= 0:
+                points[int(body)].append((x, y))
+    hulls = {}
+    for body, (centre, hull) in enumerate(zip(bodies, points)):
+        if len(wheels) and np.any(np.hypot(*(wheels[:, :2] - centre[:2]).T) < 1e-6):
+            continue  # an axle: its wheel is drawn
+        hull = np.array(hull)
+        hulls[body] = (hull.min(axis=0), hull.max(axis=0))
+    highest = max((high[1] for _, high in hulls.values()), default=0.0)
+    boxes = {}
+    for body, (low, high) in hulls.items():
+        width, height = high - low
+        car = high[1] >= highest - 1e-9 and width > 3.0
+        spare = 0.10 * width if car else 0.25
+        boxes[body] = (low[0] - spare, low[1], width + 2.0 * spare, max(height, 0.5) + (1.6 if car else 0.0))
+    return boxes
+
+
+def draw_vehicle(ax, model, index, x, springs=False):
+    """To scale where the axes are, with its origin at x."""
+    for left, low, width, height in body_boxes(model, index).values():
+        ax.add_patch(FancyBboxPatch((x + left, low), width, height, fc=BODY, ec=DARK, lw=0.6,
+                                    boxstyle="round,pad=0,rounding_size=0.12", zorder=3))
+    for wheel_x, wheel_y, radius in model.rows(index, "wheels", 3):
+        ax.add_patch(Circle((x + wheel_x, wheel_y), radius, fc="white", ec=DARK, lw=0.8, zorder=4))
+    if springs:
+        for x1, y1, x2, y2, _, _ in model.rows(index, "springs", 6):
+            t = np.linspace(0.0, 1.0, 11)
+            side = 0.12 * np.array([0, 0, 1, -1, 1, -1, 1, -1, 1, 0, 0])
+            ax.plot(x + x1 + t * (x2 - x1) + side, y1 + t * (y2 - y1), color=FORCE, lw=0.9, zorder=5)
+
+
+def draw_forces(ax, places, forces, height, foot=0.0, coordinates="data"):
+    """Arrows down to `foot`, the greatest one so high."""
+    greatest = np.abs(forces).max() if len(forces) else 1.0
+    for x, force in zip(places, forces):
+        ax.annotate("", xy=(x, foot), xytext=(x, foot + height * abs(force) / greatest), annotation_clip=False,
+                    xycoords=coordinates, textcoords=coordinates,
+                    arrowprops={"arrowstyle": "-|>", "color": FORCE, "lw": 0.7, "shrinkA": 0, "shrinkB": 0,
+                                "mutation_scale": 5})

@@ -1,0 +1,164 @@
+"""How bridge and vehicles move in a results file: deflections between the stations, bodies with their sway."""
+
+from typing import NamedTuple
+
+import numpy as np
+from picture_model import Model, body_boxes
+
+HOLDS_HEIGHT = ("pinned", "roller", "clamped")
+HOLDS_SLOPE = ("clamped", "guided")
+POINTS, FEWEST_POINTS, MOST_POINTS = 24, 400, 20000  # a span, and of the whole bridge
+
+
+class Body(NamedTuple):
+    """A body of a vehicle, and the height of its centre at the start over a bridge that does not deflect."""
+    vehicle: int
+    name: str
+    position: np.ndarray  # [n, 3]: x, y, angle
+    height: float         # m
+
+
+def spline_matrix(knots, x, flat=(False, False)):
+    """What the values at the knots are multiplied by for those of the cubic spline at x, [len(x), len(knots)].
+
+    Without curvature at its ends or, where `flat`, without slope; beyond them it goes on straight."""
+    knots, x = np.asarray(knots, dtype=float), np.asarray(x, dtype=float)
+    n = len(knots)
+    if n == 1:
+        return np.ones((len(x), 1))
+    h = np.diff(knots)
+    differences = np.diff(np.eye(n), axis=0) / h[:, None]  # slopes of the chords
+    left, right = np.zeros((n, n)), np.zeros((n, n))       # left @ slopes = right @ values
+    for i in range(1, n - 1):
+        left[i, i - 1:i + 2] = 1.0 / h[i - 1], 2.0 / h[i - 1] + 2.0 / h[i], 1.0 / h[i]
+        right[i] = 3.0 * (differences[i - 1] / h[i - 1] + differences[i] / h[i])
+    for end, beside, chord in ((0, 1, 0), (n - 1, n - 2, n - 2)):
+        left[end, end] = 1.0 if flat[end > 0] else 2.0
+        if not flat[end > 0]:
+            left[end, beside] = 1.0
+            right[end] = 3.0 * differences[chord]
+    slopes = np.linalg.solve(left, right)
+    piece = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, n - 2)
+    s = np.clip((x - knots[piece]) / h[piece], 0.0, 1.0)[:, None]
+    values, size = np.eye(n), h[piece][:, None]
+    result = ((1 + 2 * s) * (1 - s) ** 2 * values[piece] + s**2 * (3 - 2 * s) * values[piece + 1]
+              + size * s * (1 - s) ** 2 * slopes[piece] + size * s**2 * (s - 1) * slopes[piece + 1])
+    beyond = np.minimum(x - knots[0], 0.0)[:, None], np.maximum(x - knots[-1], 0.0)[:, None]
+    return result + beyond[0] * slopes[0] + beyond[1] * slopes[-1]
+
+
+class Motion:
+    """A run over time; ValueError where the file has no deflections of a bridge over time."""
+
+    def __init__(self, results):
+        if results.rows < 2 or "probes/deflection" not in results.file or not len(results.probes):
+            what = next((name for name in ("sweep", "study") if name in results.file), "")
+            why = f": it is that of a {what}; run one of its cases alone" if what else ""
+            raise ValueError(f"holds no deflections of a bridge over time{why}")
+        self.results, self.model, self.time = results, Model(results), results.time
+        self.stations = np.asarray(results.probes, dtype=float)
+        self.at_stations = results.over_time(results.file["probes/deflection"])
+        ends = self.model.span_ends if len(self.model.span_ends) else self.stations
+        self.low, self.high = float(ends[0]), float(ends[-1])
+        points = int(np.clip(POINTS * (len(ends) - 1), FEWEST_POINTS, MOST_POINTS))
+        self.x = np.unique(np.concatenate([np.linspace(self.low, self.high, points), ends, self.stations]))
+        self.matrix = self.between_stations()
+        self.bodies = [self.body(k, name, results.over_time(vehicle[name]["position"]))
+                       for k, vehicle in enumerate(results.vehicles) for name in vehicle if "position" in vehicle[name]]
+
+    def body(self, vehicle, name, position):
+        on_bridge = self.low <= position[0, 0] <= self.high
+        sunk = np.interp(position[0, 0], self.x, np.nan_to_num(self.deflection(0))) if on_bridge else 0.0
+        return Body(vehicle, name, position, float(position[0, 1] - sunk))
+
+    def between_stations(self):
+        """[points, stations]: cubic splines through stations and held supports, a piece between two joints; NaN where a
+        span has no station."""
+        ends, kinds = self.model.span_ends, self.model.supports
+        held = [x for x, (kind, _) in zip(ends, kinds) if kind in HOLDS_HEIGHT]
+        flat = [x for x, (kind, _) in zip(ends, kinds) if kind in HOLDS_SLOPE]
+        breaks = [x for x, (_, joint) in zip(ends, kinds) if joint in ("hinge", "separate")]
+        cuts = np.unique(np.concatenate([[self.low, self.high], breaks, self.model.hinges]))
+        matrix = np.zeros((len(self.x), len(self.stations)))
+        for left, right in zip(cuts, cuts[1:]):
+            inside = (self.x >= left) & (self.x <= right)
+            own = np.flatnonzero((self.stations >= left) & (self.stations <= right))
+            fixed = [x for x in held if left <= x <= right and not np.any(np.abs(self.stations[own] - x) < 1e-9)]
+            knots = np.concatenate([self.stations[own], fixed])
+            if len(knots):
+                order = np.argsort(knots)
+                piece = spline_matrix(knots[order], self.x[inside],
+                                      [np.any(np.isclose(flat, knots[order][end])) for end in (0, -1)])
+                back = np.empty(len(knots), dtype=int)
+                back[order] = np.arange(len(knots))
+                matrix[np.ix_(inside, own)] = piece[:, back[:len(own)]]
+        for left, right in [*zip(ends, ends[1:]), *zip(cuts, cuts[1:])]:
+            if not np.any((self.stations >= left) & (self.stations <= right) & ~np.isin(self.stations, held)):
+                matrix[(self.x > left) & (self.x < right)] = np.nan
+        return matrix
+
+    def deflection(self, row):
+        """At self.x, m upward; NaN where it is not known."""
+        return self.matrix @ self.at_stations[row]
+
+    def in_words(self):
+        many = len(self.stations) > 1
+        said = f"between the {f'{len(self.stations)} stations' if many else 'one station'} and the supports: " \
+            f"{'cubic splines' if many else 'a cubic spline'}"
+        return said + ("; spans without a station are left out" if np.isnan(self.matrix).any() else "")
+
+    def forces(self, row):
+        """[f, 2]: places of the moving forces and the forces, m and N."""
+        return self.model.forces_at(self.time[row], self.results.options)
+
+    def sway(self):
+        """The greatest vertical displacement of a body while it is on the bridge, m."""
+        on_bridge = [(body, (body.position[:, 0] >= self.low) & (body.position[:, 0] <= self.high))
+                     for body in self.bodies]
+        return max((np.abs(body.position[rows, 1] - body.height).max(initial=0.0) for body, rows in on_bridge),
+                   default=0.0)
+
+
+class Shape(NamedTuple):
+    """A wheel about its centre, or the corners of a body."""
+    points: np.ndarray  # [k, 2], m
+    radius: float = 0.0
+
+
+def outline(motion, row, factor):
+    """Wheels and bodies of all vehicles at a sample, their vertical displacements and angles times the factor."""
+    shapes, model = [], motion.model
+    for vehicle, (kind, _) in enumerate(model.train[:len(motion.results.vehicles)]):
+        bodies = {body.name: body for body in motion.bodies if body.vehicle == vehicle}
+        names, centres = model.body_names(kind), model.rows(kind, "bodies", 3)[:, :2]
+
+        def moved(body, points):
+            x, y, angle = bodies[names[body]].position[row]
+            sway = y - bodies[names[body]].height
+            across = np.asarray(points) - centres[body]
+            return np.column_stack([x + across[:, 0],
+                                    centres[body, 1] + factor * (sway + angle * across[:, 0]) + across[:, 1]])
+
+        for body, (left, low, width, height) in body_boxes(model, kind).items():
+            corners = [(left, low), (left + width, low), (left + width, low + height), (left, low + height)]
+            shapes.append(Shape(moved(body, corners)))
+        for x, y, radius in model.rows(kind, "wheels", 3):
+            shapes.append(Shape(moved(nearest(centres, (x, y)), [(x, y)]), radius))
+    return shapes
+
+
+def nearest(centres, point):
+    return int(np.argmin(np.hypot(*(centres - point).T)))
+
+
+def wheel_places(motion, rows):
+    """Of every wheel and moving force its x at the samples, m."""
+    model = motion.model
+    for vehicle, (kind, _) in enumerate(model.train[:len(motion.results.vehicles)]):
+        names, centres = model.body_names(kind), model.rows(kind, "bodies", 3)[:, :2]
+        for x, y, _ in model.rows(kind, "wheels", 3):
+            body = nearest(centres, (x, y))
+            position = motion.results.vehicles[vehicle][names[body]]["position"]
+            yield motion.results.over_time(position)[rows, 0] + x - centres[body, 0]
+    forces = np.array([motion.forces(row)[:, 0] for row in rows])
+    yield from forces.T

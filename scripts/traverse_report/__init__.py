@@ -1,0 +1,1 @@
+"""The report of results files: PDF on A4 and XLSX."""

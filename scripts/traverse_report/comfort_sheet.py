@@ -1,0 +1,70 @@
+"""How passengers feel a run, where it holds its cars' accelerations: scripts/comfort.py as a page."""
+
+import comfort
+import numpy as np
+from picture_data import car_body
+
+from .page import GREY, LEFT, table
+
+LONGEST_INTERVAL = 0.01  # s, beyond which what passengers feel is not in the samples
+
+
+def places(source, vehicle, body):
+    """Distances from the body's centre: 0 and those of its outermost springs, which stand over the bogies."""
+    model = source.model
+    if vehicle >= len(model.train) or "vehicles" not in model.group:
+        return [0.0]
+    index = model.train[vehicle, 0]
+    names = [str(name) for name in model.group[f"vehicles/{int(index)}/names"].asstr()[:, 1]]
+    if body not in names:
+        return [0.0]
+    number = names.index(body)
+    centre = model.rows(index, "bodies", 3)[number, 0]
+    ends = [x - centre for x1, _, x2, _, first, second in model.rows(index, "springs", 6)
+            for x, held in ((x1, first), (x2, second)) if held == number]
+    if not ends or max(ends) - min(ends) < 0.01:
+        return [0.0]
+    return [round(min(ends), 6), 0.0, round(max(ends), 6)]
+
+
+def comfort_rows(source):
+    """(vehicle, body, distance, Comfort), or why there are none."""
+    results = source.results
+    if results.time is None or results.rows < 3 or not results.vehicles:
+        return [], ""
+    steps = np.diff(results.time[:results.rows])
+    if np.ptp(steps) > 1e-6 * steps[0]:
+        return [], "Samples are not evenly spaced: nothing is weighted."
+    if steps[0] > LONGEST_INTERVAL * (1.0 + 1e-9):
+        return [], (f"Samples every {steps[0]:g} s are too long for what passengers feel; allowed: at most "
+                    f"{LONGEST_INTERVAL:g} s (-output_interval).")
+    rows = []
+    for i, vehicle in enumerate(results.vehicles):
+        body = car_body(vehicle)
+        if body is None:
+            continue
+        a = results.over_time(vehicle[f"{body}/acceleration"])
+        rows += [(i, body, x, comfort.comfort(a[:, 1] + x * a[:, 2], steps[0])) for x in places(source, i, body)]
+    return rows, ""
+
+
+def sheet(report, source, heading):
+    rows, trouble = comfort_rows(source)
+    if not rows and not trouble:
+        return
+    page = report.page(f"Comfort: {heading}")
+    if trouble:
+        page.text(LEFT, trouble, colour=GREY)
+        return
+    time = source.results.time
+    page.text(LEFT, f"Vertical accelerations of the car bodies over {time[-1] - time[0]:.4g} s of one crossing, sampled every "
+                    f"{time[1] - time[0]:.4g} s: the root of their mean square, the greatest weighted by Wb of EN 12299 in "
+                    "windows of 5 s, its index N_MV of the vertical direction alone, and Sperling's ride index. A run shorter "
+                    "than 5 s is one window; the norm asks for five minutes of line, so that these figures compare runs.",
+              size=8, colour=GREY)
+    page.y -= 0.08
+    table(report, page, [("vehicle", 0.7, "right"), ("body", 1.0, "left"), ("from its centre", 0.95, "right"),
+                         ("rms m/s²", 0.85, "right"), ("Wb m/s²", 0.85, "right"), ("windows", 0.75, "right"),
+                         ("N_MV, vertical", 0.95, "right"), ("Sperling Wz", 0.75, "right")],
+          [[f"{i}", body, f"{x:+.4g} m" if x else "0", f"{felt.rms:.4f}", f"{felt.weighted:.4f}", f"{felt.windows}",
+            f"{felt.n_mv:.3f}", f"{felt.sperling:.3f}"] for i, body, x, felt in rows])

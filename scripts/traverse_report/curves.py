@@ -1,0 +1,189 @@
+"""Curves over the speed, one a train, with limit lines; envelopes; time histories."""
+
+import numpy as np
+from picture_axes import COLOURS, GREY, PALE, End, label_at_ends
+from picture_data import choose, thin
+
+from .limits import STORED
+from .source import QUANTITIES
+
+RED = "#B00020"  # of limits, of nothing else
+# Ten lines differ in colour and in style at once, so that a print in grey tells them apart too.
+STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (7, 1.5, 1.2, 1.5))]
+MARKS = ["o", "s", "^", "D", "v", "P"]
+MOST_LINES = len(COLOURS) * len(STYLES)
+ENOUGH_A_SPAN = 4  # probes, from which on a line joins them
+
+def look(i):
+    """Colour, style and mark of line i: neighbours differ in all of them."""
+    turn = i // len(COLOURS)
+    return COLOURS[i % len(COLOURS)], STYLES[(i + turn) % len(STYLES)], MARKS[(i + turn) % len(MARKS)]
+
+
+def mark_every(count):
+    return max(count // 12, 1)
+
+
+def draw_limits(ax, limits):
+    """limits: (value, words) in the axes' unit. A limit far above the curves is said, not drawn. Whether all are kept
+    in view."""
+    low, high = ax.get_ylim()
+    shown = [limit for limit in limits if limit[0] <= 2.5 * high]
+    if shown:
+        ax.set_ylim(low, max(high, 1.12 * max(value for value, _ in shown)))
+    for value, words in shown:
+        ax.axhline(value, color=RED, lw=1.2, ls=(0, (6, 2)), zorder=4)
+        ax.text(0.006, value, words, color=RED, fontsize=7, va="bottom", ha="left", zorder=6,
+                transform=ax.get_yaxis_transform(), bbox={"fc": "white", "ec": "none", "alpha": 0.8, "pad": 0.6})
+    beyond = [words for value, words in limits if value > 2.5 * high]
+    if beyond:
+        ax.text(0.006, 0.985, "far above: " + "; ".join(beyond), color=RED, fontsize=7, va="top", ha="left",
+                transform=ax.transAxes)
+
+
+def limit_lines(source, limits, name):
+    """Those that are drawn over a quantity of the file, in the unit of its curve."""
+    factor = QUANTITIES.get(name, ("", "", 1.0))[2]
+    spans = np.unique(np.round(np.diff(source.model.span_ends), 6))
+    lines = []
+    for limit in limits:
+        words = f"limit {1e3 * limit.value:g} mrad" if limit.unit == "rad" else f"limit {limit.value:g} {limit.unit}".strip()
+        if STORED.get(limit.quantity, limit.quantity) == name:
+            lines.append((factor * limit.value, f"{words} ({limit.clause})"))
+        elif limit.quantity == "deflection_over_span" and name == "peak_deflection" and len(spans) == 1:
+            lines.append((factor * limit.value * spans[0], f"limit L/{1.0 / limit.value:.4g} ({limit.clause})"))
+        elif limit.quantity == "deck_acceleration" and name == "peak_acceleration" and \
+                "deck_acceleration" not in source.runs.values:
+            lines.append((limit.value, f"{limit.value:g} m/s² ({limit.clause}) is for low-passed ones"))
+    return lines
+
+
+def draw_resonances(ax, source, lines):
+    """Light lines at the speeds that are predicted for the first frequency: of each train in its colour where it should
+    swing, dotted where a force leaves the bridge at rest. Whether there are any."""
+    file = source.file
+    low, high = ax.get_xlim()
+    if "cancellations/speed" in file:
+        for speed in 3.6 * file["cancellations/speed"][:][file["cancellations/mode"][:] == 1.0]:
+            if low < speed < high:
+                ax.axvline(speed, color=GREY, lw=1.1, ls=(0, (1.0, 2.0)), zorder=0.6)
+    if "resonances/speed" not in file:
+        return False
+    group = {name: data[:] for name, data in file["resonances"].items()}
+    for train in np.unique(group["hslm_a"]) if "hslm_a" in group else [None]:
+        name = f"A{train:.0f}" if train is not None else None
+        place = [i for i, (line, _) in enumerate(lines) if name in (line, None)]
+        own = (group["mode"] == 1.0) & (group["hslm_a"] == train if train is not None else True)
+        for speed, order in zip(3.6 * group["speed"][own], group["order"][own]):
+            if not place or not low < speed < high or (len(lines) > 3 and order > 1.0):
+                continue
+            ax.axvline(speed, color=look(place[0])[0], lw=1.0, alpha=0.35, zorder=0.5)
+            if len(lines) <= 3:
+                ax.text(speed, 0.99, f" i = {order:.0f}", transform=ax.get_xaxis_transform(), fontsize=6.5, va="top",
+                        ha="left", color=GREY)
+    return True
+
+
+def chosen_lines(ax, runs, values):
+    """All of them as long as they can be told apart; else an even choice with the greatest, and a word on it."""
+    lines = runs.lines()
+    chosen = choose(len(lines), MOST_LINES, np.array([np.nan_to_num(values[indices]).max() for _, indices in lines]))
+    if len(chosen) < len(lines):
+        ax.text(1.0, 1.02, f"{len(chosen)} of {len(lines)} lines, the greatest among them; the workbook has all",
+                transform=ax.transAxes, ha="right", va="bottom", fontsize=7.5)
+    return [lines[i] for i in chosen]
+
+
+def over_x(ax, source, name, values, unit, limits, band=True):
+    """One line a train over the speed; where runs differ in a seed too, their median and the range of all."""
+    runs = source.runs
+    x, label = runs.x()
+    lines = chosen_lines(ax, runs, values)
+    ends, low, high = [], np.min(x), np.max(x)
+    least_counts = name.startswith("least")
+    for i, (line, indices) in enumerate(lines):
+        colour, style, mark = look(i)
+        at = np.unique(x[indices])
+        per = [values[indices][x[indices] == one] for one in at]
+        worst = np.array([np.min(v) if least_counts else np.max(v) for v in per])
+        known = ~np.isnan(worst)
+        if not known.any():
+            continue
+        if runs.over:
+            with np.errstate(invalid="ignore"):
+                other = np.array([np.max(v) if least_counts else np.min(v) for v in per])
+                middle = np.array([np.median(v) for v in per])
+            if band and len(lines) <= 3:
+                ax.fill_between(at, other, worst, color=colour, alpha=0.15, lw=0)
+            ax.plot(at, middle, color=colour, lw=0.9, ls=(0, (1.2, 1.2)))
+        ax.plot(at, worst, color=colour, ls=style if len(lines) > 1 else "-", marker=mark, ms=3.2,
+                markevery=mark_every(len(at)), mew=0.0)
+        last = np.flatnonzero(known)[-1]
+        part = (at[last] - low) / (high - low) if high > low else 0.5
+        ends.append(End(worst[last], line, colour, style if len(lines) > 1 else "-", part))
+    ax.set_xlabel(label)
+    ax.set_ylabel(unit or "ratio")
+    if high > low:
+        ax.set_xlim(low, high)
+    ax.set_ylim(min(0.0, np.nanmin(values)) if least_counts else 0.0, None)
+    draw_limits(ax, limits)
+    if runs.x_name.endswith("speed"):
+        draw_resonances(ax, source, lines)
+    if len(ends) > 1:
+        label_at_ends(ax, ends)
+    return len(ends)
+
+
+def name_room(source):
+    """Inches right of the axes for the names of the lines."""
+    names = [name for name, _ in source.runs.lines()]
+    return 0.3 + 0.075 * max(map(len, names)) if len(names) > 1 else 0.1
+
+
+def draw_static(ax, x, static):
+    ax.plot(x, -1e3 * static, color=GREY, lw=1.4, ls=(0, (4, 2)), zorder=5)
+
+
+def along_bridge(ax, supports, x, series, unit, marks=True, static=None):
+    """series: (name, least, greatest or None) at stations x; names stand right of the axes, in a list as curves meet at
+    the bridge's end."""
+    order = np.argsort(x)
+    joined = len(x) >= ENOUGH_A_SPAN * (len(supports) - 1)  # between fewer places nothing is known
+    for i, (name, least, greatest) in enumerate(series):
+        colour, style, mark = look(i)
+        style = "none" if not joined else "-" if len(series) == 1 else style
+        dense = {"marker": mark, "ms": 3.2, "mew": 0.0, "markevery": mark_every(len(x))} if marks else {}
+        dense = dense if joined else {"marker": mark, "ms": 5.0, "mew": 0.0}
+        ax.plot(x[order], least[order], color=colour, ls=style, label=name, **dense)
+        if greatest is not None:
+            ax.plot(x[order], greatest[order], color=colour, ls=style)
+    ax.set_xlim(supports[0], supports[-1])
+    ax.set_xlabel("place along the bridge (m)")
+    ax.set_ylabel(unit)
+    if static is not None and static.any():
+        ax.plot(x[order], static[order], color="#000000", lw=2.0, ls=(0, (3, 1.5)) if joined else "none", zorder=6,
+                marker=None if joined else "_", ms=12, mew=2.0, label="static")
+    if len([line for line in ax.get_lines() if not line.get_label().startswith("_")]) > 1:
+        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.04), frameon=False, fontsize=8, handlelength=3.2,
+                  labelspacing=0.35, borderpad=0.0)
+    for support in supports:
+        ax.axvline(support, color=PALE, lw=0.8)
+
+
+def history(ax, time, curves, title, unit, limits=()):
+    """curves: (name, values)."""
+    ends = []
+    for i, (name, values) in enumerate(curves):
+        colour, style = COLOURS[i % len(COLOURS)], STYLES[i // len(COLOURS) % len(STYLES)]
+        ax.plot(*thin(time, values), color=colour, ls=style, lw=0.9)
+        ends.append(End(values[-1], name, colour, style))
+    ax.set_title(title)
+    ax.set_ylabel(unit)
+    ax.set_xlabel("time (s)")
+    if len(time) > 1:
+        ax.set_xlim(time[0], time[-1])
+    for value in limits:
+        for sign in (-1.0, 1.0):
+            ax.axhline(sign * value, color=RED, lw=1.0, ls=(0, (6, 2)))
+    if len(ends) > 1:
+        label_at_ends(ax, ends)

@@ -1,0 +1,220 @@
+"""Limits and what they say of the runs: verdicts of the file where it holds them, else computed from its numbers."""
+
+import pathlib
+from typing import NamedTuple
+
+import numpy as np
+import yaml
+
+from .source import ReportError
+
+UNITS = {"deck_acceleration": "m/s²", "unfiltered_deck_acceleration": "m/s²", "deflection_over_span": "",
+         "end_rotation": "rad", "joint_rotation": "rad", "car_acceleration": "m/s²", "wheel_unloading": "",
+         "filtered_wheel_unloading": "", "unloading_time": "s", "contact_loss": "s", "amplification": "",
+         "lm71_deflection_over_span": "", "lm71_end_rotation": "rad", "lm71_joint_rotation": "rad", "train_over_lm71": ""}
+# Of static effects of EN 1991-2: no run knows them, the computation judges them once.
+OF_NORM = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "train_over_lm71"}
+# Quantities of limits that a table of runs has under another name.
+STORED = {"unfiltered_deck_acceleration": "peak_acceleration", "contact_loss": "longest_loss"}
+
+
+class Limit(NamedTuple):
+    clause: str
+    quantity: str
+    value: float
+    text: str
+
+    @property
+    def unit(self):
+        return UNITS.get(self.quantity, "")
+
+
+class Verdict(NamedTuple):
+    limit: Limit
+    word: str      # kept, broken, not judged
+    value: float   # NaN: not judged
+    run: str       # which run
+    where: str     # place and time, or why it is not judged
+
+    @property
+    def margin(self):
+        return 1.0 - self.value / self.limit.value
+
+
+def as_number(text):
+    parts = [float(part) for part in str(text).split("/")]
+    return parts[0] / parts[1] if len(parts) == 2 else parts[0]
+
+
+def read_limits(path):
+    try:
+        rows = yaml.safe_load(pathlib.Path(path).read_text(encoding="utf-8"))
+        return [Limit(str(row.get("clause", "")), str(row["quantity"]), as_number(row["value"]),
+                      str(row.get("text", ""))) for row in rows]
+    except OSError as error:
+        raise ReportError(f"{path}: {error.strerror}") from None
+    except (yaml.YAMLError, KeyError, TypeError, ValueError, ZeroDivisionError, AttributeError):
+        raise ReportError(f"{path} is no list of limits, each with quantity, value and clause") from None
+
+
+def limits_of(source, given, folder):
+    """Those given, those of the stored verdicts, or those of the file that the run's options name."""
+    if given:
+        return read_limits(given)
+    if "verdicts/limit" in source.file:
+        return [verdict.limit for verdict in stored(source)]
+    name = source.options.get("limits")
+    for place in (folder, source.path.parent, pathlib.Path()) if name else ():
+        if place is not None and (pathlib.Path(place) / name).is_file():
+            return read_limits(pathlib.Path(place) / name)
+    return []
+
+
+def stored(source):
+    """The rows of /verdicts."""
+    group = source.file["verdicts"] if "verdicts" in source.file else {}
+    if "limit" not in group:
+        return []
+    verdicts = []
+    texts = [group[name].asstr()[:] for name in ("clause", "quantity", "verdict")]
+    columns = zip(*texts, group["value"][:], group["limit"][:], group["time"][:])
+    run = source.kind_in_words().replace("one run at ", "") if source.is_run else ""
+    for clause, quantity, verdict, value, limit, time in columns:
+        when = "" if np.isnan(time) else f", t = {time:.4g} s"
+        verdicts.append(Verdict(Limit(clause[0], quantity[0], float(limit), clause[1]), verdict[0], float(value),
+                                run, verdict[1] + when))
+    return verdicts
+
+
+def spans_of(source, stations):
+    """The length of the span that holds each station; at a support the shorter one."""
+    ends = source.model.span_ends
+    lengths = np.full(np.shape(stations), np.inf)
+    for left, right in zip(ends[:-1], ends[1:]):
+        inside = (stations >= left - 1e-9) & (stations <= right + 1e-9)
+        lengths = np.where(inside, np.minimum(lengths, right - left), lengths)
+    return lengths
+
+
+def values_of(source, quantity):
+    """One number a run in the limit's unit; None and why not."""
+    runs = source.runs
+    for name in (quantity, STORED.get(quantity)):
+        if name in runs.values:
+            return runs.of_run(name), ""
+    if quantity == "deflection_over_span":
+        if not len(source.model.span_ends):
+            return None, "the file holds no spans"
+        return (np.abs(runs.values["peak_deflection"]) / spans_of(source, runs.probes)).max(axis=1), ""
+    if quantity == "deck_acceleration":
+        return None, "its runs were stored without a low-pass"
+    return None, "the file does not hold it of every run"
+
+
+def judge(source, limits):
+    """The worst run against each limit."""
+    if source.runs is None:
+        return judge_run(source, limits)
+    verdicts, known = [], {verdict.limit.quantity: verdict for verdict in stored(source)}
+    whys = {quantity: verdict.where for quantity, verdict in known.items()}
+    for limit in limits:
+        if limit.quantity in OF_NORM and limit.quantity in known:
+            found = known[limit.quantity]
+            word = found.word if found.word == "not judged" else word_of(found.value, limit)
+            verdicts.append(found._replace(limit=limit, word=word))
+            continue
+        values, why = values_of(source, limit.quantity)
+        if values is None or np.isnan(values).all():
+            verdicts.append(Verdict(limit, "not judged", np.nan, "", why or whys.get(limit.quantity, "no run knows it")))
+            continue
+        run = int(np.nanargmax(values))
+        name = limit.quantity if limit.quantity in source.runs.values else STORED.get(limit.quantity, "peak_deflection")
+        place = source.runs.place(name, run) if name in source.runs.values else None
+        broken = np.count_nonzero(values > limit.value)
+        where = [] if place is None else [f"x = {place:.6g} m"]
+        where += [f"broken in {broken} of {np.count_nonzero(~np.isnan(values))} runs"] if broken else []
+        verdicts.append(Verdict(limit, word_of(values[run], limit), float(values[run]), source.runs.run_in_words(run),
+                                ", ".join(where)))
+    return verdicts
+
+
+def word_of(value, limit):
+    return "kept" if value <= limit.value else "broken"
+
+
+def judge_run(source, limits):
+    """A single run, by what it has been watched for, else by its peaks."""
+    known, verdicts, summary = {verdict.limit.quantity: verdict for verdict in stored(source)}, [], source.summary
+    peaks = {"unfiltered_deck_acceleration": "acceleration", "deck_acceleration": "acceleration_lowpass",
+             "amplification": "amplification", "contact_loss": "longest_loss"}
+    for limit in limits:
+        name = peaks.get(limit.quantity)
+        if limit.quantity in known:
+            found = known[limit.quantity]
+            word = found.word if found.word == "not judged" else word_of(found.value, limit)
+            verdicts.append(found._replace(limit=limit, word=word))
+        elif name in summary:
+            value = abs(float(summary[name]))
+            where = f"x = {summary[f'{name}_place']:.6g} m" if f"{name}_place" in summary else ""
+            verdicts.append(Verdict(limit, word_of(value, limit), value, "", where))
+        else:
+            verdicts.append(Verdict(limit, "not judged", np.nan, "", "the run was not watched for it: -limits of traverse "
+                                                                     "asks for that"))
+    return verdicts
+
+
+def with_governing(verdicts, alone):
+    """What the table of runs cannot judge as the governing run judges it: broken there is broken, kept there is no
+    more than that."""
+    found = {verdict.limit[:3]: verdict._replace(word="kept alone" if verdict.word == "kept" else verdict.word)
+             for verdict in alone if verdict.word != "not judged"}
+    return [found.get(verdict.limit[:3], verdict) if verdict.word == "not judged" else verdict for verdict in verdicts]
+
+
+class LineVerdict(NamedTuple):
+    line: str
+    limit: Limit
+    value: float
+    x: float
+    broken: list  # ranges of x, (from, to)
+    filtered: bool  # else a limit of low-passed values is compared with others
+
+    @property
+    def word(self):
+        return ("broken" if self.broken else "kept") if self.filtered else "above" if self.broken else "below"
+
+    @property
+    def margin(self):
+        return 1.0 - self.value / self.limit.value
+
+
+def judge_lines(source, limits):
+    """Every line (train) against each limit: its greatest value, where, and the ranges in which it is broken."""
+    runs, rows = source.runs, []
+    if runs is None or runs.x_name is None:
+        return rows
+    x, _ = runs.x()
+    for limit in limits:
+        values, _ = values_of(source, limit.quantity)
+        filtered = values is not None or limit.quantity != "deck_acceleration"
+        if not filtered:
+            values, _ = values_of(source, "unfiltered_deck_acceleration")
+        for name, indices in runs.lines() if values is not None else ():
+            stations = np.unique(x[indices])
+            greatest = np.array([np.nanmax(np.append(values[indices][x[indices] == at], -np.inf)) for at in stations])
+            worst = int(np.argmax(greatest))
+            if np.isfinite(greatest[worst]):
+                rows.append(LineVerdict(name, limit, float(greatest[worst]), float(stations[worst]),
+                                        ranges(stations, greatest > limit.value), filtered))
+    return rows
+
+
+def ranges(x, where):
+    """[(from, to)] of neighbours that are in it."""
+    found = []
+    for i in np.flatnonzero(where):
+        if found and i > 0 and where[i - 1]:
+            found[-1][1] = float(x[i])
+        else:
+            found.append([float(x[i]), float(x[i])])
+    return [tuple(pair) for pair in found]

@@ -1,0 +1,98 @@
+"""Statistics of a study over its seeds or draws: a table of quantiles, and how the peaks are distributed."""
+
+import numpy as np
+
+from . import curves
+from .page import GREY, LEFT, table
+from .source import QUANTITIES, number, parameter_words
+
+
+def groups_in_words(source):
+    group = source.file["study/statistics"]
+    names = [name for name in source.runs.parameters if name in group]
+    count = next((group[name].shape[0] for name in group if name.endswith("_mean")), 0)
+    words = []
+    for g in range(count):
+        parts = []
+        for name in names:
+            said, unit, factor = parameter_words(name)
+            parts.append(f"{said} {number(factor * group[name][g])} {unit}".strip())
+        words.append(", ".join(parts) or "all runs")
+    return words
+
+
+def judged_quantities(source):
+    """In the order of the limits."""
+    return [row[0] for row in source.file["verdicts/quantity"].asstr()[:]] if "verdicts/quantity" in source.file else []
+
+
+def statistic_rows(source):
+    """(group, quantity, unit, samples, mean, deviation, [(quantile, value, low, high)]), at the probe where the mean is
+    largest."""
+    if "study/statistics" not in source.file:
+        return []
+    group, rows = source.file["study/statistics"], []
+    judged = judged_quantities(source) if "judged_mean" in group else []
+    levels = group["quantiles"][:]
+    for g, words in enumerate(groups_in_words(source)):
+        for name, (said, unit, factor) in QUANTITIES.items():
+            column = name if f"{name}_mean" in group else "judged" if name in judged else None
+            if column is None:
+                continue
+            mean = group[f"{column}_mean"][g]
+            if column == "judged":
+                at = (g, judged.index(name))
+            else:
+                at = (g,) if mean.ndim == 0 else (g, int(np.nan_to_num(mean).argmax()))
+            if np.isnan(group[f"{column}_mean"][at]):
+                continue
+            quantiles = [(level, *(factor * group[f"{column}_quantile{end}"][at][k] for end in ("", "_low", "_high")))
+                         for k, level in enumerate(levels)]
+            samples = group[f"{column}_samples"][g]
+            rows.append((words, said, unit, int(np.max(samples)), factor * float(group[f"{column}_mean"][at]),
+                         factor * float(group[f"{column}_deviation"][at]), quantiles))
+    return rows
+
+
+def bound(value):
+    return "?" if np.isnan(value) else f"{value:.4g}"
+
+
+def sheet(report, source):
+    rows = statistic_rows(source)
+    if not rows:
+        return
+    page = report.page(f"Statistics: {source.title()}")
+    confidence = source.file["study/statistics"].attrs.get("confidence", 0.95)
+    page.text(LEFT, f"Over {' and '.join(source.runs.over) or 'all runs'}; each at the probe where its mean is largest. "
+                    f"In brackets the interval that holds a quantile with {100 * confidence:g} % confidence whatever the "
+                    "distribution is; ?: so few runs do not bound that side.", size=8, colour=GREY)
+    page.y -= 0.08
+    if len(np.unique([row[0] for row in rows])) == 1:
+        distributions(page, source)
+    levels = [quantile[0] for quantile in rows[0][6]]
+    width = 2.5 / max(len(levels), 1)
+    columns = [("case", 1.1, "left"), ("quantity", 1.5, "left"), ("runs", 0.4, "right"), ("mean", 0.7, "right"),
+               ("deviation", 0.65, "right")] + [(f"{100 * level:g} %", width, "right") for level in levels]
+    cells, before = [], None
+    for words, said, unit, samples, mean, deviation, quantiles in rows:
+        cells.append([words if words != before else "", f"{said} ({unit})" if unit else said, str(samples), f"{mean:.4g}",
+                      f"{deviation:.3g}"] + [f"{value:.4g} [{bound(low)}, {bound(high)}]"
+                                             for _, value, low, high in quantiles])
+        before = words
+    table(report, page, columns, cells, size=7)
+
+
+def distributions(page, source):
+    """Of one group: which part of the runs stays below a value."""
+    shown = [name for name in ("peak_deflection", "peak_acceleration", "least_wheel_force", "greatest_wheel_force")
+             if name in source.runs.values][:4]
+    for name in shown:
+        words, unit, factor = QUANTITIES[name]
+        values = np.sort(factor * source.runs.of_run(name))
+        values = values[~np.isnan(values)]
+        if not len(values):
+            continue
+        ax = page.axes(1.1, right=0.1)
+        ax.step(values, np.arange(1, len(values) + 1) / len(values), where="post", color=curves.COLOURS[0])
+        ax.set(title=f"{words[0].upper()}{words[1:]}: part of the runs that stay below", xlabel=unit, ylim=(0, 1.02))

@@ -1,0 +1,174 @@
+#include "norm/dynamic_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "norm/en1991.hpp"
+#include "norm/load_models.hpp"
+
+namespace traverse::norm {
+namespace {
+
+constexpr double counts_from = 0.25;  // of the greatest static effect
+
+}  // namespace
+
+NormCheck::NormCheck(const beam::BeamModel& model, const options::NormRules& rules, std::vector<LoadModel> trains,
+                     const std::vector<double>& probes)
+    : rules_(rules), lengths_(determinant_lengths(model)), trains_(trains.size()), models_(rules.load_models) {
+  StaticBridge bridge(model);
+  n0_ = bridge.first_frequency();
+  const bool continuous = lengths_ != model.spans;
+  const auto asked = [&](const char* name) { return std::find(models_.begin(), models_.end(), name) != models_.end(); };
+  if (asked("lm71") && continuous && !asked("sw0")) models_.emplace_back("sw0");
+  if (rules.length) std::fill(lengths_.begin(), lengths_.end(), *rules.length);
+  std::vector<LoadModel> loads = std::move(trains);
+  for (const std::string& name : models_) loads.push_back(load_model(name));
+  effects_ = static_effects(bridge, std::move(loads), rules.spacing, probes);
+}
+
+double NormCheck::length_at(const Place& place) const { return lengths_[place.number]; }
+
+double NormCheck::phi_at(const Place& place) const {
+  return rules_.careful ? phi2(length_at(place)) : phi3(length_at(place));
+}
+
+/// Phi and alpha of a load model.
+double NormCheck::factor(std::size_t load, const Place& place) const {
+  return phi_at(place) * (classified(models_[load - trains_]) ? rules_.alpha : 1.0);
+}
+
+DynamicFactor NormCheck::dynamic_factor(const Passed& passed, std::size_t train, Effect effect) const {
+  const std::vector<Place>& places = effects_.places[static_cast<std::size_t>(effect)];
+  const std::vector<double>& peaks =
+      effect == Effect::deflection ? passed.trains[train].deflection : passed.trains[train].moment;
+  std::vector<double> at_rest;
+  for (const double x : passed.probes) {
+    const auto place = std::find_if(places.begin(), places.end(), [x](const Place& p) { return p.x == x; });
+    at_rest.push_back(effects_.at(effect, train, static_cast<std::size_t>(place - places.begin())).size());
+  }
+  const double least = counts_from * *std::max_element(at_rest.begin(), at_rest.end());
+  DynamicFactor found;
+  for (std::size_t v = 0; v < passed.speeds.size(); ++v)
+    for (std::size_t p = 0; p < passed.probes.size(); ++p) {
+      if (!(at_rest[p] > 0.0 && at_rest[p] >= least)) continue;
+      const double value = peaks[v * passed.probes.size() + p] / at_rest[p] - 1.0;
+      if (value > found.value || found.speed == 0.0) found = {std::max(value, 0.0), passed.speeds[v], passed.probes[p]};
+    }
+  return found;
+}
+
+void NormCheck::judge(const Passed& passed) {
+  rows_.clear();
+  speed_ = *std::max_element(passed.speeds.begin(), passed.speeds.end());
+  std::vector<std::size_t> models;
+  for (std::size_t i = 0; i < models_.size(); ++i)
+    if (models_[i] != "sw2") models.push_back(trains_ + i);
+  for (std::size_t e = 0; e < effect_count; ++e) {
+    Row row;
+    row.effect = static_cast<Effect>(e);
+    const std::vector<Place>& places = effects_.places[e];
+    if (places.empty()) continue;
+    for (std::size_t train = 0; train < trains_; ++train) {
+      // Of shear, reactions and rotations no peaks are known: they take the factor of the deflection.
+      const DynamicFactor dynamic =
+          dynamic_factor(passed, train, row.effect == Effect::moment ? Effect::moment : Effect::deflection);
+      const auto whole = [&](const Place& p) {
+        return 1.0 + dynamic.value + 0.5 * phi_of_track(speed_, length_at(p), n0_);
+      };
+      const std::size_t worst = effects_.worst(row.effect, train, whole);
+      const double size = effects_.at(row.effect, train, worst).size(), value = whole(places[worst]) * size;
+      if (train > 0 && value <= row.of_train) continue;
+      row.train = train;
+      row.dynamic = dynamic;
+      row.of_train = value;
+      row.static_train = size;
+      row.train_x = places[worst].x;
+    }
+    for (const std::size_t model : models) {
+      const auto whole = [&](const Place& p) { return factor(model, p); };
+      const std::size_t worst = effects_.worst(row.effect, model, whole);
+      const double size = effects_.at(row.effect, model, worst).size(), value = whole(places[worst]) * size;
+      if (model != models.front() && value <= row.of_model) continue;
+      row.model = model;
+      row.of_model = value;
+      row.static_model = size;
+      row.model_x = places[worst].x;
+    }
+    if (row.of_model > 0.0) rows_.push_back(row);
+  }
+}
+
+results::Finding NormCheck::of_lm71(Effect effect, bool over_span) const {
+  results::Finding found;
+  if (effects_.places[static_cast<std::size_t>(effect)].empty()) {
+    found.why = "no two decks meet at a joint";
+    return found;
+  }
+  for (std::size_t load = trains_; load < effects_.loads.size(); ++load) {
+    if (models_[load - trains_] == "sw2") continue;
+    const auto whole = [&](const Place& p) { return factor(load, p) / (over_span ? p.span : 1.0); };
+    const std::size_t worst = effects_.worst(effect, load, whole);
+    const Place& place = effects_.places[static_cast<std::size_t>(effect)][worst];
+    const double value = effects_.at(effect, load, worst).size() * whole(place);
+    if (value <= found.value) continue;  // of none yet it is not
+    found = {value, results::Finding::unknown, place.x,
+             fmt::format("{} with alpha = {:g} and Phi{} = {:.4g}", effects_.loads[load].name, rules_.alpha,
+                         rules_.careful ? 2 : 3, phi_at(place)),
+             ""};
+  }
+  if (std::isnan(found.value)) found.why = "LM71 is not among norm_load_models";
+  return found;
+}
+
+results::Finding NormCheck::of_trains() const {
+  results::Finding found;
+  for (const Row& row : rows_) {
+    if (row.ratio() <= found.value) continue;
+    found = {row.ratio(), results::Finding::unknown, row.train_x,
+             fmt::format("{} of {} at {:.4g} km/h", effect_rows[static_cast<std::size_t>(row.effect)].words,
+                         effects_.loads[row.train].name, 3.6 * row.dynamic.speed),
+             ""};
+  }
+  if (rows_.empty()) found.why = "no passages of a train were compared with LM71";
+  return found;
+}
+
+void NormCheck::find(std::vector<results::Verdict>& verdicts) const {
+  for (results::Verdict& verdict : verdicts) {
+    const std::string& quantity = verdict.limit.quantity;
+    if (!options::limit_quantity(quantity)->of_norm) continue;
+    verdict.found = quantity == "train_over_lm71"       ? of_trains()
+                    : quantity == "lm71_end_rotation"   ? of_lm71(Effect::end_rotation, false)
+                    : quantity == "lm71_joint_rotation" ? of_lm71(Effect::joint_rotation, false)
+                                                        : of_lm71(Effect::deflection, true);
+    verdict.runs = 1;
+    verdict.broken_in = 0;
+  }
+}
+
+std::string NormCheck::length_text() const {
+  const auto [least, greatest] = std::minmax_element(lengths_.begin(), lengths_.end());
+  const auto phi = [this](double L) { return rules_.careful ? phi2(L) : phi3(L); };
+  const int kind = rules_.careful ? 2 : 3;
+  const std::string track = rules_.careful ? "carefully maintained track" : "standard maintenance";
+  std::string text = *least == *greatest
+                         ? fmt::format("L_Phi = {:.4g} m, Phi{} = {:.4g} ({})", *least, kind, phi(*least), track)
+                         : fmt::format("L_Phi = {:.4g} to {:.4g} m, Phi{} = {:.4g} to {:.4g} ({})", *least, *greatest,
+                                       kind, phi(*least), phi(*greatest), track);
+  text += fmt::format(", alpha = {:g}, n0 = {:.4g} Hz", rules_.alpha, n0_);
+  const auto bounds = frequency_bounds(*greatest);
+  if (*least == *greatest && bounds)
+    text += fmt::format(", {} {:.3g} to {:.3g} Hz of figure 6.10",
+                        n0_ >= bounds->first && n0_ <= bounds->second ? "within" : "outside", bounds->first,
+                        bounds->second);
+  if (speed_ <= 0.0) return text;
+  const double of_speed = phi_of_speed(speed_, *least, n0_), of_track = phi_of_track(speed_, *least, n0_);
+  return text + fmt::format("; annex C at {:.4g} km/h: phi' = {:.3g}, phi'' = {:.3g}, 1 + phi' + phi''{} = {:.4g}",
+                            3.6 * speed_, of_speed, of_track, rules_.careful ? "/2" : "",
+                            1.0 + of_speed + (rules_.careful ? 0.5 : 1.0) * of_track);
+}
+
+}  // namespace traverse::norm

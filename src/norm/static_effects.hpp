@@ -1,0 +1,72 @@
+// What trains and load models do to the bridge at rest, wherever they stand: the least and the greatest of every effect
+// along the bridge.
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "norm/static_bridge.hpp"
+
+namespace traverse::norm {
+
+enum class Effect { deflection, moment, shear, reaction, end_rotation, joint_rotation };
+struct EffectRow {
+  std::string_view name, words, unit;
+};
+/// In the order of Effect.
+inline constexpr EffectRow effect_rows[] = {
+    {"deflection", "deflection", "m"},
+    {"moment", "moment", "N m"},
+    {"shear", "shear", "N"},
+    {"reaction", "reaction", "N"},
+    {"end_rotation", "end rotation", "rad"},
+    {"joint_rotation", "joint rotation", "rad"},
+};
+inline constexpr std::size_t effect_count = std::size(effect_rows);
+
+/// Of one load at one place, each with the place x = 0 of the load.
+struct Extremes {
+  Placed least, greatest;  // the former as it is, not above 0
+
+  double size() const { return greatest.value > -least.value ? greatest.value : -least.value; }
+};
+
+/// A place of the bridge, and the length of its span; at a support the shorter one.
+struct Place {
+  double x = 0.0, span = 0.0;  // m
+  std::size_t number = 0;      // of the span
+};
+
+struct StaticEffects {
+  static constexpr double alike = 1.0 + 1e-9;
+
+  std::vector<LoadModel> loads;
+  std::array<std::vector<Place>, effect_count> places;
+  std::array<std::vector<Extremes>, effect_count> values;  // [load][place]
+
+  const Extremes& at(Effect effect, std::size_t load, std::size_t place) const {
+    const auto e = static_cast<std::size_t>(effect);
+    return values[e][load * places[e].size() + place];
+  }
+  /// The first place with the largest magnitude times weight(place).
+  template <class Weight>
+  std::size_t worst(Effect effect, std::size_t load, Weight weight) const {
+    const auto& all = places[static_cast<std::size_t>(effect)];
+    std::size_t best = 0;
+    double most = -1.0;
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (const double one = at(effect, load, i).size() * weight(all[i]); one > most * alike) {
+        most = one;
+        best = i;
+      }
+    return best;
+  }
+};
+
+/// At stations at most `spacing` m apart in each span (0: at its twentieths) and at those of `also`; beside each
+/// support on both sides, a millionth of the span away.
+StaticEffects static_effects(StaticBridge& bridge, std::vector<LoadModel> loads, double spacing,
+                             const std::vector<double>& also);
+
+}  // namespace traverse::norm

@@ -1,0 +1,31 @@
+// What is said of speeds that were added near the peaks.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "results/sweep.hpp"
+
+namespace traverse::results {
+namespace {
+
+long added_speeds(const Refined& refined) { return std::count(refined.added.begin(), refined.added.end(), 1.0); }
+
+}  // namespace
+
+void print(const Refined& refined) {
+  const long added = added_speeds(refined), given = static_cast<long>(refined.added.size()) - added;
+  std::string left = "no peak over the speed is above what was found";
+  if (refined.uncertainty > 0.0)
+    left = fmt::format("peaks over the speed are at most {:.1g} above what was found ({}){}", refined.uncertainty,
+                       refined.curve, refined.uncertainty > refined.wanted ? ", more than was wanted" : "");
+  fmt::print("  {} speeds added to {}; {}\n", added, given, left);
+}
+
+void add_to(std::vector<Attribute>& summary, const Refined& refined) {
+  summary.push_back({"speeds_added", added_speeds(refined)});
+  summary.push_back({"peak_uncertainty", refined.uncertainty});
+  summary.push_back({"peak_uncertainty_of", refined.curve});
+}
+
+}  // namespace traverse::results

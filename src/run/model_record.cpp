@@ -1,0 +1,122 @@
+#include "run/model_record.hpp"
+
+#include <fmt/format.h>
+
+namespace traverse::app {
+namespace {
+
+using results::Recorder;
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+
+constexpr const char* support_words[] = {"free", "roller", "pinned", "clamped", "guided"};
+constexpr const char* joint_words[] = {"continuous", "hinge", "separate"};
+
+/// Rows of so many numbers; nothing where there are no rows.
+void add_rows(Recorder& recorder, const std::string& name, std::size_t columns, std::vector<double> values,
+              std::string unit) {
+  if (values.empty()) return;
+  const std::size_t rows = values.size() / columns;
+  std::vector<std::size_t> shape = {rows};
+  if (columns > 1) shape.push_back(columns);
+  recorder.datasets({{"/model/" + name, std::move(shape), std::move(values), std::move(unit)}});
+}
+
+/// Two rows at a step.
+std::vector<double> along(const beam::Distribution& quantity, double from, double to) {
+  std::vector<double> rows;
+  const auto add = [&](double x, double inside) { rows.insert(rows.end(), {x, quantity.at(x, inside)}); };
+  double previous = from;
+  add(from, to);
+  for (const double x : quantity.breaks(from, to)) {
+    add(x, previous);
+    if (quantity.at(x, previous) != quantity.at(x, to)) add(x, to);
+    previous = x;
+  }
+  add(to, from);
+  return rows;
+}
+
+void record_foundation(const beam::BeamModel& beam, Recorder& recorder) {
+  beam::for_points(beam.foundation, [&](const beam::FoundationKind& kind, const auto& points) {
+    std::vector<double> rows;
+    for (const beam::PointFoundation& p : points)
+      rows.insert(rows.end(), {p.x, p.k, p.c, p.law.gap, p.law.one_sided ? 1.0 : 0.0, p.law.cubic});
+    const beam::FoundationUnits units = units_of(kind);
+    add_rows(recorder, fmt::format("foundation/{}", kind.name), 6, std::move(rows),
+             fmt::format("m, {}, {}, {}, 1, {}", units.k, units.c, units.gap, units.cubic));
+  });
+  beam::for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
+    add_rows(recorder, fmt::format("foundation/{}", kind.name), 2, along(bed.k, beam.start, beam.end()),
+             fmt::format("m, {}", units_of(kind).k));
+  });
+}
+
+void record_bridge(const beam::BeamModel& beam, Recorder& recorder) {
+  add_rows(recorder, "spans", 1, beam.spans, "m");
+  Pairs supports;
+  const int ends = static_cast<int>(beam.supports.size());
+  for (int i = 0; i < ends; ++i) {
+    const bool inner = i > 0 && i + 1 < ends;
+    supports.emplace_back(support_words[static_cast<std::size_t>(beam.supports[static_cast<std::size_t>(i)])],
+                          inner ? joint_words[static_cast<std::size_t>(beam.joint(i))] : "end");
+  }
+  if (!supports.empty()) recorder.tables({{"/model/supports", supports}});
+  add_rows(recorder, "hinges", 1, beam.hinges, "m");
+  add_rows(recorder, "EI", 2, along(beam.EI, beam.start, beam.end()), "m, N m2");
+  add_rows(recorder, "mass", 2, along(beam.mass, beam.start, beam.end()), "m, kg/m");
+  record_foundation(beam, recorder);
+}
+
+void record_type(const Vehicle& vehicle, const std::string& group, Recorder& recorder) {
+  Pairs names;
+  std::vector<double> bodies, wheels, springs, joints;
+  for (const multibody::Body& b : vehicle.mechanism.bodies) {
+    names.emplace_back(vehicle.name, b.name);
+    bodies.insert(bodies.end(), {b.position.x(), b.position.y(), b.mass});
+  }
+  for (const Wheel& w : vehicle.wheels) {
+    const multibody::Body& body = vehicle.mechanism.bodies[static_cast<std::size_t>(w.body)];
+    wheels.insert(wheels.end(), {body.position.x(), body.position.y(), w.radius});
+  }
+  for (const multibody::Spring& s : vehicle.mechanism.springs)
+    springs.insert(springs.end(), {s.from.x(), s.from.y(), s.to.x(), s.to.y(), static_cast<double>(s.bodies[0]),
+                                   static_cast<double>(s.bodies[1])});
+  for (const multibody::Joint& j : vehicle.mechanism.joints)
+    joints.insert(joints.end(),
+                  {j.point.x(), j.point.y(), static_cast<double>(j.bodies[0]), static_cast<double>(j.bodies[1])});
+  if (!names.empty()) recorder.tables({{"/model/" + group + "/names", names}});
+  add_rows(recorder, group + "/bodies", 3, std::move(bodies), "m, m, kg");
+  add_rows(recorder, group + "/wheels", 3, std::move(wheels), "m, m, m");
+  add_rows(recorder, group + "/springs", 6, std::move(springs), "m, m, m, m, 1, 1");
+  add_rows(recorder, group + "/joints", 4, std::move(joints), "m, m, 1, 1");
+}
+
+void record_load(const MovingLoad& load, const std::string& name, Recorder& recorder) {
+  std::vector<double> rows;
+  for (std::size_t i = 0; i < load.forces.size(); ++i) rows.insert(rows.end(), {load.positions[i], load.forces[i]});
+  add_rows(recorder, "forces/" + name, 2, std::move(rows), "m, N");
+}
+
+void record_train(const Scene& scene, Recorder& recorder) {
+  std::vector<double> train;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    train.insert(train.end(), {static_cast<double>(scene.train.vehicles[i]), scene.train.positions[i]});
+  add_rows(recorder, "train", 2, std::move(train), "1, m");
+  for (std::size_t i = 0; i < scene.vehicles.size() && !scene.train.vehicles.empty(); ++i)
+    record_type(scene.vehicles[i], fmt::format("vehicles/{}", i), recorder);
+  if (!scene.sweep || scene.sweep->trains.empty()) return record_load(scene.load, "load", recorder);
+  for (std::size_t i = 0; i < scene.sweep->trains.size(); ++i)
+    record_load(scene.sweep->loads[i], fmt::format("A{}", scene.sweep->trains[i]), recorder);
+}
+
+}  // namespace
+
+void record_model(const Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder) {
+  Pairs said;
+  for (const std::string& note : notes) said.emplace_back(std::to_string(said.size() + 1), note);
+  if (!said.empty()) recorder.tables({{"/model/notes", said}});
+  if (scene.beam) record_bridge(*scene.beam, recorder);
+  record_train(scene, recorder);
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,15 @@
+// What was modelled, as a picture or a report of it needs it: /model of the results file.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "results/recorder.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// Spans, supports, hinges, foundations, stiffness and mass, vehicles and forces at t = 0, and the notes of the run.
+void record_model(const Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder);
+
+}  // namespace traverse::app

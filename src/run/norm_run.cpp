@@ -1,0 +1,66 @@
+#include "run/norm_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "norm/load_models.hpp"
+#include "results/stage.hpp"
+#include "run/passage.hpp"
+
+namespace traverse::app {
+
+norm::LoadModel train_at_rest(std::string name, const std::vector<coupling::PassingWeight>& weights) {
+  std::vector<double> forces, x;
+  for (const coupling::PassingWeight& weight : weights) {
+    forces.push_back(weight.force);
+    x.push_back(weight.x);
+  }
+  return norm::train_of(std::move(name), forces, x);
+}
+
+std::vector<norm::LoadModel> trains_at_rest(const Scene& given, const SharedBeam& shared) {
+  Scene scene = given;
+  std::vector<norm::LoadModel> trains;
+  const std::size_t count = given.sweep && !given.sweep->loads.empty() ? given.sweep->loads.size() : 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::string name = "train";
+    if (given.sweep && !given.sweep->loads.empty()) {
+      scene.load.forces = given.sweep->loads[i].forces;
+      scene.load.positions = given.sweep->loads[i].positions;
+      name = fmt::format("A{}", given.sweep->trains[i]);
+    }
+    if (scene.vehicles.empty()) {
+      if (!scene.load.forces.empty())
+        trains.push_back(norm::train_of(std::move(name), scene.load.forces, scene.load.positions));
+      continue;
+    }
+    std::vector<std::string> ignored;
+    Passage passage(scene, shared, ignored);
+    passage.start(ignored);
+    trains.push_back(train_at_rest(std::move(name), passage.system().weights().all()));
+  }
+  return trains;
+}
+
+norm::NormCheck norm_check(const Scene& scene, std::vector<norm::LoadModel> trains) {
+  const results::Stage stage("static effects of trains and load models");
+  return {*scene.beam, *scene.norm, std::move(trains), scene.output.probes};
+}
+
+norm::Passed passed_once(const Scene& scene, const Peaks& peaks) {
+  norm::Passed passed{{greatest_speed(scene)}, scene.output.probes, {{}}};
+  for (const Peak& peak : peaks.largest_of_each(deflection))
+    passed.trains[0].deflection.push_back(std::abs(peak.value));
+  for (const Peak& peak : peaks.largest_of_each(moment)) passed.trains[0].moment.push_back(std::abs(peak.value));
+  return passed;
+}
+
+bool compares_with_lm71(const Scene& scene) {
+  const std::vector<std::string>& models = scene.norm->load_models;
+  return !scene.self_weight && !scene.output.probes.empty() &&
+         std::find(models.begin(), models.end(), "lm71") != models.end();
+}
+
+}  // namespace traverse::app

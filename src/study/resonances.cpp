@@ -1,0 +1,153 @@
+#include "study/resonances.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "run/deck_acceleration.hpp"
+#include "study/sweep_curves.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double same_place = 0.005;  // m: axles that meet
+constexpr double most_of_it = 0.55;   // of the weight, that meets axles again
+constexpr int highest_order = 4;      // i
+constexpr double near = 0.5;          // of a resonance's width: its peak is so near, or at one of the speeds beside it
+constexpr double part_of_width = 0.25;   // of a resonance's width: speeds so near show its peak
+constexpr std::size_t most_axles = 400;  // of a train, the first ones, that its distance is looked for among
+constexpr double rounding = 1e-9;
+constexpr int most_nodes = 1000;  // of bridges whose frequencies are found unasked
+
+struct Axles {
+  std::vector<double> x, forces;
+  double length() const {
+    if (x.empty()) return 0.0;
+    const auto [rear, front] = std::minmax_element(x.begin(), x.end());
+    return *front - *rear;
+  }
+};
+
+/// Of train number `train` of the sweep; wheels count alike.
+Axles axles_of(const Scene& scene, std::size_t train) {
+  if (!scene.vehicles.empty()) {
+    const std::vector<double> x = wheels_at_start(scene);
+    return {x, std::vector<double>(x.size(), 1.0)};
+  }
+  const MovingLoad& load = scene.sweep->loads.empty() ? scene.load : scene.sweep->loads[train];
+  return {load.positions, load.forces};
+}
+
+std::size_t trains_of(const Scene& scene) { return std::max<std::size_t>(1, scene.sweep->loads.size()); }
+
+bool simple_spans(const beam::BeamModel& beam) {
+  const auto holds_ends_alone = [](beam::Support s) { return beam::fixes_vertical(s) && !beam::fixes_rotation(s); };
+  const bool foundation =
+      std::any_of(beam::foundation_kinds.begin(), beam::foundation_kinds.end(), [&](const beam::FoundationKind& kind) {
+        return beam::acts(kind, beam) && (kind.bed != nullptr ? (beam.foundation.*kind.bed).has_value()
+                                                              : !(beam.foundation.*kind.points).empty());
+      });
+  return std::all_of(beam.supports.begin(), beam.supports.end(), holds_ends_alone) && beam.EI.uniform() &&
+         beam.mass.uniform() && !beam.track && beam.hinges.empty() && !foundation &&
+         (beam.spans.size() == 1 || beam.all_separate()) &&
+         std::all_of(beam.spans.begin(), beam.spans.end(), [&](double span) { return span == beam.spans.front(); });
+}
+
+/// The highest local peak near a resonance; not_run: none.
+double peak_near(const std::vector<double>& speed, const std::vector<double>& value, const results::Resonance& r) {
+  double found = results::Sweep::not_run, highest = 0.0;
+  for (std::size_t i = 1; i + 1 < speed.size(); ++i) {
+    const bool close =
+        std::abs(speed[i] - r.speed) <= near * r.width || (speed[i - 1] < r.speed && r.speed < speed[i + 1]);
+    if (!close || !(value[i] > highest && value[i] >= value[i - 1] && value[i] >= value[i + 1])) continue;
+    highest = value[i];
+    found = speed[i];
+  }
+  return found;
+}
+
+}  // namespace
+
+double regular_distance(std::span<const double> x, std::span<const double> forces) {
+  const std::size_t count = std::min(x.size(), most_axles);
+  std::vector<std::pair<double, double>> pairs;  // their distance, the lesser force
+  double weight = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    weight += forces[i];
+    for (std::size_t j = 0; j < count; ++j)
+      if (x[j] - x[i] > same_place) pairs.emplace_back(x[j] - x[i], std::min(forces[i], forces[j]));
+  }
+  std::sort(pairs.begin(), pairs.end());
+  double best = 0.0, distance = 0.0;
+  for (std::size_t from = 0, past = 0; from < pairs.size(); from = past) {
+    double met = 0.0, moment = 0.0;
+    for (; past < pairs.size() && pairs[past].first - pairs[from].first < same_place; ++past) {
+      met += pairs[past].second;
+      moment += pairs[past].second * pairs[past].first;
+    }
+    if (met <= best * (1.0 + rounding)) continue;
+    best = met;
+    distance = moment / met;
+  }
+  return best > most_of_it * weight ? distance : 0.0;
+}
+
+std::vector<double> resonant_frequencies(const SharedBeam& shared) {
+  if (!shared.modal && shared.beam->mesh().nodes() > most_nodes) return {};
+  return first_frequencies(shared);
+}
+
+std::vector<results::Resonance> resonances_of(const Scene& scene, std::span<const double> frequencies, double slowest,
+                                              double fastest) {
+  std::vector<results::Resonance> found;
+  for (std::size_t train = 0; train < trains_of(scene); ++train) {
+    const Axles axles = axles_of(scene, train);
+    const double d = regular_distance(axles.x, axles.forces);
+    for (std::size_t n = 0; d > 0.0 && n < frequencies.size(); ++n)
+      for (int i = 1; i <= highest_order; ++i) {
+        const double speed = frequencies[n] * d / i;
+        if (speed < slowest || speed > fastest) continue;
+        found.push_back(
+            {train, static_cast<int>(n) + 1, i, frequencies[n], d, speed, speed * d / (i * axles.length())});
+      }
+  }
+  return found;
+}
+
+std::vector<results::Cancellation> cancellations_of(const beam::BeamModel& beam, std::span<const double> frequencies,
+                                                    double slowest, double fastest) {
+  std::vector<results::Cancellation> found;
+  if (!simple_spans(beam)) return found;
+  for (std::size_t i = 0; i < frequencies.size(); ++i) {
+    const int mode = static_cast<int>(i) + 1;
+    for (int half_waves = mode % 2 == 0 ? 2 : 1;; half_waves += 2) {
+      const double speed = 2.0 * frequencies[i] * beam.spans.front() / half_waves;
+      if (speed < slowest) break;
+      if (half_waves != mode && speed <= fastest) found.push_back({mode, half_waves, speed});
+    }
+  }
+  return found;
+}
+
+void find_peaks(const results::Sweep& sweep, std::vector<results::Resonance>& resonances) {
+  if (sweep.probes.empty()) return;
+  for (results::Resonance& r : resonances) {
+    r.of_deflection = peak_near(sweep.speed, worst_of_probes(sweep, sweep.deflection.value, r.train), r);
+    r.of_acceleration = peak_near(sweep.speed, worst_of_probes(sweep, sweep.acceleration.value, r.train), r);
+  }
+}
+
+std::vector<double> unseen(std::span<const results::Resonance> resonances, std::span<const double> speeds) {
+  std::vector<double> found;
+  for (const results::Resonance& r : resonances) {
+    const auto next = std::lower_bound(speeds.begin(), speeds.end(), r.speed);
+    const double above = next == speeds.end() ? r.width : *next - r.speed;
+    const double below = next == speeds.begin() ? r.width : r.speed - *(next - 1);
+    if (std::min(above, below) > part_of_width * r.width) found.push_back(r.speed);
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+}  // namespace traverse::app

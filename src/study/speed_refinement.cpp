@@ -1,0 +1,48 @@
+#include "study/speed_refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace traverse::app {
+namespace {
+
+constexpr double shortest_interval = 1e-7;  // of the speed
+constexpr double sharper = 4.0;             // times the bend that is seen: a peak between two speeds may have
+/// -y'' of the parabola through a sample and its neighbours; 0 where it is bent the other way, or at either end.
+double bend_at(const std::vector<double>& v, const std::vector<double>& y, std::size_t i) {
+  if (i == 0 || i + 1 >= v.size()) return 0.0;
+  const double before = (y[i] - y[i - 1]) / (v[i] - v[i - 1]), after = (y[i + 1] - y[i]) / (v[i + 1] - v[i]);
+  return std::max(0.0, 2.0 * (before - after) / (v[i + 1] - v[i - 1]));
+}
+
+}  // namespace
+
+Refinement refine(const std::vector<double>& speed, const std::vector<SpeedCurve>& curves, double tolerance) {
+  Refinement refinement;
+  std::set<double> added;
+  for (const SpeedCurve& curve : curves) {
+    std::vector<double> v, y;
+    for (std::size_t i = 0; i < speed.size(); ++i)
+      if (!std::isnan(curve.value[i])) {
+        v.push_back(speed[i]);
+        y.push_back(curve.value[i]);
+      }
+    const double largest = y.empty() ? 0.0 : *std::max_element(y.begin(), y.end());
+    if (!(largest > 0.0)) continue;
+    for (std::size_t i = 0; i + 1 < v.size(); ++i) {
+      const double h = v[i + 1] - v[i];
+      const double bend = std::max(bend_at(v, y, i), bend_at(v, y, i + 1));
+      const double above = (std::max(y[i], y[i + 1]) + 0.125 * sharper * bend * h * h) / largest - 1.0;
+      if (above > refinement.uncertainty) {
+        refinement.uncertainty = above;
+        refinement.curve = curve.name;
+      }
+      if (above > tolerance && h > shortest_interval * v[i]) added.insert(v[i] + 0.5 * h);
+    }
+  }
+  refinement.speeds.assign(added.begin(), added.end());
+  return refinement;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,65 @@
+// What trial runs have to see beyond the beginning of a crossing, and what is promised where they have not.
+#include "accuracy/horizon.hpp"
+
+#include <gtest/gtest.h>
+
+#include "accuracy/accuracy.hpp"
+#include "traverse/options/options.hpp"
+
+namespace traverse::app {
+namespace {
+
+// Four spans of 30 m, a force of 1 N at 50 m/s that starts at their beginning.
+Scene scene_of(const std::string& more, const std::string& spans = "30.0*4",
+               const std::string& types = "[pinned, roller, roller, roller, roller]") {
+  return read_scene(options::Options::from_yaml("beam: {spans: " + spans +
+                                                ", EI: 1.0e10, mass: 1.0e4}\nsupport: {types: " + types +
+                                                "}\nload: {forces: 1.0, speed: 50.0}\n" + more));
+}
+
+constexpr double end = 10.0;  // s
+
+std::vector<Meeting> later(const Scene& scene) { return met_later(scene, beginning(scene, end), end); }
+
+TEST(Horizon, EqualSpansHoldNothingNew) {
+  const Scene scene = scene_of("");
+  EXPECT_NEAR(beginning(scene, end), 1.1 * 30.0 / 50.0, 1e-12);
+  EXPECT_TRUE(later(scene).empty());
+  EXPECT_TRUE(later(scene_of("foundation: {vertical: {x: [30, 60, 90], k: 1.0e7}}\n", "30.0*3", "roller")).empty());
+}
+
+TEST(Horizon, ASpanUnlikeThoseBefore) {
+  const std::vector<Meeting> longer = later(scene_of("", "[30.0, 30.0, 36.0, 36.0]"));
+  ASSERT_EQ(longer.size(), 1U);
+  EXPECT_NEAR(longer[0].until, (60.0 + 1.1 * 36.0) / 50.0, 1e-12);
+  EXPECT_EQ(longer[0].what, "the span from 60 to 96 m, unlike those before it");
+  EXPECT_EQ(later(scene_of("", "30.0*4", "[pinned, roller, roller, roller, clamped]")).size(), 1U);
+  const std::vector<Meeting> prop = later(scene_of("foundation: {vertical: {x: 75.0, k: 1.0e8, one_sided: true}}\n"));
+  ASSERT_EQ(prop.size(), 1U);  // the span behind it is like the first
+  EXPECT_NEAR(prop[0].until, (60.0 + 1.1 * 30.0) / 50.0, 1e-12);
+}
+
+TEST(Horizon, ABump) {
+  const std::string bump = "track: {profile: bump, bump: {length: 2.0, height: 0.01, start: ";
+  EXPECT_TRUE(later(scene_of(bump + "-50.0}}\n")).empty());
+  const std::vector<Meeting> late = later(scene_of(bump + "100.0}}\n"));
+  ASSERT_EQ(late.size(), 1U);
+  EXPECT_NEAR(late[0].until, (102.0 + 1.1 * 30.0) / 50.0, 1e-12);
+}
+
+TEST(Accuracy, IsWithdrawnWhereContactsWereLostUnseen) {
+  Accuracy accuracy;
+  accuracy.measured = true;
+  for (Promise& promise : accuracy.promises) promise = {true, true, 1e-4, ""};
+  EXPECT_EQ(accuracy.withdrawn(0), "");
+  Accuracy seen = accuracy;
+  seen.lost_contact = true;
+  EXPECT_EQ(seen.withdrawn(2), "");
+  EXPECT_EQ(seen.expected().size(), static_cast<std::size_t>(quantities));
+  EXPECT_NE(accuracy.withdrawn(2).find("lost contact 2 times, which no trial run has seen"), std::string::npos);
+  EXPECT_TRUE(accuracy.expected().empty());
+  EXPECT_EQ(accuracy.withdrawn(2), "");
+}
+
+}  // namespace
+}  // namespace traverse::app
