@@ -38,6 +38,7 @@ class CondensedContacts {
   bool moved();
 
   train::VehicleYield& yield(int vehicle) { return yield_[vehicle]; }
+  void keep(base::Bytes& bytes) { bytes(yield_); }
   /// A from the vehicles' H and P and from the beam (null: none).
   void couple(const structure::ElementCompliance* compliance, int per_node);
 

@@ -35,6 +35,7 @@ class ContactEvents {
   /// Longest step that overshoots the next impact by at most `tolerance`, s.
   double time_to_impact(double tolerance) const;
   const train::Separations& separations() const { return separations_; }
+  void keep(base::Bytes& bytes) { bytes(separations_, impacts_, impact_durations_); }
 
  private:
   struct Impact {

@@ -52,6 +52,10 @@ class ContactNewton {
   double last_change() const { return change_; }
   /// The vehicle of the largest of these.
   std::size_t worst_vehicle() const;
+  /// What is kept from stage to stage.
+  void keep(base::Bytes& bytes) {
+    bytes(contacts_, loads_, tolerance_, change_, contraction_, second_, once_, in_place_, ratio_);
+  }
 
  private:
   struct VehicleWork {

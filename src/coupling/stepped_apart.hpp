@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 
+#include "base/archive.hpp"
 #include "recovery/recovery.hpp"
 #include "structure/structure.hpp"
 
@@ -38,6 +39,9 @@ class SteppedApart {
   virtual void see(std::span<beam::Response> probes) const = 0;
   /// System::defect at the instant when the vehicles were farthest from linear.
   virtual double defect() = 0;
+
+  /// The state between two steps.
+  virtual void keep(base::Archive& archive) = 0;
 };
 
 }  // namespace traverse::coupling

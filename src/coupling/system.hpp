@@ -220,6 +220,11 @@ class System {
   long beam_solves() const { return structure_ ? structure_->statics().solves : 0; }
   long factorisations() const { return structure_ ? structure_->statics().factorisations() : 0; }
 
+  /// Collective. The state between two steps, y and all that the next ones depend on, written or read back. When it is
+  /// read, the same system has been started, and begin_motion called where it is. FileError where steps were taken apart
+  /// then and cannot be now.
+  void keep(base::Archive& archive, double* y);
+
  private:
   struct Powers {  // W; this rank's share
     double dissipation = 0.0, work = 0.0;
@@ -266,6 +271,7 @@ class System {
   bool stage_of_fleet(const StageTime& at);
   bool stage_of_motion(double t, std::size_t stage, const double* v, const double* w);
   const std::vector<structure::Reach>& loaded(double t, double h);
+  void set_step(double h);
   void finish_step(double* y);
   double structure_error(const double* y);
   void load_structure(double t);

@@ -55,6 +55,37 @@ bool System::accept(double t, double* y) {
   return true;
 }
 
+void System::keep(base::Archive& archive, double* y) {
+  bool apart = apart_ != nullptr;
+  archive.same(apart);
+  if (apart && !apart_)
+    throw FileError("on another number of ranks this run takes other steps; restart it on as many as it had");
+  if (apart_ && !apart) {
+    apart_.reset();
+    if (motion_) share_.deal(comm_, fleet_);
+  }
+  const auto n = static_cast<std::size_t>(n_);
+  archive.cut({y, n});
+  archive.cut({y + n, n});
+  std::vector<double> behind(y + 2 * n, y + local_size());
+  archive.same(behind);
+  if (rank_ == 0) std::copy(behind.begin(), behind.end(), y + 2 * n);
+  if (apart_) apart_->keep(archive);
+  if (motion_) {
+    Motion& m = *motion_;
+    if (rank_ != 0 && !share_.dealt()) m.powers[0] = {};  // which count on the first rank alone
+    archive.same(m.length, m.p, m.pd, m.pdd[0], m.energy_scale);
+    archive.sum(m.powers[0].dissipation, m.powers[0].work, m.dissipated, m.worked);
+    if (archive.reads() && m.length > 0.0) set_step(m.length);
+  }
+  archive.same(on_beam_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, signs_, defect_apart_);
+  std::vector<int> owners = share_.owners(fleet_.vehicles.size());
+  archive.same(owners);
+  fleet_.keep(archive, owners);
+  archive.same(events_, newton_);
+  if (structure_) structure_->keep(archive);
+}
+
 std::string System::trouble() const {
   std::string text = fleet_.trouble();
   if (share_.dealt()) {  // the first rank that has some tells the others

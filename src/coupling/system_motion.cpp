@@ -72,15 +72,18 @@ void System::take_back_step(double* y) {
   std::copy(m.before.p.begin(), m.before.p.end(), y + 2 * n_);
 }
 
+void System::set_step(double h) {
+  Motion& m = *motion_;
+  m.method = m.unit;
+  m.method.scale_to(h);
+  m.length = h;
+  if (structure_) structure_->set_method(m.method, h);
+}
+
 bool System::step_motion(double t, double h, double* y, const std::function<bool()>& good_enough) {
   if (apart_) return true;  // try_apart has taken it
   Motion& m = *motion_;
-  if (std::abs(h - m.length) > same_length * m.length) {
-    m.method = m.unit;
-    m.method.scale_to(h);
-    m.length = h;
-    if (structure_) structure_->set_method(m.method, h);
-  }
+  if (std::abs(h - m.length) > same_length * m.length) set_step(h);
   m.before.dissipated = m.dissipated;
   m.before.worked = m.worked;
   if (keep_steps_) m.before.p.assign(y + 2 * n_, y + local_size());

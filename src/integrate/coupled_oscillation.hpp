@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "base/bytes.hpp"
 #include "structure/modal_bridge.hpp"
 
 namespace traverse::integrate {
@@ -20,6 +21,7 @@ class CoupledOscillation {
   void move(const Eigen::VectorXcd& propagator);
   /// u and w, now or after a propagator's time.
   void see(Eigen::VectorXd& u, Eigen::VectorXd& w);
+  void keep(base::Bytes& bytes) { bytes(y_); }
   void see_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w);
 
  private:

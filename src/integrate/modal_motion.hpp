@@ -42,6 +42,10 @@ class ModalMotion {
   void add_channels(std::size_t first, std::size_t count, double* sum) const;
   double dissipated() const { return dissipated_; }  // J, since t = 0
   double work() const { return work_; }              // J, of the forces on the modes' motion
+  void keep(base::Bytes& bytes) {
+    bytes(interval_, time_, modes_, q_, rate_, acceleration_, u_, w_, dissipated_, work_);
+    if (coupled_) coupled_->keep(bytes);
+  }
 
  private:
   struct Mode {

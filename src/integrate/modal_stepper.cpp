@@ -50,12 +50,16 @@ ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridg
 std::string ModalStepper::method() const { return std::to_string(bridge_.modes()) + " modes, exact in time"; }
 
 double ModalStepper::run(const std::function<void(const Instant&)>& sample,
-                         const std::function<bool(double, long)>& step) {
+                         const std::function<bool(double, long)>& step, const std::function<void(double)>& between) {
   const double slack = 1e-3 * std::min(interval_, end_time_);
-  system_.begin_step(0.0, 0.0);
-  show_to_monitors();
-  sample_now(sample, Purpose::sample);
+  if (!begun_) {
+    system_.begin_step(0.0, 0.0);
+    show_to_monitors();
+    sample_now(sample, Purpose::sample);
+  }
+  begun_ = true;
   for (bool going = true; going && motion_.time() < end_time_ - slack;) {
+    if (between) between(motion_.time());
     double t = static_cast<double>(steps_ + 1) * interval_;
     const bool beyond = t > end_time_ + slack;  // the end is no multiple of the interval
     if (t > end_time_ - slack) t = end_time_;
@@ -75,6 +79,11 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
     going = step(t, steps_) && !stopped_at_limit();
   }
   return motion_.time();
+}
+
+void ModalStepper::keep(base::Archive& archive) {
+  archive.same(motion_, steps_, at_start_, begun_);
+  base::check(TSSetTime(ts_, motion_.time()));
 }
 
 void ModalStepper::show_to_monitors() {

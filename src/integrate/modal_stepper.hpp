@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "integrate/modal_motion.hpp"
 #include "integrate/stepper.hpp"
 
@@ -17,7 +18,10 @@ class ModalStepper {
 
   /// As Stepper::run; a step is what lies between two samples. The nodal displacements are those of the modes and, with
   /// K* v = P for what the forces P do to all others, balance P exactly; velocities and accelerations are the modes'.
-  double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
+  double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
+             const std::function<void(double)>& between = {});
+  /// As Stepper::keep.
+  void keep(base::Archive& archive);
 
   long steps() const { return steps_; }
   bool stopped_at_limit() const { return steps_ >= most_steps_; }  // of -ts_max_steps
@@ -42,7 +46,7 @@ class ModalStepper {
   std::vector<double> sagging_;                  // m, of this rank's unknowns: of the beam's own weight
   std::vector<double> y_, ydot_, drag_, force_;  // as Instant has them; nodal forces and what they do at rest
   double at_start_ = 0.0;                        // J, in the static correction
-  bool dragged_ = false;
+  bool dragged_ = false, begun_ = false;
   long steps_ = 0;
 };
 

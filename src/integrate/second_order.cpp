@@ -166,6 +166,8 @@ void register_second_order() {
 
 void set_system(TS ts, coupling::System& system) { data_of(ts).system = &system; }
 
+bool& has_started(TS ts) { return data_of(ts).started; }
+
 void set_ladder(TS ts, StepLadder& ladder) { ts->adapt->data = &ladder; }
 
 }  // namespace traverse::integrate

@@ -20,5 +20,7 @@ void set_system(TS ts, coupling::System& system);
 /// What such a TS with the ladder for its TSAdapt takes its steps from: those with an error above TS's relative
 /// tolerance are taken again, shorter.
 void set_ladder(TS ts, StepLadder& ladder);
+/// Whether such a TS has taken a step, so that the next one goes on from it.
+bool& has_started(TS ts);
 
 }  // namespace traverse::integrate

@@ -149,38 +149,30 @@ void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array));
 
 // --- the loop ------------------------------------------------------------------------------------------------------
 
-double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step) {
+double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
+                    const std::function<void(double)>& between) {
   const double slack = near_event * std::min({settings_.time_step, settings_.interval, settings_.end_time});
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::max(settings_.end_time, 1.0);
-  std::size_t event = 0, passage = 0;
   const auto look = [&](Purpose purpose) {  // steps apart are looked at one by one, at their ends
     if (purpose != Purpose::look || system_.apart() == nullptr) sample_now(sample, purpose);
   };
-  long samples = 0;
-  double t = 0.0;
-  bool going = true;
-  if (settings_.corners) system_.expect_corners(settings_.end_time, settings_.time_step);
-  sample_now(sample, Purpose::sample);
-  {
+  Way& way = way_;
+  double& t = way.t;
+  if (!way.begun) {
+    if (settings_.corners) system_.expect_corners(settings_.end_time, settings_.time_step);
+    sample_now(sample, Purpose::sample);
     Array y(y_);
     system_.accept(t, y.data);
   }
-  show_to_monitors(t);
-  while (going && t < settings_.end_time - slack) {
-    double next_sample = static_cast<double>(samples + 1) * settings_.interval;
-    const bool beyond = next_sample > settings_.end_time + slack;  // the end is no multiple of the interval
-    if (next_sample > settings_.end_time - slack) next_sample = settings_.end_time;
-    double target = next_sample;
-    const auto stop_at = [&](const std::vector<double>& times, std::size_t& next) {
-      while (next < times.size() && times[next] <= t + slack) ++next;
-      if (next < times.size() && times[next] < target - slack) target = times[next];
-    };
-    stop_at(settings_.events, event);
-    stop_at(settings_.passages, passage);
-    while (going && t < target) {
-      t = take_step(t, target - t);
-      if (t > target - rounding) {
-        t = target;
+  if (!way.begun) show_to_monitors(t);
+  way.begun = true;
+  for (bool going = true; going && t < settings_.end_time - slack;) {
+    if (!way.under_way) set_target(slack);
+    while (going && t < way.target) {
+      if (between) between(t);
+      t = take_step(t, way.target - t);
+      if (t > way.target - rounding) {
+        t = way.target;
         check(TSSetTime(ts_, t));
       }
       Array y(y_);
@@ -190,14 +182,30 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       show_to_monitors(t);
       going = step(t, steps_) && !stopped_at_limit();
     }
-    if (t == next_sample) {
-      const bool stored = ++samples % settings_.stored == 0 && !beyond;
+    way.under_way = t < way.target;
+    if (t == way.next_sample) {
+      const bool stored = ++way.samples % settings_.stored == 0 && !way.beyond;
       look(stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::look);
-    } else if (passage < settings_.passages.size() && t == settings_.passages[passage]) {
+    } else if (way.passage < settings_.passages.size() && t == settings_.passages[way.passage]) {
       look(Purpose::look);
     }
   }
   return t;
+}
+
+// The next time at which a step has to end.
+void Stepper::set_target(double slack) {
+  way_.under_way = true;
+  way_.next_sample = static_cast<double>(way_.samples + 1) * settings_.interval;
+  way_.beyond = way_.next_sample > settings_.end_time + slack;  // the end is no multiple of the interval
+  if (way_.next_sample > settings_.end_time - slack) way_.next_sample = settings_.end_time;
+  way_.target = way_.next_sample;
+  const auto stop_at = [&](const std::vector<double>& times, std::size_t& next) {
+    while (next < times.size() && times[next] <= way_.t + slack) ++next;
+    if (next < times.size() && times[next] < way_.target - slack) way_.target = times[next];
+  };
+  stop_at(settings_.events, way_.event);
+  stop_at(settings_.passages, way_.passage);
 }
 
 // TS takes single steps here, in which it calls none.

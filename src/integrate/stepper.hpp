@@ -53,7 +53,14 @@ class Stepper {
   /// Collective. Runs to the end. `sample` is called at t = 0, at every multiple of the interval, at passages and at
   /// the end, `step` after every step; when it returns false the run stops early. Throws SolverError with what
   /// to change when a step cannot be taken. Returns the time reached.
-  double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step);
+  /// `between` is called before every step, when all that belongs to the steps so far has been called.
+  double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
+             const std::function<void(double)>& between = {});
+
+  /// Collective. The state between two steps, written or read back: then, after the start, run() goes on from there.
+  void keep(base::Archive& archive);
+  /// Why it cannot be written; empty: it can.
+  std::string no_archive() const;
 
   long steps() const { return steps_; }
   long rejected() const;                                           // steps tried in vain
@@ -72,7 +79,17 @@ class Stepper {
     bool recording = false, start = false;
   };
 
+  /// Where the loop over steps is.
+  struct Way {
+    double t = 0.0, target = 0.0, next_sample = 0.0;  // s
+    long samples = 0;
+    std::size_t event = 0, passage = 0;      // the next ones
+    bool begun = false, under_way = false;   // to the target
+    bool beyond = false;                     // the end is no multiple of the interval, and the next sample
+  };
+
   void set_up_type();
+  void set_target(double slack);
   double next_step(double from, double left) const;
   void show_to_monitors(double t);
   double take_step(double from, double left);
@@ -107,6 +124,7 @@ class Stepper {
   bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false, high_order_ = false;
   bool monitored_ = false;            // by -ts_monitor and its like
   std::optional<StepLadder> ladder_;  // of adaptive steps of an own type
+  Way way_;
   double next_step_ = 0.0;            // what the step control wants
   double last_step_ = 0.0;
   long steps_ = 0;

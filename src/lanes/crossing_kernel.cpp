@@ -22,6 +22,13 @@ TaskInstant step(const Task& task, double to, bool from_kink, bool to_kink) {
   one.step(to, from_kink, to_kink);
   return one.instant();
 }
+/// Goes on from where another crossing of the same task was, whose memory this is.
+void go_on_from(const Task& task, const double* memory) {
+  const long size = stepped_size(task);
+  for (long i = size_of_one; i < size; ++i) task.work[i] = memory[i];
+  One& one = *(new (task.work) One(task, task.work + size_of_one));  // with its own pointers
+  one.go_on_from(*reinterpret_cast<const One*>(memory));
+}
 TaskInstant instant(const Task& task) { return reinterpret_cast<const One*>(task.work)->instant(); }
 
 }  // namespace traverse::lanes::TRAVERSE_LANES_TARGET

@@ -97,6 +97,40 @@ class Group : CrossingAlgebra<W> {
     Looks::see(s);
     for (int j = 0; j < s.task.wheels; ++j) s.F1[j] = Contacts::normal(s, j);
   }
+  /// Goes on from where another crossing of the same task was, whose numbers have been copied behind this one.
+  void go_on_from(const Group& other) {
+    State& s = state_;
+    const State& o = other.state_;
+    s.h = o.h;
+    s.rate = o.rate;
+    s.d = o.d;
+    s.failed = o.failed;
+    s.ds = o.ds;
+    s.ds_before = o.ds_before;
+    s.start = o.start;
+    s.distance = o.distance;
+    s.yield_to_force = o.yield_to_force;
+    s.moved = o.moved;
+    s.hard = o.hard;
+    s.known = o.known;
+    s.looks = o.looks;
+    s.seen = o.seen;
+    for (int i = 0; i < 2; ++i) s.s_before[i] = o.s_before[i];
+    for (int i = 0; i < 3; ++i) {
+      s.time[i] = o.time[i];
+      s.row_of[i] = s.x + (o.row_of[i] - o.x);  // the rows take turns
+    }
+    for (int j = 0; j < most_kept; ++j) {
+      s.lost[j] = o.lost[j];
+      s.given[j] = o.given[j];
+    }
+    s.all_lost = o.all_lost;
+    s.all_given = o.all_given;
+    s.speed = o.speed;
+    s.end_time = o.end_time;
+    s.least = o.least;
+    s.greatest = o.greatest;
+  }
   TaskInstant instant() const {
     const State& s = state_;
     const auto numbers = [](const Lane* x) { return reinterpret_cast<const double*>(x); };

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "lanes/crossing.hpp"
 #include "lanes/span_forces.hpp"
 
@@ -82,6 +83,9 @@ class SpanCrossing {
   double lost() const;
   double given() const { return given_total_; }
 
+  /// The state between two steps.
+  void keep(base::Bytes& bytes);
+
  private:
   struct Group {  // vehicles with the same numbers; arrays [coordinate][vehicle]
     const VehicleNumbers* numbers = nullptr;
@@ -92,6 +96,9 @@ class SpanCrossing {
     std::array<std::vector<double>, most_kept> a;
     // At this step length, by rows: J^-1; J^-1 [K C]; -J^-1 r0; J^-1 G^T; the same of forces along the track; H.
     std::vector<double> inverse, by_state, alone, Y, Y_along, H;
+    void keep(base::Bytes& bytes) {
+      bytes(x, w, x_still, w_still, a_free, rate, bent, bend, most_bent, a);
+    }
   };
   struct Place {
     std::size_t group = 0, at = 0;

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "lanes/crossing_numbers.hpp"
 
 namespace traverse::lanes {
@@ -22,6 +23,8 @@ class SteppedCrossing {
   /// One number of what TaskInstant names, after the last step.
   using Numbers = const double* TaskInstant::*;
   double at(Numbers numbers, std::size_t i) const { return (now_.*numbers)[2 * i]; }
+  /// The state between two steps. FileError where another kind of processor has written it.
+  void keep(base::Bytes& bytes);
   std::vector<double> bent() const;  // coordinates of every vehicle where it was farthest from linear
 
  private:

@@ -27,6 +27,7 @@ struct Instant {
   int partition_version = 0;   // 0: none
   Eigen::VectorXd q, qd, qdd;  // n
   Sensitivity sensitivity;     // B
+  void keep(base::Bytes& bytes) { bytes(time, partition_version, q, qd, qdd, sensitivity); }
 };
 
 /// Columns [first, last) of a matrix.
@@ -51,6 +52,10 @@ struct FrictionState {
   Eigen::VectorXd by_lambda;          // r: df = -by_lambda d(lambda)
   Eigen::MatrixXd gain;               // r x r: d(lambda)/df
   Eigen::MatrixXd system, inverse;    // r x r: 1 + gain by_lambda, and its inverse
+
+  void keep(base::Bytes& bytes) {
+    bytes(A, H, speed, share, force, normal_force, jammed, by_lambda, gain, system, inverse);
+  }
 };
 
 /// Everything that changes with time for one mechanism; sized once by Mechanism::make_state.
@@ -87,6 +92,12 @@ struct MechanismState {
   Eigen::VectorXd change;            // f
   Eigen::VectorXd centre;            // n: q of a nearly singular position
   Eigen::MatrixXd interpolated;      // n x (f + 2): B, b, d there
+
+  void keep(base::Bytes& bytes) {
+    bytes(time, q, qd, B, b, d, g, dissipation, qdd, lambda, Phi_q, Phi, gamma, Phi_t, friction, frames, columns,
+          dependent_block, reduced_mass, accepted, partition_version, factored, factors_belong, sensitivity_belongs,
+          velocities_set, mass_factored, corrections, centre, interpolated);
+  }
 };
 
 /// Powers of a mechanism in a state, W.
@@ -201,6 +212,9 @@ class Mechanism {
   /// The mass (kg) that a generalized force along `direction` (n) meets when it sets the mechanism in motion: the force
   /// over the acceleration along it. Infinite where it moves nothing. With velocities set.
   double effective_mass(MechanismState& s, const Eigen::VectorXd& direction) const;
+
+  /// The partition, which changes with time.
+  void keep(base::Bytes& bytes) { bytes(partition_, partition_version_, chosen_quality_); }
 
  private:
   const Frame& frame(const MechanismState& s, int body) const { return s.frames[body + 1]; }

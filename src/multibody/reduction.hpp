@@ -17,6 +17,7 @@ struct Partition {
   std::vector<int> independent;  // f indices into q, ascending
   std::vector<int> dependent;    // as many as kept rows, ascending
   std::vector<int> rows;         // kept rows of Phi, ascending
+  void keep(base::Bytes& bytes) { bytes(independent, dependent, rows); }
 };
 
 /// Weights that make the entries of Phi_q comparable: an angle counts as the way it makes at a typical arm.
@@ -31,6 +32,7 @@ struct Sensitivity {
   IndexLists independent;       // 0..f-1, ascending
   std::vector<double> value;
 
+  void keep(base::Bytes& bytes) { bytes(coordinate, independent, value); }
   /// Moves q by a change of the independent coordinates, which stand at `places`.
   void add(const Eigen::VectorXd& change, const std::vector<int>& places, Eigen::VectorXd& q) const;
 };
@@ -88,6 +90,10 @@ class DependentBlock {
   double sensitivity(int pivot, int k) const { return sensitivities(pivot)[k]; }
   /// Takes the sensitivity from B (n x f).
   void set_sensitivity(const Eigen::Ref<const Eigen::MatrixXd>& B);
+  void keep(base::Bytes& bytes) {
+    bytes(row_of_, column_of_, independent_, lower_, upper_, sensitive_, block_sources_, sensitivity_sources_, block_,
+          sensitivity_, inverse_pivot_, planned_pivot_, pivot_scale_, work_, least_pivot_);
+  }
 
  private:
   static constexpr double small_pivot = 3e-3;
@@ -117,6 +123,7 @@ class ReducedMass {
   void factor(const DependentBlock& block, const Eigen::VectorXd& mass);
   void solve(Eigen::VectorXd& x);  // in place
   MassOperations operations(const DependentBlock& block) const;
+  void keep(base::Bytes& bytes) { bytes(ldl_, diagonal_, target_); }
 
  private:
   SparseLdl ldl_;

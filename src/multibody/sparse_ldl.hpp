@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <vector>
+#include "base/bytes.hpp"
 
 namespace traverse::multibody {
 
@@ -19,6 +20,7 @@ struct IndexLists {
     index.clear();
   }
   void close() { start.push_back(static_cast<int>(index.size())); }
+  void keep(base::Bytes& bytes) { bytes(start, index); }
 };
 
 class SparseLdl {
@@ -41,6 +43,7 @@ class SparseLdl {
   long solve_operations() const;
 
   int size() const { return static_cast<int>(order_.size()); }
+  void keep(base::Bytes& bytes) { bytes(order_, place_, below_, entries_, inverse_); }
 
  private:
   std::vector<int> order_, place_;  // the index eliminated k-th, and the other way round

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "recovery/recovery.hpp"
 
 namespace traverse::beam {
@@ -20,6 +21,7 @@ class ViscousLag {
   /// shear and axial force by m, and fills in moment_rate. Between calls loads have moved with their speeds, and what
   /// else is in c has changed evenly; at the first one the beam is at rest, m = c.
   void apply(double t, const std::vector<ElementLoad>& loads, std::vector<Response>& responses);
+  void keep(base::Bytes& bytes) { bytes(time_, interval_, inner_, first_); }
 
  private:
   static constexpr std::size_t parts = 16;  // of an interval in which a load passes through a station's element

@@ -254,6 +254,28 @@ const BeamFactor& BeamOperator::factored(double shift, double shift2, const Adde
   return factors_.front().beam;
 }
 
+void BeamOperator::keep(base::Archive& archive, const std::function<const AddedSprings*(long)>& springs) {
+  struct Key {
+    double shift, shift2;
+    long added, stamp;
+  };
+  std::vector<Key> keys;  // the oldest first
+  for (auto f = factors_.rbegin(); f != factors_.rend(); ++f) keys.push_back({f->shift, f->shift2, f->added, f->stamp});
+  long stamp = stamp_, factorisations = factorisations_, solved = solves;
+  archive.cache(keys, stamp, factorisations, solved, static_error_);
+  if (!archive.reads() || !archive.alike()) return;
+  forget_steps();
+  for (const Key& key : keys) {
+    const AddedSprings* added = key.added != 0 ? springs(key.added) : nullptr;
+    if (key.added != 0 && added == nullptr) continue;
+    (void)factored(key.shift, key.shift2, added);
+    factors_.front().stamp = key.stamp;
+  }
+  stamp_ = stamp;
+  factorisations_ = factorisations;
+  solves = solved;
+}
+
 void BeamOperator::factor(BeamFactor& to, double shift, double shift2, const AddedSprings* added) {
   if (parts_) {
     for (std::size_t kind = 0; kind < shifted_.size(); ++kind)

@@ -93,6 +93,9 @@ class BeamOperator {
   long factorisations() const { return factorisations_; }  // so far
   bool damped() const { return damped_; }
   mutable long solves = 0;  // beam solves so far, for the summary
+  /// Collective. Which factorisations are kept; they are computed again when it is read. springs: those of a version
+  /// that may be asked for again, else null.
+  void keep(base::Archive& archive, const std::function<const AddedSprings*(long)>& springs);
 
  private:
   struct Factor {

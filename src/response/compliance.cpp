@@ -85,6 +85,20 @@ int Compliance::reach(double shift, double shift2) {
   return static_cast<int>(std::min<std::ptrdiff_t>(margin_, beam_.columns())) + 2;
 }
 
+void Compliance::keep(base::Bytes& bytes) {
+  std::vector<Column> columns;
+  if (!bytes.reads()) columns.assign(columns_.begin(), columns_.end());
+  bytes(columns, margin_, reach_stamp_);
+  if (!bytes.reads()) return;
+  columns_.assign(columns.begin(), columns.end());
+  kept_ = 0;
+  for (const Column& column : columns_) kept_ += column.values.size();
+  active_.clear();
+  elements_.clear();
+  before_.elements.clear();
+  stamp_ = -1;  // the next prepare finds the columns
+}
+
 Compliance::Place Compliance::place_of(int element) const {
   const solve::Parts* parts = operator_.parts();
   if (parts == nullptr) return {static_cast<std::size_t>(element), 0};

@@ -48,6 +48,8 @@ class Compliance final : public ElementCompliance {
 
   /// v += A^-1 loads, where loads holds 2*per_node nodal values an element of the last prepare. This rank's slice.
   void add_response(const std::vector<double>& loads, double* v) const;
+  /// The columns that are kept, of factorisations with the same stamps.
+  void keep(base::Bytes& bytes);
 
  private:
   struct Column {
@@ -56,6 +58,7 @@ class Compliance final : public ElementCompliance {
     int low = 0, high = 0;       // unknowns that respond above rounding, counted from the place's
     int first = 0, last = 0;     // the columns of the beam on all ranks that do: [first, last); without parts
     std::vector<double> values;  // (high - low) x 2*per_node, column by column
+    void keep(base::Bytes& bytes) { bytes(slot, stamp, low, high, first, last, values); }
   };
   /// Where an element is: equal elements of equal parts of the beam share a slot, and with it a column.
   struct Place {

@@ -90,6 +90,7 @@ class ByLanes final : public coupling::SteppedApart {
     }
   }
   double defect() override { return lanes::defect(fleet_, crossing_.bent()); }
+  void keep(base::Archive& archive) override { archive.same(crossing_, time_, next_kink_); }
 
  private:
   /// Of times that ascend, but for the last one.

@@ -113,6 +113,10 @@ class BySpans final : public coupling::SteppedApart {
     std::copy(seen_.begin(), seen_.end(), probes.begin());
   }
   double defect() override { return lanes::defect(fleet_, crossing_.bent()); }
+  void keep(base::Archive& archive) override {
+    archive.same(crossing_, next_kink_, told_, told_rate_, v_, w_, a_, loads_, seen_);
+    if (lag_) archive.same(*lag_);
+  }
 
  private:
   /// Of times that ascend, but for the last one.

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "results/recorder.hpp"
 #include "run/plan.hpp"
 #include "run/shared_beam.hpp"
@@ -51,6 +52,7 @@ class DeckAcceleration {
   void finish(results::Summary& summary);
   /// After finish. The filtered series at the stored samples.
   results::Recorder::Dataset stored() const;
+  void keep(base::Bytes& bytes) { bytes(kept_, instants_); }
 
  private:
   double frequency_, interval_;

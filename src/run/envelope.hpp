@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "recovery/recovery.hpp"
 #include "results/recorder.hpp"
 
@@ -27,6 +28,7 @@ class Envelope {
   /// /envelope/deflection, acceleration, moment, shear, each [p,2]: least and greatest; each with _time (s);
   /// moment_shear and shear_moment: the shear, and the moment, at these instants.
   std::vector<results::Recorder::Dataset> datasets() const;
+  void keep(base::Bytes& bytes) { bytes(probes_); }
 
  private:
   static constexpr std::size_t quantities_ = 4;

@@ -42,6 +42,7 @@ class DeckRotations {
   const Largest& at_ends() const { return ends_; }      // which: 0 left, 1 right
   const Largest& at_joints() const { return joints_; }  // which: of joints()
   const std::vector<double>& joints() const { return x_; }
+  void keep(base::Bytes& bytes) { bytes(ends_, joints_); }
 
  private:
   const beam::Beam& beam_;
@@ -59,6 +60,7 @@ class CarAccelerations {
 
   const Largest& largest() const { return largest_; }  // which: the vehicle
   const std::string& body(std::size_t vehicle) const;
+  void keep(base::Bytes& bytes) { bytes(largest_); }
 
  private:
   const train::Fleet& fleet_;

@@ -44,7 +44,7 @@ std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBe
                                                      shared.statics);
 }
 
-Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes)
+Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes, const Plan* earlier)
     : scene_(scene),
       shared_(shared),
       still_(scene.analysis != Analysis::transient),
@@ -52,6 +52,11 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
       system_(shared.comm, carrier(scene, shared, input_), input_) {
   check_mesh(scene, notes);
   if (!still_) plan_ = make_plan(scene, system_, shared.first_period(), notes);
+  if (earlier != nullptr) {
+    plan_.time_step = earlier->time_step;
+    plan_.interval = earlier->interval;
+    plan_.stored = earlier->stored;
+  }
   std::string method;
   if (scene.exact_in_time()) {
     modal_.emplace(system_, *shared.modal, *shared.statics, input_, scene.start == Start::equilibrium, plan_.end_time,
@@ -120,12 +125,19 @@ void Passage::step_apart(const double* y, std::vector<std::string>& notes) {
 }
 
 void Passage::run(const std::function<void(const integrate::Instant&)>& sample,
-                  const std::function<bool(double, long)>& step) {
+                  const std::function<bool(double, long)>& step, const std::function<void(double)>& between) {
   if (modal_) {
-    modal_->run(sample, step);
+    modal_->run(sample, step, between);
   } else {
-    stepper_->run(sample, step);
+    stepper_->run(sample, step, between);
   }
+}
+
+void Passage::keep(base::Archive& archive) {
+  if (modal_)
+    modal_->keep(archive);
+  else
+    stepper_->keep(archive);
 }
 
 }  // namespace traverse::app

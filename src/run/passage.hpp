@@ -23,13 +23,21 @@ std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBe
 
 class Passage {
  public:
-  /// Collective. InputError for what cannot be run. Scene and structure must outlive it.
-  Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes);
+  /// Collective. InputError for what cannot be run. Scene and structure must outlive it. earlier: the plan of a run that
+  /// this one goes on from, whose steps and samples stay; null: none.
+  Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes,
+          const Plan* earlier = nullptr);
 
   /// Collective. Sets everything to its start; SolverError where there is no equilibrium.
   void start(std::vector<std::string>& notes);
   /// As Stepper::run.
-  void run(const std::function<void(const integrate::Instant&)>& sample, const std::function<bool(double, long)>& step);
+  void run(const std::function<void(const integrate::Instant&)>& sample, const std::function<bool(double, long)>& step,
+           const std::function<void(double)>& between = {});
+
+  /// Collective. The state between two steps, written, or read back after the start.
+  void keep(base::Archive& archive);
+  /// Why it cannot be written; empty: it can.
+  std::string no_archive() const { return stepper_ ? stepper_->no_archive() : ""; }
 
   coupling::System& system() { return system_; }
   const Plan& plan() const { return plan_; }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "recovery/recovery.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -75,6 +76,7 @@ class Peaks {
   const Peak& largest(Quantity q) const { return largest_[q]; }
   /// The largest extreme of each probe or wheel.
   const std::vector<Peak>& largest_of_each(Quantity q) const { return each_[q]; }
+  void keep(base::Bytes& bytes) { bytes(moments_, probes_, wheels_, found_, largest_, each_); }
 
  private:
   void note(Quantity q, std::size_t place, double value, double time);

@@ -26,6 +26,11 @@ class Judge {
   /// After the last instant. deflections: the largest one of each probe.
   std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Peak> deflections) const;
 
+  void keep(base::Bytes& bytes) {
+    if (rotations_) rotations_->keep(bytes);
+    cars_.keep(bytes);
+  }
+
  private:
   friend struct Findings;
 

@@ -201,6 +201,23 @@ const results::Summary& Watch::finished_extremes() {
   return summary_;
 }
 
+void Watch::keep(base::Archive& archive) {
+  archive.same(peaks_, envelope_, wheels_, unloading_, paths_, energy_at_start_, first_, last_apart_, sample_.time,
+               now_.probes, most_deflected_);
+  if (lag_) archive.same(*lag_);
+  if (judge_) archive.same(*judge_);
+  archive.same(deck_, filtered_wheels_);
+  archive.same(summary_.structure_energy, summary_.energy_residual, summary_.largest_energy, summary_.energy_scale);
+  archive.same(worst_.time, worst_.loads);
+  bool noted = most_deflected_ > 0.0;
+  archive.same(noted);
+  if (!noted) return;
+  for (std::vector<double>* nodal : {&worst_.v, &worst_.w, &worst_.a}) {
+    nodal->resize(static_cast<std::size_t>(beam_->local_unknowns()));
+    archive.cut(*nodal);
+  }
+}
+
 results::Summary Watch::finish() {
   const Peaks& peaks = finished_peaks();
   const auto extreme = [&](Quantity q) {

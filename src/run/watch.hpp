@@ -55,6 +55,9 @@ class Watch {
   /// The extremes so far, after the last sample.
   const Peaks& finished_peaks();
 
+  /// Collective. What has been seen so far, written or read back.
+  void keep(base::Archive& archive);
+
  private:
   void drag(const double* drag);
   void note_separations();

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <vector>
+#include "base/bytes.hpp"
 
 namespace traverse::app {
 
@@ -25,6 +26,7 @@ class WheelExtremes {
 
   const WheelExtreme& least() const { return least_; }
   const WheelExtreme& greatest() const { return greatest_; }
+  void keep(base::Bytes& bytes) { bytes(seen_, least_, greatest_); }
 
  private:
   /// The latest instants of a wheel, the last one at the end.

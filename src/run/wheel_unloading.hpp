@@ -23,6 +23,7 @@ class WheelUnloading {
   void add(std::size_t wheel, double t, double force);
 
   const Largest& largest() const { return largest_; }  // over the force at the start; which: the wheel
+  void keep(base::Bytes& bytes) { bytes(at_start_, largest_); }
 
  private:
   std::vector<double> at_start_;  // N
@@ -45,6 +46,7 @@ class FilteredWheels {
 
   /// After the last instant, once.
   results::FilteredUnloading finish(const train::Fleet& fleet);
+  void keep(base::Bytes& bytes) { bytes(kept_); }
 
  private:
   double frequency_, level_, interval_;

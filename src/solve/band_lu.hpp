@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <vector>
+#include "base/bytes.hpp"
 
 namespace traverse::solve {
 
@@ -19,6 +20,7 @@ class BandLu {
   void factor();
   void solve_in_place(Eigen::MatrixXd& X) const;
   void solve_in_place(double* x) const;
+  void keep(base::Bytes& bytes) { bytes(size_, band_, above_, lu_, inverse_pivot_, pivot_row_); }
 
  private:
   int size_ = 0, band_ = 0;

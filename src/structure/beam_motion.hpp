@@ -16,6 +16,7 @@
 
 #include <initializer_list>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,7 @@ class BeamMotion final : private solve::NodeFiller {
   /// Nodal accelerations at the start of the step, this rank's unknowns.
   double* start_acceleration() { return kept_[0].data(); }
   const double* start_acceleration() const { return kept_[0].data(); }
+  std::span<double> start() { return kept_[0]; }
   /// What is kept of stage i, counted from 0: Z or A.
   double* kept(std::size_t stage) { return kept_[stage + 1].data(); }
 

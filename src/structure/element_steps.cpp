@@ -188,6 +188,16 @@ void ElementStructure::measure_dissipation(const double* v, const double* w) {
                                        window_ ? local_node(window_->past()) : beam_.local_columns(), v, w));
 }
 
+void ElementStructure::keep(base::Archive& archive) {
+  if (motion_) archive.cut(motion_->start());
+  archive.sum(powers_[0].beam, powers_[0].forces, dissipated_, worked_, measured_.power, measured_.rate);
+  archive.same(unmeasured_, measuring_, to_measure_, stepped_, incomplete_);
+  if (window_) window_->keep(archive);
+  if (nonlinear_) archive.cache(*nonlinear_);
+  statics_->keep(archive, [this](long version) { return nonlinear_ ? nonlinear_->tangents(version) : nullptr; });
+  archive.cache(compliance_);
+}
+
 double ElementStructure::error_energy(const double* v, const double* w) {
   if (fused()) return motion_->error_energy();
   double* const v_off = v_still_.data();

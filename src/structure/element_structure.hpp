@@ -67,6 +67,7 @@ class ElementStructure final : public Structure {
   StructureEnergy energy(const double* v, const double* w) override;
   void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
                NodalMotion& out) override;
+  void keep(base::Archive& archive) override;
 
  private:
   enum class Kind { statics, state, step, fused };  // of the stage under way

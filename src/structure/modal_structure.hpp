@@ -49,6 +49,10 @@ class ModalStructure final : public Structure {
   StructureEnergy energy(const double* v, const double* w) override;
   void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
                NodalMotion& out) override;
+  void keep(base::Archive& archive) override {
+    archive.cut(kept_[0]);
+    archive.sum(powers_[0].damping, powers_[0].forces, dissipated_, worked_);
+  }
 
  private:
   /// phi S^-1 phi^T between elements, S the stage's matrix.

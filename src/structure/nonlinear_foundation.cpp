@@ -305,4 +305,15 @@ std::string NonlinearFoundation::worst_point() const {
   return text;
 }
 
+const AddedSprings* NonlinearFoundation::tangents(long version) const {
+  const auto* found =
+      std::find_if(kept_.begin(), kept_.end(), [&](const AddedSprings& kept) { return kept.version == version; });
+  return found == kept_.end() ? nullptr : &*found;
+}
+
+void NonlinearFoundation::keep(base::Bytes& bytes) {
+  bytes(points_, current_, versions_, shift_, iteration_);
+  for (AddedSprings& kept : kept_) bytes(kept.version, kept.k, kept.c);
+}
+
 }  // namespace traverse::structure

@@ -61,6 +61,10 @@ class NonlinearFoundation {
   /// Collective. The point that agrees least, for messages.
   std::string worst_point() const;
 
+  /// The tangents of that version; null where they are kept no longer.
+  const AddedSprings* tangents(long version) const;
+  void keep(base::Bytes& bytes);
+
  private:
   struct Point {
     beam::NonlinearPoint its;
@@ -77,6 +81,9 @@ class NonlinearFoundation {
     double balanced_force = 0.0;  // G at zeta0
     double misfit = 0.0;          // of force and tangent, beyond rounding
     beam::FoundationForce state;
+    void keep(base::Bytes& bytes) {
+      bytes(still, still_rate, zeta0, force0, zeta, linear_force, balanced_force, misfit, state);
+    }
   };
 
   void note_terms(const beam::Beam& beam);

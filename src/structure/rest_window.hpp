@@ -7,6 +7,7 @@
 #include <array>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "structure/beam_motion.hpp"
 
 namespace traverse::structure {
@@ -36,6 +37,10 @@ class RestWindow {
   /// Columns: [first, past).
   int first() const { return first_; }
   int past() const { return past_; }
+  void keep(base::Archive& archive) {
+    archive.same(first_, past_, low_, high_, largest_, steps_);
+    archive.sum(energy_left_);
+  }
 
  private:
   void note_largest(const double* v, const double* w, int first, int past);

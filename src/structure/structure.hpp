@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "methods/one_step_methods.hpp"
 #include "recovery/recovery.hpp"
 #include "response/beam_operator.hpp"
@@ -152,6 +153,9 @@ class Structure {
   /// A state with its accelerations as nodal values, under the moving forces and the contacts' loads.
   virtual void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
                        NodalMotion& out) = 0;
+
+  /// Between steps: what changes with time but v and w. When it is read the method has been set.
+  virtual void keep(base::Archive& archive) = 0;
 
  protected:
   /// v and w of elements, this rank's part of them; at a state, or, with null pointers, at the free response of the

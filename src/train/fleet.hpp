@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "beam/mesh.hpp"
 #include "multibody/mechanism.hpp"
 #include "track/touching.hpp"
@@ -39,6 +40,11 @@ struct MovingVehicle {
   std::vector<int> touching;  // its wheels and pairs, numbered as Fleet::contact does
   Eigen::VectorXd Q;          // generalized forces of the wheels, n
   bool rests = false;         // converged: Fleet::set and touch skip it
+
+  void keep(base::Bytes& bytes) {
+    bytes(mechanism, state, Q);
+    dynamics->keep(bytes);
+  }
 };
 
 /// A contact at the state last evaluated.
@@ -57,6 +63,9 @@ struct Contact {
   double sign = 1.0;                    // of its force
   int active = 0;                       // the patch with the deepest penetration
   int slot() const { return slots[active]; }
+  void keep(base::Bytes& bytes) {
+    bytes(law, touch, kinematics, force, approach_speed, touched, released, slots, sign, active);
+  }
 };
 
 /// Two bodies of a vehicle, or a body and the ground.
@@ -76,6 +85,11 @@ struct WheelContact : Contact {
   int further = 0;     // index of the first further entry of this wheel; 0: none
   bool is_further = false;
   double divide = 0.0;  // sign -1: station of the minimum between the points, as it was found, m
+
+  void keep(base::Bytes& bytes) {
+    Contact::keep(bytes);
+    bytes(patches, candidates, home, divide);
+  }
 };
 
 struct WheelLoad {
@@ -222,6 +236,9 @@ class Fleet {
   multibody::MechanismPowers powers() const;
   /// Energies of all vehicles, J.
   multibody::MechanismEnergy energy() const;
+
+  /// Collective. What changes with time; owners: the rank of each vehicle where they are dealt out.
+  void keep(base::Archive& archive, const std::vector<int>& owners);
 
  private:
   void add_patch(WheelContact& c, int element, double start, double low, double high);

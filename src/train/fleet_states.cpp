@@ -146,4 +146,17 @@ std::string Fleet::trouble() const {
          ", wherever else its bodies go; a driver pulls it beyond its reach or through a dead point";
 }
 
+void Fleet::keep(base::Archive& archive, const std::vector<int>& owners) {
+  for (std::size_t k = 0; k < vehicles.size(); ++k) {
+    archive.of(owners[k], vehicles[k]);
+    for (WheelContact& wheel : wheels)
+      if (wheel.vehicle == static_cast<int>(k)) archive.of(owners[k], wheel);
+    for (PairContact& pair : pairs)
+      if (pair.vehicle == static_cast<int>(k)) archive.of(owners[k], pair);
+  }
+  archive.same(elements_, crowded_, home_, cruise_, stuck_);
+  archive.cache(position_, velocity_, time_, is_set_);
+  is_set_ = is_set_ && archive.alike();
+}
+
 }  // namespace traverse::train

@@ -32,6 +32,7 @@ class MultibodyDynamics : public VehicleDynamics {
   void go_by_itself(VehicleYield& yield) override { newton_.go_by_itself(R_, yield); }
   void rest() override { R_.setZero(); }
   const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override { return newton_.take(forces); }
+  void keep(base::Bytes& bytes) override { bytes(newton_, shifts_, partition_version_, curved_, R_, pdd_); }
 
  private:
   void find_J(MovingVehicle& vehicle, const StageShifts& shifts, bool curved);

@@ -25,6 +25,8 @@ void NewtonInverse::compute(const Eigen::MatrixXd& J, bool singular) {
   } else {
     form_ = Form::factors;
     factors_.compute(J);
+    lu_ = factors_.matrixLU();
+    order_ = factors_.permutationP().indices();
   }
 }
 
@@ -38,9 +40,10 @@ void NewtonInverse::apply(const Eigen::VectorXd& b, Eigen::VectorXd& x) const {
       band_.solve_in_place(x.data());
       break;
     case Form::factors:
-      x = factors_.permutationP() * b;
-      factors_.matrixLU().triangularView<Eigen::UnitLower>().solveInPlace(x);
-      factors_.matrixLU().triangularView<Eigen::Upper>().solveInPlace(x);
+      x.resize(b.size());
+      for (Eigen::Index i = 0; i < b.size(); ++i) x[order_[i]] = b[i];
+      lu_.triangularView<Eigen::UnitLower>().solveInPlace(x);
+      lu_.triangularView<Eigen::Upper>().solveInPlace(x);
       break;
   }
 }

@@ -50,6 +50,7 @@ class Separations {
   bool touching(int contact) const { return seen_[contact].touching; }
 
   const std::vector<Separation>& list() const { return list_; }
+  void keep(base::Bytes& bytes) { bytes(time_, seen_, list_); }
 
  private:
   struct Seen {

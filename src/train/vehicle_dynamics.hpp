@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "base/bytes.hpp"
 #include "multibody/mechanism.hpp"
 
 namespace traverse::train {
@@ -50,6 +51,7 @@ struct VehicleYield {
   RowTangent D;           // the tangent that H includes; of size 0 where it includes none, as in a step
   Eigen::VectorXd c;      // r
   double residual = 0.0;  // largest entry of the equations of motion's residual over the vehicle's scale
+  void keep(base::Bytes& bytes) { bytes(H, P, D, c, residual); }
 };
 
 /// One vehicle's equations of motion. All forces at its contacts are in MovingVehicle::Q as generalized forces.
@@ -101,6 +103,9 @@ class VehicleDynamics {
   virtual void rest() = 0;
   /// The change of p (freedom values) by itself and under changes of the rows' forces.
   virtual const Eigen::VectorXd& take(const Eigen::VectorXd& forces) = 0;
+
+  /// What changes with time.
+  virtual void keep(base::Bytes& bytes) = 0;
 };
 
 /// A kind of dynamics as a value: a copy of a vehicle has its own.

@@ -29,6 +29,8 @@ class VehicleNewton {
   static void multiply_directions(ContactRows rows, const ColumnRanges& columns, const Eigen::MatrixXd& B,
                                   RowMatrix& G);
 
+  void keep(base::Bytes& bytes) { bytes(inverse_, G_, Y_, range_, DG_, dx_, s_); }
+
  private:
   void add_contacts(const RowMatrix& left, const RowTangent& D, Eigen::MatrixXd& J);
 

@@ -48,6 +48,13 @@ void VehicleShare::deal(MPI_Comm comm, Fleet& fleet) {
   fleet.take(first_[rank_], first_[rank_ + 1]);
 }
 
+std::vector<int> VehicleShare::owners(std::size_t vehicles) const {
+  std::vector<int> owners(vehicles, 0);
+  for (std::size_t r = 0; r + 1 < first_.size(); ++r)
+    std::fill(owners.begin() + first_[r], owners.begin() + first_[r + 1], static_cast<int>(r));
+  return owners;
+}
+
 void VehicleShare::send() {
   MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, buffer_.data(), count_.data(), begin_.data(), MPI_DOUBLE, comm_);
 }

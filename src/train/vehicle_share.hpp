@@ -22,6 +22,8 @@ class VehicleShare {
   void deal(MPI_Comm comm, Fleet& fleet);
   /// Whether there is anything to exchange.
   bool dealt() const { return !first_.empty(); }
+  /// The rank that has each of so many vehicles; the first one where they are not dealt.
+  std::vector<int> owners(std::size_t vehicles) const;
 
   /// Collective where dealt. Every rank writes numbers of its vehicles, size(k) of vehicle k, and reads those of the
   /// others': write(k, double*), read(k, const double*). Returns the signs of all ranks.

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <array>
 
+#include "base/bytes.hpp"
 #include "traverse/contact/law.hpp"
 #include "traverse/track/profile.hpp"
 
@@ -43,6 +44,11 @@ struct Touch {
   double station = 0.0;                                         // x of the contact point on the undeformed track, m
   double seat = 0.0, seat_by_x = 0.0;  // what the element yields there between its ends, m/N, and d/dx of it, 1/N
   double ahead = 0.0;  // of it before the wheel's centre, m; where the next search for the closest point begins
+
+  void keep(base::Bytes& bytes) {
+    bytes(kinematics, normal_on_body, tangent_on_body, normal_on_other, tangent_on_other, normal_on_beam,
+          tangent_on_beam, xi, station, seat, seat_by_x, ahead);
+  }
 };
 
 /// Which point of a patch is meant: the one closest to the wheel's centre, of which there is one; where there may be

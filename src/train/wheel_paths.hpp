@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <vector>
+#include "base/bytes.hpp"
 
 namespace traverse::train {
 
@@ -20,6 +21,7 @@ class WheelPaths {
   double x(std::size_t instant, std::size_t wheel) const { return x_[instant * wheels_ + wheel]; }
   /// The most that the distance of a wheel from the first one has changed by, m.
   double drift() const { return drift_; }
+  void keep(base::Bytes& bytes) { bytes(wheels_, time_, x_, stride_, seen_, drift_); }
 
  private:
   void thin_out();

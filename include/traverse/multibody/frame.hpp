@@ -29,6 +29,10 @@ struct Frame {
   Eigen::Vector2d velocity_at(const Eigen::Vector2d& arm) const { return velocity + omega * quarter_turn(arm); }
 
   void set_angle(double value);
+  template <class Bytes>
+  void keep(Bytes& bytes) {
+    bytes(origin, velocity, angle, cosine, sine, omega);
+  }
 };
 
 }  // namespace traverse::multibody
