@@ -74,7 +74,13 @@ class Bytes {
   void one(std::optional<T>& value) {
     bool there = value.has_value();
     one(there);
-    if (reads_ && there != value.has_value()) value = there ? std::optional<T>(std::in_place) : std::nullopt;
+    if (reads_ && there != value.has_value()) {
+      if constexpr (std::is_default_constructible_v<T>) {
+        value = there ? std::optional<T>(std::in_place) : std::nullopt;
+      } else {
+        damaged();  // what a scene has is set up before
+      }
+    }
     if (there) one(*value);
   }
   template <class T, int rows, int columns, int options>

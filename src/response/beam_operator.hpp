@@ -3,10 +3,12 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <list>
 #include <optional>
 #include <vector>
 
+#include "base/archive.hpp"
 #include "beam/internal_forces.hpp"
 #include "response/beam_factor.hpp"
 #include "response/block_rows.hpp"
