@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "accuracy/accuracy.hpp"
+#include "results/checkpoint_file.hpp"
 #include "results/place.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/options/analyses.hpp"
@@ -25,6 +26,7 @@ struct Job {
   const Accuracy& accuracy;
   SharedBeam& beam;
   std::vector<std::string> notes;
+  const results::Checkpoint* earlier = nullptr;  // that the run goes on from; null: none
 };
 
 // Collective. Each writes the results file and the summary, and returns the exit status as `run` does.

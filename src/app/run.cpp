@@ -7,6 +7,7 @@
 #include "results/stage.hpp"
 #include "run/active_ranks.hpp"
 #include "run/by_spans.hpp"
+#include "run/checkpoints.hpp"
 #include "run/rank_choice.hpp"
 #include "study/lanes_choice.hpp"
 #include "study/study.hpp"
@@ -41,11 +42,15 @@ void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
       scene.most_defect));
 }
 
-RankChoice ranks_for(MPI_Comm comm, const Scene& scene) {
-  if (scene.analysis == Analysis::transient) return choose_ranks(comm, scene);
+/// A run that goes on has as many as it had, of as many.
+RankChoice ranks_for(MPI_Comm comm, const Scene& scene, const std::optional<results::Checkpoint>& earlier) {
   RankChoice all;
   MPI_Comm_size(comm, &all.ranks);
-  return all;
+  if (earlier && (all.ranks == earlier->given_ranks || all.ranks == static_cast<int>(earlier->of_ranks.size()))) {
+    all.ranks = static_cast<int>(earlier->of_ranks.size());
+    return all;
+  }
+  return scene.analysis == Analysis::transient ? choose_ranks(comm, scene) : all;
 }
 
 }  // namespace
@@ -54,22 +59,25 @@ int run(MPI_Comm comm, const Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const results::Heartbeat heartbeat(given.quiet || rank != 0);
-  results::Place place = results::claim_place(comm, given.output.file);
+  Scene asked = given;
+  const std::optional<results::Checkpoint> earlier = earlier_of(comm, asked);
+  results::Place place = results::claim_place(comm, asked.output.file);
   if (given.study) return run_study(comm, given, std::move(place));
   if (given.sweep) return run_sweep(comm, given, std::move(place));
   // Chosen before trial runs, which are runs as well, and again when these have chosen the model.
-  const RankChoice at_first = ranks_for(comm, given);
+  const RankChoice at_first = ranks_for(comm, given, earlier);
   return run_on_first(comm, at_first.ranks, [&](MPI_Comm some) {
-    Scene scene = given;
+    Scene scene = asked;
     std::vector<std::string> notes;
     const Accuracy accuracy = choose_model(some, scene, notes);
     take_linear_vehicles(scene, notes);
-    const RankChoice ranks = ranks_for(some, scene);
+    const RankChoice ranks = ranks_for(some, scene, earlier);
     if (const std::string& said = ranks.said.empty() ? at_first.said : ranks.said; !said.empty()) notes.push_back(said);
     return run_on_first(some, ranks.ranks, [&](MPI_Comm fewer) {
       SharedBeam shared(fewer, scene, notes);
       notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-      return run_of(scene.analysis)->run({fewer, scene, std::move(place), accuracy, shared, std::move(notes)});
+      return run_of(scene.analysis)->run({fewer, scene, std::move(place), accuracy, shared, std::move(notes),
+                                         earlier ? &*earlier : nullptr});
     });
   });
 }

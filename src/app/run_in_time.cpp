@@ -12,6 +12,7 @@
 #include "results/recorder.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
+#include "run/checkpoints.hpp"
 #include "run/deflection_check.hpp"
 #include "run/model_record.hpp"
 #include "run/norm_run.hpp"
@@ -75,8 +76,35 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
   return all_kept;
 }
 
-/// The exit status; none where linear vehicles have left out more than they may.
-std::optional<int> run_once(Job& job) {
+/// Creates the results file, or takes up that of the run that this one goes on from.
+results::Recorder recorder_of(Job& job, const Scene& scene, const results::Layout& layout,
+                              const std::vector<std::string>& notes) {
+  if (job.earlier != nullptr) return {job.comm, std::move(job.place), layout, job.earlier->results};
+  results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, scene), scene.options);
+  record_model(scene, notes, recorder);
+  store_modes(job.beam, recorder);
+  return recorder;
+}
+
+/// Where the run stands that this one goes on from, or that it is at its start. repeated: with the mechanisms.
+results::Checkpoint so_far(const Job& job, bool repeated) {
+  results::Checkpoint checkpoint;
+  if (job.earlier != nullptr) checkpoint = *job.earlier;
+  MPI_Comm_size(PETSC_COMM_WORLD, &checkpoint.given_ranks);
+  checkpoint.repeated = repeated;
+  return checkpoint;
+}
+
+/// What was asked for by a signal is said to have been done.
+void say_written(MPI_Comm comm, const Scene& scene, const Checkpoints& checkpoints, double time) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  if (rank == 0 && !scene.quiet)
+    fmt::print("  checkpoint at t = {:g} s: -restart {} goes on from there\n", time, checkpoints.path());
+}
+
+/// The exit status; none where linear vehicles have left out more than they may. repeated: that has happened.
+std::optional<int> run_once(Job& job, bool repeated) {
   const MPI_Comm comm = job.comm;
   Scene scene = job.scene;
   Accuracy accuracy = job.accuracy;
@@ -99,7 +127,13 @@ std::optional<int> run_once(Job& job) {
   if (counting > 0.0) scene.looks = spacing_for(counting);
   const bool wheels = filters_wheels(scene);
   if (wheels) scene.looks = std::min(scene.looks, spacing_for(scene.output.wheel_low_pass));
-  Passage passage(scene, shared, notes);  // everything is checked before anything is computed
+  std::optional<Plan> plan;
+  if (job.earlier != nullptr)
+    plan = Plan{0.0, job.earlier->time_step, job.earlier->interval, job.earlier->stored};
+  Passage passage(scene, shared, notes, plan ? &*plan : nullptr);  // everything is checked before anything is computed
+  if (job.earlier != nullptr && !(passage.plan().end_time > job.earlier->time))
+    throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s",
+                                 job.earlier->time, passage.plan().end_time));
   coupling::System& system = passage.system();
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
   passage.start(notes);
@@ -116,27 +150,38 @@ std::optional<int> run_once(Job& job) {
   const std::string no_wheels =
       wheels ? no_filter(scene.output.wheel_low_pass, passage.plan(), wheel_count, "wheels") : std::string();
   if (!no_wheels.empty()) notes.push_back("wheel forces are not low-passed: " + no_wheels);
+  std::optional<base::Archive> archive;
+  if (job.earlier != nullptr) {
+    archive.emplace(comm, job.earlier->of_ranks);
+    passage.keep(*archive);
+    notes.push_back(fmt::format("goes on from t = {:g} s", job.earlier->time));
+  }
   print_notes(comm, notes);
 
   std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
   const Outputs outputs = outputs_of({scene, system.fleet(), beam});
   results::Layout layout = outputs.layout();
   if (!still) layout.interval = passage.plan().interval * static_cast<double>(passage.plan().stored);
-  results::Recorder recorder(comm, std::move(job.place), layout, attributes(comm, scene), scene.options);
-  record_model(scene, notes, recorder);
-  store_modes(shared, recorder);
+  results::Recorder recorder = recorder_of(job, scene, layout, notes);
   if (shared.beam) shared.beam->release_matrices();
   Watch watch(scene, system, beam, recorder, &outputs);
   if (filtered && rank == 0) watch.keep_accelerations({counting, passage.plan(), scene.output.probes});
   if (wheels && no_wheels.empty() && rank == 0)
     watch.keep_wheel_forces({scene.output.wheel_low_pass, scene.output.unloading_level, passage.plan(), wheel_count});
   if (!scene.limits.empty()) watch.judge();
-  results::Progress progress(0.0, passage.plan().end_time, scene.quiet || rank != 0);
+  if (archive) watch.keep(*archive);
+  archive.reset();
+  Checkpoints checkpoints(comm, scene, passage, watch, recorder, so_far(job, repeated));
+  const double before = job.earlier != nullptr ? job.earlier->wall_seconds : 0.0;
+  results::Progress progress(job.earlier != nullptr ? job.earlier->time : 0.0, passage.plan().end_time, scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
-  double reached = 0.0;
+  const auto wall_now = [&] {
+    return before + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  double reached = job.earlier != nullptr ? job.earlier->time : 0.0;
   bool reaches_end = false;
   auto summarise = [&](const std::string& ended) {
-    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const double wall = wall_now();
     results::Summary summary = [&] {
       const results::Stage stage("summary");
       return watch.finish();
@@ -173,7 +218,9 @@ std::optional<int> run_once(Job& job) {
     if (rank == 0) results::print_verdicts(verdicts);
     return summary;
   };
-  int stopped = 0;
+  Asked asked;
+  bool by_signal = false;
+  const int& stopped = asked.signal;
   try {
     const results::Stage stage("time steps");
     passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
@@ -182,9 +229,18 @@ std::optional<int> run_once(Job& job) {
                   reached = t;
                   progress.update(t, steps);
                   results::Stage::advance(t / passage.plan().end_time);
-                  stopped = signal_on_any(comm);
+                  asked = asked_on_any(comm, checkpoints.wanted());
                   return stopped == 0;
+                },
+                [&](double t) {
+                  if (!asked.wanted) return;
+                  checkpoints.write(t, wall_now());
+                  asked.wanted = false;
                 });
+    if (checkpoints.possible() && (stopped != 0 || passage.stopped_at_limit())) {
+      checkpoints.write(reached, wall_now());
+      by_signal = true;
+    }
   } catch (const FileError& error) {
     leave_together(comm, error);
   } catch (const Error& error) {
@@ -207,6 +263,8 @@ std::optional<int> run_once(Job& job) {
         "deepest carried\n",
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
+  if (by_signal) say_written(comm, scene, checkpoints, reached);
+  if (reaches_end && !passage.stopped_at_limit()) checkpoints.forget();
   noted.reset();
   if (reaches_end && summary.linear_defect > scene.most_defect) return {};
   check_balance(scene, summary);
@@ -222,7 +280,9 @@ std::optional<int> run_once(Job& job) {
 }  // namespace
 
 int run_in_time(Job job) {
-  if (const std::optional<int> status = run_once(job)) return *status;
+  const bool repeats = job.earlier != nullptr && job.earlier->repeated;
+  if (!repeats)
+    if (const std::optional<int> status = run_once(job, false)) return *status;
   Scene scene = job.scene;
   scene.vehicle_model = VehicleModel::full;
   std::vector<std::string> notes = {
@@ -230,8 +290,10 @@ int run_in_time(Job job) {
                   "the mechanisms",
                   job.scene.most_defect)};
   SharedBeam beam(job.comm, scene, notes);
-  Job again{job.comm, scene, results::claim_place(job.comm, scene.output.file), job.accuracy, beam, std::move(notes)};
-  return run_once(again).value();
+  results::Place place =
+      repeats ? std::move(job.place) : results::claim_place(job.comm, scene.output.file);
+  Job again{job.comm, scene, std::move(place), job.accuracy, beam, std::move(notes), repeats ? job.earlier : nullptr};
+  return run_once(again, true).value();
 }
 
 }  // namespace traverse::app

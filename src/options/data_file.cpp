@@ -4,12 +4,11 @@
 
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "options/input_texts.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::options {
@@ -71,11 +70,11 @@ bool parse_speed(std::string word, double& number) {
 
 std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most,
                                               Order order) {
-  std::ifstream file(path);
-  if (!file || std::filesystem::is_directory(path)) throw InputError(path + ": the file cannot be read");
+  const std::unique_ptr<std::istream> file = open_input(path);
+  if (file == nullptr) throw InputError(path + ": the file cannot be read");
   std::vector<std::vector<double>> columns;
   int number = 0;
-  for (std::string line; read_line(file, line, path);) {
+  for (std::string line; read_line(*file, line, path);) {
     const std::string where = fmt::format("{}:{}: ", path, ++number);
     if (number > most_lines)
       throw InputError(fmt::format("{}: has too many lines; allowed: at most {}", path, most_lines));
@@ -96,6 +95,7 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
   }
   if (columns.empty()) throw InputError(path + ": holds no numbers");
+  note_input(path, true);
   return columns;
 }
 

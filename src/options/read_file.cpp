@@ -155,14 +155,15 @@ void check_name(const std::string& word, const std::string& source, int line) {
 
 std::string text_of(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw InputError("options_file = " + path + ": is a folder, not a file");
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError("options_file = " + path + ": there is no such file, or it cannot be read");
+  const std::unique_ptr<std::istream> file = open_input(path);
+  if (file == nullptr) throw InputError("options_file = " + path + ": there is no such file, or it cannot be read");
   std::string text(most_characters + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  file->read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file->gcount()));
   if (text.size() > most_characters)
     throw InputError(
         fmt::format("options_file = {}: longer than {} characters: this is no options file", path, most_characters));
+  note_input(path, false);
   return text;
 }
 
@@ -271,6 +272,11 @@ std::vector<Entry> parse_words(const std::vector<std::string>& words, const std:
 }
 
 std::string find_file(const std::string& path, const std::string& named_in) {
+  if (const std::string& prefix = mounted(named_in); !prefix.empty()) {
+    const std::filesystem::path folder = std::filesystem::path(named_in.substr(prefix.size())).parent_path();
+    for (const std::filesystem::path& at : {(folder / path).lexically_normal(), folder / path, std::filesystem::path(path)})
+      if (is_mounted(prefix + at.string())) return prefix + at.string();
+  }
   std::error_code ignored;
   if (!named_in.empty() && !std::filesystem::path(path).is_absolute()) {
     const std::filesystem::path beside = std::filesystem::path(named_in).parent_path() / path;

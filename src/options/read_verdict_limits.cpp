@@ -102,14 +102,15 @@ std::vector<VerdictLimit> parse_verdict_limits(const std::string& text, const st
 }
 
 std::vector<VerdictLimit> read_verdict_limits(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw InputError("limits = " + path + ": cannot be read");
+  const std::unique_ptr<std::istream> file = open_input(path);
+  if (file == nullptr) throw InputError("limits = " + path + ": cannot be read");
   std::string text(longest_file + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  file->read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(file->gcount()));
   if (text.size() > longest_file)
     throw InputError(
         fmt::format("limits = {}: longer than {} characters: this is no list of limits", path, longest_file));
+  note_input(path, true);
   return parse_verdict_limits(text, path);
 }
 

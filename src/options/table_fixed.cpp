@@ -152,6 +152,10 @@ constexpr Row run_rows[] = {
   {"output_lowpass_series", flag, "", "false", any, "", 0, "stores the filtered accelerations beside the others"},
   {"output_wheel_lowpass", number, "Hz", "20", {1.0, 1e6}, "", 0, "frequency up to which wheel forces count where a limit is of filtered ones; given, a single run says how much of its force a wheel loses without a filter and with a low-pass there"},
   {"output_unloading_level", number, "1", "0.6", {0.0, 1.0, true}, "", 0, "part of its force at the start from which on a wheel counts as unloaded, of low-passed forces"},
+  {"checkpoint_interval", number, "s", "900", not_negative, "", 0, "of wall time between two checkpoints of a single run; 0: none, except where SIGUSR1, SIGTERM or SIGINT asks for one"},
+  {"checkpoint_file", text, "", "<output_file>.checkpoint", any, "", 0, "where a run's checkpoints are written, each in place of the one before; none: nowhere"},
+  {"restart", file, "", "", any, "", 0, "goes on from this checkpoint of the same scene, whose end and files may be others"},
+
   {"output_quiet", flag, "", "false", any, "", 0, "no progress on the terminal"},
 
   {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step; each may be in km/h"},

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstring>
 #include <numeric>
+#include <unordered_set>
 
 #include "traverse/base/error.hpp"
 
@@ -46,15 +47,31 @@ herr_t visit(unsigned depth, const H5E_error2_t* entry, void* data) {
 }  // namespace
 
 File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
+  open(Id(check(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access().get()))));
+  place_.keep();
+}
+
+File::File(Place place, const std::string& source) : place_(std::move(place)), path_(place_.path()) {
+  place_.copy_aside(source);
+  open(Id(check(H5Fopen(place_.aside().c_str(), H5F_ACC_RDWR, access().get()))));
+  hsize_t size = 0;
+  check(H5Fget_filesize(file_.get(), &size));
+  reserved_ = static_cast<off_t>(size);
+}
+
+Id File::access() const {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const Id access(check(H5Pcreate(H5P_FILE_ACCESS)));
+  Id access(check(H5Pcreate(H5P_FILE_ACCESS)));
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));  // the oldest superblock
   check(H5Pset_file_locking(access.get(), false, true));                           // the place is locked
   check(H5Pset_meta_block_size(access.get(), kGrowthStep));
   check(H5Pset_small_data_block_size(access.get(), kGrowthStep));
   check(H5Pset_sieve_buf_size(access.get(), 0));  // else a failed write shows only when a dataset is closed
-  file_ = Id(check(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get())));
-  place_.keep();
+  return access;
+}
+
+void File::open(Id file) {
+  file_ = std::move(file);
   check(H5Fset_libver_bounds(file_.get(), H5F_LIBVER_V18, H5F_LIBVER_V18));  // but fast groups and datasets
 
   // No chunk cache: rows go straight to their place, none is ever rewritten, and no memory waits.
@@ -65,6 +82,36 @@ File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
   text_ = Id(check(H5Tcopy(H5T_C_S1)));
   check(H5Tset_size(text_.get(), H5T_VARIABLE));
   check(H5Tset_cset(text_.get(), H5T_CSET_UTF8));
+}
+
+void File::take_place() {
+  flush();
+  place_.take_aside();
+}
+
+std::vector<std::string> File::objects() const {
+  std::vector<std::string> paths;
+  const auto note = [](hid_t, const char* name, const H5L_info_t*, void* to) {
+    static_cast<std::vector<std::string>*>(to)->emplace_back(name);
+    return herr_t{0};
+  };
+  check(H5Lvisit(file_.get(), H5_INDEX_NAME, H5_ITER_INC, note, &paths));
+  return paths;
+}
+
+void File::keep_only(const std::vector<std::string>& kept) {
+  const std::unordered_set<std::string> known(kept.begin(), kept.end());
+  std::string removed = "/";  // the last group
+  for (const std::string& path : objects()) {
+    if (known.contains(path) || path.starts_with(removed)) continue;
+    check(H5Ldelete(file_.get(), path.c_str(), H5P_DEFAULT));
+    removed = path + "/";
+  }
+}
+
+void File::forget_attribute(const std::string& object, const std::string& name) {
+  if (check(H5Aexists_by_name(id(), object.c_str(), name.c_str(), H5P_DEFAULT)) > 0)
+    check(H5Adelete_by_name(id(), object.c_str(), name.c_str(), H5P_DEFAULT));
 }
 
 hid_t File::check(hid_t result) const {
@@ -119,9 +166,7 @@ Id File::group(const std::string& name) {
 }
 
 void File::write_attribute(const std::string& object, const std::string& name, hid_t type, const void* value) {
-  if (check(H5Aexists_by_name(id(), object.c_str(), name.c_str(), H5P_DEFAULT)) > 0) {
-    check(H5Adelete_by_name(id(), object.c_str(), name.c_str(), H5P_DEFAULT));
-  }
+  forget_attribute(object, name);
   const Id space(check(H5Screate(H5S_SCALAR)));
   const Id attribute(check(
       H5Acreate_by_name(id(), object.c_str(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)));
@@ -171,12 +216,21 @@ void File::table(const std::string& name, const std::vector<std::pair<std::strin
   attribute(name, "unit", "text");
 }
 
-Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows)
+Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows,
+               std::size_t there)
     : name_(std::move(name)),
       shape_{0},
       width_(std::accumulate(row.begin(), row.end(), std::size_t{1},
                              [](std::size_t a, hsize_t b) { return a * static_cast<std::size_t>(b); })) {
   shape_.insert(shape_.end(), row.begin(), row.end());
+  if (there == 0)
+    make(file, unit, rows);
+  else
+    cut(file, there);
+  buffer_.reserve(width_ * static_cast<std::size_t>(rows));
+}
+
+void Series::make(File& file, const std::string& unit, int rows) {
   auto most = shape_;
   most[0] = H5S_UNLIMITED;
   auto chunk = shape_;
@@ -189,7 +243,18 @@ Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, co
   const Id dataset(file.check(H5Dcreate2(file.id(), name_.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
                                          creation.get(), file.rows_access())));
   file.attribute(name_, "unit", unit);
-  buffer_.reserve(width_ * static_cast<std::size_t>(rows));
+}
+
+void Series::cut(File& file, hsize_t rows) {
+  const Id dataset(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access())));
+  const Id space(file.check(H5Dget_space(dataset.get())));
+  std::vector<hsize_t> there(shape_.size());
+  const bool fits = H5Sget_simple_extent_ndims(space.get()) == static_cast<int>(shape_.size()) &&
+                    H5Sget_simple_extent_dims(space.get(), there.data(), nullptr) >= 0 && there[0] >= rows &&
+                    std::equal(there.begin() + 1, there.end(), shape_.begin() + 1);
+  if (!fits) fail(file.path(), "the results to take up are not those of the checkpoint");
+  shape_[0] = rows;
+  file.check(H5Dset_extent(dataset.get(), shape_.data()));
 }
 
 void Series::write(File& file) {

@@ -41,7 +41,18 @@ class File {
   /// Creates the file at its place, replacing an older one. The place is held until the file is closed.
   explicit File(Place place);
 
+  /// Opens a copy of a results file beside its place, which it takes by take_place() and not before. FileError where
+  /// there is none to copy.
+  File(Place place, const std::string& source);
+
   const std::string& path() const { return path_; }
+  /// A copy that has been changed becomes the file at its place, at once.
+  void take_place();
+  /// The paths of all groups and datasets.
+  std::vector<std::string> objects() const;
+  /// Removes all others.
+  void keep_only(const std::vector<std::string>& objects);
+  void forget_attribute(const std::string& object, const std::string& name);
   /// The identifier or status as it was; FileError with HDF5's innermost reason when it is negative.
   hid_t check(hid_t result) const;
   /// Takes the space on disk that the next flush needs, so that a full disk shows before anything of the file's
@@ -72,6 +83,8 @@ class File {
   hid_t rows_access() const { return rows_access_.get(); }
 
  private:
+  void open(Id file);
+  Id access() const;
   int descriptor() const;
   void write_attribute(const std::string& object, const std::string& name, hid_t type, const void* value);
 
@@ -86,7 +99,10 @@ class File {
 class Series {
  public:
   /// `row`: the shape of one sample, empty for a number. `rows`: how many the buffer holds between two writes.
-  Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows);
+  /// there: rows of the dataset that is there, and keeps no more than these; 0: it is made.
+  Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows,
+         std::size_t there = 0);
+  std::size_t rows() const { return static_cast<std::size_t>(shape_[0]); }  // written so far
 
   void add(double value) { buffer_.push_back(value); }
   /// Adds a row from its first number; returns what follows it.
@@ -98,6 +114,9 @@ class Series {
   void write(File& file);
 
  private:
+  void make(File& file, const std::string& unit, int rows);
+  void cut(File& file, hsize_t rows);
+
   std::string name_;
   std::vector<hsize_t> shape_;  // of what is written so far
   std::size_t width_ = 1;       // numbers a row

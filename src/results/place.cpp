@@ -119,8 +119,33 @@ void Place::claim() {
   made_something = true;
 }
 
+void Place::copy_aside(const std::string& source) {
+  std::error_code error;
+  if (!fs::exists(source, error) || !is_results_file(source))
+    fail(path_, "the results to take up, " + source + ", are not there; name them with -output_file");
+  copied_ = true;
+  fs::copy_file(source, aside(), fs::copy_options::overwrite_existing, error);
+  if (error) fail(path_, error.message());
+}
+
+void Place::take_aside() {
+  const int taken = ::open(aside().c_str(), O_RDWR | O_CLOEXEC);
+  if (taken < 0) fail(path_, std::strerror(errno));
+  if (!locks_are_off()) (void)::flock(taken, LOCK_EX | LOCK_NB);
+  if (::rename(aside().c_str(), path_.c_str()) != 0) {
+    ::close(taken);
+    fail(path_, std::strerror(errno));
+  }
+  copied_ = false;
+  ::close(descriptor_);
+  descriptor_ = taken;
+  keep();
+}
+
 void Place::give_up() noexcept {
   std::error_code ignored;
+  if (copied_) fs::remove(aside(), ignored);
+  copied_ = false;
   if (made_) made_something = false;
   if (made_) fs::remove(path_, ignored);
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) fs::remove(*folder, ignored);
@@ -174,6 +199,7 @@ Place& Place::operator=(Place&& other) noexcept {
   std::swap(path_, other.path_);
   std::swap(descriptor_, other.descriptor_);
   std::swap(made_, other.made_);
+  std::swap(copied_, other.copied_);
   std::swap(folders_, other.folders_);
   return *this;
 }

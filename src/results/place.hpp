@@ -26,13 +26,20 @@ class Place {
   /// A results file has been begun: it stays.
   void keep();
 
+  /// Copies a file beside the place, under the name aside(). FileError where there is no results file to copy.
+  void copy_aside(const std::string& source);
+  std::string aside() const { return path_ + ".part"; }
+  /// What stands there takes the place, locked.
+  void take_aside();
+
  private:
   void claim();
   void give_up() noexcept;
 
   std::string path_;
   int descriptor_ = -1;
-  bool made_ = false;  // the file, by this object
+  bool made_ = false;    // the file, by this object
+  bool copied_ = false;  // a copy stands aside
   std::vector<std::filesystem::path> folders_;
 };
 

@@ -1,6 +1,7 @@
 #include "results/recorder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <functional>
 #include <numeric>
@@ -14,6 +15,9 @@ namespace traverse::results {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr std::array summary_at_root = {"steps", "wall_seconds"};  // of the summary's attributes
+
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 using hdf5::Series;
 
@@ -64,6 +68,20 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, 
   });
 }
 
+Recorder::Impl::Impl(Place place, const Layout& given, const Recorder::Earlier& earlier)
+    : file(std::move(place), earlier.file),
+      layout(given),
+      width(given.width()),
+      block_rows(rows_of_block(sizeof(double) * (1 + width))),
+      objects(earlier.objects) {
+  attempt([&] {
+    for (const char* name : summary_at_root) file.forget_attribute("/", name);
+    file.keep_only(objects);
+    series = create_series("", block_rows, earlier.rows);
+    file.take_place();
+  });
+}
+
 Recorder::Impl::~Impl() {
   if (closed) return;
   try {
@@ -76,12 +94,12 @@ Recorder::Impl::~Impl() {
   }
 }
 
-std::vector<Series> Recorder::Impl::create_series(const std::string& group, std::size_t rows) {
+std::vector<Series> Recorder::Impl::create_series(const std::string& group, std::size_t rows, std::size_t there) {
   std::vector<Series> created;
-  created.emplace_back(file, group + "/time", std::vector<hsize_t>(), "s", static_cast<int>(rows));
+  created.emplace_back(file, group + "/time", std::vector<hsize_t>(), "s", static_cast<int>(rows), there);
   for (const auto& field : layout.fields) {
     const std::vector<hsize_t> row(field.row.begin(), field.row.end());
-    created.emplace_back(file, group + field.name, row, field.unit, static_cast<int>(rows));
+    created.emplace_back(file, group + field.name, row, field.unit, static_cast<int>(rows), there);
   }
   return created;
 }
@@ -150,6 +168,30 @@ Recorder::Recorder(MPI_Comm comm, Place place, const Layout& layout, const Pairs
   share_failure(comm, failure);
 }
 
+Recorder::Recorder(MPI_Comm comm, Place place, const Layout& layout, const Earlier& earlier) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  std::string failure;
+  if (rank == 0 && !place.path().empty()) {
+    try {
+      impl_ = std::make_unique<Impl>(std::move(place), layout, earlier);
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+  }
+  share_failure(comm, failure);
+}
+
+Recorder::Earlier Recorder::secure() {
+  Earlier now;
+  if (impl_ == nullptr) return now;
+  impl_->attempt([&] {
+    impl_->flush();
+    if (impl_->objects.empty()) impl_->objects = impl_->file.objects();
+  });
+  return {impl_->file.path(), impl_->series.front().rows(), impl_->objects};
+}
+
 Recorder::Recorder(Recorder&& other) noexcept = default;
 Recorder::~Recorder() = default;
 
@@ -164,7 +206,7 @@ void Recorder::end(const Sample& sample) {
 }
 
 void Recorder::finish(const Summary& summary) {
-  if (impl_ != nullptr) finish_with(attributes_of(summary), {"steps", "wall_seconds"});
+  if (impl_ != nullptr) finish_with(attributes_of(summary), {summary_at_root.begin(), summary_at_root.end()});
 }
 
 void Recorder::finish_with(const std::vector<Attribute>& summary, const std::vector<std::string>& at_root) {

@@ -137,12 +137,23 @@ class Recorder {
   Recorder(MPI_Comm comm, const std::string& file, const Layout& layout,
            const std::vector<std::pair<std::string, std::string>>& attributes,
            const std::vector<std::pair<std::string, std::string>>& options);
+  /// The results of a run that goes on.
+  struct Earlier {
+    std::string file;                  // empty: none
+    std::size_t rows = 0;              // of its series
+    std::vector<std::string> objects;  // all that the file held by then
+  };
+  /// Takes up the results of an earlier run as they were then, under the same layout: a copy takes its place when it
+  /// is complete. FileError where they cannot be those.
+  Recorder(MPI_Comm comm, Place place, const Layout& layout, const Earlier& earlier);
   Recorder(Recorder&& other) noexcept;
   ~Recorder();  // flushes what is there; never throws
 
   /// Whether this rank writes a file: samples of the others need no values.
   bool writes() const { return impl_ != nullptr; }
   void add(const Sample& sample);
+  /// Writes what is in memory; on rank 0 what is needed to take the results up from here.
+  Earlier secure();
   /// The end of the run where it is no multiple of the interval: what `add` would append, apart under /end.
   void end(const Sample& sample);
   void modes(const modes::Modes& modes, double rayleigh_a, double rayleigh_b, double omega1, double omega2);

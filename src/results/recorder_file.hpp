@@ -15,6 +15,7 @@ namespace traverse::results {
 struct Recorder::Impl {
   Impl(Place place, const Layout& given, const std::vector<std::pair<std::string, std::string>>& attributes,
        const std::vector<std::pair<std::string, std::string>>& options, int ranks);
+  Impl(Place place, const Layout& given, const Recorder::Earlier& earlier);
   ~Impl();
 
   void add(const Sample& sample);
@@ -33,11 +34,13 @@ struct Recorder::Impl {
   std::size_t waiting = 0;  // samples in memory
   std::chrono::steady_clock::time_point last_flush = std::chrono::steady_clock::now();
   double flush_cost = 0.0;  // s, of the last one
+  std::vector<std::string> objects;  // of the file, when they were first asked for
   bool closed = false;
 
  private:
   /// Under `group`, with buffers of so many rows.
-  std::vector<hdf5::Series> create_series(const std::string& group, std::size_t rows);
+  /// there: rows that they have already.
+  std::vector<hdf5::Series> create_series(const std::string& group, std::size_t rows, std::size_t there = 0);
   void check_fit(const Sample& sample) const;
   static void fill(std::vector<hdf5::Series>& series, const Sample& sample);
 };

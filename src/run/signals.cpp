@@ -19,14 +19,15 @@ struct Taken {
   bool ignored;  // when the program started
 };
 
-std::array<Taken, 5> signals = {{{SIGINT, "2", false},
+std::array<Taken, 6> signals = {{{SIGINT, "2", false},
                                  {SIGTERM, "15", false},
                                  {SIGHUP, "1", false},
                                  {SIGQUIT, "3", false},
-                                 {SIGPIPE, "13", false}}};
+                                 {SIGPIPE, "13", false},
+                                 {SIGUSR1, "10", false}}};
 
 std::atomic<int> caught{0}, noting{0};
-std::atomic<bool> speaking{true};
+std::atomic<bool> speaking{true}, asked{false};
 
 /// Only what a signal handler may call.
 [[noreturn]] void end_at_once(int number) {
@@ -44,6 +45,10 @@ std::atomic<bool> speaking{true};
 }
 
 void take(int number) {
+  if (number == SIGUSR1) {
+    asked = true;
+    return;
+  }
   if (noting == 0) end_at_once(number);
   caught = number;
 }
@@ -75,11 +80,15 @@ SignalsNoted::~SignalsNoted() { --noting; }
 
 int caught_signal() { return caught; }
 
-int signal_on_any(MPI_Comm comm) {
-  int ranks = 1, signal = caught_signal();
+bool checkpoint_asked() { return asked.exchange(false); }
+
+int signal_on_any(MPI_Comm comm) { return asked_on_any(comm, false).signal; }
+
+Asked asked_on_any(MPI_Comm comm, bool wanted) {
+  int ranks = 1, both[2] = {caught_signal(), wanted ? 1 : 0};
   MPI_Comm_size(comm, &ranks);
-  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, &signal, 1, MPI_INT, MPI_MAX, comm);
-  return signal;
+  if (ranks > 1) MPI_Allreduce(MPI_IN_PLACE, both, 2, MPI_INT, MPI_MAX, comm);
+  return {both[0], both[1] != 0};
 }
 
 }  // namespace traverse::app

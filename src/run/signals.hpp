@@ -8,8 +8,8 @@ namespace traverse::app {
 
 /// Those that are ignored (nohup) stay so. Called before libraries are set up: UCX takes SIGHUP while it is loaded.
 void look_at_ignored_signals();
-/// Takes over SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE: at the start, and again after a library has set handlers
-/// of its own.
+/// Takes over SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE, and SIGUSR1, which ends nothing: at the start, and again
+/// after a library has set handlers of its own.
 void take_signals();
 /// Only one rank of several tells the user of a signal.
 void speak_of_signals(bool speaks);
@@ -25,7 +25,15 @@ class SignalsNoted {
 
 /// The signal that asks the run to end, or 0.
 int caught_signal();
+/// Whether SIGUSR1 has asked for a checkpoint since the last call.
+bool checkpoint_asked();
 /// Collective. The signal of any rank of comm.
 int signal_on_any(MPI_Comm comm);
+/// Collective. The same, and whether any rank wants something else.
+struct Asked {
+  int signal = 0;
+  bool wanted = false;
+};
+Asked asked_on_any(MPI_Comm comm, bool wanted);
 
 }  // namespace traverse::app

@@ -1,0 +1,123 @@
+#include "run/checkpoints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "base/digest.hpp"
+#include "options/data_file.hpp"
+#include "options/input_texts.hpp"
+#include "results/stage.hpp"
+#include "run/signals.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double usual_interval = 900.0;    // s
+constexpr double cost_factor = 20.0;        // checkpoints take at most a twentieth of the time
+constexpr unsigned steps_a_look = 16;       // at the clock
+constexpr std::array free_options = {"ts_max_time", "scene_tail",  "scene_name",   "restart",      "checkpoint_interval",
+                                     "output_file", "output_quiet", "options_file", "ts_max_steps", "checkpoint_file"};
+
+bool counts(const std::string& name) {
+  const bool shown = name.starts_with("ts_monitor") || name.starts_with("log_") || name.find("_view") != name.npos;
+  return !shown && std::find(free_options.begin(), free_options.end(), name) == free_options.end();
+}
+
+std::string given(const char* name) {
+  const options::Entry* entry = options::in_force().find(name);
+  return entry == nullptr ? std::string() : entry->value;
+}
+
+std::string path_for(const Scene& scene) {
+  const std::string asked = given("checkpoint_file");
+  if (asked == "none") return "";
+  if (!asked.empty()) return asked;
+  return scene.output.file.empty() ? "" : scene.output.file + ".checkpoint";
+}
+
+}  // namespace
+
+std::string digest_of(const Scene& scene) {
+  auto all = scene.options;
+  std::erase_if(all, [](const auto& option) { return !counts(option.first); });
+  std::sort(all.begin(), all.end());
+  base::Digest digest;
+  const auto add = [&](std::string_view text) {
+    digest.add(std::to_string(text.size()) + ":");
+    digest.add(text);
+  };
+  for (const auto& [name, value] : all) {
+    add(name);
+    add(value);
+  }
+  for (const options::InputText& file : options::tables_read()) add(file.text);
+  return fmt::format("{:016x}", digest.value());
+}
+
+std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
+  const std::string path = given("restart");
+  if (path.empty()) return std::nullopt;
+  if (scene.study || scene.sweep)
+    throw InputError("restart = " + path + ": studies and sweeps have no checkpoints; a study goes on by study_resume");
+  if (scene.analysis != Analysis::transient)
+    throw InputError("restart = " + path + ": only runs in time have checkpoints");
+  results::Checkpoint earlier = results::read_checkpoint(comm, path);
+  if (earlier.digest != digest_of(scene))
+    throw InputError("restart = " + path +
+                     ": is of another scene; only ts_max_time, scene_tail, ts_max_steps and the names of files may be "
+                     "changed");
+  if (given("output_file").empty()) scene.output.file = earlier.results.file;
+  return earlier;
+}
+
+Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, Watch& watch,
+                         results::Recorder& recorder, results::Checkpoint so_far)
+    : comm_(comm),
+      passage_(passage),
+      watch_(watch),
+      recorder_(recorder),
+      so_far_(std::move(so_far)),
+      interval_(usual_interval) {
+  if (scene.analysis != Analysis::transient) return;
+  path_ = path_for(scene);
+  if (const std::string interval = given("checkpoint_interval"); !interval.empty())
+    (void)options::parse_number(interval, interval_);
+  if (trouble_ = passage.no_archive(); !trouble_.empty()) path_.clear();
+  so_far_.digest = digest_of(scene);
+  so_far_.end_time = passage.plan().end_time;
+  so_far_.time_step = passage.plan().time_step;
+  so_far_.interval = passage.plan().interval;
+  so_far_.stored = passage.plan().stored;
+  so_far_.of_ranks.clear();
+}
+
+bool Checkpoints::wanted() {
+  if (!possible()) return false;
+  if (checkpoint_asked()) return true;
+  if (interval_ == 0.0 || ++looks_ % steps_a_look != 0) return false;
+  return std::chrono::duration<double>(Clock::now() - last_).count() > std::max(interval_, cost_factor * cost_);
+}
+
+void Checkpoints::write(double time, double wall_seconds) {
+  const results::Stage stage("checkpoint");
+  const auto begin = Clock::now();
+  base::Archive archive(comm_);
+  passage_.keep(archive);
+  watch_.keep(archive);
+  so_far_.results = recorder_.secure();
+  so_far_.time = time;
+  so_far_.wall_seconds = wall_seconds;
+  results::write_checkpoint(comm_, path_, so_far_, archive.take());
+  last_ = Clock::now();
+  cost_ = std::chrono::duration<double>(last_ - begin).count();
+}
+
+void Checkpoints::forget() {
+  if (possible()) results::remove_checkpoint(comm_, path_);
+}
+
+}  // namespace traverse::app
