@@ -10,8 +10,10 @@
 #include <cstring>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "integrate/integrators.hpp"
+#include "results/origin.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
 #include "standard_output.hpp"
@@ -57,6 +59,15 @@ int complain(const traverse::Error& error) {
   return error.status();
 }
 
+/// `traverse RESULTS.h5 ...` runs again what a results file came from.
+traverse::options::Input read_input(int argc, char** argv) {
+  if (argc < 2 || !traverse::results::is_hdf5(argv[1])) return traverse::options::read_input(argc, argv);
+  const std::vector<traverse::options::Entry> before = traverse::results::origin_of(argv[1]);
+  std::vector<char*> rest(argv, argv + argc);
+  rest.erase(rest.begin() + 1);
+  return traverse::options::read_input(argc - 1, rest.data(), before);
+}
+
 int run(traverse::options::Input& input) {
   try {
     traverse::options::put_into_petsc(input);
@@ -85,7 +96,7 @@ int main(int argc, char** argv) {
   traverse::app::speak_of_signals(first_rank());
   start_lightly();
   try {
-    traverse::options::Input input = traverse::options::read_input(argc, argv);
+    traverse::options::Input input = read_input(argc, argv);
     if (input.help) {
       const std::string text = traverse::options::help_text() + traverse::integrate::integrators_help();
       return after_output(std::fputs(text.c_str(), stdout) < 0 ? 1 : 0);

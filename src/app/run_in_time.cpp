@@ -263,6 +263,8 @@ std::optional<int> run_once(Job& job, bool repeated) {
         "deepest carried\n",
         system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
   }
+  if (stopped != 0 && !checkpoints.trouble().empty() && rank == 0)
+    fmt::print("  no checkpoint: {}\n", checkpoints.trouble());
   if (by_signal) say_written(comm, scene, checkpoints, reached);
   if (reaches_end && !passage.stopped_at_limit()) checkpoints.forget();
   noted.reset();

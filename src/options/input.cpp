@@ -151,8 +151,9 @@ std::string specific_part(const std::string& message) {
 
 }  // namespace
 
-Input read_input(int argc, char** argv) {
+Input read_input(int argc, char** argv, const std::vector<Entry>& before) {
   Input input;
+  for (const Entry& entry : before) add(input, entry);
   std::string scene_name;
   for (Entry& entry : command_line(argc, argv)) {
     if (entry.name != "options_file") {

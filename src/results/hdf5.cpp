@@ -202,13 +202,17 @@ void File::rewrite(const std::string& name, const std::vector<double>& values) {
 }
 
 void File::table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows) {
-  std::vector<std::string> valid;  // readers refuse what is no UTF-8
-  for (const auto& [key, value] : rows) {
-    valid.push_back(printable(key));
-    valid.push_back(printable(value));
-  }
+  std::vector<std::pair<std::string, std::string>> valid;  // readers refuse what is no UTF-8
+  for (const auto& [key, value] : rows) valid.emplace_back(printable(key), printable(value));
+  texts(name, valid);
+}
+
+void File::texts(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows) {
   std::vector<const char*> cells;
-  for (const std::string& cell : valid) cells.push_back(cell.c_str());
+  for (const auto& [key, value] : rows) {
+    cells.push_back(key.c_str());
+    cells.push_back(value.c_str());
+  }
   const hsize_t shape[] = {rows.size(), 2};
   const Id space(check(H5Screate_simple(2, shape, nullptr)));
   const Id data(check(H5Dcreate2(id(), name.c_str(), text_.get(), space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));

@@ -75,7 +75,9 @@ class File {
                const std::string& unit);
   /// The values of a dataset that is there, in their place: nothing of the file's structure changes.
   void rewrite(const std::string& name, const std::vector<double>& values);
-  /// Text in two columns, [n,2].
+  /// Text in two columns as it is, [n,2].
+  void texts(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows);
+  /// The same, with an escape for what no reader takes.
   void table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows);
 
   hid_t id() const { return file_.get(); }

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "recorder_file.hpp"
+#include "results/origin.hpp"
 #include "summary.hpp"
 #include "traverse/base/error.hpp"
 
@@ -62,6 +63,7 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, 
       if (name != "ranks") file.attribute("/", name, text);
     }
     file.table("/options", options);
+    record_origin(file);
     for (const auto& constant : layout.constants)
       file.dataset(constant.name, {constant.values.size()}, constant.values, constant.unit);
     file.flush();

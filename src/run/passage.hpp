@@ -43,7 +43,7 @@ class Passage {
   const Plan& plan() const { return plan_; }
   long rejected() const { return stepper_ ? stepper_->rejected() : 0; }
   long steps() const { return stepper_ ? stepper_->steps() : modal_->steps(); }
-  bool stopped_at_limit() const { return stepper_ && stepper_->stopped_at_limit(); }
+  bool stopped_at_limit() const { return stepper_ ? stepper_->stopped_at_limit() : modal_->stopped_at_limit(); }
 
  private:
   void leave_out_rest(std::vector<std::string>& notes);

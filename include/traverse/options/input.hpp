@@ -28,8 +28,9 @@ struct Input {
   std::vector<std::string> petsc_words;  // the program's name, then the options that PETSc owns
 };
 
-/// Reads the command line and every file named by -options_file, at its position. Throws InputError.
-Input read_input(int argc, char** argv);
+/// Reads the command line and every file named by -options_file, at its position. `before`: options that these win
+/// over. Throws InputError.
+Input read_input(int argc, char** argv, const std::vector<Entry>& before = {});
 
 /// The words as argc and argv, kept until the object goes.
 class Arguments {

@@ -1,0 +1,97 @@
+#include "results/origin.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "hdf5.hpp"
+#include "options/data_file.hpp"
+#include "traverse/base/error.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::results {
+namespace {
+
+using Pairs = std::vector<std::pair<std::string, std::string>>;
+
+constexpr const char *entries_table = "/input/options", *sources_table = "/input/sources", *files_table = "/input/files";
+// Of one run alone.
+constexpr std::array own = {"restart", "checkpoint_file", "options_file"};
+
+bool of_one_run(const std::string& name) { return std::find(own.begin(), own.end(), name) != own.end(); }
+
+std::string without_mount(const std::string& name) { return name.substr(options::mounted(name).size()); }
+
+/// Of two columns; empty where there is none.
+Pairs read_pairs(hid_t file, const char* name) {
+  Pairs pairs;
+  const hdf5::Id data(H5Dopen2(file, name, H5P_DEFAULT));
+  if (data.get() < 0) return pairs;
+  const hdf5::Id space(H5Dget_space(data.get())), type(H5Dget_type(data.get()));
+  hsize_t shape[2] = {0, 0};
+  if (H5Sget_simple_extent_ndims(space.get()) != 2 || H5Sget_simple_extent_dims(space.get(), shape, nullptr) < 0 ||
+      shape[1] != 2 || H5Tis_variable_str(type.get()) <= 0)
+    return pairs;
+  std::vector<char*> cells(2 * shape[0], nullptr);
+  if (shape[0] == 0 || H5Dread(data.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, cells.data()) < 0) return pairs;
+  const auto text = [](const char* cell) { return std::string(cell == nullptr ? "" : cell); };
+  for (std::size_t i = 0; i < cells.size(); i += 2) pairs.emplace_back(text(cells[i]), text(cells[i + 1]));
+  H5Dvlen_reclaim(type.get(), space.get(), H5P_DEFAULT, cells.data());
+  return pairs;
+}
+
+}  // namespace
+
+void record_origin(hdf5::File& file) {
+  Pairs entries, sources, files;
+  for (const options::Entry& entry : options::in_force()) {
+    if (of_one_run(entry.name)) continue;
+    entries.emplace_back(entry.name, entry.value);
+    sources.emplace_back(without_mount(entry.source), std::to_string(entry.line));
+  }
+  if (entries.empty()) return;
+  for (const options::InputText& text : options::inputs_read()) files.emplace_back(text.name, text.text);
+  file.texts(entries_table, entries);
+  file.texts(sources_table, sources);
+  file.texts(files_table, files);
+}
+
+bool is_hdf5(const std::string& path) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored) && H5Fis_hdf5(path.c_str()) > 0;
+}
+
+std::vector<options::Entry> origin_of(const std::string& path) {
+  const hdf5::Id access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_file_locking(access.get(), false, true);
+  const hdf5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
+  Pairs stored, sources;
+  if (file.get() >= 0) {
+    stored = read_pairs(file.get(), entries_table);
+    sources = read_pairs(file.get(), sources_table);
+  }
+  if (stored.empty() || sources.size() != stored.size())
+    throw InputError(path +
+                     ": holds no texts of its scene, as files of older versions; run the scene's own options files");
+  const std::string prefix = path + ":";
+  std::vector<options::InputText> texts;
+  for (auto& [name, text] : read_pairs(file.get(), files_table)) texts.push_back({name, std::move(text)});
+  options::mount_inputs(prefix, std::move(texts));
+  std::vector<options::Entry> entries;
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    double line = 0.0;
+    (void)options::parse_number(sources[i].second, line);
+    if (stored[i].first == "output_file" || of_one_run(stored[i].first)) continue;
+    // All stand in a file now, those of the command line too: what they name is found in it.
+    entries.push_back({stored[i].first, stored[i].second, prefix + sources[i].first, std::max(1, static_cast<int>(line))});
+  }
+  const std::filesystem::path given(path);
+  const std::string again = (given.parent_path() / (given.stem().string() + "_again.h5")).string();
+  entries.push_back({"output_file", again, "after " + path, 0});
+  return entries;
+}
+
+}  // namespace traverse::results
