@@ -76,8 +76,8 @@ int run(MPI_Comm comm, const Scene& given) {
     return run_on_first(some, ranks.ranks, [&](MPI_Comm fewer) {
       SharedBeam shared(fewer, scene, notes);
       notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-      return run_of(scene.analysis)->run({fewer, scene, std::move(place), accuracy, shared, std::move(notes),
-                                         earlier ? &*earlier : nullptr});
+      return run_of(scene.analysis)
+          ->run({fewer, scene, std::move(place), accuracy, shared, std::move(notes), earlier ? &*earlier : nullptr});
     });
   });
 }

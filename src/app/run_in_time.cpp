@@ -128,12 +128,11 @@ std::optional<int> run_once(Job& job, bool repeated) {
   const bool wheels = filters_wheels(scene);
   if (wheels) scene.looks = std::min(scene.looks, spacing_for(scene.output.wheel_low_pass));
   std::optional<Plan> plan;
-  if (job.earlier != nullptr)
-    plan = Plan{0.0, job.earlier->time_step, job.earlier->interval, job.earlier->stored};
+  if (job.earlier != nullptr) plan = Plan{0.0, job.earlier->time_step, job.earlier->interval, job.earlier->stored};
   Passage passage(scene, shared, notes, plan ? &*plan : nullptr);  // everything is checked before anything is computed
   if (job.earlier != nullptr && !(passage.plan().end_time > job.earlier->time))
-    throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s",
-                                 job.earlier->time, passage.plan().end_time));
+    throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
+                                 passage.plan().end_time));
   coupling::System& system = passage.system();
   for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
   passage.start(notes);
@@ -173,7 +172,8 @@ std::optional<int> run_once(Job& job, bool repeated) {
   archive.reset();
   Checkpoints checkpoints(comm, scene, passage, watch, recorder, so_far(job, repeated));
   const double before = job.earlier != nullptr ? job.earlier->wall_seconds : 0.0;
-  results::Progress progress(job.earlier != nullptr ? job.earlier->time : 0.0, passage.plan().end_time, scene.quiet || rank != 0);
+  results::Progress progress(job.earlier != nullptr ? job.earlier->time : 0.0, passage.plan().end_time,
+                             scene.quiet || rank != 0);
   const auto begin = std::chrono::steady_clock::now();
   const auto wall_now = [&] {
     return before + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -292,8 +292,7 @@ int run_in_time(Job job) {
                   "the mechanisms",
                   job.scene.most_defect)};
   SharedBeam beam(job.comm, scene, notes);
-  results::Place place =
-      repeats ? std::move(job.place) : results::claim_place(job.comm, scene.output.file);
+  results::Place place = repeats ? std::move(job.place) : results::claim_place(job.comm, scene.output.file);
   Job again{job.comm, scene, std::move(place), job.accuracy, beam, std::move(notes), repeats ? job.earlier : nullptr};
   return run_once(again, true).value();
 }

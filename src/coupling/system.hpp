@@ -221,8 +221,8 @@ class System {
   long factorisations() const { return structure_ ? structure_->statics().factorisations() : 0; }
 
   /// Collective. The state between two steps, y and all that the next ones depend on, written or read back. When it is
-  /// read, the same system has been started, and begin_motion called where it is. FileError where steps were taken apart
-  /// then and cannot be now.
+  /// read, the same system has been started, and begin_motion called where it is. FileError where steps were taken
+  /// apart then and cannot be now.
   void keep(base::Archive& archive, double* y);
 
  private:

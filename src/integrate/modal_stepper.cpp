@@ -83,6 +83,7 @@ double ModalStepper::run(const std::function<void(const Instant&)>& sample,
 
 void ModalStepper::keep(base::Archive& archive) {
   archive.same(motion_, steps_, at_start_, begun_);
+  statics_.keep(archive, [](long) { return nullptr; });
   base::check(TSSetTime(ts_, motion_.time()));
 }
 

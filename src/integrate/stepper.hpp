@@ -83,9 +83,9 @@ class Stepper {
   struct Way {
     double t = 0.0, target = 0.0, next_sample = 0.0;  // s
     long samples = 0;
-    std::size_t event = 0, passage = 0;      // the next ones
-    bool begun = false, under_way = false;   // to the target
-    bool beyond = false;                     // the end is no multiple of the interval, and the next sample
+    std::size_t event = 0, passage = 0;     // the next ones
+    bool begun = false, under_way = false;  // to the target
+    bool beyond = false;                    // the end is no multiple of the interval, and the next sample
   };
 
   void set_up_type();
@@ -125,7 +125,7 @@ class Stepper {
   bool monitored_ = false;            // by -ts_monitor and its like
   std::optional<StepLadder> ladder_;  // of adaptive steps of an own type
   Way way_;
-  double next_step_ = 0.0;            // what the step control wants
+  double next_step_ = 0.0;  // what the step control wants
   double last_step_ = 0.0;
   long steps_ = 0;
   PetscInt most_steps_ = 0;

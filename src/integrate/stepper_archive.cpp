@@ -9,9 +9,7 @@ namespace traverse::integrate {
 
 using base::check;
 
-std::string Stepper::no_archive() const {
-  return multistep_ ? "ts_type bdf keeps the steps before within PETSc" : "";
-}
+std::string Stepper::no_archive() const { return multistep_ ? "ts_type bdf keeps the steps before within PETSc" : ""; }
 
 void Stepper::keep(base::Archive& archive) {
   if (archive.reads()) {

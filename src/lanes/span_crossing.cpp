@@ -182,8 +182,8 @@ void SpanCrossing::keep(base::Bytes& bytes) {
   double h = h_;
   bytes(h);
   if (bytes.reads() && h > 0.0) set_step(h);
-  bytes(groups_, wheels_, shown_, phi_, phi_slope_, scaled_, first_, past_, ringing_, q_, rate_, b_, left_, left_energy_,
-        h_before_, lost_, given_, lost_total_, given_total_, time_);
+  bytes(groups_, wheels_, shown_, phi_, phi_slope_, scaled_, first_, past_, ringing_, q_, rate_, b_, left_,
+        left_energy_, h_before_, lost_, given_, lost_total_, given_total_, time_);
 }
 
 }  // namespace traverse::lanes

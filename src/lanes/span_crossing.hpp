@@ -96,9 +96,7 @@ class SpanCrossing {
     std::array<std::vector<double>, most_kept> a;
     // At this step length, by rows: J^-1; J^-1 [K C]; -J^-1 r0; J^-1 G^T; the same of forces along the track; H.
     std::vector<double> inverse, by_state, alone, Y, Y_along, H;
-    void keep(base::Bytes& bytes) {
-      bytes(x, w, x_still, w_still, a_free, rate, bent, bend, most_bent, a);
-    }
+    void keep(base::Bytes& bytes) { bytes(x, w, x_still, w_still, a_free, rate, bent, bend, most_bent, a); }
   };
   struct Place {
     std::size_t group = 0, at = 0;

@@ -46,7 +46,8 @@ void SteppedCrossing::keep(base::Bytes& bytes) {
   bytes(target, memory);
   if (!bytes.reads()) return;
   if (target != own || memory.size() != size)
-    throw FileError("the checkpoint was written on a processor with other vector instructions; restart it on one alike");
+    throw FileError(
+        "the checkpoint was written on a processor with other vector instructions; restart it on one alike");
   Aligned aligned(size);
   std::copy(memory.begin(), memory.end(), aligned.data());
   TRAVERSE_LANES_CALL(go_on_from(task_, aligned.data()));

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <vector>
+
 #include "base/bytes.hpp"
 
 namespace traverse::multibody {

@@ -53,7 +53,9 @@ std::vector<InputText> tables_read() {
   return tables;
 }
 
-void mount_inputs(const std::string& prefix, std::vector<InputText> files) { mounted_inputs = {prefix, std::move(files)}; }
+void mount_inputs(const std::string& prefix, std::vector<InputText> files) {
+  mounted_inputs = {prefix, std::move(files)};
+}
 
 const std::string& mounted(const std::string& path) {
   static const std::string none;

@@ -274,7 +274,8 @@ std::vector<Entry> parse_words(const std::vector<std::string>& words, const std:
 std::string find_file(const std::string& path, const std::string& named_in) {
   if (const std::string& prefix = mounted(named_in); !prefix.empty()) {
     const std::filesystem::path folder = std::filesystem::path(named_in.substr(prefix.size())).parent_path();
-    for (const std::filesystem::path& at : {(folder / path).lexically_normal(), folder / path, std::filesystem::path(path)})
+    for (const std::filesystem::path& at :
+         {(folder / path).lexically_normal(), folder / path, std::filesystem::path(path)})
       if (is_mounted(prefix + at.string())) return prefix + at.string();
   }
   std::error_code ignored;

@@ -88,7 +88,8 @@ class Aside {
     }
   }
   void finish() {
-    if (::fsync(descriptor_) != 0 || ::rename(aside_.c_str(), path_.c_str()) != 0) fail_checkpoint(path_, std::strerror(errno));
+    if (::fsync(descriptor_) != 0 || ::rename(aside_.c_str(), path_.c_str()) != 0)
+      fail_checkpoint(path_, std::strerror(errno));
     ::close(descriptor_);
     descriptor_ = -1;
   }
@@ -158,8 +159,8 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path) {
   base::Bytes bytes{std::span<const char>(text)};
   bytes(checkpoint.version);
   if (checkpoint.version != TRAVERSE_VERSION)
-    throw FileError("restart = " + path + ": was written by version " + checkpoint.version + " of the program, this is " +
-                    TRAVERSE_VERSION);
+    throw FileError("restart = " + path + ": was written by version " + checkpoint.version +
+                    " of the program, this is " + TRAVERSE_VERSION);
   bytes = base::Bytes{std::span<const char>(text)};
   bytes(checkpoint, checkpoint.of_ranks);
   return checkpoint;

@@ -13,9 +13,9 @@
 namespace traverse::results {
 
 struct Checkpoint {
-  std::string version;  // of the program
-  std::string digest;   // of the scene
-  double time = 0.0;    // s
+  std::string version;                                     // of the program
+  std::string digest;                                      // of the scene
+  double time = 0.0;                                       // s
   double end_time = 0.0, time_step = 0.0, interval = 0.0;  // of the run's plan, s
   long stored = 1;                                         // the same
   double wall_seconds = 0.0;                               // of the time loop so far
@@ -26,13 +26,13 @@ struct Checkpoint {
 
   template <class Bytes>
   void keep(Bytes& bytes) {
-    bytes(version, digest, time, end_time, time_step, interval, stored, wall_seconds, given_ranks, repeated, results.file,
-          results.rows, results.objects);
+    bytes(version, digest, time, end_time, time_step, interval, stored, wall_seconds, given_ranks, repeated,
+          results.file, results.rows, results.objects);
   }
 };
 
-/// Collective. own: this rank's state. FileError with one line, on all ranks, where it cannot be written; what was there
-/// before then stays.
+/// Collective. own: this rank's state. FileError with one line, on all ranks, where it cannot be written; what was
+/// there before then stays.
 void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& own);
 /// Collective. The same on all ranks. FileError where the file is none, damaged, or of another version of the program.
 Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path);

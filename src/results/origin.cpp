@@ -16,7 +16,8 @@ namespace {
 
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-constexpr const char *entries_table = "/input/options", *sources_table = "/input/sources", *files_table = "/input/files";
+constexpr const char *entries_table = "/input/options", *sources_table = "/input/sources",
+                     *files_table = "/input/files";
 // Of one run alone.
 constexpr std::array own = {"restart", "checkpoint_file", "options_file"};
 
@@ -86,7 +87,8 @@ std::vector<options::Entry> origin_of(const std::string& path) {
     (void)options::parse_number(sources[i].second, line);
     if (stored[i].first == "output_file" || of_one_run(stored[i].first)) continue;
     // All stand in a file now, those of the command line too: what they name is found in it.
-    entries.push_back({stored[i].first, stored[i].second, prefix + sources[i].first, std::max(1, static_cast<int>(line))});
+    entries.push_back(
+        {stored[i].first, stored[i].second, prefix + sources[i].first, std::max(1, static_cast<int>(line))});
   }
   const std::filesystem::path given(path);
   const std::string again = (given.parent_path() / (given.stem().string() + "_again.h5")).string();

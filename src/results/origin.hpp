@@ -19,8 +19,8 @@ void record_origin(hdf5::File& file);
 /// Whether there is an HDF5 file of that name.
 bool is_hdf5(const std::string& path);
 
-/// The options that the run of a results file had, but for its output file and what belongs to that one run; from now on
-/// files that they name are read out of it. InputError where it holds none.
+/// The options that the run of a results file had, but for its output file and what belongs to that one run; from now
+/// on files that they name are read out of it. InputError where it holds none.
 std::vector<options::Entry> origin_of(const std::string& path);
 
 }  // namespace traverse::results

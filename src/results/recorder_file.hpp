@@ -33,7 +33,7 @@ struct Recorder::Impl {
   std::size_t block_rows;
   std::size_t waiting = 0;  // samples in memory
   std::chrono::steady_clock::time_point last_flush = std::chrono::steady_clock::now();
-  double flush_cost = 0.0;  // s, of the last one
+  double flush_cost = 0.0;           // s, of the last one
   std::vector<std::string> objects;  // of the file, when they were first asked for
   bool closed = false;
 

@@ -16,11 +16,12 @@
 namespace traverse::app {
 namespace {
 
-constexpr double usual_interval = 900.0;    // s
-constexpr double cost_factor = 20.0;        // checkpoints take at most a twentieth of the time
-constexpr unsigned steps_a_look = 16;       // at the clock
-constexpr std::array free_options = {"ts_max_time", "scene_tail",  "scene_name",   "restart",      "checkpoint_interval",
-                                     "output_file", "output_quiet", "options_file", "ts_max_steps", "checkpoint_file"};
+constexpr double usual_interval = 900.0;  // s
+constexpr double cost_factor = 20.0;      // checkpoints take at most a twentieth of the time
+constexpr unsigned steps_a_look = 16;     // at the clock
+constexpr std::array free_options = {"ts_max_time",         "scene_tail",     "scene_name",   "restart",
+                                     "checkpoint_interval", "output_file",    "output_quiet", "options_file",
+                                     "ts_max_steps",        "checkpoint_file"};
 
 bool counts(const std::string& name) {
   const bool shown = name.starts_with("ts_monitor") || name.starts_with("log_") || name.find("_view") != name.npos;
@@ -74,8 +75,8 @@ std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
   return earlier;
 }
 
-Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, Watch& watch,
-                         results::Recorder& recorder, results::Checkpoint so_far)
+Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, Watch& watch, results::Recorder& recorder,
+                         results::Checkpoint so_far)
     : comm_(comm),
       passage_(passage),
       watch_(watch),

@@ -51,7 +51,7 @@ class Checkpoints {
   results::Recorder& recorder_;
   results::Checkpoint so_far_;
   std::string path_, trouble_;
-  double interval_;  // s; 0: only where a signal asks
+  double interval_;    // s; 0: only where a signal asks
   double cost_ = 0.0;  // s, of the last one
   Clock::time_point last_ = Clock::now();
   unsigned looks_ = 0;

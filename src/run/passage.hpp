@@ -23,10 +23,9 @@ std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBe
 
 class Passage {
  public:
-  /// Collective. InputError for what cannot be run. Scene and structure must outlive it. earlier: the plan of a run that
-  /// this one goes on from, whose steps and samples stay; null: none.
-  Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes,
-          const Plan* earlier = nullptr);
+  /// Collective. InputError for what cannot be run. Scene and structure must outlive it. earlier: the plan of a run
+  /// that this one goes on from, whose steps and samples stay; null: none.
+  Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::string>& notes, const Plan* earlier = nullptr);
 
   /// Collective. Sets everything to its start; SolverError where there is no equilibrium.
   void start(std::vector<std::string>& notes);

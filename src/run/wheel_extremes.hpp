@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <vector>
+
 #include "base/bytes.hpp"
 
 namespace traverse::app {

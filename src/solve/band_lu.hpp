@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <vector>
+
 #include "base/bytes.hpp"
 
 namespace traverse::solve {

@@ -52,9 +52,7 @@ class LinearDynamics : public VehicleDynamics {
   void go_by_itself(VehicleYield& yield) override { newton_.go_by_itself(R_, yield); }
   void rest() override { R_.setZero(); }
   const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override { return newton_.take(forces); }
-  void keep(base::Bytes& bytes) override {
-    bytes(newton_, shifts_, time_, defect_, x_, xd_, xdd_, force_, R_);
-  }
+  void keep(base::Bytes& bytes) override { bytes(newton_, shifts_, time_, defect_, x_, xd_, xdd_, force_, R_); }
 
  private:
   void find_force(const MovingVehicle& vehicle);

@@ -18,8 +18,8 @@ class NewtonInverse {
   enum class Form { whole, band, factors } form_ = Form::whole;
   Eigen::MatrixXd whole_;
   solve::BandLu band_;
-  Eigen::MatrixXd lu_;     // L D^-1 and D U one above the other, of the rows in this order
-  Eigen::VectorXi order_;  // where each row goes
+  Eigen::MatrixXd lu_;                            // L D^-1 and D U one above the other, of the rows in this order
+  Eigen::VectorXi order_;                         // where each row goes
   Eigen::PartialPivLU<Eigen::MatrixXd> factors_;  // at work
 };
 

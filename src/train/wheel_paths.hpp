@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <vector>
+
 #include "base/bytes.hpp"
 
 namespace traverse::train {

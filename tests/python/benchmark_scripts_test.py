@@ -170,6 +170,12 @@ class Scripts(InAFolder):
         self.assert_errors(rows, "deflections differ by", 1e-11)
         self.assert_errors(rows, "all series differ by", 1e-6)
 
+    def test_kills(self):
+        self.run_smallest("kills")
+        rows = self.table("kills.csv", ["vehicles", "kills", "restarts", "series"])
+        self.assertEqual([row["kills"] for row in rows], ["2", "2"])
+        self.assert_positive(rows, "series")
+
     def test_beam_solver_picture(self):
         table = self.folder / "times.csv"
         lines = [f"{n},{name},{ns},1" for n in (20, 200, 2000) for name, ns in (("traverse", 1.4), ("moving it", 0.4))]
