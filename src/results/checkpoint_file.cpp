@@ -124,24 +124,17 @@ void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpo
   MPI_Comm_rank(comm, &rank);
   checkpoint.version = TRAVERSE_VERSION;
   checkpoint.of_ranks = gather(comm, own);
-  std::string failure;
-  try {
-    if (rank == 0) {
-      base::Bytes bytes;
-      bytes(checkpoint, checkpoint.of_ranks);
-      base::Digest digest;
-      digest.add(bytes.written());
-      const std::uint64_t value = digest.value();
-      Aside file(path);
-      file.write(mark);
-      file.write({reinterpret_cast<const char*>(&value), sizeof(value)});
-      file.write(bytes.written());
-      file.finish();
-    }
-  } catch (const FileError& error) {
-    failure = error.what();
-  }
-  share_failure(comm, failure);
+  if (rank != 0) return;
+  base::Bytes bytes;
+  bytes(checkpoint, checkpoint.of_ranks);
+  base::Digest digest;
+  digest.add(bytes.written());
+  const std::uint64_t value = digest.value();
+  Aside file(path);
+  file.write(mark);
+  file.write({reinterpret_cast<const char*>(&value), sizeof(value)});
+  file.write(bytes.written());
+  file.finish();
 }
 
 Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path) {

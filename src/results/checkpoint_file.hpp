@@ -31,7 +31,7 @@ struct Checkpoint {
   }
 };
 
-/// Collective. own: this rank's state. FileError with one line, on all ranks, where it cannot be written; what was
+/// Collective. own: this rank's state. FileError on the first rank, which writes, where it cannot be written; what was
 /// there before then stays.
 void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& own);
 /// Collective. The same on all ranks. FileError where the file is none, damaged, or of another version of the program.

@@ -18,6 +18,7 @@ using Pairs = std::vector<std::pair<std::string, std::string>>;
 
 constexpr const char *entries_table = "/input/options", *sources_table = "/input/sources",
                      *files_table = "/input/files";
+constexpr std::string_view new_name = "another name than ";
 // Of one run alone.
 constexpr std::array own = {"restart", "checkpoint_file", "options_file"};
 
@@ -92,8 +93,10 @@ std::vector<options::Entry> origin_of(const std::string& path) {
   }
   const std::filesystem::path given(path);
   const std::string again = (given.parent_path() / (given.stem().string() + "_again.h5")).string();
-  entries.push_back({"output_file", again, "after " + path, 0});
+  entries.push_back({"output_file", again, std::string(new_name) + path, 0});
   return entries;
 }
+
+bool is_new_name(const options::Entry& output_file) { return output_file.source.starts_with(new_name); }
 
 }  // namespace traverse::results

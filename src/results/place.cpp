@@ -121,10 +121,11 @@ void Place::claim() {
 
 void Place::copy_aside(const std::string& source) {
   std::error_code error;
-  if (!fs::exists(source, error) || !is_results_file(source))
+  const std::string& found = fs::exists(source, error) ? source : path_;  // they may have been moved
+  if (!is_results_file(found))
     fail(path_, "the results to take up, " + source + ", are not there; name them with -output_file");
   copied_ = true;
-  fs::copy_file(source, aside(), fs::copy_options::overwrite_existing, error);
+  fs::copy_file(found, aside(), fs::copy_options::overwrite_existing, error);
   if (error) fail(path_, error.message());
 }
 

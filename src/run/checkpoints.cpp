@@ -9,6 +9,7 @@
 #include "base/digest.hpp"
 #include "options/data_file.hpp"
 #include "options/input_texts.hpp"
+#include "results/origin.hpp"
 #include "results/stage.hpp"
 #include "run/signals.hpp"
 #include "traverse/options/input.hpp"
@@ -71,7 +72,8 @@ std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
     throw InputError("restart = " + path +
                      ": is of another scene; only ts_max_time, scene_tail, ts_max_steps and the names of files may be "
                      "changed");
-  if (given("output_file").empty()) scene.output.file = earlier.results.file;
+  const options::Entry* output = options::in_force().find("output_file");
+  if (output == nullptr || results::is_new_name(*output)) scene.output.file = earlier.results.file;
   return earlier;
 }
 

@@ -206,7 +206,9 @@ void Watch::keep(base::Archive& archive) {
                now_.probes, most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);
-  archive.same(deck_, filtered_wheels_);
+  // On the first rank alone.
+  deck_ ? archive.same(*deck_) : archive.same();
+  filtered_wheels_ ? archive.same(*filtered_wheels_) : archive.same();
   archive.same(summary_.structure_energy, summary_.energy_residual, summary_.largest_energy, summary_.energy_scale);
   archive.same(worst_.time, worst_.loads);
   bool noted = most_deflected_ > 0.0;

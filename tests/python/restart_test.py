@@ -210,6 +210,17 @@ class Again(Folder):
         with h5py.File(self.folder / "short.h5") as results:
             self.assertAlmostEqual(results["summary"].attrs["end_time"], 0.1)
 
+    def test_goes_on_without_the_scene(self):
+        shutil.copytree(SOURCE / "options", self.folder / "options")
+        run = [str(BINARY), "-options_file", "options/scenes/freight_wagon.yml", "-output_quiet", "-ts_dt", "2e-3",
+               "-ts_max_time", "0.2"]
+        self.run_it([*run, "-output_file", "whole.h5"])
+        self.run_it([*run, "-output_file", "parts.h5", "-ts_max_steps", "50"])
+        shutil.rmtree(self.folder / "options")
+        self.run_it([str(BINARY), "parts.h5", "-restart", "parts.h5.checkpoint", "-ts_max_steps", "100000"])
+        self.assert_same("whole.h5", "parts.h5")
+        self.assertFalse((self.folder / "parts_again.h5").exists())
+
     def test_files_without_texts(self):
         with h5py.File(self.folder / "old.h5", "w") as old:
             old.attrs["program"] = "traverse"
