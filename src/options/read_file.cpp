@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <sstream>
 
+#include "options/input_texts.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::options {

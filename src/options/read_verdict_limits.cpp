@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <iterator>
+#include <memory>
 
 #include "options/data_file.hpp"
+#include "options/input_texts.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/table.hpp"
 

@@ -35,7 +35,7 @@ std::string given(const char* name) {
 }
 
 std::string path_for(const Scene& scene) {
-  const std::string asked = given("checkpoint_file");
+  std::string asked = given("checkpoint_file");
   if (asked == "none") return "";
   if (!asked.empty()) return asked;
   return scene.output.file.empty() ? "" : scene.output.file + ".checkpoint";
