@@ -161,6 +161,12 @@ void record(const Sweep& sweep, Recorder& recorder) {
   of_runs("greatest_wheel_force", sweep.greatest_wheel_force, "N");
   of_runs("contact_losses", sweep.contact_losses, "1");
   of_runs("longest_loss", sweep.longest_loss, "s");
+  if (!sweep.model.expected_errors.empty()) {
+    std::vector<double> promised = sweep.contact_losses;  // not_run stays
+    for (double& losses : promised)
+      if (!std::isnan(losses)) losses = sweep.model.holds(losses) ? 1.0 : 0.0;
+    of_runs("promised", promised, "1");
+  }
   if (!sweep.judged.limits.empty()) {
     const std::vector<std::size_t> of_limits = {shape[0], shape[1], sweep.judged.limits.size()};
     sets.push_back({"/sweep/judged", of_limits, sweep.judged.value, "as /verdicts/quantity"});
@@ -203,6 +209,12 @@ std::vector<Verdict> verdicts_of(const Sweep& sweep) {
     const std::string train = sweep.trains.empty() ? "" : train_of(sweep, run / sweep.speed.size()) + " ";
     return fmt::format("{}at {:.5g} m/s ({:.4g} km/h)", train, speed, 3.6 * speed);
   });
+}
+
+std::string Sweep::Model::not_promised(const std::vector<double>& contact_losses) const {
+  const auto count = std::count_if(contact_losses.begin(), contact_losses.end(), [&](double n) { return !holds(n); });
+  if (expected_errors.empty() || count == 0) return {};
+  return fmt::format("nothing is promised of {} of the runs: wheels lost contact, which no trial run has seen", count);
 }
 
 std::string method_of(const Sweep::Model& model) {

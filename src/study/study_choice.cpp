@@ -27,9 +27,15 @@ void join(const SweepChoice& one, SweepChoice& all) {
   model.elements = std::max(model.elements, one.model.elements);
   if (model.time_step > 0.0) model.time_step = *scene.time_step;
   model.method = scene.sweep->method;
-  for (const auto& [quantity, error] : one.model.expected_errors)
-    for (auto& [known, largest] : model.expected_errors)
-      if (known == quantity) largest = std::max(largest, error);
+  model.lost_contact |= one.model.lost_contact;
+  // What is promised of all is what both promise, with the larger error.
+  std::erase_if(model.expected_errors, [&](auto& promise) {
+    const auto& others = one.model.expected_errors;
+    const auto same =
+        std::find_if(others.begin(), others.end(), [&](const auto& o) { return o.first == promise.first; });
+    if (same != others.end()) promise.second = std::max(promise.second, same->second);
+    return same == others.end();
+  });
 }
 
 using Choose = std::optional<SweepChoice> (*)(const Scene& scene, std::vector<std::string>& notes);

@@ -33,6 +33,7 @@ void add(const Accuracy& one, std::optional<Accuracy>& all) {
     all->promises[q].kept &= one.promises[q].kept;
     all->promises[q].expected = std::max(all->promises[q].expected, one.promises[q].expected);
   }
+  all->lost_contact |= one.lost_contact;
 }
 
 void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
@@ -90,7 +91,7 @@ std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<s
   choice.model = model_of(choice.scene);
   choice.model.accuracy = given.accuracy;
   for (std::size_t q = 0; q < quantities; ++q)
-    choice.model.expected_errors.emplace_back(stored_name(q), lanes->errors[q]);
+    if (asks_for(given, q)) choice.model.expected_errors.emplace_back(stored_name(q), lanes->errors[q]);
   return choice;
 }
 
@@ -109,6 +110,7 @@ SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& note
   choice.model = model_of(choice.scene);
   choice.model.accuracy = given.accuracy;
   choice.model.expected_errors = all->expected();
+  choice.model.lost_contact = all->lost_contact;
   for (auto& [quantity, error] : choice.model.expected_errors) error += by.error;
   return choice;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "accuracy/accuracy.hpp"
+#include "results/sweep.hpp"
 #include "traverse/options/options.hpp"
 
 namespace traverse::app {
@@ -59,6 +60,16 @@ TEST(Accuracy, IsWithdrawnWhereContactsWereLostUnseen) {
   EXPECT_NE(accuracy.withdrawn(2).find("lost contact 2 times, which no trial run has seen"), std::string::npos);
   EXPECT_TRUE(accuracy.expected().empty());
   EXPECT_EQ(accuracy.withdrawn(2), "");
+}
+
+TEST(SweepModel, PromisesNothingOfLossesThatNoTrialHasSeen) {
+  results::Sweep::Model model;
+  model.expected_errors = {{"deflection", 1e-3}};
+  const std::vector<double> losses = {0.0, 3.0, results::Sweep::not_run, 1.0};
+  EXPECT_EQ(model.not_promised({0.0, 0.0}), "");
+  EXPECT_NE(model.not_promised(losses).find("nothing is promised of 2 of the runs"), std::string::npos);
+  model.lost_contact = true;
+  EXPECT_EQ(model.not_promised(losses), "");
 }
 
 }  // namespace
