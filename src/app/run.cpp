@@ -4,6 +4,7 @@
 
 #include "accuracy/trials.hpp"
 #include "analyses.hpp"
+#include "check/check.hpp"
 #include "results/stage.hpp"
 #include "run/active_ranks.hpp"
 #include "run/by_spans.hpp"
@@ -54,6 +55,7 @@ int run(MPI_Comm comm, const Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const results::Heartbeat heartbeat(given.quiet || rank != 0);
+  if (given.check) return run_check(comm, given);
   results::Place place = results::claim_place(comm, given.output.file);
   if (given.study) return run_study(comm, given, std::move(place));
   if (given.sweep) return run_sweep(comm, given, std::move(place));

@@ -278,7 +278,10 @@ std::string find_file(const std::string& path, const std::string& named_in) {
     if (std::filesystem::equivalent(beside, plain, ignored)) return plain.string();
     if (std::filesystem::exists(beside, ignored)) return beside.string();
   }
-  return std::filesystem::exists(path, ignored) ? path : "";
+  if (std::filesystem::exists(path, ignored)) return path;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "traverse" / path;
+  return std::filesystem::exists(installed, ignored) ? installed.string() : "";
 }
 
 std::vector<Entry> read_options_file(const std::string& path) { return read_nested(path, 0); }

@@ -1,0 +1,96 @@
+#include "cost.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "methods/one_step_methods.hpp"
+#include "results/terminal.hpp"
+#include "run/outputs.hpp"
+#include "run/rank_choice.hpp"
+#include "scene/limits.hpp"
+#include "study/case_runner.hpp"
+#include "study/modes_choice.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+// As measured (doc/guide.md has how near estimates come).
+constexpr double program = 4.5e7;           // bytes, of the program with its libraries
+constexpr double a_step = 5e-6;             // s, besides its stages
+constexpr double a_mode_and_probe = 4e-10;  // s, of an instant that modes tell
+constexpr double of_petsc = 2.0;            // times the time of the program's own integrators
+constexpr double trial_runs = 12.0;         // of the first step's length, that trial runs take together
+constexpr double bytes_a_number = 8.0;
+constexpr double bytes_a_peak = 200.0;  // of a run of a sweep, each probe
+
+/// How many stages a step has, times what they cost more where PETSc takes them.
+double stages() {
+  const options::Entry* asked = options::in_force().find("ts_type");
+  const structure::MethodRow* row =
+      asked == nullptr ? &structure::methods().front() : structure::find_method(asked->value);
+  if (row == nullptr)
+    return of_petsc *
+           static_cast<double>(
+               structure::methods().front().make(structure::methods().front().parameter.value).stages.size());
+  return static_cast<double>(row->make(row->parameter.value).stages.size());
+}
+
+double step_seconds(const Look& look) {
+  if (look.scene.exact_in_time())
+    return a_mode_and_probe * static_cast<double>(look.shared->modal->modes()) *
+           static_cast<double>(look.scene.output.probes.size() + 1);
+  return a_step + stages() * stage_seconds(stage_work(look.scene), 1, 0.0);
+}
+
+void count_single(const Look& look, Cost& cost) {
+  const Plan& plan = look.passage->plan();
+  const Outputs outputs = outputs_of({look.scene, look.passage->system().fleet(), look.bridge()});
+  const double samples = plan.end_time / (plan.interval * static_cast<double>(plan.stored)) + 1.0;
+  cost.steps = plan.end_time / plan.time_step;
+  cost.seconds = cost.steps * step_seconds(look);
+  cost.stored = bytes_a_number * samples * static_cast<double>(outputs.layout().width() + 1);
+}
+
+void count_runs(const Look& look, Cost& cost) {
+  Scene scene = look.whole;
+  scene.beam = look.scene.beam;
+  if (!scene.exact_in_time()) scene.time_step = look.scene.time_step;
+  std::vector<std::string> ignored;
+  const CaseRunner runner(scene, ignored);
+  const double of_sweep = static_cast<double>(runner.speeds().size() * runner.trains());
+  cost.seconds = runner.cost_of_all() * static_cast<double>(look.runs) / of_sweep;
+  if (!scene.exact_in_time()) cost.steps = runner.duration(0, runner.speeds().front()) / *scene.time_step;
+  cost.stored =
+      bytes_a_peak * static_cast<double>(look.runs * std::max<std::size_t>(1, look.scene.output.probes.size()));
+  if (!scene.modes_open) return;
+  if (const std::optional<QuickerModes> modes = quicker_modes(scene); modes && modes->seconds < cost.seconds)
+    cost.quicker = fmt::format("by modes, where these do as well, about {}",
+                               results::duration_text(modes->seconds * static_cast<double>(look.runs) / of_sweep));
+  else if (!scene.vehicles.empty() && scene.vehicle_model != VehicleModel::full && scene.sweep->lanes > 0)
+    cost.quicker = "where linear vehicles on modes do as well, runs go side by side, up to a hundred times as fast";
+}
+
+}  // namespace
+
+Cost cost_of(const Look& look) {
+  Cost cost;
+  if (const beam::Beam* beam = look.bridge()) cost.unknowns = static_cast<double>(beam->columns()) * beam->block();
+  if (look.passage) cost.unknowns += look.passage->system().freedom();
+  cost.memory = program + memory_of(look.scene);
+  if (look.scene.analysis != Analysis::transient) return cost;
+  look.whole.sweep ? count_runs(look, cost) : count_single(look, cost);
+  if (look.tried && !look.scene.exact_in_time())
+    cost.trials = trial_runs * look.horizon / look.first_step * step_seconds(look);
+  return cost;
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(1e-3 * bytes));
+  if (bytes < 1e9) return fmt::format("{:.3g} MB", 1e-6 * bytes);
+  return fmt::format("{:.3g} GB", 1e-9 * bytes);
+}
+
+}  // namespace traverse::app
