@@ -4,6 +4,7 @@
 # Then, as root, on a machine of the same Debian: apt install ./traverse_VERSION_ARCHITECTURE.deb
 set -euo pipefail
 folder=$(realpath -m "${1:-build-package}")  # before the set-up goes to the project's root
+# shellcheck source=scripts/setup.sh
 source "$(dirname "${BASH_SOURCE[0]}")/setup.sh"
 locked install_packages "${program_packages[@]}" dpkg-dev file
 
