@@ -16,7 +16,7 @@ install(DIRECTORY options DESTINATION ${share})
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
-install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR} PATTERN decisions EXCLUDE PATTERN *.csv EXCLUDE)
+install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # The manual page and the shell's completion are what the program itself says of its options.
 function(traverse_install_words format folder name)

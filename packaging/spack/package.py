@@ -1,6 +1,7 @@
-# A recipe for Spack. In a folder with repo.yaml (`spack repo create FOLDER`) it stands as packages/traverse/package.py;
-# `spack repo add FOLDER`, then `spack develop --path CHECKOUT traverse@=0.1.0` and `spack install traverse` build it.
+# A recipe for Spack 1.0 and later. In a repository of recipes (`spack repo create`) it stands as packages/traverse/package.py;
+# in an environment `spack develop --path CHECKOUT traverse@=0.1.0`, `spack add traverse` and `spack install` build it.
 from spack.package import *
+from spack_repo.builtin.build_systems.cmake import CMakePackage
 
 
 class Traverse(CMakePackage):

@@ -19,6 +19,7 @@ namespace {
 
 constexpr int label_width = 22;
 constexpr std::size_t most_rows = 12;  // of a table
+constexpr double rounding = 1e-9;      // of a force
 
 /// Sections of lines, each line a label and its text.
 class Page {
@@ -51,6 +52,10 @@ double mass_of(const beam::BeamModel& beam) {
   return mass;
 }
 
+std::string mass_text(double mass) {
+  return mass < 1e3 ? fmt::format("{:.4g} kg", mass) : fmt::format("{:.4g} t", 1e-3 * mass);
+}
+
 std::string count_text(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
@@ -60,7 +65,7 @@ void print_bridge(const Page& page, const Look& look) {
   page.heading("bridge");
   page.line("length", fmt::format("{:g} m, {}", beam.length(), count_text(beam.spans.size(), "span", "spans")));
   const double mass = mass_of(beam);
-  page.line("mass", fmt::format("{:.4g} t, {:.4g} kg/m in the mean", 1e-3 * mass, mass / beam.length()));
+  page.line("mass", fmt::format("{}, {:.4g} kg/m in the mean", mass_text(mass), mass / beam.length()));
   page.line("EI", beam.EI.uniform() ? fmt::format("{:.4g} N m2", beam.EI.minimum())
                                     : fmt::format("{:.4g} to {:.4g} N m2", beam.EI.minimum(), beam.EI.maximum()));
   std::string frequencies;
@@ -87,10 +92,11 @@ void print_vehicles(const Page& page, const Look& look, const std::vector<Axle>&
     for (auto axle = first; axle != axles.end(); ++axle)
       if (axle->type == static_cast<int>(type) && axle->vehicle == first->vehicle)
         wheels += fmt::format("{}{} {:.4g}", wheels.empty() ? "" : ", ", axle->name, 1e-3 * axle->force);
-    page.line(count == 1 ? vehicle.name : fmt::format("{} x {}", count, vehicle.name),
-              fmt::format("{:.4g} t each{}", 1e-3 * mass, wheels.empty() ? "" : "; kN: " + wheels));
+    page.line(
+        count == 1 ? vehicle.name : fmt::format("{} x {}", count, vehicle.name),
+        fmt::format("{}{}{}", mass_text(mass), count > 1 ? " each" : "", wheels.empty() ? "" : "; kN: " + wheels));
   }
-  page.line("all", fmt::format("{:.4g} t, degrees of freedom {}", 1e-3 * all, look.passage->system().freedom()));
+  page.line("all", fmt::format("{}, degrees of freedom {}", mass_text(all), look.passage->system().freedom()));
 }
 
 void print_load(const Page& page, const std::string& name, const MovingLoad& load) {
@@ -113,16 +119,17 @@ void print_loads(const Page& page, const Look& look) {
 
 void print_rest(const Page& page, const Rest& rest) {
   page.heading(
-      "supports at rest, kN upward on the bridge: its own weight; the train wherever it stands, least and greatest");
+      "supports at rest, kN upward: the bridge's own weight; what passes, wherever it stands, least and greatest");
   if (!rest.why_not.empty()) return page.line("", rest.why_not);
   for (std::size_t i = 0; i < std::min(most_rows, rest.supports.size()); ++i) {
     const Borne& one = rest.supports[i];
+    const double least = -one.least > rounding * one.greatest ? one.least : 0.0;
     page.line(fmt::format("{} at {:g} m", one.spring ? "spring" : "support", one.x),
-              fmt::format("{:>10.4g}{:>14.4g}{:>12.4g}", 1e-3 * one.own, 1e-3 * one.least, 1e-3 * one.greatest));
+              fmt::format("{:>10.4g}{:>14.4g}{:>12.4g}", 1e-3 * one.own, 1e-3 * least, 1e-3 * one.greatest));
   }
   if (rest.supports.size() > most_rows) page.line("", fmt::format("and {} more", rest.supports.size() - most_rows));
   if (rest.deflection > 0.0)
-    page.line("deflection", fmt::format("{:.4g} mm at x = {:g} m, 1/{:.0f} of the span, under the train at rest",
+    page.line("deflection", fmt::format("{:.4g} mm at x = {:g} m, 1/{:.0f} of the span, under what passes",
                                         1e3 * rest.deflection, rest.at, rest.span / rest.deflection));
 }
 
@@ -147,7 +154,11 @@ void print_runs(const Page& page, const Scene& given, const Look& look) {
   }
   for (const std::string& line : look.choice) page.line("mesh and step", line);
   if (!given.limits.empty()) page.line("limits", fmt::format("{} that it is checked against", given.limits.size()));
-  for (const std::string& note : look.notes) page.line("", note);
+}
+
+void print_notes(const Page& page, const std::vector<std::string>& notes) {
+  page.heading("what is modelled");
+  for (const std::string& note : notes) fmt::print("  {}\n", note);
 }
 
 void print_cost(const Page& page, const Scene& given, const Look& look) {
@@ -156,9 +167,9 @@ void print_cost(const Page& page, const Scene& given, const Look& look) {
   if (cost.unknowns > 0.0) page.line("unknowns", fmt::format("{:g}", cost.unknowns));
   if (cost.steps > 0.0)
     page.line(look.runs > 1 ? "steps of one run" : "steps",
-              fmt::format("{:.3g}{}", std::ceil(cost.steps),
+              fmt::format("{:.0f}{}", std::ceil(cost.steps),
                           look.tried && look.longest_step > look.first_step
-                              ? fmt::format("; down to {:.3g} where longer ones do",
+                              ? fmt::format("; down to {:.0f} where longer ones do",
                                             std::ceil(cost.steps * look.first_step / look.longest_step))
                               : ""));
   if (cost.trials > 0.0) page.line("trial runs", "about " + results::duration_text(cost.trials));
@@ -184,6 +195,7 @@ void print_page(const Scene& given, const Look& look, const std::vector<std::str
   if (look.passage) print_vehicles(page, look, axles);
   print_loads(page, look);
   if (look.scene.beam && !axles.empty()) print_rest(page, rest);
+  print_notes(page, look.notes);
   print_runs(page, given, look);
   print_cost(page, given, look);
   page.heading("what looks unusual");

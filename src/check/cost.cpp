@@ -17,32 +17,37 @@
 namespace traverse::app {
 namespace {
 
-// As measured (doc/guide.md has how near estimates come).
-constexpr double program = 4.5e7;           // bytes, of the program with its libraries
-constexpr double a_step = 5e-6;             // s, besides its stages
-constexpr double a_mode_and_probe = 4e-10;  // s, of an instant that modes tell
-constexpr double of_petsc = 2.0;            // times the time of the program's own integrators
-constexpr double trial_runs = 12.0;         // of the first step's length, that trial runs take together
+// As measured; benchmarks/check_estimates.py has how near estimates come.
+constexpr double program = 6.5e7;               // bytes, of the program with its libraries
+constexpr double a_step = 5e-6, a_body = 4e-6;  // s, of a step besides what the structure takes
+constexpr double moving_spans = 24.0;           // of a bridge whose other spans rest
+constexpr double a_mode_and_probe = 4e-10;      // s, of an instant that modes tell
+constexpr double of_petsc = 2.0;                // times the time of the program's own integrators
+constexpr double trial_runs = 6.0;              // with steps of the first length, that take as long as all trial runs
 constexpr double bytes_a_number = 8.0;
 constexpr double bytes_a_peak = 200.0;  // of a run of a sweep, each probe
 
 /// How many stages a step has, times what they cost more where PETSc takes them.
 double stages() {
   const options::Entry* asked = options::in_force().find("ts_type");
-  const structure::MethodRow* row =
-      asked == nullptr ? &structure::methods().front() : structure::find_method(asked->value);
-  if (row == nullptr)
-    return of_petsc *
-           static_cast<double>(
-               structure::methods().front().make(structure::methods().front().parameter.value).stages.size());
-  return static_cast<double>(row->make(row->parameter.value).stages.size());
+  const structure::MethodRow* own = asked == nullptr ? nullptr : structure::find_method(asked->value);
+  const structure::MethodRow& row = own == nullptr ? structure::methods().front() : *own;
+  const bool by_petsc = asked != nullptr && own == nullptr;
+  return (by_petsc ? of_petsc : 1.0) * static_cast<double>(row.make(row.parameter.value).stages.size());
 }
 
 double step_seconds(const Look& look) {
   if (look.scene.exact_in_time())
     return a_mode_and_probe * static_cast<double>(look.shared->modal->modes()) *
            static_cast<double>(look.scene.output.probes.size() + 1);
-  return a_step + stages() * stage_seconds(stage_work(look.scene), 1, 0.0);
+  double bodies = 0.0;
+  for (const int type : look.scene.train.vehicles)
+    bodies += static_cast<double>(look.scene.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
+  StageWork structure = stage_work(look.scene);
+  structure.vehicles = 0.0;
+  const double moving =
+      structure.cut ? 1.0 : std::min(1.0, moving_spans / static_cast<double>(look.scene.beam->spans.size()));
+  return a_step + a_body * bodies + stages() * moving * stage_seconds(structure, 1, 0.0);
 }
 
 void count_single(const Look& look, Cost& cost) {
@@ -57,7 +62,7 @@ void count_single(const Look& look, Cost& cost) {
 void count_runs(const Look& look, Cost& cost) {
   Scene scene = look.whole;
   scene.beam = look.scene.beam;
-  if (!scene.exact_in_time()) scene.time_step = look.scene.time_step;
+  if (!scene.exact_in_time()) scene.time_step = look.passage->plan().time_step;
   std::vector<std::string> ignored;
   const CaseRunner runner(scene, ignored);
   const double of_sweep = static_cast<double>(runner.speeds().size() * runner.trains());

@@ -21,6 +21,7 @@ constexpr double near_bounds = 2.0;        // times and parts of the bounds
 constexpr double much_damping = 0.1;
 constexpr double much_deflection = 1.0 / 300.0;    // of the span
 constexpr double earth = 9.81, near_earth = 0.05;  // m/s2
+constexpr double nearly_all = 0.99;                // of the time until the train has left
 constexpr double one_share = 1e-3;                 // of the mean: a wheel that carries less carries nothing
 
 /// Whether it spans from support to support, as figure 6.10 of EN 1991-2 has it.
@@ -118,7 +119,7 @@ void look_at_course(const Look& look, const std::vector<Axle>& axles, Lines& lin
   if (rests && look.scene.analysis != Analysis::static_envelope && first->x < start)
     lines.push_back(fmt::format("the train never meets the bridge: it stands {:g} m before it", start - first->x));
   const double leaves = look.passage->system().leaving_time();
-  if (moves && !rests && std::isfinite(leaves) && look.end_time() < leaves * (1.0 - 1e-9) &&
+  if (moves && !rests && std::isfinite(leaves) && look.end_time() < leaves * nearly_all &&
       first->x + greatest_speed(look.scene) * look.end_time() > start)
     lines.push_back(
         fmt::format("the run ends at {:.4g} s, before the last {} has left the bridge at {:.4g} s (ts_max_time)",
@@ -126,7 +127,8 @@ void look_at_course(const Look& look, const std::vector<Axle>& axles, Lines& lin
 }
 
 void look_at_gravity(const Look& look, Lines& lines) {
-  if (!look.scene.vehicles.empty() && std::abs(look.scene.gravity - earth) > near_earth)
+  const bool rolls = look.passage && !look.passage->system().fleet().wheels.empty();
+  if (rolls && std::abs(look.scene.gravity - earth) > near_earth)
     lines.push_back(fmt::format("gravity: {:g} m/s2, on earth it is 9.81 m/s2", look.scene.gravity));
 }
 

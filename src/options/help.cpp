@@ -1,6 +1,5 @@
 // The text of -help.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -113,23 +112,29 @@ std::vector<HelpGroup> help_groups() {
 std::string help_text(const std::string& about) {
   if (about.empty() || about == "petsc") return everything();
   const std::string wanted = as_name(about.substr(std::min(about.find_first_not_of('-'), about.size())));
-  std::string out;
-  for (const HelpGroup& group : help_groups())
-    if (group.name == wanted || group.name == group_of(wanted)) append(group, out);
+  const std::vector<HelpGroup> groups = help_groups();
+  std::string names, out;
+  std::vector<std::string> candidates = {"integrators"};
+  for (const std::string_view name : {std::string_view(wanted), group_of(wanted)})
+    for (const HelpGroup& group : groups)
+      if (out.empty() && group.name == name) append(group, out);
   if (!out.empty()) return out.substr(1);
-  std::vector<std::string> groups, names;
-  for (HelpGroup group : help_groups()) {
-    groups.push_back(group.name);
-    for (const HelpGroup::Option& option : group.options) names.push_back(option.name);
+  for (const HelpGroup& group : groups) {
+    names += group.name + ", ";
+    candidates.push_back(group.name);
+    for (const HelpGroup::Option& option : group.options) candidates.push_back(option.name);
+  }
+  for (HelpGroup group : groups) {
     std::erase_if(group.options,
                   [&](const HelpGroup::Option& option) { return option.name != wanted && option.row->name != wanted; });
     if (!group.options.empty()) append(group, out);
   }
   if (!out.empty()) return out.substr(1);
-  const std::string near = nearest(wanted, names);
+  const std::string near = nearest(wanted, candidates);
   throw InputError(
-      fmt::format("help = {}: neither options nor a group of them; allowed: {}, integrators, man, bash, petsc{}", about,
-                  fmt::join(groups, ", "), near.empty() ? "" : fmt::format(", or an option such as {}", near)));
+      fmt::format("help = {}: neither an option nor a group of them{}; allowed: {}integrators, man, bash, petsc, or an "
+                  "option",
+                  about, near.empty() ? "" : fmt::format("; did you mean {}?", near), names));
 }
 
 }  // namespace traverse::options
