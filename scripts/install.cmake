@@ -45,6 +45,7 @@ if(TRAVERSE_HDF5_MODULE_NAME STREQUAL "hdf5-openmpi")
 else()
   list(JOIN MPI_CXX_LIBRARIES " " mpi_libraries)
 endif()
+file(RELATIVE_PATH to_prefix /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /prefix)  # so that what is installed may be moved
 configure_file(scripts/traverse.pc.in traverse.pc @ONLY)
 install(FILES ${PROJECT_BINARY_DIR}/traverse.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 

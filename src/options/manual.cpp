@@ -63,9 +63,8 @@ that says what is wrong.
 traverse \-options_file options/scenes/three_span_train.yml
 traverse \-options_file options/scenes/three_span_train.yml \-train_speed 70 \-check
 traverse \-help beam
+traverse\-report results/three_span_train.h5
 .fi
-.SH SEE ALSO
-.BR traverse\-report " (1)"
 )troff";
 
 }  // namespace
