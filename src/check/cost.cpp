@@ -27,6 +27,12 @@ constexpr double trial_runs = 6.0;              // with steps of the first lengt
 constexpr double bytes_a_number = 8.0;
 constexpr double bytes_a_peak = 200.0;  // of a run of a sweep, each probe
 
+/// Below this accuracy trial runs refine mesh and step further than where they begin.
+constexpr double begins_well = 1e-3;
+double refinement(const Look& look) {
+  return look.tried ? std::max(1.0, std::sqrt(begins_well / look.scene.accuracy)) : 1.0;
+}
+
 /// How many stages a step has, times what they cost more where PETSc takes them.
 double stages() {
   const options::Entry* asked = options::in_force().find("ts_type");
@@ -87,8 +93,9 @@ Cost cost_of(const Look& look) {
   cost.memory = program + memory_of(look.scene);
   if (look.scene.analysis != Analysis::transient) return cost;
   look.whole.sweep ? count_runs(look, cost) : count_single(look, cost);
+  cost.seconds *= refinement(look);
   if (look.tried && !look.scene.exact_in_time())
-    cost.trials = trial_runs * look.horizon / look.first_step * step_seconds(look);
+    cost.trials = refinement(look) * trial_runs * look.horizon / look.first_step * step_seconds(look);
   return cost;
 }
 

@@ -1,6 +1,7 @@
 #include "options/read_file.hpp"
 
 #include <fmt/format.h>
+#include <sys/auxv.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -279,7 +280,9 @@ std::string find_file(const std::string& path, const std::string& named_in) {
     if (std::filesystem::exists(beside, ignored)) return beside.string();
   }
   if (std::filesystem::exists(path, ignored)) return path;
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", ignored);
+  const auto* started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));  // NOLINT: an address, by its definition
+  if (started == nullptr) return "";
+  const std::filesystem::path program = std::filesystem::canonical(started, ignored);
   const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "traverse" / path;
   return std::filesystem::exists(installed, ignored) ? installed.string() : "";
 }
