@@ -163,7 +163,7 @@ void print_notes(const Page& page, const std::vector<std::string>& notes) {
 
 void print_cost(const Page& page, const Scene& given, const Look& look) {
   const Cost cost = cost_of(look);
-  page.heading("what it takes, estimated by counting: times may be off by a factor of three");
+  page.heading("what it takes, estimated by counting: most times are right to a factor of three, few to ten");
   if (cost.unknowns > 0.0) page.line("unknowns", fmt::format("{:g}", cost.unknowns));
   if (cost.steps > 0.0)
     page.line(look.runs > 1 ? "steps of one run" : "steps",
