@@ -33,7 +33,9 @@ bool is_dumb() {
 
 Looks looks_of_output() {
   Looks looks;
-  if (isatty(STDOUT_FILENO) != 1) return looks;
+  // Ranks of Open MPI's mpirun write to a terminal of its own, wherever it passes that on to.
+  const bool under_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
+  if (isatty(STDOUT_FILENO) != 1 || under_mpirun) return looks;
   looks.utf8 = speaks_utf8();
   looks.colour = std::getenv("NO_COLOR") == nullptr && !is_dumb();
   winsize size{};

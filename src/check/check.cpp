@@ -20,6 +20,7 @@ namespace {
 constexpr int label_width = 22;
 constexpr std::size_t most_rows = 12;  // of a table
 constexpr double rounding = 1e-9;      // of a force
+constexpr double least_told = 1e-2;    // s
 
 /// Sections of lines, each line a label and its text.
 class Page {
@@ -174,9 +175,10 @@ void print_cost(const Page& page, const Scene& given, const Look& look) {
                               : ""));
   if (cost.trials > 0.0) page.line("trial runs", "about " + results::duration_text(cost.trials));
   if (cost.seconds > 0.0)
-    page.line("time", fmt::format("about {} on one core{}{}", results::duration_text(cost.seconds),
-                                  look.runs > 1 ? ", divided by as many as share the runs" : "",
-                                  cost.quicker.empty() ? "" : "; " + cost.quicker));
+    page.line("time",
+              fmt::format("about {} on one core{}{}", results::duration_text(std::max(cost.seconds, least_told)),
+                          look.runs > 1 ? ", divided by as many as share the runs" : "",
+                          cost.quicker.empty() ? "" : "; " + cost.quicker));
   page.line("memory", "about " + bytes_text(cost.memory) + " a rank");
   if (given.output.file.empty()) return page.line("results", "none are stored");
   const std::string size = cost.stored > 0.0 ? ", about " + bytes_text(cost.stored) : "";

@@ -150,6 +150,13 @@ TEST(Check, ShowsLoadsAndReactionsAtRest) {
   EXPECT_TRUE(contains(supports, "0.6722 mm")) << supports;
 }
 
+TEST(Check, OnTwoRanksIsTheSame) {
+  const Workplace workplace(usual);
+  const Outcome outcome = workplace.run({"-check"}, 2);
+  expect_success(outcome);
+  EXPECT_EQ(lines_of(outcome.out), lines_of(workplace.run({"-check"}).out));
+}
+
 TEST(Check, LeavesResultsThatAreThereAlone) {
   const Workplace workplace(usual);
   workplace.write("mine.h5", "not a results file");
