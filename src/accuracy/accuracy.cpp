@@ -28,9 +28,10 @@ void leave_out_rest(Scene& scene) {
 
 void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, std::vector<std::string>& notes) {
   notes.push_back(
-      fmt::format("accuracy {:g}: {} elements a {}, steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
-                  scene.accuracy, mesh_of(scene), scene.beam->track ? "sleeper bay" : "span", *scene.time_step,
-                  search.trials(), search.horizon(), result.seconds));
+      fmt::format("accuracy {:g}: {} elements a {}, {}steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
+                  scene.accuracy, mesh_of(scene), scene.beam->track ? "sleeper bay" : "span",
+                  scene.integrator.empty() ? "" : scene.integrator + " with ", *scene.time_step, search.trials(),
+                  search.horizon(), result.seconds));
   std::string expected;
   for (std::size_t q = 0; q < quantities; ++q)
     if (result.promises[q].present && result.promises[q].kept)
@@ -65,6 +66,11 @@ std::string stored_name(std::size_t quantity) {
   std::string name = quantity_names[quantity];
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
+}
+
+bool asks_for(const Scene& scene, std::size_t quantity) {
+  const std::vector<std::string>& asked = scene.accuracy_of;
+  return asked.empty() || std::find(asked.begin(), asked.end(), stored_name(quantity)) != asked.end();
 }
 
 std::string Accuracy::withdrawn(int contact_losses) {

@@ -26,6 +26,8 @@ struct Promise {
 
 /// A quantity's name in options and the results file.
 std::string stored_name(std::size_t quantity);
+/// Whether the scene's accuracy_of holds it, or is left out.
+bool asks_for(const Scene& scene, std::size_t quantity);
 
 struct Accuracy {
   bool measured = false;  // false: nothing was open, or there is nothing to measure

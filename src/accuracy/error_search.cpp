@@ -10,6 +10,8 @@
 #include "base/whole.hpp"
 #include "first_guess.hpp"
 #include "horizon.hpp"
+#include "integrate/integrator_choice.hpp"
+#include "methods/one_step_methods.hpp"
 #include "run/plan.hpp"
 
 namespace traverse::app {
@@ -30,6 +32,8 @@ constexpr double farthest_guess = 8.0;   // of the run's mesh and step, for that
 constexpr double passed_over = 2.0;      // times the wanted error, on the way to longer steps
 constexpr double share_between = 0.5;    // of the wanted error, where it is only known for shorter and longer steps
 constexpr double most_growth = 4.0;
+constexpr std::array fewer_solves_steps = {1.0, 0.7, 0.5};  // times the step of the usual method
+constexpr double trials_that_save = 0.5;                    // of the run, for trying them
 constexpr int most_elements_a_bay = 8, most_elements_in_all = 1200;
 constexpr double track_order = 3.0;       // of a track's mesh, supposed
 constexpr double most_beginnings = 10.0;  // that trial runs may last, to see what comes later
@@ -68,6 +72,7 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
       trials_(comm, shortened(moved_up(scene), horizon_)),
       open_mesh_(scene.mesh_open),
       open_step_(!scene.time_step),
+      open_integrator_(!integrate::type_is_given() && !scene.sweep && !scene.study),
       wanted_((scene.accuracy > small_error ? usual_share : small_share) * scene.accuracy),
       mesh_(mesh_of(scene)),
       most_elements_(most_trial_elements(scene)) {
@@ -82,10 +87,8 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
   const double decay = 0.5 * (shared.rayleigh.a + shared.rayleigh.b * omega * omega);
   const double left = end - moved_by();
   growth_ = std::clamp(std::min(left, decay > 0.0 ? 1.0 / decay : left) / horizon_, 1.0, most_growth);
-  const std::vector<std::string>& asked = scene.accuracy_of;
-  for (std::size_t q = 0; q < quantities && !asked.empty(); ++q)
-    if (std::find(asked.begin(), asked.end(), stored_name(q)) == asked.end())
-      refuse(q, "accuracy_of does not ask for it");
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (!asks_for(scene, q)) refuse(q, "accuracy_of does not ask for it");
   if (!follows_contacts(scene, step_))
     refuse(wheel_force, fmt::format("the contact vibrates at {:.3g} Hz, which steps of {:.2g} s do not follow",
                                     contact_frequency(scene) / (2.0 * std::numbers::pi), step_));
@@ -128,6 +131,7 @@ void ErrorSearch::search() {
   try {
     refine();
     coarsen();
+    take_fewer_solves();
   } catch (const TooMuchWork&) {
     if (!measured_) refuse_scene();
     std::tie(step_, mesh_) = *measured_;
@@ -161,14 +165,14 @@ void ErrorSearch::refine() {
 // Longer steps against the finest one. What is only a little too large between may be passed over: where the contacts'
 // vibration is half resolved errors are larger than where it is not at all.
 void ErrorSearch::coarsen() {
+  finest_step_ = step_;
+  finest_ = time_;
   if (!open_step_) return;
-  const double fine = step_;
-  const Errors errors = time_;
-  for (double step = 2.0 * fine; step <= longest_step_; step *= 2.0) {
+  for (double step = 2.0 * finest_step_; step <= longest_step_; step *= 2.0) {
     if (trials_.run(mesh_, step).failed()) return;  // and nothing is known of steps between
-    Errors longer = errors;
+    Errors longer = finest_;
     for (std::size_t q = 0; q < quantities; ++q)
-      longer[q].value += growth_ * difference(trials_.run(mesh_, step), trials_.run(mesh_, fine),
+      longer[q].value += growth_ * difference(trials_.run(mesh_, step), trials_.run(mesh_, finest_step_),
                                               static_cast<Quantity>(q), 3.0 * step);
     if (excess(longer) <= 1.0) {
       step_ = step;
@@ -179,6 +183,34 @@ void ErrorSearch::coarsen() {
     }
     if (excess(longer) > passed_over) return;
   }
+}
+
+// A method of fewer solves a step and lower order, against the finest run, where trying it costs a part of what it
+// saves.
+void ErrorSearch::take_fewer_solves() {
+  if (!open_step_ || !open_integrator_) return;
+  const double usual = factor_of_step() * step_, run = trials_.seconds(mesh_, usual) * end_ / horizon_;
+  double spent = 0.0;
+  for (const structure::MethodRow& method : structure::methods().subspan(1))
+    for (const double factor : fewer_solves_steps) {
+      const double step = factor * usual;
+      spent += trials_.seconds(mesh_, step, method.name);
+      if (spent > trials_that_save * run) return;
+      Errors errors = finest_;
+      for (std::size_t q = 0; q < quantities; ++q)
+        errors[q].value += growth_ * difference(trials_.run(mesh_, step, method.name), trials_.run(mesh_, finest_step_),
+                                                static_cast<Quantity>(q), 3.0 * step);
+      const auto fits = [&](std::size_t q) {  // what the mesh leaves
+        return !promised(q) || errors[q].value <= 2.0 * wanted_ - std::min(space_[q].value, wanted_);
+      };
+      if (!fits(deflection) || !fits(acceleration) || !fits(moment) || !fits(wheel_force) || excess(errors) > 2.0)
+        continue;
+      integrator_ = method.name;
+      step_ = step;
+      time_ = errors;
+      coarser_.reset();
+      return;
+    }
 }
 
 /// What the errors are of those wanted, at most.
@@ -202,6 +234,7 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
     mesh = aligned_mesh(scene_, std::max(4, 2 * base::whole(std::ceil(0.5 * mesh_ / fewer))));
   set_mesh(scene, mesh);
   scene.time_step = step;
+  scene.integrator = integrator_;
   scene.step_probes = true;
   for (std::size_t q = 0; q < quantities; ++q) {
     const double ratio = step / step_;

@@ -36,6 +36,7 @@ class ErrorSearch {
   void search();
   [[noreturn]] void refuse_scene() const;
   void coarsen();
+  void take_fewer_solves();
   void measure();
   double excess(const Errors& errors) const;
   ErrorLaw error_in_time(Quantity q);
@@ -60,9 +61,10 @@ class ErrorSearch {
   std::string unseen_;  // what no trial run sees, in words; empty: nothing
   double horizon_;      // of trial runs, s
   Trials trials_;
-  bool open_mesh_, open_step_;
-  bool undamped_ = false;  // no damping grows with the frequency
-  double wanted_;          // error of the step, and of the mesh
+  bool open_mesh_, open_step_, open_integrator_;
+  bool undamped_ = false;   // no damping grows with the frequency
+  double wanted_;           // error of the step, and of the mesh
+  std::string integrator_;  // chosen; empty: the default
   int mesh_, most_elements_;
   double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s
   double growth_ = 1.0;  // of errors in free oscillations until these have died away, for runs longer than the trials
@@ -70,6 +72,8 @@ class ErrorSearch {
   std::array<bool, quantities> tried_{};  // refused by the search, with an error as small as it could be made
   std::array<int, quantities> crawls_{};  // halvings of the step in a row that have changed little
   Errors time_{}, space_{};
+  double finest_step_ = 0.0;  // s, tried, with its errors
+  Errors finest_{};
   std::optional<std::pair<double, int>> measured_;  // step and mesh that the errors belong to
   std::string shortest_;                            // what asks for the shortest steps, in words
   std::optional<Errors> coarser_;                   // in time, of twice the step, where that is too long

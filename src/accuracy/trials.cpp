@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/whole.hpp"
+#include "methods/one_step_methods.hpp"
 #include "results/stage.hpp"
 #include "run/passage.hpp"
 #include "run/watch.hpp"
@@ -182,19 +183,24 @@ double Trials::seconds_a_step(int elements) const {
   return 5e-6 + 5e-6 * bodies + 1e-7 * probes + along * (beam.track ? 1e-6 : 1e-7);
 }
 
-double Trials::seconds(int elements, double step) const { return *scene_.end_time / step * seconds_a_step(elements); }
+double Trials::seconds(int elements, double step, const std::string& integrator) const {
+  const structure::MethodRow* method = structure::find_method(integrator);
+  const double solves = method == nullptr ? 1.0 : method->solves() / structure::methods().front().solves();
+  return *scene_.end_time / step * seconds_a_step(elements) * solves;
+}
 
 double Trials::seconds() const {
   double sum = 0.0;
-  for (const auto& [mesh_and_step, peaks] : kept_) sum += seconds(mesh_and_step.first, mesh_and_step.second);
+  for (const auto& [run, peaks] : kept_) sum += seconds(std::get<0>(run), std::get<1>(run), std::get<2>(run));
   return sum;
 }
 
-const Peaks& Trials::run(int elements, double step) {
-  if (const auto known = kept_.find({elements, step}); known != kept_.end()) return known->second;
+const Peaks& Trials::run(int elements, double step, const std::string& integrator) {
+  if (const auto known = kept_.find({elements, step, integrator}); known != kept_.end()) return known->second;
   Scene scene = scene_;
   set_mesh(scene, elements);
   scene.time_step = step;
+  scene.integrator = integrator;
   scene.output.interval = steps_a_check * step;
   if (scene.vehicle_model == VehicleModel::automatic) {
     scene.vehicle_model = VehicleModel::linear;
@@ -213,7 +219,7 @@ const Peaks& Trials::run(int elements, double step) {
   if (scene_.vehicle_model == VehicleModel::automatic && result.defect > most_defect(scene_))
     throw OutOfBalance{result.defect};
   if (!result.complete) throw TooMuchWork();
-  return kept_.emplace(std::pair{elements, step}, std::move(result.peaks)).first->second;
+  return kept_.emplace(std::tuple{elements, step, integrator}, std::move(result.peaks)).first->second;
 }
 
 }  // namespace traverse::app

@@ -5,6 +5,8 @@
 
 #include <limits>
 #include <map>
+#include <string>
+#include <tuple>
 #include <utility>
 
 #include "run/peaks.hpp"
@@ -56,15 +58,15 @@ class Trials {
 
   static constexpr double most_seconds = 150.0;  // of all trial runs of a scene, as `seconds` estimates them
 
-  /// Collective. The peaks of a run; kept. TooMuchWork where it would exceed what all runs may take. Vehicles that the
-  /// scene leaves open are taken as linear: OutOfBalance where that leaves out too much.
-  const Peaks& run(int elements, double step);
-  bool has(int elements, double step) const { return kept_.contains({elements, step}); }
+  /// Collective. The peaks of a run, by the scene's integrator or another; kept. TooMuchWork where it would exceed what
+  /// all runs may take. Vehicles that the scene leaves open are taken as linear: OutOfBalance where that leaves out too
+  /// much.
+  const Peaks& run(int elements, double step, const std::string& integrator = {});
   std::size_t count() const { return kept_.size(); }
   bool lost_contact() const { return lost_contact_; }  // wheels did in one of them
   /// An estimate of what a run takes, or of what all took so far, s: by counting, since decisions must not depend on
   /// the clock.
-  double seconds(int elements, double step) const;
+  double seconds(int elements, double step, const std::string& integrator = {}) const;
   double seconds() const;
 
  private:
@@ -72,7 +74,7 @@ class Trials {
 
   MPI_Comm comm_;
   Scene scene_;
-  std::map<std::pair<int, double>, Peaks> kept_;
+  std::map<std::tuple<int, double, std::string>, Peaks> kept_;  // by elements, step and integrator
   bool lost_contact_ = false;
   double spent_ = 0.0;  // s, estimated from the steps that were taken
 };

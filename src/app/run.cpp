@@ -24,7 +24,8 @@ Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& not
   scene = lanes->scene;
   Accuracy accuracy;
   accuracy.measured = true;
-  for (std::size_t q = 0; q < quantities; ++q) accuracy.promises[q] = {true, true, lanes->errors[q], ""};
+  for (std::size_t q = 0; q < quantities; ++q)
+    accuracy.promises[q] = {true, asks_for(scene, q), lanes->errors[q], "accuracy_of does not ask for it"};
   return accuracy;
 }
 

@@ -61,4 +61,11 @@ std::vector<double> Distribution::breaks(double a, double b) const {
   return inside;
 }
 
+std::vector<double> Distribution::steps(double a, double b) const {
+  std::vector<double> inside;
+  for (std::size_t i = 1; i < x_.size(); ++i)
+    if (x_[i] == x_[i - 1] && x_[i] > a && x_[i] < b && values_[i] != values_[i - 1]) inside.push_back(x_[i]);
+  return inside;
+}
+
 }  // namespace traverse::beam

@@ -1,4 +1,4 @@
-// How a beam is divided: between span ends and hinges, and under a layered track.
+// How a beam is divided: between span ends, hinges and steps of EI and mass, and under a layered track.
 #include <algorithm>
 #include <cmath>
 
@@ -10,6 +10,34 @@ namespace {
 
 constexpr double rounding = 1e-9;  // of an element's length: closer stations are one
 
+constexpr double least_piece = 0.2;  // of an element's length: steps closer to what divides the beam do not
+
+/// Stations within the stretch at which EI or the mass steps and which nodes can meet: few, and not too close to
+/// others.
+std::vector<double> steps_between(const BeamModel& model, double left, double right, double element) {
+  std::vector<double> steps = model.EI.steps(left, right), kept;
+  const std::vector<double> of_mass = model.mass.steps(left, right);
+  steps.insert(steps.end(), of_mass.begin(), of_mass.end());
+  std::sort(steps.begin(), steps.end());
+  for (const double x : steps)
+    if (std::min(x - (kept.empty() ? left : kept.back()), right - x) >= least_piece * element) kept.push_back(x);
+  return 2.0 * static_cast<double>(kept.size()) * element <= right - left ? kept : std::vector<double>();
+}
+
+/// Divides the last piece where EI or the mass steps: bending has a kink there, which no element can follow.
+void divide_at_steps(const BeamModel& model, std::vector<Piece>& pieces) {
+  const Piece whole = pieces.back();
+  const double element = model.spans[whole.span] / model.elements[whole.span];
+  for (const double x : steps_between(model, whole.left, whole.right, element)) {
+    Piece& rest = pieces.back();
+    rest.right = x;
+    rest.next = Joint::continuous;
+    rest.ends_span = false;
+    pieces.push_back(whole);
+    pieces.back().left = x;
+  }
+}
+
 /// The pieces without their numbers of elements.
 std::vector<Piece> divided(const BeamModel& model) {
   std::vector<Piece> pieces;
@@ -20,6 +48,7 @@ std::vector<Piece> divided(const BeamModel& model) {
     end += model.spans[span];
     for (; hinge != model.hinges.end() && *hinge < end; ++hinge) {
       pieces.push_back({span, left, *hinge, 0, Joint::hinge, false});
+      if (!model.track) divide_at_steps(model, pieces);
       left = *hinge;
     }
     Joint next = span + 1 < spans ? model.joint(span + 1) : Joint::separate;
@@ -28,6 +57,7 @@ std::vector<Piece> divided(const BeamModel& model) {
       if (next == Joint::continuous) next = Joint::hinge;
     }
     pieces.push_back({span, left, end, 0, next, true});
+    if (!model.track) divide_at_steps(model, pieces);
     left = end;
   }
   return pieces;

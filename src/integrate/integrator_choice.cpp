@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 #include <petscts.h>
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -72,11 +73,12 @@ void check_parameter(const structure::MethodParameter& parameter) {
 
 }  // namespace
 
-std::string chosen_type() {
+std::string chosen_type(const std::string& by_accuracy) {
   const std::string adapt = option("-ts_adapt_type", TSADAPTNONE);
   const bool for_arkimex = (adapt != TSADAPTNONE && adapt != ladder_adapt) || is_given("-ts_arkimex_type") ||
                            is_given("-ts_arkimex_fully_implicit");
-  std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : structure::methods().front().name);
+  const std::string otherwise = by_accuracy.empty() ? structure::methods().front().name : by_accuracy;
+  std::string type = option("-ts_type", for_arkimex ? TSARKIMEX : otherwise.c_str());
   if (structure::find_method(type) == nullptr && find_petsc_type(type) == nullptr)
     throw InputError("ts_type = " + type + ": does not integrate this system rightly; allowed: " + allowed_types());
   check_adapt(adapt, type);
@@ -89,8 +91,13 @@ std::string chosen_type() {
   return type;
 }
 
-std::optional<structure::Method> own_method() {
-  const structure::MethodRow* row = structure::find_method(chosen_type());
+bool type_is_given() {
+  constexpr std::array options = {"-ts_type", "-ts_adapt_type", "-ts_arkimex_type", "-ts_arkimex_fully_implicit"};
+  return std::any_of(options.begin(), options.end(), is_given);
+}
+
+std::optional<structure::Method> own_method(const std::string& by_accuracy) {
+  const structure::MethodRow* row = structure::find_method(chosen_type(by_accuracy));
   if (row == nullptr) return std::nullopt;
   PetscReal value = row->parameter.value;
   if (row->parameter.option != nullptr)

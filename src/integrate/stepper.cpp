@@ -43,7 +43,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
 
   check(TSCreate(comm, ts_.out()));
   check(TSSetProblemType(ts_, TS_NONLINEAR));
-  const std::string type = chosen_type();
+  const std::string type = chosen_type(settings_.type);
   register_second_order();
   check(TSSetType(ts_, type.c_str()));
   if (type == TSARKIMEX) {

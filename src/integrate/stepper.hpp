@@ -26,6 +26,7 @@ struct Settings {
   std::vector<double> passages{};  // ascending times at which a step has to end and a sample is due, not to be stored
   bool corners = false;            // steps end where wheels turn about corners of the bridge's surface
   long stored = 1;                 // one in so many of the samples at the interval is stored
+  std::string type{};              // that accuracy chose; empty: as the options say
 };
 
 /// What an instant is for: one of the evenly spaced samples, a look at peaks between them, or the end of the run where

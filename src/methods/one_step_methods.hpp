@@ -66,6 +66,8 @@ struct MethodRow {
   Method (*make)(double parameter);
   MethodParameter parameter{};
 
+  /// Of the beam in a step.
+  double solves() const { return static_cast<double>(make(parameter.value).stages.size()); }
   /// Whether there is an embedded method, whose difference is the estimate of a step's error.
   bool estimates_errors() const;
 };

@@ -117,7 +117,7 @@ std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
   if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
   if (scene.self_weight) return "the bridge's own weight bends it";
-  if (!integrate::own_method()) return "ts_type is one of PETSc's own";
+  if (!integrate::own_method(scene.integrator)) return "ts_type is one of PETSc's own";
   if (!scene.time_step) return "the step is not known";
   return level_ends(*shared.modal) ? "" : "wheels meet a step at the bridge's ends, which yield";
 }
@@ -138,7 +138,7 @@ std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const Share
   train::Fleet fleet = system.fleet();
   lanes::TrainNumbers train = lanes::train_numbers(fleet);
   lanes::CrossingPlan plan = lanes_plan(scene, shared, system);
-  plan.method = *integrate::own_method();
+  plan.method = *integrate::own_method(scene.integrator);
   plan.exact_modes = plan.method.stages.size() == 1;
   const auto [rear, front] = std::minmax_element(train.x.begin(), train.x.end());
   const double radius = fleet.vehicles.front().wheels.front().radius;

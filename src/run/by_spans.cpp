@@ -206,7 +206,7 @@ std::string spans_obstacle(const Scene& scene) {
   if (scene.beam->surface_height != 0.0) return "wheels run above the beam's axis";
   const int elements = *std::max_element(scene.beam->elements.begin(), scene.beam->elements.end());
   if (2 * elements > most_modes) return "its spans have too many elements";
-  return integrate::own_method() ? "" : "ts_type is one of PETSc's own";
+  return integrate::own_method(scene.integrator) ? "" : "ts_type is one of PETSc's own";
 }
 
 std::unique_ptr<coupling::SteppedApart> by_spans(const Scene& scene, const SharedBeam& shared,
@@ -220,7 +220,7 @@ std::unique_ptr<coupling::SteppedApart> by_spans(const Scene& scene, const Share
       op.springs() != nullptr || op.drag() != nullptr)
     return nullptr;
   lanes::SpanPlan plan = spans_of(*shared.beam, op);
-  plan.method = *integrate::own_method();
+  plan.method = *integrate::own_method(scene.integrator);
   plan.all = scene.rest_tolerance == 0.0;
   return std::make_unique<BySpans>(scene, shared, std::move(plan), system.fleet(), y,
                                    system.known_events(end_time, scene.step_kinks));

@@ -64,6 +64,7 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
                                  scene.contact_tolerance.value_or(1e-3 * plan_.time_step)};
     if (scene.step_probes) settings.passages = passages(scene, plan_);
     settings.stored = plan_.stored;
+    settings.type = scene.integrator;
     settings.corners = scene.step_kinks && !still_;
     stepper_.emplace(system_, std::move(settings));
     if (!still_) check_times(plan_);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/accuracy.hpp"
 #include "accuracy/trials.hpp"
 #include "run/by_lanes.hpp"
 
@@ -28,7 +29,7 @@ Scene with(const Scene& given, const LaneModel& model) {
   return scene;
 }
 
-LaneErrors difference(const std::vector<CrossingResult>& a, const std::vector<CrossingResult>& b) {
+LaneErrors difference(const Scene& scene, const std::vector<CrossingResult>& a, const std::vector<CrossingResult>& b) {
   LaneErrors worst{};
   for (std::size_t run = 0; run < a.size(); ++run) {
     if (a[run].trouble == lanes::contact_lost && b[run].trouble == lanes::contact_lost) continue;
@@ -48,6 +49,8 @@ LaneErrors difference(const std::vector<CrossingResult>& a, const std::vector<Cr
     note_difference(a[run].greatest_force, b[run].greatest_force, b[run].greatest_force, worst[wheel_force]);
     note_difference(a[run].least_force, b[run].least_force, b[run].greatest_force, worst[wheel_force]);
   }
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (!asks_for(scene, q)) worst[q] = 0.0;
   return worst;
 }
 

@@ -29,9 +29,10 @@ Scene with(const Scene& given, const LaneModel& model);
 /// Errors of each quantity's peaks.
 using LaneErrors = std::array<double, quantities>;
 
-/// The largest differences of the peaks of runs, relative to the largest of their kind in the run; 1 where one of them
-/// has found no end. Runs in which wheels lose contact both times are passed over.
-LaneErrors difference(const std::vector<lanes::CrossingResult>& a, const std::vector<lanes::CrossingResult>& b);
+/// The largest differences of the peaks of runs, of the scene's accuracy_of, relative to the largest of their kind in
+/// the run; 1 where one of them has found no end. Runs in which wheels lose contact both times are passed over.
+LaneErrors difference(const Scene& scene, const std::vector<lanes::CrossingResult>& a,
+                      const std::vector<lanes::CrossingResult>& b);
 double greatest(const LaneErrors& errors);
 bool lose_contact(const std::vector<lanes::CrossingResult>& runs);
 

@@ -23,8 +23,9 @@ namespace {
 using lanes::CrossingResult;
 using Errors = LaneErrors;
 
+constexpr std::array methods = {"genalpha", "esdirk4"};
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
-constexpr std::size_t most_spans_alone = 2;  // each wants some sixteen modes; more spans cost less by elements
+constexpr std::size_t most_spans_alone = 8;  // each wants some sixteen modes
 // Times its speed: the trials of a single run, whose peaks may agree by chance.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
 constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4,
@@ -35,6 +36,7 @@ constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 constexpr double longer = 1.4;
 constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
 constexpr int fewest_modes = 4, most_modes = 128;
+constexpr double order_of_modes = 3.0;   // that errors of the modes fall with at most: what is farther off is not tried
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
 bool open(const Scene& scene) {
@@ -83,8 +85,8 @@ class Search {
  public:
   /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes
   /// and mesh change is seen there as well.
-  Search(LaneTrials& trials, LaneTrials& mixed, std::span<const char* const> methods, double accuracy)
-      : trials_(trials), mixed_(mixed), methods_(methods), accuracy_(accuracy) {}
+  Search(LaneTrials& trials, LaneTrials& mixed, double accuracy)
+      : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
   /// The cheapest model within the accuracy; empty: none.
   std::optional<LaneModel> run(double first_step) {
@@ -101,7 +103,7 @@ class Search {
  private:
   static Errors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to) {
     const std::vector<CrossingResult>& rough = trials.run(from);
-    return difference(rough, trials.run(to));
+    return difference(trials.scene(), rough, trials.run(to));
   }
   bool halve_step(LaneModel& model) {
     for (int i = 0; i < most_halvings; ++i) {
@@ -125,6 +127,8 @@ class Search {
         modes_ = change(mixed_, model, more);
         if (greatest(modes_) <= part_of_modes * accuracy_) return true;
       }
+      const double most = 0.5 * most_modes / modes;
+      if (greatest(modes_) > part_of_modes * accuracy_ * std::pow(most, order_of_modes)) return false;
     }
     return false;
   }
@@ -146,7 +150,7 @@ class Search {
       return static_cast<double>(m.method->make(m.method->parameter.value).stages.size()) / m.step;
     };
     LaneModel best = model;
-    for (const char* method : methods_)
+    for (const char* method : methods)
       for (const double factor : {2.0, 1.4, 1.0, 0.7, 0.5}) {
         const LaneModel tried = {model.modes, model.elements, structure::find_method(method), factor * model.step};
         if (solves(tried) >= solves(best)) continue;
@@ -159,7 +163,6 @@ class Search {
   }
 
   LaneTrials &trials_, &mixed_;
-  std::span<const char* const> methods_;
   double accuracy_;
   Errors modes_{}, steps_{}, mesh_{};
 };
@@ -183,13 +186,14 @@ Errors off_the_elements(const LaneTrials& trials, const LaneModel& model, const 
   take(by_elements.acceleration, acceleration);
   take(by_elements.moment, moment);
   by_elements.greatest_force = std::abs(peaks.largest(wheel_force).value);
-  return difference({lane}, {by_elements});
+  return difference(trials.scene(), {lane}, {by_elements});
 }
 
-std::string words_of(const Errors& errors) {
+std::string words_of(const Scene& scene, const Errors& errors) {
   std::string words;
   for (std::size_t q = 0; q < quantities; ++q)
-    words += fmt::format("{}{} {:.1g}", q == 0 ? "" : ", ", quantity_names[q], errors[q]);
+    if (asks_for(scene, q))
+      words += fmt::format("{}{} {:.1g}", words.empty() ? "" : ", ", quantity_names[q], errors[q]);
   return words;
 }
 
@@ -207,8 +211,7 @@ struct NotChosen {
 class Chooser {
  public:
   /// alone: of a single passage, not of a sweep.
-  Chooser(const Scene& scene, const TrialSpeeds& speeds, std::span<const char* const> methods, bool alone)
-      : scene_(scene), fastest_(scene), methods_(methods), alone_(alone) {
+  Chooser(const Scene& scene, const TrialSpeeds& speeds, bool alone) : scene_(scene), fastest_(scene), alone_(alone) {
     fastest_.train.speed = scene.sweep->speeds.back();
     for (const double x : wheels_at_start(fastest_)) whole_ = std::max(whole_, scene.beam->length() - x);
     if (scene.end_time) whole_ = *scene.end_time * fastest_.train.speed;
@@ -220,8 +223,7 @@ class Chooser {
   }
 
   LanesChoice choose() {
-    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, methods_,
-                  (alone_ ? part_alone : 1.0) * scene_.accuracy);
+    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, (alone_ ? part_alone : 1.0) * scene_.accuracy);
     const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
     const std::optional<LaneModel> found = search.run(first);
     if (!found) throw NotChosen{"the peaks do not settle to the accuracy with up to 128 modes"};
@@ -261,28 +263,28 @@ class Chooser {
   }
 
   /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
-  /// should not cost several, against a longer one, by errors that fall at least with the third power.
+  /// should not cost several, against a longer one, by errors that fall at least with the third power, or the method's.
   void check_wholes(const Search& search, LanesChoice& choice, double lag) {
     for (int i = 0; i <= most_shortenings; ++i) {
       if (i > 0) model_.step *= shorter;
       LaneModel other = model_;
-      other.method = structure::find_method("esdirk4");
+      if (!alone_) other.method = structure::find_method("esdirk4");
       other.step *= alone_ ? longer : 0.5;
-      Errors along = difference(wholes_->run(model_), wholes_->run(other));
-      for (double& error : along) error *= alone_ ? 1.0 / (longer * longer * longer - 1.0) : 1.0;
+      Errors along = difference(scene_, wholes_->run(model_), wholes_->run(other));
+      const double growth = std::pow(longer, std::min(model_.method->order, 3));
+      for (double& error : along) error *= alone_ ? 1.0 / (growth - 1.0) : 1.0;
       for (std::size_t q = 0; q < quantities; ++q)
         choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
-      choice.errors[moment] += lag;
+      if (asks_for(scene_, moment)) choice.errors[moment] += lag;
       if (greatest(choice.errors) <= part_of_all * scene_.accuracy) break;
     }
     if (greatest(choice.errors) > part_of_all * scene_.accuracy)
-      throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(choice.errors))};
+      throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, choice.errors))};
     if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
   }
 
   const Scene& scene_;
   Scene fastest_;
-  std::span<const char* const> methods_;
   bool alone_;
   double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
   std::optional<LaneTrials> beginnings_, mixed_, wholes_;
@@ -301,22 +303,21 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     notes.push_back("runs go one by one, not side by side by modes: " + why);
     return std::nullopt;
   };
-  constexpr std::array methods = {"genalpha", "esdirk4"};
   const std::size_t n = speeds.size() - 1;
   TrialSpeeds trials = {some_speeds(speeds, {0.0, 1.0}, trial_lanes), {}, some_speeds(speeds, {0.5}, lanes::widest)};
   if (n > 0) trials.mixed = {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}};
   try {
-    Chooser chooser(given, trials, methods, false);
+    Chooser chooser(given, trials, false);
     LanesChoice choice = chooser.choose();
     const Errors off = chooser.off_the_elements(some_speeds(speeds, {1.0}, trial_lanes).back().back());
     if (greatest(off) > given.accuracy)
-      return refuse(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
+      return refuse(fmt::format("a run by elements with the mechanisms differs by {}", words_of(given, off)));
     notes.push_back(
         fmt::format("{}: {} modes from {} elements a span, linear vehicles, {} with steps of {:g} s or less ({})",
                     given.limits.empty() ? "runs go side by side" : "by modes", chooser.model().modes,
                     mesh_of(choice.scene), chooser.model().method->name, chooser.model().step, lanes::instructions()));
-    notes.push_back("expected errors of the peaks: " + words_of(choice.errors));
-    notes.push_back(fmt::format("a run by elements with the mechanisms differs by {}", words_of(off)));
+    notes.push_back("expected errors of the peaks: " + words_of(given, choice.errors));
+    notes.push_back(fmt::format("a run by elements with the mechanisms differs by {}", words_of(given, off)));
     return choice;
   } catch (const NotChosen& none) {
     return refuse(none.why);
@@ -331,23 +332,24 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
   if (!open_alone(given)) return std::nullopt;
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
-  constexpr std::array methods = {"esdirk4"};  // which is what TS takes
   const auto begin = std::chrono::steady_clock::now();
   Scene scene = given;
   scene.sweep.emplace();
   for (const double part : beside) scene.sweep->speeds.push_back(part * given.train.speed);
   const std::vector<std::vector<double>> speeds = some_speeds(scene.sweep->speeds, {0.0}, trial_lanes);
   try {
-    Chooser chooser(scene, {speeds, {}, {{given.train.speed}}}, methods, true);
+    Chooser chooser(scene, {speeds, {}, {{given.train.speed}}}, true);
     LanesChoice choice = chooser.choose();
     if (!follows_contacts(given, chooser.model().step)) return std::nullopt;  // peaks may agree by chance
     choice.scene.sweep.reset();
+    choice.scene.integrator = chooser.model().method->name;
     notes.push_back(fmt::format(
-        "accuracy {:g}: {} elements a span, of these {} modes, linear vehicles, steps of {:g} s; {} trial runs of "
-        "{:.3g} s took {:.2g} s",
-        given.accuracy, mesh_of(choice.scene), chooser.model().modes, chooser.model().step, chooser.trials(),
-        chooser.horizon(), std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
-    notes.push_back("expected errors of the peaks: " + words_of(choice.errors));
+        "accuracy {:g}: {} elements a span, of these {} modes, linear vehicles, {} with steps of {:g} s; {} trial runs "
+        "of {:.3g} s took {:.2g} s",
+        given.accuracy, mesh_of(choice.scene), chooser.model().modes, chooser.model().method->name,
+        chooser.model().step, chooser.trials(), chooser.horizon(),
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
+    notes.push_back("expected errors of the peaks: " + words_of(given, choice.errors));
     return choice;
   } catch (const NotChosen&) {
   } catch (const LaneTrials::Refused&) {

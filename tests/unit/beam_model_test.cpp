@@ -268,6 +268,28 @@ TEST(Mesh, HingesDivideSpansAndBendTheSurface) {
   EXPECT_EQ(mesh.locate(15.0, true).element, 4);
 }
 
+TEST(Mesh, NodesComeToStepsOfTheSection) {
+  auto m = model_of({10.0}, 4);
+  const auto nodes = [&] {
+    const beam::Mesh mesh(m);
+    std::vector<double> x;
+    for (int i = 0; i < mesh.nodes(); ++i) x.push_back(mesh.x(i));
+    return x;
+  };
+  const std::vector<double> equal = {0.0, 2.5, 5.0, 7.5, 10.0};
+  m.EI = {{0.0, 4.0, 4.0, 10.0}, {1.0, 1.0, 2.0, 2.0}, "EI"};
+  EXPECT_EQ(nodes(), (std::vector<double>{0.0, 2.0, 4.0, 7.0, 10.0}));
+  m.mass = {{0.0, 7.0, 7.0, 10.0}, {1.0, 1.0, 2.0, 2.0}, "mass"};
+  EXPECT_EQ(nodes(), (std::vector<double>{0.0, 2.0, 4.0, 7.0, 10.0})) << "two elements, one and one";
+  m.mass = {{0.0, 4.1, 4.1, 10.0}, {1.0, 1.0, 2.0, 2.0}, "mass"};
+  EXPECT_EQ(nodes(), (std::vector<double>{0.0, 2.0, 4.0, 7.0, 10.0})) << "too close to the other one";
+  m.EI = {{0.0, 2.0, 2.0, 6.0, 6.0, 8.0, 8.0, 10.0}, {1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 2.0, 2.0}, "EI"};
+  m.mass = 1.0;
+  EXPECT_EQ(nodes(), equal) << "more than every second node";
+  m.EI = {{0.0, 5.0, 10.0}, {1.0, 2.0, 1.0}, "EI"};
+  EXPECT_EQ(nodes(), equal) << "a kink is no step";
+}
+
 /// The promise of the numbering (doc/decisions/004): a sleeper stands on an element of the bridge beside its own
 /// column.
 TEST(Mesh, SleepersStandBesideTheirOwnColumn) {

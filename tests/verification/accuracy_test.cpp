@@ -9,6 +9,7 @@
 #include "support/curve.hpp"
 #include "support/quarter_car.hpp"
 #include "support/scene_run.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace traverse::test {
 namespace {
@@ -84,7 +85,7 @@ TEST_P(Promise, IsKeptAtEveryAccuracy) {
       EXPECT_LE(*expectation, wanted) << quantity;
     }
     const double work = run.attribute("/summary", "solves");
-    if (promised >= promised_before) {
+    if (promised >= promised_before && wanted < 5e-4) {  // at 1e-2 modes may do, whose solves are others
       EXPECT_GT(work, work_before) << accuracy;
     }
     work_before = work;
@@ -99,6 +100,34 @@ TEST(Accuracy, FixedMeshIsNotPromised) {
   EXPECT_FALSE(expected(coarse, "acceleration"));
   const Results fine = run_yaml(scene, {{"accuracy", "1e-3"}, {"beam_elements_per_span", "40"}});
   EXPECT_TRUE(expected(fine, "acceleration"));
+}
+
+// Where a method of one solve a step keeps the accuracy for less, it is taken, but for what the user has fixed.
+TEST(Accuracy, TakesTheMethodThatCostsLess) {
+  const std::string scene = "beam: {spans: 25.0, EI: 2.87e9, mass: 2303.0}\nsupport: {types: [pinned, roller]}\n" +
+                            quarter_car_with(5750.0, 100.0, 1.595e6, 0.0, "law: linear, stiffness: 1.0e9") +
+                            "train: {vehicles: car, positions: 0.0, speed: 27.8}\n";
+  const Results truth = run_yaml(scene, {{"ts_dt", "1e-4"}, {"beam_elements_per_span", "80"}, {"step_probes", "true"}});
+  const Results chosen = run_yaml(scene, {{"accuracy", "1e-2"}, {"accuracy_of", "deflection"}});
+  const Results given = run_yaml(scene, {{"accuracy", "1e-2"}, {"accuracy_of", "deflection"}, {"ts_type", "esdirk4"}});
+  EXPECT_LT(chosen.attribute("/summary", "solves"), 0.8 * given.attribute("/summary", "solves"));
+  EXPECT_LE(std::abs(peak_of(chosen, "deflection") / peak_of(truth, "deflection") - 1.0), 1e-2);
+}
+
+// A step of EI is met by nodes: errors of the mesh fall as fast as without it.
+TEST(Accuracy, StepOfStiffnessFarFromTheStart) {
+  const TemporaryFolder folder;
+  const std::string table = folder.write("EI.csv", "0, 1.32e11\n67.9, 1.32e11\n67.9, 4.27e10\n77, 4.27e10\n");
+  const std::string scene = "beam: {spans: [38.5, 38.5], EI: " + table +
+                            ", mass: 8751.8, damping_ratios: 0.03}\n"
+                            "support: {types: [pinned, roller, roller]}\n" +
+                            quarter_car_with(36.9e3, 5350.0, 1.16e6, 2.7e4, "law: hertz, stiffness: 9.4e10") +
+                            "train: {vehicles: car, positions: 0.0, speed: 22.3}\n";
+  const Results truth =
+      run_yaml(scene, {{"ts_dt", "1e-3"}, {"beam_elements_per_span", "120"}, {"step_probes", "true"}});
+  const Results run = run_yaml(scene, {{"accuracy", "1e-2"}});
+  ASSERT_TRUE(expected(run, "acceleration"));
+  EXPECT_LE(std::abs(peak_of(run, "acceleration") / peak_of(truth, "acceleration") - 1.0), 1e-2);
 }
 
 // With mesh and step given there is nothing to choose, and nothing is promised.

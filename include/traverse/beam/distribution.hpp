@@ -23,6 +23,8 @@ class Distribution {
   Distribution plus(double value) const;
   /// Stations of the table strictly inside (a, b), without repetition: where an integration has to be split.
   std::vector<double> breaks(double a, double b) const;
+  /// Stations strictly inside (a, b) at which the value steps.
+  std::vector<double> steps(double a, double b) const;
 
  private:
   std::vector<double> x_;

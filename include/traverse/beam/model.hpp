@@ -80,7 +80,7 @@ inline bool acts(const FoundationKind& kind, const BeamModel& model) {
   return model.axial || kind.direction != Direction::longitudinal;
 }
 
-/// A run of elements of one length: a span, or what hinges leave of it.
+/// A run of elements of one length: a span, or what hinges and steps of EI and mass leave of it.
 struct Piece {
   int span = 0;
   double left = 0.0, right = 0.0;  // m

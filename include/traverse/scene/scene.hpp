@@ -95,6 +95,7 @@ struct Scene {
   std::optional<double> tail;       // s after the last wheel has left
   std::optional<double> end_time;   // -ts_max_time
   std::optional<double> time_step;  // -ts_dt
+  std::string integrator;           // -ts_type that accuracy chose; empty: as the options say
   int mode_count = 10;
   int model_modes = 0;                   // the bridge by so many modes; 0: by its elements
   bool modes_open = false;               // a sweep may take modes where these do as well
