@@ -20,13 +20,6 @@ constexpr double some_step = 1e-6;             // s, to look at a scene before i
 constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
 constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
 
-/// Whether there is something to choose, and something moves that it can be chosen by.
-bool chooses(const Scene& scene) {
-  const bool open = scene.mesh_open || !scene.time_step;
-  const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
-  return open && moves && scene.beam && scene.analysis == Analysis::transient && scene.model_modes == 0;
-}
-
 void leave_out_rest(Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   if (scene.rest_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= continuous_spans)
@@ -51,6 +44,17 @@ void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, 
 }
 
 }  // namespace
+
+bool chooses(const Scene& scene) {
+  const bool open = scene.mesh_open || !scene.time_step;
+  const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
+  return open && moves && scene.beam && scene.analysis == Analysis::transient && scene.model_modes == 0;
+}
+
+void set_first_mesh(Scene& scene) {
+  if (scene.mesh_open)
+    set_mesh(scene, scene.beam->track ? first_mesh(scene) : 2 * aligned_mesh(scene, first_mesh(scene) / 2));
+}
 
 const options::Entry* own_measure() {
   const options::Entry* control = options::in_force().find("ts_adapt_type");
@@ -101,8 +105,7 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
   std::vector<std::string> ignored;
-  if (scene.mesh_open)
-    set_mesh(scene, scene.beam->track ? first_mesh(scene) : 2 * aligned_mesh(scene, first_mesh(scene) / 2));
+  set_first_mesh(scene);
   SharedBeam shared(comm, scene, ignored);
   shared.damp(scene, true, ignored);
   shared.prepare(scene, ignored);

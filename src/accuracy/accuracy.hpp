@@ -40,6 +40,11 @@ struct Accuracy {
   double seconds = 0.0;  // wall time that choosing took
 };
 
+/// Whether there is something to choose, and something moves that it can be chosen by.
+bool chooses(const Scene& scene);
+/// The mesh that trial runs begin with, where it is open.
+void set_first_mesh(Scene& scene);
+
 /// The option that makes the integrator choose its steps by a measure of its own, or treat contacts apart; null: none.
 const options::Entry* own_measure();
 

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "integrate/integrators.hpp"
+#include "help.hpp"
 #include "results/origin.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
@@ -20,7 +20,6 @@
 #include "traverse/app/run.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
-#include "traverse/options/table.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace {
@@ -98,7 +97,7 @@ int main(int argc, char** argv) {
   try {
     traverse::options::Input input = read_input(argc, argv);
     if (input.help) {
-      const std::string text = traverse::options::help_text() + traverse::integrate::integrators_help();
+      const std::string text = traverse::app::help_about(input.help_about);
       return after_output(std::fputs(text.c_str(), stdout) < 0 ? 1 : 0);
     }
     if (input.version) return after_output(std::puts("traverse " TRAVERSE_VERSION) < 0 ? 1 : 0);

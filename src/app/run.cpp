@@ -4,6 +4,7 @@
 
 #include "accuracy/trials.hpp"
 #include "analyses.hpp"
+#include "check/check.hpp"
 #include "results/stage.hpp"
 #include "run/active_ranks.hpp"
 #include "run/by_spans.hpp"
@@ -60,6 +61,7 @@ int run(MPI_Comm comm, const Scene& given) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   const results::Heartbeat heartbeat(given.quiet || rank != 0);
+  if (given.check) return run_check(comm, given);
   Scene asked = given;
   const std::optional<results::Checkpoint> earlier = earlier_of(comm, asked);
   results::Place place = results::claim_place(comm, asked.output.file);

@@ -42,6 +42,7 @@ std::string name_of_scene(const std::string& file) {
 void add(Input& input, Entry entry) {
   if (entry.name == "h" || entry.name == "help") {
     input.help = true;
+    input.help_about = entry.value;
     if (entry.value == "petsc") input.petsc_words.emplace_back("-help");
   } else if (entry.name == "version" || entry.name == "v") {
     input.version = true;
@@ -164,7 +165,8 @@ Input read_input(int argc, char** argv, const std::vector<Entry>& before) {
       throw InputError(
           "options_file (command line): wanted: the name of a file; one that starts with a dash is written ./-NAME");
     if (scene_name.empty()) scene_name = name_of_scene(entry.value);
-    for (Entry& inner : read_options_file(entry.value)) add(input, std::move(inner));
+    const std::string found = find_file(entry.value, "");
+    for (Entry& inner : read_options_file(found.empty() ? entry.value : found)) add(input, std::move(inner));
   }
   check_room(input.entries);
   input.entries.set_default({"scene_name", scene_name.empty() ? "scene" : scene_name, "options_file", 0});

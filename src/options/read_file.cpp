@@ -1,6 +1,7 @@
 #include "options/read_file.hpp"
 
 #include <fmt/format.h>
+#include <sys/auxv.h>
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
@@ -286,7 +287,12 @@ std::string find_file(const std::string& path, const std::string& named_in) {
     if (std::filesystem::equivalent(beside, plain, ignored)) return plain.string();
     if (std::filesystem::exists(beside, ignored)) return beside.string();
   }
-  return std::filesystem::exists(path, ignored) ? path : "";
+  if (std::filesystem::exists(path, ignored)) return path;
+  const auto* started = reinterpret_cast<const char*>(getauxval(AT_EXECFN));  // NOLINT: an address, by its definition
+  if (started == nullptr) return "";
+  const std::filesystem::path program = std::filesystem::canonical(started, ignored);
+  const std::filesystem::path installed = program.parent_path().parent_path() / "share" / "traverse" / path;
+  return std::filesystem::exists(installed, ignored) ? installed.string() : "";
 }
 
 std::vector<Entry> read_options_file(const std::string& path) { return read_nested(path, 0); }

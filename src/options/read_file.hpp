@@ -21,8 +21,9 @@ std::vector<Entry> parse_classic(const std::string& text, const std::string& nam
 /// `-5.0` is a value. Throws InputError for a value that belongs to no name.
 std::vector<Entry> parse_words(const std::vector<std::string>& words, const std::string& source, int line);
 
-/// The file that the file `named_in` calls `path`: beside `named_in` first, then from the working directory. Empty when
-/// there is neither. An empty `named_in` stands for the command line, which counts from the working directory alone.
+/// The file that the file `named_in` calls `path`: beside `named_in` first, then from the working directory, then
+/// in what is installed with the program (share/traverse, which holds options/), or empty. An empty
+/// `named_in` stands for the command line, which counts from the working directory.
 std::string find_file(const std::string& path, const std::string& named_in);
 
 }  // namespace traverse::options

@@ -70,21 +70,6 @@ std::string replace_blanks(std::string_view words) {
   return out;
 }
 
-void append_rows(std::string& out, std::span<const Row> rows, const std::string& prefix) {
-  for (const Row& row : rows) {
-    std::string type = row.kind == Kind::choice || row.kind == Kind::choice_list ? replace_blanks(row.choices)
-                       : row.kind == Kind::number_or_file                        ? "number or file"
-                       : row.kind == Kind::flag                                  ? "true, false"
-                       : row.kind == Kind::text && row.name == "help"            ? ""
-                                                                                 : kind_words(row);
-    if (!row.unit.empty() && row.unit != "1") type += fmt::format(" [{}]", row.unit);
-    const std::string range = range_words(row.range);
-    if (!range.empty()) type += ", " + range;
-    if (!row.fallback.empty()) type += fmt::format("; default {}", row.fallback);
-    out += fmt::format("  -{:<32} {}\n{:37}{}\n", prefix + std::string(row.name), row.text, "", type);
-  }
-}
-
 }  // namespace
 
 const Row* find_row(std::span<const Row> rows, std::string_view name) {
@@ -101,6 +86,20 @@ std::string allowed(const Row& row) {
   return words;
 }
 
+std::string allowed_in_short(const Row& row) {
+  const bool choice = row.kind == Kind::choice || row.kind == Kind::choice_list;
+  std::string words = choice                             ? replace_blanks(row.choices)
+                      : row.kind == Kind::number_or_file ? "number or file"
+                      : row.kind == Kind::flag           ? "true, false"
+                      : row.name == "help"               ? ""
+                                                         : kind_words(row);
+  if (!row.unit.empty() && row.unit != "1") words += fmt::format(" [{}]", row.unit);
+  const std::string range = range_words(row.range);
+  if (!range.empty()) words += ", " + range;
+  if (!row.fallback.empty()) words += fmt::format("; default {}", row.fallback);
+  return words;
+}
+
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
   std::string best;
   int least = std::max<int>(2, static_cast<int>(name.size()) / 2) + 1;
@@ -112,38 +111,6 @@ std::string nearest(std::string_view name, const std::vector<std::string>& candi
     }
   }
   return best;
-}
-
-std::string help_text() {
-  std::string out =
-      "traverse predicts how trains and bridges move.\n\n"
-      "  [mpirun -n N] traverse -options_file scene.yml [-options_file more.yml] [-option value ...]\n\n"
-      "In a YAML file nested keys join with underscores (beam: {spans: [25.0, 30.0]} is -beam_spans 25.0,30.0). SI "
-      "units;\n"
-      "x along the track from the bridge's left end, y upward. In lists value*count repeats. Later ones win.\n";
-  std::string group;
-  for (const Row& row : fixed_rows()) {
-    const std::string this_group(row.name.substr(0, row.name.find('_')));
-    if (this_group != group && row.name != "ts_dt") out += "\n";
-    group = this_group;
-    append_rows(out, {&row, 1}, "");
-  }
-  out += "\nA vehicle called NAME (in the file that -vehicle_NAME_file names: without vehicle_NAME_ before them)\n";
-  append_rows(out, vehicle_rows(), "vehicle_NAME_");
-  for (int kind = 0; kind < part_kinds; ++kind) {
-    const Part part = static_cast<Part>(kind);
-    out += fmt::format("\nEach {} PART in the list of {} of vehicle NAME\n", part_word(part), part_list(part));
-    append_rows(out, part_rows(part), "vehicle_NAME_PART_");
-  }
-  out += "\nEach coupler NAME in the list of train_couplers, besides what a spring or a joint has\n";
-  append_rows(out, coupler_rows(), "train_NAME_");
-  out += "\nEach option NAME that a study varies\n";
-  append_rows(out, {&vary_list_row(), 1}, "study_vary_NAME");
-  append_rows(out, vary_rows(), "study_vary_NAME_");
-  out +=
-      "\nOptions of PETSc and SLEPc pass on to them, -ts_type, -ts_adapt_type, -snes_rtol, -eps_tol, -log_view and so "
-      "on.\n";
-  return out;
 }
 
 }  // namespace traverse::options

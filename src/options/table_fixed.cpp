@@ -173,7 +173,8 @@ constexpr Row run_rows[] = {
   {"study_refine", number, "1", "(only the speeds given)", tolerance, "", 0, "as sweep_refine: of every combination of the other options, and the greatest of what statistics go over; wants train_speed or load_speed among the lists of study_vary"},
   {"study_resume", flag, "", "false", any, "", 0, "takes finished runs of the same study from the results file that is there"},
 
-  {"help", text, "", "", any, "", 0, "prints this list; -help petsc: PETSc's options too"},
+  {"check", flag, "", "false", any, "", 0, "reads everything, shows the model, its loads at rest, what is chosen, what it costs and what looks unusual, and stops without a run"},
+  {"help", text, "", "", any, "", 0, "prints this list; -help beam, -help wheel, ...: a part of it; -help beam_EI: one option; -help petsc: PETSc's options too"},
 };
 
 constexpr Row vary[] = {

@@ -21,7 +21,7 @@ constexpr int lapack_copies = 3, few_modes = 2;
 /// Something that there may be too much of.
 struct Need {
   double bytes = 0.0;
-  std::string option, what;  // that asks for it, and in words
+  std::string option, what;  // that asks for it (empty: that of the mesh), and in words
 };
 
 double memory_of_machine() {
@@ -54,14 +54,17 @@ std::string option_of_mesh(const options::Options& o, const Scene& scene) {
   return scene.beam->track->approach > scene.beam->length() ? "track_approach" : "track_spacing";
 }
 
-Need mesh(const options::Options& o, const Scene& scene) {
-  const beam::BeamModel& beam = *scene.beam;
-  const double elements = elements_of(beam), unknowns = (beam.axial ? 3.0 : 2.0) + (beam.track ? 3.0 : 0.0);
+void check_elements(const options::Options& o, const Scene& scene) {
+  const double elements = elements_of(*scene.beam);
   if (!(elements <= most_elements))
     o.refuse(option_of_mesh(o, scene),
              fmt::format("{:.3g} elements in all; allowed: at most {:g}", elements, most_elements));
-  return {elements * (a_node + a_nodal_unknown * unknowns / ranks()), option_of_mesh(o, scene),
-          fmt::format("{:.3g} elements", elements)};
+}
+
+Need mesh(const Scene& scene) {
+  const beam::BeamModel& beam = *scene.beam;
+  const double elements = elements_of(beam), unknowns = (beam.axial ? 3.0 : 2.0) + (beam.track ? 3.0 : 0.0);
+  return {elements * (a_node + a_nodal_unknown * unknowns / ranks()), "", fmt::format("{:.3g} elements", elements)};
 }
 
 Need modes(const Scene& scene) {
@@ -74,19 +77,28 @@ Need modes(const Scene& scene) {
           fmt::format("{:g} modes of {:g} unknowns", count, unknowns)};
 }
 
-Need sweep(const options::Options& o, const Scene& scene) {
-  const double runs = static_cast<double>(std::max<std::size_t>(1, scene.sweep->speeds.size())) *
-                      static_cast<double>(std::max<std::size_t>(1, scene.sweep->loads.size()));
-  const double peaks = runs * static_cast<double>(scene.output.probes.size());
-  const std::string option = scene.sweep->speeds.empty() ? "sweep_hslm_a" : "sweep_speed";
-  if (peaks > most_peaks)
-    o.refuse(option, fmt::format("{:.3g} runs with {} probes each; allowed: at most {:g} of both multiplied", runs,
-                                 scene.output.probes.size(), most_peaks));
-  return {a_sweep_peak * peaks, option,
-          fmt::format("{:.3g} runs with {} probes each", runs, scene.output.probes.size())};
+double runs_of(const Sweep& sweep) {
+  return static_cast<double>(std::max<std::size_t>(1, sweep.speeds.size())) *
+         static_cast<double>(std::max<std::size_t>(1, sweep.loads.size()));
 }
 
-std::vector<Need> needs_of(const options::Options& o, const Scene& scene) {
+std::string option_of(const Sweep& sweep) { return sweep.speeds.empty() ? "sweep_hslm_a" : "sweep_speed"; }
+
+void check_peaks(const options::Options& o, const Scene& scene) {
+  const double runs = runs_of(*scene.sweep), probes = static_cast<double>(scene.output.probes.size());
+  if (runs * probes > most_peaks)
+    o.refuse(option_of(*scene.sweep),
+             fmt::format("{:.3g} runs with {} probes each; allowed: at most {:g} of both multiplied", runs, probes,
+                         most_peaks));
+}
+
+Need sweep(const Scene& scene) {
+  const double runs = runs_of(*scene.sweep), probes = static_cast<double>(scene.output.probes.size());
+  return {a_sweep_peak * runs * probes, option_of(*scene.sweep),
+          fmt::format("{:.3g} runs with {} probes each", runs, probes)};
+}
+
+std::vector<Need> needs_of(const Scene& scene) {
   const double vehicles = static_cast<double>(scene.train.vehicles.size());
   const double forces = static_cast<double>(scene.load.forces.size());
   const double probes = static_cast<double>(scene.output.probes.size());
@@ -104,27 +116,33 @@ std::vector<Need> needs_of(const options::Options& o, const Scene& scene) {
   for_points(f,
              [&](const beam::FoundationKind&, const auto& points) { springs += static_cast<double>(points.size()); });
   const double kinks = static_cast<double>(scene.profile.kinks().size() + scene.beam->spans.size());
-  needs.push_back(mesh(o, scene));
+  needs.push_back(mesh(scene));
   needs.push_back(
       {springs * a_spring, "foundation_vertical_x", fmt::format("{:g} springs of the foundation", springs)});
   needs.push_back({16.0 * (wheels + forces) * kinks, forces > wheels ? "load_forces" : "train_vehicles",
                    fmt::format("{:g} wheels and forces that pass {:g} kinks of their way", wheels + forces, kinks)});
   if (scene.analysis == Analysis::modes || scene.model_modes > 0) needs.push_back(modes(scene));
-  if (scene.sweep) needs.push_back(sweep(o, scene));
+  if (scene.sweep) needs.push_back(sweep(scene));
   return needs;
 }
 
 }  // namespace
 
+double memory_of(const Scene& scene) {
+  const std::vector<Need> needs = needs_of(scene);
+  return std::accumulate(needs.begin(), needs.end(), 0.0,
+                         [](double bytes, const Need& need) { return bytes + need.bytes; });
+}
+
 void check_size(const options::Options& o, const Scene& scene) {
-  const std::vector<Need> needs = needs_of(o, scene);
-  const double there = memory_of_machine();
-  const double all = std::accumulate(needs.begin(), needs.end(), 0.0,
-                                     [](double bytes, const Need& need) { return bytes + need.bytes; });
+  if (scene.beam) check_elements(o, scene);
+  if (scene.sweep) check_peaks(o, scene);
+  const double there = memory_of_machine(), all = memory_of(scene);
   if (all <= there) return;
+  const std::vector<Need> needs = needs_of(scene);
   const Need& most =
       *std::max_element(needs.begin(), needs.end(), [](const Need& a, const Need& b) { return a.bytes < b.bytes; });
-  o.refuse(most.option,
+  o.refuse(most.option.empty() ? option_of_mesh(o, scene) : most.option,
            fmt::format("the scene needs about {:.2g} GB of memory, {:.2g} GB of it for {}; this machine has "
                        "{:.2g} GB: make that fewer",
                        1e-9 * all, 1e-9 * most.bytes, most.what, 1e-9 * there));

@@ -145,9 +145,7 @@ void note_tables(Scene& scene) {
   });
 }
 
-}  // namespace
-
-void check_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
+void note_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   if (!vehicles.unused.empty())
     scene.notes.push_back(
         fmt::format("defined, but not in the train (train_vehicles): {}", fmt::join(vehicles.unused, ", ")));
@@ -157,6 +155,14 @@ void check_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) 
   note_tables(scene);
   if (scene.analysis == Analysis::modes) return;
   for (const Moving& moving : moving_things(scene)) check_start(o, moving, scene);
+}
+
+}  // namespace
+
+void check_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
+  const std::size_t before = scene.notes.size();
+  note_sense(o, vehicles, scene);
+  scene.unusual.assign(scene.notes.begin() + static_cast<std::ptrdiff_t>(before), scene.notes.end());
 }
 
 }  // namespace traverse::app

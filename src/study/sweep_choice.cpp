@@ -14,15 +14,6 @@
 namespace traverse::app {
 namespace {
 
-/// The scene of one run.
-Scene at_speed(const Scene& sweep, double speed) {
-  Scene scene = sweep;
-  if (!sweep.sweep->loads.empty()) scene.load = sweep.sweep->loads.front();
-  scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
-  scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
-  return scene;
-}
-
 /// What is promised of all runs is what both promise, with the larger error.
 void add(const Accuracy& one, std::optional<Accuracy>& all) {
   if (!all) {
@@ -83,6 +74,14 @@ results::Sweep::Model model_of(const Scene& scene) {
 }
 
 }  // namespace
+
+Scene at_speed(const Scene& sweep, double speed) {
+  Scene scene = sweep;
+  if (!sweep.sweep->loads.empty()) scene.load = sweep.sweep->loads.front();
+  scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
+  scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
+  return scene;
+}
 
 std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes) {
   std::optional<LanesChoice> lanes = lanes_that_do(given, notes);

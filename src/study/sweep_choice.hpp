@@ -16,6 +16,9 @@ struct SweepChoice {
   results::Sweep::Model model;
 };
 
+/// The scene of one run of a sweep, of its first train.
+Scene at_speed(const Scene& sweep, double speed);
+
 /// The finest mesh and step that the slowest, a middle and the fastest run need, or modes; the same on every rank.
 /// What was chosen, and the errors to expect, go into `notes`. InputError as the runs themselves would throw it.
 SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes);

@@ -1,7 +1,10 @@
-"""cmake --install, and a program of one's own built over what is installed: examples/embed."""
+"""cmake --install: a program of one's own over what is installed, examples/embed, by CMake and by pkg-config; the program
+and its scenes from another folder; the Debian packages."""
 
 import os
 import pathlib
+import shlex
+import shutil
 import subprocess
 import tempfile
 import unittest
@@ -12,36 +15,91 @@ SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file_
 BUILD = pathlib.Path(os.environ.get("TRAVERSE_BINARY", SOURCE / "build/traverse")).parent
 
 
-def succeed(*words, cwd=None):
-    run = subprocess.run(words, capture_output=True, text=True, cwd=cwd)
+SCENE = ("beam: {spans: 25, EI: 2.8e9, mass: 2303, elements_per_span: 4}\nmodel: {axial: false}\n"
+         "load: {forces: 1e5, speed: 20}\nts: {dt: 5e-3, max_time: 0.5}\n")
+
+
+def succeed(*words, cwd=None, **environment):
+    run = subprocess.run(words, capture_output=True, text=True, cwd=cwd, env=os.environ | environment)
     if run.returncode != 0:
         raise AssertionError(f"{' '.join(map(str, words))}\n{run.stdout[-2000:]}{run.stderr[-2000:]}")
     return run.stdout
 
 
 class Install(unittest.TestCase):
-    def test_a_program_over_what_is_installed(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            succeed("cmake", "--install", BUILD, "--prefix", folder / "prefix")
-            succeed("cmake", "-G", "Ninja", "-S", SOURCE / "examples/embed", "-B", folder / "build",
-                    f"-DCMAKE_PREFIX_PATH={folder / 'prefix'}")
-            succeed("cmake", "--build", folder / "build")
-            scene = folder / "scene.yml"
-            scene.write_text("beam: {spans: 25, EI: 2.8e9, mass: 2303, elements_per_span: 4}\nmodel: {axial: false}\n"
-                             "load: {forces: 1e5, speed: 20}\nts: {dt: 5e-3, max_time: 0.5}\n", encoding="utf-8")
-            succeed(folder / "build/embed", scene, cwd=folder)
-            largest = []
-            for speed in (20, 30, 40):
-                with h5py.File(folder / f"embed_{speed}.h5") as results:
-                    self.assertGreater(results["time"].shape[0], 10)
-                    largest.append(abs(results["probes/deflection"][()]).max())
-            self.assertEqual(len(set(largest)), 3, largest)
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.scratch.name)
+        cls.prefix = cls.folder / "prefix"
+        succeed("cmake", "--install", BUILD, "--prefix", cls.prefix)
+        cls.scene = cls.folder / "scene.yml"
+        cls.scene.write_text(SCENE, encoding="utf-8")
 
-            program = folder / "prefix/bin/traverse"
-            self.assertIn("traverse", succeed(program, "-version"))
-            said = succeed(folder / "prefix/bin/traverse-report", folder / "embed_20.h5", "-o", folder / "installed")
-            self.assertIn("installed.pdf", said)
+    @classmethod
+    def tearDownClass(cls):
+        cls.scratch.cleanup()
+
+    def runs_scenes(self, program, folder):
+        folder.mkdir(exist_ok=True)
+        succeed(program, self.scene, cwd=folder)
+        largest = []
+        for speed in (20, 30, 40):
+            with h5py.File(folder / f"embed_{speed}.h5") as results:
+                self.assertGreater(results["time"].shape[0], 10)
+                largest.append(abs(results["probes/deflection"][()]).max())
+        self.assertEqual(len(set(largest)), 3, largest)
+
+    def test_a_program_by_cmake(self):
+        build = self.folder / "build"
+        succeed("cmake", "-G", "Ninja", "-S", SOURCE / "examples/embed", "-B", build, f"-DCMAKE_PREFIX_PATH={self.prefix}")
+        succeed("cmake", "--build", build)
+        self.runs_scenes(build / "embed", self.folder / "by_cmake")
+        said = succeed(self.prefix / "bin/traverse-report", self.folder / "by_cmake/embed_20.h5", "-o", self.folder / "installed")
+        self.assertIn("installed.pdf", said)
+
+    def test_a_program_by_pkg_config(self):
+        path = next(self.prefix.glob("lib*/**/pkgconfig"))
+        flags = succeed("pkg-config", "--cflags", "--libs", "traverse",
+                        PKG_CONFIG_PATH=f"{path}:{os.environ.get('PKG_CONFIG_PATH', '')}")
+        program = self.folder / "by_pkg_config_embed"
+        succeed("c++", SOURCE / "examples/embed/embed.cpp", "-o", program, *shlex.split(flags))
+        self.runs_scenes(program, self.folder / "by_pkg_config")
+
+    def test_the_program_and_its_scenes(self):
+        program = self.prefix / "bin/traverse"
+        self.assertIn("traverse", succeed(program, "-version"))
+        elsewhere = self.folder / "elsewhere"
+        elsewhere.mkdir()
+        said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-check", cwd=elsewhere)
+        self.assertIn("three_span_half_car: nothing is computed", said)
+        (elsewhere / "options/scenes").mkdir(parents=True)
+        shutil.copy(self.scene, elsewhere / "options/scenes/three_span_half_car.yml")  # the nearer one
+        said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-check", cwd=elsewhere)
+        self.assertIn("25 m, 1 span", said)
+
+    def test_words_about_options(self):
+        page = (self.prefix / "share/man/man1/traverse.1").read_text(encoding="utf-8")
+        self.assertIn(".B \\-beam_EI", page)
+        completion = self.prefix / "share/bash-completion/completions/traverse"
+        succeed("bash", "-n", completion)
+
+    @unittest.skipUnless(shutil.which("dpkg-shlibdeps") and shutil.which("file"), "dpkg-dev and file are not installed")
+    def test_debian_packages(self):
+        folder = self.folder / "packages"
+        succeed("cpack", "-G", "DEB", "--config", BUILD / "CPackConfig.cmake", "-B", folder)
+        program, library = next(folder.glob("traverse_*.deb")), next(folder.glob("libtraverse-dev_*.deb"))
+        needed = succeed("dpkg-deb", "-f", program, "Depends")
+        for name in ("libpetsc", "libslepc", "libhdf5-openmpi", "libopenmpi", "libyaml-cpp", "libfmt", "libc6"):
+            self.assertIn(name, needed)
+        held = succeed("dpkg-deb", "-c", program)
+        for name in ("usr/bin/traverse\n", "usr/bin/traverse-report\n", "usr/share/traverse/options/scenes/three_span_train.yml\n",
+                     "usr/share/traverse/python/picture.py\n", "usr/share/doc/traverse/copyright\n",
+                     "usr/share/man/man1/traverse.1\n"):
+            self.assertIn(name, held)
+        self.assertNotIn("usr/include", held)
+        for name in ("usr/include/traverse/app/run.hpp\n", "/pkgconfig/traverse.pc\n", "/traverse-config.cmake\n"):
+            self.assertIn(name, succeed("dpkg-deb", "-c", library))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 // From the command line to the options in force, and into PETSc's own table.
 //
 //   Input input = read_input(argc, argv);              // before PETSc starts; reads the options files
-//   if (input.help) ...                                // print help_text() and leave
+//   if (input.help) ...                                // print help_text(input.help_about) and leave
 //   Arguments words(input.petsc_words);                // PETSc sees what it owns, also out of files
 //   SlepcInitialize(words.argc(), words.argv(), ...);
 //   put_into_petsc(input);                             // all the rest, so that -options_view shows it
@@ -22,9 +22,10 @@ namespace traverse::options {
 inline constexpr std::size_t most_options = 500;
 
 struct Input {
-  Entries entries;       // the last one of each name by position; scene_name always (default: the first file's)
-  bool help = false;     // -help, -h
-  bool version = false;  // -version
+  Entries entries;         // the last one of each name by position; scene_name always (default: the first file's)
+  bool help = false;       // -help, -h
+  std::string help_about;  // what -help asks about; empty: everything
+  bool version = false;    // -version
   std::vector<std::string> petsc_words;  // the program's name, then the options that PETSc owns
 };
 

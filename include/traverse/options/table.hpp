@@ -78,10 +78,14 @@ std::span<const std::string_view> common_petsc_names();
 /// What is allowed, in words: "above 0 (m)", "one of none, bump", "2 numbers".
 std::string allowed(const Row& row);
 
+/// The same with the default, as -help has it.
+std::string allowed_in_short(const Row& row);
+
 /// The candidate with the fewest letters changed, added, left out or swapped; empty when none is near.
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates);
 
-/// The text of -help.
-std::string help_text();
+/// The text of -help: of everything, of a group of options such as beam or wheel, or of one option. InputError with
+/// what there is for something else.
+std::string help_text(const std::string& about = {});
 
 }  // namespace traverse::options

@@ -121,7 +121,9 @@ struct Scene {
   std::vector<options::VerdictLimit> limits;                 // that runs are checked against
   std::optional<options::NormRules> norm;                    // static effects and the verdict of EN 1991-2 are wanted
   bool quiet = false;                                        // -output_quiet: no progress
+  bool check = false;                                        // -check: it is shown, nothing is run
   std::vector<std::string> notes;                            // what was chosen and why, one line each
+  std::vector<std::string> unusual;                          // of these, what is no error and hardly meant
   std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
 
   /// Whether limits ask something of runs: those of the norm alone are judged by static effects.

@@ -1,0 +1,25 @@
+#include "help.hpp"
+
+#include <vector>
+
+#include "integrate/integrators.hpp"
+#include "methods/one_step_methods.hpp"
+#include "options/help_groups.hpp"
+#include "traverse/options/table.hpp"
+
+namespace traverse::app {
+
+std::string help_about(const std::string& what) {
+  const std::string integrators = integrate::integrators_help();
+  if (what == "integrators" || what == "ts_type") return integrators.substr(1);
+  if (what == "man") return options::manual_page(integrators);
+  if (what == "bash") {
+    std::vector<std::string> types;
+    for (const structure::MethodRow& row : structure::methods()) types.emplace_back(row.name);
+    for (const integrate::PetscType& type : integrate::petsc_types()) types.emplace_back(type.name);
+    return options::bash_completion(types);
+  }
+  return options::help_text(what) + (what.empty() || what == "petsc" ? integrators : "");
+}
+
+}  // namespace traverse::app

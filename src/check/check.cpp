@@ -1,0 +1,227 @@
+#include "check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+#include <set>
+
+#include "cost.hpp"
+#include "drawing.hpp"
+#include "results/terminal.hpp"
+#include "run/rank_choice.hpp"
+#include "unusual.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr int label_width = 22;
+constexpr std::size_t most_rows = 12;  // of a table
+constexpr double rounding = 1e-9;      // of a force
+constexpr double least_told = 1e-2;    // s
+
+/// Sections of lines, each line a label and its text.
+class Page {
+ public:
+  explicit Page(const Looks& looks) : looks_(looks) {}
+  void heading(const std::string& text) const {
+    fmt::print("{}\n", looks_.colour ? "\033[1m" + text + "\033[0m" : text);
+  }
+  void line(const std::string& label, const std::string& text) const {
+    fmt::print("  {:<{}}{}\n", label, label_width, text);
+  }
+  void warning(const std::string& text) const {
+    fmt::print("  {}\n", looks_.colour ? "\033[33m" + text + "\033[0m" : text);
+  }
+
+ private:
+  Looks looks_;
+};
+
+double mass_of(const beam::BeamModel& beam) {
+  double mass = 0.0, left = beam.start;
+  constexpr int parts = 200;
+  for (const double span : beam.spans) {
+    for (int i = 0; i < parts; ++i) {
+      const double x = left + (i + 0.5) * span / parts;
+      mass += beam.mass.at(x, x) * span / parts;
+    }
+    left += span;
+  }
+  return mass;
+}
+
+std::string mass_text(double mass) {
+  return mass < 1e3 ? fmt::format("{:.4g} kg", mass) : fmt::format("{:.4g} t", 1e-3 * mass);
+}
+
+std::string count_text(std::size_t count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+void print_bridge(const Page& page, const Look& look) {
+  const beam::BeamModel& beam = *look.scene.beam;
+  page.heading("bridge");
+  page.line("length", fmt::format("{:g} m, {}", beam.length(), count_text(beam.spans.size(), "span", "spans")));
+  const double mass = mass_of(beam);
+  page.line("mass", fmt::format("{}, {:.4g} kg/m in the mean", mass_text(mass), mass / beam.length()));
+  page.line("EI", beam.EI.uniform() ? fmt::format("{:.4g} N m2", beam.EI.minimum())
+                                    : fmt::format("{:.4g} to {:.4g} N m2", beam.EI.minimum(), beam.EI.maximum()));
+  std::string frequencies;
+  for (const double one : look.frequencies)
+    frequencies += fmt::format("{}{:.4g}", frequencies.empty() ? "" : ", ", one);
+  page.line("first frequencies", frequencies.empty() ? "none" : frequencies + " Hz");
+}
+
+void print_vehicles(const Page& page, const Look& look, const std::vector<Axle>& axles) {
+  const Scene& scene = look.scene;
+  if (scene.train.vehicles.empty()) return;
+  page.heading("vehicles, and what their wheels carry at rest");
+  double all = 0.0;
+  for (std::size_t type = 0; type < scene.vehicles.size(); ++type) {
+    const Vehicle& vehicle = scene.vehicles[type];
+    double mass = 0.0;
+    for (const multibody::Body& body : vehicle.mechanism.bodies) mass += body.mass;
+    const auto count = std::count(scene.train.vehicles.begin(), scene.train.vehicles.end(), static_cast<int>(type));
+    if (count == 0) continue;
+    all += mass * static_cast<double>(count);
+    std::string wheels;
+    const auto first =
+        std::find_if(axles.begin(), axles.end(), [&](const Axle& a) { return a.type == static_cast<int>(type); });
+    for (auto axle = first; axle != axles.end(); ++axle)
+      if (axle->type == static_cast<int>(type) && axle->vehicle == first->vehicle)
+        wheels += fmt::format("{}{} {:.4g}", wheels.empty() ? "" : ", ", axle->name, 1e-3 * axle->force);
+    page.line(
+        count == 1 ? vehicle.name : fmt::format("{} x {}", count, vehicle.name),
+        fmt::format("{}{}{}", mass_text(mass), count > 1 ? " each" : "", wheels.empty() ? "" : "; kN: " + wheels));
+  }
+  page.line("all", fmt::format("{}, degrees of freedom {}", mass_text(all), look.passage->system().freedom()));
+}
+
+void print_load(const Page& page, const std::string& name, const MovingLoad& load) {
+  if (load.forces.empty()) return;
+  const auto [last, first] = std::minmax_element(load.positions.begin(), load.positions.end());
+  const auto [least, most] = std::minmax_element(load.forces.begin(), load.forces.end());
+  page.line(name,
+            fmt::format("{} of {:.4g}{} kN over {:.4g} m", count_text(load.forces.size(), "force", "forces"),
+                        1e-3 * *least, *most > *least ? fmt::format(" to {:.4g}", 1e-3 * *most) : "", *first - *last));
+}
+
+void print_loads(const Page& page, const Look& look) {
+  const bool trains = look.whole.sweep && !look.whole.sweep->trains.empty();
+  if (look.scene.load.forces.empty() && !trains) return;
+  page.heading("moving forces");
+  if (!trains) return print_load(page, "forces", look.scene.load);
+  for (std::size_t i = 0; i < look.whole.sweep->trains.size(); ++i)
+    print_load(page, fmt::format("HSLM-A{}", look.whole.sweep->trains[i]), look.whole.sweep->loads[i]);
+}
+
+void print_rest(const Page& page, const Rest& rest) {
+  page.heading(
+      "supports at rest, kN upward: the bridge's own weight; what passes, wherever it stands, least and greatest");
+  if (!rest.why_not.empty()) return page.line("", rest.why_not);
+  for (std::size_t i = 0; i < std::min(most_rows, rest.supports.size()); ++i) {
+    const Borne& one = rest.supports[i];
+    const double least = -one.least > rounding * one.greatest ? one.least : 0.0;
+    page.line(fmt::format("{} at {:g} m", one.spring ? "spring" : "support", one.x),
+              fmt::format("{:>10.4g}{:>14.4g}{:>12.4g}", 1e-3 * one.own, 1e-3 * least, 1e-3 * one.greatest));
+  }
+  if (rest.supports.size() > most_rows) page.line("", fmt::format("and {} more", rest.supports.size() - most_rows));
+  if (rest.deflection > 0.0)
+    page.line("deflection", fmt::format("{:.4g} mm at x = {:g} m, 1/{:.0f} of the span, under what passes",
+                                        1e3 * rest.deflection, rest.at, rest.span / rest.deflection));
+}
+
+void print_runs(const Page& page, const Scene& given, const Look& look) {
+  page.heading("what would be computed");
+  std::string what(std::find_if(std::begin(options::analyses), std::end(options::analyses), [&](const auto& row) {
+                     return row.analysis == given.analysis;
+                   })->words);
+  page.line("analysis", what);
+  if (given.study) {
+    std::string axes;
+    for (const Study::Axis& axis : given.study->axes)
+      axes += fmt::format("{}{} of {}", axes.empty() ? "" : " times ", axis.length, axis.name);
+    page.line("study", fmt::format("{} runs: {}; what stands here is of the first", look.runs, axes));
+  } else if (given.sweep) {
+    page.line("sweep", fmt::format("{} runs{}; what stands here is of the first", look.runs,
+                                   given.sweep->speeds.empty()
+                                       ? ""
+                                       : fmt::format(", {} from {:g} to {:g} m/s",
+                                                     count_text(given.sweep->speeds.size(), "speed", "speeds"),
+                                                     given.sweep->speeds.front(), given.sweep->speeds.back())));
+  }
+  for (const std::string& line : look.choice) page.line("mesh and step", line);
+  if (!given.limits.empty()) page.line("limits", fmt::format("{} that it is checked against", given.limits.size()));
+}
+
+void print_notes(const Page& page, const std::vector<std::string>& notes) {
+  page.heading("what is modelled");
+  for (const std::string& note : notes) fmt::print("  {}\n", note);
+}
+
+void print_cost(const Page& page, const Scene& given, const Look& look) {
+  const Cost cost = cost_of(look);
+  page.heading("what it takes, estimated by counting: most times are right to a factor of three, few to ten");
+  if (cost.unknowns > 0.0) page.line("unknowns", fmt::format("{:g}", cost.unknowns));
+  if (cost.steps > 0.0)
+    page.line(look.runs > 1 ? "steps of one run" : "steps",
+              fmt::format("{:.0f}{}", std::ceil(cost.steps),
+                          look.tried && look.longest_step > look.first_step
+                              ? fmt::format("; down to {:.0f} where longer ones do",
+                                            std::ceil(cost.steps * look.first_step / look.longest_step))
+                              : ""));
+  if (cost.trials > 0.0) page.line("trial runs", "about " + results::duration_text(cost.trials));
+  if (cost.seconds > 0.0)
+    page.line("time",
+              fmt::format("about {} on one core{}{}", results::duration_text(std::max(cost.seconds, least_told)),
+                          look.runs > 1 ? ", divided by as many as share the runs" : "",
+                          cost.quicker.empty() ? "" : "; " + cost.quicker));
+  page.line("memory", "about " + bytes_text(cost.memory) + " a rank");
+  if (given.output.file.empty()) return page.line("results", "none are stored");
+  const std::string size = cost.stored > 0.0 ? ", about " + bytes_text(cost.stored) : "";
+  page.line("results",
+            given.output.file + size +
+                (std::filesystem::exists(given.output.file) ? "; the file is there and would be replaced" : ""));
+}
+
+void print_page(const Scene& given, const Look& look, const std::vector<std::string>& unusual,
+                const std::vector<Axle>& axles, const Rest& rest) {
+  const Looks looks = looks_of_output();
+  const Page page(looks);
+  page.heading(fmt::format("{}: nothing is computed in time (-check)", given.name));
+  for (const std::string& line : drawing_of(look.scene, looks)) fmt::print("{}\n", line);
+  if (look.scene.beam) print_bridge(page, look);
+  if (look.passage) print_vehicles(page, look, axles);
+  print_loads(page, look);
+  if (look.scene.beam && !axles.empty()) print_rest(page, rest);
+  print_notes(page, look.notes);
+  print_runs(page, given, look);
+  print_cost(page, given, look);
+  page.heading("what looks unusual");
+  if (unusual.empty()) page.line("nothing", "");
+  for (const std::string& line : unusual) page.warning(line);
+}
+
+}  // namespace
+
+int run_check(MPI_Comm comm, const Scene& given) {
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  const Look look(given);  // the same on every rank, each by itself
+  const std::vector<Axle> axles = axles_of(look);
+  Rest rest;
+  if (look.scene.beam) rest = rest_of(look);
+  const std::vector<std::string> unusual = unusual_in(look, axles, rest);
+  if (rank != 0) return 0;
+  if (!given.quiet) {
+    print_page(given, look, unusual, axles, rest);
+  } else {
+    for (const std::string& line : unusual) fmt::print("{}\n", line);
+  }
+  return 0;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,108 @@
+#include "cost.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "methods/one_step_methods.hpp"
+#include "results/terminal.hpp"
+#include "run/outputs.hpp"
+#include "run/rank_choice.hpp"
+#include "scene/limits.hpp"
+#include "study/case_runner.hpp"
+#include "study/modes_choice.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+// As measured; benchmarks/check_estimates.py has how near estimates come.
+constexpr double program = 6.5e7;               // bytes, of the program with its libraries
+constexpr double a_step = 5e-6, a_body = 4e-6;  // s, of a step besides what the structure takes
+constexpr double moving_spans = 24.0;           // of a bridge whose other spans rest
+constexpr double a_mode_and_probe = 4e-10;      // s, of an instant that modes tell
+constexpr double of_petsc = 2.0;                // times the time of the program's own integrators
+constexpr double trial_runs = 6.0;              // with steps of the first length, that take as long as all trial runs
+constexpr double bytes_a_number = 8.0;
+constexpr double bytes_a_peak = 200.0;  // of a run of a sweep, each probe
+
+/// Below this accuracy trial runs refine mesh and step further than where they begin.
+constexpr double begins_well = 1e-3;
+double refinement(const Look& look) {
+  return look.tried ? std::max(1.0, std::sqrt(begins_well / look.scene.accuracy)) : 1.0;
+}
+
+/// How many stages a step has, times what they cost more where PETSc takes them.
+double stages() {
+  const options::Entry* asked = options::in_force().find("ts_type");
+  const structure::MethodRow* own = asked == nullptr ? nullptr : structure::find_method(asked->value);
+  const structure::MethodRow& row = own == nullptr ? structure::methods().front() : *own;
+  const bool by_petsc = asked != nullptr && own == nullptr;
+  return (by_petsc ? of_petsc : 1.0) * static_cast<double>(row.make(row.parameter.value).stages.size());
+}
+
+double step_seconds(const Look& look) {
+  if (look.scene.exact_in_time())
+    return a_mode_and_probe * static_cast<double>(look.shared->modal->modes()) *
+           static_cast<double>(look.scene.output.probes.size() + 1);
+  double bodies = 0.0;
+  for (const int type : look.scene.train.vehicles)
+    bodies += static_cast<double>(look.scene.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
+  StageWork structure = stage_work(look.scene);
+  structure.vehicles = 0.0;
+  const double moving =
+      structure.cut ? 1.0 : std::min(1.0, moving_spans / static_cast<double>(look.scene.beam->spans.size()));
+  return a_step + a_body * bodies + stages() * moving * stage_seconds(structure, 1, 0.0);
+}
+
+void count_single(const Look& look, Cost& cost) {
+  const Plan& plan = look.passage->plan();
+  const Outputs outputs = outputs_of({look.scene, look.passage->system().fleet(), look.bridge()});
+  const double samples = plan.end_time / (plan.interval * static_cast<double>(plan.stored)) + 1.0;
+  cost.steps = plan.end_time / plan.time_step;
+  cost.seconds = cost.steps * step_seconds(look);
+  cost.stored = bytes_a_number * samples * static_cast<double>(outputs.layout().width() + 1);
+}
+
+void count_runs(const Look& look, Cost& cost) {
+  Scene scene = look.whole;
+  scene.beam = look.scene.beam;
+  if (!scene.exact_in_time()) scene.time_step = look.passage->plan().time_step;
+  std::vector<std::string> ignored;
+  const CaseRunner runner(scene, ignored);
+  const double of_sweep = static_cast<double>(runner.speeds().size() * runner.trains());
+  cost.seconds = runner.cost_of_all() * static_cast<double>(look.runs) / of_sweep;
+  if (!scene.exact_in_time()) cost.steps = runner.duration(0, runner.speeds().front()) / *scene.time_step;
+  cost.stored =
+      bytes_a_peak * static_cast<double>(look.runs * std::max<std::size_t>(1, look.scene.output.probes.size()));
+  if (!scene.modes_open) return;
+  if (const std::optional<QuickerModes> modes = quicker_modes(scene); modes && modes->seconds < cost.seconds)
+    cost.quicker = fmt::format("by modes, where these do as well, about {}",
+                               results::duration_text(modes->seconds * static_cast<double>(look.runs) / of_sweep));
+  else if (!scene.vehicles.empty() && scene.vehicle_model != VehicleModel::full && scene.sweep->lanes > 0)
+    cost.quicker = "where linear vehicles on modes do as well, runs go side by side, up to a hundred times as fast";
+}
+
+}  // namespace
+
+Cost cost_of(const Look& look) {
+  Cost cost;
+  if (const beam::Beam* beam = look.bridge()) cost.unknowns = static_cast<double>(beam->columns()) * beam->block();
+  if (look.passage) cost.unknowns += look.passage->system().freedom();
+  cost.memory = program + memory_of(look.scene);
+  if (look.scene.analysis != Analysis::transient) return cost;
+  look.whole.sweep ? count_runs(look, cost) : count_single(look, cost);
+  cost.seconds *= refinement(look);
+  if (look.tried && !look.scene.exact_in_time())
+    cost.trials = refinement(look) * trial_runs * look.horizon / look.first_step * step_seconds(look);
+  return cost;
+}
+
+std::string bytes_text(double bytes) {
+  if (bytes < 1e6) return fmt::format("{:.0f} kB", std::ceil(1e-3 * bytes));
+  if (bytes < 1e9) return fmt::format("{:.3g} MB", 1e-6 * bytes);
+  return fmt::format("{:.3g} GB", 1e-9 * bytes);
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,243 @@
+#include "drawing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace traverse::app {
+namespace {
+
+constexpr int tallest = 18;            // rows of a mechanism
+constexpr double height_of_row = 2.0;  // over the width of a column
+constexpr int gap_of_numbers = 2;      // columns between the numbers of the ruler
+
+constexpr Symbol body{'#', "█", "body"}, wheel{'o', "●", "wheel"}, force{'v', "↓", "force"}, joint{'+', "◆", "joint"},
+    coil{'z', "≈", "spring"}, link{'.', "·", ""}, ground{'_', "▁", "ground"}, front{'[', "▐", ""}, rear{']', "▌", ""},
+    car{'=', "█", "vehicle"}, deck{'=', "━", "beam"}, rail{'-', "─", "rail"}, sleeper{':', "┴", "sleepers"},
+    hinge{'+', "◦", "hinge"}, apart{'|', "┃", "spans end"}, bed{'~', "≋", "bed"};
+constexpr Symbol supports[] = {
+    {' ', " ", ""}, {'O', "○", "roller"}, {'^', "▲", "pinned"}, {'#', "█", "clamped"}, {'H', "╫", "guided"}};
+
+struct Extent {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void hold(double x) {
+    low = std::min(low, x);
+    high = std::max(high, x);
+  }
+  double size() const { return high - low; }
+};
+
+/// Of a vehicle of the train: its bodies and wheels along x.
+Extent extent_of(const Scene& scene, std::size_t i) {
+  Extent extent;
+  const double origin = scene.train.positions[i];
+  for (const multibody::Body& one : scene.vehicles[static_cast<std::size_t>(scene.train.vehicles[i])].mechanism.bodies)
+    extent.hold(origin + one.position.x());
+  return extent;
+}
+
+class SideView {
+ public:
+  SideView(const Scene& scene, const Looks& looks)
+      : scene_(scene), beam_(*scene.beam), canvas_(looks.width - 2, rows, looks.utf8) {
+    extent_.hold(beam_.start);
+    extent_.hold(beam_.end());
+    if (beam_.track) {
+      extent_.hold(beam_.start - beam_.track->approach);
+      extent_.hold(beam_.end() + beam_.track->approach);
+    }
+    for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
+      const Extent one = extent_of(scene, i);
+      extent_.hold(one.low);
+      extent_.hold(one.high);
+    }
+    for (const double x : scene.load.positions) extent_.hold(x);
+  }
+
+  std::vector<std::string> draw() {
+    draw_train();
+    draw_beam();
+    draw_foundation();
+    draw_ruler();
+    std::vector<std::string> lines = canvas_.lines();
+    std::erase(lines, "");
+    for (std::string& line : lines) line.insert(0, "  ");
+    lines.push_back("  " + canvas_.legend());
+    lines.push_back(
+        fmt::format("  to scale along x, a character is {:.3g} m", extent_.size() / (canvas_.columns() - 1)));
+    return lines;
+  }
+
+ private:
+  enum Row { vehicles, wheels, rails, decks, bearings, springs, beds, ruler, rows };
+
+  int column(double x) const {
+    return static_cast<int>(std::lround((x - extent_.low) / extent_.size() * (canvas_.columns() - 1)));
+  }
+  void fill(int row, double from, double to, const Symbol& symbol) {
+    for (int i = column(from); i <= column(to); ++i) canvas_.put(i, row, symbol);
+  }
+  void draw_train() {
+    for (std::size_t i = 0; i < scene_.train.vehicles.size(); ++i) {
+      const Extent one = extent_of(scene_, i);
+      fill(vehicles, one.low, one.high, car);
+      if (column(one.high) > column(one.low) + 1) {
+        canvas_.put(column(one.low), vehicles, front);
+        canvas_.put(column(one.high), vehicles, rear);
+      }
+    }
+    for (const double x : scene_.load.positions) canvas_.put(column(x), wheels, force);
+    for (const double x : wheels_at_start(scene_)) canvas_.put(column(x), wheels, wheel);
+  }
+  void draw_beam() {
+    if (beam_.track) {
+      fill(rails, beam_.start - beam_.track->approach, beam_.end() + beam_.track->approach, rail);
+      fill(decks, beam_.start - beam_.track->approach, beam_.end() + beam_.track->approach, sleeper);
+    }
+    fill(decks, beam_.start, beam_.end(), deck);
+    double x = beam_.start;
+    for (std::size_t i = 0; i < beam_.supports.size(); ++i) {
+      const bool inner = i > 0 && i + 1 < beam_.supports.size();
+      const beam::Joint how = inner ? beam_.joint(static_cast<int>(i)) : beam::Joint::continuous;
+      // Of joints closer than a character the line stays a line.
+      if (how != beam::Joint::continuous && spans_are_seen())
+        canvas_.put(column(x), decks, how == beam::Joint::hinge ? hinge : apart);
+      const Symbol& support = supports[static_cast<std::size_t>(beam_.supports[i])];
+      if (support.ascii != ' ') canvas_.put(column(x), bearings, support);
+      if (i < beam_.spans.size()) x += beam_.spans[i];
+    }
+    for (const double at : beam_.hinges) canvas_.put(column(at), decks, hinge);
+  }
+  void draw_foundation() {
+    for_points(beam_.foundation, [&](const beam::FoundationKind&, const auto& points) {
+      for (const beam::PointFoundation& point : points) canvas_.put(column(point.x), springs, coil);
+    });
+    for_beds(beam_.foundation,
+             [&](const beam::FoundationKind&, const beam::Bed&) { fill(beds, beam_.start, beam_.end(), bed); });
+  }
+  /// Stations of span ends, as far as their numbers have room.
+  void draw_ruler() {
+    double x = beam_.start;
+    int free = 0;
+    const std::string last = fmt::format("{:g} m", beam_.end());
+    const int end = std::min(column(beam_.end()), canvas_.columns() - static_cast<int>(last.size()));
+    for (const double span : beam_.spans) {
+      const std::string number = fmt::format("{:g}", x);
+      const int size = static_cast<int>(number.size());
+      if (column(x) >= free && column(x) + size + gap_of_numbers <= end) {
+        canvas_.text(column(x), ruler, number);
+        free = column(x) + size + gap_of_numbers;
+      }
+      x += span;
+    }
+    canvas_.text(std::max(end, 0), ruler, last);
+  }
+  bool spans_are_seen() const {
+    return column(beam_.start + *std::min_element(beam_.spans.begin(), beam_.spans.end())) > column(beam_.start) + 1;
+  }
+
+  const Scene& scene_;
+  const beam::BeamModel& beam_;
+  Canvas canvas_;
+  Extent extent_;
+};
+
+/// Bodies with their joints and springs in their plane.
+class Plane {
+ public:
+  Plane(const Scene& scene, const Looks& looks) : scene_(scene), columns_(looks.width - 2), utf8_(looks.utf8) {
+    each([&](const Vehicle& vehicle, double origin) {
+      const auto hold = [&](const Eigen::Vector2d& point) {
+        x_.hold(origin + point.x());
+        y_.hold(point.y());
+      };
+      for (const multibody::Body& one : vehicle.mechanism.bodies) hold(one.position.head<2>());
+      for (const multibody::Joint& one : vehicle.mechanism.joints) {
+        hold(one.type->needs.ends ? one.from : one.point);
+        if (one.type->needs.ends) hold(one.to);
+      }
+      for (const multibody::Spring& one : vehicle.mechanism.springs) {
+        hold(one.from);
+        hold(one.to);
+      }
+      if (!vehicle.wheels.empty()) y_.hold(0.0);
+    });
+    unit_ = std::max(x_.size() / (columns_ - 1), y_.size() / (tallest - 1) / height_of_row);
+    if (!(unit_ > 0.0)) unit_ = 1.0;
+  }
+
+  std::vector<std::string> draw() {
+    const int wide = static_cast<int>(std::lround(x_.size() / unit_)) + 1;
+    const int tall = static_cast<int>(std::lround(y_.size() / unit_ / height_of_row)) + 1;
+    Canvas canvas(std::min(wide, columns_), std::min(tall, tallest), utf8_);
+    each([&](const Vehicle& vehicle, double origin) { draw(vehicle, origin, canvas); });
+    std::vector<std::string> lines = canvas.lines();
+    for (std::string& line : lines) line.insert(0, "  ");
+    lines.push_back("  " + canvas.legend());
+    lines.push_back(fmt::format("  to scale, a character is {:.3g} m wide and {:.3g} m high, x from {:g} to {:g} m",
+                                unit_, unit_ * height_of_row, x_.low, x_.high));
+    return lines;
+  }
+
+ private:
+  template <class Use>
+  void each(Use use) const {
+    for (std::size_t i = 0; i < scene_.train.vehicles.size(); ++i)
+      use(scene_.vehicles[static_cast<std::size_t>(scene_.train.vehicles[i])], scene_.train.positions[i]);
+  }
+  std::pair<int, int> place(double origin, const Eigen::Vector2d& point) const {
+    return {static_cast<int>(std::lround((origin + point.x() - x_.low) / unit_)),
+            static_cast<int>(std::lround((y_.high - point.y()) / unit_ / height_of_row))};
+  }
+  void line(double origin, const Eigen::Vector2d& from, const Eigen::Vector2d& to, const Symbol& symbol,
+            Canvas& canvas) const {
+    const auto a = place(origin, from), b = place(origin, to);
+    const int steps = std::max(std::abs(a.first - b.first), std::abs(a.second - b.second));
+    for (int i = 0; i <= steps; ++i) {
+      const auto [column, row] = place(origin, from + (to - from) * (steps > 0 ? static_cast<double>(i) / steps : 0.0));
+      canvas.put(column, row, symbol);
+    }
+  }
+  void draw(const Vehicle& vehicle, double origin, Canvas& canvas) const {
+    const multibody::MechanismModel& m = vehicle.mechanism;
+    const auto put = [&](const Eigen::Vector2d& point, const Symbol& symbol) {
+      const auto [column, row] = place(origin, point);
+      canvas.put(column, row, symbol);
+    };
+    const auto tie = [&](int of, const Eigen::Vector2d& point) {
+      if (of != multibody::ground)
+        line(origin, m.bodies[static_cast<std::size_t>(of)].position.head<2>(), point, link, canvas);
+    };
+    if (!vehicle.wheels.empty())
+      for (int column = 0; column < canvas.columns(); ++column) {
+        const auto [ignored, row] = place(origin, {0.0, 0.0});
+        if (canvas.empty(column, std::min(row, canvas.rows() - 1))) canvas.put(column, row, ground);
+      }
+    for (const multibody::Joint& one : m.joints) {
+      const bool ends = one.type->needs.ends;
+      tie(one.bodies[0], ends ? one.from : one.point);
+      tie(one.bodies[1], ends ? one.to : one.point);
+      if (ends) line(origin, one.from, one.to, link, canvas);
+    }
+    for (const multibody::Spring& one : m.springs) line(origin, one.from, one.to, coil, canvas);
+    for (const multibody::Joint& one : m.joints) put(one.type->needs.ends ? one.from : one.point, joint);
+    for (const multibody::Body& one : m.bodies) put(one.position.head<2>(), body);
+    for (const Wheel& one : vehicle.wheels) put(m.bodies[static_cast<std::size_t>(one.body)].position.head<2>(), wheel);
+  }
+
+  const Scene& scene_;
+  int columns_;
+  bool utf8_;
+  Extent x_, y_;
+  double unit_ = 1.0;  // m, of a column
+};
+
+}  // namespace
+
+std::vector<std::string> drawing_of(const Scene& scene, const Looks& looks) {
+  return scene.beam ? SideView(scene, looks).draw() : Plane(scene, looks).draw();
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,115 @@
+// Completion of options and of values that are words in bash, from the option table.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <set>
+
+#include "help_groups.hpp"
+
+namespace traverse::options {
+namespace {
+
+using Words = std::set<std::string>;
+
+constexpr const char* user_named[] = {"vehicle_NAME_PART_", "vehicle_NAME_", "train_NAME_", "study_vary_NAME_"};
+
+/// "beam_EI", or of what users name themselves "vehicle_*_mass": a pattern of the shell.
+std::string pattern_of(std::string name) {
+  for (const std::string_view word : {"NAME_PART", "NAME"})
+    if (const std::size_t at = name.find(word); at != std::string::npos) return name.replace(at, word.size(), "*");
+  return name;
+}
+
+void add_words(std::string_view text, Words& words) {
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    if (end > begin) words.emplace(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+constexpr std::string_view script =
+    R"(# Completion of traverse's options in bash: source this file, or install it among the completions.
+_traverse() {
+  local cur=${COMP_WORDS[COMP_CWORD]} prev= words= at rest
+  ((COMP_CWORD > 0)) && prev=${COMP_WORDS[COMP_CWORD - 1]}
+  COMPREPLY=()
+  case $prev in
+@VALUES@  esac
+  if [ -n "$words" ]; then
+    # shellcheck disable=SC2207  # words without blanks
+    COMPREPLY=($(compgen -W "$words" -- "$cur"))
+    return
+  fi
+  [[ $cur == -* ]] || return
+  words='@NAMES@'
+  # shellcheck disable=SC2207
+  COMPREPLY=($(compgen -W "$words" -- "$cur"))
+  # What users name themselves: the rest of the name after each underscore.
+@USER_NAMED@}
+complete -F _traverse traverse
+)";
+
+constexpr std::string_view after_user_name = R"(  if [[ $cur == -{0}* ]]; then
+    for ((at = {1}; at < ${{#cur}}; ++at)); do
+      [ "${{cur:at:1}}" = _ ] || continue
+      rest=${{cur:at + 1}}
+      # shellcheck disable=SC2207
+      COMPREPLY+=($(compgen -P "${{cur:0:at + 1}}" -W '{2}' -- "$rest"))
+    done
+  fi
+)";
+
+void replace(std::string& text, std::string_view what, const std::string& with) {
+  text.replace(text.find(what), what.size(), with);
+}
+
+}  // namespace
+
+std::string bash_completion(const std::vector<std::string>& ts_types) {
+  Words names, files;
+  std::map<std::string, Words> choices, ends;  // of a pattern; of what stands before NAME
+  for (const HelpGroup& group : help_groups())
+    for (const auto& [name, row] : group.options) {
+      const std::string pattern = "-" + pattern_of(name);
+      add_words(row->choices, choices[pattern]);
+      if (row->kind == Kind::flag) add_words("true false", choices[pattern]);
+      if (row->kind == Kind::file || row->kind == Kind::number_or_file) files.insert(pattern);
+      bool named = false;
+      for (const std::string_view before : user_named) {
+        if (named || !name.starts_with(before)) continue;
+        named = true;
+        ends[std::string(before.substr(0, before.find("NAME")))].insert(name.substr(before.size()));
+      }
+      if (!named && name.find("NAME") == std::string::npos) names.insert("-" + name);
+    }
+  for (const std::string_view name : common_petsc_names()) names.insert("-" + std::string(name));
+  choices["-ts_type"] = {ts_types.begin(), ts_types.end()};
+  for (const HelpGroup& group : help_groups()) choices["-help"].insert(group.name);
+  for (const char* more : {"integrators", "man", "bash", "petsc"}) choices["-help"].insert(more);
+  files.insert({"-options_file", "-output_file"});
+
+  std::string values;
+  for (const auto& [pattern, words] : choices)
+    if (!words.empty() && pattern.find('*') == std::string::npos)
+      values += fmt::format("    {}) words='{}' ;;\n", pattern, fmt::join(words, " "));
+  for (const auto& [pattern, words] : choices)
+    if (!words.empty() && pattern.find('*') != std::string::npos)
+      values += fmt::format("    {}) words='{}' ;;\n", pattern, fmt::join(words, " "));
+  values += fmt::format(
+      "    {})\n      compopt -o filenames 2>/dev/null\n      mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n"
+      "      return ;;\n",
+      fmt::join(files, "|"));
+  std::string after;
+  for (const auto& [before, words] : ends)
+    after += fmt::format(after_user_name, before, before.size() + 1, fmt::join(words, " "));
+
+  std::string text(script);
+  replace(text, "@VALUES@", values);
+  replace(text, "@NAMES@", fmt::format("{}", fmt::join(names, " ")));
+  replace(text, "@USER_NAMED@", after);
+  return text;
+}
+
+}  // namespace traverse::options

@@ -1,0 +1,140 @@
+// The text of -help.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "help_groups.hpp"
+#include "traverse/base/error.hpp"
+
+namespace traverse::options {
+namespace {
+
+/// The first word of options' names, the group that they stand in, and its heading. A word that is not listed is a
+/// group of its own.
+struct Heading {
+  std::string_view word, group, heading;
+};
+constexpr Heading headings[] = {
+    {"options", "scene", "Scene: what is computed"},
+    {"gravity", "scene", ""},
+    {"modes", "scene", ""},
+    {"check", "scene", ""},
+    {"help", "scene", ""},
+    {"beam", "beam", "Bridge"},
+    {"support", "support", "Supports"},
+    {"foundation", "foundation", "Foundation: springs, dampers and beds"},
+    {"train", "train", "Train"},
+    {"load", "load", "Moving forces"},
+    {"track", "track", "Running surface and layered track"},
+    {"ts", "step", "Time and steps"},
+    {"contact", "step", ""},
+    {"accuracy", "accuracy", "Accuracy"},
+    {"model", "model", "What is modelled"},
+    {"limits", "norm", "Limits and load models of EN 1990 and EN 1991-2"},
+    {"output", "output", "Results"},
+    {"sweep", "sweep", "Sweeps over speeds and trains"},
+    {"study", "study", "Studies of varied options"},
+};
+
+std::string_view group_of(std::string_view word) {
+  const auto* row =
+      std::find_if(std::begin(headings), std::end(headings), [&](const Heading& h) { return h.word == word; });
+  return row == std::end(headings) ? word : row->group;
+}
+
+std::string_view heading_of(std::string_view group) {
+  const auto* row = std::find_if(std::begin(headings), std::end(headings),
+                                 [&](const Heading& h) { return h.group == group && !h.heading.empty(); });
+  return row == std::end(headings) ? group : row->heading;
+}
+
+std::string_view first_word(std::string_view name) { return name.substr(0, name.find('_')); }
+
+void append(const HelpGroup& group, std::string& out) {
+  out += fmt::format("\n{} (-help {})\n", group.heading, group.name);
+  for (const auto& [name, row] : group.options)
+    out += fmt::format("  -{:<32} {}\n{:37}{}\n", name, row->text, "", allowed_in_short(*row));
+}
+
+std::string everything() {
+  std::string out =
+      "traverse predicts how trains and bridges move.\n\n"
+      "  [mpirun -n N] traverse -options_file scene.yml [-options_file more.yml] [-option value ...]\n\n"
+      "In a YAML file nested keys join with underscores (beam: {spans: [25.0, 30.0]} is -beam_spans 25.0,30.0). SI "
+      "units;\n"
+      "x along the track from the bridge's left end, y upward. In lists value*count repeats. Later ones win.\n";
+  for (const HelpGroup& group : help_groups()) append(group, out);
+  return out +
+         "\nOptions of PETSc and SLEPc pass on to them, -ts_type, -ts_adapt_type, -snes_rtol, -eps_tol, -log_view and "
+         "so "
+         "on.\n";
+}
+
+/// Underscores and blanks alike: torsion_spring is what -help shows.
+std::string as_name(std::string_view words) {
+  std::string name(words);
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+}  // namespace
+
+std::vector<HelpGroup> help_groups() {
+  std::vector<HelpGroup> groups;
+  for (const Row& row : fixed_rows()) {
+    const std::string_view name = group_of(first_word(row.name));
+    auto group = std::find_if(groups.begin(), groups.end(), [&](const HelpGroup& g) { return g.name == name; });
+    if (group == groups.end())
+      group = groups.insert(groups.end(), {std::string(name), std::string(heading_of(name)), {}});
+    group->options.push_back({std::string(row.name), &row});
+  }
+  const auto add = [&](const std::string& prefix, std::span<const Row> rows) {
+    for (const Row& row : rows) groups.back().options.push_back({prefix + std::string(row.name), &row});
+  };
+  groups.push_back({"vehicle", "Vehicle NAME; in the file that -vehicle_NAME_file names without vehicle_NAME_", {}});
+  add("vehicle_NAME_", vehicle_rows());
+  for (int kind = 0; kind < part_kinds; ++kind) {
+    const auto part = static_cast<Part>(kind);
+    groups.push_back({as_name(part_word(part)),
+                      fmt::format("Each {} PART in the list of {} of vehicle NAME", part_word(part), part_list(part)),
+                      {}});
+    add("vehicle_NAME_PART_", part_rows(part));
+  }
+  groups.push_back(
+      {"coupler", "Each coupler NAME in the list of train_couplers, besides what a spring or a joint has", {}});
+  add("train_NAME_", coupler_rows());
+  groups.push_back({"vary", "Each option NAME that a study varies", {}});
+  add("study_vary_NAME", {&vary_list_row(), 1});
+  add("study_vary_NAME_", vary_rows());
+  return groups;
+}
+
+std::string help_text(const std::string& about) {
+  if (about.empty() || about == "petsc") return everything();
+  const std::string wanted = as_name(about.substr(std::min(about.find_first_not_of('-'), about.size())));
+  const std::vector<HelpGroup> groups = help_groups();
+  std::string names, out;
+  std::vector<std::string> candidates = {"integrators"};
+  for (const std::string_view name : {std::string_view(wanted), group_of(wanted)})
+    for (const HelpGroup& group : groups)
+      if (out.empty() && group.name == name) append(group, out);
+  if (!out.empty()) return out.substr(1);
+  for (const HelpGroup& group : groups) {
+    names += group.name + ", ";
+    candidates.push_back(group.name);
+    for (const HelpGroup::Option& option : group.options) candidates.push_back(option.name);
+  }
+  for (HelpGroup group : groups) {
+    std::erase_if(group.options,
+                  [&](const HelpGroup::Option& option) { return option.name != wanted && option.row->name != wanted; });
+    if (!group.options.empty()) append(group, out);
+  }
+  if (!out.empty()) return out.substr(1);
+  const std::string near = nearest(wanted, candidates);
+  throw InputError(
+      fmt::format("help = {}: neither an option nor a group of them{}; allowed: {}integrators, man, bash, petsc, or an "
+                  "option",
+                  about, near.empty() ? "" : fmt::format("; did you mean {}?", near), names));
+}
+
+}  // namespace traverse::options
