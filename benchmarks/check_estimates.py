@@ -1,16 +1,20 @@
 #!/usr/bin/python3
-"""How near the times come that -check estimates: check_estimates.py [SCENE...] runs scenes of options/scenes (all but the longest
-one) with and without -check and prints the estimate over the processor time that the run has taken beyond its start."""
+"""How near the times come that -check estimates, over the processor time that runs have taken beyond their start.
+/usr/bin/python3 benchmarks/check_estimates.py [BUILD_FOLDER] [OUT_FOLDER] [SCENE...] [--smallest]
 
-import pathlib
+SCENE is the name of a file of options/scenes, such as r3_sprung_mass; left out: all but the longest one. Writes
+check_estimates.csv to OUT_FOLDER.
+"""
+
+import glob
+import os
 import re
 import resource
 import subprocess
-import sys
 import tempfile
 
-HERE = pathlib.Path(__file__).resolve().parents[1]
-PROGRAM = HERE / "build/traverse"
+import runs
+
 LEFT_OUT = {"danyang_kunshan"}
 UNITS = {"ms": 1e-3, "s": 1.0, "min": 60.0, "h": 3600.0}
 
@@ -23,31 +27,40 @@ def seconds_in(text):
     return total
 
 
-def run(scene, folder, *words):
+def run(build, scene, folder, *words):
     """What a run says, and its processor time in s."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-    done = subprocess.run([PROGRAM, "-options_file", scene, *words], capture_output=True, text=True, cwd=folder, check=True)
+    command = [os.path.abspath(runs.traverse(build)), "-options_file", runs.scene(scene), *words]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=True, env=runs.environment())
     return done.stdout, resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
 
 
+def all_scenes():
+    names = (os.path.splitext(os.path.basename(path))[0] for path in sorted(glob.glob(runs.scene("*"))))
+    return [name for name in names if name not in LEFT_OUT]
+
+
 def main():
-    scenes = [pathlib.Path(name).resolve() for name in sys.argv[1:]] or [
-        path for path in sorted((HERE / "options/scenes").glob("*.yml")) if path.stem not in LEFT_OUT]
-    near, counted = {3: 0, 10: 0}, 0
+    arguments = runs.parser(__doc__)
+    arguments.add_argument("scenes", nargs="*", metavar="SCENE")
+    given = runs.given(arguments)
+    scenes = ["r3_sprung_mass"] if given.smallest else given.scenes or all_scenes()
+    near, table = {3: 0, 10: 0}, []
     with tempfile.TemporaryDirectory() as folder:
         for scene in scenes:
-            said, start = run(scene, folder, "-check")
+            said, start = run(given.build, scene, folder, "-check")
             estimates = re.findall(r"^  (?:trial runs|time) +(about .*)$", said, re.MULTILINE)
             if not estimates:
                 continue
             estimate = sum(map(seconds_in, estimates))
-            taken = max(run(scene, folder)[1] - start, 0.01)
-            counted += 1
+            taken = max(run(given.build, scene, folder)[1] - start, 0.01)
+            table.append([scene, estimate, taken])
             for factor in near:
                 near[factor] += 1 / factor <= estimate / taken <= factor
-            print(f"{scene.stem:32}{estimate:10.3g} s{taken:10.3g} s{estimate / taken:10.2g}", flush=True)
+            print(f"{scene:32}{estimate:10.3g} s{taken:10.3g} s{estimate / taken:10.2g}", flush=True)
     for factor, count in near.items():
-        print(f"within a factor of {factor}: {count} of {counted}")
+        print(f"within a factor of {factor}: {count} of {len(table)}")
+    runs.write_table(os.path.join(given.out, "check_estimates.csv"), ["scene", "estimate, s", "taken, s"], table)
 
 
 if __name__ == "__main__":

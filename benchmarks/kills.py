@@ -21,6 +21,7 @@ import h5py
 import numpy as np
 import runs
 
+
 def words(build, model, file, end):
     return [runs.traverse(build), "-options_file", runs.scene("three_span_train"), "-model_vehicles", model,
             "-beam_elements_per_span", "6", "-ts_dt", "5e-4", "-ts_max_time", str(end), "-output_file", file, "-output_quiet",

@@ -92,8 +92,8 @@ std::string chosen_type(const std::string& by_accuracy) {
 }
 
 bool type_is_given() {
-  constexpr std::array options = {"-ts_type", "-ts_adapt_type", "-ts_arkimex_type", "-ts_arkimex_fully_implicit"};
-  return std::any_of(options.begin(), options.end(), is_given);
+  constexpr std::array options = {"-ts_type", "-ts_arkimex_type", "-ts_arkimex_fully_implicit"};
+  return std::any_of(options.begin(), options.end(), is_given) || option("-ts_adapt_type", TSADAPTNONE) != TSADAPTNONE;
 }
 
 std::optional<structure::Method> own_method(const std::string& by_accuracy) {

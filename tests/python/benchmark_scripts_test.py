@@ -81,6 +81,12 @@ class Scripts(InAFolder):
         self.assertEqual(start("peers_here", self.folder, self.folder / "TTB").stderr,
                          f"peers_here.py: {self.folder} holds no A02_Calculations.m: it is not the peer's folder\n")
 
+    def test_check_estimates(self):
+        self.assertIn("of 1\n", self.run_smallest("check_estimates"))
+        row, = self.table("check_estimates.csv", ["scene", "estimate, s", "taken, s"])
+        self.assertEqual(row["scene"], "r3_sprung_mass")
+        self.assert_positive([row], "estimate, s", "taken, s")
+
     def test_promises(self):
         text = self.run_smallest("promises")
         self.assertIn("kept in 1 of 1 runs", text)

@@ -6,13 +6,16 @@ import resource
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
 
 import h5py
 import numpy as np
-from small_runs import BINARY, SOURCE
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from small_runs import BINARY, SOURCE  # noqa: E402
 
 SCENES = SOURCE / "options/scenes"
 WORK = {"wall_seconds", "factorisations", "solves"}  # of the summary: what tells of the work done

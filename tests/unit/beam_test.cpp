@@ -123,8 +123,8 @@ TEST(Assembly, BedsAreMassMatrices) {
   const Distribution table({0, 4, 4, 10}, {1e6, 2e6, 5e5, 1e6}, "k");
   m.foundation.vertical_bed = beam::Bed{table, 0.0};
   m.foundation.longitudinal_bed = beam::Bed{0.0, table};
-  auto heavy = m;
-  heavy.mass = table;
+  m.mass = table;  // whose steps nodes come to
+  const auto& heavy = m;
   Beam b(PETSC_COMM_SELF, m);
   const Beam h(PETSC_COMM_SELF, heavy);
   const auto M = test::local_rows(h.mass()), k = test::local_rows(b.foundation().of("vertical_bed")[0]),
