@@ -14,7 +14,6 @@ namespace traverse {
 namespace {
 
 using beam::Beam;
-using beam::BeamModel;
 using beam::Distribution;
 using beam::Support;
 using test::model_of;
