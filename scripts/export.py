@@ -9,6 +9,7 @@ column is the time. --xdmf writes the bridge and the vehicles over time for Para
 import argparse
 import csv
 import pathlib
+import signal
 import sys
 
 import export_tables
@@ -75,6 +76,7 @@ def main():
                         help="of vertical displacements in --xdmf; left out: 1")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="of the samples in --xdmf every N-th")
     given = parser.parse_args()
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)  # nobody reads any more, as behind a pipe to head: nothing to say
     try:
         print(*export(given), sep="\n")
     except (OSError, ValueError) as error:
