@@ -5,7 +5,7 @@ verification.py                writes the page from the bounds in tests/ and the
 verification.py --check        writes nothing; fails where the page is not what would be written
 verification.py --measure      runs build/tests/verification_tests first and stores what it records (--build FOLDER)
 
-Each row of verification_rows.py names a test and the text of an assertion, with {} where the bound stands. The bound is
+Each row of verification_rows.py and verification_ways.py names a test and the text of an assertion, with {} where the bound stands. The bound is
 read from the source there; a test or an assertion that is gone, and a figure beyond its bound, end with an error.
 """
 
@@ -17,11 +17,31 @@ import re
 import sys
 
 import measured
-from verification_rows import HEAD, SECTIONS
+from verification_rows import EQUATIONS
+from verification_ways import WAYS
 
+SECTIONS = EQUATIONS + WAYS
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 NUMBER = r"([0-9]+(?:\.[0-9]+)?(?:e-?[0-9]+)?)"
 TEST = re.compile(r"^TEST(?:_[PF])?\((\w+),\s*(\w+)\)", re.MULTILINE)
+HEAD = """# Verification
+
+What the program is checked against. Each row names the case, where its reference comes from, the bound that the test
+asserts, the largest error that the test measured, and the test. Errors are relative to the peak or to the exact value
+unless a unit stands beside them. "Asserted only" means that the test compares and does not record.
+
+This page is written by `scripts/verification.py`. Bounds are read from the tests' sources, measured errors from
+`doc/verification_figures.csv`, which holds what the tests recorded when they were last run for this page:
+
+    /usr/bin/python3 scripts/verification.py --measure    # after ./test.sh: measures anew and writes the page
+    /usr/bin/python3 scripts/measured.py build '*R1*'     # what some of the tests record, without writing anything
+
+A row is run by `./test.sh -R NAME`, with the name in its last column; rows of `tests/mpi` by
+`mpirun -n 2 build/tests/mpi_tests --gtest_filter='NAME'`. Measured errors near rounding differ from machine to machine.
+
+The references are Fryba's moving force (closed-form series), the beam of Yang and Yau 1997, the example of VBI-2D, the IVP
+test set, textbook formulas and independent modal or Runge-Kutta computations. No reference is an earlier output of this
+program."""
 
 
 class Broken(Exception):
