@@ -129,6 +129,7 @@ TEST(SideBySide, ChosenByTheAccuracy) {
   const Values scene = {{"train_vehicles", "coach*2"}, {"scene_tail", "0.2"}, {"sweep_speed", "60,84,8"}};
   Results chosen = run_scene("fifty_metre_train", scene + Values{{"accuracy", "5e-3"}});
   EXPECT_GT(chosen.attribute("/sweep", "modes"), 3.0);
+  EXPECT_EQ(chosen("/sweep/promised"), std::vector<double>(4, 1.0)) << "no wheel loses contact";
   const Peaks exact = peaks_of(run_scene("fifty_metre_train", scene + Values{{"ts_dt", "1.5e-4"},
                                                                              {"beam_elements_per_span", "48"},
                                                                              {"model_vehicles", "full"},
