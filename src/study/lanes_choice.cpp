@@ -32,7 +32,8 @@ constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4,
                  part_of_all = 0.95;     // of the wanted error
 constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
 constexpr int most_halvings = 8, most_shortenings = 6;
-constexpr double shorter = 0.7;  // a quarter of an error of fourth order
+constexpr std::array step_factors = {2.0, 1.4, 1.0, 0.7, 0.5};  // times the step of esdirk4, of what may cost less
+constexpr double shorter = 0.7;                                 // a quarter of an error of fourth order
 constexpr double longer = 1.4;
 constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
 constexpr int fewest_modes = 4, most_modes = 128;
@@ -151,11 +152,13 @@ class Search {
     };
     LaneModel best = model;
     for (const char* method : methods)
-      for (const double factor : {2.0, 1.4, 1.0, 0.7, 0.5}) {
+      for (const double factor : step_factors) {
         const LaneModel tried = {model.modes, model.elements, structure::find_method(method), factor * model.step};
         if (solves(tried) >= solves(best)) continue;
         const Errors own = change(trials_, tried, exact);
-        if (greatest(own) > part_of_steps * accuracy_) continue;
+        const double over = greatest(own) / (part_of_steps * accuracy_);
+        if (over > std::pow(factor / step_factors.back(), tried.method->order)) break;  // nor will the shortest do
+        if (over > 1.0) continue;
         steps_ = own;
         best = tried;
       }
