@@ -9,6 +9,7 @@
 #include "accuracy/trials.hpp"
 #include "error_search.hpp"
 #include "first_guess.hpp"
+#include "mechanism_step.hpp"
 #include "results/stage.hpp"
 #include "run/passage.hpp"
 #include "traverse/options/input.hpp"
@@ -62,11 +63,16 @@ const options::Entry* own_measure() {
   return options::in_force().find("ts_arkimex_fully_implicit");
 }
 
-std::string stored_name(std::size_t quantity) {
-  std::string name = quantity_names[quantity];
+namespace {
+
+std::string with_underscores(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 }
+
+}  // namespace
+
+std::string stored_name(std::size_t quantity) { return with_underscores(quantity_names[quantity]); }
 
 bool asks_for(const Scene& scene, std::size_t quantity) {
   const std::vector<std::string>& asked = scene.accuracy_of;
@@ -90,17 +96,22 @@ std::vector<std::pair<std::string, double>> Accuracy::expected() const {
     if (!measured || !promises[q].present || !promises[q].kept) continue;
     list.emplace_back(stored_name(q), promises[q].expected);
   }
+  for (std::size_t q = 0; q < alone_quantities; ++q)
+    if (measured && alone[q].present && alone[q].kept)
+      list.emplace_back(with_underscores(alone_names[q]), alone[q].expected);
   return list;
 }
 
 Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   Accuracy result;
-  if (!chooses(scene)) return result;
+  const bool alone = chooses_step_alone(scene);
+  if (!alone && !chooses(scene)) return result;
   if (const options::Entry* option = own_measure()) {
     notes.push_back(fmt::format("accuracy {:g} is not searched for by trial runs and nothing is promised: {}",
                                 scene.accuracy, option->given()));
     return result;
   }
+  if (alone) return choose_step_alone(comm, scene, notes);
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();

@@ -29,10 +29,16 @@ std::string stored_name(std::size_t quantity);
 /// Whether the scene's accuracy_of holds it, or is left out.
 bool asks_for(const Scene& scene, std::size_t quantity);
 
+/// What is promised where there is no bridge: largest errors at any instant, over the largest way from the start or the
+/// largest force.
+enum AloneQuantity : std::size_t { position, joint_force, contact_force, alone_quantities };
+inline constexpr std::array<const char*, alone_quantities> alone_names = {"position", "joint force", "contact force"};
+
 struct Accuracy {
   bool measured = false;  // false: nothing was open, or there is nothing to measure
   std::array<Promise, quantities> promises;
-  bool lost_contact = false;  // wheels did in trial runs
+  std::array<Promise, alone_quantities> alone;  // where there is no bridge
+  bool lost_contact = false;                    // wheels did in trial runs
   /// After the run, which lost contact so often: where no trial run did, nothing is promised any more. Says so, or "".
   std::string withdrawn(int contact_losses);
   /// Name in the results file and expected error of each quantity that is promised.

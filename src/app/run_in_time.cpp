@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "accuracy/mechanism_step.hpp"
 #include "accuracy/trials.hpp"
 #include "analyses.hpp"
 #include "modes/modes.hpp"
@@ -46,6 +47,7 @@ double total(MPI_Comm comm, double share) {
 
 /// The promise against what a refined run gives. False where it is broken.
 bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const Peaks& peaks) {
+  if (!scene.beam) return report_alone(comm, scene, accuracy);
   const Scene fine = refined(scene);
   const Peaks truth = [&] {
     const results::Stage stage("the refined run of -accuracy_report");
@@ -199,8 +201,8 @@ std::optional<int> run_once(Job& job, bool repeated) {
     const std::string withdrawn = accuracy.withdrawn(summary.contact_losses);
     summary.expected_errors = accuracy.expected();
     summary.ended = ended;
-    const bool repeated = reaches_end && summary.linear_defect > scene.most_defect;
-    const bool judged = reaches_end && !repeated;
+    const bool counts = !reaches_end || summary.linear_defect <= scene.most_defect;  // else the run is repeated
+    const bool judged = reaches_end && counts;
     std::vector<results::Verdict> verdicts = judged ? watch.verdicts(summary) : std::vector<results::Verdict>();
     std::optional<norm::NormCheck> check;
     if (judged && scene.norm) {
@@ -212,8 +214,8 @@ std::optional<int> run_once(Job& job, bool repeated) {
     results::record_verdicts(recorder, verdicts);
     recorder.finish(summary);
     progress.done();
-    if (rank == 0 && !repeated) results::print_summary(summary, scene.output.file);
-    if (rank == 0 && !repeated && !withdrawn.empty()) fmt::print("  note: {}\n", withdrawn);
+    if (rank == 0 && counts) results::print_summary(summary, scene.output.file);
+    if (rank == 0 && counts && !withdrawn.empty()) fmt::print("  note: {}\n", withdrawn);
     if (rank == 0 && check) check->print();
     if (rank == 0) results::print_verdicts(verdicts);
     return summary;

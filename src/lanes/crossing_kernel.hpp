@@ -60,6 +60,7 @@ class Group : CrossingAlgebra<W> {
       const TaskStretch& stretch = s.task.stretch[i];
       const double ds = (stretch.to - from) / static_cast<double>(stretch.steps);
       set_step(s, ds);
+      s.behind_kink = true;
       for (long k = 0; k < stretch.steps; ++k) {
         Places::place_vehicles(s, from + static_cast<double>(k) * ds);
         for (int stage = 0; stage < s.task.method.stages; ++stage) solve_stage(s, stage);
@@ -85,6 +86,7 @@ class Group : CrossingAlgebra<W> {
     State& s = state_;
     set_step(s, to - s.distance);
     Places::place_vehicles(s, s.distance);
+    s.behind_kink = from_kink;
     if (from_kink) Powers::begin_behind_kink(s);
     for (int stage = 0; stage < s.task.method.stages; ++stage) {
       solve_stage(s, stage);
@@ -120,6 +122,13 @@ class Group : CrossingAlgebra<W> {
       s.time[i] = o.time[i];
       s.row_of[i] = s.x + (o.row_of[i] - o.x);  // the rows take turns
     }
+    for (int i = 0; i < 2; ++i) s.bent_to[i] = s.x + (o.bent_to[i] - o.x);
+    s.rest_keeps = o.rest_keeps;
+    for (int i = 0; i < 4; ++i) {
+      s.to_rest[i] = o.to_rest[i];
+      s.to_rest_rate[i] = o.to_rest_rate[i];
+    }
+    s.h_before = o.h_before;
     for (int j = 0; j < most_kept; ++j) {
       s.lost[j] = o.lost[j];
       s.given[j] = o.given[j];
@@ -187,6 +196,7 @@ class Group : CrossingAlgebra<W> {
     if ((change < 0.0 ? -change : change) <= same_step * ds) return;
     s.hard = Mask{};
     renew_step(s, ds);
+    CrossingRest<W>::set_step(s);
     s.yield_to_force = fill(1.0);
     if (s.task.coupled) return;
     Lane compliance{}, stiffest{};

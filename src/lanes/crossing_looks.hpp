@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lanes/crossing_contacts.hpp"
+#include "lanes/crossing_rest.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -20,6 +21,7 @@ struct CrossingLooks : CrossingAlgebra<W> {
 
   static constexpr double near = 0.9;   // of the largest magnitude so far: no parabola's vertex of less is larger
   static constexpr double alike = 4.0;  // see WheelExtremes
+  static constexpr int bisections = 30;
 
   /// The responses of the probes, and whether the motion is finite.
   static void see(State& s) {
@@ -44,24 +46,14 @@ struct CrossingLooks : CrossingAlgebra<W> {
   }
 
   static void see_probes(State& s) {
-    const int n = s.task.probes.count, count = 3 * n;
+    const int n = s.task.probes.count, count = 4 * n;
     Lane* const oldest = s.row_of[0];
     s.row_of[0] = s.row_of[1];
     s.row_of[1] = s.row_of[2];
     s.row_of[2] = oldest;
     Lane* seen = s.row_of[2];
     for (int i = 0; i < count; ++i) seen[i] = Lane{};
-    const auto add_corrections = [&](const double* g, Lane force) {
-      for (int p = 0; p < n; ++p) {
-        seen[p] += g[s.modes + p] * force;
-        seen[2 * n + p] += g[s.modes + n + p] * force;
-      }
-    };
-    for (int j = 0; j < s.task.wheels; ++j)
-      if (s.on[j] != 0) add_corrections(s.g + static_cast<long>(j) * s.task.influence.channels, s.F[j]);
-    for (int j = 0; j < s.task.loads; ++j)
-      if (s.load_on[j] != 0)
-        add_corrections(s.load_g + static_cast<long>(j) * s.task.influence.channels, lanes(s.task.load)[j]);
+    CrossingRest<W>::add(s, seen);
     for (int i = 0; i < s.modes; ++i) {
       const Lane q = s.q[i], r = s.r[i], a = s.b[0][i];
       const double *deflection = s.task.probes.deflection + static_cast<long>(i) * n,
@@ -72,6 +64,7 @@ struct CrossingLooks : CrossingAlgebra<W> {
         seen[p] += deflection[p] * q;
         seen[n + p] += deflection[p] * a;
         seen[2 * n + p] += moment[p] * q + by_rate[p] * r + by_acceleration[p] * a;
+        seen[3 * n + p] += moment[p] * r + by_rate[p] * a;
       }
       if (s.task.probes.deflection_by_rate == nullptr) continue;
       for (int p = 0; p < n; ++p) seen[p] += s.task.probes.deflection_by_rate[static_cast<long>(i) * n + p] * r;
@@ -85,6 +78,10 @@ struct CrossingLooks : CrossingAlgebra<W> {
       const Mask larger = counts & (value > s.peak[i]);
       s.peak[i] = larger ? value : s.peak[i];
       s.peak_time[i] = larger ? s.time[2] : s.peak_time[i];
+      if (i >= 2 * n && s.task.rest.lag > 0.0) {
+        if (s.looks >= 2) look_at_lagging(s, i, counts);
+        continue;
+      }
       if ((i < 2 * n ? s.looks : s.known) < 3) continue;
       const Lane middle = magnitude(s.row_of[1][i]);
       const Mask turns = counts & (middle > near * s.peak[i]) & (middle > value);
@@ -104,6 +101,35 @@ struct CrossingLooks : CrossingAlgebra<W> {
     turns &= top > s.peak[i];
     s.peak[i] = turns ? top : s.peak[i];
     s.peak_time[i] = turns ? at : s.peak_time[i];
+  }
+
+  /// Between the last two instants a moment that lags is start + p t + q t^2 + k b (exp(-t/b) - 1), with both values
+  /// and both rates, as app::RelaxingCurve has it.
+  static void look_at_lagging(State& s, int i, Mask counts) {
+    const int rate = i + s.task.probes.count;
+    const Lane start = s.row_of[1][i], rising = s.row_of[1][rate], falling = s.row_of[2][rate];
+    const Mask turns = counts & (rising * falling < Lane{}) & (rising * start > Lane{}) &
+                       (Own::greater(magnitude(start), magnitude(s.row_of[2][i])) > near * s.peak[i]);
+    if (!any(turns)) return;
+    const Lane h = s.time[2] - s.time[1];
+    for (int l = 0; l < W; ++l) {
+      if (turns[l] == 0) continue;
+      const double step = h[l], lag = s.task.rest.lag < 100.0 * step ? s.task.rest.lag : 100.0 * step;
+      const double decay = __builtin_exp(-step / lag), decayed = 1.0 - decay, before = rising[l];
+      const double k = (s.row_of[2][i][l] - start[l] - 0.5 * step * (before + falling[l])) /
+                       (0.5 * step * (1.0 + decay) - lag * decayed);
+      const double p = before + k, q = 0.5 * (falling[l] - before - k * decayed) / step;
+      double from = 0.0, to = step;
+      for (int bisection = 0; bisection < bisections; ++bisection) {
+        const double t = 0.5 * (from + to);
+        ((p + 2.0 * q * t - k * __builtin_exp(-t / lag)) * before > 0.0 ? from : to) = t;
+      }
+      const double top = start[l] + from * (p + q * from) - k * lag * (1.0 - __builtin_exp(-from / lag));
+      const double size = top < 0.0 ? -top : top;
+      if (size <= s.peak[i][l]) continue;
+      s.peak[i][l] = size;
+      s.peak_time[i][l] = s.time[1][l] + from;
+    }
   }
 
   static void look_at_wheels(State& s, Mask counts) {

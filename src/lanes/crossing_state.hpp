@@ -63,12 +63,21 @@ struct CrossingState {
   long* D_begin = nullptr;
 
   // What is seen: instants since the last kink of moments, since the start, of wheels; the last three instants, s, and
-  // their responses [deflections, accelerations, moments of the probes]; distances and forces of the two steps before.
+  // their responses [deflections, accelerations, moments of the probes, rates of the latter]; distances and forces of
+  // the two steps before.
   long known = 0, looks = 0, seen = 0;
   Lane time[3] = {};
   Lane* row_of[3] = {};
   double s_before[2] = {};
   Lane *F0 = nullptr, *F1 = nullptr;
+  // What modes left out do at the probes (CrossingRest), [deflections, moments]: what forces bend them to at this
+  // instant and the one before, how fast that rose, where they are and how fast they move; what a step makes of [both
+  // at its start, what they follow at its start and end] of deflections and keeps of moments; the step before, s;
+  // whether a step begins where there may be a kink.
+  Lane* bent_to[2] = {};
+  Lane *bend_rate = nullptr, *rest = nullptr, *rest_rate = nullptr;
+  Lane to_rest[4] = {}, to_rest_rate[4] = {}, rest_keeps{}, h_before{};
+  bool behind_kink = false;
   // W, at the start of a step and at its stages, and their integrals, J: CrossingPowers.
   Lane lost[most_kept] = {}, given[most_kept] = {}, all_lost{}, all_given{};
   Lane *peak = nullptr, *peak_time = nullptr, least{}, greatest{};
@@ -128,7 +137,10 @@ struct CrossingMemory {
     s.load_on = take_from<char>(work, s.used, W, s.task.loads);
     s.awake = take_from<char>(work, s.used, W, s.task.vehicles);
     s.touching = take_from<char>(work, s.used, W, s.task.vehicles);
-    for (Lane*& row : s.row_of) row = take_from<Lane>(work, s.used, W, probes);
+    for (Lane*& row : s.row_of) row = take_from<Lane>(work, s.used, W, probes + s.task.probes.count);
+    for (Lane*& row : s.bent_to) row = take_from<Lane>(work, s.used, W, probes);
+    Lane** const of_rest[] = {&s.bend_rate, &s.rest, &s.rest_rate};
+    for (Lane** own : of_rest) *own = take_from<Lane>(work, s.used, W, probes);
     s.peak = take_from<Lane>(work, s.used, W, probes);
     s.peak_time = take_from<Lane>(work, s.used, W, probes);
   }

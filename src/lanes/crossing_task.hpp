@@ -63,6 +63,12 @@ struct TaskProbes {
   const double *moment_by_acceleration = nullptr, *deflection_by_rate = nullptr;     // the latter may be null
 };
 
+/// The mode that stands for those left out, 1/s2 and 1/s, and by how much they lag without inertia, s: CrossingRest.
+/// No lag: they are at rest under the forces as these are.
+struct TaskRest {
+  double omega2 = 0.0, damping = 0.0, lag = 0.0;
+};
+
 /// A stretch of equal steps; at its end a force may have a kink.
 struct TaskStretch {
   double to = 0.0;  // m travelled since t = 0
@@ -96,6 +102,7 @@ struct Task {
   TaskInfluence influence;
   TaskHeights heights;
   TaskProbes probes;
+  TaskRest rest;
 
   int stretches = 0;
   const TaskStretch* stretch = nullptr;
@@ -116,8 +123,8 @@ struct TaskInstant {
   const double *q = nullptr, *q_rate = nullptr;  // of the modes
   // Coordinates of every vehicle from where they started, m or rad, their rates, and Task::bent.
   const double *x = nullptr, *x_rate = nullptr, *bent = nullptr;
-  const double* force = nullptr;                   // N, of each wheel
-  const double* response = nullptr;                // deflection of each probe, then acceleration, then moment
+  const double* force = nullptr;     // N, of each wheel
+  const double* response = nullptr;  // deflection of each probe, then acceleration, moment and, with a lag, its rate
   const double *lost = nullptr, *given = nullptr;  // J since the start: in dampers; by what holds the speed
 };
 

@@ -27,7 +27,7 @@ struct Response {
   /// What the nodal values alone give of the forces and of d moment/dt (N m/s): all but what loads, inertia and
   /// foundation inside the element add.
   double nodal_moment = 0.0, nodal_shear = 0.0, nodal_axial_force = 0.0, nodal_moment_rate = 0.0;
-  double moment_rate = 0.0;  // d moment/dt, N m/s, where ViscousLag knows it
+  double moment_rate = 0.0;  // d moment/dt, N m/s; NaN where nobody knows it
 };
 
 /// Moment (N m), shear and axial force (N).

@@ -9,6 +9,7 @@
 #include "lanes/processor.hpp"
 #include "lanes/stepped_crossing.hpp"
 #include "lanes/train_numbers.hpp"
+#include "run/peaks.hpp"
 
 namespace traverse::app {
 namespace {
@@ -50,6 +51,7 @@ class ByLanes final : public coupling::SteppedApart {
   ByLanes(const lanes::CrossingPlan& plan, lanes::TrainNumbers train, lanes::TrackNumbers track, std::vector<double> q,
           double speed, std::vector<double> kinks, train::Fleet fleet)
       : speed_(speed),
+        lag_(plan.bridge->lag()),
         modes_(plan.bridge->modes()),
         coordinates_(static_cast<std::size_t>(train.coordinates)),
         x_(train.x),
@@ -87,8 +89,10 @@ class ByLanes final : public coupling::SteppedApart {
       probes[i].deflection = crossing_.at(&Now::response, i);
       probes[i].acceleration = crossing_.at(&Now::response, probes.size() + i);
       probes[i].moment = crossing_.at(&Now::response, 2 * probes.size() + i);
+      probes[i].moment_rate = crossing_.at(&Now::response, 3 * probes.size() + i);
     }
   }
+  double moment_lag() const override { return lag_; }
   double defect() override { return lanes::defect(fleet_, crossing_.bent()); }
   void keep(base::Archive& archive) override { archive.same(crossing_, time_, next_kink_); }
 
@@ -99,10 +103,10 @@ class ByLanes final : public coupling::SteppedApart {
     return next_kink_ < kinks_.size() && kinks_[next_kink_] <= t + same_time;
   }
 
-  double speed_, time_ = 0.0;
+  double speed_, lag_, time_ = 0.0;
   std::size_t modes_, coordinates_;
   std::vector<double> x_;      // m: of every wheel at t = 0
-  std::vector<double> kinks_;  // s, ascending: when a wheel is at a kink of the surface
+  std::vector<double> kinks_;  // s, ascending: when a wheel is at a kink of the surface, or at a probe
   std::size_t next_kink_ = 0;
   train::Fleet fleet_;  // as it started
   lanes::SteppedCrossing crossing_;
@@ -156,8 +160,11 @@ std::unique_ptr<coupling::SteppedApart> by_lanes(const Scene& scene, const Share
   MPI_Comm_rank(system.comm(), &rank);
   if (rank == 0) std::copy_n(y, q.size(), q.begin());
   MPI_Bcast(q.data(), static_cast<int>(q.size()), MPI_DOUBLE, 0, system.comm());
+  std::vector<double> kinks = system.known_events(end_time, scene.step_kinks);
+  for (const std::vector<double>& times : passages_of(scene)) kinks.insert(kinks.end(), times.begin(), times.end());
+  std::sort(kinks.begin(), kinks.end());
   return std::make_unique<ByLanes>(plan, std::move(train), std::move(track), std::move(q), scene.train.speed,
-                                   system.known_events(end_time, scene.step_kinks), std::move(fleet));
+                                   std::move(kinks), std::move(fleet));
 }
 
 }  // namespace traverse::app

@@ -44,7 +44,8 @@ class BySpans final : public coupling::SteppedApart {
     std::sort(watched_.begin(), watched_.end());
     watched_.erase(std::unique(watched_.begin(), watched_.end()), watched_.end());
     loads_.reserve(fleet_.wheels.size());
-    if (shared.rayleigh.b > 0.0) lag_.emplace(recovery_, shared.rayleigh.b);
+    moment_lag_ = shared.rayleigh.b;
+    if (moment_lag_ > 0.0) lag_.emplace(recovery_, moment_lag_);
   }
 
   bool step(double t, double h) override {
@@ -112,6 +113,7 @@ class BySpans final : public coupling::SteppedApart {
     if (lag_) lag_->apply(crossing_.time(), loads_, seen_);
     std::copy(seen_.begin(), seen_.end(), probes.begin());
   }
+  double moment_lag() const override { return moment_lag_; }
   double defect() override { return lanes::defect(fleet_, crossing_.bent()); }
   void keep(base::Archive& archive) override {
     archive.same(crossing_, next_kink_, told_, told_rate_, v_, w_, a_, loads_, seen_);
@@ -188,6 +190,7 @@ class BySpans final : public coupling::SteppedApart {
   mutable int told_ = 0, told_rate_ = 0;      // the first span that moved when y, and y', were told last
   // What probes see, in vectors of which only the spans watched are filled.
   mutable beam::Recovery recovery_;
+  double moment_lag_ = 0.0;
   mutable std::optional<beam::ViscousLag> lag_;
   mutable std::vector<double> v_, w_, a_, modes_;
   mutable std::vector<beam::ElementLoad> loads_;

@@ -90,7 +90,7 @@ void Peaks::add(double t, std::span<const beam::Response> probes, std::span<cons
       return [this, q, i](double value, double at) { note(static_cast<Quantity>(q), i, value, at); };
     };
     for (std::size_t q = 0; q < values.size(); ++q)
-      if (q == moment && lag_ > 0.0)
+      if (q == moment && lag_ > 0.0 && !std::isnan(probes[i].moment_rate))
         moments_[i].add(t, values[q], probes[i].moment_rate, lag_, note_of(q));
       else
         probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth, note_of(q));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace traverse::app {
 namespace {
@@ -41,8 +42,9 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
     if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
-  const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
+  double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
+  if (system.apart() != nullptr) lag = system.apart()->moment_lag();
   peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
   envelope_ = Envelope(passages_of(scene));
   wheels_ = WheelExtremes(wheel_count_, system.corners());
@@ -58,10 +60,15 @@ void Watch::sample(const integrate::Instant& instant) {
     if (!beam.drag.empty()) drag(beam.drag.data());
     recovery_->evaluate(beam.v, beam.w, beam.a.data(), now_.motion.bridge_loads, now_.probes);
     if (lag_) lag_->apply(instant.time, now_.motion.bridge_loads, now_.probes);
+    for (beam::Response& probe : now_.probes)
+      if (!lag_) probe.moment_rate = std::numeric_limits<double>::quiet_NaN();
     for (std::size_t i = 0; i < dragged_.size(); ++i) now_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   step(instant.time);  // the first instant is no step's end
-  if (system_.apart() == nullptr) note_peaks();
+  if (system_.apart() == nullptr)
+    note_peaks();
+  else
+    take_from_apart();
   note_worst();
   if (judge_) judge_->sample(instant.time, beam.v);
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
@@ -157,7 +164,17 @@ void Watch::step(double t) {
   if (system_.apart() == nullptr || t <= last_apart_) return;
   last_apart_ = sample_.time = t;
   system_.apart()->see(now_.probes);
+  seen_apart_ = now_.probes;
   note_peaks();
+}
+
+// What was seen of a step apart stands for what the system makes of the same instant.
+void Watch::take_from_apart() {
+  for (std::size_t i = 0; i < seen_apart_.size(); ++i) {
+    now_.probes[i].deflection = seen_apart_[i].deflection;
+    now_.probes[i].acceleration = seen_apart_[i].acceleration;
+    now_.probes[i].moment = seen_apart_[i].moment;
+  }
 }
 
 void Watch::note_wheels() {

@@ -67,6 +67,7 @@ class Watch {
   void note_worst();
   void note_energy();
   void note_static_deflections();
+  void take_from_apart();
 
   const Scene& scene_;
   coupling::System& system_;
@@ -76,7 +77,7 @@ class Watch {
   std::optional<beam::ViscousLag> lag_;
   const Outputs* outputs_;  // null where this rank writes no file
   bool recorded_;           // whether some rank stores samples
-  std::vector<beam::Response> dragged_;
+  std::vector<beam::Response> dragged_, seen_apart_;
   Peaks peaks_;
   Envelope envelope_;
   std::optional<DeckAcceleration> deck_;

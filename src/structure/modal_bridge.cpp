@@ -27,6 +27,12 @@ ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int coun
   influence_ = influence_of(lines_of_modes(), {});
 }
 
+// Bending waves: frequencies grow with the square of the number.
+double ModalBridge::next_omega() const {
+  const double growth = 1.0 + 1.0 / static_cast<double>(modes());
+  return omega().back() * growth * growth;
+}
+
 std::vector<ModalBridge::Line> ModalBridge::lines_of_modes() const {
   std::vector<Line> lines;
   for (const auto& shape : basis_.shape) {
@@ -64,6 +70,7 @@ Eigen::MatrixXd ModalBridge::share_of_modes(const Eigen::MatrixXd& forces) const
 
 void ModalBridge::set_damping(const std::vector<double>& ratios) {
   const beam::Rayleigh ab = beam_.rayleigh();
+  if (ratios.empty()) ab_ = ab;
   const auto m = static_cast<Eigen::Index>(modes());
   Eigen::MatrixXd damping = Eigen::MatrixXd::Zero(m, m);  // what is not Rayleigh's
   // Rayleigh's b damps the beam, but not the foundation's springs.

@@ -5,6 +5,11 @@
 #include "beam/shape.hpp"
 
 namespace traverse::structure {
+namespace {
+
+using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
 
 ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics)
     : Structure(bridge.beam(), std::move(statics), gravity), bridge_(bridge), modes_(bridge.modes()), yield_(*this) {
@@ -152,14 +157,14 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   const auto size = static_cast<std::size_t>(beam_.local_unknowns());
   const auto first = static_cast<std::size_t>(beam_.first_column()) * static_cast<std::size_t>(beam_.block());
   std::vector<double>&q = seen_, &share = share_;
-  q.assign(3 * modes_, 0.0);
+  q.assign(4 * modes_, 0.0);
   share.assign(modes_, 0.0);
   if (n_ > 0) {
     std::copy_n(v, n_, q.begin());
     std::copy_n(w, n_, q.begin() + n_);
     std::copy_n(a, n_, q.begin() + 2 * n_);
   }
-  MPI_Bcast(q.data(), static_cast<int>(q.size()), MPI_DOUBLE, 0, beam_.comm());
+  MPI_Bcast(q.data(), static_cast<int>(3 * modes_), MPI_DOUBLE, 0, beam_.comm());
 
   // Forces but its own weight; what they and dampers deflect it by at rest, less the modes' share of that.
   out.P.assign(size, 0.0);
@@ -168,25 +173,30 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   rest_ = out.P;
   bridge_.add_forces_on_others(&q[modes_], rest_.data());
   release_held(rest_.data());
-  for (std::size_t k = 0; k < size; ++k)
-    for (std::size_t i = 0; i < modes_; ++i) share[i] += by_unknown_[(first + k) * modes_ + i] * rest_[k];
+  const auto rows = static_cast<Eigen::Index>(size), modes = static_cast<Eigen::Index>(modes_);
+  const Eigen::Map<const ByRows> phi(by_unknown_.data() + first * modes_, rows, modes);
+  Eigen::Map<Eigen::VectorXd>(share.data(), modes).noalias() =
+      phi.transpose() * Eigen::Map<const Eigen::VectorXd>(rest_.data(), rows);
   MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(modes_), MPI_DOUBLE, MPI_SUM, beam_.comm());
   statics_->solve_static(rest_.data());
   for (std::size_t i = 0; i < modes_; ++i) share[i] /= bridge_.omega()[i] * bridge_.omega()[i];
 
-  v_nodal_.assign(size, 0.0);
-  w_nodal_.assign(size, 0.0);
-  out.a.assign(size, 0.0);
-  out.drag.assign(size, 0.0);
+  Eigen::Map<Eigen::MatrixXd> motion(q.data(), modes, 4);  // q, q', q'', and how damping drags
+  for (std::size_t i = 0; i < modes_; ++i) {
+    q[i] -= share[i];
+    q[3 * modes_ + i] = bridge_.own_drag()[i] * q[modes_ + i];
+  }
+  nodal_.noalias() = phi * motion;
+  out.a.resize(size);
+  out.drag.resize(size);
+  v_nodal_.resize(size);
+  w_nodal_.resize(size);
   for (std::size_t k = 0; k < size; ++k) {
-    const double* phi = &by_unknown_[(first + k) * modes_];
-    v_nodal_[k] = sag_[first + k] + rest_[k];
-    for (std::size_t i = 0; i < modes_; ++i) {
-      v_nodal_[k] += phi[i] * (q[i] - share[i]);
-      w_nodal_[k] += phi[i] * q[modes_ + i];
-      out.a[k] += phi[i] * q[2 * modes_ + i];
-      out.drag[k] += phi[i] * bridge_.own_drag()[i] * q[modes_ + i];
-    }
+    const auto row = static_cast<Eigen::Index>(k);
+    v_nodal_[k] = sag_[first + k] + rest_[k] + nodal_(row, 0);
+    w_nodal_[k] = nodal_(row, 1);
+    out.a[k] = nodal_(row, 2);
+    out.drag[k] = nodal_(row, 3);
     out.P[k] += dead_load_[k];
   }
   out.v = v_nodal_.data();

@@ -113,6 +113,7 @@ class ModalStructure final : public Structure {
   std::vector<double> q_, moved_;  // modal forces and what they move, of solve_free and take
   // What is seen: nodal values, the static solution; q, q', q'' and the modes' share of that.
   std::vector<double> v_nodal_, w_nodal_, rest_, seen_, share_;
+  Eigen::MatrixXd nodal_;  // [unknown][as seen_]
 };
 
 }  // namespace traverse::structure

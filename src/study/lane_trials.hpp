@@ -49,8 +49,6 @@ class LaneTrials {
   double defect(const LaneModel& model) const;
   const Scene& scene() const { return scene_; }
   std::size_t trials() const { return kept_.size(); }
-  /// b of the Rayleigh damping b K, s, with a model that has run.
-  double viscous(const LaneModel& model) const { return setups_.at({model.modes, model.elements})->shared->rayleigh.b; }
 
   struct Refused {
     std::string why;

@@ -37,7 +37,7 @@ constexpr double shorter = 0.7;                                 // a quarter of 
 constexpr double longer = 1.4;
 constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
 constexpr int fewest_modes = 4, most_modes = 128;
-constexpr double order_of_modes = 3.0;   // that errors of the modes fall with at most: what is farther off is not tried
+constexpr double order_of_modes = 6.0;   // that errors of the modes fall with at most: what is farther off is not tried
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
 
 bool open(const Scene& scene) {
@@ -126,7 +126,10 @@ class Search {
         model.modes = number;
         model.elements = more.elements;
         modes_ = change(mixed_, model, more);
-        if (greatest(modes_) <= part_of_modes * accuracy_) return true;
+        if (greatest(modes_) <= part_of_modes * accuracy_) {
+          model.elements = mesh_for(trials_.scene(), model.modes);
+          return true;
+        }
       }
       const double most = 0.5 * most_modes / modes;
       if (greatest(modes_) > part_of_modes * accuracy_ * std::pow(most, order_of_modes)) return false;
@@ -236,7 +239,7 @@ class Chooser {
     if (scene_.vehicle_model == VehicleModel::automatic && defect > most_defect(scene_))
       throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
     LanesChoice choice;
-    check_wholes(search, choice, moment_lag());
+    check_wholes(search, choice);
     for (double& error : choice.errors) error += defect;
     choice.scene = with(scene_, model_);
     if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
@@ -253,21 +256,9 @@ class Chooser {
   double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
 
  private:
-  /// Of the peaks of moments: under a wheel they follow by b of the damping b K, which rounds the kink that a force
-  /// makes in them by F v b/2 (recovery/viscous_lag.hpp). What the modes leave out is taken as static, without that.
-  double moment_lag() {
-    double largest = 0.0;
-    for (const CrossingResult& run : beginnings_->run(model_)) {
-      double peak = 0.0;
-      for (const lanes::CrossingPeak& one : run.moment) peak = std::max(peak, one.value);
-      if (peak > 0.0) largest = std::max(largest, run.greatest_force / peak);
-    }
-    return 0.5 * largest * fastest_.train.speed * beginnings_->viscous(model_);
-  }
-
   /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
   /// should not cost several, against a longer one, by errors that fall at least with the third power, or the method's.
-  void check_wholes(const Search& search, LanesChoice& choice, double lag) {
+  void check_wholes(const Search& search, LanesChoice& choice) {
     for (int i = 0; i <= most_shortenings; ++i) {
       if (i > 0) model_.step *= shorter;
       LaneModel other = model_;
@@ -278,7 +269,6 @@ class Chooser {
       for (double& error : along) error *= alone_ ? 1.0 / (growth - 1.0) : 1.0;
       for (std::size_t q = 0; q < quantities; ++q)
         choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
-      if (asks_for(scene_, moment)) choice.errors[moment] += lag;
       if (greatest(choice.errors) <= part_of_all * scene_.accuracy) break;
     }
     if (greatest(choice.errors) > part_of_all * scene_.accuracy)

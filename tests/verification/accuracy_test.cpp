@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <optional>
 
 #include "support/curve.hpp"
@@ -128,6 +129,44 @@ TEST(Accuracy, StepOfStiffnessFarFromTheStart) {
   const Results run = run_yaml(scene, {{"accuracy", "1e-2"}});
   ASSERT_TRUE(expected(run, "acceleration"));
   EXPECT_LE(std::abs(peak_of(run, "acceleration") / peak_of(truth, "acceleration") - 1.0), 1e-2);
+}
+
+/// A scene file without the step that it gives.
+std::string without_step(const std::string& name) {
+  std::ifstream file(std::string(TRAVERSE_SOURCE_DIR) + "/options/scenes/" + name + ".yml");
+  std::string text, line;
+  while (std::getline(file, line))
+    if (line.find("  dt:") == line.npos && line.find("  interval:") == line.npos && line != "output:")
+      text += line + "\n";
+  return text;
+}
+
+// Where there is no bridge, positions and joint forces are promised: Andrews' mechanism against its published end.
+TEST(Accuracy, OfMechanisms) {
+  const std::string andrews = without_step("r9_andrews");
+  std::vector<double> steps;
+  for (const char* accuracy : {"1e-3", "1e-9"}) {
+    Results run = run_yaml(andrews, {{"accuracy", accuracy}});
+    const auto expectation = expected(run, "position");
+    ASSERT_TRUE(expectation) << accuracy;
+    EXPECT_TRUE(expected(run, "joint_force")) << accuracy;
+    const std::vector<double> crank = run("/vehicles/0/k1/position"), arm = run("/vehicles/0/k7/position");
+    const double error =
+        std::max(std::abs(crank.back() - 15.81077119629904), std::abs(arm.back() - 1.048080741042263)) / 15.8;
+    RecordProperty(std::string("position_") + accuracy, text(error));
+    EXPECT_LT(error, std::stod(accuracy));
+    EXPECT_LE(*expectation, std::stod(accuracy));
+    steps.push_back(run.attribute("/summary", "steps"));
+  }
+  EXPECT_LT(steps[0], 1500.0);
+  EXPECT_LT(steps[0], steps[1]);
+}
+
+// Forces of a contact that bounces are pulses, which no step settles.
+TEST(Accuracy, OfBounces) {
+  const Results run = run_yaml(without_step("bouncing_ball"), {{"accuracy", "1e-2"}});
+  EXPECT_TRUE(expected(run, "position"));
+  EXPECT_FALSE(expected(run, "contact_force"));
 }
 
 // With mesh and step given there is nothing to choose, and nothing is promised.

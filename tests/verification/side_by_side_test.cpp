@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <string_view>
 
 #include "support/curve.hpp"
@@ -15,6 +16,9 @@ namespace {
 
 const char* const peaks[] = {"peak_deflection", "peak_acceleration", "peak_moment", "greatest_wheel_force",
                              "least_wheel_force"};
+
+// What modes left out do to accelerations and moments is taken as static where runs go by themselves.
+const char* const motion[] = {"peak_deflection", "greatest_wheel_force", "least_wheel_force"};
 
 using Peaks = std::map<std::string, std::vector<double>>;
 
@@ -35,9 +39,9 @@ double difference(const Peaks& a, const Peaks& b, const char* name) {
   return apart / largest;
 }
 
-double difference(const Peaks& a, const Peaks& b) {
+double difference(const Peaks& a, const Peaks& b, std::span<const char* const> names = peaks) {
   double worst = 0.0;
-  for (const char* name : peaks) worst = std::max(worst, difference(a, b, name));
+  for (const char* name : names) worst = std::max(worst, difference(a, b, name));
   return worst;
 }
 
@@ -55,8 +59,8 @@ void expect_same_motion(const std::string& scene, const Values& more, const char
                         const char* fine, double bound) {
   const Values probes = more + Values{{"step_probes", "true"}};
   const Peaks alone = peaks_of(run_scene(scene, probes + sweep(speeds, "0", fine)));
-  const double rough = difference(peaks_of(run_scene(scene, probes + sweep(speeds, "8", coarse))), alone);
-  const double exact = difference(peaks_of(run_scene(scene, probes + sweep(speeds, "8", fine))), alone);
+  const double rough = difference(peaks_of(run_scene(scene, probes + sweep(speeds, "8", coarse))), alone, motion);
+  const double exact = difference(peaks_of(run_scene(scene, probes + sweep(speeds, "8", fine))), alone, motion);
   testing::Test::RecordProperty(scene, text(exact));
   EXPECT_LT(exact, bound);
   EXPECT_LT(exact, 0.5 * rough);
@@ -121,7 +125,7 @@ TEST(SideBySide, RunsThatLoseContactLeave) {
   EXPECT_EQ(losses.front(), 0.0);
   EXPECT_GT(losses.back(), 0.0);
   EXPECT_EQ(beside("/sweep/contact_losses"), losses);
-  EXPECT_LT(difference(peaks_of(std::move(beside)), peaks_of(std::move(alone))), 1e-3);
+  EXPECT_LT(difference(peaks_of(std::move(beside)), peaks_of(std::move(alone)), motion), 1e-3);
 }
 
 // Everything is left open: what is chosen keeps to the accuracy, by elements and with the mechanisms.

@@ -14,8 +14,9 @@ namespace {
 
 const Values linear = {{"model_vehicles", "linear"}, {"model_modes", "8"}, {"step_probes", "true"}};
 
-const char* const series[] = {"/probes/deflection", "/probes/moment", "/supports/reaction",
-                              "/vehicles/0/wheel_3/normal_force", "/vehicles/0/rear_bogie/acceleration"};
+// Without accelerations and moments at probes: what modes left out do to these the system takes as static.
+const char* const series[] = {"/probes/deflection", "/supports/reaction", "/vehicles/0/wheel_3/normal_force",
+                              "/vehicles/0/rear_bogie/acceleration"};
 
 /// The largest difference of these series, each over its own largest value.
 double difference(Results& a, Results& b) {
@@ -46,6 +47,24 @@ void expect_same_motion(const char* name, const std::string& scene, const Values
 TEST(SteppedApart, CoachesOverThreeSpans) {
   expect_same_motion("three spans", "three_span_train",
                      {{"train_vehicles", "coach*2"}, {"scene_tail", "0.2"}, {"ts_dt", "2.5e-4"}}, 2e-5, 3e-5);
+}
+
+// The modes left out have accelerations, and moments that lag: against the elements, beside the system, in which they
+// are static.
+TEST(SteppedApart, ModesLeftOut) {
+  const Values scene = {{"train_vehicles", "coach*2"}, {"scene_tail", "0.2"}, {"model_vehicles", "linear"},
+                        {"step_probes", "true"},       {"ts_dt", "2.5e-4"},   {"output_interval", "1e-3"}};
+  Results elements = run_scene("three_span_train", scene + Values{{"beam_elements_per_span", "100"}});
+  const Values modes = scene + Values{{"model_modes", "24"}, {"beam_elements_per_span", "40"}};
+  Results apart = run_scene("three_span_train", modes);
+  Results itself = run_scene("three_span_train", modes + Values{{"step_lanes", "false"}});
+  for (const auto& [name, bound, part] :
+       {std::tuple("/probes/acceleration", 2e-2, 0.5), {"/probes/moment", 2e-4, 0.15}}) {
+    const double off = relative_difference(apart(name), elements(name));
+    testing::Test::RecordProperty(name + 1, text(off));
+    EXPECT_LT(off, bound) << name;
+    EXPECT_LT(off, part * relative_difference(itself(name), elements(name))) << name;
+  }
 }
 
 TEST(SteppedApart, RoughTrack) {

@@ -1,0 +1,18 @@
+// `accuracy` where there is no bridge: the step by which positions, joint forces and contact forces are right, found by
+// runs of the whole scene with steps that are halved until what that changes tells the errors.
+#pragma once
+
+#include "accuracy/accuracy.hpp"
+
+namespace traverse::app {
+
+/// Whether there is no bridge and the step is open.
+bool chooses_step_alone(const Scene& scene);
+
+/// Collective. Fills in the scene's step and says so in `notes`. InputError as the scene's own run would throw it.
+Accuracy choose_step_alone(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
+
+/// Collective. Prints promised errors and those against a run with half the step. False where a promise is broken.
+bool report_alone(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy);
+
+}  // namespace traverse::app
