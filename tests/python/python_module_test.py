@@ -148,13 +148,13 @@ class Pieces(InFolder):
                     now = passage.read()
                     for name in now.data_vars:
                         np.testing.assert_array_equal(now[name], whole[name].sel(time=time), f"{name} at {time} s")
-            return set(passage.names)
+        return whole
 
     def test_of_forces(self):
         self.assertIn("supports_reaction", self.same(FORCES))
 
     def test_of_a_wheel_that_hops(self):
-        self.assertIn("vehicles_0_wheel_normal_force", self.same(HOPPING, model_vehicles="full"))
+        self.assertGreater(self.same(HOPPING, model_vehicles="full").attrs["summary_contact_losses"], 0)
 
     def test_of_linear_vehicles_over_modes(self):
         level = {key: value for key, value in HOPPING.items() if key != "track"}
@@ -190,7 +190,7 @@ class Forces(InFolder):
             passage.advance(0.1)
             passage.set_force(body="rock", fx=3.0, moment=-0.1)
             passage.advance(0.3)
-            self.assertEqual(passage.time, 0.3)
+            self.assertAlmostEqual(passage.time, 0.3, places=15)
             x, y, angle = passage.read("vehicles_0_rock_velocity")
             self.assertAlmostEqual(x, 3.0 * 0.2 / 2.0, places=12)
             self.assertAlmostEqual(angle, -0.1 * 0.2 / 0.5, places=12)
@@ -202,8 +202,9 @@ class Forces(InFolder):
             self.assertAlmostEqual(passage.read("vehicles_0_rock_position")[0], 0.5 * 1.5 * 0.2**2 + 0.7 * x, places=12)
 
     def test_a_table_over_time(self):
-        """The same force as an actuator's table, which comes on within 1e-7 s."""
-        (self.folder / "push.csv").write_text("0,0,0\n0.1,0,0\n0.1000001,0,-2e4\n0.2,0,-2e4\n0.2000001,0,0\n", encoding="utf-8")
+        """The same force as an actuator's table, which comes on and goes within 1e-6 s about that time."""
+        table = "0,0,0\n0.0999995,0,0\n0.1000005,0,-2e4\n0.1999995,0,-2e4\n0.2000005,0,0\n"
+        (self.folder / "push.csv").write_text(table, encoding="utf-8")
         driven = copy.deepcopy(HOPPING)
         driven["vehicle"]["sprung"] |= {"actuators": ["push"], "push": {"body": "body", "table": "push.csv"}}
         fine = {"model_vehicles": "full", "ts_dt": 2e-4}
@@ -220,17 +221,19 @@ class Forces(InFolder):
         free = traverse.run(HOPPING, **fine)
         self.assertGreater(np.abs(free["deflection"] - table["deflection"]).max() / np.abs(table["deflection"]).max(), 0.05)
         for name, off in largest.items():
-            self.assertLess(off, 2e-5, name)
+            self.assertLess(off, 1e-5, name)
 
     def test_a_force_on_the_beam(self):
         """A force that comes onto a simple beam at rest, by its modes: 2 F/(m L w^2) sin^2 (1 - cos w t) each."""
-        beam = {"beam": BRIDGE, "load": {"forces": 0.0, "positions": 0.0, "speed": 0.0},
+        beam = {"beam": BRIDGE | {"elements_per_span": 16}, "load": {"forces": 0.0, "positions": 0.0, "speed": 0.0},
                 "ts": {"dt": 2.0e-4, "max_time": 0.2}, "output": {"interval": 0.01, "probes": [10.0]}}
         force, start = -1.0e5, 0.05
         odd = np.arange(1, 60, 2)
         omega = (odd * np.pi / 20.0) ** 2 * np.sqrt(3.0e10 / 1.8e4)
+
         def midspan(time):
             return np.sum(2.0 * force / (1.8e4 * 20.0 * omega**2) * (1.0 - np.cos(omega * max(time - start, 0.0))))
+
         with traverse.Passage(beam) as passage:
             passage.advance(start)
             passage.set_force(x=10.0, fy=force)
@@ -258,6 +261,17 @@ class Forces(InFolder):
         self.refused(2, "model_vehicles full", traverse.Passage(HOPPING, model_vehicles="linear").set_force, body="body")
         self.refused(2, "model_modes 0", traverse.Passage(FORCES, model_modes=3).set_force, x=1.0)
         self.refused(2, "needs a beam", traverse.Passage(FREE).set_force, x=1.0)
+
+
+class Example(InFolder):
+    def test_runs_and_draws(self):
+        run = subprocess.run(["/usr/bin/python3", "-B", SOURCE / "examples/three_span_train.py", self.folder], cwd=SOURCE,
+                             capture_output=True, text=True,
+                             env=os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(SOURCE / "python")})
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
+                         ["python_crossing.png", "python_damper.png", "python_speeds.png"])
+        self.assertRegex(run.stdout, r"largest deflection at 40 m: 0\.\d+ mm, with a damper 0\.\d+ mm")
 
 
 class Errors(InFolder):
