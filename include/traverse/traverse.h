@@ -54,7 +54,7 @@ TRAVERSE_API double traverse_end(const traverse_passage* passage);
 TRAVERSE_API double traverse_interval(const traverse_passage* passage);
 
 /* Goes to the first sample that is not before t (s), or to the end where that comes first; nowhere where that was
- * reached before. After status 3 the passage goes no further. */
+ * reached before. Status 2 for a time beyond the end. After status 3 the passage goes no further. */
 TRAVERSE_API int traverse_advance(traverse_passage* passage, double t);
 
 /* How many quantities there are; number i of them. Status 2 where i is too large. */

@@ -175,6 +175,13 @@ class Pieces(InFolder):
         del open_scene["ts"]["dt"], open_scene["beam"]["elements_per_span"]
         self.same(open_scene, model_vehicles="full", accuracy=1e-2)
 
+    def test_the_end_between_two_samples(self):
+        whole = traverse.run(FORCES, ts_max_time=0.304, output="kept.h5", folder=self.folder)
+        with h5py.File(self.folder / "kept.h5") as file, traverse.Passage(FORCES, ts_max_time=0.304) as passage:
+            self.assertEqual(passage.advance(0.303), 0.304)
+            np.testing.assert_array_equal(passage.read("moment"), file["end/probes/moment"][0])
+        self.assertEqual(whole["time"].values[-1], 0.3)
+
     def test_two_at_once(self):
         with traverse.Passage(FORCES) as first, traverse.Passage(HOPPING) as second:
             while first.time < 0.2:
