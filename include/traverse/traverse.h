@@ -29,6 +29,7 @@ extern "C" {
 
 #define TRAVERSE_API __attribute__((visibility("default")))
 
+/* NOLINTBEGIN(modernize-use-using): C has no using */
 typedef struct traverse_passage traverse_passage;
 
 /* What can be read: a dataset of the results file (doc/results_file.md), without its dimension of time. */
@@ -39,6 +40,7 @@ typedef struct {
   size_t shape[2]; /* as many as there are dimensions; their product is how many numbers there are */
   int varies;      /* 1: with time; 0: stations that others belong to */
 } traverse_quantity;
+/* NOLINTEND(modernize-use-using) */
 
 /* The scene of these words of the command line, without the program's name, at t = 0. *passage is NULL where that
  * cannot be. */
