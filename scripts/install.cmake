@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 set(share ${CMAKE_INSTALL_DATADIR}/traverse)  # where the program looks for scenes that are not in the working directory
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME traverse)
 
-install(TARGETS traverse RUNTIME)
+install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
 install(PROGRAMS scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY scripts/traverse_report DESTINATION ${share}/python FILES_MATCHING PATTERN *.py)
 install(FILES scripts/animate.py scripts/comfort.py scripts/export.py scripts/export_tables.py scripts/export_xdmf.py
@@ -14,9 +14,20 @@ install(FILES scripts/animate.py scripts/comfort.py scripts/export.py scripts/ex
         scripts/picture_motion.py scripts/picture_words.py DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
+install(FILES examples/three_span_train.py DESTINATION ${share}/examples)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright)
 install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The Python package, where Debian's Python looks: under /usr for all its versions, under /usr/local for the one there is.
+# Under any other prefix PYTHONPATH has to say so.
+execute_process(COMMAND /usr/bin/python3 -c "import sys; print('python%d.%d' % sys.version_info[:2], end='')"
+                OUTPUT_VARIABLE python_version ERROR_QUIET)
+install(CODE "set(traverse_python python3)
+if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr/local\" AND NOT \"${python_version}\" STREQUAL \"\")
+  set(traverse_python ${python_version})
+endif()")
+install(DIRECTORY python/traverse DESTINATION lib/\${traverse_python}/dist-packages FILES_MATCHING PATTERN *.py)
 
 # The manual page and the shell's completion are what the program itself says of its options.
 function(traverse_install_words format folder name)
@@ -65,7 +76,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_NAME traverse)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TRAVERSE_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_TRAVERSE_PACKAGE_RECOMMENDS "openmpi-bin, python3-h5py, python3-matplotlib, python3-openpyxl, python3-yaml")
+set(CPACK_DEBIAN_TRAVERSE_PACKAGE_RECOMMENDS "openmpi-bin, python3-h5py, python3-matplotlib, python3-openpyxl, python3-xarray, python3-yaml")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libtraverse-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS

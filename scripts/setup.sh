@@ -10,7 +10,7 @@ setup_log=build/setup.log
 program_packages=(g++ cmake ninja-build pkg-config libpetsc-real-dev libslepc-real-dev libopenmpi-dev openmpi-bin
   libhdf5-openmpi-dev libeigen3-dev libyaml-cpp-dev libfmt-dev python3-h5py python3-matplotlib python3-openpyxl
   python3-yaml)
-test_packages=(libgtest-dev)
+test_packages=(libgtest-dev python3-xarray)
 benchmark_packages=(libbenchmark-dev)
 check_packages=(clang-format clang-tidy)
 

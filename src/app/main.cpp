@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "help.hpp"
+#include "light_start.hpp"
 #include "results/origin.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
@@ -26,19 +27,6 @@ namespace {
 
 // The system calls what stands here before it sets up the libraries.
 [[gnu::section(".preinit_array"), gnu::used]] void (*const first_of_all)() = traverse::app::look_at_ignored_signals;
-
-constexpr const char* no_session_folder = "OMPI_MCA_orte_create_session_dirs";
-
-// Open MPI's start-up without mpirun takes 0.3 s unless told that one process is all there is; programs that start
-// side by side would compete for its session folder. No search for displays as accelerators either.
-void start_lightly() {
-  setenv("HWLOC_COMPONENTS", "-gl,-opencl", 0);
-  if (std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr) return;
-  setenv(no_session_folder, "0", 0);
-  setenv("OMPI_MCA_pml", "ob1", 0);
-  setenv("OMPI_MCA_btl", "self", 1);  // no memory is shared
-  setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
-}
 
 /// Open MPI's mpirun tells the ranks their number before MPI has started.
 bool first_rank() {
@@ -93,7 +81,7 @@ int main(int argc, char** argv) {
   traverse::app::guard_standard_output();
   traverse::app::take_signals();
   traverse::app::speak_of_signals(first_rank());
-  start_lightly();
+  traverse::app::start_lightly();
   try {
     traverse::options::Input input = read_input(argc, argv);
     if (input.help) {
@@ -103,7 +91,7 @@ int main(int argc, char** argv) {
     if (input.version) return after_output(std::puts("traverse " TRAVERSE_VERSION) < 0 ? 1 : 0);
     traverse::options::Arguments words(input.petsc_words);
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
-    unsetenv(no_session_folder);  // mpirun started from here would fail with it
+    traverse::app::started();
     PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
     traverse::app::take_signals();  // from PETSc
     traverse::app::speak_of_signals(first_rank());

@@ -5,30 +5,18 @@
 #include "accuracy/trials.hpp"
 #include "analyses.hpp"
 #include "check/check.hpp"
+#include "prepare.hpp"
 #include "results/stage.hpp"
 #include "run/active_ranks.hpp"
 #include "run/by_spans.hpp"
 #include "run/checkpoints.hpp"
 #include "run/rank_choice.hpp"
-#include "study/lanes_choice.hpp"
 #include "study/study.hpp"
 #include "study/sweep.hpp"
 
 namespace traverse::app {
 
 namespace {
-
-/// Fills in what is open of the scene's model, as the accuracy asks.
-Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
-  const std::optional<LanesChoice> lanes = lanes_for_one(scene, notes);
-  if (!lanes) return choose(comm, scene, notes);
-  scene = lanes->scene;
-  Accuracy accuracy;
-  accuracy.measured = true;
-  for (std::size_t q = 0; q < quantities; ++q)
-    accuracy.promises[q] = {true, asks_for(scene, q), lanes->errors[q], "accuracy_of does not ask for it"};
-  return accuracy;
-}
 
 /// Linear vehicles over spans that do not touch go many times as fast. What they leave out is computed; where that is
 /// too much the run is repeated with the mechanisms.

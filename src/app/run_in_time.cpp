@@ -10,6 +10,7 @@
 #include "accuracy/trials.hpp"
 #include "analyses.hpp"
 #include "modes/modes.hpp"
+#include "prepare.hpp"
 #include "results/recorder.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
@@ -26,8 +27,6 @@
 
 namespace traverse::app {
 namespace {
-
-constexpr int nodes_for_a_check = 1000;  // of a given step by the first period: up to here frequencies take no time
 
 /// The natural frequencies that the run is made of: those of its modes, or the pair that damping was taken from.
 void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
@@ -116,19 +115,8 @@ std::optional<int> run_once(Job& job, bool repeated) {
   MPI_Comm_rank(comm, &rank);
   const bool still = scene.analysis == Analysis::static_response;
   const beam::Beam* beam = shared.bridge();
-  bool cheap = false;
-  if (beam != nullptr) {
-    const std::vector<int>& elements = beam->model().elements;  // of which one may have no two frequencies
-    cheap = beam->mesh().nodes() <= nodes_for_a_check && *std::min_element(elements.begin(), elements.end()) > 1;
-    shared.damp(scene, !still && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
-  }
-  shared.prepare(scene, notes);
-  const bool limited = limits_deck_acceleration(scene);
-  const double counting =
-      limited || scene.output.low_pass_asked ? frequency_that_counts(scene, shared, cheap || limited, notes) : 0.0;
-  if (counting > 0.0) scene.looks = spacing_for(counting);
+  const double counting = prepare(scene, accuracy, shared, notes);
   const bool wheels = filters_wheels(scene);
-  if (wheels) scene.looks = std::min(scene.looks, spacing_for(scene.output.wheel_low_pass));
   std::optional<Plan> plan;
   if (job.earlier != nullptr) plan = Plan{0.0, job.earlier->time_step, job.earlier->interval, job.earlier->stored};
   Passage passage(scene, shared, notes, plan ? &*plan : nullptr);  // everything is checked before anything is computed

@@ -26,6 +26,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -176,6 +177,11 @@ class System {
   /// Collective. Fills `out` for a state with its rate, and the fleet with accelerations, reactions, wheel forces.
   void observe(double t, const double* y, const double* ydot, Observation& out);
 
+  /// Lets constant forces act from here on, between two steps, besides all that the scene has: Fleet::apply, and a
+  /// vertical force (N, upward) at a station (m) of the beam that wheels run on, instead of the last one there.
+  /// InputError where there is no such beam or station, or where steps are taken apart.
+  void apply_to_body(int member, int body, const Eigen::Vector3d& action);
+  void apply_to_beam(double x, double force);
   /// Settles which moving forces are on the beam during the coming step, which ends at known events: by its middle, so
   /// that a force that jumps at an event has its value of either side there. True when that has changed.
   bool begin_step(double from, double to);
@@ -275,6 +281,7 @@ class System {
   void finish_step(double* y);
   double structure_error(const double* y);
   void load_structure(double t);
+  void check_applied() const;
   structure::ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
   void share_step();
@@ -298,6 +305,8 @@ class System {
   ContactNewton newton_;
 
   std::vector<beam::ElementLoad> loads_;        // of the moving forces now on the beam
+  std::map<double, double> applied_;            // N by the station, m: the forces of apply_to_beam
+  bool applied_anew_ = false;                   // since the last step
   std::vector<char> on_beam_;                   // of each moving force, during the step under way
   std::string nothing_holds_;                   // why there is no static equilibrium, where that is known
   std::vector<double> p_, c_p_, pdd_;           // p, p' and their c, p'', the same on all ranks

@@ -1,4 +1,6 @@
 // What acts on the structure: moving forces and contacts.
+#include <utility>
+
 #include "coupling/system.hpp"
 
 namespace traverse::coupling {
@@ -11,7 +13,31 @@ void System::load_structure(double t) {
     const beam::Station s = line_->mesh.locate(input_.load.positions[i] + input_.load.speed * t);
     loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0, input_.load.speed});
   }
+  for (const auto& [x, force] : applied_) {
+    const beam::Station s = line_->mesh.locate(x);
+    loads_.push_back({s.element, s.xi, 0.0, force, 0.0, 0.0});
+  }
   structure_->load(loads_);
+}
+
+void System::apply_to_body(int member, int body, const Eigen::Vector3d& action) {
+  check_applied();
+  fleet_.apply(member, body, action);
+  applied_anew_ = true;
+}
+
+void System::apply_to_beam(double x, double force) {
+  check_applied();
+  if (line_ == nullptr) throw InputError("a force at a station needs a beam");
+  if (!(x >= line_->mesh.start() && x <= line_->mesh.end()))
+    throw InputError("the station " + std::to_string(x) + " m is not on the beam, which goes from " +
+                     std::to_string(line_->mesh.start()) + " to " + std::to_string(line_->mesh.end()) + " m");
+  applied_[x] = force;
+  applied_anew_ = true;
+}
+
+void System::check_applied() const {
+  if (apart_) throw InputError("forces cannot be set where steps are taken apart: model_vehicles full");
 }
 
 structure::ElementLoads System::contact_loads() {
@@ -20,8 +46,8 @@ structure::ElementLoads System::contact_loads() {
 }
 
 bool System::begin_step(double from, double to) {
-  if (line_ == nullptr) return false;
-  bool changed = false;
+  bool changed = std::exchange(applied_anew_, false);
+  if (line_ == nullptr) return changed;
   for (std::size_t i = 0; i < on_beam_.size(); ++i) {
     const double x = input_.load.positions[i] + input_.load.speed * 0.5 * (from + to);
     const char on = x >= line_->mesh.start() && x <= line_->mesh.end() ? 1 : 0;

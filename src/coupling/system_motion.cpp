@@ -36,6 +36,7 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
     add(x, x + 2.0 * way, 0.1 * fleet_.wheel(c).radius);  // a wheel touches beside its centre
   }
   for (double x : input_.load.positions) add(x + input_.load.speed * t, x + input_.load.speed * (t + h), 0.0);
+  for (const auto& [x, force] : applied_) add(x, x, 0.0);
   return reaches_;
 }
 

@@ -49,15 +49,18 @@ ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridg
 
 std::string ModalStepper::method() const { return std::to_string(bridge_.modes()) + " modes, exact in time"; }
 
+void ModalStepper::begin(const std::function<void(const Instant&)>& sample) {
+  if (begun_) return;
+  system_.begin_step(0.0, 0.0);
+  show_to_monitors();
+  sample_now(sample, Purpose::sample);
+  begun_ = true;
+}
+
 double ModalStepper::run(const std::function<void(const Instant&)>& sample,
                          const std::function<bool(double, long)>& step, const std::function<void(double)>& between) {
   const double slack = 1e-3 * std::min(interval_, end_time_);
-  if (!begun_) {
-    system_.begin_step(0.0, 0.0);
-    show_to_monitors();
-    sample_now(sample, Purpose::sample);
-  }
-  begun_ = true;
+  begin(sample);
   for (bool going = true; going && motion_.time() < end_time_ - slack;) {
     if (between) between(motion_.time());
     double t = static_cast<double>(steps_ + 1) * interval_;

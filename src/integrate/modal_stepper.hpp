@@ -16,6 +16,8 @@ class ModalStepper {
   ModalStepper(coupling::System& system, const structure::ModalBridge& bridge, structure::BeamOperator& statics,
                const coupling::SystemInput& input, bool equilibrium, double end_time, double interval, long stored = 1);
 
+  /// As Stepper::begin.
+  void begin(const std::function<void(const Instant&)>& sample);
   /// As Stepper::run; a step is what lies between two samples. The nodal displacements are those of the modes and, with
   /// K* v = P for what the forces P do to all others, balance P exactly; velocities and accelerations are the modes'.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,

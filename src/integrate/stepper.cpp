@@ -149,6 +149,18 @@ void Stepper::restore_state(double** array) { check(VecRestoreArray(y_, array));
 
 // --- the loop ------------------------------------------------------------------------------------------------------
 
+void Stepper::begin(const std::function<void(const Instant&)>& sample) {
+  if (way_.begun) return;
+  if (settings_.corners) system_.expect_corners(settings_.end_time, settings_.time_step);
+  sample_now(sample, Purpose::sample);
+  {
+    Array y(y_);
+    system_.accept(way_.t, y.data);
+  }
+  show_to_monitors(way_.t);
+  way_.begun = true;
+}
+
 double Stepper::run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
                     const std::function<void(double)>& between) {
   const double slack = near_event * std::min({settings_.time_step, settings_.interval, settings_.end_time});
@@ -158,14 +170,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
   };
   Way& way = way_;
   double& t = way.t;
-  if (!way.begun) {
-    if (settings_.corners) system_.expect_corners(settings_.end_time, settings_.time_step);
-    sample_now(sample, Purpose::sample);
-    Array y(y_);
-    system_.accept(t, y.data);
-  }
-  if (!way.begun) show_to_monitors(t);
-  way.begun = true;
+  begin(sample);
   for (bool going = true; going && t < settings_.end_time - slack;) {
     if (!way.under_way) set_target(slack);
     while (going && t < way.target) {

@@ -51,10 +51,12 @@ class Stepper {
   double* state();  // this rank's entries, before run()
   void restore_state(double** array);
 
-  /// Collective. Runs to the end. `sample` is called at t = 0, at every multiple of the interval, at passages and at
-  /// the end, `step` after every step; when it returns false the run stops early. Throws SolverError with what
-  /// to change when a step cannot be taken. Returns the time reached.
-  /// `between` is called before every step, when all that belongs to the steps so far has been called.
+  /// Collective. Gives the sample at t = 0, unless that was done: run() does so too.
+  void begin(const std::function<void(const Instant&)>& sample);
+  /// Collective. Runs to the end, from where an earlier call was stopped. `sample` is called at t = 0, at every
+  /// multiple of the interval, at passages and at the end, `step` after every step; when it returns false the run stops
+  /// early. Throws SolverError with what to change when a step cannot be taken. Returns the time reached. `between` is
+  /// called before every step, when all that belongs to the steps so far has been called.
   double run(const std::function<void(const Instant&)>& sample, const std::function<bool(double, long)>& step,
              const std::function<void(double)>& between = {});
 

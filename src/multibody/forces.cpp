@@ -27,7 +27,13 @@ void Mechanism::compute_forces(MechanismState& s) const {
       if (actuator.reaction_body != ground) s.g[3 * actuator.reaction_body + c] -= action;
     }
   }
+  if (applied_.size() > 0) s.g += applied_;
   if (rubs()) place_friction(s);
+}
+
+void Mechanism::apply(int body, const Eigen::Vector3d& action) {
+  if (applied_.size() == 0) applied_ = Eigen::VectorXd::Zero(coordinates());
+  applied_.segment<3>(3 * body) = action;
 }
 
 void add_pair_times_B(int first, int second, const PairMatrix& K, const MechanismState& s, Eigen::MatrixXd& product) {
@@ -103,6 +109,7 @@ MechanismPowers Mechanism::powers(const MechanismState& s) const {
       e.work += actuator.action[c].value(s.time) * rate;
     }
   }
+  if (applied_.size() > 0) e.work += applied_.dot(s.qd);
   for (std::size_t k = 0; k < model_.drivers.size(); ++k) {
     e.work += driver_force(s, static_cast<int>(k)) * model_.drivers[k].value.rate(s.time);
   }

@@ -103,7 +103,7 @@ struct MechanismState {
 /// Powers of a mechanism in a state, W.
 struct MechanismPowers {
   double dissipation = 0.0;  // lost in dampers and in friction, >= 0
-  double work = 0.0;         // of actuators and of rheonomic constraints (drivers)
+  double work = 0.0;         // of actuators, of what is applied and of rheonomic constraints (drivers)
 };
 /// And its stored energies, J.
 struct MechanismEnergy : MechanismPowers {
@@ -118,6 +118,9 @@ class Mechanism {
   explicit Mechanism(MechanismModel model);
 
   const MechanismModel& model() const { return model_; }
+  /// Lets a constant force (N, along x and y) at the centre of mass of a body and a moment (N m) act besides all else,
+  /// instead of those of the last call for that body. Forces have to be computed anew.
+  void apply(int body, const Eigen::Vector3d& action);
   int coordinates() const;  // n
   int constraints() const;  // rows of Phi, redundant ones included
   int freedom() const;      // f, after choose_partition
@@ -270,6 +273,7 @@ class Mechanism {
   int partition_version_ = 0;    // 0: none chosen
   double chosen_quality_ = 1.0;  // of the partition when it was chosen
   Eigen::VectorXd mass_;
+  Eigen::VectorXd applied_;  // n, or of size 0 as long as nothing is
   std::vector<JointGeometry> joints_;
   std::vector<int> rubbing_;  // joints that slide with friction
   bool presses_ = false;      // one of them rubs in proportion to its normal force

@@ -29,6 +29,10 @@ class Passage {
 
   /// Collective. Sets everything to its start; SolverError where there is no equilibrium.
   void start(std::vector<std::string>& notes);
+  /// As Stepper::begin.
+  void begin(const std::function<void(const integrate::Instant&)>& sample) {
+    stepper_ ? stepper_->begin(sample) : modal_->begin(sample);
+  }
   /// As Stepper::run.
   void run(const std::function<void(const integrate::Instant&)>& sample, const std::function<bool(double, long)>& step,
            const std::function<void(double)>& between = {});
@@ -39,6 +43,7 @@ class Passage {
   std::string no_archive() const { return stepper_ ? stepper_->no_archive() : ""; }
 
   coupling::System& system() { return system_; }
+  bool exact_in_time() const { return modal_.has_value(); }
   const Plan& plan() const { return plan_; }
   long rejected() const { return stepper_ ? stepper_->rejected() : 0; }
   long steps() const { return stepper_ ? stepper_->steps() : modal_->steps(); }

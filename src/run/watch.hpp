@@ -51,6 +51,8 @@ class Watch {
   const results::Summary& extremes() const { return summary_; }
   /// The peaks, those of wheels and contacts included; after the last sample.
   const results::Summary& finished_extremes();
+  /// What was seen at the latest sample.
+  const Observed& seen() const { return now_; }
   const train::WheelPaths& paths() const { return paths_; }
   /// The extremes so far, after the last sample.
   const Peaks& finished_peaks();

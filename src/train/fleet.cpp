@@ -220,6 +220,15 @@ bool Fleet::set(double t, const double* p, const double* pd) {
   return true;
 }
 
+void Fleet::apply(int member, int body, const Eigen::Vector3d& action) {
+  const Member& of = members[static_cast<std::size_t>(member)];
+  MovingVehicle& vehicle = vehicles[static_cast<std::size_t>(of.unit)];
+  if (vehicle.dynamics->linear() != nullptr)
+    throw InputError("a force on a body needs vehicles as mechanisms: model_vehicles full");
+  vehicle.mechanism.apply(of.first_body + body, action);
+  is_set_ = false;
+}
+
 void Fleet::shift(const double* change, double rate) {
   for (MovingVehicle& vehicle : own()) vehicle.dynamics->shift(vehicle, change + vehicle.offset, rate);
   is_set_ = false;

@@ -158,6 +158,8 @@ class Fleet {
   void let_wheels_roll();
   /// The body that has gone farther than anything held would since `start`, in words; empty: none.
   std::string lost_since(const Fleet& start) const;
+  /// Mechanism::apply for a body of a vehicle of the train. InputError where that vehicle is taken as linear.
+  void apply(int member, int body, const Eigen::Vector3d& action);
   /// Times at which actuators' tables have kinks, s.
   std::vector<double> kinks_of_actions() const;
   /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free

@@ -1,5 +1,5 @@
-"""cmake --install: a program of one's own over what is installed, examples/embed, by CMake and by pkg-config; the program
-and its scenes from another folder; the Debian packages."""
+"""cmake --install: a program of one's own over what is installed, examples/embed, by CMake and by pkg-config, and one in C;
+the program and its scenes from another folder; the Python package; the Debian packages."""
 
 import os
 import pathlib
@@ -78,6 +78,43 @@ class Install(unittest.TestCase):
         said = succeed(program, "-options_file", "options/scenes/three_span_half_car.yml", "-check", cwd=elsewhere)
         self.assertIn("25 m, 1 span", said)
 
+    def test_the_python_package(self):
+        elsewhere = self.folder / "of_python"
+        elsewhere.mkdir()
+        code = ("import traverse\nresults = traverse.run('scene.yml')\n"
+                "with traverse.Passage('scene.yml') as passage:\n    passage.advance(passage.end)\n"
+                "    print(traverse.__file__, abs(passage.read('deflection') - results['deflection'].values[-1]).max())")
+        shutil.copy(self.scene, elsewhere)
+        without = {name: value for name, value in os.environ.items() if name != "TRAVERSE_BINARY"}
+        place = self.prefix / "lib/python3/dist-packages"
+        run = subprocess.run(["/usr/bin/python3", "-B", "-c", code], cwd=elsewhere, capture_output=True, text=True,
+                             env=without | {"PYTHONPATH": str(place)})
+        self.assertEqual((run.stdout, run.stderr), (f"{place / 'traverse/__init__.py'} 0.0\n", ""))
+
+    def test_a_program_in_c(self):
+        source = self.folder / "steps.c"
+        source.write_text("""#include <stdio.h>
+#include <traverse/traverse.h>
+int main(void) {
+  const char* words[] = {"-options_file", "scene.yml"};
+  traverse_passage* passage = NULL;
+  if (traverse_open(2, words, &passage) != 0) return puts(traverse_error()), 1;
+  if (traverse_set_beam_force(passage, 30.0, 1.0) != 2) return 2;
+  while (traverse_time(passage) < traverse_end(passage))
+    if (traverse_advance(passage, traverse_time(passage) + traverse_interval(passage)) != 0) return 3;
+  double energy = 0.0;
+  if (traverse_read(passage, "/energy/kinetic", &energy, 1) != 0) return 4;
+  printf("%s %d\\n", traverse_error(), energy > 0.0);
+  traverse_close(passage);
+  return 0;
+}
+""", encoding="utf-8")
+        library = next(self.prefix.glob("lib/**/libtraverse.so"))
+        program = self.folder / "steps"
+        succeed("cc", "-std=c99", "-pedantic", "-Wall", "-Werror", source, "-o", program, f"-I{self.prefix / 'include'}", library,
+                f"-Wl,-rpath,{library.parent}")
+        self.assertRegex(succeed(program, cwd=self.folder), r"30.* is not on the beam.* 1\n")
+
     def test_words_about_options(self):
         page = (self.prefix / "share/man/man1/traverse.1").read_text(encoding="utf-8")
         self.assertIn(".B \\-beam_EI", page)
@@ -92,13 +129,15 @@ class Install(unittest.TestCase):
         needed = succeed("dpkg-deb", "-f", program, "Depends")
         for name in ("libpetsc", "libslepc", "libhdf5-openmpi", "libopenmpi", "libyaml-cpp", "libfmt", "libc6"):
             self.assertIn(name, needed)
+        self.assertIn("python3-xarray", succeed("dpkg-deb", "-f", program, "Recommends"))
         held = succeed("dpkg-deb", "-c", program)
         for name in ("usr/bin/traverse\n", "usr/bin/traverse-report\n", "usr/share/traverse/options/scenes/three_span_train.yml\n",
                      "usr/share/traverse/python/picture.py\n", "usr/share/doc/traverse/copyright\n",
-                     "usr/share/man/man1/traverse.1\n"):
+                     "usr/share/man/man1/traverse.1\n", "/libtraverse.so\n",
+                     "usr/lib/python3/dist-packages/traverse/passage.py\n"):
             self.assertIn(name, held)
         self.assertNotIn("usr/include", held)
-        for name in ("usr/include/traverse/app/run.hpp\n", "/pkgconfig/traverse.pc\n", "/traverse-config.cmake\n"):
+        for name in ("usr/include/traverse/app/run.hpp\n", "usr/include/traverse/traverse.h\n", "/pkgconfig/traverse.pc\n", "/traverse-config.cmake\n"):
             self.assertIn(name, succeed("dpkg-deb", "-c", library))
 
 

@@ -1,0 +1,75 @@
+"""Names and dimensions of what a results file holds (doc/results_file.md), which the file itself does not say.
+
+A dataset's name is its path with "_" for "/", without the leading group of what a file is about: /probes/deflection is
+`deflection`, /vehicles/0/car/position `vehicles_0_car_position`. Dimensions are named by their coordinates.
+"""
+
+import re
+
+_BARE = re.compile(r"^/?(?:probes|sweep|study)/")
+
+# Of a path, the first row that fits it, and its dimensions. \1 stands for what the brackets of the row hold.
+_ROWS = [(re.compile(pattern + "$"), tuple(dimensions.split())) for pattern, dimensions in (
+    (r"time", "time"),
+    (r"probes/x", "x"),
+    (r"(?:probes|rail)/\w+", "time x"),
+    (r"vehicles/\d+/\w+/(?:position|velocity|acceleration)", "time coordinate"),
+    (r"vehicles/\d+/\w+/reaction", "time component"),
+    (r"vehicles/\d+/\w+/\w+|energy/\w+", "time"),
+    (r"couplers/(\w+)/gap", r"couplers_\1_gap"),
+    (r"couplers/(\w+)/\w+", r"time couplers_\1_gap"),
+    (r"supports/reaction", "time supports_x component"),
+    (r"foundation/(\w+)_bed/\w+", "time span"),
+    (r"foundation/(\w+)/(?:force|moment)", r"time foundation_\1_x"),
+    (r"balance/\w+", "time direction"),
+    (r"envelope/static_deflection", "x"),
+    (r"envelope/\w+", "x extreme"),
+    (r"shape/\w+", "shape_x"),
+    (r"modes/(?:frequency|axial)", "mode"),
+    (r"modes/shape", "mode modes_x"),
+    (r"modes/damped_shape", "damped_mode modes_x part"),
+    (r"modes/damp\w+|modes/decay_rate", "damped_mode"),
+    (r"(?:supports|modes|foundation/\w+|static)/((?:\w+_)?x)", "own"),
+    (r"sweep/(?:speed|added)", "speed"),
+    (r"sweep/hslm_a", "hslm_a"),
+    (r"sweep/static_deflection", "hslm_a x"),
+    (r"sweep/(?:peak_\w+|amplification)", "hslm_a speed x"),
+    (r"sweep/judged\w*", "hslm_a speed limit"),
+    (r"sweep/\w+", "hslm_a speed"),
+    (r"study/(?:peak_\w+|static_deflection|amplification|probes_x)", "run x"),
+    (r"study/judged\w*", "run limit"),
+    (r"study/statistics/quantiles", "quantile"),
+    (r"study/\w+", "run"),
+    (r"verdicts/\w+", "limit word"),
+    (r"(separations|resonances|cancellations)/\w+", r"\1 word"),
+    (r"static/load", "static_load word"),
+    (r"static/(\w+rotation|reaction)", r"static_load static_\1_x extreme"),
+    (r"static/\w+", "static_load static_x extreme"),
+)]
+
+# What the numbers along a dimension are.
+MEANINGS = {
+    "coordinate": ["x", "y", "angle"],
+    "component": ["fx", "fy", "moment"],
+    "direction": ["x", "y"],
+    "extreme": ["least", "greatest"],
+    "part": ["real", "imaginary"],
+}
+
+
+def name_of(path):
+    """The name of the dataset at a path of the results file."""
+    return _BARE.sub("", path).strip("/").replace("/", "_")
+
+
+def dimensions_of(path, rank):
+    """The names of a dataset's `rank` dimensions."""
+    path = path.strip("/")
+    for row, dimensions in _ROWS:
+        fits = row.match(path)
+        if fits:
+            named = [name_of(path) if d == "own" else fits.expand(d) for d in dimensions][:rank]
+            break
+    else:
+        named = []
+    return tuple(named + [f"{name_of(path)}_{i}" for i in range(len(named), rank)])

@@ -1,0 +1,166 @@
+"""A scene step by step, through the plain C interface of libtraverse.so (include/traverse/traverse.h)."""
+
+import contextlib
+import ctypes
+import functools
+import os
+
+import numpy as np
+import xarray
+
+from . import places, words
+from .dataset import with_coordinates
+from .dimensions import dimensions_of, name_of
+
+
+class _Quantity(ctypes.Structure):
+    _fields_ = [("name", ctypes.c_char_p), ("unit", ctypes.c_char_p), ("dimensions", ctypes.c_size_t),
+                ("shape", ctypes.c_size_t * 2), ("varies", ctypes.c_int)]
+
+
+@functools.lru_cache(maxsize=None)
+def _library():
+    try:
+        library = ctypes.CDLL(places.library())
+    except OSError as failure:
+        raise places.Error(f"libtraverse.so cannot be loaded; build it by cmake --build build ({failure})", 4) from None
+    c = ctypes
+    for name, result, *arguments in (
+            ("open", c.c_int, c.c_int, c.POINTER(c.c_char_p), c.POINTER(c.c_void_p)), ("close", None, c.c_void_p),
+            ("error", c.c_char_p), ("time", c.c_double, c.c_void_p), ("end", c.c_double, c.c_void_p),
+            ("interval", c.c_double, c.c_void_p), ("advance", c.c_int, c.c_void_p, c.c_double),
+            ("quantities", c.c_size_t, c.c_void_p),
+            ("describe", c.c_int, c.c_void_p, c.c_size_t, c.POINTER(_Quantity)),
+            ("read", c.c_int, c.c_void_p, c.c_char_p, c.POINTER(c.c_double), c.c_size_t),
+            ("set_body_force", c.c_int, c.c_void_p, c.c_int, c.c_char_p, c.c_double, c.c_double, c.c_double),
+            ("set_beam_force", c.c_int, c.c_void_p, c.c_double, c.c_double)):
+        function = getattr(library, f"traverse_{name}")
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+def _checked(status, unsaid=""):
+    """Error for a status that is not 0, with the library's line; unsaid: a text that is left out of it."""
+    if status != 0:
+        raise places.Error(_library().traverse_error().decode(errors="replace").replace(unsaid, ""), status)
+
+
+class Passage:
+    """One scene, from sample to sample, in this process.
+
+    scene, folder and options are those of `traverse.run`. Samples stand at the multiples of output_interval, at which
+    steps end exactly; there the passage is read, and forces change. Vehicles are mechanisms unless model_vehicles says
+    otherwise. With no force set, what is read is what `run` gives with model_vehicles="full", to the last bit.
+    """
+
+    def __init__(self, scene, *, folder=None, **options):
+        self._handle = None
+        self._library = _library()
+        with words.of_scenes(scene) as (files, scratch), _within(folder):
+            asked = [word.encode() for word in (*files, *words.of_options(options))]
+            handle = ctypes.c_void_p()
+            _checked(self._library.traverse_open(len(asked), (ctypes.c_char_p * len(asked))(*asked),
+                                                 ctypes.byref(handle)), scratch + os.sep)
+        self._handle = handle.value
+        self._quantities = dict(self._described())
+
+    def _described(self):
+        quantity = _Quantity()
+        for i in range(self._library.traverse_quantities(self._handle)):
+            _checked(self._library.traverse_describe(self._handle, i, ctypes.byref(quantity)))
+            path = quantity.name.decode()
+            shape = tuple(quantity.shape[: quantity.dimensions])
+            dimensions = dimensions_of(path, len(shape) + quantity.varies)[quantity.varies:]
+            yield name_of(path), (quantity.name, dimensions, shape, {"units": quantity.unit.decode()})
+
+    def _open(self):
+        if self._handle is None:
+            raise places.Error("the passage is closed", 2)
+        return self._handle
+
+    @property
+    def time(self):
+        """The sample that was reached, s."""
+        return self._library.traverse_time(self._open())
+
+    @property
+    def end(self):
+        """The end of the scene, s."""
+        return self._library.traverse_end(self._open())
+
+    @property
+    def interval(self):
+        """Between samples, s."""
+        return self._library.traverse_interval(self._open())
+
+    @property
+    def names(self):
+        """The names of all that can be read, as `traverse.run` has them."""
+        return list(self._quantities)
+
+    def advance(self, time=None):
+        """Goes to the first sample that is not before `time` (s), or to the next one. Returns its time, s."""
+        if time is None:
+            time = min(self.time + self.interval, self.end)
+        _checked(self._library.traverse_advance(self._open(), time))
+        return self.time
+
+    def read(self, name=None):
+        """A quantity at the sample that was reached: a number, or an array; without a name all, as a Dataset."""
+        if name is not None:
+            if name not in self._quantities:
+                raise places.Error(f"there is no quantity {name}; names has those there are", 2)
+            return self._values(name)[()]
+        now = {key: xarray.Variable(dims, self._values(key), attrs)
+               for key, (_, dims, _, attrs) in self._quantities.items()}
+        now["time"] = xarray.Variable((), self.time, {"units": "s"})
+        return with_coordinates(now).set_coords("time")
+
+    def _values(self, name):
+        path, _, shape, _ = self._quantities[name]
+        values = np.empty(shape)
+        _checked(self._library.traverse_read(self._open(), path, values.ctypes.data_as(ctypes.POINTER(ctypes.c_double)),
+                                             values.size))
+        return values
+
+    def set_force(self, *, vehicle=0, body=None, x=None, fx=0.0, fy=0.0, moment=0.0):
+        """From here on a constant force, in place of the last one there; 0 ends it.
+
+        On a body of a vehicle of the train, which count from 0: fx and fy (N) at its centre of mass and a moment (N m);
+        or at the station x (m) of the beam: fy alone, upward.
+        """
+        if (body is None) == (x is None):
+            raise places.Error("set_force: wanted: a body or a station x", 2)
+        if body is not None:
+            _checked(self._library.traverse_set_body_force(self._open(), vehicle, body.encode(), fx, fy, moment))
+            return
+        if fx != 0.0 or moment != 0.0:
+            raise places.Error("set_force: at a station of the beam only fy acts", 2)
+        _checked(self._library.traverse_set_beam_force(self._open(), x, fy))
+
+    def close(self):
+        """Frees its memory; nothing can be read any more."""
+        handle, self._handle = self._handle, None
+        if handle is not None:
+            self._library.traverse_close(handle)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def __del__(self):
+        self.close()
+
+
+@contextlib.contextmanager
+def _within(folder):
+    """The working directory, from which a scene's files count, as long as this lasts."""
+    before = os.getcwd()
+    if folder is not None:
+        os.chdir(folder)
+    try:
+        yield
+    finally:
+        os.chdir(before)

@@ -1,0 +1,47 @@
+"""Where the program and its library are, and the error that both raise."""
+
+import os
+import pathlib
+import shutil
+
+
+class Error(RuntimeError):
+    """What the program or its library refused or could not do, in its own line.
+
+    `status`: 2 for wrong input, 3 where the equations cannot be solved, 4 for a file, 5 for memory, 70 for an internal
+    error; 128 + n where signal n ended the program.
+    """
+
+    def __init__(self, message, status):
+        super().__init__(message)
+        self.status = status
+
+
+def program():
+    """The program's path: TRAVERSE_BINARY, that of the checkout or the installation of this package, or of PATH."""
+    named = os.environ.get("TRAVERSE_BINARY")
+    if named:
+        return named
+    found = _beside_package("build/traverse", "bin/traverse") or shutil.which("traverse")
+    if found is None:
+        raise Error("the program traverse is not there: build it (./run.sh), or name it in TRAVERSE_BINARY", 4)
+    return str(found)
+
+
+def library():
+    """The path of libtraverse.so: beside the program of TRAVERSE_BINARY, in the checkout, or installed."""
+    named = os.environ.get("TRAVERSE_BINARY")
+    beside_program = pathlib.Path(named).parent / "libtraverse.so" if named else None
+    if beside_program is not None and beside_program.is_file():
+        return str(beside_program)
+    found = _beside_package("build/libtraverse.so", "lib/*/libtraverse.so", "lib/libtraverse.so")
+    return str(found) if found else "libtraverse.so"  # where the system looks for libraries
+
+
+def _beside_package(in_checkout, *installed):
+    """The first file there is: in the checkout that holds this package, or under the prefix it is installed to."""
+    package = pathlib.Path(__file__).resolve().parent
+    checkout, prefix = package.parents[1], package.parents[3]
+    places = [checkout / in_checkout] if (checkout / "CMakeLists.txt").is_file() else []
+    places += [path for pattern in installed for path in sorted(prefix.glob(pattern))]
+    return next((path for path in places if path.is_file()), None)

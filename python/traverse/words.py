@@ -1,0 +1,48 @@
+"""A scene and options of Python as the program's words: files of YAML and options of the command line."""
+
+import contextlib
+import os
+import pathlib
+import tempfile
+
+import numpy as np
+import yaml
+
+
+def plain(value):
+    """The value as YAML writes it: arrays as lists, numbers of numpy as Python's, paths as texts."""
+    if isinstance(value, dict):
+        return {str(key): plain(inner) for key, inner in value.items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item()
+    if isinstance(value, (list, tuple, range)):
+        return [plain(inner) for inner in value]
+    return os.fspath(value) if isinstance(value, os.PathLike) else value
+
+
+def _text(value):
+    value = plain(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return ",".join(map(_text, value)) if isinstance(value, list) else str(value)
+
+
+def of_options(options):
+    """{"train_speed": 70.0} as ["-train_speed", "70.0"]; a value may be a number, a text, a truth or a list."""
+    return [word for name, value in options.items() for word in (f"-{name}", _text(value))]
+
+
+@contextlib.contextmanager
+def of_scenes(*scenes):
+    """The words that name scenes: paths, or dictionaries, which are files as long as this lasts."""
+    with tempfile.TemporaryDirectory(prefix="traverse-") as folder:
+        words = []
+        for number, scene in enumerate(scenes):
+            if isinstance(scene, dict):
+                path = pathlib.Path(folder, f"scene{number or ''}.yml")
+                path.write_text(yaml.safe_dump(plain(scene), sort_keys=False), encoding="utf-8")
+                scene = path
+            words += ["-options_file", os.fspath(scene)]
+        yield words, folder

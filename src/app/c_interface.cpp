@@ -1,0 +1,141 @@
+// The plain C interface of traverse.h, which the shared library exports: errors become a status and one line.
+#include <slepceps.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "light_start.hpp"
+#include "run/process.hpp"
+#include "step_by_step.hpp"
+#include "traverse/options/input.hpp"
+#include "traverse/traverse.h"
+
+struct traverse_passage {
+  traverse::app::StepByStep steps;
+};
+
+namespace {
+
+using traverse::InputError;
+
+std::string said;  // by the last call that failed
+
+/// Runs `body`; an exception becomes its status, and its message `said`.
+template <class Body>
+int status_of(Body&& body) {
+  try {
+    body();
+    return 0;
+  } catch (const std::exception& failure) {
+    const traverse::Error error = traverse::app::as_error(failure);
+    said = error.what();
+    return error.status();
+  }
+}
+
+/// PETSc, SLEPc and MPI, once in a process; then PETSc's options alone.
+void start_libraries(const std::vector<std::string>& petsc_words) {
+  traverse::options::Arguments words(petsc_words);
+  PetscBool running = PETSC_FALSE;
+  traverse::base::check(SlepcInitialized(&running));
+  if (running == PETSC_TRUE) {
+    traverse::base::check(PetscOptionsClear(nullptr));
+    traverse::base::check(PetscOptionsInsert(nullptr, words.argc(), words.argv(), nullptr));
+    return;
+  }
+  traverse::app::start_lightly();
+  traverse::base::check(SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr));
+  traverse::app::started();
+  traverse::base::check(PetscPopSignalHandler());  // signals belong to the program that embeds this library
+  traverse::base::check(PetscPushErrorHandler(PetscReturnErrorHandler, nullptr));
+  std::atexit([] { SlepcFinalize(); });
+}
+
+traverse::app::Scene scene_of(std::span<const char* const> words) {
+  std::vector<std::string> all = {"traverse"};
+  all.insert(all.end(), words.begin(), words.end());
+  traverse::options::Arguments arguments(all);
+  traverse::options::Input input = traverse::options::read_input(*arguments.argc(), *arguments.argv(),
+                                                                 {{"model_vehicles", "full", "traverse_open", 0}});
+  if (input.help || input.version) throw InputError("step by step goes one motion in time: leave out -help, -version");
+  start_libraries(input.petsc_words);
+  traverse::options::put_into_petsc(input);
+  return traverse::app::read_scene();
+}
+
+/// The numbers of a dataset at the sample that was reached.
+std::span<const double> values_of(const traverse::app::StepByStep& steps, const std::string& name) {
+  std::size_t first = 0;
+  for (const auto& field : steps.layout().fields) {
+    if (field.name == name) return std::span(steps.values()).subspan(first, field.width());
+    first += field.width();
+  }
+  for (const auto& constant : steps.layout().constants)
+    if (constant.name == name) return constant.values;
+  throw InputError("there is no quantity " + name + "; traverse_describe names those there are");
+}
+
+}  // namespace
+
+int traverse_open(int argc, const char* const* argv, traverse_passage** passage) {
+  *passage = nullptr;
+  return status_of([&] {
+    *passage =
+        new traverse_passage{traverse::app::StepByStep(scene_of(std::span(argv, static_cast<std::size_t>(argc))))};
+  });
+}
+
+void traverse_close(traverse_passage* passage) { delete passage; }
+
+const char* traverse_error(void) { return said.c_str(); }
+
+double traverse_time(const traverse_passage* passage) { return passage->steps.time(); }
+double traverse_end(const traverse_passage* passage) { return passage->steps.end(); }
+double traverse_interval(const traverse_passage* passage) { return passage->steps.interval(); }
+
+int traverse_advance(traverse_passage* passage, double t) {
+  return status_of([&] { passage->steps.advance(t); });
+}
+
+size_t traverse_quantities(const traverse_passage* passage) {
+  const auto& layout = passage->steps.layout();
+  return layout.fields.size() + layout.constants.size();
+}
+
+int traverse_describe(const traverse_passage* passage, size_t i, traverse_quantity* quantity) {
+  return status_of([&] {
+    const auto& [interval, fields, constants] = passage->steps.layout();
+    if (i < fields.size()) {
+      const auto& field = fields[i];
+      *quantity = {field.name.c_str(), field.unit.c_str(), field.row.size(), {0, 0}, 1};
+      std::copy(field.row.begin(), field.row.end(), quantity->shape);
+      return;
+    }
+    const std::size_t k = i - fields.size();
+    if (k >= constants.size()) throw InputError("there is no quantity number " + std::to_string(i));
+    *quantity = {constants[k].name.c_str(), constants[k].unit.c_str(), 1, {constants[k].values.size(), 0}, 0};
+  });
+}
+
+int traverse_read(const traverse_passage* passage, const char* name, double* values, size_t count) {
+  return status_of([&] {
+    const std::span<const double> found = values_of(passage->steps, name);
+    if (found.size() != count)
+      throw InputError(std::string(name) + " has " + std::to_string(found.size()) + " numbers, not " +
+                       std::to_string(count));
+    std::copy(found.begin(), found.end(), values);
+  });
+}
+
+int traverse_set_body_force(traverse_passage* passage, int vehicle, const char* body, double fx, double fy,
+                            double moment) {
+  return status_of([&] { passage->steps.apply_to_body(vehicle, body, {fx, fy, moment}); });
+}
+
+int traverse_set_beam_force(traverse_passage* passage, double x, double force) {
+  return status_of([&] { passage->steps.apply_to_beam(x, force); });
+}

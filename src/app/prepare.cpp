@@ -1,0 +1,50 @@
+#include "prepare.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "accuracy/trials.hpp"
+#include "run/deck_acceleration.hpp"
+#include "run/wheel_unloading.hpp"
+#include "study/lanes_choice.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr int nodes_for_a_check = 1000;  // of a given step by the first period: up to here frequencies take no time
+
+/// Whether there are two frequencies for certain, and finding them takes no time.
+bool frequencies_are_cheap(const beam::Beam& beam) {
+  const std::vector<int>& elements = beam.model().elements;  // of which one may have no two frequencies
+  return beam.mesh().nodes() <= nodes_for_a_check && *std::min_element(elements.begin(), elements.end()) > 1;
+}
+
+}  // namespace
+
+Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+  const std::optional<LanesChoice> lanes = lanes_for_one(scene, notes);
+  if (!lanes) return choose(comm, scene, notes);
+  scene = lanes->scene;
+  Accuracy accuracy;
+  accuracy.measured = true;
+  for (std::size_t q = 0; q < quantities; ++q)
+    accuracy.promises[q] = {true, asks_for(scene, q), lanes->errors[q], "accuracy_of does not ask for it"};
+  return accuracy;
+}
+
+double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::vector<std::string>& notes) {
+  const bool moves = scene.analysis != Analysis::static_response;
+  const beam::Beam* beam = shared.bridge();
+  const bool cheap = beam != nullptr && frequencies_are_cheap(*beam);
+  if (beam != nullptr)
+    shared.damp(scene, moves && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
+  shared.prepare(scene, notes);
+  const bool limited = limits_deck_acceleration(scene);
+  const double counting =
+      limited || scene.output.low_pass_asked ? frequency_that_counts(scene, shared, cheap || limited, notes) : 0.0;
+  if (counting > 0.0) scene.looks = spacing_for(counting);
+  if (filters_wheels(scene)) scene.looks = std::min(scene.looks, spacing_for(scene.output.wheel_low_pass));
+  return counting;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,101 @@
+"""import traverse: runs, sweeps and studies as Datasets, their errors, and the example."""
+
+import os
+import pathlib
+import subprocess
+import sys
+import unittest
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from module_scenes import BRIDGE, FORCES, SOURCE, InFolder, traverse  # noqa: E402
+
+
+class Runs(InFolder):
+    def test_a_scene_of_a_dictionary(self):
+        results = traverse.run(FORCES, output="kept.h5", folder=self.folder, load_speed=50.0)
+        with h5py.File(self.folder / "kept.h5") as file:
+            np.testing.assert_array_equal(results["deflection"], file["probes/deflection"][()])
+            np.testing.assert_array_equal(results["supports_reaction"].sel(component="fy"), file["supports/reaction"][:, :, 1])
+            self.assertEqual(results["moment"].attrs["units"], file["probes/moment"].attrs["unit"])
+            self.assertEqual(results.attrs["summary_deflection"], file["summary"].attrs["deflection"])
+        self.assertEqual(results["deflection"].dims, ("time", "x"))
+        self.assertEqual(results["x"].values.tolist(), [5.0, 10.0])
+        self.assertEqual((results["time"].attrs["units"], results["time"].values[-1]), ("s", 0.3))
+        self.assertIn("load_speed 50", results.attrs["options"])
+        self.assertEqual(list(self.folder.iterdir()), [self.folder / "kept.h5"])
+
+    def test_files_that_a_dictionary_names(self):
+        (self.folder / "EI.csv").write_text("0,3e10\n20,3e10\n", encoding="utf-8")
+        scene = FORCES | {"beam": BRIDGE | {"EI": pathlib.Path("EI.csv")}}
+        found = traverse.run(scene, folder=self.folder)
+        np.testing.assert_allclose(found["deflection"], traverse.run(FORCES)["deflection"], rtol=1e-9, atol=1e-12)
+        self.refused(2, "EI.csv", traverse.run, scene)
+
+    def test_numbers_of_numpy_and_a_file(self):
+        scene = FORCES | {"load": {"forces": np.array([2.0e5, 1.0e5]), "positions": (0.0, -3.0), "speed": np.float64(40.0)}}
+        plain = traverse.run(FORCES)
+        np.testing.assert_array_equal(traverse.run(scene)["deflection"], plain["deflection"])
+        file = self.folder / "forces.yml"
+        file.write_text("beam: {spans: 20, EI: 3e10, mass: 1.8e4, elements_per_span: 8}\n"
+                        "load: {forces: [2e5, 1e5], positions: [0, -3], speed: 40}\n", encoding="utf-8")
+        again = traverse.run(file, ts_dt=1e-3, ts_max_time=0.3, output_interval=0.01, output_probes=[5.0, 10.0])
+        np.testing.assert_array_equal(again["deflection"], plain["deflection"])
+
+    def test_on_two_ranks(self):
+        traverse.Passage(FORCES).close()  # MPI has started in this process
+        np.testing.assert_allclose(traverse.run(FORCES, ranks=2)["deflection"], traverse.run(FORCES)["deflection"],
+                                   rtol=1e-9, atol=1e-12)
+
+    def test_refusals(self):
+        self.refused(2, "beam_EI.*scene.yml", traverse.run, FORCES | {"beam": BRIDGE | {"EI": -1.0}})
+        self.refused(2, "ts_tpye", traverse.run, FORCES, ts_tpye="rk")
+        self.refused(2, "not_there.yml", traverse.run, "not_there.yml")
+        self.refused(4, "no results file", traverse.open, self.folder / "not_there.h5")
+
+    def test_a_sweep(self):
+        results = traverse.run(FORCES | {"sweep": {"speed": [30.0, 50.0, 5.0]}})
+        self.assertEqual(results["peak_deflection"].dims, ("hslm_a", "speed", "x"))
+        self.assertEqual(results["speed"].values.tolist(), [30.0, 35.0, 40.0, 45.0, 50.0])
+        alone = traverse.run(FORCES, load_speed=45.0)
+        swept = results["peak_deflection"].sel(speed=45.0, x=10.0).item()
+        self.assertAlmostEqual(swept / abs(alone.attrs["summary_deflection"]), 1.0, delta=1e-3)
+
+    def test_a_study(self):
+        results = traverse.study(FORCES, {"beam_EI": [2.0e10, 3.0e10], "load_speed": {"from": 30, "to": 50, "step": 10}})
+        self.assertEqual(results["peak_moment"].dims, ("beam_EI", "load_speed", "x"))
+        self.assertEqual(results["beam_EI"].values.tolist(), [2.0e10, 3.0e10])
+        self.assertEqual(results["load_speed"].values.tolist(), [30.0, 40.0, 50.0])
+        alone = traverse.run(FORCES, beam_EI=2.0e10, load_speed=30.0)
+        studied = results["peak_deflection"].sel(beam_EI=2.0e10, load_speed=30.0).max().item()
+        self.assertAlmostEqual(studied / abs(alone.attrs["summary_deflection"]), 1.0, delta=1e-3)
+
+    def test_a_study_of_rows_and_of_spans(self):
+        vary = {"beam_spans": [20.0, 25.0], "load_speed": [30.0, 40.0]}
+        results = traverse.study(FORCES | {"output": {"interval": 0.01}}, vary, study_combine="together")
+        self.assertEqual(results["peak_deflection"].dims, ("row", "probe"))
+        self.assertEqual(results["load_speed"].dims, ("row",))
+        self.assertEqual(results["probes_x"].values[:, 0].tolist(), [10.0, 12.5])
+
+    def test_modes(self):
+        results = traverse.run({"beam": BRIDGE, "scene": {"analysis": "modes"}, "modes": {"count": 2}})
+        first = np.pi / (2.0 * 20.0**2) * np.sqrt(3.0e10 / 1.8e4)  # Hz, of a simple beam
+        self.assertAlmostEqual(results["modes_frequency"].values[0] / first, 1.0, delta=1e-4)
+        self.assertEqual(results["modes_shape"].dims, ("mode", "modes_x"))
+
+
+class Example(InFolder):
+    def test_runs_and_draws(self):
+        run = subprocess.run(["/usr/bin/python3", "-B", SOURCE / "examples/three_span_train.py", self.folder], cwd=SOURCE,
+                             capture_output=True, text=True,
+                             env=os.environ | {"MPLBACKEND": "Agg", "PYTHONPATH": str(SOURCE / "python")})
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(sorted(path.name for path in self.folder.iterdir()),
+                         ["python_crossing.png", "python_damper.png", "python_speeds.png"])
+        self.assertRegex(run.stdout, r"largest deflection at 40 m: 0\.\d+ mm, with a damper 0\.\d+ mm")
+
+
+if __name__ == "__main__":
+    unittest.main()
