@@ -69,7 +69,7 @@ void add_from_petsc(Input& input) {
   std::vector<Entry> entries;
   for (std::string word; text >> word;) {
     if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0) {
-      entries.push_back({name_from_petsc(word.substr(1)), "", "PETSC_OPTIONS or .petscrc", 0});
+      entries.push_back({own_name(word.substr(1)), "", "PETSC_OPTIONS or .petscrc", 0});
     } else if (!entries.empty()) {
       entries.back().value += (entries.back().value.empty() ? "" : " ") + word;
     }
@@ -102,7 +102,7 @@ std::vector<std::string> left_over() {
   char **names = nullptr, **values = nullptr;
   base::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
   std::vector<std::string> left(names, names + count);
-  std::transform(left.begin(), left.end(), left.begin(), name_from_petsc);
+  std::transform(left.begin(), left.end(), left.begin(), own_name);
   base::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
   return left;
 }

@@ -24,9 +24,9 @@ std::string name_in_petsc(const std::string& name) {
   return name;
 }
 
-std::string name_from_petsc(const std::string& name) {
+std::string own_name(const std::string& name) {
   for (const base::RenamedOption& option : base::renamed_options)
-    if (name == option.known()) return option.name;
+    if (name == option.newer) return option.name;
   return name;
 }
 

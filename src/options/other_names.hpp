@@ -12,8 +12,8 @@ void take_other_names(Entries& entries);
 
 /// The name by which the PETSc at hand knows an option of Traverse's or its own.
 std::string name_in_petsc(const std::string& name);
-/// The other way round.
-std::string name_from_petsc(const std::string& name);
+/// The name that Traverse has for an option, by whichever it is called.
+std::string own_name(const std::string& name);
 
 /// After PetscInitialize: what PETSC_OPTIONS and .petscrc call by a name that the PETSc at hand does not know gets the
 /// one that it knows, unless that is given, too.

@@ -10,6 +10,7 @@
 #include "support/message.hpp"
 #include "support/temporary_folder.hpp"
 #include "traverse/options/input.hpp"
+#include "traverse/options/table.hpp"
 
 namespace traverse::options {
 namespace {
@@ -37,6 +38,8 @@ TEST(OtherNames, MeanTheSameWithEveryPetsc) {
     words.insert(words.end(), {std::string("-") + option.known(), value});
   EXPECT_EQ(input.petsc_words, words);
 }
+
+TEST(OtherNames, AreExplained) { EXPECT_EQ(help_text("-ts_time_step"), help_text("ts_dt")); }
 
 TEST(OtherNames, AreRefusedBesideOneAnother) {
   const std::string message = message_of([] { input_of({"-ts_dt", "0.1", "-ts_time_step", "0.2"}); });
