@@ -23,7 +23,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = ["scenes/three_span_train", "scenes/fifty_metre_train", "scenes/r2_sprung_mass", "scenes/r8_ballasted_bridge",
          "scenes/ballasted_viaduct", "scenes/articulated_train", "scenes/braking_train", "scenes/freight_wagon",
          "scenes/wheel_over_a_bump", "scenes/tapered_jib", "scenes/prop_with_gap", "studies/hslm_envelope"]
-PICTURE_WIDTH, COLOURS = 1200, 64  # of the stored pictures, which stay small
+PICTURE_WIDTH, COLOURS = 1200, 256  # of the stored pictures, which stay small
 
 # What the page says of a run: the attribute of /summary, its words, unit, the factor to it and the peak whose error has
 # to be known where the run knows any.
@@ -77,7 +77,7 @@ def draw(results, picture):
     with Image.open(picture) as page:
         height = round(page.height * PICTURE_WIDTH / page.width)
         small = page.convert("RGB").resize((PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
-    small.quantize(COLOURS, dither=Image.Dither.NONE).save(picture, optimize=True)
+    small.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(picture, optimize=True)
 
 
 def figures(results):

@@ -16,7 +16,7 @@ mkdir -p "$kept"
 
 # headers NAME MODULE SOURCE VERSION: the folder include of the newest tag of a version, with the installed configuration.
 headers() {
-  local folder=$kept/$1-$4 tag
+  local folder=$kept/$1-$4 tag file
   [ ! -d "$folder" ] || return 0
   tag=$(git ls-remote --tags --refs "$3" "v$4.*" | sed 's|.*refs/tags/||' | sort -V | tail -n 1)
   [ -n "$tag" ] || { echo "$3 has no tag v$4.*" >&2; return 1; }
@@ -28,7 +28,9 @@ headers() {
     git -c advice.detachedHead=false clone --quiet --depth 1 --filter=blob:none --sparse --branch "$tag" "$3" "$folder.part"
     git -C "$folder.part" sparse-checkout set include
   fi
-  cp -n "$(pkg-config --variable=includedir "$2")/$1"*.h "$folder.part/include"
+  for file in "$(pkg-config --variable=includedir "$2")/$1"{conf,conf_poison,fix,pkg_version}.h; do
+    [ ! -f "$file" ] || cp "$file" "$folder.part/include"
+  done
   mv "$folder.part" "$folder"
 }
 
