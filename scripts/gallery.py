@@ -80,12 +80,18 @@ def draw(results, picture):
     small.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(picture, optimize=True)
 
 
+def in_figures(value):
+    """Four figures, without powers of ten where the value is large: 16,170."""
+    text = f"{value:.4g}"
+    return f"{float(text):,.0f}" if "e+" in text else text
+
+
 def figures(results):
     """Rows of a table with the main figures; nothing for a mechanism, which has none of them."""
     with h5py.File(results, "r") as file:
         summary = dict(file["summary"].attrs)
     known = [key.removeprefix("expected_error_") for key in summary if key.startswith("expected_error_")]
-    rows = [f"| {words} | {factor * abs(float(summary[key])):.4g} {unit} |".replace("  |", " |")
+    rows = [f"| {words} | {in_figures(factor * abs(float(summary[key])))} {unit} |".replace("  |", " |")
             for key, words, unit, factor, peak in FIGURES if summary.get(key) and (not known or peak in known)]
     return ["| figure | computed |", "| --- | --- |", *rows, ""] if rows else []
 

@@ -182,6 +182,15 @@ class Scripts(InAFolder):
         self.assertEqual([row["kills"] for row in rows], ["2", "2"])
         self.assert_positive(rows, "series")
 
+    def test_mutations(self):
+        self.assertIn("24 of 24 mutants", self.run_smallest("mutations"))
+        mutations = importlib.import_module("mutations")
+        for status, said, no_number, is_wrong in ((0, b"", False, False), (1, b"traverse: x = 1: no\n", True, False),
+                                                  (0, b"", True, True), (1, b"", False, True), (1, b"a\nb\n", False, True),
+                                                  (-11, b"traverse: no\n", False, True)):
+            run = mock.Mock(returncode=status, stderr=said)
+            self.assertEqual(mutations.wrong(run, no_number) != "", is_wrong, (status, said))
+
     def test_beam_solver_picture(self):
         table = self.folder / "times.csv"
         lines = [f"{n},{name},{ns},1" for n in (20, 200, 2000) for name, ns in (("traverse", 1.4), ("moving it", 0.4))]

@@ -15,7 +15,6 @@
 namespace traverse::options {
 namespace {
 
-using test::contains;
 using test::message_of;
 
 Input input_of(std::vector<std::string> words) {
