@@ -111,7 +111,7 @@ def table_of(others):
     rows = ["| scene | what | source | expected |", "| --- | --- | --- | --- |"]
     for name in others:
         rows.append(" | ".join([f"| `{name}`", *(text.replace("|", "\\|") for text in header(name))]) + " |")
-    return ["## All other scenes", "", "Each is run by `./run.sh -options_file options/SCENE.yml`.", "", *rows, ""]
+    return ["## All other scenes", "", "Each is run by `./run.sh -options_file options/NAME.yml`, with the name of its row.", "", *rows, ""]
 
 
 def main():
