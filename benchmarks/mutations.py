@@ -26,6 +26,7 @@ OPTIONS = pathlib.Path(runs.ROOT) / "options"
 COMPUTED = {"r1_moving_force", "r2_sprung_mass", "r4_hertz_wheel", "r6_three_spans", "r7_two_masses", "pendulum",
             "slider_crank", "bouncing_ball", "tapered_jib", "prop_with_gap", "three_span_half_car"}
 A_MOMENT = ["-ts_dt", "1e-3", "-ts_max_steps", "20", "-beam_elements_per_span", "4", "-output_interval", "1e-2"]
+GIVEN_AGAIN = re.compile(r"\b(?:dt|max_steps|elements_per_span|interval)\b")  # by A_MOMENT, which wins
 CPU_SECONDS = 60
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?(?![\w.])")
 NO_NUMBERS = ["nan", "inf", "-inf", "many", "1e999"]
@@ -37,8 +38,9 @@ def code_end(line):
 
 
 def replace_number(generator, lines, values):
-    """Whether a number outside of comments was there to be replaced."""
-    places = [(i, m) for i, line in enumerate(lines) for m in NUMBER.finditer(line, 0, code_end(line))]
+    """Whether a number outside of comments, and of what counts, was there to be replaced."""
+    places = [(i, m) for i, line in enumerate(lines) if not GIVEN_AGAIN.search(line)
+              for m in NUMBER.finditer(line, 0, code_end(line))]
     if not places:
         return False
     i, match = generator.choice(places)
