@@ -158,7 +158,9 @@ def main():
             scene = generator.choice(list(scenes))
             file = generator.choice(scenes[scene])
             jobs[pool.submit(mutant, given.build, scene, file, seed, kept)] = (seed, scene, file)
-        for job in concurrent.futures.as_completed(jobs):
+        for done, job in enumerate(concurrent.futures.as_completed(jobs), 1):
+            if done % 500 == 0:
+                print(f"{done} of {count}", flush=True)
             if job.result():
                 seed, scene, file = jobs[job]
                 rows.append([seed, scene.stem, file.name, job.result()])
