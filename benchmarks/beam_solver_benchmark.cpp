@@ -256,9 +256,9 @@ int main(int argc, char** argv) {
     run(argc > 1 ? argv[1] : nullptr, argc > 2 ? std::atoi(argv[2]) : sizes.back());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
-    PetscFinalize();
+    (void)PetscFinalize();
     return EXIT_FAILURE;
   }
-  PetscFinalize();
+  (void)PetscFinalize();
   return EXIT_SUCCESS;
 }

@@ -242,8 +242,8 @@ BENCHMARK(quarter_car)->Arg(5)->Arg(20)->Iterations(20000);
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   int count = 1;
-  SlepcInitialize(&count, &argv, nullptr, nullptr);
+  (void)SlepcInitialize(&count, &argv, nullptr, nullptr);
   benchmark::RunSpecifiedBenchmarks();
-  SlepcFinalize();
+  (void)SlepcFinalize();
   return 0;
 }

@@ -5,8 +5,9 @@
 The peers' seconds are those of OUT_FOLDER/peers_here.csv where benchmarks/peers_here.py has measured them on this
 machine, else those that were measured once on one core of another machine of this kind; the table says which. Ours are
 medians of ROUNDS (7) runs, all cases of a kind in turn, with all results stored at every step. Loop stands against
-loop, and where the peer's whole run is known, it stands against our whole process, start included. Of the settings that
-are tried for equal error those that the program refuses, as too long a step, are left out and counted.
+loop, and where the peer's whole run is known, its processor seconds stand against those of our whole process, start
+included, which do not depend on what else the machine does. Of the settings that are tried for equal error those that
+the program refuses, as too long a step, are left out and counted.
 """
 
 import csv
@@ -159,11 +160,11 @@ def equal_error(build, folder, rounds, case, model, options, grid):
 
 
 def row(case, kind, how, seconds, run, off):
-    whole = case.whole / run.process_seconds if case.whole else None
+    whole = case.whole / run.processor_seconds if case.whole else None
     print(f"{case.name:24}{kind:21}{run.unknowns:7}{run.steps:7}{1e3 * seconds:10.3g}{case.seconds / seconds:9.4g}"
           f"{'' if whole is None else format(whole, '.3g'):>8}{off:10.1e}  {how}", flush=True)
     return [case.name, case.program, case.seconds, case.error, kind, how, run.unknowns, run.steps, seconds,
-            case.seconds / seconds, off, run.process_seconds, whole, case.machine]
+            case.seconds / seconds, off, run.processor_seconds, whole, case.machine]
 
 
 def picture(rows, file):
@@ -224,7 +225,7 @@ def main():
             rows = measured(given.build, folder, given.rounds, cases, off_track, dict)
     runs.write_table(os.path.join(given.out, "peers.csv"),
                      ["case", "peer", "peer's seconds", "peer's error", "kind", "how", "unknowns", "steps", "seconds",
-                      "factor", "error", "seconds of the process", "factor of the whole", "the peer's machine"], rows)
+                      "factor", "error", "processor seconds", "factor of the whole", "the peer's machine"], rows)
     picture(rows, os.path.join(given.out, "peers.png"))
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Times VBI-2D and TTB-2D under Octave on this machine: the seconds of their time loops and of their whole runs.
+"""Times VBI-2D and TTB-2D under Octave on this machine: processor seconds of their time loops and of their whole runs.
 /usr/bin/python3 benchmarks/peers_here.py VBI_2D_FOLDER TTB_2D_FOLDER [OUT_FOLDER] [ROUNDS]; writes peers_here.csv,
 which benchmarks/peers.py takes the peers' seconds from when it is in its own OUT_FOLDER.
 
@@ -55,14 +55,14 @@ def driver(folder, inputs, calculations, loop, left_out, before=()):
     calls = [i for i, line in enumerate(lines) if loop + "(" in line and not line.lstrip().startswith("%")]
     if len(calls) != 1:
         raise SystemExit(f"peers_here.py: {calculations} of {folder} calls {loop} {len(calls)} times, once is expected: another version?")
-    lines.insert(calls[0] + 1, "our_loop = toc(our_loop);")
-    lines.insert(calls[0], "our_loop = tic();")
+    lines.insert(calls[0] + 1, "our_loop = cputime() - our_loop;")
+    lines.insert(calls[0], "our_loop = cputime();")
     if before:
         lines = [text for line in lines for text in ([before[1]] if before[0] in line else []) + [line]]
     return "\n".join([
         "warning('off', 'all'); more off;", f"cd('{os.path.abspath(folder)}'); addpath(fullfile(pwd, 'Functions'));",
-        "our_start = tic();", inputs, *lines,
-        r"fprintf('\nour seconds %.6g %.6g %d\n', our_loop, toc(our_start), %STEPS%);"])
+        "our_start = cputime();", inputs, *lines,
+        r"fprintf('\nour seconds %.6g %.6g %d\n', our_loop, cputime() - our_start, %STEPS%);"])
 
 
 def seconds(text, steps):

@@ -9,6 +9,7 @@ import argparse
 import csv
 import os
 import re
+import resource
 import statistics
 import subprocess
 import sys
@@ -88,14 +89,17 @@ class Failed(RuntimeError):
 
 
 class Run:
-    """One run: seconds of its time loop and of the whole process, unknowns, the results file, and steps unless it sweeps."""
+    """One run: seconds of its time loop and of the whole process, by the clock and of the processor, unknowns, the results
+    file, and steps unless it sweeps."""
 
     def __init__(self, build, options, file, ranks=1):
         command = on_ranks(ranks) + [traverse(build)]
         command += words(options | {"output_file": file, "output_quiet": "true"})
-        begin = time.monotonic()
+        begin, used = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
         self.process_seconds = time.monotonic() - begin
+        now = resource.getrusage(resource.RUSAGE_CHILDREN)
+        self.processor_seconds = now.ru_utime + now.ru_stime - used.ru_utime - used.ru_stime
         if done.returncode != 0:
             raise Failed(command, done.stdout)
         self.text = done.stdout

@@ -142,6 +142,6 @@ int main(int argc, char** argv) {
   } else {
     benchmark::RunSpecifiedBenchmarks(&silent);
   }
-  PetscFinalize();
+  (void)PetscFinalize();
   return EXIT_SUCCESS;
 }

@@ -128,7 +128,7 @@ class Silent : public benchmark::BenchmarkReporter {
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   int count = 1;
-  SlepcInitialize(&count, &argv, nullptr, nullptr);
+  (void)SlepcInitialize(&count, &argv, nullptr, nullptr);
   int rank = 0;
   MPI_Comm_rank(PETSC_COMM_WORLD, &rank);
   Silent silent;
@@ -136,6 +136,6 @@ int main(int argc, char** argv) {
     benchmark::RunSpecifiedBenchmarks();
   else
     benchmark::RunSpecifiedBenchmarks(&silent);
-  SlepcFinalize();
+  (void)SlepcFinalize();
   return 0;
 }

@@ -177,9 +177,9 @@ int main(int argc, char** argv) {
     run(argc, argv);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
-    SlepcFinalize();
+    (void)SlepcFinalize();
     return EXIT_FAILURE;
   }
-  SlepcFinalize();
+  (void)SlepcFinalize();
   return EXIT_SUCCESS;
 }

@@ -49,7 +49,7 @@ void train_build(benchmark::State& state, const std::string& vehicle, bool start
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   int count = 1;
-  SlepcInitialize(&count, &argv, nullptr, nullptr);
+  (void)SlepcInitialize(&count, &argv, nullptr, nullptr);
   for (const std::string vehicle : {"s300", "velaro"})
     for (const bool start : {false, true}) {
       const std::string name = "train_build/" + vehicle + (start ? "/with_equilibrium" : "");
@@ -58,6 +58,6 @@ int main(int argc, char** argv) {
       })->Unit(benchmark::kMillisecond);
     }
   benchmark::RunSpecifiedBenchmarks();
-  SlepcFinalize();
+  (void)SlepcFinalize();
   return 0;
 }

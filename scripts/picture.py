@@ -353,7 +353,7 @@ def draw(results, out, asked=()):
     for i, panel in enumerate(found):
         bottom = height - 1.2 - 2.75 * (i + 1) - taller + 0.75
         shape_on_top = i == 0 and "shape/deflection" in results.file
-        ax = figure.add_axes([0.075, bottom / height, 0.635, (1.75 + taller) / height])
+        ax = figure.add_axes([0.085, bottom / height, 0.625, (1.75 + taller) / height])
         worst = panel(ax, worst) if shape_on_top else (panel(ax, worst), worst)[1]
         if results.rows > 1 and panel is found[-1] and not ax.get_xlabel():
             ax.set_xlabel("time (s)")

@@ -92,11 +92,11 @@ int main(int argc, char** argv) {
     traverse::options::Arguments words(input.petsc_words);
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
     traverse::app::started();
-    PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
+    (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
     traverse::app::take_signals();  // from PETSc
     traverse::app::speak_of_signals(first_rank());
     const int status = run(input);
-    SlepcFinalize();
+    (void)SlepcFinalize();
     return after_output(status);
   } catch (const traverse::Error& error) {  // before MPI has started
     // Open MPI 5 ends all ranks when one ends: the first one shall have said it.

@@ -18,11 +18,11 @@ void check(PetscErrorCode code) {
   if (kept) std::rethrow_exception(std::exchange(kept, nullptr));
   if (code == PETSC_ERR_MEM) throw std::bad_alloc();
   const char* text = nullptr;
-  char* specific = nullptr;
-  (void)PetscErrorMessage(code, &text, &specific);
+  (void)PetscErrorMessage(code, &text, nullptr);
+  const std::string specific = details_of(code, PetscErrorMessage);
   std::string message = "PETSc error " + std::to_string(static_cast<int>(code));
   if (text != nullptr) message += std::string(": ") + text;
-  if (specific != nullptr && *specific != '\0') message += std::string(": ") + specific;
+  if (!specific.empty()) message += ": " + specific;
   throw SolverError(message);
 }
 

@@ -6,6 +6,7 @@
 #include <exception>
 #include <utility>
 
+#include "base/petsc_versions.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::base {
@@ -23,7 +24,7 @@ template <class Body>
 PetscErrorCode guard(Body&& body) noexcept {
   try {
     body();
-    return 0;
+    return success;
   } catch (...) {
     return keep_exception();
   }

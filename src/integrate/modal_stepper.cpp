@@ -1,12 +1,11 @@
 #include "integrate/modal_stepper.hpp"
 
-#include <petsc/private/tsimpl.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "beam/shape.hpp"
+#include "integrate/second_order.hpp"
 #include "ts_modal.hpp"
 
 namespace traverse::integrate {
@@ -91,8 +90,10 @@ void ModalStepper::keep(base::Archive& archive) {
 }
 
 void ModalStepper::show_to_monitors() {
-  TS ts = ts_;
-  if (ts->numbermonitors > 0) base::check(TSMonitor(ts, static_cast<PetscInt>(steps_), motion_.time(), ts->vec_sol));
+  if (!has_monitors(ts_)) return;
+  Vec y = nullptr;
+  base::check(TSGetSolution(ts_, &y));
+  base::check(TSMonitor(ts_, static_cast<PetscInt>(steps_), motion_.time(), y));
 }
 
 // This rank's nodal forces; at a jump those before it.

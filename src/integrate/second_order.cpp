@@ -1,6 +1,6 @@
 #include "integrate/second_order.hpp"
 
-#include <petsc/private/tsimpl.h>
+#include <petsc/private/tsimpl.h>  // types of TS and TSAdapt; how many monitors there are
 
 #include <algorithm>
 #include <limits>
@@ -73,7 +73,8 @@ void take_step(TS ts, Data& data, double* y) {
       ts->time_step = verdict.next;
       return;
     }
-    if (rejections >= ts->max_reject) {
+    const bool unlimited = ts->max_reject < 0, vanished = ts->ptime + ts->time_step == ts->ptime;
+    if (vanished || (!unlimited && rejections >= ts->max_reject)) {
       ts->reason = TS_DIVERGED_STEP_REJECTED;
       return;
     }
@@ -91,25 +92,25 @@ PetscErrorCode step_second_order(TS ts) {
   });
 }
 
-PetscErrorCode read_options(TS ts, PetscOptionItems* PetscOptionsObject) {
+PetscErrorCode read_options(TS ts, base::OptionItems PetscOptionsObject) {
   Data& data = data_of(ts);
   const structure::MethodParameter& parameter = data.row->parameter;
   PetscOptionsHeadBegin(PetscOptionsObject, data.row->name);
   if (parameter.option != nullptr)
     PetscCall(PetscOptionsReal(parameter.option, parameter.words, "", data.parameter, &data.parameter, nullptr));
   PetscOptionsHeadEnd();
-  return 0;
+  return base::success;
 }
 
 PetscErrorCode reset(TS ts) {
   data_of(ts).started = false;
-  return 0;
+  return base::success;
 }
 
 PetscErrorCode destroy_second_order(TS ts) {
   delete static_cast<Data*>(ts->data);
   ts->data = nullptr;
-  return 0;
+  return base::success;
 }
 
 // The local error over the tolerance.
@@ -154,7 +155,7 @@ PetscErrorCode choose(TSAdapt adapt, TS ts, PetscReal h, PetscInt* scheme, Petsc
 
 PetscErrorCode create_ladder(TSAdapt adapt) {
   adapt->ops->choose = choose;
-  return 0;
+  return base::success;
 }
 
 }  // namespace
@@ -165,6 +166,8 @@ void register_second_order() {
 }
 
 void set_system(TS ts, coupling::System& system) { data_of(ts).system = &system; }
+
+bool has_monitors(TS ts) { return ts->numbermonitors > 0; }
 
 bool& has_started(TS ts) { return data_of(ts).started; }
 

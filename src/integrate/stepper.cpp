@@ -1,7 +1,5 @@
 #include "integrate/stepper.hpp"
 
-#include <petsc/private/tsimpl.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -64,7 +62,7 @@ Stepper::Stepper(coupling::System& system, Settings settings) : system_(system),
     options::refuse_by_petsc(error.what());
   }
   check(TSGetMaxSteps(ts_, &most_steps_));
-  monitored_ = static_cast<TS>(ts_)->numbermonitors > 0;
+  monitored_ = has_monitors(ts_);
   check(TSSetMaxSteps(ts_, no_limit));
   // Time and step are the scene's; TS takes one step at a time and never looks ahead to an end.
   check(TSSetTime(ts_, 0.0));

@@ -1,5 +1,5 @@
 // The state of a stepper between two steps.
-#include <petsc/private/tsimpl.h>
+#include <petsc/private/tsimpl.h>  // the time before, rejections, and whether the next step is a first one
 
 #include "arrays.hpp"
 #include "integrate/second_order.hpp"

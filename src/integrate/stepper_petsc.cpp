@@ -88,7 +88,7 @@ PetscErrorCode Stepper::ifunction(TS, PetscReal t, Vec y, Vec ydot, Vec residual
 
 PetscErrorCode Stepper::ijacobian(TS, PetscReal, Vec, Vec, PetscReal shift, Mat, Mat, void* context) {
   static_cast<Stepper*>(context)->request_.shift = shift;
-  return 0;
+  return base::success;
 }
 
 PetscErrorCode Stepper::rhs_function(TS, PetscReal t, Vec y, Vec ydot, void* context) {

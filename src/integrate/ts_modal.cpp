@@ -1,6 +1,6 @@
 #include "ts_modal.hpp"
 
-#include <petsc/private/tsimpl.h>
+#include <petsc/private/tsimpl.h>  // a type of TS
 
 #include <algorithm>
 #include <limits>
@@ -38,7 +38,7 @@ PetscErrorCode view(TS ts, PetscViewer viewer) {
 
 PetscErrorCode destroy_modal(TS ts) {  // the motion is its owner's
   ts->data = nullptr;
-  return 0;
+  return base::success;
 }
 
 PetscErrorCode create_modal(TS ts) {
@@ -47,7 +47,7 @@ PetscErrorCode create_modal(TS ts) {
   ts->ops->destroy = destroy_modal;
   ts->usessnes = PETSC_FALSE;
   ts->default_adapt_type = TSADAPTNONE;
-  return 0;
+  return base::success;
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ class Solver {
     check(EPSSetWhichEigenpairs(eps, EPS_TARGET_MAGNITUDE));
     check(EPSSetTarget(eps, shift));
     check(EPSSetTolerances(eps, tolerance, 1000));
-    check(EPSSetDimensions(eps, count, subspace, PETSC_DEFAULT));
+    check(EPSSetDimensions(eps, count, subspace, PETSC_DETERMINE));
     ST st = nullptr;
     KSP ksp = nullptr;
     PC pc = nullptr;

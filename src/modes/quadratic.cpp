@@ -40,7 +40,7 @@ base::Handle<Mat> matrix_of(Inverse& inverse) {
   base::Handle<Mat> shell;
   const PetscInt n = inverse.size();
   check(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, &inverse, shell.out()));
-  check(MatShellSetOperation(shell, MATOP_MULT, reinterpret_cast<void (*)()>(multiply)));
+  check(MatShellSetOperation(shell, MATOP_MULT, reinterpret_cast<base::ShellOperation>(multiply)));
   return shell;
 }
 
@@ -55,7 +55,7 @@ class Spectrum {
     if (!all) {
       const int subspace = std::min(inverse.size(), std::max(2 * eigenvalues, eigenvalues + 30));
       check(EPSSetTolerances(eps_, eigen_tolerance, restarts));
-      check(EPSSetDimensions(eps_, eigenvalues, subspace, PETSC_DEFAULT));
+      check(EPSSetDimensions(eps_, eigenvalues, subspace, PETSC_DETERMINE));
       const base::Handle<Vec> start = vector(start_vector(inverse.size(), 0));
       Vec raw = start;
       check(EPSSetInitialSpace(eps_, 1, &raw));

@@ -24,6 +24,12 @@ void Entries::set_default(Entry entry) {
   if (!has(entry.name)) set(std::move(entry));
 }
 
+void Entries::rename(const std::string& from, const std::string& to) {
+  auto place = index_.extract(from);
+  entries_[place.mapped()].name = place.key() = to;
+  index_.insert(std::move(place));
+}
+
 const Entry* Entries::find(std::string_view name) const {
   const auto place = index_.find(std::string(name));
   return place == index_.end() ? nullptr : &entries_[place->second];

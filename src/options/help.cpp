@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "help_groups.hpp"
+#include "options/other_names.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::options {
@@ -111,7 +112,7 @@ std::vector<HelpGroup> help_groups() {
 
 std::string help_text(const std::string& about) {
   if (about.empty() || about == "petsc") return everything();
-  const std::string wanted = as_name(about.substr(std::min(about.find_first_not_of('-'), about.size())));
+  const std::string wanted = own_name(as_name(about.substr(std::min(about.find_first_not_of('-'), about.size()))));
   const std::vector<HelpGroup> groups = help_groups();
   std::string names, out;
   std::vector<std::string> candidates = {"integrators"};

@@ -12,6 +12,7 @@
 
 #include "base/petsc.hpp"
 #include "options/data_file.hpp"
+#include "options/other_names.hpp"
 #include "options/read_file.hpp"
 #include "traverse/options/table.hpp"
 
@@ -68,7 +69,7 @@ void add_from_petsc(Input& input) {
   std::vector<Entry> entries;
   for (std::string word; text >> word;) {
     if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0) {
-      entries.push_back({word.substr(1), "", "PETSC_OPTIONS or .petscrc", 0});
+      entries.push_back({own_name(word.substr(1)), "", "PETSC_OPTIONS or .petscrc", 0});
     } else if (!entries.empty()) {
       entries.back().value += (entries.back().value.empty() ? "" : " ") + word;
     }
@@ -101,6 +102,7 @@ std::vector<std::string> left_over() {
   char **names = nullptr, **values = nullptr;
   base::check(PetscOptionsLeftGet(nullptr, &count, &names, &values));
   std::vector<std::string> left(names, names + count);
+  std::transform(left.begin(), left.end(), left.begin(), own_name);
   base::check(PetscOptionsLeftRestore(nullptr, &count, &names, &values));
   return left;
 }
@@ -144,7 +146,8 @@ std::string specific_part(const std::string& message) {
   const char* general = nullptr;
   if (std::sscanf(message.c_str(), "PETSc error %d: %n", &code, &length) != 1 || length == 0) return message;
   std::string reason = message.substr(static_cast<std::size_t>(length));
-  if (PetscErrorMessage(code, &general, nullptr) != 0 || general == nullptr || !reason.starts_with(general))
+  if (PetscErrorMessage(static_cast<PetscErrorCode>(code), &general, nullptr) != 0 || general == nullptr ||
+      !reason.starts_with(general))
     return reason;
   const std::size_t begin = std::string_view(general).size() + 2;
   return begin < reason.size() ? reason.substr(begin) : reason;
@@ -168,12 +171,13 @@ Input read_input(int argc, char** argv, const std::vector<Entry>& before) {
     const std::string found = find_file(entry.value, "");
     for (Entry& inner : read_options_file(found.empty() ? entry.value : found)) add(input, std::move(inner));
   }
+  take_other_names(input.entries);
   check_room(input.entries);
   input.entries.set_default({"scene_name", scene_name.empty() ? "scene" : scene_name, "options_file", 0});
   input.petsc_words.insert(input.petsc_words.begin(), argc > 0 ? argv[0] : "traverse");
   for (const Entry& entry : input.entries) {
     if (!owned_by_petsc(entry.name)) continue;
-    input.petsc_words.push_back("-" + entry.name);
+    input.petsc_words.push_back("-" + name_in_petsc(entry.name));
     if (!entry.value.empty()) input.petsc_words.push_back(entry.value);
   }
   return input;
@@ -187,6 +191,7 @@ Arguments::Arguments(std::vector<std::string> words) : words_(std::move(words)) 
 }
 
 void put_into_petsc(Input& input) {
+  rename_in_petsc();
   add_from_petsc(input);
   check_room(input.entries);
   for (const Entry& entry : input.entries) {
@@ -243,7 +248,7 @@ void refuse_by_petsc(const std::string& message) {
     if (!asked_by_solvers(entry.name) || find_row(fixed_rows(), entry.name) != nullptr) continue;
     add(all, entry);
     const bool value = !entry.value.empty() && speaks_of(reason, entry.value);
-    if (value || speaks_of(reason, "-" + entry.name)) add(blamed, entry);
+    if (value || speaks_of(reason, "-" + name_in_petsc(entry.name))) add(blamed, entry);
   }
   if (blamed.empty()) blamed = all.empty() ? "an option of PETSc's solvers" : "one of " + all;
   throw InputError(blamed + ": PETSc does not allow it: " + reason);

@@ -116,7 +116,7 @@ constexpr Row run_rows[] = {
   {"scene_tail", number, "s", "", not_negative, "", 0, "free vibration after the last wheel has left"},
   {"ts_max_time", number, "s", "(when the last wheel has left)", positive, "", 0, "the run's end"},
   {"ts_max_steps", integer, "", "(no limit)", {1, 2147483646.0}, "", 0, "the run ends after so many steps at the latest"},
-  {"ts_dt", number, "s", "(from accuracy)", positive, "", 0, "the step, or the first one"},
+  {"ts_dt", number, "s", "(from accuracy)", positive, "", 0, "the step, or the first one; ts_time_step is the same"},
   {"modes_count", integer, "", "10", {1, 100000}, "", 0, "frequencies with scene_analysis modes"},
   {"contact_tolerance", number, "s", "(a thousandth of the step)", not_negative, "", 0, "steps end so close behind the loss or gain of a contact; 0: wherever they end"},
   {"step_kinks", flag, "", "true", any, "", 0, "steps end where wheels pass kinks of their way, such as span ends; needed for orders above 2"},
@@ -199,8 +199,8 @@ constexpr std::string_view petsc_prefixes[] = {
 };
 
 constexpr std::string_view petsc_names[] = {
-  "ts_type", "ts_dt", "ts_max_time", "ts_max_steps", "ts_max_snes_failures", "ts_max_reject", "ts_monitor", "ts_view",
-  "ts_exact_final_time", "ts_rtol", "ts_atol", "ts_adapt_type", "ts_adapt_dt_max", "ts_adapt_dt_min",
+  "ts_type", "ts_dt", "ts_time_step", "ts_max_time", "ts_max_steps", "ts_max_snes_failures", "ts_max_reject", "ts_max_step_rejections",
+  "ts_monitor", "ts_view", "ts_exact_final_time", "ts_rtol", "ts_atol", "ts_adapt_type", "ts_adapt_dt_max", "ts_adapt_dt_min",
   "ts_adapt_clip", "ts_adapt_safety", "ts_adapt_monitor", "ts_arkimex_type", "ts_arkimex_fully_implicit",
   "ts_bdf_order", "ts_rk_type", "ts_rosw_type", "ts_theta_theta", "ts_theta_endpoint", "ts_alpha_radius", "ts_genalpha_radius",
   "snes_type", "snes_atol", "snes_rtol", "snes_stol", "snes_max_it", "snes_monitor", "snes_converged_reason",

@@ -30,18 +30,18 @@ class Scripts(InAFolder):
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         text = done.stdout
         rows = self.table("peers.csv", ["case", "peer", "peer's seconds", "peer's error", "kind", "how", "unknowns",
-                                        "steps", "seconds", "factor", "error", "seconds of the process",
+                                        "steps", "seconds", "factor", "error", "processor seconds",
                                         "factor of the whole", "the peer's machine"])
         for row in rows:
             here = row["case"].startswith("R8")
             self.assertEqual(row["the peer's machine"], "this machine" if here else "another machine")
             if here:
                 self.assertAlmostEqual(float(row["factor"]) * float(row["seconds"]), 12.5, places=9)
-                self.assertAlmostEqual(float(row["factor of the whole"]) * float(row["seconds of the process"]), 20.25)
+                self.assertAlmostEqual(float(row["factor of the whole"]) * float(row["processor seconds"]), 20.25)
             else:
                 self.assertEqual(row["factor of the whole"], "")
         self.assertNotIn("none of the grid is right", text)
-        self.assert_positive(rows, "unknowns", "steps", "seconds", "factor", "seconds of the process")
+        self.assert_positive(rows, "unknowns", "steps", "seconds", "factor", "processor seconds")
         equal = [row for row in rows if row["kind"] == "equal error"]
         same = [row for row in rows if row["kind"] == "same size and steps"]
         self.assertEqual((len(same), len(equal)), (8, 5))
@@ -75,7 +75,7 @@ class Scripts(InAFolder):
         self.assertEqual([list(row.values())[1:] for row in rows],
                          [["VBI-2D", "1.5", "2.25", "1001"]] * 2 + [["TTB-2D", "1.5", "2.25", "1001"]])
         asked = (self.folder / "asked").read_text()
-        self.assertEqual(asked.count("our_loop = tic();\n[Sol] = B49_Coup_solver(Calc,Veh,Beam);\nour_loop = toc"), 2)
+        self.assertEqual(asked.count("our_loop = cputime();\n[Sol] = B49_Coup_solver(Calc,Veh,Beam);\nour_loop = cputime() -"), 2)
         self.assertIn("Track.Rail.BC.DOF_fixed = zeros(1, 0);\n[M] = B55_ModelBC", asked)
         self.assertNotIn("B67_Plot", asked)
         self.assertEqual(start("peers_here", self.folder, self.folder / "TTB").stderr,
@@ -181,6 +181,15 @@ class Scripts(InAFolder):
         rows = self.table("kills.csv", ["vehicles", "kills", "restarts", "series"])
         self.assertEqual([row["kills"] for row in rows], ["2", "2"])
         self.assert_positive(rows, "series")
+
+    def test_mutations(self):
+        self.assertIn("24 of 24 mutants", self.run_smallest("mutations"))
+        mutations = importlib.import_module("mutations")
+        for status, said, no_number, is_wrong in ((0, b"", False, False), (1, b"traverse: x = 1: no\n", True, False),
+                                                  (0, b"", True, True), (1, b"", False, True), (1, b"a\nb\n", False, True),
+                                                  (-11, b"traverse: no\n", False, True)):
+            run = mock.Mock(returncode=status, stderr=said)
+            self.assertEqual(mutations.wrong(run, no_number) != "", is_wrong, (status, said))
 
     def test_beam_solver_picture(self):
         table = self.folder / "times.csv"

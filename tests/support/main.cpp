@@ -60,12 +60,12 @@ int main(int argc, char** argv) {
   testing::UnitTest::GetInstance()->listeners().Append(new ProcessorLimit);
 
   if (SlepcInitialize(&argc, &argv, nullptr, nullptr) != 0) return EXIT_FAILURE;
-  PetscPopSignalHandler();
-  PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // errors that tests provoke print no trace
+  (void)PetscPopSignalHandler();
+  (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);  // errors that tests provoke print no trace
   int failed = RUN_ALL_TESTS();
   MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
-  PetscPopErrorHandler();
-  SlepcFinalize();
+  (void)PetscPopErrorHandler();
+  (void)SlepcFinalize();
   MPI_Finalize();
   return failed;
 }

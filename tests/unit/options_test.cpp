@@ -119,11 +119,11 @@ TEST(CommandLine, ThePositionDecides) {
 
 TEST(CommandLine, PetscSeesWhatItOwnsOutOfFilesToo) {
   const test::TemporaryFolder folder;
-  const std::string a = folder.write("a.yml", "ts: {type: bdf, dt: 0.1}\nlog_view:\ngravity: 1\n");
-  const Input input = input_of({"-options_file", a, "-ts_dt", "0.2", "-help", "-malloc_debug"});
+  const std::string a = folder.write("a.yml", "ts: {type: bdf, max_time: 0.1}\nlog_view:\ngravity: 1\n");
+  const Input input = input_of({"-options_file", a, "-ts_max_time", "0.2", "-help", "-malloc_debug"});
   EXPECT_TRUE(input.help);
-  EXPECT_EQ(input.petsc_words,
-            (std::vector<std::string>{"traverse", "-ts_type", "bdf", "-ts_dt", "0.2", "-log_view", "-malloc_debug"}));
+  EXPECT_EQ(input.petsc_words, (std::vector<std::string>{"traverse", "-ts_type", "bdf", "-ts_max_time", "0.2",
+                                                         "-log_view", "-malloc_debug"}));
   EXPECT_PRED2(any_contains, input_of({"-help", "petsc"}).petsc_words, "-help");
 }
 

@@ -29,6 +29,8 @@ class Entries {
   void set(Entry entry);
   /// Adds an entry unless its name is there already.
   void set_default(Entry entry);
+  /// Gives an entry a name that no other entry has.
+  void rename(const std::string& from, const std::string& to);
   const Entry* find(std::string_view name) const;
   bool has(std::string_view name) const { return find(name) != nullptr; }
   std::size_t size() const { return entries_.size(); }

@@ -1,0 +1,142 @@
+#!/usr/bin/python3
+"""Runs the scenes of the gallery, draws their pictures and writes the page.
+
+    gallery.py [--program FILE] [--folder FOLDER SCENE ...]
+
+Without arguments it takes build/traverse, all scenes of the gallery and doc/, for the page doc/gallery.md that is
+committed. Scenes that are named, as scenes/NAME or studies/NAME, are shown on a page of their own in another folder.
+Every other scene of options/ stands on the page in a table, with what its header says.
+"""
+
+import argparse
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import h5py
+from PIL import Image
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SHOWN = ["scenes/three_span_train", "scenes/fifty_metre_train", "scenes/r2_sprung_mass", "scenes/r8_ballasted_bridge",
+         "scenes/ballasted_viaduct", "scenes/articulated_train", "scenes/braking_train", "scenes/freight_wagon",
+         "scenes/wheel_over_a_bump", "scenes/tapered_jib", "scenes/prop_with_gap", "studies/hslm_envelope"]
+PICTURE_WIDTH, COLOURS = 1200, 256  # of the stored pictures, which stay small
+
+# What the page says of a run: the attribute of /summary, its words, unit, the factor to it and the peak whose error has
+# to be known where the run knows any.
+FIGURES = [("deflection", "greatest deflection", "mm", 1e3, "deflection"),
+           ("static_deflection", "greatest static deflection there", "mm", 1e3, "deflection"),
+           ("amplification", "amplification", "", 1.0, "deflection"),
+           ("moment", "greatest bending moment", "kN m", 1e-3, "moment"),
+           ("acceleration", "greatest acceleration of the bridge", "m/s²", 1.0, "acceleration"),
+           ("acceleration_lowpass", "the same, low-passed", "m/s²", 1.0, "acceleration"),
+           ("least_wheel_force", "least wheel force", "kN", 1e-3, "wheel_force"),
+           ("greatest_wheel_force", "greatest wheel force", "kN", 1e-3, "wheel_force"),
+           ("contact_losses", "losses of contact", "", 1.0, "wheel_force"),
+           ("longest_loss", "the longest of them", "ms", 1e3, "wheel_force")]
+
+
+def names():
+    """All scenes and studies of options/, as scenes/NAME and studies/NAME."""
+    return sorted(f"{path.parent.name}/{path.stem}" for kind in ("scenes", "studies")
+                  for path in (ROOT / "options" / kind).glob("*.yml"))
+
+
+def header(name):
+    """What the scene's file says of itself in its first lines: what, source, expected."""
+    lines = (ROOT / "options" / f"{name}.yml").read_text(encoding="utf-8").splitlines()[:3]
+    said = [re.fullmatch(r"# (?:What|Source|Expected): (.*)", line) for line in lines]
+    if len(said) < 3 or not all(said):
+        sys.exit(f"options/{name}.yml: does not open with its three lines: what, source, expected.")
+    return [match[1] for match in said]
+
+
+def sentence(text):
+    return text[0].upper() + text[1:]
+
+
+def compute(program, name, folder):
+    """Runs the scene; the file with its results."""
+    results = folder / f"{pathlib.Path(name).name}.h5"
+    run = subprocess.run([program, "-options_file", ROOT / "options" / f"{name}.yml", "-output_file", results,
+                          "-output_quiet"], cwd=ROOT, capture_output=True, text=True)
+    if run.returncode != 0:
+        sys.exit(f"options/{name}.yml could not be computed: {run.stderr.strip() or run.stdout.strip()}")
+    return results
+
+
+def draw(results, picture):
+    with h5py.File(results, "a") as file:  # so that the picture says nothing of the time that this machine took
+        for name in ("steps", "runs"):
+            file.attrs.pop(name, None)
+    subprocess.run([sys.executable, ROOT / "scripts" / "picture.py", results, picture], check=True,
+                   stdout=subprocess.DEVNULL)
+    with Image.open(picture) as page:
+        height = round(page.height * PICTURE_WIDTH / page.width)
+        small = page.convert("RGB").resize((PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
+    small.quantize(COLOURS, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE).save(picture, optimize=True)
+
+
+def in_figures(value):
+    """Four figures, without powers of ten where the value is large: 16,170."""
+    text = f"{value:.4g}"
+    return f"{float(text):,.0f}" if "e+" in text else text
+
+
+def figures(results):
+    """Rows of a table with the main figures; nothing for a mechanism, which has none of them."""
+    with h5py.File(results, "r") as file:
+        summary = dict(file["summary"].attrs)
+    known = [key.removeprefix("expected_error_") for key in summary if key.startswith("expected_error_")]
+    rows = [f"| {words} | {in_figures(factor * abs(float(summary[key])))} {unit} |".replace("  |", " |")
+            for key, words, unit, factor, peak in FIGURES if summary.get(key) and (not known or peak in known)]
+    return ["| figure | computed |", "| --- | --- |", *rows, ""] if rows else []
+
+
+def shown(name, folder, program, scratch):
+    """A scene's part of the page."""
+    what, source, expected = header(name)
+    short = pathlib.Path(name).name
+    results = compute(program, name, scratch)
+    draw(results, folder / f"{short}.png")
+    return [f"## {short.replace('_', ' ').capitalize()}", "", f"![{sentence(what)}]({short}.png)", "", sentence(what), "",
+            f"- Source: {source}", f"- Expected: {expected}", f"- Command: `./run.sh -options_file options/{name}.yml`", "",
+            *figures(results)]
+
+
+def table_of(others):
+    rows = ["| scene | what | source | expected |", "| --- | --- | --- | --- |"]
+    for name in others:
+        rows.append(" | ".join([f"| `{name}`", *(text.replace("|", "\\|") for text in header(name))]) + " |")
+    return ["## All other scenes", "", "Each is run by `./run.sh -options_file options/NAME.yml`, with the name of its row.", "", *rows, ""]
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--program", default=os.environ.get("TRAVERSE_BINARY", str(ROOT / "build" / "traverse")))
+    arguments.add_argument("--folder", type=pathlib.Path, help="where page and pictures go (default: doc)")
+    arguments.add_argument("scenes", nargs="*", metavar="SCENE", help="scenes/NAME or studies/NAME")
+    given = arguments.parse_args()
+    unknown = [name for name in given.scenes if name not in names()]
+    if unknown:
+        sys.exit(f"{unknown[0]}: no scene of options/; allowed: scenes/NAME and studies/NAME of the files there.")
+    if given.scenes and given.folder is None:
+        sys.exit("A page of some scenes wants a --folder of its own: doc/gallery.md shows them all.")
+    folder, chosen = given.folder or ROOT / "doc", given.scenes or SHOWN
+    folder.mkdir(parents=True, exist_ok=True)
+    page = ["# Gallery", "", "What the files in `options` describe, what they were taken from and what Traverse computes of "
+            "them; `/usr/bin/python3 scripts/gallery.py` writes this page and its pictures. What is expected stands in the "
+            "file of the scene, the figures beside it are of the run that drew the picture.", ""]
+    with tempfile.TemporaryDirectory() as scratch:
+        for name in chosen:
+            print(name, flush=True)
+            page += shown(name, folder, given.program, pathlib.Path(scratch))
+    page += table_of([name for name in names() if name not in chosen])
+    (folder / "gallery.md").write_text("\n".join(page).rstrip() + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
