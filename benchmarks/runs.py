@@ -94,7 +94,7 @@ class Run:
 
     def __init__(self, build, options, file, ranks=1):
         command = on_ranks(ranks) + [traverse(build)]
-        command += words(options | {"output_file": file, "output_quiet": "true"})
+        command += words(options | {"output_file": file, "output_quiet": "true", "accuracy_cache": "false"})
         begin, used = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
         done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment())
         self.process_seconds = time.monotonic() - begin

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "run/peaks.hpp"
 #include "traverse/options/entry.hpp"
 #include "traverse/scene/scene.hpp"
@@ -22,6 +23,8 @@ struct Promise {
   bool kept = false;      // promised: the expected error is not above the wanted one
   double expected = 0.0;  // relative to the peak
   std::string why_not;    // where it is not promised
+
+  void keep(base::Bytes& bytes) { bytes(present, kept, expected, why_not); }
 };
 
 /// A quantity's name in options and the results file.
@@ -44,6 +47,8 @@ struct Accuracy {
   /// Name in the results file and expected error of each quantity that is promised.
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took
+
+  void keep(base::Bytes& bytes) { bytes(measured, promises, alone, lost_contact, seconds); }
 };
 
 /// Whether there is something to choose, and something moves that it can be chosen by.

@@ -137,7 +137,7 @@ struct Search {
 }  // namespace
 
 bool chooses_step_alone(const Scene& scene) {
-  return !scene.beam && !scene.time_step && scene.end_time && !scene.vehicles.empty() &&
+  return !scene.beam && !scene.time_step && scene.end_time && !scene.vehicles.empty() && !scene.sweep &&
          scene.analysis == Analysis::transient;
 }
 

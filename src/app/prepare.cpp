@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "accuracy/kept_choice.hpp"
 #include "accuracy/trials.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/wheel_unloading.hpp"
@@ -21,7 +22,9 @@ bool frequencies_are_cheap(const beam::Beam& beam) {
 
 }  // namespace
 
-Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+namespace {
+
+Accuracy try_models(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   const std::optional<LanesChoice> lanes = lanes_for_one(scene, notes);
   if (!lanes) return choose(comm, scene, notes);
   scene = lanes->scene;
@@ -29,6 +32,20 @@ Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& not
   accuracy.measured = true;
   for (std::size_t q = 0; q < quantities; ++q)
     accuracy.promises[q] = {true, asks_for(scene, q), lanes->errors[q], "accuracy_of does not ask for it"};
+  return accuracy;
+}
+
+}  // namespace
+
+Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+  KeptChoice kept(comm, scene);
+  Accuracy accuracy;
+  std::vector<std::string> own;
+  if (!kept.read(own, accuracy, ChosenOf{scene})) {
+    accuracy = try_models(comm, scene, own);
+    if (accuracy.measured) kept.write(own, accuracy, ChosenOf{scene});
+  }
+  notes.insert(notes.end(), own.begin(), own.end());
   return accuracy;
 }
 

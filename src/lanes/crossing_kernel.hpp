@@ -123,10 +123,10 @@ class Group : CrossingAlgebra<W> {
       s.row_of[i] = s.x + (o.row_of[i] - o.x);  // the rows take turns
     }
     for (int i = 0; i < 2; ++i) s.bent_to[i] = s.x + (o.bent_to[i] - o.x);
-    s.rest_keeps = o.rest_keeps;
+    s.left_keeps = o.left_keeps;
     for (int i = 0; i < 4; ++i) {
-      s.to_rest[i] = o.to_rest[i];
-      s.to_rest_rate[i] = o.to_rest_rate[i];
+      s.to_left[i] = o.to_left[i];
+      s.to_left_rate[i] = o.to_left_rate[i];
     }
     s.h_before = o.h_before;
     for (int j = 0; j < most_kept; ++j) {
@@ -196,7 +196,7 @@ class Group : CrossingAlgebra<W> {
     if ((change < 0.0 ? -change : change) <= same_step * ds) return;
     s.hard = Mask{};
     renew_step(s, ds);
-    CrossingRest<W>::set_step(s);
+    CrossingLeftOut<W>::set_step(s);
     s.yield_to_force = fill(1.0);
     if (s.task.coupled) return;
     Lane compliance{}, stiffest{};

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "lanes/crossing_contacts.hpp"
-#include "lanes/crossing_rest.hpp"
+#include "lanes/crossing_left_out.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -53,7 +53,7 @@ struct CrossingLooks : CrossingAlgebra<W> {
     s.row_of[2] = oldest;
     Lane* seen = s.row_of[2];
     for (int i = 0; i < count; ++i) seen[i] = Lane{};
-    CrossingRest<W>::add(s, seen);
+    CrossingLeftOut<W>::add(s, seen);
     for (int i = 0; i < s.modes; ++i) {
       const Lane q = s.q[i], r = s.r[i], a = s.b[0][i];
       const double *deflection = s.task.probes.deflection + static_cast<long>(i) * n,
@@ -78,7 +78,7 @@ struct CrossingLooks : CrossingAlgebra<W> {
       const Mask larger = counts & (value > s.peak[i]);
       s.peak[i] = larger ? value : s.peak[i];
       s.peak_time[i] = larger ? s.time[2] : s.peak_time[i];
-      if (i >= 2 * n && s.task.rest.lag > 0.0) {
+      if (i >= 2 * n && s.task.left_out.lag > 0.0) {
         if (s.looks >= 2) look_at_lagging(s, i, counts);
         continue;
       }
@@ -114,7 +114,7 @@ struct CrossingLooks : CrossingAlgebra<W> {
     const Lane h = s.time[2] - s.time[1];
     for (int l = 0; l < W; ++l) {
       if (turns[l] == 0) continue;
-      const double step = h[l], lag = s.task.rest.lag < 100.0 * step ? s.task.rest.lag : 100.0 * step;
+      const double step = h[l], lag = s.task.left_out.lag < 100.0 * step ? s.task.left_out.lag : 100.0 * step;
       const double decay = __builtin_exp(-step / lag), decayed = 1.0 - decay, before = rising[l];
       const double k = (s.row_of[2][i][l] - start[l] - 0.5 * step * (before + falling[l])) /
                        (0.5 * step * (1.0 + decay) - lag * decayed);

@@ -172,7 +172,7 @@ void CrossingNumbers::add_bridge(const structure::ModalBridge& bridge, bool exac
                   probes.moment_by_rate.data(),
                   probes.moment_by_acceleration.data(),
                   probes.deflection_by_rate.empty() ? nullptr : probes.deflection_by_rate.data()};
-  task_.rest = {bridge.next_omega() * bridge.next_omega(), 2.0 * bridge.next_sigma(), bridge.lag()};
+  task_.left_out = {bridge.next_omega() * bridge.next_omega(), 2.0 * bridge.next_sigma(), bridge.lag()};
 }
 
 void CrossingNumbers::add_track() {

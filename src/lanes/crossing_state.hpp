@@ -70,13 +70,13 @@ struct CrossingState {
   Lane* row_of[3] = {};
   double s_before[2] = {};
   Lane *F0 = nullptr, *F1 = nullptr;
-  // What modes left out do at the probes (CrossingRest), [deflections, moments]: what forces bend them to at this
+  // What modes left out do at the probes (CrossingLeftOut), [deflections, moments]: what forces bend them to at this
   // instant and the one before, how fast that rose, where they are and how fast they move; what a step makes of [both
   // at its start, what they follow at its start and end] of deflections and keeps of moments; the step before, s;
   // whether a step begins where there may be a kink.
   Lane* bent_to[2] = {};
-  Lane *bend_rate = nullptr, *rest = nullptr, *rest_rate = nullptr;
-  Lane to_rest[4] = {}, to_rest_rate[4] = {}, rest_keeps{}, h_before{};
+  Lane *bend_rate = nullptr, *left = nullptr, *left_rate = nullptr;
+  Lane to_left[4] = {}, to_left_rate[4] = {}, left_keeps{}, h_before{};
   bool behind_kink = false;
   // W, at the start of a step and at its stages, and their integrals, J: CrossingPowers.
   Lane lost[most_kept] = {}, given[most_kept] = {}, all_lost{}, all_given{};
@@ -139,8 +139,8 @@ struct CrossingMemory {
     s.touching = take_from<char>(work, s.used, W, s.task.vehicles);
     for (Lane*& row : s.row_of) row = take_from<Lane>(work, s.used, W, probes + s.task.probes.count);
     for (Lane*& row : s.bent_to) row = take_from<Lane>(work, s.used, W, probes);
-    Lane** const of_rest[] = {&s.bend_rate, &s.rest, &s.rest_rate};
-    for (Lane** own : of_rest) *own = take_from<Lane>(work, s.used, W, probes);
+    Lane** const of_left[] = {&s.bend_rate, &s.left, &s.left_rate};
+    for (Lane** own : of_left) *own = take_from<Lane>(work, s.used, W, probes);
     s.peak = take_from<Lane>(work, s.used, W, probes);
     s.peak_time = take_from<Lane>(work, s.used, W, probes);
   }

@@ -63,9 +63,9 @@ struct TaskProbes {
   const double *moment_by_acceleration = nullptr, *deflection_by_rate = nullptr;     // the latter may be null
 };
 
-/// The mode that stands for those left out, 1/s2 and 1/s, and by how much they lag without inertia, s: CrossingRest.
+/// The mode that stands for those left out, 1/s2 and 1/s, and by how much they lag without inertia, s: CrossingLeftOut.
 /// No lag: they are at rest under the forces as these are.
-struct TaskRest {
+struct TaskLeftOut {
   double omega2 = 0.0, damping = 0.0, lag = 0.0;
 };
 
@@ -102,7 +102,7 @@ struct Task {
   TaskInfluence influence;
   TaskHeights heights;
   TaskProbes probes;
-  TaskRest rest;
+  TaskLeftOut left_out;
 
   int stretches = 0;
   const TaskStretch* stretch = nullptr;

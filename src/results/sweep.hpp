@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/bytes.hpp"
 #include "results/recorder.hpp"
 #include "results/verdict.hpp"
 
@@ -58,6 +59,10 @@ struct Sweep {
     /// How many runs they do not hold in, said in words; "" where there are none.
     std::string not_promised(const std::vector<double>& contact_losses) const;
     std::string method{};  // of runs side by side, as -ts_type names it; empty: as TS takes it
+
+    void keep(base::Bytes& bytes) {
+      bytes(modes, elements, in_bays, time_step, accuracy, expected_errors, lost_contact, method);
+    }
   } model;
 
   std::size_t rows() const { return trains.empty() ? 1 : trains.size(); }

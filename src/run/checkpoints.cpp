@@ -6,11 +6,10 @@
 #include <array>
 #include <string_view>
 
-#include "base/digest.hpp"
 #include "options/data_file.hpp"
-#include "options/input_texts.hpp"
 #include "results/origin.hpp"
 #include "results/stage.hpp"
+#include "run/scene_digest.hpp"
 #include "run/signals.hpp"
 #include "traverse/options/input.hpp"
 
@@ -20,14 +19,9 @@ namespace {
 constexpr double usual_interval = 900.0;  // s
 constexpr double cost_factor = 20.0;      // checkpoints take at most a twentieth of the time
 constexpr unsigned steps_a_look = 16;     // at the clock
-constexpr std::array free_options = {"ts_max_time",         "scene_tail",     "scene_name",   "restart",
-                                     "checkpoint_interval", "output_file",    "output_quiet", "options_file",
-                                     "ts_max_steps",        "checkpoint_file"};
-
-bool counts(const std::string& name) {
-  const bool shown = name.starts_with("ts_monitor") || name.starts_with("log_") || name.find("_view") != name.npos;
-  return !shown && std::find(free_options.begin(), free_options.end(), name) == free_options.end();
-}
+constexpr std::array<std::string_view, 11> free_options = {
+    "ts_max_time",  "scene_tail",   "scene_name",   "restart",         "checkpoint_interval", "output_file",
+    "output_quiet", "options_file", "ts_max_steps", "checkpoint_file", "accuracy_cache"};
 
 std::string given(const char* name) {
   const options::Entry* entry = options::in_force().find(name);
@@ -43,22 +37,7 @@ std::string path_for(const Scene& scene) {
 
 }  // namespace
 
-std::string digest_of(const Scene& scene) {
-  auto all = scene.options;
-  std::erase_if(all, [](const auto& option) { return !counts(option.first); });
-  std::sort(all.begin(), all.end());
-  base::Digest digest;
-  const auto add = [&](std::string_view text) {
-    digest.add(std::to_string(text.size()) + ":");
-    digest.add(text);
-  };
-  for (const auto& [name, value] : all) {
-    add(name);
-    add(value);
-  }
-  for (const options::InputText& file : options::tables_read()) add(file.text);
-  return fmt::format("{:016x}", digest.value());
-}
+std::string digest_of(const Scene& scene) { return digest_of(scene, free_options, options::tables_read()); }
 
 std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
   const std::string path = given("restart");

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "accuracy/kept_choice.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
 #include "run/deflection_check.hpp"
@@ -263,7 +264,12 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   StudyScenes& scenes = round->scenes;
   for (const std::size_t base : scenes.extreme_bases()) scenes.base(base);  // all input is checked first
   std::vector<std::string> notes;
-  const SweepChoice choice = choose_for_study(scenes, notes);
+  SweepChoice choice{scenes.base(scenes.extreme_bases().front()), {}};
+  KeptChoice kept(comm, given);
+  if (!kept.read(notes, choice.model, ChosenOf{choice.scene})) {
+    choice = choose_for_study(scenes, notes);
+    if (choice.model.accuracy > 0.0) kept.write(notes, choice.model, ChosenOf{choice.scene});
+  }
   scenes.choose(choice.scene);
   const CaseRunner& first = *scenes.runner(0, &notes).runs;
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());

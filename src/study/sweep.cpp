@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "accuracy/kept_choice.hpp"
 #include "case_runner.hpp"
 #include "modes_choice.hpp"
 #include "results/stage.hpp"
@@ -123,7 +124,12 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
   std::vector<std::string> notes;
-  const SweepChoice choice = choose_for_sweep(given, notes);
+  SweepChoice choice{given, {}};
+  KeptChoice kept(comm, given);
+  if (!kept.read(notes, choice.model, ChosenOf{choice.scene})) {
+    choice = choose_for_sweep(given, notes);
+    if (choice.model.accuracy > 0.0) kept.write(notes, choice.model, ChosenOf{choice.scene});
+  }
   const Scene& scene = choice.scene;
   CaseRunner runner(scene, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());

@@ -1,7 +1,9 @@
 // What a user sees of `accuracy`: what was chosen, what is promised, what is not, and the check.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "support/curve.hpp"
 #include "support/program.hpp"
@@ -49,6 +51,36 @@ TEST(AccuracyOption, OfSomePeaks) {
   EXPECT_TRUE(says(outcome, "not promised: acceleration: accuracy_of does not ask for it")) << outcome.out;
   const Workplace fresh(damped_span);
   expect_refusal(fresh, fresh.run({"-accuracy_of", "speed"}), {"accuracy_of", "'speed' is not allowed"});
+}
+
+// What was chosen is kept beside the results: the same scene is not tried again, another one is, and a file that is not
+// whole counts for nothing.
+TEST(AccuracyOption, IsKeptForTheSameScene) {
+  const Workplace workplace(damped_span);
+  const char* const kept = "chosen as before";
+  for (const std::vector<std::string>& kind :
+       {std::vector<std::string>{}, {"-sweep_speed", "20,60,10"}, {"-model_modes", "0"}}) {
+    const auto run = [&](std::vector<std::string> words) {
+      words.insert(words.end(), kind.begin(), kind.end());
+      Outcome outcome = workplace.run(words);
+      expect_success(outcome);
+      return outcome;
+    };
+    EXPECT_FALSE(says(run({"-output_file", "first.h5"}), kept));
+    const Outcome again = run({"-output_file", "second.h5", "-ts_monitor"});
+    EXPECT_TRUE(says(again, kept)) << again.out;
+    EXPECT_TRUE(says(again, "expected errors of the peaks")) << again.out;
+    EXPECT_FALSE(says(run({"-accuracy_cache", "false"}), kept));
+    EXPECT_FALSE(says(run({"-accuracy", "2e-3"}), kept));
+  }
+  const Results first(workplace.path("first.h5")), second(workplace.path("second.h5"));
+  for (const char* name : {"deflection", "acceleration", "expected_error_deflection", "steps"})
+    EXPECT_EQ(first.attribute("/summary", name), second.attribute("/summary", name)) << name;
+  for (const auto& file : std::filesystem::directory_iterator(workplace.path(".traverse_choices")))
+    std::filesystem::resize_file(file, std::filesystem::file_size(file) / 2);
+  const Outcome damaged = workplace.run({"-model_modes", "0"});
+  expect_success(damaged);
+  EXPECT_FALSE(says(damaged, kept));
 }
 
 // A trial run that fails is no failure of the run: its step was too long.

@@ -48,7 +48,7 @@ Results run_words(std::vector<std::string> words, MPI_Comm comm) {
   MPI_Bcast(&length, 1, MPI_INT, 0, comm);
   file.resize(static_cast<std::size_t>(length));
   MPI_Bcast(file.data(), length, MPI_CHAR, 0, comm);
-  words.insert(words.end(), {"-output_file", file, "-output_quiet", "true"});
+  words.insert(words.end(), {"-output_file", file, "-output_quiet", "true", "-accuracy_cache", "false"});
   int ranks = 1;
   MPI_Comm_size(MPI_COMM_WORLD, &ranks);
   if (ranks > 1) words.insert(words.begin() + 1, {"-step_ranks", "all"});  // what a test does not say otherwise

@@ -117,6 +117,7 @@ struct Scene {
   std::vector<std::string> accuracy_of;  // peaks, as in the option's list; empty: all
   bool mesh_open = false;                // its elements are chosen from the accuracy
   bool accuracy_report = false;          // a refined run at the end shows the true errors
+  bool accuracy_cache = true;            // what was chosen for the same scene before is taken again
   Output output;
   std::vector<options::VerdictLimit> limits;                 // that runs are checked against
   std::optional<options::NormRules> norm;                    // static effects and the verdict of EN 1991-2 are wanted

@@ -14,7 +14,7 @@ namespace traverse::lanes {
 namespace {
 
 template <int W>
-struct CrossingRest : CrossingAlgebra<W> {
+struct CrossingLeftOut : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
   using Own::lanes;
@@ -24,17 +24,17 @@ struct CrossingRest : CrossingAlgebra<W> {
 
   /// For steps of this length.
   static void set_step(State& s) {
-    const TaskRest& rest = s.task.rest;
-    if (rest.lag == 0.0) return;
+    const TaskLeftOut& of = s.task.left_out;
+    if (of.lag == 0.0) return;
     const double* h = reinterpret_cast<const double*>(&s.h);
     const auto set = [](Lane& lanes_of, int lane, double value) { reinterpret_cast<double*>(&lanes_of)[lane] = value; };
     for (int l = 0; l < W; ++l) {
-      set(s.rest_keeps, l, __builtin_exp(-h[l] / rest.lag));
+      set(s.left_keeps, l, __builtin_exp(-h[l] / of.lag));
       for (int from = 0; from < 4; ++from) {
-        const Oscillation end = oscillate(rest.omega2, rest.damping, h[l], from == 0 ? 1.0 : 0.0, from == 1 ? 1.0 : 0.0,
-                                          from == 2 ? rest.omega2 : 0.0, from == 3 ? rest.omega2 : 0.0);
-        set(s.to_rest[from], l, end.u);
-        set(s.to_rest_rate[from], l, end.w);
+        const Oscillation end = oscillate(of.omega2, of.damping, h[l], from == 0 ? 1.0 : 0.0, from == 1 ? 1.0 : 0.0,
+                                          from == 2 ? of.omega2 : 0.0, from == 3 ? of.omega2 : 0.0);
+        set(s.to_left[from], l, end.u);
+        set(s.to_left_rate[from], l, end.w);
       }
     }
   }
@@ -53,7 +53,7 @@ struct CrossingRest : CrossingAlgebra<W> {
       if (s.on[j] != 0) bend(s.g + static_cast<long>(j) * s.task.influence.channels, s.F[j]);
     for (int j = 0; j < s.task.loads; ++j)
       if (s.load_on[j] != 0) bend(s.load_g + static_cast<long>(j) * s.task.influence.channels, lanes(s.task.load)[j]);
-    if (s.ds == 0.0 || s.task.rest.lag == 0.0)
+    if (s.ds == 0.0 || s.task.left_out.lag == 0.0)
       follow_at_once(s, seen);
     else
       follow(s, seen);
@@ -65,9 +65,9 @@ struct CrossingRest : CrossingAlgebra<W> {
   static void follow_at_once(State& s, Lane* seen) {
     const int n = s.task.probes.count;
     for (int i = 0; i < 2 * n; ++i) {
-      s.rest[i] = s.bent_to[1][i];
-      s.rest_rate[i] = Lane{};
-      seen[i < n ? i : n + i] += s.rest[i];
+      s.left[i] = s.bent_to[1][i];
+      s.left_rate[i] = Lane{};
+      seen[i < n ? i : n + i] += s.left[i];
     }
   }
 
@@ -75,25 +75,25 @@ struct CrossingRest : CrossingAlgebra<W> {
   // What is left of r less P + Q t + bend t^2, which follows that, is free or follows a straight line.
   static void follow(State& s, Lane* seen) {
     const int n = s.task.probes.count;
-    const TaskRest& of = s.task.rest;
+    const TaskLeftOut& of = s.task.left_out;
     for (int i = 0; i < 2 * n; ++i) {
       const Lane start = s.bent_to[0][i], end = s.bent_to[1][i], rise = (end - start) / s.h;
       const Lane bend = s.behind_kink ? Lane{} : (rise - s.bend_rate[i]) / (s.h + s.h_before);
       s.bend_rate[i] = rise;
       if (i < n) {
         const Lane Q = -2.0 * of.damping / of.omega2 * bend, P = -(of.damping * Q + 2.0 * bend) / of.omega2;
-        const Lane r = s.rest[i] - P, rate = s.rest_rate[i] - Q, line = end - bend * s.h * s.h;
-        s.rest[i] = s.to_rest[0] * r + s.to_rest[1] * rate + s.to_rest[2] * start + s.to_rest[3] * line +
+        const Lane r = s.left[i] - P, rate = s.left_rate[i] - Q, line = end - bend * s.h * s.h;
+        s.left[i] = s.to_left[0] * r + s.to_left[1] * rate + s.to_left[2] * start + s.to_left[3] * line +
                     (P + s.h * (Q + s.h * bend));
-        s.rest_rate[i] = s.to_rest_rate[0] * r + s.to_rest_rate[1] * rate + s.to_rest_rate[2] * start +
-                         s.to_rest_rate[3] * line + (Q + 2.0 * bend * s.h);
-        seen[i] += s.rest[i];
-        seen[n + i] += of.omega2 * (end - s.rest[i]) - of.damping * s.rest_rate[i];
+        s.left_rate[i] = s.to_left_rate[0] * r + s.to_left_rate[1] * rate + s.to_left_rate[2] * start +
+                         s.to_left_rate[3] * line + (Q + 2.0 * bend * s.h);
+        seen[i] += s.left[i];
+        seen[n + i] += of.omega2 * (end - s.left[i]) - of.damping * s.left_rate[i];
       } else {
         const Lane Q = rise - bend * s.h - 2.0 * of.lag * bend, P = start - of.lag * Q;
-        s.rest[i] = s.rest_keeps * (s.rest[i] - P) + (P + s.h * (Q + s.h * bend));
-        seen[n + i] += s.rest[i];
-        seen[2 * n + i] += (end - s.rest[i]) / of.lag;
+        s.left[i] = s.left_keeps * (s.left[i] - P) + (P + s.h * (Q + s.h * bend));
+        seen[n + i] += s.left[i];
+        seen[2 * n + i] += (end - s.left[i]) / of.lag;
       }
     }
   }

@@ -1,0 +1,34 @@
+#include "run/scene_digest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/digest.hpp"
+
+namespace traverse::app {
+
+std::string digest_of(const Scene& scene, std::span<const std::string_view> free,
+                      const std::vector<options::InputText>& files, std::string_view more) {
+  auto all = scene.options;
+  std::erase_if(all, [&](const auto& option) {
+    const std::string& name = option.first;
+    const bool shows = name.starts_with("ts_monitor") || name.starts_with("log_") || name.find("_view") != name.npos;
+    return shows || std::find(free.begin(), free.end(), name) != free.end();
+  });
+  std::sort(all.begin(), all.end());
+  base::Digest digest;
+  const auto add = [&](std::string_view text) {
+    digest.add(std::to_string(text.size()) + ":");
+    digest.add(text);
+  };
+  for (const auto& [name, value] : all) {
+    add(name);
+    add(value);
+  }
+  for (const options::InputText& file : files) add(file.text);
+  add(more);
+  return fmt::format("{:016x}", digest.value());
+}
+
+}  // namespace traverse::app
