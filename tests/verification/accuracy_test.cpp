@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "support/curve.hpp"
+#include "support/paths.hpp"
 #include "support/quarter_car.hpp"
 #include "support/scene_run.hpp"
 #include "support/temporary_folder.hpp"
@@ -146,7 +147,7 @@ TEST(Accuracy, OfMechanisms) {
   const std::string andrews = without_step("r9_andrews");
   std::vector<double> steps;
   for (const char* accuracy : {"1e-3", "1e-9"}) {
-    Results run = run_yaml(andrews, {{"accuracy", accuracy}});
+    Results run = run_yaml(andrews, {{"accuracy", accuracy}, {"output_interval", "3e-4"}});
     const auto expectation = expected(run, "position");
     ASSERT_TRUE(expectation) << accuracy;
     EXPECT_TRUE(expected(run, "joint_force")) << accuracy;
