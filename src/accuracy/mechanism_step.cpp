@@ -58,13 +58,11 @@ class Runs {
  public:
   Runs(MPI_Comm comm, const Scene& scene) : scene_(scene), shared_(comm, scene, ignored_) {
     scene_.quiet = true;
-    scene_.time_step = *scene.end_time / instants;
-    scene_.output.interval = scene_.time_step;
+    scene_.output.interval = longest_step_alone(scene);
     for (const int type : scene.train.vehicles)
       bodies_ += static_cast<double>(scene.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
   }
 
-  double longest_step() const { return *scene_.output.interval; }
   double seconds(double step) const { return *scene_.end_time / step * seconds_a_body * bodies_; }
   std::size_t count() const { return kept_.size(); }
 
@@ -141,6 +139,8 @@ bool chooses_step_alone(const Scene& scene) {
          scene.analysis == Analysis::transient;
 }
 
+double longest_step_alone(const Scene& scene) { return *scene.end_time / instants; }
+
 Accuracy choose_step_alone(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
@@ -150,7 +150,7 @@ Accuracy choose_step_alone(MPI_Comm comm, Scene& scene, std::vector<std::string>
   const double wanted = share * scene.accuracy;
   const auto refused = [&](std::size_t q) { return q == contact_force && runs.lost_contact(); };
   const auto done = [&](std::size_t q) { return refused(q) || searches[q].done(wanted); };
-  double step = runs.longest_step(), spent = runs.seconds(step);
+  double step = longest_step_alone(scene), spent = runs.seconds(step);
   for (int i = 0; i < most_halvings && !(done(position) && done(joint_force) && done(contact_force)); ++i) {
     step *= 0.5;
     spent += runs.seconds(step);

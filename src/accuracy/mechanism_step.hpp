@@ -9,6 +9,9 @@ namespace traverse::app {
 /// Whether there is no bridge and the step is open.
 bool chooses_step_alone(const Scene& scene);
 
+/// The step that this begins with, s.
+double longest_step_alone(const Scene& scene);
+
 /// Collective. Fills in the scene's step and says so in `notes`. InputError as the scene's own run would throw it.
 Accuracy choose_step_alone(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
 

@@ -8,6 +8,7 @@
 #include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
 #include "accuracy/horizon.hpp"
+#include "accuracy/mechanism_step.hpp"
 #include "accuracy/trials.hpp"
 #include "modes/modes.hpp"
 #include "study/study_scenes.hpp"
@@ -62,6 +63,14 @@ Look::Look(const Scene& given) : whole(first_scene(given)), scene(one_run(whole)
 
 void Look::choose_mesh_and_step() {
   if (scene.analysis != Analysis::transient) return;
+  if (chooses_step_alone(scene) && own_measure() == nullptr) {
+    scene.time_step = longest_step_alone(scene);
+    choice.push_back(
+        fmt::format("steps of {:.3g} s to begin with; runs of the whole scene halve them until positions and "
+                    "forces are right to accuracy {:g}",
+                    *scene.time_step, scene.accuracy));
+    return;
+  }
   if (!tried) {
     if (scene.time_step) choice.push_back(fmt::format("steps of {:g} s, as given", *scene.time_step));
     if (const options::Entry* option = own_measure(); option != nullptr && chooses(scene))

@@ -220,6 +220,9 @@ class Chooser {
   Chooser(const Scene& scene, const TrialSpeeds& speeds, bool alone) : scene_(scene), fastest_(scene), alone_(alone) {
     fastest_.train.speed = scene.sweep->speeds.back();
     for (const double x : wheels_at_start(fastest_)) whole_ = std::max(whole_, scene.beam->length() - x);
+    // What wheels do as they come off the bridge is seen too, where the run goes on as long.
+    const std::vector<double>& spans = scene.beam->spans;
+    whole_ += std::min(scene.tail.value_or(0.0) * fastest_.train.speed, *std::max_element(spans.begin(), spans.end()));
     if (scene.end_time) whole_ = *scene.end_time * fastest_.train.speed;
     distance_ = beginning(fastest_, whole_ / fastest_.train.speed) * fastest_.train.speed;
     const Scene part = shortened(fastest_, distance_ / fastest_.train.speed);
