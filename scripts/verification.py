@@ -4,6 +4,7 @@
 verification.py                writes the page from the bounds in tests/ and the figures in doc/verification_figures.csv
 verification.py --check        writes nothing; fails where the page is not what would be written
 verification.py --measure      runs build/tests/verification_tests first and stores what it records (--build FOLDER)
+verification.py --measure 'Study.*'      those tests alone; what the others recorded stays
 
 Each row of verification_rows.py and verification_ways.py names a test and the text of an assertion, with {} where the bound stands. The bound is
 read from the source there; a test or an assertion that is gone, and a figure beyond its bound, end with an error.
@@ -180,7 +181,8 @@ def load(path):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--check", action="store_true", help="write nothing, compare")
-    parser.add_argument("--measure", action="store_true", help="run the tests first")
+    parser.add_argument("--measure", nargs="?", const="*", metavar="TESTS",
+                        help="run the tests first, or those that GoogleTest knows by these names")
     parser.add_argument("--build", default=str(ROOT / "build"), help="where the tests are built")
     parser.add_argument("--root", default=str(ROOT), help="the source tree")
     arguments = parser.parse_args()
@@ -188,10 +190,10 @@ def main():
     stored, out = folder / "verification_figures.csv", folder / "verification.md"
     try:
         if arguments.measure:
-            figures, status = measured.run_tests(arguments.build)
+            figures, status = measured.run_tests(arguments.build, arguments.measure)
             if status != 0:
                 raise Broken("verification tests failed: nothing is stored")
-            store(stored, figures)
+            store(stored, figures if arguments.measure == "*" else load(stored) | figures)
         text = page(arguments.root, load(stored))
         if not arguments.check:
             out.write_text(text)

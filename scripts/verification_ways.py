@@ -32,11 +32,11 @@ WAYS = [
             [Check('EXPECT_LT(relative_difference(run("/separations/start"), full("/separations/start")), {});')]),
     ]),
     ("Runs side by side", [
-        Row("two coaches over three spans at three speeds: all peaks", "the same runs, each driven by TS",
+        Row("two coaches over three spans at three speeds: peaks of deflection and wheel forces", "the same runs, each driven by TS",
             "SideBySide.CoachesOverThreeSpans", [Check('"1e-3", "2.5e-4", {});', "three_span_train")]),
-        Row("six hinged cars at four speeds: all peaks", "the same runs, each driven by TS",
+        Row("six hinged cars at four speeds: peaks of deflection and wheel forces", "the same runs, each driven by TS",
             "SideBySide.OneVehicleOfManyCars", [Check('"60,72,4", "2e-3", "5e-4", {});', "articulated_train")]),
-        Row("a coach on a rough track at three speeds: all peaks", "the same runs, each driven by TS",
+        Row("a coach on a rough track at three speeds: peaks of deflection and wheel forces", "the same runs, each driven by TS",
             "SideBySide.RoughTrack", [Check('"76,84,4", "8e-4", "2e-4", {});', "three_span_train")]),
         Row("one solve a step, modes exact: greatest wheel force", "a fine step of esdirk4", "SideBySide.OneSolveAStep",
             [Check("EXPECT_LT(errors[1], {});", "error")]),
@@ -50,8 +50,12 @@ WAYS = [
                 Check("EXPECT_LT(difference(fine[i], exact), {}) << speeds[i];", None, "200 instants")]),
     ]),
     ("Single runs stepped by the lanes' kernel", [
-        Row("two coaches over three spans: forces, deflections, moments, reactions", "the same run step by step in full",
+        Row("two coaches over three spans: wheel forces, reactions, accelerations of bogies", "the same run step by step in full",
             "SteppedApart.CoachesOverThreeSpans", [Check('{"ts_dt", "2.5e-4"}}, {}, 3e-5);', "three spans")]),
+        Row("two coaches over three spans by 24 modes: curves at the probes", "fine elements", "SteppedApart.ModesLeftOut", [
+            Check('{std::tuple("/probes/deflection", {}, 2.0),', "probes/deflection", "deflection"),
+            Check('{"/probes/acceleration", {}, 0.5},', "probes/acceleration", "acceleration"),
+            Check('{"/probes/moment", {}, 0.15}}', "probes/moment", "moment")]),
         Row("a coach on a rough track: the same", "the same run in full", "SteppedApart.RoughTrack",
             [Check("                     {}, 1e-3);", "rough track")]),
         Row("modes and linear vehicles found by `accuracy` 1e-3: deflection", "fine elements, mechanisms",
