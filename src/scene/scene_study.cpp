@@ -62,7 +62,7 @@ void read_sweep(const Options& o, Scene& scene) {
 void read_modal(const Options& o, Scene& scene) {
   const std::string value = o.text("model_modes");
   if (value == "auto" || value == "0") {
-    scene.modes_open = value == "auto";
+    scene.modes_open = value == "auto" && !(scene.beam && scene.beam->foundation.nonlinear());
     if (o.has("model_damping_ratios")) o.refuse("model_damping_ratios", "needs model_modes, whose ratios these are");
     return;
   }

@@ -37,8 +37,9 @@ constexpr double shorter = 0.7;                                 // a quarter of 
 constexpr double longer = 1.4;
 constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
 constexpr int fewest_modes = 4, most_modes = 128;
-constexpr double order_of_modes = 6.0;   // that errors of the modes fall with at most: what is farther off is not tried
-constexpr double elements_a_wave = 4.0;  // of the highest mode; a mesh twice as fine has to agree
+constexpr double order_of_modes = 6.0;  // that errors of the modes fall with at most: what is farther off is not tried
+constexpr double weight_of_touch = 50.0;  // as measured: accelerations beside a hinge
+constexpr double elements_a_wave = 4.0;   // of the highest mode; a mesh twice as fine has to agree
 
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full &&
@@ -243,7 +244,10 @@ class Chooser {
       throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
     LanesChoice choice;
     check_wholes(search, choice);
-    for (double& error : choice.errors) error += defect;
+    for (std::size_t q = 0; q < quantities; ++q)
+      if (asks_for(scene_, q)) choice.errors[q] += defect + touch_ahead();
+    if (greatest(choice.errors) > scene_.accuracy)
+      throw NotChosen{"wheels touch the slopes beside a hinge ahead of their centres"};
     choice.scene = with(scene_, model_);
     if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
     choice.scene.step_probes = true;
@@ -259,6 +263,18 @@ class Chooser {
   double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
 
  private:
+  /// Of all peaks: wheels touch a slope s by R s ahead of their centres, which the kernel leaves out. Beside a hinge
+  /// they are on slopes where deflections are largest.
+  double touch_ahead() {
+    if (scene_.beam->hinges.empty()) return 0.0;
+    double deflection = 0.0;
+    for (const CrossingResult& run : beginnings_->run(model_))
+      for (const lanes::CrossingPeak& peak : run.deflection) deflection = std::max(deflection, peak.value);
+    const std::vector<double>& spans = scene_.beam->spans;
+    const double length = *std::min_element(spans.begin(), spans.end());
+    return weight_of_touch * scene_.vehicles.front().wheels.front().radius * deflection / (length * length);
+  }
+
   /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
   /// should not cost several, against a longer one, by errors that fall at least with the third power, or the method's.
   void check_wholes(const Search& search, LanesChoice& choice) {

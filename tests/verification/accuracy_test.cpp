@@ -132,6 +132,15 @@ TEST(Accuracy, StepOfStiffnessFarFromTheStart) {
   EXPECT_LE(std::abs(peak_of(run, "acceleration") / peak_of(truth, "acceleration") - 1.0), 1e-2);
 }
 
+// Supports that let go are no part of any mode: where they come late, no trial run would show that.
+TEST(Accuracy, OneSidedSupportsAreNotTakenByModes) {
+  const std::string prop = "foundation: {vertical: {x: 22.5, k: 2.0e8, c: 1.0e5, one_sided: true}}\n";
+  Results with = run_yaml(one_span + prop + car_on_tyre, {{"accuracy", "1e-2"}, {"accuracy_of", "deflection"}});
+  EXPECT_LE(with("/modes/frequency").size(), 2U);
+  Results without = run_yaml(one_span + car_on_tyre, {{"accuracy", "1e-2"}, {"accuracy_of", "deflection"}});
+  EXPECT_GT(without("/modes/frequency").size(), 2U);
+}
+
 /// A scene file without the step that it gives.
 std::string without_step(const std::string& name) {
   std::ifstream file(std::string(TRAVERSE_SOURCE_DIR) + "/options/scenes/" + name + ".yml");
