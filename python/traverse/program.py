@@ -45,8 +45,10 @@ def _computed(scenes, folder, ranks, output, options):
 
 
 def _environment():
-    """More ranks than processors are allowed, as run.sh does."""
+    """More ranks than processors are allowed, and mpirun as root, as run.sh does."""
     defaults = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}
+    if os.geteuid() == 0:
+        defaults |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
     return defaults | dict(os.environ)
 
 
