@@ -35,7 +35,8 @@ class SteppedApart {
     double x = 0.0, force = 0.0;
   };
   virtual Wheel wheel(std::size_t wheel) const = 0;
-  /// Deflections, accelerations and moments of the probes, where moments lag their rates too; the rest is left as it is.
+  /// Deflections, accelerations and moments of the probes, where moments lag their rates too; the rest is left as it
+  /// is.
   virtual void see(std::span<beam::Response> probes) const = 0;
   /// s: by how much moments follow behind what makes them, as ViscousLag has it.
   virtual double moment_lag() const = 0;
