@@ -21,7 +21,7 @@ class _Quantity(ctypes.Structure):
 @functools.lru_cache(maxsize=None)
 def _library():
     try:
-        library = ctypes.CDLL(places.library())
+        library = ctypes.CDLL(places.shared_library())
     except OSError as failure:
         raise places.Error(f"libtraverse.so cannot be loaded; build it by cmake --build build ({failure})", 4) from None
     c = ctypes

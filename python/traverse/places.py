@@ -28,7 +28,7 @@ def program():
     return str(found)
 
 
-def library():
+def shared_library():
     """The path of libtraverse.so: beside the program of TRAVERSE_BINARY, in the checkout, or installed."""
     named = os.environ.get("TRAVERSE_BINARY")
     beside_program = pathlib.Path(named).parent / "libtraverse.so" if named else None
