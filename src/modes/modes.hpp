@@ -39,6 +39,8 @@ struct Basis {
 /// Collective; the same on every rank. The `count` lowest modes of bending, and the remaining copies of the last
 /// one's frequency, so that nothing depends on which of equal spans comes first. Not for layered tracks.
 Basis bending_basis(const beam::Beam& beam, int count);
+/// Those of a basis of at least so many.
+Basis lowest_of(const Basis& basis, int count);
 
 /// A basis as modes are stored: deflections at these points of the bridge, the largest 1.
 Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoints& points);

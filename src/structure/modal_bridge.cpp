@@ -21,8 +21,9 @@ base::Handle<Vec> vector(MPI_Comm comm, const double* local, int size) {
 
 }  // namespace
 
-ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios)
-    : beam_(beam), statics_(statics), basis_(modes::bending_basis(beam, count)) {
+ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, modes::Basis basis,
+                         const std::vector<double>& ratios)
+    : beam_(beam), statics_(statics), basis_(std::move(basis)) {
   set_damping(ratios);
   influence_ = influence_of(lines_of_modes(), {});
 }

@@ -52,10 +52,13 @@ struct ModalSlopes {
 
 class ModalBridge {
  public:
-  /// Collective. The `count` lowest modes of bending with all copies of the last frequency. `ratios`: damping ratios of
-  /// each mode, the last one for all further modes; empty: the beam's Rayleigh damping. InputError where the beam
-  /// floats. The operator may be used further; the beam must stay.
-  ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios);
+  /// Collective. By these modes of bending. `ratios`: damping ratios of each mode, the last one for all further modes;
+  /// empty: the beam's Rayleigh damping. InputError where the beam floats. The operator may be used further; the beam
+  /// must stay.
+  ModalBridge(const beam::Beam& beam, BeamOperator& statics, modes::Basis basis, const std::vector<double>& ratios);
+  /// The `count` lowest, with all copies of the last frequency.
+  ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios)
+      : ModalBridge(beam, statics, modes::bending_basis(beam, count), ratios) {}
 
   /// Collective. Adds the response at stations to the forms, and its static correction to the influence. gravity: 0
   /// without self-weight.

@@ -92,6 +92,14 @@ double LaneTrials::defect(const LaneModel& model) const {
   return std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; })->defect;
 }
 
+/// That of a setup with the same mesh and more modes; null: none.
+const modes::Basis* LaneTrials::basis_with(const LaneModel& model) const {
+  for (const auto& [numbers, setup] : setups_)
+    if (numbers.second == model.elements && numbers.first > model.modes && setup && setup->shared->modal)
+      return &setup->shared->modal->basis();
+  return nullptr;
+}
+
 LaneTrials::Setup& LaneTrials::setup(const LaneModel& model) {
   std::unique_ptr<Setup>& place = setups_[{model.modes, model.elements}];
   if (place) return *place;
@@ -100,7 +108,7 @@ LaneTrials::Setup& LaneTrials::setup(const LaneModel& model) {
   std::vector<std::string> ignored;
   place->shared.emplace(PETSC_COMM_SELF, place->scene, ignored);
   place->shared->damp(place->scene, true, ignored);
-  place->shared->prepare(place->scene, ignored);
+  place->shared->prepare(place->scene, ignored, basis_with(model));
   if (const std::string why = lanes_obstacle(place->scene, *place->shared); !why.empty()) throw Refused{why};
   place->lanes.emplace(place->scene, *place->shared);
   if (!place->lanes->obstacle().empty()) throw Refused{place->lanes->obstacle()};

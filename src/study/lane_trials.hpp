@@ -66,6 +66,7 @@ class LaneTrials {
     double defect = 0.0;
   };
   Setup& setup(const LaneModel& model);
+  const modes::Basis* basis_with(const LaneModel& model) const;
 
   Scene scene_;
   std::vector<std::vector<LaneRun>> groups_;

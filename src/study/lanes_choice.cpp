@@ -14,7 +14,7 @@
 #include "accuracy/trials.hpp"
 #include "lanes/speed_class.hpp"
 #include "results/stage.hpp"
-#include "study/lane_trials.hpp"
+#include "study/lane_search.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
@@ -23,23 +23,17 @@ namespace {
 using lanes::CrossingResult;
 using Errors = LaneErrors;
 
-constexpr std::array methods = {"genalpha", "esdirk4"};
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
 constexpr std::size_t most_spans_alone = 8;  // each wants some sixteen modes
 // Times its speed: the trials of a single run, whose peaks may agree by chance.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
-constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4,
-                 part_of_all = 0.95;     // of the wanted error
-constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
-constexpr int most_halvings = 8, most_shortenings = 6;
-constexpr std::array step_factors = {2.0, 1.4, 1.0, 0.7, 0.5};  // times the step of esdirk4, of what may cost less
-constexpr double shorter = 0.7;                                 // a quarter of an error of fourth order
+constexpr double part_of_all = 0.95;      // of the wanted error
+constexpr double first_step_factor = 4;   // times the step that the accuracy's search would begin with
+constexpr int most_shortenings = 6;
+constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 constexpr double longer = 1.4;
 constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
-constexpr int fewest_modes = 4, most_modes = 128;
-constexpr double order_of_modes = 6.0;  // that errors of the modes fall with at most: what is farther off is not tried
 constexpr double weight_of_touch = 50.0;  // as measured: accelerations beside a hinge
-constexpr double elements_a_wave = 4.0;   // of the highest mode; a mesh twice as fine has to agree
 
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full &&
@@ -74,105 +68,6 @@ std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, 
   }
   return groups;
 }
-
-int mesh_for(const Scene& scene, int modes) {
-  if (!scene.mesh_open) return mesh_of(scene);
-  const double longest = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end());
-  const double waves = 0.5 * modes * longest / scene.beam->length() + 1.0;  // of the highest mode in that span
-  const int elements = static_cast<int>(std::ceil(elements_a_wave * waves));
-  return aligned_mesh(scene, std::max(first_mesh(scene), elements + elements % 2));
-}
-
-class Search {
- public:
-  /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes
-  /// and mesh change is seen there as well.
-  Search(LaneTrials& trials, LaneTrials& mixed, double accuracy)
-      : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
-
-  /// The cheapest model within the accuracy; empty: none.
-  std::optional<LaneModel> run(double first_step) {
-    LaneModel model{fewest_modes, mesh_for(trials_.scene(), fewest_modes), structure::find_method("esdirk4"),
-                    first_step};
-    // Steps first, as modes are told apart by what the contacts do to them.
-    if (!halve_step(model) || !add_modes(model) || !halve_step(model) || !refine_mesh(model)) return std::nullopt;
-    return cheaper(model);
-  }
-  /// Of modes and mesh, and of the steps.
-  double error_of_model(std::size_t q) const { return modes_[q] + mesh_[q]; }
-  double error_of_steps(std::size_t q) const { return steps_[q]; }
-
- private:
-  static Errors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to) {
-    const std::vector<CrossingResult>& rough = trials.run(from);
-    return difference(trials.scene(), rough, trials.run(to));
-  }
-  bool halve_step(LaneModel& model) {
-    for (int i = 0; i < most_halvings; ++i) {
-      LaneModel finer = model;
-      finer.step *= 0.5;
-      steps_ = change(trials_, model, finer);
-      if (greatest(steps_) <= part_of_steps * accuracy_) return true;
-      model = finer;
-    }
-    return false;
-  }
-  bool add_modes(LaneModel& model) {
-    for (int modes = fewest_modes; 2 * modes <= most_modes; modes *= 2) {
-      LaneModel more = model;
-      more.modes = 2 * modes;
-      more.elements = mesh_for(trials_.scene(), more.modes);
-      // Three quarters of so many, once half were too few.
-      for (const int number : {modes == fewest_modes ? modes : modes * 3 / 4, modes}) {
-        model.modes = number;
-        model.elements = more.elements;
-        modes_ = change(mixed_, model, more);
-        if (greatest(modes_) <= part_of_modes * accuracy_) {
-          model.elements = mesh_for(trials_.scene(), model.modes);
-          return true;
-        }
-      }
-      const double most = 0.5 * most_modes / modes;
-      if (greatest(modes_) > part_of_modes * accuracy_ * std::pow(most, order_of_modes)) return false;
-    }
-    return false;
-  }
-  bool refine_mesh(LaneModel& model) {
-    for (int i = 0; trials_.scene().mesh_open && i < most_halvings; ++i) {
-      LaneModel finer = model;
-      finer.elements *= 2;
-      mesh_ = change(mixed_, model, finer);
-      if (greatest(mesh_) <= part_of_mesh * accuracy_) return true;
-      model = finer;
-    }
-    return !trials_.scene().mesh_open;
-  }
-  /// A longer step, or the method of one solve a step, where that costs less.
-  LaneModel cheaper(const LaneModel& model) {
-    LaneModel exact = model;
-    exact.step *= 0.5;
-    const auto solves = [](const LaneModel& m) {
-      return static_cast<double>(m.method->make(m.method->parameter.value).stages.size()) / m.step;
-    };
-    LaneModel best = model;
-    for (const char* method : methods)
-      for (const double factor : step_factors) {
-        const LaneModel tried = {model.modes, model.elements, structure::find_method(method), factor * model.step};
-        if (solves(tried) >= solves(best)) continue;
-        const Errors own = change(trials_, tried, exact);
-        const double over = greatest(own) / (part_of_steps * accuracy_);
-        if (over > std::pow(factor / step_factors.back(), tried.method->order)) break;  // nor will the shortest do
-        if (over > 1.0) continue;
-        steps_ = own;
-        best = tried;
-      }
-    return best;
-  }
-
-  LaneTrials &trials_, &mixed_;
-  double accuracy_;
-  Errors modes_{}, steps_{}, mesh_{};
-};
 
 /// How far the chosen model is from the elements and the mechanisms themselves, at one speed.
 Errors off_the_elements(const LaneTrials& trials, const LaneModel& model, const CrossingResult& lane, double speed,
@@ -233,7 +128,7 @@ class Chooser {
   }
 
   LanesChoice choose() {
-    Search search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, (alone_ ? part_alone : 1.0) * scene_.accuracy);
+    LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, (alone_ ? part_alone : 1.0) * scene_.accuracy);
     const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
     const std::optional<LaneModel> found = search.run(first);
     if (!found) throw NotChosen{"the peaks do not settle to the accuracy with up to 128 modes"};
@@ -277,7 +172,7 @@ class Chooser {
 
   /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
   /// should not cost several, against a longer one, by errors that fall at least with the third power, or the method's.
-  void check_wholes(const Search& search, LanesChoice& choice) {
+  void check_wholes(const LaneSearch& search, LanesChoice& choice) {
     for (int i = 0; i <= most_shortenings; ++i) {
       if (i > 0) model_.step *= shorter;
       LaneModel other = model_;
