@@ -79,11 +79,16 @@ bool asks_for(const Scene& scene, std::size_t quantity) {
   return asked.empty() || std::find(asked.begin(), asked.end(), stored_name(quantity)) != asked.end();
 }
 
+void Accuracy::promise_nothing() {
+  for (Promise& promise : promises) promise.kept = false;
+  for (Promise& promise : alone) promise.kept = false;
+}
+
 std::string Accuracy::withdrawn(int contact_losses) {
   const auto kept = [](const Promise& p) { return p.present && p.kept; };
   if (!measured || contact_losses == 0 || lost_contact || std::none_of(promises.begin(), promises.end(), kept))
     return {};
-  for (Promise& promise : promises) promise.kept = false;
+  promise_nothing();
   return fmt::format(
       "nothing is promised after all: wheels lost contact {} times, which no trial run has seen; "
       "-accuracy_report shows the errors",

@@ -44,6 +44,7 @@ struct Accuracy {
   bool lost_contact = false;                    // wheels did in trial runs
   /// After the run, which lost contact so often: where no trial run did, nothing is promised any more. Says so, or "".
   std::string withdrawn(int contact_losses);
+  void promise_nothing();
   /// Name in the results file and expected error of each quantity that is promised.
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took

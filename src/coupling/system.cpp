@@ -119,12 +119,12 @@ void System::evaluate_fleet(double t, const double* y) {
   evaluated_time_ = t;
   const bool set = fleet_.set(t, p_.data(), p_.data() + fleet_.freedom());
   if ((share_.places(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
-    throw SolverError("at t = " + std::to_string(t) + " s " + trouble());
+    throw StepTooLong("at t = " + std::to_string(t) + " s " + trouble());
   fleet_.place_wheels();
   if (structure_) structure_->gather(fleet_.elements(), y, y + n_, v_, w_);
   const bool touched = fleet_.touch(per_node(), v_.data(), w_.data());
   if ((share_.exchange(touched ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
-    throw SolverError("a wheel has fallen below the running surface, or a body been driven through another, at t = " +
+    throw StepTooLong("a wheel has fallen below the running surface, or a body been driven through another, at t = " +
                       std::to_string(t) +
                       " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too "
                       "soft");

@@ -277,7 +277,7 @@ double Stepper::step_to(double from, double end) {
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
   if (reason < 0)
-    throw SolverError("the step of " + std::to_string(h) + " s at t = " + std::to_string(t) +
+    throw StepTooLong("the step of " + std::to_string(h) + " s at t = " + std::to_string(t) +
                       " s could not be taken, not even shortened: " + system_.trouble());
   return t;
 }
@@ -325,7 +325,7 @@ void Stepper::check_bounds(double t, const double* y, const double* ydot) const 
         "at rest the beam deflects by more than its length: what holds it is far too soft for its loads; look at the "
         "units of beam_EI, the foundation's k and the loads");
   if (!std::isfinite(bounds[0]) || off)
-    throw SolverError("the motion has grown beyond all bounds by t = " + std::to_string(t) +
+    throw StepTooLong("the motion has grown beyond all bounds by t = " + std::to_string(t) +
                       " s: the step is too long for this integrator; take a smaller -ts_dt or an implicit -ts_type");
 }
 

@@ -64,7 +64,7 @@ class ByLanes final : public coupling::SteppedApart {
     const bool to_kink = at_kink(t + h);
     const lanes::Trouble trouble = crossing_.step(t + h, from_kink, to_kink);
     if (trouble == lanes::not_finite)
-      throw SolverError(fmt::format(
+      throw StepTooLong(fmt::format(
           "the motion has grown beyond all bounds by t = {} s: the step is too long; take a smaller -ts_dt", t + h));
     if (trouble != lanes::none) return false;
     time_ = t + h;

@@ -22,7 +22,7 @@ constexpr double most_static_work = 2e5;  // probes times nodes, up to which sta
 void check_balance(const Scene& scene, const results::Summary& summary) {
   const double allowed = scene.beam ? unbalanced : unbalanced_mechanism;
   if (summary.energy_residual > allowed * summary.energy_scale + rounding * summary.largest_energy)
-    throw SolverError(
+    throw StepTooLong(
         fmt::format("the energy does not balance: {:g} J are missing where the energies change by {:g} J; the step is "
                     "too long for this integrator, take a smaller -ts_dt or an implicit -ts_type",
                     summary.energy_residual, summary.energy_scale));
@@ -89,7 +89,7 @@ void Watch::store(bool end) {
   else
     recorder_.add(sample_);
   if (summary_.energy_residual > diverged * summary_.energy_scale + rounding * summary_.largest_energy)
-    throw SolverError(
+    throw StepTooLong(
         fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
                     "integrator, take a smaller -ts_dt or an implicit -ts_type",
                     now_.energy.residual, sample_.time));

@@ -43,6 +43,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.tail = o.optional_number("scene_tail");
   scene.end_time = o.optional_number("ts_max_time");
   scene.time_step = o.optional_number("ts_dt");
+  scene.step_open = !scene.time_step;
   scene.mode_count = o.integer("modes_count");
   scene.contact_tolerance = o.optional_number("contact_tolerance");
   scene.impact_steps = o.integer("contact_impact_steps");

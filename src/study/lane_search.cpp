@@ -64,14 +64,23 @@ bool LaneSearch::halve_step(LaneModel& model) {
   return false;
 }
 
+/// Half as many modes more, equal spans having each as often as they are.
+LaneModel LaneSearch::with_more_modes(const LaneModel& model) {
+  LaneModel more = model, less = model;
+  for (int modes = model.modes, found = 0;; modes = mixed_.modes(less)) {
+    if (found >= more_modes * modes) return more;
+    more.modes = static_cast<int>(std::ceil(more_modes * modes));
+    more.elements = less.elements = mesh_for(trials_.scene(), more.modes);
+    found = mixed_.modes(more);
+  }
+}
+
 bool LaneSearch::add_modes(LaneModel& model) {
   double fewest = 0.0;
   for (const int modes : numbers_of_modes) {
     if (modes < fewest) continue;
-    LaneModel more = model;
-    more.modes = static_cast<int>(more_modes * modes);
-    more.elements = mesh_for(trials_.scene(), more.modes);
     model.modes = modes;
+    const LaneModel more = with_more_modes(model);
     model.elements = more.elements;
     modes_ = change(mixed_, model, more, of_the_change);
     const double over = greatest(modes_) / (part_of_modes * accuracy_);

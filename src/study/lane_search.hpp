@@ -23,6 +23,7 @@ class LaneSearch {
  private:
   bool halve_step(LaneModel& model);
   bool add_modes(LaneModel& model);
+  LaneModel with_more_modes(const LaneModel& model);
   bool refine_mesh(LaneModel& model);
   LaneModel cheaper(const LaneModel& model);
 

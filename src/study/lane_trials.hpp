@@ -45,6 +45,8 @@ class LaneTrials {
 
   /// Kept. Refused where runs cannot go side by side.
   const std::vector<lanes::CrossingResult>& run(const LaneModel& model);
+  /// Of the bridge by a model: with all copies of the last frequency.
+  int modes(const LaneModel& model) { return static_cast<int>(setup(model).shared->modal->modes()); }
   /// The largest SideBySide::defect of a model's runs, which are known.
   double defect(const LaneModel& model) const;
   const Scene& scene() const { return scene_; }

@@ -33,7 +33,7 @@ constexpr int most_shortenings = 6;
 constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 constexpr double longer = 1.4;
 constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
-constexpr double weight_of_touch = 50.0;  // as measured: accelerations beside a hinge
+constexpr double weight_of_touch = 20.0, beside_a_hinge = 50.0;  // as measured: of accelerations
 
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full &&
@@ -131,7 +131,7 @@ class Chooser {
     LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, (alone_ ? part_alone : 1.0) * scene_.accuracy);
     const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
     const std::optional<LaneModel> found = search.run(first);
-    if (!found) throw NotChosen{"the peaks do not settle to the accuracy with up to 128 modes"};
+    if (!found) throw NotChosen{"the peaks do not settle to the accuracy by modes"};
     model_ = *found;
     if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
     const double defect = beginnings_->defect(model_);
@@ -142,7 +142,7 @@ class Chooser {
     for (std::size_t q = 0; q < quantities; ++q)
       if (asks_for(scene_, q)) choice.errors[q] += defect + touch_ahead();
     if (greatest(choice.errors) > scene_.accuracy)
-      throw NotChosen{"wheels touch the slopes beside a hinge ahead of their centres"};
+      throw NotChosen{"wheels touch the bridge's slopes ahead of their centres"};
     choice.scene = with(scene_, model_);
     if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
     choice.scene.step_probes = true;
@@ -158,16 +158,16 @@ class Chooser {
   double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
 
  private:
-  /// Of all peaks: wheels touch a slope s by R s ahead of their centres, which the kernel leaves out. Beside a hinge
-  /// they are on slopes where deflections are largest.
+  /// Of all peaks: wheels touch a slope s by R s ahead of their centres, where the kernel has their forces. Beside a
+  /// hinge they are on slopes where deflections are largest.
   double touch_ahead() {
-    if (scene_.beam->hinges.empty()) return 0.0;
     double deflection = 0.0;
     for (const CrossingResult& run : beginnings_->run(model_))
       for (const lanes::CrossingPeak& peak : run.deflection) deflection = std::max(deflection, peak.value);
     const std::vector<double>& spans = scene_.beam->spans;
     const double length = *std::min_element(spans.begin(), spans.end());
-    return weight_of_touch * scene_.vehicles.front().wheels.front().radius * deflection / (length * length);
+    const double weight = scene_.beam->hinges.empty() ? weight_of_touch : beside_a_hinge;
+    return weight * scene_.vehicles.front().wheels.front().radius * deflection / (length * length);
   }
 
   /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which

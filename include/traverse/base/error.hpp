@@ -33,6 +33,12 @@ class SolverError : public Error {
   explicit SolverError(const std::string& message) : Error(message, 3) {}
 };
 
+/// A step could not be taken, or what it led to is no motion: a shorter one may do.
+class StepTooLong : public SolverError {
+ public:
+  using SolverError::SolverError;
+};
+
 /// A file could not be written or read.
 class FileError : public Error {
  public:

@@ -116,6 +116,7 @@ struct Scene {
   double accuracy = 1e-3;
   std::vector<std::string> accuracy_of;  // peaks, as in the option's list; empty: all
   bool mesh_open = false;                // its elements are chosen from the accuracy
+  bool step_open = false;                // so is the step
   bool accuracy_report = false;          // a refined run at the end shows the true errors
   bool accuracy_cache = true;            // what was chosen for the same scene before is taken again
   Output output;
