@@ -72,6 +72,21 @@ std::string with_underscores(std::string name) {
 
 }  // namespace
 
+void report_head(const std::string& against, const std::string& of) {
+  fmt::print("accuracy, against {}\n  {:<22}{:>12}{:>12}{:>12}\n", against, of, "wanted", "expected", "true");
+}
+
+bool report_row(const std::string& name, const Promise& promise, double wanted, double error, bool prints) {
+  const bool broken = promise.kept && error > wanted;
+  if (prints)
+    fmt::print("  {:<22}{:>12}{:>12}{:>12.1e}{}\n", name, promise.kept ? fmt::format("{:.1e}", wanted) : "-",
+               promise.kept ? fmt::format("{:.1e}", promise.expected) : "-", error,
+               broken         ? "  broken"
+               : promise.kept ? "  kept"
+                              : "  not promised");
+  return !broken;
+}
+
 std::string stored_name(std::size_t quantity) { return with_underscores(quantity_names[quantity]); }
 
 bool asks_for(const Scene& scene, std::size_t quantity) {

@@ -27,6 +27,11 @@ struct Promise {
   void keep(base::Bytes& bytes) { bytes(present, kept, expected, why_not); }
 };
 
+/// A row of -accuracy_report, printed or not. wanted, error: relative. Whether the promise is not broken.
+bool report_row(const std::string& name, const Promise& promise, double wanted, double error, bool prints);
+/// Its head. against: what the run is compared with; of: what the rows are.
+void report_head(const std::string& against, const std::string& of);
+
 /// A quantity's name in options and the results file.
 std::string stored_name(std::size_t quantity);
 /// Whether the scene's accuracy_of holds it, or is left out.

@@ -19,13 +19,9 @@ namespace {
 
 // Of the wanted error, for the step and for the mesh each; less where errors fall too slowly to be told well.
 constexpr double usual_share = 0.4, small_share = 0.25, small_error = 3e-5;
-// Times a measured size that an error is extrapolated to: by a measured order, by a supposed one, and where measuring
-// would cost more than it is worth.
-constexpr double farthest = 2.2, supposed = 1.5, at_most = 2.5;
-constexpr double best_effort = 10.0;                  // times the wanted error, of what is refused
-constexpr double unsettled_order = 0.5, slow = 0.75;  // orders below which an error does not fall
+constexpr double supposed = 1.5;      // times a measured size that an error is extrapolated to by a supposed order
+constexpr double best_effort = 10.0;  // times the wanted error, of what is refused
 constexpr int most_rounds = 14;
-constexpr double finest_factor = 32.0;   // times the first step
 constexpr double hardly_anything = 1.5;  // s of trial runs, estimated
 constexpr double trials_of_run = 0.7;    // for trial runs
 constexpr double farthest_guess = 8.0;   // of the run's mesh and step, for that
@@ -154,12 +150,14 @@ void ErrorSearch::refine() {
   for (int round = 0; round < most_rounds; ++round) {
     measure();
     refuse_what_does_not_settle();
-    const bool finer = open_step_ && !within_reach(time_), denser = open_mesh_ && !within_reach(space_);
+    const bool finer = open_step_ && (!within_reach(time_) || strikes_alike_ < enough_alike),
+               denser = open_mesh_ && !within_reach(space_);
     if (!finer && !denser) return;
     if (!worth_it(finer ? 0.5 * step_ : step_, denser ? 2 * mesh_ : mesh_)) return refuse_what_is_far();
     if (finer) step_ *= 0.5;
     if (denser) mesh_ *= 2;
   }
+  refuse_what_is_far();
 }
 
 // Longer steps against the finest one. What is only a little too large between may be passed over: where the contacts'
@@ -261,7 +259,17 @@ void ErrorSearch::measure() {
   }
   time_ = time;
   space_ = space;
+  count_alike();
   measured_ = {step_, mesh_};
+}
+
+// Forces of wheels that strike are pulses: a step may agree with the next one by chance.
+void ErrorSearch::count_alike() {
+  const auto alike = [&](Quantity q) { return !promised(q) || time_[q].change <= scene_.accuracy; };
+  if (!trials_.lost_contact() || !open_step_)
+    strikes_alike_ = enough_alike;
+  else
+    strikes_alike_ = alike(acceleration) && alike(wheel_force) ? strikes_alike_ + 1 : 0;
 }
 
 ErrorLaw ErrorSearch::error_in_time(Quantity q) {
@@ -329,61 +337,6 @@ double ErrorSearch::factor_of_step() const {
 
 double ErrorSearch::factor_of_elements() const {
   return std::clamp(room(space_) < 1.0 ? room(space_) : room_to_coarsen(space_), 1.0 / at_most, 2.0);
-}
-
-// --- what is not promised ------------------------------------------------------------------------------------------
-
-void ErrorSearch::refuse(std::size_t q, std::string why) {
-  if (!promised(q)) return;
-  promises_[q].kept = false;
-  promises_[q].why_not = std::move(why);
-}
-
-void ErrorSearch::refuse_what_does_not_settle() {
-  for (std::size_t q = 0; q < quantities; ++q) {
-    if (!promised(q)) continue;
-    const ErrorLaw &t = time_[q], &s = space_[q];
-    const bool long_step = open_step_ && t.room(wanted_) < 1.0, long_element = open_mesh_ && s.room(wanted_) < 1.0;
-    crawls_[q] = t.known && t.order < slow && 4.0 * step_ <= first_step_ ? crawls_[q] + 1 : 0;
-    if (long_step && step_ <= first_step_ / finest_factor)
-      refuse(q, fmt::format("steps of {:.2g} s still leave an error of {:.1g}", step_, t.value));
-    else if (long_step && crawls_[q] > 1)
-      refuse(q, fmt::format("it does not settle as steps are halved ({:.1g} with {:.2g} s)", t.value, step_));
-    else if (long_element && s.known && s.order < unsettled_order && 4 * mesh_ > most_elements_)
-      refuse(q, fmt::format("it does not settle as elements are halved ({:.1g} with {} a {})", s.value, mesh_,
-                            unit_of_mesh()));
-    else if (long_element && s.room(wanted_) < 1.0 / farthest && 2 * mesh_ > most_elements_)
-      refuse(q, fmt::format("{} elements a {} still leave an error of {:.1g}", mesh_, unit_of_mesh(), s.value));
-    tried_[q] = !promises_[q].kept;
-  }
-}
-
-// Errors farther off than can be told from what was measured, where no more is measured.
-void ErrorSearch::refuse_what_is_far() {
-  const auto far = [&](const ErrorLaw& e) {
-    return e.room(wanted_) < (e.known && e.order < 1.0 ? 1.0 : 1.0 / at_most);
-  };
-  for (std::size_t q = 0; q < quantities; ++q) {
-    if (!promised(q)) continue;
-    if (open_step_ && far(time_[q]))
-      refuse(q, fmt::format(
-                    "steps of {:.2g} s leave an error of {:.1g} and trying shorter ones would cost more than the run",
-                    step_, time_[q].value));
-    else if (open_mesh_ && far(space_[q]))
-      refuse(q, fmt::format("{} elements a {} leave an error of {:.1g} and trying more would cost more than the run",
-                            mesh_, unit_of_mesh(), space_[q].value));
-    tried_[q] = !promises_[q].kept;
-  }
-}
-
-void ErrorSearch::refuse_what_is_given() {
-  for (std::size_t q = 0; q < quantities; ++q) {
-    if (!open_step_ && time_[q].value > scene_.accuracy)
-      refuse(q, fmt::format("the step of {:g} s, which is given, leaves an error of {:.1g}", step_, time_[q].value));
-    if (!open_mesh_ && space_[q].value > scene_.accuracy)
-      refuse(q, fmt::format("the {} elements a {}, which are given, leave an error of {:.1g}", mesh_, unit_of_mesh(),
-                            space_[q].value));
-  }
 }
 
 // Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.

@@ -29,6 +29,10 @@ class ErrorSearch {
 
  private:
   using Errors = std::array<ErrorLaw, quantities>;
+  // Times a measured size that an error is extrapolated to: by a measured order, and where measuring would cost more
+  // than it is worth.
+  static constexpr double farthest = 2.2, at_most = 2.5;
+  static constexpr int enough_alike = 2;
 
   double moved_by() const;
   double until_all_is_met(const SharedBeam& shared);
@@ -38,6 +42,7 @@ class ErrorSearch {
   void coarsen();
   void take_fewer_solves();
   void measure();
+  void count_alike();
   double excess(const Errors& errors) const;
   ErrorLaw error_in_time(Quantity q);
   ErrorLaw error_in_space(Quantity q);
@@ -71,6 +76,7 @@ class ErrorSearch {
   std::array<Promise, quantities> promises_{};
   std::array<bool, quantities> tried_{};  // refused by the search, with an error as small as it could be made
   std::array<int, quantities> crawls_{};  // halvings of the step in a row that have changed little
+  int strikes_alike_ = 0;  // halvings in a row over which forces and accelerations agree, where wheels strike
   Errors time_{}, space_{};
   double finest_step_ = 0.0;  // s, tried, with its errors
   Errors finest_{};

@@ -196,22 +196,13 @@ bool report_alone(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy) {
   Runs runs(comm, scene);
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  if (rank == 0)
-    fmt::print("accuracy, against half the step\n  {:<22}{:>12}{:>12}{:>12}\n", "of", "wanted", "expected", "true");
+  if (rank == 0) report_head("half the step", "of");
   bool all_kept = true;
   for (std::size_t q = 0; q < alone_quantities; ++q) {
     const Promise& promise = accuracy.alone[q];
     if (!promise.present) continue;
     const double error = runs.difference(*scene.time_step, 0.5 * *scene.time_step, static_cast<AloneQuantity>(q));
-    const bool broken = promise.kept && error > scene.accuracy;
-    all_kept = all_kept && !broken;
-    if (rank == 0)
-      fmt::print("  {:<22}{:>12}{:>12}{:>12.1e}{}\n", alone_names[q],
-                 promise.kept ? fmt::format("{:.1e}", scene.accuracy) : "-",
-                 promise.kept ? fmt::format("{:.1e}", promise.expected) : "-", error,
-                 broken         ? "  broken"
-                 : promise.kept ? "  kept"
-                                : "  not promised");
+    all_kept = report_row(alone_names[q], promise, scene.accuracy, error, rank == 0) && all_kept;
   }
   return all_kept;
 }

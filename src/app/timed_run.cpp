@@ -56,23 +56,12 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   bool all_kept = true;
-  if (rank == 0)
-    fmt::print("accuracy, against half the step and elements half as long\n  {:<22}{:>12}{:>12}{:>12}\n", "peak of",
-               "wanted", "expected", "true");
+  if (rank == 0) report_head("half the step and elements half as long", "peak of");
   for (std::size_t i = 0; i < quantities; ++i) {
-    const Promise& promise = accuracy.promises[i];
     const auto q = static_cast<Quantity>(i);
     if (truth.largest(q).value == 0.0) continue;
     const double error = peak_difference(peaks, truth, q);
-    const bool broken = promise.kept && error > scene.accuracy;
-    all_kept = all_kept && !broken;
-    if (rank != 0) continue;
-    fmt::print("  {:<22}{:>12}{:>12}{:>12.1e}{}\n", quantity_names[i],
-               promise.kept ? fmt::format("{:.1e}", scene.accuracy) : "-",
-               promise.kept ? fmt::format("{:.1e}", promise.expected) : "-", error,
-               broken         ? "  broken"
-               : promise.kept ? "  kept"
-                              : "  not promised");
+    all_kept = report_row(quantity_names[i], accuracy.promises[i], scene.accuracy, error, rank == 0) && all_kept;
   }
   return all_kept;
 }

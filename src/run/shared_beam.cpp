@@ -70,10 +70,10 @@ void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes, co
   const results::Stage stage(scene.model_modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
   statics = std::make_shared<structure::BeamOperator>(*beam);
   if (scene.model_modes == 0) return;
-  modal.emplace(*beam, *statics,
-                more != nullptr ? modes::lowest_of(*more, scene.model_modes)
-                                : modes::bending_basis(*beam, scene.model_modes),
-                scene.damping_of_modes);
+  modal.emplace(
+      *beam, *statics,
+      more != nullptr ? modes::lowest_of(*more, scene.model_modes) : modes::bending_basis(*beam, scene.model_modes),
+      scene.damping_of_modes);
   if (!scene.vehicles.empty()) modal->add_probes(scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
   const auto hertz = [&](double value) { return value / (2.0 * std::numbers::pi); };
   notes.push_back(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}", modal->modes(),

@@ -27,8 +27,8 @@ constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
 constexpr std::size_t most_spans_alone = 8;  // each wants some sixteen modes
 // Times its speed: the trials of a single run, whose peaks may agree by chance.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
-constexpr double part_of_all = 0.95;      // of the wanted error
-constexpr double first_step_factor = 4;   // times the step that the accuracy's search would begin with
+constexpr double part_of_all = 0.95;     // of the wanted error
+constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
 constexpr int most_shortenings = 6;
 constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 constexpr double longer = 1.4;
