@@ -24,8 +24,7 @@ bool is_plain_word(const std::string& name) {
 bool is_group(const std::string& name) {
   const auto begins = [&](const options::Row& row) { return row.name == name || row.name.starts_with(name + "_"); };
   const auto rows = options::fixed_rows();
-  return name == "vehicle" || std::any_of(rows.begin(), rows.end(), begins) ||
-         options::owned_by_petsc(name + "_type") || options::owned_by_petsc(name);
+  return name == "vehicle" || std::any_of(rows.begin(), rows.end(), begins);
 }
 
 /// The options of `kind` (train or load) under the names that `list` has.
@@ -41,6 +40,8 @@ void declare_list(Options& o, const std::string& list, const std::string& kind) 
     for (const options::Row& row : options::fixed_rows()) {
       if (!row.name.starts_with(prefix)) continue;
       const std::string full = name + "_" + std::string(row.name.substr(prefix.size()));
+      if (options::owned_by_petsc(full))
+        o.refuse(list, fmt::format("'{}' cannot be a name: {} is an option of PETSc's; choose another one", name, full));
       if (!o.declare(full, row)) o.refuse(list, fmt::format("there would be two options {}; rename one", full));
     }
   }
