@@ -35,8 +35,7 @@ TEST(SpeedLaw, GoesTheIntegralOfItsSpeed) {
 TEST(SpeedLaw, FindsWhenAWayIsGone) {
   for (const double sign : {1.0, -1.0}) {
     const SpeedLaw law = SpeedLaw::over_time({0.0, 2.0, 3.0, 7.0}, {0.0, sign * 20.0, sign * 20.0, 0.0});
-    for (const double t : {0.1, 1.0, 2.0, 2.7, 3.5, 6.9})
-      EXPECT_NEAR(law.time_of(law.distance(t)), t, 1e-12) << t;
+    for (const double t : {0.1, 1.0, 2.0, 2.7, 3.5, 6.9}) EXPECT_NEAR(law.time_of(law.distance(t)), t, 1e-12) << t;
     EXPECT_EQ(law.direction(), sign);
     EXPECT_TRUE(std::isinf(law.time_of(sign * 80.001))) << "it stands at 80 m";
     EXPECT_LT(law.time_of(-sign), 0.0) << "behind it";
