@@ -35,13 +35,15 @@ void declare_list(Options& o, const std::string& list, const std::string& kind) 
   const std::string prefix = kind + "_";
   for (const std::string& name : o.texts(list)) {
     if (!is_plain_word(name))
-      o.refuse(list, fmt::format("'{}' cannot be a name; allowed: a word of letters, digits and _, a letter first", name));
+      o.refuse(list,
+               fmt::format("'{}' cannot be a name; allowed: a word of letters, digits and _, a letter first", name));
     if (is_group(name)) o.refuse(list, fmt::format("'{}' is the name of a group of options; choose another one", name));
     for (const options::Row& row : options::fixed_rows()) {
       if (!row.name.starts_with(prefix)) continue;
       const std::string full = name + "_" + std::string(row.name.substr(prefix.size()));
       if (options::owned_by_petsc(full))
-        o.refuse(list, fmt::format("'{}' cannot be a name: {} is an option of PETSc's; choose another one", name, full));
+        o.refuse(list,
+                 fmt::format("'{}' cannot be a name: {} is an option of PETSc's; choose another one", name, full));
       if (!o.declare(full, row)) o.refuse(list, fmt::format("there would be two options {}; rename one", full));
     }
   }
@@ -50,8 +52,7 @@ void declare_list(Options& o, const std::string& list, const std::string& kind) 
 /// x or t, and v, of a block's speed_file.
 std::vector<std::vector<double>> read_speeds_of(const Options& o, const Block& block) {
   const std::string file = block.option("speed_file");
-  if (o.has(block.option("speed")))
-    o.refuse(file, "give either a table of speeds or " + block.option("speed"));
+  if (o.has(block.option("speed"))) o.refuse(file, "give either a table of speeds or " + block.option("speed"));
   try {
     return options::read_columns(o.path(file), 2, 2, Order::rising);
   } catch (const InputError& error) {
@@ -113,6 +114,11 @@ bool needs_courses(const Options& o, const std::vector<Block>& blocks) {
   return blocks.size() > 1 || std::any_of(blocks.begin(), blocks.end(), own);
 }
 
+bool several_courses(const Scene& scene) {
+  const std::size_t courses = scene.train.courses.size() + scene.load.courses.size();
+  return courses > 1 || (courses == 1 && !scene.vehicles.empty() && !scene.load.forces.empty());
+}
+
 void check_courses(const Options& o, Scene& scene) {
   for (const char* list : {"trains", "loads"})
     for (const Block& block : blocks_of(o, list))
@@ -122,17 +128,19 @@ void check_courses(const Options& o, Scene& scene) {
   if (trains + loads == 0) return;
   for (const char* sweep : {"sweep_speed", "sweep_hslm_a"})
     if (o.has(sweep))
-      o.refuse(sweep, "runs one train or load to the right at constant speeds, on the track's profile; allowed: a study "
-                      "that varies NAME_speed or other options");
-  const bool beside = !scene.vehicles.empty() && !scene.load.forces.empty();
-  if (scene.beam && scene.beam->track && (trains > 1 || loads > 1 || beside))
+      o.refuse(sweep,
+               "runs one train or load to the right at constant speeds, on the track's profile; allowed: a study "
+               "that varies NAME_speed or other options");
+  const bool several = several_courses(scene);
+  if (scene.beam && scene.beam->track && several)
     o.refuse("track_rail_EI", "a layered track carries one train or load, of others each would have a rail of its own");
   std::string what;
   for (const std::vector<train::Course>* courses : {&scene.train.courses, &scene.load.courses})
     for (const train::Course& course : *courses) what += (what.empty() ? "" : "; ") + in_words(course);
   scene.notes.push_back("runs: " + what);
-  if (trains + loads > 1 || beside)
-    scene.notes.emplace_back("tracks side by side: all wheels and forces act on the beam's axis, its torsion is left out");
+  if (several)
+    scene.notes.emplace_back(
+        "tracks side by side: all wheels and forces act on the beam's axis, its torsion is left out");
 }
 
 }  // namespace traverse::app

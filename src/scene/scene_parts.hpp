@@ -38,6 +38,8 @@ double direction_of(const options::Options& options, const Block& block);
 base::SpeedLaw read_speed_file(const options::Options& options, const Block& block, double front);
 /// Whether the runs of block after block need courses: several of them, or a speed that changes or is below 0.
 bool needs_courses(const options::Options& options, const std::vector<Block>& blocks);
+/// Whether there are several trains or loads, or a train and a load of which one has a course.
+bool several_courses(const Scene& scene);
 /// Notes what runs where there are courses, and refuses what does not go with them.
 void check_courses(const options::Options& options, Scene& scene);
 
@@ -64,8 +66,8 @@ Scene read_study(const options::Options& options);
 std::string load_option(const options::Options& options, const std::string& load = "load");
 /// Whether any forces move.
 bool forces_move(const options::Options& options);
-void read_modal(const options::Options& options, Scene& scene);          // last: it depends on what moves
-void read_track(const options::Options& options, Scene& scene);          // after train: the roughness begins before it
+void read_modal(const options::Options& options, Scene& scene);  // last: it depends on what moves
+void read_track(const options::Options& options, Scene& scene);  // after train: the roughness begins before it
 /// The profile of the options with this prefix, "track" or a train's; roughness begins at `start`.
 struct ReadProfile {
   track::Profile profile;

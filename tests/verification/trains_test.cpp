@@ -114,6 +114,8 @@ ts_max_time: 3.0
                  Values{{"up_speed_file", stop_turned}, {"down_speed_file", start_turned}, {"down_positions", "7"}});
   // Places of some 60 m are known to 7e-15 m, and a contact of 1e9 N/m^1.5 makes 1e-7 N of that: 1e-12 of a force.
   const Difference two = difference_of_mirrored(one, other, {0, 1, 2});
+  testing::Test::RecordProperty("mirrored_deflection", text(two.deflection));
+  testing::Test::RecordProperty("mirrored_force", text(two.force));
   EXPECT_LT(two.deflection, 1e-12);
   EXPECT_LT(two.force, 1e-11);
   EXPECT_GT(std::abs(peak(one("/probes/deflection")).first), 1e-3);
@@ -229,7 +231,9 @@ output: {interval: 0.01}
   double impulse = 0.0;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i)
     impulse += (ends[i + 1] - ends[i]) * force[static_cast<std::size_t>(std::lround(50.0 * (ends[i] + ends[i + 1])))];
-  EXPECT_NEAR(impulse, 2.0e4 * (speed.back() - speed.front()), 1e-9 * 6.0e5);
+  const double momentum = 2.0e4 * (speed.back() - speed.front());
+  testing::Test::RecordProperty("impulse_error", text(std::abs(impulse / momentum - 1.0)));
+  EXPECT_NEAR(impulse / momentum, 1.0, 1e-9);
   EXPECT_NEAR(speed.front(), 30.0, 1e-12);
   EXPECT_NEAR(speed.back(), 0.0, 1e-10);
   EXPECT_NEAR(run("/energy/work").back(), -0.5 * 4.0e4 * 900.0, 1e-9 * 1.8e7);
@@ -325,7 +329,9 @@ TEST(Trains, ForceAtAChangingSpeedAgainstOwnModes) {
   const std::vector<double> own = Span::deflections(
       {}, 3.5, 0.01, 14.3, place, [](double, const Span::State&) { return 1e5; },
       [](double, const Span::State&, Span::State&) {});
-  EXPECT_LT(relative_difference(run("/probes/deflection"), own), 1e-6);
+  const double error = relative_difference(run("/probes/deflection"), own);
+  testing::Test::RecordProperty("error", text(error));
+  EXPECT_LT(error, 1e-6);
 }
 
 // A mass on a linear contact: its height and its rate are the two numbers more. Gravity is small and so is the wheel,
@@ -360,7 +366,9 @@ gravity: 0.0981
     rate[height + 1] = f / mass - gravity;
   };
   const std::vector<double> own = Span::deflections(y, 3.5, 0.01, 14.3, place, force, rest);
-  EXPECT_LT(relative_difference(run("/probes/deflection"), own), 1e-6);
+  const double error = relative_difference(run("/probes/deflection"), own);
+  testing::Test::RecordProperty("error", text(error));
+  EXPECT_LT(error, 1e-6);
   EXPECT_NEAR(run.column("/vehicles/0/body/velocity", 0)[50], speed(0.5), 1e-12);
   EXPECT_LT(energy_error(run), 1e-8);
 }
