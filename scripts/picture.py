@@ -139,7 +139,9 @@ def draw_train(ax, results, time):
 
 def what_moves(results, forces):
     """'the train' only where there is one."""
-    vehicles = "the train" if len(results.vehicles) > 1 else "the vehicle" if results.vehicles else ""
+    trains = len(np.unique(Model(results).trains[:, 0]))
+    vehicles = ("the trains" if trains > 1 else "the train" if len(results.vehicles) > 1 else
+                "the vehicle" if results.vehicles else "")
     return " and ".join(filter(None, (vehicles, "moving forces" if forces > 1 else "a moving force" if forces else "")))
 
 

@@ -13,6 +13,14 @@ WORDS = {"pinned": "pinned", "roller": "roller", "clamped": "clamped", "guided":
          "hinge": "hinge", "separate": "joint of separate spans"}
 
 
+def way_gone(times, speeds, end):
+    """From t = 0 on, m: speeds are straight lines between the times, and stay as they are outside."""
+    inside = times[(times > min(0.0, end)) & (times < max(0.0, end))]
+    at = np.concatenate([[0.0], inside, [end]])
+    return float(np.trapezoid(np.interp(at, times, speeds), at) if hasattr(np, "trapezoid")
+                 else np.trapz(np.interp(at, times, speeds), at))
+
+
 class Model:
     """What /model says; of a file without it, what its options say of the supports."""
 
@@ -30,6 +38,7 @@ class Model:
         self.notes = [row[1] for row in self.group["notes"].asstr()[:]] if "notes" in self.group else []
         self.foundation = {kind: data[:] for kind, data in self.group.get("foundation", {}).items()}
         self.train = self.array("train", 2)
+        self.trains, self.loads = self.array("trains", 4), self.array("loads", 4)
         forces = self.group.get("forces", {})
         self.forces = {name: forces[name][:] for name in sorted(forces, key=lambda name: (len(name), name))}
 
@@ -51,8 +60,12 @@ class Model:
     def forces_at(self, time, options):
         """[f, 2]: of the moving forces their places at that time, m, and their size, N."""
         forces = self.forces.get("load", np.zeros((0, 2)))
-        speed = float(options.get("load_speed", 0.0)) if len(forces) else 0.0
-        return np.column_stack([forces[:, 0] + time * speed, forces[:, 1]])
+        speed = float(options.get("load_speed", 0.0)) if len(forces) and not len(self.loads) else 0.0
+        way = np.full(len(forces), time * speed)
+        for number in np.unique(self.loads[:, 0]):
+            rows = self.loads[self.loads[:, 0] == number]
+            way[int(rows[0, 1]):] = way_gone(rows[:, 2], rows[:, 3], time)
+        return np.column_stack([forces[:, 0] + way, forces[:, 1]])
 
     def length(self):
         return float(self.span_ends[-1] - self.span_ends[0]) if len(self.span_ends) else 0.0

@@ -199,6 +199,18 @@ EQUATIONS = [
         Row("a wheel at rest in a valley: forces", "statics", "SharpTrack.AtRestInAValley",
             [Check("(mass * g), 1.0, {});", lambda f: abs(number(f, "force_over_statics") - 1.0))]),
     ]),
+    ("Trains in either direction, at speeds that change", [
+        Row("two trains that meet, brake and start, and their mirror image", "the mirrored scene itself",
+            "Trains.MirroredSceneIsTheSame",
+            [Check("EXPECT_LT(two.deflection, {});", "mirrored_deflection", "deflection"),
+             Check("EXPECT_LT(two.force, {});", "mirrored_force", "wheel forces")]),
+        Row("a force from rest to rest on a span: deflection", "own integration by three modes",
+            "Trains.ForceAtAChangingSpeedAgainstOwnModes", [Check("EXPECT_LT(error, {});", "error")]),
+        Row("a mass from rest to rest on a span: deflection", "own integration by three modes",
+            "Trains.MassAtAChangingSpeedAgainstOwnModes", [Check("EXPECT_LT(error, {});", "error")]),
+        Row("impulse of the bar between two braked wagons", "the change of momentum",
+            "Trains.ImpulseAndWorkOfABrakedTrain", [Check("impulse / momentum, 1.0, {});", "impulse_error")]),
+    ]),
     ("Beams: frequencies and statics", [
         Row("frequencies of all 25 pairs of supports", "exact dynamic stiffness", "EndConditions.Bending", [FREQUENCY]),
         Row("springs at the ends", "exact dynamic stiffness", "Frequencies.SpringsAtEnds", [FREQUENCY]),

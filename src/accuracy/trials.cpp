@@ -41,7 +41,7 @@ double foremost(const Scene& scene, std::size_t vehicle) {
 
 void leave_out_vehicles(Scene& scene, double end) {
   Train& train = scene.train;
-  if (train.drive != train::Drive::constant || !train.couplers.empty()) return;
+  if (train.drive != train::Drive::constant || !train.couplers.empty() || !train.courses.empty()) return;
   std::size_t count = 1;
   for (std::size_t i = 1; i < train.vehicles.size(); ++i)
     if (foremost(scene, i) + train.speed * end > 0.0) count = i + 1;
@@ -55,7 +55,9 @@ void leave_out_spans(Scene& scene, double end) {
   const auto there = [&](const beam::FoundationKind& kind) { return present(beam.foundation, kind); };
   const bool founded = std::any_of(beam::foundation_kinds.begin(), beam::foundation_kinds.end(), there);
   const bool plain = !founded && !beam.track && beam.hinges.empty();
-  if (!plain || beam.spans.size() <= few_spans || scene.train.drive != train::Drive::constant) return;
+  if (!plain || beam.spans.size() <= few_spans || scene.train.drive != train::Drive::constant ||
+      !scene.train.courses.empty() || !scene.load.courses.empty())
+    return;
   double front = scene.output.probes.empty() ? 0.0 : scene.output.probes.front();
   if (!scene.train.vehicles.empty()) front = std::max(front, foremost(scene, 0) + scene.train.speed * end);
   for (const double x : scene.load.positions) front = std::max(front, x + scene.load.speed * end);
@@ -108,7 +110,7 @@ int mesh_of(const Scene& scene) {
 Scene moved_up(const Scene& scene) {
   Scene part = scene;
   if (!scene.beam->track || scene.train.vehicles.empty() || !scene.load.forces.empty() || !scene.profile.level() ||
-      scene.train.drive != train::Drive::constant)
+      scene.train.drive != train::Drive::constant || !scene.train.courses.empty())
     return part;
   const std::vector<double> wheels = wheels_at_start(scene);
   const double front = *std::max_element(wheels.begin(), wheels.end());

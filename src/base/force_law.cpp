@@ -60,6 +60,13 @@ std::size_t Polyline::segment(double x) const {
   return static_cast<std::size_t>(std::upper_bound(x_.begin() + 1, x_.end() - 1, x) - x_.begin()) - 1;
 }
 
+Polyline Polyline::reversed() const {
+  std::vector<double> x(x_.rbegin(), x_.rend()), y(y_.rbegin(), y_.rend());
+  for (std::vector<double>* numbers : {&x, &y})
+    for (double& number : *numbers) number = -number;
+  return {std::move(x), std::move(y)};
+}
+
 double Polyline::value(double x) const {
   const std::size_t k = segment(x);
   return y_[k] + slope_[k] * (x - x_[k]);

@@ -66,8 +66,40 @@ TimeFunction TimeFunction::piecewise_linear(std::vector<double> times, std::vect
   return f;
 }
 
+TimeFunction TimeFunction::integral(double value, std::vector<double> times, std::vector<double> rates) {
+  TimeFunction f;
+  check_table(times, rates);
+  f.times_ = std::move(times);
+  f.rates_ = std::move(rates);
+  f.values_.assign(f.times_.size(), 0.0);
+  for (std::size_t i = 1; i < f.times_.size(); ++i)
+    f.values_[i] = f.values_[i - 1] + 0.5 * (f.rates_[i - 1] + f.rates_[i]) * (f.times_[i] - f.times_[i - 1]);
+  f.shift(value - f.value(0.0));
+  return f;
+}
+
+// Piece k of an integral ends at the time k; the last one begins at the last time.
+int TimeFunction::piece_at(double t) const {
+  return static_cast<int>(std::upper_bound(times_.begin(), times_.end(), t) - times_.begin());
+}
+
+bool TimeFunction::take_piece(double t) { return std::exchange(piece_, piece_at(t)) != piece_; }
+
+TimeFunction::Piece TimeFunction::piece(double t) const {
+  const int number = piece_ < 0 ? piece_at(t) : piece_;
+  const std::size_t k = number == 0 ? 0 : static_cast<std::size_t>(number) - 1;
+  const bool inside = number > 0 && k + 1 < times_.size();
+  const double acceleration = inside ? (rates_[k + 1] - rates_[k]) / (times_[k + 1] - times_[k]) : 0.0;
+  return {times_[k], values_[k], rates_[k], acceleration};
+}
+
 double TimeFunction::value(double t) const {
   if (times_.empty()) return value_ + rate_ * t;
+  if (jumps()) {
+    const Piece p = piece(t);
+    const double since = t - p.from;
+    return p.value + since * (p.rate + 0.5 * p.acceleration * since);
+  }
   if (curvatures_.empty()) {
     t = std::clamp(t, times_.front(), times_.back());
     const std::size_t k = interval(times_, t);
@@ -85,6 +117,10 @@ double TimeFunction::value(double t) const {
 
 double TimeFunction::rate(double t) const {
   if (times_.empty()) return rate_;
+  if (jumps()) {
+    const Piece p = piece(t);
+    return p.rate + p.acceleration * (t - p.from);
+  }
   if (curvatures_.empty() && (t < times_.front() || t >= times_.back())) return 0.0;
   t = std::clamp(t, times_.front(), times_.back());
   const std::size_t k = interval(times_, t);
@@ -97,10 +133,18 @@ double TimeFunction::rate(double t) const {
 }
 
 double TimeFunction::acceleration(double t) const {
+  if (jumps()) return piece(t).acceleration;
   if (curvatures_.empty() || t <= times_.front() || t >= times_.back()) return 0.0;
   const std::size_t k = interval(times_, t);
   const double b = (t - times_[k]) / (times_[k + 1] - times_[k]);
   return (1.0 - b) * curvatures_[k] + b * curvatures_[k + 1];
+}
+
+void TimeFunction::reverse() {
+  value_ = -value_;
+  rate_ = -rate_;
+  for (std::vector<double>* numbers : {&values_, &curvatures_, &rates_})
+    for (double& number : *numbers) number = -number;
 }
 
 void TimeFunction::shift(double offset) {

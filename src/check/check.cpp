@@ -93,8 +93,11 @@ void print_vehicles(const Page& page, const Look& look, const std::vector<Axle>&
     for (auto axle = first; axle != axles.end(); ++axle)
       if (axle->type == static_cast<int>(type) && axle->vehicle == first->vehicle)
         wheels += fmt::format("{}{} {:.4g}", wheels.empty() ? "" : ", ", axle->name, 1e-3 * axle->force);
+    const auto some = std::find(scene.train.vehicles.begin(), scene.train.vehicles.end(), static_cast<int>(type));
+    const auto which = static_cast<std::size_t>(some - scene.train.vehicles.begin());
+    const bool back = train::law_of(scene.train, which).direction() < 0.0;
     page.line(
-        count == 1 ? vehicle.name : fmt::format("{} x {}", count, vehicle.name),
+        (count == 1 ? vehicle.name : fmt::format("{} x {}", count, vehicle.name)) + (back ? ", to the left" : ""),
         fmt::format("{}{}{}", mass_text(mass), count > 1 ? " each" : "", wheels.empty() ? "" : "; kN: " + wheels));
   }
   page.line("all", fmt::format("{}, degrees of freedom {}", mass_text(all), look.passage->system().freedom()));

@@ -97,6 +97,8 @@ Rest rest_of(const Look& look) {
     rest.why_not = fmt::format("of bridges of more than {} spans they are not listed", norm::StaticBridge::most_spans);
   else if (static_cast<double>(look.weights().size()) > few_forces)
     rest.why_not = fmt::format("of trains of more than {:g} wheels they are not listed", few_forces);
+  else if (look.scene.train.courses.size() + look.scene.load.courses.size() > 1)
+    rest.why_not = "several trains or loads pass, at distances that change";
   if (!rest.why_not.empty()) return rest;
   const results::Stage stage("influence lines");
   norm::StaticBridge bridge(beam);

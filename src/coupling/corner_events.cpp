@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace traverse::coupling {
 namespace {
@@ -17,25 +18,27 @@ constexpr double margin = 0.02, passed = 0.01;
 
 }  // namespace
 
-void CornerEvents::expect(double speed, double end, double step) {
+void CornerEvents::expect(const std::vector<base::SpeedLaw>& laws, double end, double step) {
   longest_step_ = step;
   corners_.clear();
   next_ = 0;
-  speed_ = speed;
-  if (structure_ == nullptr || !(speed > 0.0)) return;
+  if (structure_ == nullptr) return;
   for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
     const train::WheelContact& c = fleet_.wheels[i];
     if (c.is_further || c.further > 0) continue;  // located by its points
+    if (laws[i].direction() == 0.0) continue;
     for (const double x : structure_->line().mesh.kinks()) {
-      const double t = (x - fleet_.coordinates(c).x()) / speed_;
-      if (t >= 0.0 && t <= end) corners_.push_back({t, static_cast<int>(i), x});
+      const double t = laws[i].time_of(x - fleet_.coordinates(c).x());
+      if (!(t >= 0.0 && t <= end)) continue;
+      const double speed = std::abs(laws[i].speed(t));
+      if (speed > 0.0) corners_.push_back({t, static_cast<int>(i), x, speed});  // else it stands there
     }
   }
   std::sort(corners_.begin(), corners_.end(), [](const Corner& a, const Corner& b) { return a.time < b.time; });
 }
 
 double CornerEvents::longest_turn(const Corner& corner) const {
-  return steepest * fleet_.wheel(fleet_.wheels[corner.wheel]).radius / speed_;
+  return steepest * fleet_.wheel(fleet_.wheels[corner.wheel]).radius / corner.speed;
 }
 
 // Both times, the earlier one first, as the state y at t lets them be expected.
@@ -53,7 +56,7 @@ std::array<double, 2> CornerEvents::turning_times(const Corner& corner, double t
   }
   MPI_Allreduce(MPI_IN_PLACE, seen.data(), numbers, MPI_DOUBLE, MPI_SUM, comm_);
   const double far = std::numeric_limits<double>::infinity();
-  if (!(seen[speed] > 0.0) || seen[radius] == 0.0) return {far, far};  // in flight
+  if (seen[speed] == 0.0 || seen[radius] == 0.0) return {far, far};  // at rest or in flight
   const double straight = t + (corner.x - seen[x]) / seen[speed];      // the centre over the corner
   // The rotations at the end of the element on the left and at the start of that on the right.
   elements_ = {mesh.locate(corner.x, true).element, mesh.locate(corner.x, false).element};
@@ -62,11 +65,12 @@ std::array<double, 2> CornerEvents::turning_times(const Corner& corner, double t
   const std::size_t left = 2 * per_node - 1, right = left + per_node;
   const auto turned = [&](bool on_beam, std::size_t rotation, double aside) {
     const double bend = on_beam ? v_[rotation] + w_[rotation] * (straight - t) : 0.0;
-    const double there = bend + profile_.at(std::nextafter(corner.x, aside)).slope;
+    const double there = bend + fleet_.profile(c).at(std::nextafter(corner.x, aside)).slope;
     return straight - seen[radius] * there / std::hypot(1.0, there) / seen[speed];
   };
   std::array<double, 2> times = {turned(corner.x > mesh.start(), left, -far),
                                  turned(corner.x < mesh.end(), right, far)};
+  if (seen[speed] < 0.0) std::swap(times[0], times[1]);  // it comes from the right
   if (std::abs(times[1] - times[0]) < slight * longest_step_) return {far, far};
   const double middle = 0.5 * (times[0] + times[1]), half = 0.5 * (times[1] - times[0]);
   const double wide = (1.0 + margin) * std::max(half, shortest * longest_step_);  // half is below 0 in a valley

@@ -23,11 +23,11 @@ class CornerEvents {
  public:
   /// structure: null where there is none, and then no corners.
   CornerEvents(MPI_Comm comm, structure::Structure* structure, const train::Fleet& fleet,
-               const train::VehicleShare& share, const track::Profile& profile)
-      : comm_(comm), structure_(structure), fleet_(fleet), share_(share), profile_(profile) {}
+               const train::VehicleShare& share)
+      : comm_(comm), structure_(structure), fleet_(fleet), share_(share) {}
 
-  /// Before the first step, the longest one: corners that wheels of a train of this speed (m/s) come to until `end`.
-  void expect(double speed, double end, double step);
+  /// Before the first step, the longest one: corners that the fleet's wheels, which run so, come to until `end`.
+  void expect(const std::vector<base::SpeedLaw>& laws, double end, double step);
 
   /// A wheel begins or ends to turn about a corner: when, and how exactly a step has to end there.
   struct Turn {
@@ -46,6 +46,7 @@ class CornerEvents {
     double time = 0.0;  // s
     int wheel = 0;      // of the fleet's
     double x = 0.0;     // m
+    double speed = 0.0;  // m/s
   };
   double longest_turn(const Corner& corner) const;
   std::array<double, 2> turning_times(const Corner& corner, double t, const double* v, const double* w);
@@ -54,9 +55,8 @@ class CornerEvents {
   structure::Structure* structure_;
   const train::Fleet& fleet_;
   const train::VehicleShare& share_;
-  const track::Profile& profile_;
   std::vector<Corner> corners_;  // ascending in time
-  double speed_ = 0.0, longest_step_ = 0.0;
+  double longest_step_ = 0.0;
   std::size_t next_ = 0;       // the first that may not have been turned
   std::vector<int> elements_;  // on either side of a corner
   std::vector<double> v_, w_;  // of these

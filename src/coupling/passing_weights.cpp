@@ -66,8 +66,13 @@ PassingWeights::InfluenceLine PassingWeights::influence_line(double station) {
 }
 
 bool PassingWeights::pass_together(const train::WheelPaths& paths) const {
-  const auto otherwise = [this](const PassingWeight& w) { return w.speed != weights_.front().speed; };
-  return std::none_of(weights_.begin(), weights_.end(), otherwise) && paths.drift() < together;
+  const auto otherwise = [this](const PassingWeight& w) { return w.law.speed(0.0) != weights_.front().law.speed(0.0); };
+  return steady() && std::none_of(weights_.begin(), weights_.end(), otherwise) && paths.drift() < together;
+}
+
+// Whether no speed changes.
+bool PassingWeights::steady() const {
+  return std::all_of(weights_.begin(), weights_.end(), [](const PassingWeight& w) { return w.law.constant(); });
 }
 
 double PassingWeights::static_peak(double station, const train::WheelPaths& paths, double end) {
@@ -87,17 +92,17 @@ double PassingWeights::static_energy(double station) {
 double PassingWeights::peak_of_train(const InfluenceLine& line, double constant) const {
   const beam::Mesh& mesh = structure_->line().mesh;
   double front = -infinite, rear = infinite;
-  for (const auto& [x, force, speed] : weights_) {
+  for (const auto& [x, force, law] : weights_) {
     front = std::max(front, x);
     rear = std::min(rear, x);
   }
   double peak = 0.0;
   auto try_shift = [&](double shift) {
     double sum = constant;
-    for (const auto& [x, force, speed] : weights_) sum += force * line.at(mesh, x + shift);
+    for (const auto& [x, force, law] : weights_) sum += force * line.at(mesh, x + shift);
     peak = std::max(peak, std::abs(sum));
   };
-  for (const auto& [x, force, speed] : weights_) try_shift(line.station - x);
+  for (const auto& [x, force, law] : weights_) try_shift(line.station - x);
   for (int i = 0; i <= positions; ++i)
     try_shift(mesh.start() - front + (mesh.end() - mesh.start() + front - rear) * i / positions);
   return peak;
@@ -107,7 +112,7 @@ double PassingWeights::peak_of_train(const InfluenceLine& line, double constant)
 double PassingWeights::peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const {
   const std::size_t known = paths.instants();
   const auto place = [&](std::size_t i, std::size_t instant, double t) {
-    return i < wheels_ && known > 1 ? paths.x(instant, i) : weights_[i].x + t * weights_[i].speed;
+    return i < wheels_ && known > 1 ? paths.x(instant, i) : weights_[i].x + weights_[i].law.distance(t);
   };
   std::vector<double> from(weights_.size()), way(weights_.size());
   double peak = 0.0;
@@ -117,10 +122,13 @@ double PassingWeights::peak_on_the_way(const InfluenceLine& line, const train::W
       sum += weights_[i].force * line.at(structure_->line().mesh, from[i] + part * way[i]);
     peak = std::max(peak, std::abs(sum));
   };
-  const std::size_t stretches = known > 1 ? known - 1 : 1;
+  const std::size_t stretches = known > 1 ? known - 1 : steady() ? 1 : positions;
+  const auto time = [&](std::size_t k) {
+    return known > 1 ? paths.time(k) : end * static_cast<double>(k) / static_cast<double>(stretches);
+  };
   const int parts = std::max(1, positions / static_cast<int>(stretches));
   for (std::size_t k = 0; k < stretches; ++k) {
-    const double begin = known > 1 ? paths.time(k) : 0.0, next = known > 1 ? paths.time(k + 1) : end;
+    const double begin = time(k), next = time(k + 1);
     for (std::size_t i = 0; i < weights_.size(); ++i) {
       from[i] = place(i, k, begin);
       way[i] = place(i, k + 1, next) - from[i];

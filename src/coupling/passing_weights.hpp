@@ -8,6 +8,7 @@
 
 #include "structure/structure.hpp"
 #include "train/wheel_paths.hpp"
+#include "traverse/base/speed_law.hpp"
 
 namespace traverse::coupling {
 
@@ -15,7 +16,7 @@ namespace traverse::coupling {
 struct PassingWeight {
   double x = 0.0;      // m
   double force = 0.0;  // N
-  double speed = 0.0;  // m/s
+  base::SpeedLaw law;
 };
 
 class PassingWeights {
@@ -45,6 +46,7 @@ class PassingWeights {
   struct InfluenceLine;
   InfluenceLine influence_line(double station);
   double peak_of_train(const InfluenceLine& line, double constant) const;
+  bool steady() const;
   double peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const;
   bool superpose() const { return structure_ != nullptr && !weights_.empty() && structure_->linear(); }
 

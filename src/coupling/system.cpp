@@ -26,18 +26,24 @@ System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, S
       n_(structure_ ? structure_->unknowns() : 0),
       input_(std::move(input)),
       events_(comm, fleet_, share_, input_.impact_steps),
-      corners_(comm, structure_.get(), fleet_, share_, input_.profile),
+      corners_(comm, structure_.get(), fleet_, share_),
       weights_(comm, structure_.get(), input_.self_weight ? input_.gravity : 0.0) {
   MPI_Comm_rank(comm, &rank_);
   MPI_Comm_size(comm, &ranks_);
-  for (const train::Vehicle& type : input_.types)
+  const auto check = [this](const track::Profile& profile, const train::Vehicle& type) {
     for (const train::Wheel& wheel : type.wheels)
-      if (track::too_rough(input_.profile, wheel.radius))
+      if (track::too_rough(profile, wheel.radius))
         throw InputError(
             "vehicle_" + type.name + "_" + wheel.name + "_radius " + std::to_string(wheel.radius) +
             ": the wheel would touch the track's profile, whose shortest wave is " +
-            std::to_string(input_.profile.shortest_wave()) + " m, at more than " + std::to_string(track::most_points) +
+            std::to_string(profile.shortest_wave()) + " m, at more than " + std::to_string(track::most_points) +
             " points at a time; take a smoother track, longer waves (track_wavelengths) or a smaller wheel");
+  };
+  for (std::size_t i = 0; i < input_.train.vehicles.size(); ++i) {
+    const train::Course* course = train::course_of(input_.train, i);
+    check(course != nullptr && course->profile ? *course->profile : input_.profile,
+          input_.types[static_cast<std::size_t>(input_.train.vehicles[i])]);
+  }
   fleet_ = train::Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
                         &input_.profile, surface_height(), inner_EI());
   fleet_.partition(0.0);

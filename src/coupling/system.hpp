@@ -196,19 +196,25 @@ class System {
   /// Collective. Why the last stage could not be solved, and what to do about it.
   std::string trouble() const;
 
-  /// Times in (0, end) at which a force comes onto the beam or leaves it, or an actuator's table has a kink; with
+  /// Times in (0, end) at which a force comes onto the beam or leaves it, an actuator's table has a kink or a prescribed
+  /// acceleration jumps; with
   /// `kinks`, for a prescribed speed, also those at which a wheel or force passes a kink of the running surface or the
   /// end of its own flat.
   std::vector<double> known_events(double end, bool kinks = true) const;
   /// Ascending stations at which the running surface may have a corner: of the profile, and span ends.
-  std::vector<double> corners() const;
-  /// When the last wheel or force has left the beam (or, without a beam, infinity); infinite when it never does.
+  std::vector<double> corners() const { return corners(input_.profile); }
+  std::vector<double> corners(const track::Profile& profile) const;
+  /// When the last wheel or force has left the beam or stands for good (or, without a beam, infinity); infinite when
+  /// nothing ever moves and something stands on the beam.
   double leaving_time() const;
   /// What steps have to end at: contacts lost and gained, corners of the surface.
   const ContactEvents& contacts() const { return events_; }
   /// Before the first step, the longest one, those until `end`: where the speed is prescribed.
   void expect_corners(double end, double step) {
-    if (input_.train.drive == train::Drive::constant) corners_.expect(input_.train.speed, end, step);
+    std::vector<base::SpeedLaw> laws(fleet_.wheels.size());
+    for (std::size_t i = 0; i < laws.size(); ++i)
+      if (is_driven(static_cast<int>(i))) laws[i] = law_of_wheel(static_cast<int>(i));
+    corners_.expect(laws, end, step);
   }
   /// CornerEvents::next and time_of at a state y.
   std::optional<CornerEvents::Turn> next_turn(double t, double h, const double* y) {
@@ -266,7 +272,10 @@ class System {
   void go_with_the_train(double* w);
   void go_on_from(std::vector<double> p);
   [[noreturn]] void refuse_start(Solution found) const;
-  void add_flats(const train::WheelContact& c, double end, std::vector<double>& events) const;
+  void add_flats(const train::WheelContact& c, const base::SpeedLaw& law, double end,
+                 std::vector<double>& events) const;
+  base::SpeedLaw law_of_wheel(int wheel) const;
+  bool is_driven(int wheel) const;
   double surface_height() const;
   double inner_EI() const;
   void note_weights();

@@ -10,8 +10,8 @@ void System::load_structure(double t) {
   loads_.clear();
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i) {
     if (on_beam_[i] == 0) continue;
-    const beam::Station s = line_->mesh.locate(input_.load.positions[i] + input_.load.speed * t);
-    loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0, input_.load.speed});
+    const beam::Station s = line_->mesh.locate(train::place_of(input_.load, i, t));
+    loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0, train::speed_of(input_.load, i, t)});
   }
   for (const auto& [x, force] : applied_) {
     const beam::Station s = line_->mesh.locate(x);
@@ -47,9 +47,10 @@ structure::ElementLoads System::contact_loads() {
 
 bool System::begin_step(double from, double to) {
   bool changed = std::exchange(applied_anew_, false);
+  changed = fleet_.begin_step(0.5 * (from + to)) || changed;
   if (line_ == nullptr) return changed;
   for (std::size_t i = 0; i < on_beam_.size(); ++i) {
-    const double x = input_.load.positions[i] + input_.load.speed * 0.5 * (from + to);
+    const double x = train::place_of(input_.load, i, 0.5 * (from + to));
     const char on = x >= line_->mesh.start() && x <= line_->mesh.end() ? 1 : 0;
     changed = changed || on != on_beam_[i];
     on_beam_[i] = on;

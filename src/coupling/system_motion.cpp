@@ -35,7 +35,8 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
     const double x = fleet_.coordinates(c).x(), way = fleet_.velocities(c).x() * h;
     add(x, x + 2.0 * way, 0.1 * fleet_.wheel(c).radius);  // a wheel touches beside its centre
   }
-  for (double x : input_.load.positions) add(x + input_.load.speed * t, x + input_.load.speed * (t + h), 0.0);
+  for (std::size_t i = 0; i < input_.load.positions.size(); ++i)
+    add(train::place_of(input_.load, i, t), train::place_of(input_.load, i, t + h), 0.0);
   for (const auto& [x, force] : applied_) add(x, x, 0.0);
   return reaches_;
 }

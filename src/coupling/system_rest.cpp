@@ -43,8 +43,8 @@ void System::find_equilibrium(double* y) {
 // going first would throw the wheels up, by 7 % of their weight at 300 km/h. Bridge and vehicles have no time to
 // follow that: they begin at rest.
 void System::go_with_the_train(double* w) {
-  const double speed = input_.train.speed;
-  if (!structure_ || beam()->rail() == nullptr || !(speed > 0.0)) return;
+  const double speed = fleet_.wheels.empty() ? 0.0 : law_of_wheel(0).speed(0.0);
+  if (!structure_ || beam()->rail() == nullptr || speed == 0.0) return;
   train::Fleet moving = std::move(fleet_);
   std::array<std::vector<double>, 2> v;
   bool found = true;

@@ -52,49 +52,68 @@ bool System::weigh_at_rest() {
 void System::note_weights() {
   std::vector<PassingWeight> weights;
   fleet_.contact_forces();
-  for (const train::WheelContact& c : fleet_.wheels)
-    weights.push_back({fleet_.coordinates(c).x(), c.force.normal, input_.train.speed});
+  for (int i = 0; i < static_cast<int>(fleet_.wheels.size()); ++i) {
+    const train::WheelContact& c = fleet_.wheels[static_cast<std::size_t>(i)];
+    weights.push_back({fleet_.coordinates(c).x(), c.force.normal, law_of_wheel(i)});
+  }
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i)
-    weights.push_back({input_.load.positions[i], input_.load.forces[i], input_.load.speed});
+    weights.push_back({input_.load.positions[i], input_.load.forces[i], train::law_of(input_.load, i)});
   weights_.set(std::move(weights), fleet_.wheels.size());
 }
 
-// When the ends of a wheel's flat meet the rail, where it rolls as its x is prescribed.
-void System::add_flats(const train::WheelContact& c, double end, std::vector<double>& events) const {
-  const train::Wheel& wheel = fleet_.wheel(c);
-  if (c.turns || input_.train.speed <= 0.0) return;
-  const double turning = input_.train.speed / wheel.radius;
-  for (double angle : track::flat_ends(wheel.shape, wheel.radius, turning * end)) events.push_back(angle / turning);
+base::SpeedLaw System::law_of_wheel(int wheel) const {
+  return train::law_of(input_.train, static_cast<std::size_t>(fleet_.member(wheel)));
 }
 
-std::vector<double> System::corners() const {
-  std::vector<double> corners = input_.profile.kinks();
+bool System::is_driven(int wheel) const {
+  return train::drive_of(input_.train, static_cast<std::size_t>(fleet_.member(wheel))) == train::Drive::constant;
+}
+
+// When the ends of a wheel's flat meet the rail, where it rolls as its x is prescribed.
+void System::add_flats(const train::WheelContact& c, const base::SpeedLaw& law, double end,
+                       std::vector<double>& events) const {
+  const train::Wheel& wheel = fleet_.wheel(c);
+  const double way = law.distance(end);
+  if (c.turns || way == 0.0) return;
+  track::WheelShape shape = wheel.shape;
+  if (way < 0.0) shape.flat_angle = -shape.flat_angle;
+  for (double angle : track::flat_ends(shape, wheel.radius, std::abs(way) / wheel.radius))
+    events.push_back(law.time_of(std::copysign(angle * wheel.radius, way)));
+}
+
+std::vector<double> System::corners(const track::Profile& profile) const {
+  std::vector<double> corners = profile.kinks();
   if (line_ != nullptr) corners.insert(corners.end(), line_->mesh.kinks().begin(), line_->mesh.kinks().end());
   std::sort(corners.begin(), corners.end());
   return corners;
 }
 
 std::vector<double> System::known_events(double end, bool all_kinks) const {
-  std::vector<double> kinks;
-  if (all_kinks) kinks = corners();
-  if (line_ != nullptr && !all_kinks) kinks = {line_->mesh.start(), line_->mesh.end()};
   std::vector<double> events;
-  auto add = [&](double x, double speed) {
-    if (speed <= 0.0) return;
-    for (double kink : kinks) {
-      const double t = (kink - x) / speed;
-      if (t > 0.0 && t < end) events.push_back(t);
-    }
-  };
-  if (input_.train.drive == train::Drive::constant && all_kinks)
-    for (const train::WheelContact& c : fleet_.wheels) {
-      if (c.is_further) continue;
-      add(fleet_.coordinates(c).x(), input_.train.speed);
-      add_flats(c, end, events);
-    }
-  for (double x : input_.load.positions) add(x, input_.load.speed);
-  for (double t : fleet_.kinks_of_actions())
+  const auto note = [&](double t) {
     if (t > 0.0 && t < end) events.push_back(t);
+  };
+  const auto add = [&](double x, const base::SpeedLaw& law, const std::vector<double>& kinks) {
+    if (law.standstill() == 0.0) return;
+    for (double kink : kinks) note(law.time_of(kink - x));
+  };
+  for (int i = 0; all_kinks && i < static_cast<int>(fleet_.wheels.size()); ++i) {
+    const train::WheelContact& c = fleet_.wheels[static_cast<std::size_t>(i)];
+    if (c.is_further || !is_driven(i)) continue;
+    const base::SpeedLaw law = law_of_wheel(i);
+    add(fleet_.coordinates(c).x(), law, corners(fleet_.profile(c)));
+    add_flats(c, law, end, events);
+  }
+  std::vector<double> kinks;
+  if (all_kinks)
+    kinks = corners();
+  else if (line_ != nullptr)
+    kinks = {line_->mesh.start(), line_->mesh.end()};
+  for (std::size_t i = 0; i < input_.load.positions.size(); ++i)
+    add(input_.load.positions[i], train::law_of(input_.load, i), kinks);
+  for (const train::Course& course : input_.load.courses)
+    for (double t : course.speed.kinks()) note(t);
+  for (double t : fleet_.kinks_of_actions()) note(t);
   std::sort(events.begin(), events.end());
   return events;
 }
@@ -103,12 +122,20 @@ double System::leaving_time() const {
   if (!structure_ || (fleet_.wheels.empty() && input_.load.forces.empty())) return infinite;
   const double length = beam()->mesh().end();
   double last = 0.0;
-  auto leave = [&](double x, double speed) {
-    if (x < length) last = std::max(last, speed > 0.0 ? (length - x) / speed : infinite);
+  bool moves = false, stands = false;
+  const auto leave = [&](double x, const base::SpeedLaw& law) {
+    const bool to_the_left = law.direction() < 0.0;
+    const double still = law.standstill();
+    moves = moves || still > 0.0;
+    if (to_the_left ? x <= 0.0 : x >= length) return;
+    stands = stands || still == 0.0;
+    last = std::max(last, std::min(law.time_of(to_the_left ? -x : length - x), still));
   };
-  for (const train::WheelContact& c : fleet_.wheels) leave(fleet_.coordinates(c).x(), input_.train.speed);
-  for (double x : input_.load.positions) leave(x, input_.load.speed);
-  return last;
+  for (int i = 0; i < static_cast<int>(fleet_.wheels.size()); ++i)
+    leave(fleet_.coordinates(fleet_.wheels[static_cast<std::size_t>(i)]).x(), law_of_wheel(i));
+  for (std::size_t i = 0; i < input_.load.positions.size(); ++i)
+    leave(input_.load.positions[i], train::law_of(input_.load, i));
+  return stands && !moves ? infinite : last;
 }
 
 }  // namespace traverse::coupling

@@ -56,6 +56,13 @@ Mechanism::Mechanism(MechanismModel model) : model_(std::move(model)) {
 }
 
 int Mechanism::coordinates() const { return 3 * static_cast<int>(model_.bodies.size()); }
+bool Mechanism::take_pieces(double t) {
+  bool other = false;
+  for (Driver& driver : model_.drivers)
+    if (driver.value.jumps()) other = driver.value.take_piece(t) || other;
+  return other;
+}
+
 int Mechanism::constraints() const { return joint_row_count_ + static_cast<int>(model_.drivers.size()); }
 int Mechanism::freedom() const { return static_cast<int>(partition_.independent.size()); }
 

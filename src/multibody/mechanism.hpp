@@ -121,6 +121,8 @@ class Mechanism {
   /// Lets a constant force (N, along x and y) at the centre of mass of a body and a moment (N m) act besides all else,
   /// instead of those of the last call for that body. Forces have to be computed anew.
   void apply(int body, const Eigen::Vector3d& action);
+  /// Drivers whose acceleration jumps go on by the piece that holds t. True when it is another one than before.
+  bool take_pieces(double t);
   int coordinates() const;  // n
   int constraints() const;  // rows of Phi, redundant ones included
   int freedom() const;      // f, after choose_partition

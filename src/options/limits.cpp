@@ -23,7 +23,7 @@ constexpr std::array<std::pair<std::string_view, std::size_t>, 7> limits = {{
 
 std::size_t most_entries(std::string_view name, const Row& row) {
   for (const auto& [limited, most] : limits)
-    if (limited == name) return most;
+    if (limited == name || limited == row.name) return most;  // of a train or load by another name, too
   if (name.starts_with("study_vary_")) return of_any_list;
   return row.kind == Kind::texts ? of_parts : of_any_list;
 }

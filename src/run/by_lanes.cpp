@@ -120,6 +120,7 @@ std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (!scene.load.forces.empty()) return "forces move beside the vehicles";
   if (scene.vehicle_model != VehicleModel::linear) return "vehicles are mechanisms, not linear";
   if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
+  if (!scene.train.courses.empty()) return "several trains run, or one whose speed changes or is below 0";
   if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
   if (scene.self_weight) return "the bridge's own weight bends it";
   if (!integrate::own_method(scene.integrator)) return "ts_type is one of PETSc's own";

@@ -206,7 +206,7 @@ std::string spans_obstacle(const Scene& scene) {
   if (scene.vehicles.empty()) return "no vehicles run";
   if (!scene.load.forces.empty()) return "forces move beside the vehicles";
   if (scene.vehicle_model == VehicleModel::full) return "vehicles are mechanisms, not linear";
-  if (scene.train.drive != Drive::constant || !(scene.train.speed > 0.0)) return "the train's speed is not prescribed";
+  if (!scene.train.steady()) return "the train's speed is not prescribed";
   if (!scene.profile.level()) return "the track is not level";
   if (scene.start != Start::equilibrium) return "the run does not start in equilibrium";
   if (scene.self_weight) return "the bridge's own weight bends it";

@@ -97,7 +97,29 @@ void record_load(const MovingLoad& load, const std::string& name, Recorder& reco
   add_rows(recorder, "forces/" + name, 2, std::move(rows), "m, N");
 }
 
+/// How courses run: their number, the first vehicle or force of each, and its speed over time where that bends.
+template <class Moving>
+void record_courses(const Moving& moving, const std::string& name, Recorder& recorder) {
+  std::vector<double> rows;
+  Pairs names;
+  for (std::size_t i = 0; i < moving.courses.size(); ++i) {
+    const train::Course& course = moving.courses[i];
+    const auto add = [&](double t) {
+      rows.insert(rows.end(), {static_cast<double>(i), static_cast<double>(course.first), t, course.speed.speed(t)});
+    };
+    if (course.speed.constant()) add(0.0);
+    for (const double t : course.speed.kinks()) add(t);
+    names.emplace_back(std::to_string(i), course.name);
+  }
+  add_rows(recorder, name, 4, std::move(rows), "1, 1, s, m/s");
+  std::vector<results::Attribute> list;
+  for (auto& [number, text] : names) list.push_back({number, text});
+  if (!list.empty()) recorder.attributes("/model/" + name, list);
+}
+
 void record_train(const Scene& scene, Recorder& recorder) {
+  record_courses(scene.train, "trains", recorder);
+  record_courses(scene.load, "loads", recorder);
   std::vector<double> train;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
     train.insert(train.end(), {static_cast<double>(scene.train.vehicles[i]), scene.train.positions[i]});

@@ -165,15 +165,18 @@ double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reac
 std::vector<std::vector<double>> passages_of(const Scene& scene) {
   std::vector<std::vector<double>> passages(scene.output.probes.size());
   if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return passages;
-  std::vector<std::pair<double, double>> starts;  // x at t = 0 and speed
-  if (scene.train.drive == train::Drive::constant && scene.train.speed > 0.0)
-    for (const double x : wheels_at_start(scene)) starts.emplace_back(x, scene.train.speed);
-  if (scene.load.speed > 0.0)
-    for (const double x : scene.load.positions) starts.emplace_back(x, scene.load.speed);
+  std::vector<std::pair<double, base::SpeedLaw>> starts;  // x at t = 0 and how it goes on
+  const auto start = [&](double x, const base::SpeedLaw& law) {
+    if (law.direction() != 0.0) starts.emplace_back(x, law);
+  };
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    if (drive_of(scene.train, i) == train::Drive::constant)
+      for (const double x : wheels_at_start(scene, i)) start(x, law_of(scene.train, i));
+  for (std::size_t i = 0; i < scene.load.positions.size(); ++i) start(scene.load.positions[i], law_of(scene.load, i));
   for (std::size_t p = 0; p < passages.size(); ++p) {
-    for (const auto& [x, speed] : starts) {
-      const double t = (scene.output.probes[p] - x) / speed;
-      if (t > 0.0) passages[p].push_back(t);
+    for (const auto& [x, law] : starts) {
+      const double t = law.time_of(scene.output.probes[p] - x);
+      if (t > 0.0 && std::isfinite(t)) passages[p].push_back(t);
     }
     std::sort(passages[p].begin(), passages[p].end());
   }

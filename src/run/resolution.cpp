@@ -35,7 +35,9 @@ constexpr double shortest_run = 1e-12;  // s
 bool loaded(const Scene& scene) { return !scene.train.vehicles.empty() || !scene.load.forces.empty(); }
 
 void check_waves(const Scene& scene, double step, std::vector<std::string>& notes) {
-  const double wave = scene.profile.shortest_wave();
+  double wave = scene.profile.shortest_wave();
+  for (const train::Course& course : scene.train.courses)
+    if (course.profile) wave = std::min(wave, course.profile->shortest_wave());
   if (scene.train.vehicles.empty() || scene.train.speed <= 0.0 || !std::isfinite(wave)) return;
   const double passage = wave / scene.train.speed;
   if (step > passage / least_steps_a_wave)

@@ -222,6 +222,8 @@ double greatest_speed(const Scene& scene) {
 
 double shortest_wave(const Scene& scene) {
   double wave = scene.profile.shortest_wave();
+  for (const train::Course& course : scene.train.courses)
+    if (course.profile) wave = std::min(wave, course.profile->shortest_wave());
   for (const int index : scene.train.vehicles)
     for (const Wheel& wheel : scene.vehicles[static_cast<std::size_t>(index)].wheels) {
       if (wheel.shape.flat_length > 0.0) wave = std::min(wave, wheel.shape.flat_length);
@@ -249,6 +251,7 @@ std::vector<double> wheels_at_start(const Scene& scene) {
 Scene read_scene(Options o) {
   if (asks_for_study(o)) return read_study(o);
   Scene scene;
+  declare_blocks(o);
   const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
   o.check_names();
@@ -256,10 +259,11 @@ Scene read_scene(Options o) {
   read_run(o, scene);
   read_beam(o, scene);
   read_sweep(o, scene);
-  read_train(o, vehicles.train, scene);
+  read_trains(o, vehicles, scene);
   read_load(o, scene);
   read_track(o, scene);
   read_layers(o, scene);
+  check_courses(o, scene);
   decide_axial(o, scene);
   read_output(o, scene);
   read_modal(o, scene);

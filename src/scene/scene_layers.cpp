@@ -19,6 +19,11 @@ double approach_of(const Scene& scene) {
   double rear = 0.0;
   for (const double x : wheels_at_start(scene)) rear = std::min(rear, x);
   for (const double x : scene.load.positions) rear = std::min(rear, x);
+  if (!scene.train.courses.empty() || !scene.load.courses.empty()) {  // what runs to the left begins at the other end
+    std::vector<double> all = wheels_at_start(scene);
+    all.insert(all.end(), scene.load.positions.begin(), scene.load.positions.end());
+    for (const double x : all) rear = std::min(rear, scene.beam->length() - x);
+  }
   return std::max(least_approach, std::ceil(-rear + greatest_speed(scene) * scene.tail.value_or(0.0) + behind_train));
 }
 

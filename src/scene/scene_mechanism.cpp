@@ -216,8 +216,8 @@ void VehicleReader::driver(const std::string& name) {
   vehicle_.mechanism.drivers.push_back(d);
 }
 
-Coupler read_coupler(const options::Options& options, const std::string& name) {
-  return VehicleReader(options).read_coupler(name);
+Coupler read_coupler(const options::Options& options, const Block& train, const std::string& name) {
+  return VehicleReader(options, train).read_coupler(name);
 }
 
 Vehicle read_vehicle(const options::Options& options, const std::string& name) {

@@ -68,6 +68,8 @@ void read_norm(const Options& o, Scene& scene) {
                           " has no effect: static effects belong to transient runs and to scene_analysis envelope");
     return;
   }
+  if (several_courses(scene))
+    o.refuse(asked, "static effects are of one train or load wherever it stands; several run here (trains, loads)");
   if (scene.beam->foundation.nonlinear()) {
     const std::string why = "influence lines do not hold: the foundation is one-sided, has a gap or a cubic term";
     if (asked == "scene_analysis") o.refuse(asked, why);

@@ -17,21 +17,33 @@ constexpr double fastest_train = 160.0;  // m/s: the record of a train on rails 
 constexpr double far_away = 1000.0;      // m
 constexpr double rounding = 1e-6;        // of a length
 
-/// What moves over the bridge: wheels or forces.
+/// What moves over the bridge: wheels or forces. Counted from where it comes from: to the left, from the right end on.
 struct Moving {
   std::vector<double> x;  // at the start, m
-  double speed = 0.0;
+  base::SpeedLaw law;
   bool driven = true;       // goes on at that speed
   const char* what = "";    // one of them, in words
-  const char* option = "";  // that places them
+  std::string option;       // that places them
 };
 
 std::vector<Moving> moving_things(const Scene& scene) {
   std::vector<Moving> things;
-  if (const auto x = wheels_at_start(scene); !x.empty())
-    things.push_back({x, scene.train.speed, scene.train.drive == Drive::constant, "wheel", "train_positions"});
-  if (!scene.load.positions.empty())
-    things.push_back({scene.load.positions, scene.load.speed, true, "force", "load_positions"});
+  const train::Course* last = nullptr;
+  const auto add = [&](const train::Course* course, const base::SpeedLaw& law, const char* what, const char* block,
+                       const std::vector<double>& x) {
+    if (x.empty()) return;
+    const bool driven = what[0] == 'f' || (course ? course->drive : scene.train.drive) == Drive::constant;
+    if (things.empty() || things.back().what != what || course != last)
+      things.push_back({{}, law, driven, what, (course ? course->name : block) + std::string("_positions")});
+    last = course;
+    for (const double one : x)
+      things.back().x.push_back(law.direction() < 0.0 ? scene.beam->length() - one : one);
+  };
+  static constexpr const char *wheel = "wheel", *force = "force";
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    add(course_of(scene.train, i), law_of(scene.train, i), wheel, "train", wheels_at_start(scene, i));
+  for (std::size_t i = 0; i < scene.load.positions.size(); ++i)
+    add(course_of(scene.load, i), law_of(scene.load, i), force, "load", {scene.load.positions[i]});
   return things;
 }
 
@@ -45,13 +57,19 @@ void check_start(const Options& o, const Moving& moving, Scene& scene) {
   const double front = *std::max_element(moving.x.begin(), moving.x.end()),
                rear = *std::min_element(moving.x.begin(), moving.x.end());
   if (rear > end * (1.0 + rounding)) {
-    const std::string why = fmt::format("every {} starts beyond the bridge, which ends at {:g} m", moving.what, end);
-    if (scene.analysis == Analysis::transient && moving.speed > 0.0 && moving.driven)
+    const std::string why = fmt::format("every {} starts beyond the bridge, which ends at {:g} m", moving.what,
+                                        moving.law.direction() < 0.0 ? scene.beam->length() - end : end);
+    if (scene.analysis == Analysis::transient && moving.law.direction() != 0.0 && moving.driven)
       o.refuse(moving.option, why + ", and moves away from it; allowed: positions before or on the bridge");
     scene.notes.push_back(fmt::format("{}: {} ({})", moving.option, why, "nothing stands on it"));
   }
-  if (scene.analysis != Analysis::transient || !(moving.speed > 0.0) || front >= 0.0) return;
-  const double arrival = -front / moving.speed;
+  if (scene.analysis != Analysis::transient || moving.law.direction() == 0.0 || front >= 0.0) return;
+  const double arrival = moving.law.time_of(-front * moving.law.direction());
+  if (std::isinf(arrival)) {
+    scene.notes.push_back(fmt::format("{}: the first {} starts {:g} m before the bridge and comes to rest before it",
+                                      moving.option, moving.what, -front));
+    return;
+  }
   if (scene.end_time && *scene.end_time < arrival) {
     scene.notes.push_back(
         fmt::format("the run ends at {:g} s (ts_max_time), before the first {} comes onto the bridge at {:g} s",
@@ -86,10 +104,14 @@ void note_overlaps(const Options& o, Scene& scene) {
     if (!wheels_at_start(scene, i).empty()) order.push_back(i);
   }
   const std::vector<double>& x = scene.train.positions;
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] > x[b]; });
+  const auto course = [&](std::size_t i) { return course_of(scene.train, i); };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return course(a) != course(b) ? a < b : x[a] > x[b];
+  });
   std::size_t pairs = 0, first = 0;
   double deepest = 0.0;
   for (std::size_t i = 0; i + 1 < order.size(); ++i) {
+    if (course(order[i]) != course(order[i + 1])) continue;  // tracks side by side
     const double by = overlap(o, scene, order[i], order[i + 1]);
     if (!(by > rounding * (1.0 + std::abs(x[order[i]])))) continue;
     if (pairs++ == 0) first = i;

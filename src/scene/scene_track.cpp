@@ -23,46 +23,67 @@ std::optional<track::Spectrum> spectrum_of(const std::string& profile) {
   return {};
 }
 
-Roughness rough(const Options& o, const Scene& scene, const track::Spectrum& spectrum) {
+Roughness rough(const Options& o, const std::string& prefix, const track::Spectrum& spectrum, double start,
+                bool to_the_left) {
   std::vector<double> wavelengths = {spectrum.shortest, spectrum.longest};
-  if (o.has("track_wavelengths")) {
-    wavelengths = o.numbers("track_wavelengths");
-    if (!(wavelengths[0] < wavelengths[1])) o.refuse("track_wavelengths", "allowed: the shortest, then the longest");
+  if (const std::string option = prefix + "_wavelengths"; o.has(option)) {
+    wavelengths = o.numbers(option);
+    if (!(wavelengths[0] < wavelengths[1])) o.refuse(option, "allowed: the shortest, then the longest");
   }
-  const std::vector<double> wheels = wheels_at_start(scene);
-  // From the foremost wheel on, so that the train starts on level track.
-  const double start = wheels.empty() ? 0.0 : *std::max_element(wheels.begin(), wheels.end());
-  return {spectrum, wavelengths[0], wavelengths[1], start};
+  return {spectrum, wavelengths[0], wavelengths[1], start, to_the_left};
+}
+
+/// Where the track's roughness begins: at the foremost wheel of what runs to the right or, where all runs to the left, at
+/// the foremost one of that, so that the train starts on level track.
+double start_of_roughness(const Scene& scene, bool& to_the_left) {
+  std::optional<double> right, left;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
+    const bool back = train::law_of(scene.train, i).direction() < 0.0;
+    for (const double x : wheels_at_start(scene, i))
+      if (back)
+        left = std::min(x, left.value_or(x));
+      else
+        right = std::max(x, right.value_or(x));
+  }
+  to_the_left = left && !right;
+  return right ? *right : left.value_or(0.0);
 }
 
 }  // namespace
 
-void read_track(const Options& o, Scene& scene) {
-  const std::string profile = o.text("track_profile");
-  const options::Entry* bump = o.first_with_prefix("track_bump");
-  if (profile == "bump") {
-    scene.profile = track::Profile::bump(o.number("track_bump_start"), o.number("track_bump_length"),
-                                         o.number("track_bump_height"));
-    return;
-  }
-  if (bump != nullptr) scene.notes.push_back(bump->name + " has no effect: track_profile is " + profile);
+ReadProfile read_profile(const Options& o, const std::string& prefix, double start, bool to_the_left, Scene& scene) {
+  const auto key = [&](const char* word) { return prefix + "_" + word; };
+  const std::string option = key("profile"), profile = o.text(option);
+  const options::Entry* bump = o.first_with_prefix(key("bump"));
+  if (profile == "bump")
+    return {track::Profile::bump(o.number(key("bump_start")), o.number(key("bump_length")),
+                                 o.number(key("bump_height"))),
+            {}};
+  if (bump != nullptr) scene.notes.push_back(bump->name + " has no effect: " + option + " is " + profile);
   const std::optional<track::Spectrum> spectrum = spectrum_of(profile);
-  if (!spectrum && o.has("track_wavelengths"))
-    scene.notes.push_back("track_wavelengths has no effect: track_profile is " + profile);
-  if (profile == "none") return;
+  if (!spectrum && o.has(key("wavelengths")))
+    scene.notes.push_back(key("wavelengths") + " has no effect: " + option + " is " + profile);
+  if (profile == "none") return {};
   if (spectrum) {
-    scene.roughness = rough(o, scene, *spectrum);
-    scene.profile = scene.roughness->profile(static_cast<std::uint64_t>(o.integer("track_seed")));
-    return;
+    const Roughness roughness = rough(o, prefix, *spectrum, start, to_the_left);
+    return {roughness.profile(static_cast<std::uint64_t>(o.integer(key("seed")))), roughness};
   }
   if (profile.find_first_of("./") == std::string::npos) {
-    o.refuse("track_profile",
+    o.refuse(option,
              "allowed: none, bump, iso8608_A to iso8608_E, german_low, german_high, fra_1 to fra_6, or "
              "a file x,height");
   }
-  const std::string path = o.path("track_profile");
+  const std::string path = o.path(option);
   auto columns = options::read_columns(path, 2, 2);
-  scene.profile = track::Profile::table(std::move(columns[0]), std::move(columns[1]), "track_profile (" + path + ")");
+  return {track::Profile::table(std::move(columns[0]), std::move(columns[1]), option + " (" + path + ")"), {}};
+}
+
+void read_track(const Options& o, Scene& scene) {
+  bool to_the_left = false;
+  const double start = start_of_roughness(scene, to_the_left);
+  ReadProfile read = read_profile(o, "track", start, to_the_left, scene);
+  scene.profile = std::move(read.profile);
+  scene.roughness = std::move(read.roughness);
 }
 
 }  // namespace traverse::app

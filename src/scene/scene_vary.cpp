@@ -87,13 +87,17 @@ std::vector<std::string> varied_options(const Options& o) {
 /// The dimensions of sweep_speed and sweep_hslm_a, which a study takes up.
 std::vector<StudyDimension> swept_dimensions(const Options& o, const NamedVehicles& vehicles) {
   std::vector<StudyDimension> dimensions;
+  for (const char* sweep : {"sweep_hslm_a", "sweep_speed"})
+    for (const char* list : {"trains", "loads"})
+      if (o.has(sweep) && o.has(list))
+        o.refuse(sweep, fmt::format("is of one train or load; with {} a study varies NAME_speed", list));
   if (o.has("sweep_hslm_a")) {
     StudyDimension trains{{"load_hslm_a"}, "1", true, "list", {}, 0};
     for (const int train : o.integers("sweep_hslm_a")) trains.values.push_back(train);
     dimensions.push_back(std::move(trains));
   }
   if (o.has("sweep_speed")) {
-    const bool forces = !load_option(o).empty();
+    const bool forces = forces_move(o);
     StudyDimension speeds{{}, "m/s", false, "list", read_speeds(o), 0};
     if (!vehicles.train.empty()) speeds.options.emplace_back("train_speed");
     if (forces || speeds.options.empty()) speeds.options.emplace_back("load_speed");
@@ -298,6 +302,7 @@ bool asks_for_study(const Options& o) { return o.first_with_prefix(study_prefix)
 
 Scene read_study(const Options& given) {
   Options o = given;
+  declare_blocks(o);
   const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
   declare_study(o);

@@ -104,11 +104,11 @@ bool is_defined(const Options& o, const std::string& name) {
   return o.entries().has("vehicle_" + name + "_file") || o.entries().has("vehicle_" + name + "_bodies");
 }
 
-void check_defined(const Options& o, const std::string& name) {
+void check_defined(const Options& o, const std::string& option, const std::string& name) {
   if (is_defined(o, name)) return;
   std::vector<std::string> known = vehicles_in(o);
   const std::string near = options::nearest(name, known);
-  o.refuse("train_vehicles",
+  o.refuse(option,
            fmt::format("vehicle '{}' is not defined: neither vehicle_{}_bodies nor vehicle_{}_file is given{}", name,
                        name, name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
@@ -117,11 +117,17 @@ void check_defined(const Options& o, const std::string& name) {
 
 NamedVehicles declare_vehicles(Options& o) {
   std::vector<std::string> train;
-  if (o.has("train_vehicles")) train = o.texts("train_vehicles");
+  std::vector<Block> trains = blocks_of(o, "trains");
+  for (Block& one : trains) {
+    const std::string option = one.option("vehicles");
+    if (o.has(option)) one.vehicles = o.texts(option);
+    if (one.vehicles.empty() && o.has("trains")) o.refuse(option, "missing: the vehicles of this train");
+    for (const std::string& name : one.vehicles) check_defined(o, option, name);
+    train.insert(train.end(), one.vehicles.begin(), one.vehicles.end());
+  }
   std::vector<std::string> types = train;
   std::sort(types.begin(), types.end());
   types.erase(std::unique(types.begin(), types.end()), types.end());
-  for (const std::string& name : types) check_defined(o, name);
   for (const std::string& name : types) declare_vehicle(o, name);
   std::vector<std::string> others;
   for (const std::string& name : vehicles_in(o)) {
@@ -132,26 +138,33 @@ NamedVehicles declare_vehicles(Options& o) {
     others.push_back(name);
     types.push_back(name);
   }
-  const std::string loads = load_option(o);
-  if (!o.entries().has("train_vehicles") && (loads.empty() || loads == "sweep_hslm_a") && others.size() == 1)
-    return {others, {}};
-  return {train, others};
+  const std::string loads = o.has("loads") ? "loads" : load_option(o);
+  if (!o.has("trains") && !o.entries().has("train_vehicles") && (loads.empty() || loads == "sweep_hslm_a") &&
+      others.size() == 1)
+    return {others, {{"train", others}}, {}};
+  return {train, trains, others};
 }
 
-void declare_couplers(Options& o) {
-  if (!o.has("train_couplers")) return;
-  for (const std::string& name : o.texts("train_couplers")) {
-    if (!is_word(name))
-      o.refuse("train_couplers", fmt::format("'{}' cannot be a coupler's name; allowed: a word", name));
-    for (const options::Row& row : options::coupler_rows()) {
-      const std::string full = fmt::format("train_{}_{}", name, row.name);
-      if (!o.declare(full, row))
-        o.refuse("train_couplers", fmt::format("there would be two options {}; rename one", full));
-    }
+namespace {
+
+void declare_couplers_of(Options& o, const Block& train) {
+  const std::string list = train.option("couplers");
+  if (!o.has(list)) return;
+  for (const std::string& name : o.texts(list)) {
+    if (!is_word(name)) o.refuse(list, fmt::format("'{}' cannot be a coupler's name; allowed: a word", name));
+    const auto full = [&](std::string_view word) { return fmt::format("{}_{}_{}", train.name, name, word); };
+    for (const options::Row& row : options::coupler_rows())
+      if (!o.declare(full(row.name), row))
+        o.refuse(list, fmt::format("there would be two options {}; rename one", full(row.name)));
     for (const Part part : {Part::spring, Part::joint})  // what a coupler has not of its own
-      for (const options::Row& row : options::part_rows(part))
-        o.declare(fmt::format("train_{}_{}", name, row.name), row);
+      for (const options::Row& row : options::part_rows(part)) o.declare(full(row.name), row);
   }
+}
+
+}  // namespace
+
+void declare_couplers(Options& o) {
+  for (const Block& train : blocks_of(o, "trains")) declare_couplers_of(o, train);
 }
 
 }  // namespace traverse::app

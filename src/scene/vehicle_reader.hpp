@@ -21,8 +21,8 @@ class VehicleReader {
     vehicle_.mechanism.name = name;
   }
 
-  /// Reads the parts of a train instead: prefix train_.
-  explicit VehicleReader(const options::Options& options) : o_(options), prefix_("train_") {}
+  /// Reads the parts of a train instead.
+  VehicleReader(const options::Options& options, const Block& train) : o_(options), prefix_(train.name + "_") {}
   Coupler read_coupler(const std::string& name);
 
   Vehicle read() {

@@ -153,8 +153,8 @@ CaseResult CaseRunner::result_of(const lanes::CrossingResult& crossing, std::siz
 const Scene& CaseRunner::scene_of(std::size_t train, const CaseRun& run) {
   scene_.load.forces = loads_[train].forces;
   scene_.load.positions = loads_[train].positions;
-  scene_.load.speed = scene_.load.forces.empty() ? 0.0 : run.speed;
-  scene_.train.speed = scene_.vehicles.empty() ? 0.0 : run.speed;
+  if (scene_.load.courses.empty()) scene_.load.speed = scene_.load.forces.empty() ? 0.0 : run.speed;
+  if (scene_.train.courses.empty()) scene_.train.speed = scene_.vehicles.empty() ? 0.0 : run.speed;
   if (run.seed) scene_.profile = scene_.roughness->profile(*run.seed);
   return scene_;
 }

@@ -38,7 +38,7 @@ double difference(const CaseResult& modes, const CaseResult& elements) {
 
 /// As read_modal has it.
 bool allowed(const Scene& scene) {
-  return scene.vehicles.empty() && !scene.load.forces.empty() && !scene.beam->track &&
+  return scene.vehicles.empty() && !scene.load.forces.empty() && scene.load.courses.empty() && !scene.beam->track &&
          !scene.beam->foundation.nonlinear() && options::in_force().find("ts_type") == nullptr;
 }
 

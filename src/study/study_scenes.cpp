@@ -28,6 +28,7 @@ bool is_of_vehicles(const StudyDimension& d) {
 /// Train and forces that run together have one speed.
 void check_speeds(const Scene& scene) {
   if (scene.vehicles.empty() || scene.load.forces.empty()) return;
+  if (!scene.train.courses.empty() || !scene.load.courses.empty()) return;  // each has its own
   for (const StudyDimension& d : scene.study->dimensions)
     if (is_speed(d) && !(names(d, "train_speed") && names(d, "load_speed")))
       throw InputError(fmt::format("study_vary_{}: the train and the forces beside it run at one speed; add also: {}",

@@ -78,8 +78,8 @@ results::Sweep::Model model_of(const Scene& scene) {
 Scene at_speed(const Scene& sweep, double speed) {
   Scene scene = sweep;
   if (!sweep.sweep->loads.empty()) scene.load = sweep.sweep->loads.front();
-  scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
-  scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
+  if (scene.train.courses.empty()) scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
+  if (scene.load.courses.empty()) scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
   return scene;
 }
 

@@ -191,7 +191,23 @@ double Profile::shortest_wave() const {
   return kind_ == Kind::waves ? stations_a_wave * resolution_ : std::numeric_limits<double>::infinity();
 }
 
+Profile Profile::reversed() const {
+  Profile other = *this;
+  other.reversed_ = !reversed_;
+  std::reverse(other.kinks_.begin(), other.kinks_.end());
+  for (double& kink : other.kinks_) kink = -kink;
+  return other;
+}
+
 Height Profile::at(double x) const {
+  if (!reversed_) return ahead(x);
+  Height h = ahead(-x);
+  h.slope = -h.slope;
+  return h;
+}
+
+// Before it is turned round.
+Height Profile::ahead(double x) const {
   switch (kind_) {
     case Kind::level:
       return {};
@@ -207,6 +223,10 @@ Height Profile::at(double x) const {
 
 std::vector<Height> Profile::along(double x, double distance, std::size_t count) const {
   std::vector<Height> heights;
+  if (reversed_) {
+    for (std::size_t i = 0; i < count; ++i) heights.push_back(at(x + static_cast<double>(i) * distance));
+    return heights;
+  }
   if (kind_ == Kind::waves) heights = waves_.sums(x - start_, distance, count);
   for (std::size_t i = 0; i < count; ++i) {
     const double place = x + static_cast<double>(i) * distance;

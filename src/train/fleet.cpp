@@ -28,12 +28,19 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
              const track::Profile* profile, double surface_height, double inner_EI)
     : mesh_(mesh),
       profile_(profile),
-      speed_(frozen ? 0.0 : train.speed),
       frozen_(frozen),
       surface_height_(surface_height),
       inner_EI_(inner_EI) {
   AssembledTrain assembled = assemble(types, train, gravity, frozen);
   members = std::move(assembled.members);
+  speeds_.assign(assembled.units.size(), 0.0);
+  for (const Course& course : train.courses) profiles_.push_back(course.profile);
+  course_.assign(assembled.units.size(), -1);
+  for (std::size_t i = members.size(); i-- > 0;) {
+    const auto unit = static_cast<std::size_t>(members[i].unit);
+    if (!frozen) speeds_[unit] = speed_of(train, i, 0.0);
+    if (const Course* course = course_of(train, i)) course_[unit] = static_cast<int>(course - train.courses.data());
+  }
   couplers = std::move(assembled.couplers);
   for (std::size_t k = 0; k < assembled.units.size(); ++k) {
     vehicles.emplace_back(std::move(assembled.units[k]));
@@ -50,9 +57,9 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
       wheels.push_back(c);
     }
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
-      if (!track::is_sharp(*profile_, vehicle.wheels[i].radius)) continue;
       WheelContact c;
       c.vehicle = static_cast<int>(k);
+      if (!track::is_sharp(this->profile(c), vehicle.wheels[i].radius)) continue;
       c.wheel = static_cast<int>(i);
       c.body = vehicle.wheels[i].body;
       c.law = vehicle.wheels[i].law;
@@ -70,6 +77,8 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
     for (int i = 0; i < contacts(); ++i)
       if (contact(i).vehicle == static_cast<int>(k)) vehicle.touching.push_back(i);
   }
+  for (const MovingVehicle& vehicle : vehicles)
+    for (const multibody::Driver& driver : vehicle.mechanism.model().drivers) jumps_ = jumps_ || driver.value.jumps();
   take(0, static_cast<int>(vehicles.size()));
   start_rolling();
 }
@@ -180,12 +189,13 @@ void Fleet::number(double t) {
   home_.clear();
   cruise_.clear();
   freedom_ = 0;
-  for (MovingVehicle& vehicle : vehicles) {
+  for (std::size_t k = 0; k < vehicles.size(); ++k) {
+    MovingVehicle& vehicle = vehicles[k];
     vehicle.offset = freedom_;
     freedom_ += vehicle.mechanism.freedom();
     for (int i : vehicle.mechanism.partition().independent) {
       const bool rolls = i % 3 == 2 && !frozen_;
-      cruise_.push_back(vehicle.wheels.empty() ? 0.0 : i % 3 == 0 ? speed_ : rolls ? vehicle.state.qd[i] : 0.0);
+      cruise_.push_back(vehicle.wheels.empty() ? 0.0 : i % 3 == 0 ? speeds_[k] : rolls ? vehicle.state.qd[i] : 0.0);
       home_.push_back(vehicle.state.q[i] - cruise_.back() * t);
     }
   }

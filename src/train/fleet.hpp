@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -135,6 +136,12 @@ class Fleet {
 
   int freedom() const { return freedom_; }
   const Wheel& wheel(const WheelContact& c) const { return vehicles[c.vehicle].wheels[c.wheel]; }
+  /// The surface that it runs on.
+  const track::Profile& profile(const Contact& c) const {
+    const int course = course_[static_cast<std::size_t>(c.vehicle)];
+    return course < 0 || !profiles_[static_cast<std::size_t>(course)] ? *profile_
+                                                                      : *profiles_[static_cast<std::size_t>(course)];
+  }
   Eigen::Vector3d coordinates(const Contact& c) const;
   Eigen::Vector3d velocities(const Contact& c) const;
   /// x of a contact's body and its rate, to be written where another rank tells them.
@@ -160,7 +167,10 @@ class Fleet {
   std::string lost_since(const Fleet& start) const;
   /// Mechanism::apply for a body of a vehicle of the train. InputError where that vehicle is taken as linear.
   void apply(int member, int body, const Eigen::Vector3d& action);
-  /// Times at which actuators' tables have kinks, s.
+  /// A step is about to be taken, whose middle this is: where prescribed accelerations jump, they are those of this step.
+  /// True when one has jumped.
+  bool begin_step(double middle);
+  /// Times at which actuators' tables have kinks, or prescribed accelerations jump, s.
   std::vector<double> kinks_of_actions() const;
   /// Counts the angles that wheels roll by from where they are now: for those out of round. A wheel whose body is free
   /// to turn, and does (by friction, or as its given speed says), is where its body's angle says; any other one rolls
@@ -266,7 +276,10 @@ class Fleet {
   const track::Profile* profile_ = nullptr;
   int freedom_ = 0;
   int first_own_ = 0, past_own_ = 0;
-  double speed_ = 0.0;
+  std::vector<double> speeds_;  // of each of `vehicles` at t = 0, m/s
+  std::vector<int> course_;     // of each; -1: none
+  std::vector<std::shared_ptr<const track::Profile>> profiles_;  // of the courses; null: profile_
+  bool jumps_ = false;                                           // prescribed accelerations do
   bool frozen_ = false;
   int stuck_ = -1;
   double surface_height_ = 0.0, inner_EI_ = 0.0;

@@ -85,7 +85,7 @@ void Fleet::lose(WheelContact& c) const {
 // The entries of a wheel that may touch at several points. A point that there was before keeps its kinematics, from
 // which the solution starts.
 void Fleet::find_points(WheelContact& c) {
-  const track::TouchingPoints found = track::touching_points(*profile_, wheel(c).radius, coordinates(c).x());
+  const track::TouchingPoints found = track::touching_points(profile(c), wheel(c).radius, coordinates(c).x());
   std::array<contact::Kinematics, track::most_points> kinematics;
   kinematics.fill({-wheel(c).radius, 0.0, 0.0});
   double deepest = -unbounded;
@@ -167,7 +167,7 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
   double deepest = -unbounded;
   for (int i = 0; i < c.candidates; ++i) {
     const std::ptrdiff_t at = c.slots[i] < 0 ? 0 : m * c.slots[i];
-    if (!train::touch(c.patches[i], *profile_, wheel(c).radius, q, qd, per_node, v + at, w + at, candidate, find))
+    if (!train::touch(c.patches[i], profile(c), wheel(c).radius, q, qd, per_node, v + at, w + at, candidate, find))
       return false;
     if (candidate.kinematics.penetration <= deepest) continue;
     deepest = candidate.kinematics.penetration;

@@ -83,7 +83,19 @@ std::vector<double> Fleet::kinks_of_actions() const {
     for (const multibody::Actuator& actuator : vehicle.mechanism.model().actuators)
       for (const base::TimeFunction& f : actuator.action)
         for (double t : f.kinks()) kinks.push_back(t);
+  for (const MovingVehicle& vehicle : vehicles)
+    for (const multibody::Driver& driver : vehicle.mechanism.model().drivers)
+      if (driver.value.jumps())
+        for (double t : driver.value.kinks()) kinks.push_back(t);
   return kinks;
+}
+
+bool Fleet::begin_step(double middle) {
+  if (!jumps_) return false;
+  bool jumped = false;
+  for (MovingVehicle& vehicle : vehicles) jumped = vehicle.mechanism.take_pieces(middle) || jumped;
+  if (jumped) is_set_ = false;
+  return jumped;
 }
 
 std::vector<std::string> Fleet::linearise() {

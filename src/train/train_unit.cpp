@@ -94,11 +94,11 @@ void add_vehicle(const Vehicle& type, const Placing& to, double speed, Unit& uni
 }
 
 /// The driving constraint of a train at prescribed speed: x of a vehicle's first body.
-void add_drive(const Placing& to, double speed, MechanismModel& model) {
+void add_drive(const Placing& to, const base::SpeedLaw& speed, MechanismModel& model) {
   multibody::Driver drive{"drive", 0, 0, {}};
   to.name(drive.name);
   to.body(drive.body);
-  drive.value = base::TimeFunction(model.bodies[static_cast<std::size_t>(drive.body)].position.x(), speed);
+  drive.value = speed.from(model.bodies[static_cast<std::size_t>(drive.body)].position.x());
   model.drivers.push_back(drive);
 }
 
@@ -157,9 +157,11 @@ AssembledTrain assemble(const std::vector<Vehicle>& types, const Train& train, d
     if (!alone) unit.mechanism.name = "train";
     const Member member = next_member(type, static_cast<int>(all.units.size()) - 1, unit);
     const Placing to(train.positions[k], member.first_body, alone ? "" : std::to_string(k) + ".");
-    add_vehicle(type, to, train.speed, unit);
+    const auto number = static_cast<std::size_t>(k);
+    const base::SpeedLaw speed = law_of(train, number);
+    add_vehicle(type, to, speed.speed(0.0), unit);
     const bool rolls = !type.wheels.empty() && !drives_x(type.mechanism) && !follows(k);
-    if (rolls && (frozen || train.drive == Drive::constant)) add_drive(to, train.speed, unit.mechanism);
+    if (rolls && (frozen || drive_of(train, number) == Drive::constant)) add_drive(to, speed, unit.mechanism);
     all.members.push_back(member);
   }
   for (std::size_t i = 0; i < train.couplers.size(); ++i) {

@@ -22,6 +22,9 @@ class Polyline {
   /// y = slope*x.
   static Polyline line(double slope) { return {{0.0, 1.0}, {0.0, slope}}; }
 
+  /// -value(-x).
+  Polyline reversed() const;
+
   double value(double x) const;
   double slope(double x) const;     // at a corner the one on its right
   double integral(double x) const;  // of the value, from 0

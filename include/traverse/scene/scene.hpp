@@ -56,9 +56,11 @@ struct Roughness {
   track::Spectrum spectrum;
   double shortest = 0.0, longest = 0.0;  // m: waves
   double start = 0.0;                    // m: before it the track is level
+  bool to_the_left = false;              // else it begins to the right of that
 
   track::Profile profile(std::uint64_t seed) const {
-    return track::Profile::rough(spectrum, shortest, longest, start, seed);
+    if (!to_the_left) return track::Profile::rough(spectrum, shortest, longest, start, seed);
+    return track::Profile::rough(spectrum, shortest, longest, -start, seed).reversed();
   }
 };
 
@@ -135,7 +137,7 @@ struct Scene {
     });
   }
   /// Modes under moving forces alone, whose motion is known exactly.
-  bool exact_in_time() const { return model_modes > 0 && vehicles.empty(); }
+  bool exact_in_time() const { return model_modes > 0 && vehicles.empty() && load.courses.empty(); }
 };
 
 /// x of the wheels of vehicle `i` of the train at t = 0, in m.

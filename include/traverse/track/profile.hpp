@@ -28,6 +28,10 @@ class Profile {
     return rough(spectrum, spectrum.shortest, spectrum.longest, start, seed);
   }
 
+  /// The same for somebody who looks from the other side: h(-x). Of roughness: what fades in to the right from `start` on
+  /// does so to the left from -start on.
+  Profile reversed() const;
+
   bool level() const { return kind_ == Kind::level; }
   bool is_rough() const { return kind_ == Kind::waves; }
   Height at(double x) const;
@@ -51,7 +55,10 @@ class Profile {
   void check_swing(const std::string& name) const;
   void bound_table();
 
+  Height ahead(double x) const;
+
   Kind kind_ = Kind::level;
+  bool reversed_ = false;
   double start_ = 0.0, length_ = 0.0, height_ = 0.0;  // length: of the bump, or of the fade
   std::vector<double> x_, h_, h2_;                    // table
   Waves waves_;

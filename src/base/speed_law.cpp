@@ -1,0 +1,139 @@
+#include "traverse/base/speed_law.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::base {
+namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// 1 to the right, -1 to the left.
+double direction_of(const std::vector<double>& speeds) {
+  const auto [least, greatest] = std::minmax_element(speeds.begin(), speeds.end());
+  if (*least < 0.0 && *greatest > 0.0)
+    throw InputError("speeds of both signs; a train runs to the right (all from 0 up) or to the left (all from 0 down)");
+  if (*least == 0.0 && *greatest == 0.0) throw InputError("every speed is 0; wanted: at least one that is not");
+  return *greatest > 0.0 ? 1.0 : -1.0;
+}
+
+void check_rows(const std::vector<double>& x, const std::vector<double>& speeds) {
+  if (x.size() != speeds.size() || x.size() < 2) throw InputError("a table of speeds needs at least two rows");
+  for (std::size_t i = 0; i + 1 < x.size(); ++i)
+    if (!(x[i + 1] > x[i])) throw InputError("the first column of a table of speeds must rise strictly");
+}
+
+/// The smallest s above 0 with v s + a/2 s^2 = d, for d, v not below 0 and at least one of v, a above 0; infinite: none.
+double time_for(double d, double v, double a) {
+  const double square = v * v + 2.0 * a * d;
+  return square < 0.0 ? infinite : 2.0 * d / (v + std::sqrt(square));
+}
+
+}  // namespace
+
+SpeedLaw SpeedLaw::over_time(std::vector<double> times, std::vector<double> speeds) {
+  check_rows(times, speeds);
+  direction_of(speeds);
+  SpeedLaw law;
+  law.way_ = TimeFunction::integral(0.0, std::move(times), std::move(speeds));
+  if (law.fastest() == 0.0) throw InputError("every speed from t = 0 on is 0; wanted: at least one that is not");
+  return law;
+}
+
+SpeedLaw SpeedLaw::over_place(std::vector<double> places, std::vector<double> speeds, double start) {
+  check_rows(places, speeds);
+  const double direction = direction_of(speeds);
+  for (std::size_t i = 0; i + 1 < speeds.size(); ++i)
+    if (speeds[i] == 0.0 && speeds[i + 1] == 0.0)
+      throw InputError("rows " + std::to_string(i + 1) + " and " + std::to_string(i + 2) +
+                       " have the speed 0: what stands never comes from one to the other");
+  if (direction < 0.0) {  // as it is met: everything counts along the run
+    std::reverse(places.begin(), places.end());
+    std::reverse(speeds.begin(), speeds.end());
+  }
+  std::vector<double> times = {0.0}, met = {0.0};
+  double at = direction * start;
+  std::size_t next = 0;
+  while (next < places.size() && direction * places[next] <= at) ++next;
+  if (next == 0) {
+    met[0] = std::abs(speeds.front());
+  } else if (next == places.size()) {
+    met[0] = std::abs(speeds.back());
+  } else {
+    const double before = speeds[next - 1] * speeds[next - 1], behind = speeds[next] * speeds[next];
+    const double part = (at - direction * places[next - 1]) / std::abs(places[next] - places[next - 1]);
+    met[0] = std::sqrt(before + (behind - before) * part);
+  }
+  if (met[0] == 0.0 && (next == 0 || next == places.size()))
+    throw InputError("at the start, at x = " + std::to_string(start) + " m, the speed is 0 for good");
+  for (; next < places.size(); ++next) {
+    const double place = direction * places[next], speed = std::abs(speeds[next]);
+    times.push_back(times.back() + 2.0 * (place - at) / (met.back() + speed));
+    met.push_back(speed);
+    at = place;
+    if (speed == 0.0 && next + 1 == places.size()) break;
+  }
+  if (times.size() == 1) return SpeedLaw(direction * met[0]);
+  for (double& speed : met) speed *= direction;
+  SpeedLaw law;
+  law.way_ = TimeFunction::integral(0.0, std::move(times), std::move(met));
+  return law;
+}
+
+TimeFunction SpeedLaw::from(double x) const {
+  TimeFunction place = way_;
+  place.shift(x);
+  return place;
+}
+
+double SpeedLaw::direction() const {
+  const auto sign = [](double speed) { return speed > 0.0 ? 1.0 : speed < 0.0 ? -1.0 : 0.0; };
+  if (const double now = sign(speed(0.0)); now != 0.0) return now;
+  for (const double t : kinks())
+    if (const double then = sign(speed(t)); then != 0.0) return then;
+  return 0.0;
+}
+
+double SpeedLaw::time_of(double distance) const {
+  if (constant()) {
+    if (speed(0.0) != 0.0) return distance / speed(0.0);
+    return distance == 0.0 ? 0.0 : infinite;
+  }
+  const double along = direction(), wanted = along * distance;
+  if (wanted <= 0.0) return wanted < 0.0 ? -infinite : 0.0;
+  std::vector<double> from = {0.0};
+  for (const double t : kinks())
+    if (t > 0.0) from.push_back(t);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    const double gone = along * way_.value(from[i]), v = along * way_.rate(from[i]);
+    const double a = along * way_.acceleration(from[i]), left = wanted - gone;
+    if (left <= 0.0) return from[i];
+    if (v <= 0.0 && a <= 0.0) continue;
+    const double t = from[i] + time_for(left, v, a);
+    if (i + 1 == from.size() || t <= from[i + 1]) return t;
+  }
+  return infinite;
+}
+
+double SpeedLaw::standstill() const {
+  if (constant()) return speed(0.0) == 0.0 ? 0.0 : infinite;
+  const std::vector<double> times = kinks();
+  if (way_.rate(times.back()) != 0.0) return infinite;
+  std::size_t last = times.size() - 1;
+  while (last > 0 && way_.rate(times[last - 1]) == 0.0) --last;
+  return std::max(0.0, times[last]);
+}
+
+double SpeedLaw::fastest() const {
+  double greatest = std::abs(speed(0.0));
+  for (const double t : kinks())
+    if (t > 0.0) greatest = std::max(greatest, std::abs(speed(t)));
+  return greatest;
+}
+
+}  // namespace traverse::base

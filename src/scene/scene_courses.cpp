@@ -1,0 +1,146 @@
+// Several trains and loads, and those whose speed changes or is below 0: their blocks of options, and how they run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+#include "options/data_file.hpp"
+#include "scene_parts.hpp"
+#include "traverse/base/error.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+using options::Order;
+
+bool is_plain_word(const std::string& name) {
+  return !name.empty() && std::isalpha(static_cast<unsigned char>(name.front())) != 0 &&
+         std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; });
+}
+
+/// Whether options already begin with that word.
+bool is_group(const std::string& name) {
+  const auto begins = [&](const options::Row& row) { return row.name == name || row.name.starts_with(name + "_"); };
+  const auto rows = options::fixed_rows();
+  return name == "vehicle" || std::any_of(rows.begin(), rows.end(), begins);
+}
+
+/// The options of `kind` (train or load) under the names that `list` has.
+void declare_list(Options& o, const std::string& list, const std::string& kind) {
+  if (!o.has(list)) return;
+  if (const options::Entry* single = o.first_with_prefix(kind + "_"))
+    o.refuse(single->name, fmt::format("{} names blocks of their own: the options of {} go into these", list, kind));
+  const std::string prefix = kind + "_";
+  for (const std::string& name : o.texts(list)) {
+    if (!is_plain_word(name))
+      o.refuse(list,
+               fmt::format("'{}' cannot be a name; allowed: a word of letters, digits and _, a letter first", name));
+    if (is_group(name)) o.refuse(list, fmt::format("'{}' is the name of a group of options; choose another one", name));
+    for (const options::Row& row : options::fixed_rows()) {
+      if (!row.name.starts_with(prefix)) continue;
+      const std::string full = name + "_" + std::string(row.name.substr(prefix.size()));
+      if (options::owned_by_petsc(full))
+        o.refuse(list,
+                 fmt::format("'{}' cannot be a name: {} is an option of PETSc's; choose another one", name, full));
+      if (!o.declare(full, row)) o.refuse(list, fmt::format("there would be two options {}; rename one", full));
+    }
+  }
+}
+
+/// x or t, and v, of a block's speed_file.
+std::vector<std::vector<double>> read_speeds_of(const Options& o, const Block& block) {
+  const std::string file = block.option("speed_file");
+  if (o.has(block.option("speed"))) o.refuse(file, "give either a table of speeds or " + block.option("speed"));
+  try {
+    return options::read_columns(o.path(file), 2, 2, Order::rising);
+  } catch (const InputError& error) {
+    if (std::string_view(error.what()).starts_with(file)) throw;  // the path's own
+    o.refuse(file, error.what());
+  }
+}
+
+std::string side(double direction) { return direction < 0.0 ? "to the left" : "to the right"; }
+
+std::string in_words(const train::Course& course) {
+  const base::SpeedLaw& law = course.speed;
+  if (law.direction() == 0.0) return course.name + " stands";
+  if (law.constant()) return fmt::format("{} at {:g} m/s {}", course.name, law.fastest(), side(law.direction()));
+  const double still = law.standstill();
+  return fmt::format("{} at up to {:g} m/s {}{}", course.name, law.fastest(), side(law.direction()),
+                     std::isfinite(still) ? fmt::format(", at rest after {:.6g} s", still) : "");
+}
+
+}  // namespace
+
+void declare_blocks(Options& o) {
+  declare_list(o, "trains", "train");
+  declare_list(o, "loads", "load");
+}
+
+std::vector<Block> blocks_of(const Options& o, const char* list) {
+  std::vector<Block> blocks;
+  if (!o.has(list)) return {{std::string(list) == "trains" ? "train" : "load", {}}};
+  for (const std::string& name : o.texts(list)) blocks.push_back({name, {}});
+  return blocks;
+}
+
+double direction_of(const Options& o, const Block& block) {
+  if (o.has(block.option("speed_file"))) {
+    const std::vector<double> speeds = read_speeds_of(o, block)[1];
+    return *std::min_element(speeds.begin(), speeds.end()) < 0.0 ? -1.0 : 1.0;
+  }
+  const std::string speed = block.option("speed");
+  return o.has(speed) && o.number(speed) < 0.0 ? -1.0 : 1.0;
+}
+
+base::SpeedLaw read_speed_file(const Options& o, const Block& block, double front) {
+  std::vector<std::vector<double>> table = read_speeds_of(o, block);
+  const bool over_place = o.choice(block.option("speed_over")) == "position";
+  try {
+    return over_place ? base::SpeedLaw::over_place(std::move(table[0]), std::move(table[1]), front)
+                      : base::SpeedLaw::over_time(std::move(table[0]), std::move(table[1]));
+  } catch (const InputError& error) {
+    o.refuse(block.option("speed_file"), error.what());
+  }
+}
+
+bool needs_courses(const Options& o, const std::vector<Block>& blocks) {
+  const auto own = [&](const Block& block) {
+    const std::string profile = block.option("profile");
+    return o.has(block.option("speed_file")) || direction_of(o, block) < 0.0 || (o.knows(profile) && o.has(profile));
+  };
+  return blocks.size() > 1 || std::any_of(blocks.begin(), blocks.end(), own);
+}
+
+bool several_courses(const Scene& scene) {
+  const std::size_t courses = scene.train.courses.size() + scene.load.courses.size();
+  return courses > 1 || (courses == 1 && !scene.vehicles.empty() && !scene.load.forces.empty());
+}
+
+void check_courses(const Options& o, Scene& scene) {
+  for (const char* list : {"trains", "loads"})
+    for (const Block& block : blocks_of(o, list))
+      if (const std::string over = block.option("speed_over"); o.has(over) && !o.has(block.option("speed_file")))
+        o.refuse(over, "is of a table of speeds: needs " + block.option("speed_file"));
+  const std::size_t trains = scene.train.courses.size(), loads = scene.load.courses.size();
+  if (trains + loads == 0) return;
+  for (const char* sweep : {"sweep_speed", "sweep_hslm_a"})
+    if (o.has(sweep))
+      o.refuse(sweep,
+               "runs one train or load to the right at constant speeds, on the track's profile; allowed: a study "
+               "that varies NAME_speed or other options");
+  const bool several = several_courses(scene);
+  if (scene.beam && scene.beam->track && several)
+    o.refuse("track_rail_EI", "a layered track carries one train or load, of others each would have a rail of its own");
+  std::string what;
+  for (const std::vector<train::Course>* courses : {&scene.train.courses, &scene.load.courses})
+    for (const train::Course& course : *courses) what += (what.empty() ? "" : "; ") + in_words(course);
+  scene.notes.push_back("runs: " + what);
+  if (several)
+    scene.notes.emplace_back(
+        "tracks side by side: all wheels and forces act on the beam's axis, its torsion is left out");
+}
+
+}  // namespace traverse::app
