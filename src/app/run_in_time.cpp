@@ -157,6 +157,7 @@ std::optional<int> run_once(Job& job, bool repeated) {
   if (filtered && rank == 0) watch.keep_accelerations({counting, passage.plan(), scene.output.probes});
   if (wheels && no_wheels.empty() && rank == 0)
     watch.keep_wheel_forces({scene.output.wheel_low_pass, scene.output.unloading_level, passage.plan(), wheel_count});
+  if (!scene.output.passages.empty()) watch.note_axle_passages({scene, passage.plan().time_step});
   if (!scene.limits.empty()) watch.judge();
   if (archive) watch.keep(*archive);
   archive.reset();

@@ -71,6 +71,7 @@ void Watch::sample(const integrate::Instant& instant) {
     take_from_apart();
   note_worst();
   if (judge_) judge_->sample(instant.time, beam.v);
+  axle_passages_.add(instant.time, system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
   if (instant.purpose != integrate::Purpose::look) store(instant.purpose == integrate::Purpose::end);
 }
@@ -223,6 +224,7 @@ void Watch::keep(base::Archive& archive) {
                now_.probes, most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);
+  archive.same(axle_passages_);
   // On the first rank alone.
   deck_ ? archive.same(*deck_) : archive.same();
   filtered_wheels_ ? archive.same(*filtered_wheels_) : archive.same();
@@ -248,6 +250,10 @@ results::Summary Watch::finish() {
     summary_.deflection = extreme(deflection);
     summary_.acceleration = extreme(acceleration);
     summary_.moment = extreme(moment);
+  }
+  if (!axle_passages_.empty()) {
+    recorder_.datasets(axle_passages_.datasets());
+    recorder_.tables({{"/passages/wheel", axle_passages_.wheels(system_.fleet())}});
   }
   if (deck_) {
     deck_->finish(summary_);

@@ -49,6 +49,7 @@ struct Output {
   double wheel_low_pass = 20.0;    // Hz, up to which wheel forces count
   bool wheels_filtered = false;    // asked for; else where limits ask for it
   double unloading_level = 0.6;    // part of its force from which on a wheel counts as unloaded
+  std::vector<double> passages;    // m: where the force of every wheel that passes is noted
 };
 
 /// The random running surfaces that one spectrum describes.
