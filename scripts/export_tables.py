@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 
-OVER_TIME = ("probes", "vehicles", "couplers", "supports", "foundation", "rail", "balance", "energy")
+OVER_TIME = ("probes", "vehicles", "couplers", "supports", "foundation", "rail", "balance", "energy", "outputs")
 OVER_RUNS = {"study": "study/finished", "study/statistics": None, "separations": None, "passages": None, "resonances": None,
              "cancellations": None, "envelope": "probes/x", "shape": "shape/x"}
 PLACES = ("x", "gap")  # datasets that say where columns are

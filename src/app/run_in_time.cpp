@@ -36,6 +36,9 @@ void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
   modes.omega = {omega1, omega2};
   if (shared.modal)
     modes = modes::as_stored(*shared.beam, shared.modal->basis(), beam::ShapePoints(shared.beam->mesh()));
+  if (shared.modal && !shared.modal->dampers_couple())
+    for (std::size_t i = 0; i < shared.modal->modes(); ++i)
+      modes.ratio.push_back(shared.modal->sigma()[i] / shared.modal->omega()[i]);
   recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
 }
 

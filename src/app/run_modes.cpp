@@ -16,6 +16,29 @@
 
 namespace traverse::app {
 
+namespace {
+
+modes::Modes given_modes(const beam::Beam& beam, int count, const beam::ShapePoints& points) {
+  modes::Modes modes = modes::as_stored(beam, modes::given_basis(beam, count), points);
+  const std::vector<double>& ratio = beam.model().given->ratio;
+  modes.ratio.assign(ratio.begin(), ratio.begin() + static_cast<std::ptrdiff_t>(modes.omega.size()));
+  return modes;
+}
+
+/// Each decays by its own ratio.
+modes::DampedModes damped_by_ratios(const modes::Modes& modes) {
+  modes::DampedModes damped;
+  for (std::size_t i = 0; i < modes.omega.size(); ++i) {
+    const double omega = modes.omega[i], ratio = modes.ratio[i];
+    damped.lambda.emplace_back(-ratio * omega, omega * std::sqrt(1.0 - ratio * ratio));
+    damped.axial.push_back(0);
+    damped.shape.emplace_back(modes.shape[i].begin(), modes.shape[i].end());
+  }
+  return damped;
+}
+
+}  // namespace
+
 int run_modes(Job job) {
   const MPI_Comm comm = job.comm;
   const Scene& scene = job.scene;
@@ -30,11 +53,13 @@ int run_modes(Job job) {
   const beam::ShapePoints points(beam.mesh());
   const modes::Modes found = [&] {
     const results::Stage stage("computation of the natural modes");
+    if (scene.by_given_modes()) return given_modes(beam, scene.mode_count, points);
     return modes::natural_modes(beam, scene.mode_count, points);
   }();
-  const bool damping = modes::damped(beam);
+  const bool damping = scene.by_given_modes() || modes::damped(beam);
   const modes::DampedModes damped = [&] {
     const results::Stage stage("computation of the damped modes");
+    if (scene.by_given_modes()) return damped_by_ratios(found);
     return damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
   }();
   results::Layout layout;

@@ -17,6 +17,11 @@ struct Modes {
                                            // of an axial mode the displacement along x. All zero where a mode turns
                                            // the points without moving them (the nodes of one element a span)
   std::vector<double> x{};                 // of these points, m
+  /// Of these shapes, where all of them go through without a kink: the slope at every point (1/m) and the modal mass,
+  /// phi^T M phi (kg).
+  std::vector<std::vector<double>> slope{};
+  std::vector<double> mass{};
+  std::vector<double> ratio{};  // damping of each, where modes move each by itself
 };
 
 /// Collective; the same result on every rank, to the last bit. The `count` lowest frequencies of M, K*.
@@ -39,6 +44,9 @@ struct Basis {
 /// Collective; the same on every rank. The `count` lowest modes of bending, and the remaining copies of the last
 /// one's frequency, so that nothing depends on which of equal spans comes first. Not for layered tracks.
 Basis bending_basis(const beam::Beam& beam, int count);
+
+/// The `count` lowest of the modes that the beam's model gives.
+Basis given_basis(const beam::Beam& beam, int count);
 
 /// A basis as modes are stored: deflections at these points of the bridge, the largest 1.
 Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoints& points);

@@ -50,8 +50,8 @@ void AxlePassages::add(double t, const train::Fleet& fleet) {
   }
 }
 
-std::vector<results::Dataset> AxlePassages::datasets() const {
-  std::vector<results::Dataset> sets;
+std::vector<results::Recorder::Dataset> AxlePassages::datasets() const {
+  std::vector<results::Recorder::Dataset> sets;
   const auto column = [&](const char* name, double Found::*member, const char* unit) {
     std::vector<double> values;
     for (const Found& found : found_) values.push_back(found.*member);

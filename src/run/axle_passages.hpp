@@ -27,7 +27,7 @@ class AxlePassages {
   /// The next instant that was observed; the first one tells the forces at rest.
   void add(double t, const train::Fleet& fleet);
   /// What has been found, for the results file.
-  std::vector<results::Dataset> datasets() const;
+  std::vector<results::Recorder::Dataset> datasets() const;
   /// Number of the vehicle and name of the wheel, a row a passage.
   std::vector<std::pair<std::string, std::string>> wheels(const train::Fleet& fleet) const;
   bool empty() const { return found_.empty(); }
@@ -39,15 +39,15 @@ class AxlePassages {
     std::size_t wheel = 0;           // in the order of the fleet, without further points of contact
   };
   struct Found {
-    double time = 0.0, place = 0.0;                // s, m
-    double speed = 0.0;                            // m/s
-    double force = 0.0, force_at_start = 0.0;      // N, normal
+    double time = 0.0, place = 0.0;            // s, m
+    double speed = 0.0;                        // m/s
+    double force = 0.0, force_at_start = 0.0;  // N, normal
     std::size_t wheel = 0;
   };
   static std::vector<Due> due_of(const Scene& scene);
   friend std::vector<double> axle_passage_times(const Scene& scene);
 
-  std::vector<Due> due_;  // in the order of their times
+  std::vector<Due> due_;    // in the order of their times
   double tolerance_ = 0.0;  // s
   std::size_t next_ = 0;
   std::vector<double> at_start_;  // N

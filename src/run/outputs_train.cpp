@@ -105,11 +105,10 @@ class VehicleOutputs {
 
   void add_sensors() {
     for (const train::Sensor& s : member_.type->sensors)
-      outputs_.add(group(s.name), sensor_rows,
-                   [&fleet = fleet_, unit = unit_, arm = s.arm,
-                    i = static_cast<std::size_t>(member_.first_body + s.body)](const Observed&) {
-                     return sensed(fleet.vehicles[unit].state, i, arm);
-                   });
+      outputs_.add(
+          group(s.name), sensor_rows,
+          [&fleet = fleet_, unit = unit_, arm = s.arm, i = static_cast<std::size_t>(member_.first_body + s.body)](
+              const Observed&) { return sensed(fleet.vehicles[unit].state, i, arm); });
   }
 
   void add_contacts() {

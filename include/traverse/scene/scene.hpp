@@ -134,8 +134,10 @@ struct Scene {
       return !options::limit_quantity(limit.quantity)->of_norm;
     });
   }
-  /// Modes under moving forces alone, whose motion is known exactly.
-  bool exact_in_time() const { return model_modes > 0 && vehicles.empty(); }
+  /// Whether the bridge is modes that were given, without elements behind them.
+  bool by_given_modes() const { return beam && beam->given; }
+  /// Modes under moving forces alone, whose motion is known exactly; single runs of given modes are stepped.
+  bool exact_in_time() const { return model_modes > 0 && vehicles.empty() && (!by_given_modes() || sweep); }
 };
 
 /// x of the wheels of vehicle `i` of the train at t = 0, in m.
