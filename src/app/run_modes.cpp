@@ -1,7 +1,11 @@
 // Natural modes of the bridge, undamped and damped.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
+#include <utility>
+#include <vector>
 
 #include "analyses.hpp"
 #include "modes/modes.hpp"
@@ -25,12 +29,21 @@ modes::Modes given_modes(const beam::Beam& beam, int count, const beam::ShapePoi
   return modes;
 }
 
-/// Each decays by its own ratio.
+/// Each decays by its own ratio; above critical damping as two that do not oscillate.
 modes::DampedModes damped_by_ratios(const modes::Modes& modes) {
-  modes::DampedModes damped;
+  std::vector<std::pair<std::complex<double>, std::size_t>> found;  // and whose it is
   for (std::size_t i = 0; i < modes.omega.size(); ++i) {
-    const double omega = modes.omega[i], ratio = modes.ratio[i];
-    damped.lambda.emplace_back(-ratio * omega, omega * std::sqrt(1.0 - ratio * ratio));
+    const double omega = modes.omega[i], ratio = modes.ratio[i], part = std::sqrt(std::abs(1.0 - ratio * ratio));
+    if (ratio < 1.0)
+      found.emplace_back(std::complex<double>(-ratio * omega, part * omega), i);
+    else
+      for (const double sign : {1.0, -1.0}) found.emplace_back((sign * part - ratio) * omega, i);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.first) < std::abs(b.first); });
+  modes::DampedModes damped;
+  for (const auto& [lambda, i] : found) {
+    damped.lambda.push_back(lambda);
     damped.axial.push_back(0);
     damped.shape.emplace_back(modes.shape[i].begin(), modes.shape[i].end());
   }

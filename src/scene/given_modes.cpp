@@ -117,8 +117,12 @@ class ModesText {
     ratio_ = cells.size() == 2 && !frequency_.empty() ? std::vector<double>(frequency_.size(), number(cells[1]))
                                                       : of_modes(cells, 1);
     for (std::size_t i = 0; i < ratio_.size(); ++i)
-      if (!(ratio_[i] >= 0.0 && ratio_[i] < 1.0))
-        refuse(fmt::format("the damping ratio of mode {} is {:g}; allowed: from 0 to below 1", i + 1, ratio_[i]));
+      if (!(ratio_[i] >= 0.0))
+        refuse(fmt::format("the damping ratio of mode {} is {:g}; allowed: from 0 on", i + 1, ratio_[i]));
+    const auto lowest = std::min_element(frequency_.begin(), frequency_.end()) - frequency_.begin();
+    if (const double first = ratio_[static_cast<std::size_t>(lowest)]; first >= 1.0)
+      refuse(fmt::format(
+          "the damping ratio of the lowest mode is {:g}; allowed: below 1, critical damping (no per cent)", first));
   }
 
   void take_output(const std::vector<std::string>& cells) {

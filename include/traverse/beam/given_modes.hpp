@@ -16,7 +16,7 @@ struct GivenModes {
 
   std::string source;                      // the file that they came from, for messages
   std::vector<double> x;                   // m, ascending from 0, where the bridge begins, to its end
-  std::vector<double> omega, ratio;        // rad/s, ascending, above 0; damping ratios, below 1
+  std::vector<double> omega, ratio;        // rad/s, ascending, above 0; damping ratios
   std::vector<std::vector<double>> shape;  // [mode][station]: upward, m for 1 m kg^(1/2) of the mode's coordinate
   std::vector<std::vector<double>> slope;  // of these, 1/m
   std::vector<Output> outputs;
