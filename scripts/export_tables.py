@@ -3,8 +3,8 @@
 import h5py
 import numpy as np
 
-OVER_TIME = ("probes", "vehicles", "couplers", "supports", "foundation", "rail", "balance", "energy")
-OVER_RUNS = {"study": "study/finished", "study/statistics": None, "separations": None, "resonances": None,
+OVER_TIME = ("probes", "vehicles", "couplers", "supports", "foundation", "rail", "balance", "energy", "outputs")
+OVER_RUNS = {"study": "study/finished", "study/statistics": None, "separations": None, "passages": None, "resonances": None,
              "cancellations": None, "envelope": "probes/x", "shape": "shape/x"}
 PLACES = ("x", "gap")  # datasets that say where columns are
 IN_PLANE, FORCES = ("x", "y", "angle"), ("fx", "fy", "moment")
@@ -61,7 +61,7 @@ def places(file, name, count):
         return [f"behind vehicle {int(gap)}" for gap in file[f"{group}/gap"][:]]
     if group.endswith("_bed"):
         return [f"on span {i + 1}" for i in range(count)]
-    if group == "separations":
+    if group in ("separations", "passages"):
         return ["vehicle", "name"]
     stations = file[f"{group}/x"] if f"{group}/x" in file else file.get("probes/x", ())
     if len(stations) == count and group != "study":

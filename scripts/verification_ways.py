@@ -17,6 +17,26 @@ WAYS = [
             "ModalVehicle.LosesContactAndGainsItAgain",
             [Check('EXPECT_LT(relative_difference(modal("/probes/deflection"), full("/probes/deflection")), {});')]),
     ]),
+    ("Bridges by given modes", [
+        Row("the file of a bridge's own modes, six of them and all: wheel force, the car's acceleration, and with all the deflection",
+            "the bridge by its modes", "GivenModes.OfTheProgramsOwnBridge",
+            [Check('EXPECT_LT(difference, {}) << name << " by " << count;', ".*vehicles.*", "wheels and car"),
+             Check('EXPECT_LT(deflected, all == "1000" ? {} : 0.05);', "deflection1000", "deflection")]),
+        Row("R2 by thirty sines, with their slopes and by splines", "80 modes, adaptive Runge-Kutta to 1e-10",
+            "GivenModes.SprungMassOfR2", [Check("EXPECT_LT(difference, {});", "slopes|splines", "deflection")]),
+        Row("a force over one mode", "closed form", "GivenModes.MovingForceInClosedForm",
+            [Check("EXPECT_LT(difference, {});", "error", "deflection")]),
+        Row("a sprung mass on one track of a slab with torsion", "own integration by Runge-Kutta",
+            "GivenModes.SlabWithTorsionUnderOneTrack", [Check("EXPECT_LT(difference, {});", "error", "deflection")]),
+    ]),
+    ("Sensors", [
+        Row("points of bodies of mechanisms, linear vehicles and these over modes", "the rigid bodies' kinematics",
+            "Sensors.MoveWithTheirRigidBodies", [Check("EXPECT_LT(difference, {}) << place.sensor;", ".*")]),
+        Row("the acceleration of a point of the car", "its path differentiated twice, samples 0.5 ms apart",
+            "Sensors.AccelerationIsThatOfThePath", [Check("EXPECT_LT(before, {});", "error_0.0005")]),
+        Row("forces of wheels as they pass places between samples", "the cubic through the samples beside",
+            "AxlePassages.TellTimeSpeedAndForceThere", [Check("EXPECT_LT(worst_force, {});", "force")]),
+    ]),
     ("Linear vehicles", [
         Row("two coaches over three spans", "the mechanisms", "LinearVehicle.CoachesOverThreeSpans", [
             Check('{{"/probes/deflection", "{}"},', ".*deflection", "deflection"),

@@ -122,6 +122,8 @@ def add_run(book, prefix, source):
     head, columns = ["time (s)"], [results.time]
     for name, unit in (("deflection", "m"), ("velocity", "m/s"), ("acceleration", "m/s2"), ("moment", "N m"),
                        ("shear", "N")):
+        if f"probes/{name}" not in file:
+            continue
         head.append(f"{name} at {x[worst]:g} m ({unit})")
         columns.append(results.over_time(file[f"probes/{name}"])[:, worst])
     if "supports/reaction" in file:

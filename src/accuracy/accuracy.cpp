@@ -28,11 +28,12 @@ void leave_out_rest(Scene& scene) {
 }
 
 void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, std::vector<std::string>& notes) {
-  notes.push_back(
-      fmt::format("accuracy {:g}: {} elements a {}, {}steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
-                  scene.accuracy, mesh_of(scene), scene.beam->track ? "sleeper bay" : "span",
-                  scene.integrator.empty() ? "" : scene.integrator + " with ", *scene.time_step, search.trials(),
-                  search.horizon(), result.seconds));
+  const std::string mesh = scene.by_given_modes() ? ""
+                                                  : fmt::format("{} elements a {}, ", mesh_of(scene),
+                                                                scene.beam->track ? "sleeper bay" : "span");
+  notes.push_back(fmt::format("accuracy {:g}: {}{}steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
+                              scene.accuracy, mesh, scene.integrator.empty() ? "" : scene.integrator + " with ",
+                              *scene.time_step, search.trials(), search.horizon(), result.seconds));
   std::string expected;
   for (std::size_t q = 0; q < quantities; ++q)
     if (result.promises[q].present && result.promises[q].kept)
@@ -49,7 +50,8 @@ void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, 
 bool chooses(const Scene& scene) {
   const bool open = scene.mesh_open || !scene.time_step;
   const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
-  return open && moves && scene.beam && scene.analysis == Analysis::transient && scene.model_modes == 0;
+  return open && moves && scene.beam && scene.analysis == Analysis::transient &&
+         (scene.model_modes == 0 || (scene.by_given_modes() && !scene.exact_in_time()));
 }
 
 void set_first_mesh(Scene& scene) {
@@ -176,7 +178,7 @@ Scene refined(const Scene& scene) {
   }
   if (fine.beam->track)
     fine.beam->track->elements_per_bay *= 2;
-  else
+  else if (!fine.by_given_modes())
     for (int& elements : fine.beam->elements) elements *= 2;
   fine.time_step = 0.5 * *scene.time_step;
   return fine;

@@ -80,7 +80,8 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
   longest_step_ = steps.longest;
   shortest_ = open_step_ ? steps.why : "the step is given";
   first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.time_step;
-  const double decay = 0.5 * (shared.rayleigh.a + shared.rayleigh.b * omega * omega);
+  const double decay = scene.by_given_modes() ? scene.beam->given->ratio.front() * omega
+                                              : 0.5 * (shared.rayleigh.a + shared.rayleigh.b * omega * omega);
   const double left = end - moved_by();
   growth_ = std::clamp(std::min(left, decay > 0.0 ? 1.0 / decay : left) / horizon_, 1.0, most_growth);
   for (std::size_t q = 0; q < quantities; ++q)
@@ -89,7 +90,7 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
     refuse(wheel_force, fmt::format("the contact vibrates at {:.3g} Hz, which steps of {:.2g} s do not follow",
                                     contact_frequency(scene) / (2.0 * std::numbers::pi), step_));
   // A force that comes onto a beam starts all its modes, the nth with an acceleration like 1/n.
-  undamped_ = shared.rayleigh.b <= 0.0 && !scene.beam->track;
+  undamped_ = shared.rayleigh.b <= 0.0 && !scene.beam->track && !scene.by_given_modes();
   if (undamped_)
     refuse(acceleration, "without damping that grows with the frequency the accelerations of all modes have no sum");
 }

@@ -1,7 +1,11 @@
 // Natural modes of the bridge, undamped and damped.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <complex>
+#include <utility>
+#include <vector>
 
 #include "analyses.hpp"
 #include "modes/modes.hpp"
@@ -15,6 +19,38 @@
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
+
+namespace {
+
+modes::Modes given_modes(const beam::Beam& beam, int count, const beam::ShapePoints& points) {
+  modes::Modes modes = modes::as_stored(beam, modes::given_basis(beam, count), points);
+  const std::vector<double>& ratio = beam.model().given->ratio;
+  modes.ratio.assign(ratio.begin(), ratio.begin() + static_cast<std::ptrdiff_t>(modes.omega.size()));
+  return modes;
+}
+
+/// Each decays by its own ratio; above critical damping as two that do not oscillate.
+modes::DampedModes damped_by_ratios(const modes::Modes& modes) {
+  std::vector<std::pair<std::complex<double>, std::size_t>> found;  // and whose it is
+  for (std::size_t i = 0; i < modes.omega.size(); ++i) {
+    const double omega = modes.omega[i], ratio = modes.ratio[i], part = std::sqrt(std::abs(1.0 - ratio * ratio));
+    if (ratio < 1.0)
+      found.emplace_back(std::complex<double>(-ratio * omega, part * omega), i);
+    else
+      for (const double sign : {1.0, -1.0}) found.emplace_back((sign * part - ratio) * omega, i);
+  }
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return std::abs(a.first) < std::abs(b.first); });
+  modes::DampedModes damped;
+  for (const auto& [lambda, i] : found) {
+    damped.lambda.push_back(lambda);
+    damped.axial.push_back(0);
+    damped.shape.emplace_back(modes.shape[i].begin(), modes.shape[i].end());
+  }
+  return damped;
+}
+
+}  // namespace
 
 int run_modes(Job job) {
   const MPI_Comm comm = job.comm;
@@ -30,11 +66,13 @@ int run_modes(Job job) {
   const beam::ShapePoints points(beam.mesh());
   const modes::Modes found = [&] {
     const results::Stage stage("computation of the natural modes");
+    if (scene.by_given_modes()) return given_modes(beam, scene.mode_count, points);
     return modes::natural_modes(beam, scene.mode_count, points);
   }();
-  const bool damping = modes::damped(beam);
+  const bool damping = scene.by_given_modes() || modes::damped(beam);
   const modes::DampedModes damped = [&] {
     const results::Stage stage("computation of the damped modes");
+    if (scene.by_given_modes()) return damped_by_ratios(found);
     return damping ? modes::damped_modes(beam, scene.mode_count, points) : modes::DampedModes();
   }();
   results::Layout layout;

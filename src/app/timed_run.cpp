@@ -36,6 +36,9 @@ void store_modes(const SharedBeam& shared, results::Recorder& recorder) {
   modes.omega = {omega1, omega2};
   if (shared.modal)
     modes = modes::as_stored(*shared.beam, shared.modal->basis(), beam::ShapePoints(shared.beam->mesh()));
+  if (shared.modal && !shared.modal->dampers_couple())
+    for (std::size_t i = 0; i < shared.modal->modes(); ++i)
+      modes.ratio.push_back(shared.modal->sigma()[i] / shared.modal->omega()[i]);
   recorder.modes(modes, shared.rayleigh.a, shared.rayleigh.b, omega1, omega2);
 }
 
@@ -148,6 +151,7 @@ RunEnd run_once(Job& job, bool with_mechanisms, bool may_shorten) {
   if (filtered && rank == 0) watch.keep_accelerations({counting, passage.plan(), scene.output.probes});
   if (wheels && no_wheels.empty() && rank == 0)
     watch.keep_wheel_forces({scene.output.wheel_low_pass, scene.output.unloading_level, passage.plan(), wheel_count});
+  if (!scene.output.passages.empty()) watch.note_axle_passages({scene, passage.plan().time_step});
   if (!scene.limits.empty()) watch.judge();
   if (archive) watch.keep(*archive);
   archive.reset();

@@ -73,6 +73,15 @@ void follow_rail(const RailMesh& rail, std::vector<Piece>& pieces) {
   }
 }
 
+/// One element between two stations of given modes.
+std::vector<Piece> pieces_between(const std::vector<double>& x) {
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) pieces.push_back({0, x[i], x[i + 1], 1, Joint::continuous, false});
+  pieces.back().next = Joint::separate;
+  pieces.back().ends_span = true;
+  return pieces;
+}
+
 }  // namespace
 
 int RailMesh::first_from(double station) const {
@@ -112,6 +121,7 @@ BeamModel rail_model(const BeamModel& model) {
 }
 
 std::vector<Piece> pieces_of(const BeamModel& model) {
+  if (model.given) return pieces_between(model.given->x);
   std::vector<Piece> pieces = divided(model);
   if (model.track) {
     follow_rail(rail_mesh(model), pieces);

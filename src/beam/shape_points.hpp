@@ -25,6 +25,21 @@ class ShapePoints {
   const std::vector<Point>& points() const { return points_; }
   std::vector<double> x() const;
 
+  /// Slopes of the elements' own curve in bending, 1/m times the values' unit; at a hinge that on its left.
+  template <class Value>
+  std::vector<double> slopes(const Line& line, Value value) const {
+    std::vector<double> out;
+    out.reserve(points_.size());
+    for (const Point& p : points_) {
+      const auto unknowns = line.transverse(p.at.element);
+      const auto psi = hermite(p.at.xi, line.mesh.element(p.at.element).length).slope;
+      double sum = 0.0;
+      for (std::size_t i = 0; i < 4; ++i) sum += psi[i] * value(unknowns[i]);
+      out.push_back(sum);
+    }
+    return out;
+  }
+
   /// The elements' own curve through nodal values, cubic in bending and linear along x. value(unknown): of a global
   /// unknown of the line.
   template <class Number, class Value>

@@ -65,10 +65,12 @@ void print_bridge(const Page& page, const Look& look) {
   const beam::BeamModel& beam = *look.scene.beam;
   page.heading("bridge");
   page.line("length", fmt::format("{:g} m, {}", beam.length(), count_text(beam.spans.size(), "span", "spans")));
-  const double mass = mass_of(beam);
-  page.line("mass", fmt::format("{}, {:.4g} kg/m in the mean", mass_text(mass), mass / beam.length()));
-  page.line("EI", beam.EI.uniform() ? fmt::format("{:.4g} N m2", beam.EI.minimum())
-                                    : fmt::format("{:.4g} to {:.4g} N m2", beam.EI.minimum(), beam.EI.maximum()));
+  if (!beam.given) {
+    const double mass = mass_of(beam);
+    page.line("mass", fmt::format("{}, {:.4g} kg/m in the mean", mass_text(mass), mass / beam.length()));
+    page.line("EI", beam.EI.uniform() ? fmt::format("{:.4g} N m2", beam.EI.minimum())
+                                      : fmt::format("{:.4g} to {:.4g} N m2", beam.EI.minimum(), beam.EI.maximum()));
+  }
   std::string frequencies;
   for (const double one : look.frequencies)
     frequencies += fmt::format("{}{:.4g}", frequencies.empty() ? "" : ", ", one);

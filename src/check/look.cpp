@@ -83,8 +83,13 @@ void Look::choose_mesh_and_step() {
   const double end = Passage(timed, *shared, ignored).plan().end_time;
   horizon = beginning(scene, end);
   const FirstSteps steps = first_steps(scene, shared->omega ? shared->omega->first : 0.0, horizon);
-  const std::string mesh = fmt::format("{} elements a {}", mesh_of(scene), scene.beam->track ? "sleeper bay" : "span");
-  choice.push_back(fmt::format("{}; {}", scene.mesh_open ? mesh + " to begin with" : mesh + ", as given",
+  const std::string mesh = scene.by_given_modes() ? "given modes"
+                                                  : fmt::format("{} elements a {}", mesh_of(scene),
+                                                                scene.beam->track ? "sleeper bay" : "span");
+  choice.push_back(fmt::format("{}; {}",
+                               scene.by_given_modes() ? mesh
+                               : scene.mesh_open      ? mesh + " to begin with"
+                                                      : mesh + ", as given",
                                scene.time_step
                                    ? fmt::format("steps of {:g} s, as given", *scene.time_step)
                                    : fmt::format("steps of {:.3g} s to begin with: {}", steps.first, steps.why)));
@@ -98,6 +103,11 @@ void Look::choose_mesh_and_step() {
 
 void Look::find_frequencies() {
   const beam::Beam& beam = *shared->beam;
+  if (beam.model().given) {
+    for (const double one : beam.model().given->omega)
+      if (frequencies.size() < told_frequencies) frequencies.push_back(one / (2.0 * std::numbers::pi));
+    return;
+  }
   const bool plain = beam.rail() == nullptr && !beam.model().foundation.nonlinear();
   const std::vector<double> omega =
       plain ? modes::distinct_frequencies(beam, told_frequencies)

@@ -91,6 +91,8 @@ Rest rest_of(const Look& look) {
   const beam::BeamModel& beam = *look.scene.beam;
   if (!look.passage)
     rest.why_not = "nothing is asked of it";
+  else if (beam.given)
+    rest.why_not = "given modes say nothing of supports";
   else if (beam.foundation.nonlinear())
     rest.why_not = "the foundation is not linear: it bears what the run finds";
   else if (beam.spans.size() > norm::StaticBridge::most_spans)

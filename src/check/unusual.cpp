@@ -64,6 +64,8 @@ void look_at_damping(const Look& look, Lines& lines) {
   const Damping& damping = look.scene.damping;
   double ratio = damping.ratios ? std::max(damping.ratios->first, damping.ratios->second) : 0.0;
   for (const double one : look.scene.damping_of_modes) ratio = std::max(ratio, one);
+  if (look.scene.by_given_modes())
+    for (const double one : look.scene.beam->given->ratio) ratio = std::max(ratio, one);
   if (ratio > much_damping)
     lines.push_back(fmt::format("a damping ratio of {:g} is {:g} % of critical damping, bridges have 0.5 to 3 %", ratio,
                                 100.0 * ratio));

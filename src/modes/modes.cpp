@@ -69,16 +69,58 @@ void orthonormalise(std::vector<Mode>& modes) {
   }
 }
 
+/// Whether a shape has one value and one slope at every station.
+bool without_kinks(const beam::Beam& beam) {
+  const beam::BeamModel& model = beam.model();
+  if (beam.rail() != nullptr || !model.hinges.empty()) return false;
+  for (int i = 1; i < static_cast<int>(model.spans.size()); ++i)
+    if (model.joint(i) != beam::Joint::continuous) return false;
+  return true;
+}
+
+/// Adds slopes and modal mass of the shape added last, whose vector has this phi^T M phi.
+void add_slopes(const beam::Beam& beam, const beam::ShapePoints& points, const std::vector<double>& vector, double mass,
+                Modes& modes) {
+  const auto value = [&](int unknown) { return vector[static_cast<std::size_t>(unknown)]; };
+  const std::vector<double> raw = points.curve<double>(beam.bridge(), false, value), &shape = modes.shape.back();
+  const std::size_t top = static_cast<std::size_t>(std::max_element(shape.begin(), shape.end()) - shape.begin());
+  const double scale = shape[top] / raw[top];
+  modes.slope.push_back(points.slopes(beam.bridge(), value));
+  for (double& slope : modes.slope.back()) slope *= scale;
+  modes.mass.push_back(mass * scale * scale);
+}
+
+/// Damping ratios where C* is a M + b K*, so that modes move each by itself.
+void add_ratios(const beam::Beam& beam, Modes& modes) {
+  const beam::Rayleigh ab = beam.rayleigh();
+  if (beam.dampers() != nullptr || (beam.springs() != nullptr && ab.b != 0.0)) return;
+  for (const double omega : modes.omega)
+    modes.ratio.push_back(omega > 0.0 ? (ab.a + ab.b * omega * omega) / (2.0 * omega) : 0.0);
+}
+
 Modes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* points) {
   auto segments = transverse_segments(beam);
   for (Segment& s : axial_segments(beam)) segments.push_back(std::move(s));
+  const bool smooth = points != nullptr && without_kinks(beam);
   Modes result;
   if (points != nullptr) result.x = points->x();
   for (const Mode& mode : lowest(segments, std::max(count, 0))) {
     result.omega.push_back(mode.omega);
     result.axial.push_back(mode.segment->axial ? 1 : 0);
-    if (points != nullptr) result.shape.push_back(stored_shape(beam, *mode.segment, mode.offset, mode.shape, *points));
+    if (points == nullptr) continue;
+    result.shape.push_back(stored_shape(beam, *mode.segment, mode.offset, mode.shape, *points));
+    if (!smooth) continue;
+    std::vector<double> all(static_cast<std::size_t>(beam.columns()) * static_cast<std::size_t>(beam.block()), 0.0);
+    for (std::size_t i = 0; i < mode.shape.size(); ++i)
+      all[static_cast<std::size_t>(mode.segment->unknowns[i] + mode.offset * beam.block())] = mode.shape[i];
+    if (mode.segment->axial) {  // not to be taken up as a mode of bending
+      result.slope.emplace_back(points->points().size(), 0.0);
+      result.mass.push_back(1.0);
+    } else {
+      add_slopes(beam, *points, all, product(mode.segment->M, mode.shape, mode.shape), result);
+    }
   }
+  if (smooth) add_ratios(beam, result);
   return result;
 }
 
@@ -125,6 +167,7 @@ Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoi
     const auto value = [&](int unknown) { return mode[static_cast<std::size_t>(unknown)]; };
     modes.shape.push_back(points.curve<double>(beam.bridge(), false, value));
     scale_to_one(modes.shape.back(), 0.0);
+    if (without_kinks(beam)) add_slopes(beam, points, mode, 1.0, modes);
   }
   return modes;
 }

@@ -17,6 +17,11 @@ struct Modes {
                                            // of an axial mode the displacement along x. All zero where a mode turns
                                            // the points without moving them (the nodes of one element a span)
   std::vector<double> x{};                 // of these points, m
+  /// Of these shapes, where all of them go through without a kink: the slope at every point (1/m) and the modal mass,
+  /// phi^T M phi (kg).
+  std::vector<std::vector<double>> slope{};
+  std::vector<double> mass{};
+  std::vector<double> ratio{};  // damping of each, where modes move each by itself
 };
 
 /// Collective; the same result on every rank, to the last bit. The `count` lowest frequencies of M, K*.
@@ -41,6 +46,9 @@ struct Basis {
 Basis bending_basis(const beam::Beam& beam, int count);
 /// Those of a basis of at least so many.
 Basis lowest_of(const Basis& basis, int count);
+
+/// The `count` lowest of the modes that the beam's model gives.
+Basis given_basis(const beam::Beam& beam, int count);
 
 /// A basis as modes are stored: deflections at these points of the bridge, the largest 1.
 Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoints& points);

@@ -44,6 +44,12 @@ void note_input(const std::string& path, bool table) {
   noted_tables.push_back(table ? 1 : 0);
 }
 
+void note_text(const std::string& path, const std::string& text) {
+  if (std::any_of(noted.begin(), noted.end(), [&](const InputText& file) { return file.name == path; })) return;
+  noted.push_back({path, text});
+  noted_tables.push_back(1);
+}
+
 const std::vector<InputText>& inputs_read() { return noted; }
 
 std::vector<InputText> tables_read() {

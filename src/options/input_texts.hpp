@@ -19,6 +19,9 @@ std::unique_ptr<std::istream> open_input(const std::string& path);
 /// Keeps the text of a file that was read; once is enough.
 void note_input(const std::string& path, bool table);
 
+/// The same of a table whose text is not the file's own.
+void note_text(const std::string& path, const std::string& text);
+
 /// All that were noted, in their order.
 const std::vector<InputText>& inputs_read();
 /// Those among them that are no options files, whose entries are known as options.

@@ -51,6 +51,8 @@ constexpr Words text_of_analyses = [] {
 constexpr Row beam_rows[] = {
   {"options_file", text, "", "", any, "", 0, "a YAML (.yml, .yaml) or classic options file, which may name further ones"},
 
+  {"bridge_modes_file", file, "", "", any, "", 0, "the bridge by natural modes from elsewhere, instead of beam_spans: results of -scene_analysis modes or other HDF5, or text (doc/guide.md)"},
+  {"bridge_track", integer, "", "1", {1, 1000}, "", 0, "which of the tracks in bridge_modes_file the train runs on"},
   {"beam_spans", numbers, "m", "", beam_length, "", 0, "length of each span; left out: no bridge"},
   {"beam_elements_per_span", integers, "", "(from accuracy)", {1, 100000}, "", 0, "elements a span, one number or one per span"},
   {"beam_EI", number_or_file, "N m2", "", beam_stiffness, "", 0, "bending stiffness, or a file x,value"},
@@ -164,6 +166,7 @@ constexpr Row run_rows[] = {
   {"output_lowpass", text, "Hz", "auto", any, "", 0, "frequency up to which deck accelerations count: their peak is given without a filter and, where this, output_lowpass_series or limits ask for it, with a low-pass there; auto: the greatest of 30 Hz, 1.5 f1 and f3; none: without alone"},
   {"output_lowpass_series", flag, "", "false", any, "", 0, "stores the filtered accelerations beside the others"},
   {"output_wheel_lowpass", number, "Hz", "20", {1.0, 1e6}, "", 0, "frequency up to which wheel forces count where a limit is of filtered ones; given, a single run says how much of its force a wheel loses without a filter and with a low-pass there"},
+  {"output_passages", numbers, "m", "", any, "", 0, "places along the track at which time, speed and force of every wheel that passes are stored, as scales in a track find them"},
   {"output_unloading_level", number, "1", "0.6", {0.0, 1.0, true}, "", 0, "part of its force at the start from which on a wheel counts as unloaded, of low-passed forces"},
   {"checkpoint_interval", number, "s", "900", not_negative, "", 0, "of wall time between two checkpoints of a single run; 0: none, except where SIGUSR1, SIGTERM or SIGINT asks for one"},
   {"checkpoint_file", text, "", "<output_file>.checkpoint", any, "", 0, "where a run's checkpoints are written, each in place of the one before; none: nowhere"},

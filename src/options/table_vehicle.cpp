@@ -23,6 +23,7 @@ constexpr Row vehicle[] = {
   {"actuators", texts, "", "", any, "", 0, "names of the prescribed forces"},
   {"drivers", texts, "", "", any, "", 0, "names of the prescribed motions"},
   {"contacts", texts, "", "", any, "", 0, "names of the contacts between bodies"},
+  {"sensors", texts, "", "", any, "", 0, "names of the points on bodies whose accelerations are stored"},
 };
 
 constexpr Row body[] = {
@@ -114,6 +115,11 @@ constexpr Row contact[] = {
   {"other_young", number, "N/m2", "(the first's)", positive, "", 0, "modulus of the second body"},
   {"other_poisson", number, "1", "(the first's)", {-0.99, 0.5}, "", 0, "Poisson's ratio of the second body"},
 };
+
+constexpr Row sensor[] = {
+  {"body", text, "", "", any, "", 0, "the body that it is fixed to"},
+  {"point", numbers, "m", "(the centre of mass)", any, "", 2, "x, y at t = 0, relative to the vehicle's origin"},
+};
 // clang-format on
 
 struct PartTable {
@@ -127,7 +133,8 @@ constexpr std::array<PartTable, part_kinds> parts = {{{"bodies", "body", body},
                                                       {"wheels", "wheel", wheel},
                                                       {"actuators", "actuator", actuator},
                                                       {"drivers", "driver", driver},
-                                                      {"contacts", "contact", contact}}};
+                                                      {"contacts", "contact", contact},
+                                                      {"sensors", "sensor", sensor}}};
 
 const PartTable& table_of(Part part) { return parts[static_cast<std::size_t>(part)]; }
 

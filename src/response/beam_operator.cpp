@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "response/tile.hpp"
@@ -177,7 +178,28 @@ void BeamOperator::solve_mass(double* x) const {
   mass_factor_->solve(x);
 }
 
+void BeamOperator::yield_by(const std::vector<std::vector<double>>& shapes, const std::vector<double>& omega,
+                            int first_unknown) {
+  flexible_.clear();
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const auto begin = shapes[i].begin() + first_unknown;
+    flexible_.emplace_back(begin, begin + unknowns());
+    for (double& value : flexible_.back()) value /= omega[i];
+  }
+}
+
+void BeamOperator::solve_by_modes(double* x) const {
+  std::vector<double> share;
+  for (const std::vector<double>& shape : flexible_)
+    share.push_back(std::inner_product(shape.begin(), shape.end(), x, 0.0));
+  MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(share.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  std::fill_n(x, unknowns(), 0.0);
+  for (std::size_t i = 0; i < flexible_.size(); ++i)
+    for (int k = 0; k < unknowns(); ++k) x[k] += share[i] * flexible_[i][static_cast<std::size_t>(k)];
+}
+
 void BeamOperator::solve_static(double* x, const AddedSprings* added) {
+  if (!flexible_.empty()) return solve_by_modes(x);
   const BeamFactor& factor = factored(0.0, 0.0, added);
   load_.assign(x, x + unknowns());
   residual_.resize(unknowns());

@@ -75,6 +75,9 @@ class BeamOperator {
   /// elements without supports between them about 0.02 eps n^4 of it is rounding. SolverError where nothing is left to
   /// trust.
   void solve_static(double* x, const AddedSprings* added = nullptr);
+  /// The structure yields by these modes alone from here on, all ranks' unknowns of each with phi^T M phi = 1 kg:
+  /// solve_static gives sum phi phi^T P/omega^2.
+  void yield_by(const std::vector<std::vector<double>>& shapes, const std::vector<double>& omega, int first_unknown);
   /// The largest relative error that solve_static has left so far, estimated from its last corrections.
   double static_error() const { return static_error_; }
 
@@ -116,6 +119,7 @@ class BeamOperator {
   solve::BlockTridiagonal shifted(std::size_t kind, double shift, double shift2) const;
   void factor(BeamFactor& to, double shift, double shift2, const AddedSprings* added);
   Matrix with_neighbour(solve::BlockTridiagonal rows) const;
+  void solve_by_modes(double* x) const;
   void add_damped_part(const double* c, const double* k) const;
   void product(const Matrix& A, double sign, const double* x, double* r) const;
 
@@ -137,7 +141,8 @@ class BeamOperator {
   bool damped_ = false;
   mutable std::vector<double> halo_;  // values of the columns on the left and on the right
   std::optional<BeamFactor> mass_factor_;
-  std::list<Factor> factors_;  // most recent first
+  std::list<Factor> factors_;                  // most recent first
+  std::vector<std::vector<double>> flexible_;  // of yield_by: each shape over its omega, this rank's unknowns
   long stamp_ = 0;
   long factorisations_ = 0;
 };

@@ -89,6 +89,7 @@ struct FilteredUnloading {
 };
 struct Summary {
   bool probes = false;  // whether there are any: without them there are no peaks
+  bool moments = true;  // are known
   Extreme deflection, acceleration, moment;
   std::optional<LowPassed> low_passed;  // acceleration
   double static_deflection = 0.0;  // largest |static deflection| at the same station with the same loads; 0: unknown

@@ -20,6 +20,13 @@ void Recorder::modes(const modes::Modes& modes, double rayleigh_a, double raylei
       std::vector<double> shapes;
       for (const auto& shape : modes.shape) shapes.insert(shapes.end(), shape.begin(), shape.end());
       file.dataset("/modes/shape", {modes.shape.size(), points}, shapes, "1");
+      if (!modes.slope.empty()) {
+        std::vector<double> slopes;
+        for (const auto& slope : modes.slope) slopes.insert(slopes.end(), slope.begin(), slope.end());
+        file.dataset("/modes/slope", {modes.slope.size(), points}, slopes, "1/m");
+        file.dataset("/modes/modal_mass", {modes.mass.size()}, modes.mass, "kg");
+        if (!modes.ratio.empty()) file.dataset("/modes/modal_damping_ratio", {modes.ratio.size()}, modes.ratio, "1");
+      }
       if (modes.x.size() == points) file.dataset("/modes/x", {points}, modes.x, "m");
     }
     file.attribute("/modes", "rayleigh_a", rayleigh_a);

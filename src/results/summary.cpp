@@ -25,7 +25,7 @@ std::vector<Attribute> attributes_of(const Summary& summary) {
       add("acceleration_lowpass_interval", summary.low_passed->interval);
       add("acceleration_lowpass_filter", summary.low_passed->filter);
     }
-    extreme("moment", summary.moment);
+    if (summary.moments) extreme("moment", summary.moment);
     if (summary.static_deflection > 0.0) add("static_deflection", summary.static_deflection);
     if (summary.amplification > 0.0) add("amplification", summary.amplification);
   }

@@ -125,6 +125,7 @@ std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (scene.self_weight) return "the bridge's own weight bends it";
   if (!integrate::own_method(scene.integrator)) return "ts_type is one of PETSc's own";
   if (!scene.time_step) return "the step is not known";
+  if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";
   return level_ends(*shared.modal) ? "" : "wheels meet a step at the bridge's ends, which yield";
 }
 

@@ -211,6 +211,7 @@ std::string spans_obstacle(const Scene& scene) {
   if (scene.start != Start::equilibrium) return "the run does not start in equilibrium";
   if (scene.self_weight) return "the bridge's own weight bends it";
   if (scene.beam->surface_height != 0.0) return "wheels run above the beam's axis";
+  if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";
   const int elements = *std::max_element(scene.beam->elements.begin(), scene.beam->elements.end());
   if (2 * elements > most_modes) return "its spans have too many elements";
   return integrate::own_method(scene.integrator) ? "" : "ts_type is one of PETSc's own";

@@ -61,6 +61,7 @@ void record_bridge(const beam::BeamModel& beam, Recorder& recorder) {
                           inner ? joint_words[static_cast<std::size_t>(beam.joint(i))] : "end");
   }
   if (!supports.empty()) recorder.tables({{"/model/supports", supports}});
+  if (beam.given) return;
   add_rows(recorder, "hinges", 1, beam.hinges, "m");
   add_rows(recorder, "EI", 2, along(beam.EI, beam.start, beam.end()), "m, N m2");
   add_rows(recorder, "mass", 2, along(beam.mass, beam.start, beam.end()), "m, kg/m");

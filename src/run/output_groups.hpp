@@ -8,17 +8,19 @@ namespace traverse::app {
 
 using OutputGroup = void (*)(const Source& source, Outputs& outputs);
 
-void add_couplers(const Source& source, Outputs& outputs);    // outputs_train.cpp
-void add_vehicles(const Source& source, Outputs& outputs);    // outputs_train.cpp
-void add_energy(const Source& source, Outputs& outputs);      // outputs.cpp
-void add_probes(const Source& source, Outputs& outputs);      // outputs_beam.cpp
-void add_supports(const Source& source, Outputs& outputs);    // outputs_beam.cpp
-void add_balance(const Source& source, Outputs& outputs);     // outputs_beam.cpp
-void add_rail(const Source& source, Outputs& outputs);        // outputs_beam.cpp
-void add_foundation(const Source& source, Outputs& outputs);  // outputs_foundation.cpp
+void add_couplers(const Source& source, Outputs& outputs);  // outputs_train.cpp
+void add_vehicles(const Source& source, Outputs& outputs);  // outputs_train.cpp
+void add_energy(const Source& source, Outputs& outputs);    // outputs.cpp
+void add_probes(const Source& source, Outputs& outputs);    // outputs_beam.cpp
+void add_supports(const Source& source, Outputs& outputs);  // outputs_beam.cpp
+void add_balance(const Source& source, Outputs& outputs);   // outputs_beam.cpp
+void add_rail(const Source& source, Outputs& outputs);      // outputs_beam.cpp
+/// What given modes say of other quantities than deflections.
+void add_outputs_of_modes(const Source& source, Outputs& outputs);  // outputs_beam.cpp
+void add_foundation(const Source& source, Outputs& outputs);        // outputs_foundation.cpp
 
 inline constexpr OutputGroup output_groups[] = {add_couplers, add_vehicles, add_energy};
-inline constexpr OutputGroup output_groups_of_a_bridge[] = {add_probes, add_supports, add_foundation, add_balance,
-                                                            add_rail};
+inline constexpr OutputGroup output_groups_of_a_bridge[] = {add_probes,  add_supports, add_foundation,
+                                                            add_balance, add_rail,     add_outputs_of_modes};
 
 }  // namespace traverse::app

@@ -105,6 +105,12 @@ class Outputs {
       for (std::size_t i = 0; i < count; ++i) values.push_back(see(now, i));
     });
   }
+  /// One dataset [n] of a number: see(now) gives it.
+  template <class See>
+  void add_number(std::string name, std::string unit, See see) {
+    describe(std::move(name), std::move(unit), {}, 0);
+    append_.push_back([see](const Observed& now, std::vector<double>& values) { values.push_back(see(now)); });
+  }
   /// A dataset that does not change with time.
   void add_constant(std::string name, std::vector<double> values, const char* unit) {
     layout_.constants.push_back({std::move(name), std::move(values), unit});

@@ -11,10 +11,14 @@ using beam::Response;
 using Pair = std::array<double, 2>;
 using Triple = std::array<double, 3>;
 
-constexpr Row<Response> response_rows[] = {
+constexpr Row<Response> motion_rows[] = {
     {"deflection", "m", of<&Response::deflection>},
     {"velocity", "m/s", of<&Response::velocity>},
     {"acceleration", "m/s2", of<&Response::acceleration>},
+};
+
+// Of beams by their elements.
+constexpr Row<Response> force_rows[] = {
     {"moment", "N m", of<&Response::moment>},
     {"axial_displacement", "m", of<&Response::axial_displacement>},
     {"axial_force", "N", of<&Response::axial_force>},
@@ -78,17 +82,21 @@ void add_probes(const Source& source, Outputs& outputs) {
   const std::vector<double>& x = source.scene.output.probes;
   if (x.empty()) return;
   outputs.add_constant("/probes/x", x, "m");
-  outputs.add_each("/probes/", response_rows, x.size(), probe);
+  outputs.add_each("/probes/", motion_rows, x.size(), probe);
+  if (source.beam->model().given) return;
+  outputs.add_each("/probes/", force_rows, x.size(), probe);
   outputs.add_each("/probes/", shear_rows, x.size(), probe);
 }
 
 void add_supports(const Source& source, Outputs& outputs) {
+  if (source.beam->model().given) return;
   const std::vector<double> x = source.beam->mesh().span_ends();
   outputs.add_constant("/supports/x", x, "m");
   outputs.add_each("/supports/", support_rows, x.size(), support);
 }
 
 void add_balance(const Source& source, Outputs& outputs) {
+  if (source.beam->model().given) return;
   const double gravity = source.scene.self_weight ? source.scene.gravity : 0.0;
   outputs.add("/balance/", balance_rows, [gravity, axial = source.beam->model().axial](const Observed& now) {
     return balance_of(now, gravity, axial);
@@ -96,8 +104,18 @@ void add_balance(const Source& source, Outputs& outputs) {
 }
 
 void add_rail(const Source& source, Outputs& outputs) {
-  if (source.beam->rail() != nullptr)
-    outputs.add_each("/rail/", response_rows, source.scene.output.probes.size(), rail);
+  if (source.beam->rail() == nullptr) return;
+  outputs.add_each("/rail/", motion_rows, source.scene.output.probes.size(), rail);
+  outputs.add_each("/rail/", force_rows, source.scene.output.probes.size(), rail);
+}
+
+void add_outputs_of_modes(const Source& source, Outputs& outputs) {
+  if (!source.beam->model().given) return;
+  for (const beam::GivenModes::Output& output : source.beam->model().given->outputs)
+    outputs.add_number("/outputs/" + output.name, output.unit, [&output](const Observed& now) {
+      const std::vector<double>& q = now.motion.beam.coordinates;
+      return std::inner_product(q.begin(), q.end(), output.of_mode.begin(), 0.0);
+    });
 }
 
 }  // namespace traverse::app

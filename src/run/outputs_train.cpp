@@ -1,4 +1,6 @@
 // Outputs of the train: bodies, wheels and other contacts, joints, springs, and the couplers between vehicles.
+#include <Eigen/Geometry>
+
 #include "output_groups.hpp"
 
 namespace traverse::app {
@@ -23,6 +25,21 @@ constexpr Row<train::WheelLoad> wheel_rows[] = {
     {"penetration", "m", of<&train::WheelLoad::penetration>},
 };
 
+// A point of a body: x'' = x_b'' + phi'' k x r - phi'^2 r with r from the centre of mass, in the ground's axes.
+struct SensorMotion {
+  double x = 0.0, y = 0.0;                            // m
+  double acceleration_x = 0.0, acceleration_y = 0.0;  // m/s2
+  double pitch_rate = 0.0;                            // rad/s
+};
+
+constexpr Row<SensorMotion> sensor_rows[] = {
+    {"position_x", "m", of<&SensorMotion::x>},
+    {"position_y", "m", of<&SensorMotion::y>},
+    {"acceleration_x", "m/s2", of<&SensorMotion::acceleration_x>},
+    {"acceleration_y", "m/s2", of<&SensorMotion::acceleration_y>},
+    {"pitch_rate", "rad/s", of<&SensorMotion::pitch_rate>},
+};
+
 // On the second body.
 constexpr Row<Triple> joint_rows[] = {{"reaction", "N, N, N m", itself}};
 constexpr Row<double> spring_rows[] = {{"force", "N", itself}};  // tension
@@ -38,6 +55,14 @@ constexpr Row<Triple> coupler_rows[] = {
 Triple triple(const Eigen::VectorXd& x, std::size_t body) {
   const auto i = 3 * static_cast<Eigen::Index>(body);
   return {x[i], x[i + 1], x[i + 2]};
+}
+
+SensorMotion sensed(const multibody::MechanismState& state, std::size_t body, const Eigen::Vector2d& arm) {
+  const Triple q = triple(state.q, body), rate = triple(state.qd, body), a = triple(state.qdd, body);
+  const Eigen::Vector2d r = Eigen::Rotation2Dd(q[2]) * arm;
+  const double squared = rate[2] * rate[2];
+  return {q[0] + r.x(), q[1] + r.y(), a[0] - a[2] * r.y() - squared * r.x(), a[1] + a[2] * r.x() - squared * r.y(),
+          rate[2]};
 }
 
 Triple reaction(const train::MovingVehicle& unit, int joint) {
@@ -61,6 +86,7 @@ class VehicleOutputs {
 
   void add() {
     add_bodies();
+    add_sensors();
     add_contacts();
     add_joints();
   }
@@ -75,6 +101,14 @@ class VehicleOutputs {
         const multibody::MechanismState& state = fleet.vehicles[unit].state;
         return BodyMotion{triple(state.q, i), triple(state.qd, i), triple(state.qdd, i)};
       });
+  }
+
+  void add_sensors() {
+    for (const train::Sensor& s : member_.type->sensors)
+      outputs_.add(
+          group(s.name), sensor_rows,
+          [&fleet = fleet_, unit = unit_, arm = s.arm, i = static_cast<std::size_t>(member_.first_body + s.body)](
+              const Observed&) { return sensed(fleet.vehicles[unit].state, i, arm); });
   }
 
   void add_contacts() {

@@ -7,6 +7,7 @@
 #include "by_lanes.hpp"
 #include "by_spans.hpp"
 #include "results/stage.hpp"
+#include "run/axle_passages.hpp"
 #include "run/peaks.hpp"
 #include "run/resolution.hpp"
 #include "structure/modal_structure.hpp"
@@ -71,6 +72,7 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
                                  system_.known_events(plan_.end_time, scene.step_kinks),
                                  scene.contact_tolerance.value_or(1e-3 * plan_.time_step)};
     if (scene.step_probes) settings.passages = passages(scene, plan_);
+    if (!still_) add_axle_passages(settings.passages);
     settings.stored = plan_.stored;
     settings.type = scene.integrator;
     settings.corners = scene.step_kinks && !still_;
@@ -86,6 +88,13 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
     notes.push_back(fmt::format("integrator {} to {:g} s, samples every {:g} s{}", method, plan_.end_time,
                                 plan_.interval * static_cast<double>(plan_.stored),
                                 plan_.ends_at_sample() || scene.sweep ? "" : ", the end's own apart under /end"));
+}
+
+void Passage::add_axle_passages(std::vector<double>& times) const {
+  const std::vector<double> more = axle_passage_times(scene_);
+  times.insert(times.end(), more.begin(), more.end());
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
 void Passage::leave_out_rest(std::vector<std::string>& notes) {

@@ -50,6 +50,7 @@ class Passage {
   bool stopped_at_limit() const { return stepper_ ? stepper_->stopped_at_limit() : modal_->stopped_at_limit(); }
 
  private:
+  void add_axle_passages(std::vector<double>& times) const;
   void leave_out_rest(std::vector<std::string>& notes);
   void step_apart(const double* y, std::vector<std::string>& notes);
 

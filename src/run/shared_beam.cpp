@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "modes/modes.hpp"
@@ -10,12 +11,23 @@
 namespace traverse::app {
 namespace {
 
+constexpr double distinct = 1e-6;  // relative difference of two frequencies
+
 std::string what_track(const beam::Beam& beam) {
   const beam::LayeredTrack& t = *beam.model().track;
   return fmt::format(
       "layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}, {} unknowns a column",
       beam.rail()->mesh.start(), beam.rail()->mesh.end(), beam.rail()->mesh.elements(), t.spacing,
       t.ballast ? ", ballast" : "", t.subballast ? ", sub-ballast on the ground" : "", beam.block());
+}
+
+std::string what_given(const beam::Beam& beam) {
+  const beam::GivenModes& m = *beam.model().given;
+  const auto [least, most] = std::minmax_element(m.ratio.begin(), m.ratio.end());
+  return fmt::format(
+      "bridge of {:g} m by given modes: {} from {:.6g} to {:.6g} Hz, damping {}{:.4g} %, shapes at {} stations",
+      m.x.back(), m.omega.size(), m.omega.front() / (2.0 * std::numbers::pi), m.omega.back() / (2.0 * std::numbers::pi),
+      *least < *most ? fmt::format("{:.4g} to ", 100.0 * *least) : "", 100.0 * *most, m.x.size());
 }
 
 std::string what_beam(const beam::Beam& beam) {
@@ -32,7 +44,8 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
     : comm(communicator) {
   if (!scene.beam) return;
   const results::Stage stage("assembly of the beam");
-  const std::string floating = scene.analysis == Analysis::modes ? "" : beam::floating_motion(*scene.beam);
+  const std::string floating =
+      scene.analysis == Analysis::modes || scene.beam->given ? "" : beam::floating_motion(*scene.beam);
   if (!floating.empty())
     throw InputError("support_types: the beam can float away (" + floating +
                      "); hold it with supports or a foundation");
@@ -42,11 +55,18 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
         "one-sided foundations and those with a gap or a cubic term are forces; frequencies are those of "
         "small motions: what has no gap with its k, what has one without");
   beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
-  notes.push_back(what_beam(*beam));
+  notes.push_back(scene.beam->given ? what_given(*beam) : what_beam(*beam));
   if (beam->rail() != nullptr) notes.push_back(what_track(*beam));
 }
 
 void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes) {
+  if (beam->model().given) {
+    const std::vector<double>& given = beam->model().given->omega;
+    const auto other =
+        std::find_if(given.begin(), given.end(), [&](double one) { return one > given.front() * (1.0 + distinct); });
+    omega = {given.front(), other == given.end() ? given.front() : *other};
+    return;
+  }
   const results::Stage stage("search for the first frequencies");
   const Damping& damping = scene.damping;
   if (damping.frequencies)
@@ -70,11 +90,17 @@ void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes, co
   const results::Stage stage(scene.model_modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
   statics = std::make_shared<structure::BeamOperator>(*beam);
   if (scene.model_modes == 0) return;
-  modal.emplace(
-      *beam, *statics,
-      more != nullptr ? modes::lowest_of(*more, scene.model_modes) : modes::bending_basis(*beam, scene.model_modes),
-      scene.damping_of_modes);
+  if (scene.by_given_modes())
+    modal.emplace(*beam, *statics, scene.model_modes);
+  else
+    modal.emplace(
+        *beam, *statics,
+        more != nullptr ? modes::lowest_of(*more, scene.model_modes) : modes::bending_basis(*beam, scene.model_modes),
+        scene.damping_of_modes);
   if (!scene.vehicles.empty()) modal->add_probes(scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
+  if (scene.by_given_modes() && modal->modes() < scene.beam->given->omega.size())
+    notes.push_back(fmt::format("of these modes the {} lowest", modal->modes()));
+  if (scene.by_given_modes()) return;
   const auto hertz = [&](double value) { return value / (2.0 * std::numbers::pi); };
   notes.push_back(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}", modal->modes(),
                               hertz(modal->omega().back()), scene.exact_in_time() ? ", exact in time" : "",

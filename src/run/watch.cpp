@@ -62,6 +62,8 @@ void Watch::sample(const integrate::Instant& instant) {
     if (lag_) lag_->apply(instant.time, now_.motion.bridge_loads, now_.probes);
     for (beam::Response& probe : now_.probes)
       if (!lag_) probe.moment_rate = std::numeric_limits<double>::quiet_NaN();
+    if (scene_.by_given_modes())
+      for (beam::Response& probe : now_.probes) probe.moment = probe.shear = 0.0;  // not known
     for (std::size_t i = 0; i < dragged_.size(); ++i) now_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   step(instant.time);  // the first instant is no step's end
@@ -71,6 +73,7 @@ void Watch::sample(const integrate::Instant& instant) {
     take_from_apart();
   note_worst();
   if (judge_) judge_->sample(instant.time, beam.v);
+  axle_passages_.add(instant.time, system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
   if (instant.purpose != integrate::Purpose::look) store(instant.purpose == integrate::Purpose::end);
 }
@@ -223,6 +226,7 @@ void Watch::keep(base::Archive& archive) {
                now_.probes, most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);
+  archive.same(axle_passages_);
   // On the first rank alone.
   deck_ ? archive.same(*deck_) : archive.same();
   filtered_wheels_ ? archive.same(*filtered_wheels_) : archive.same();
@@ -247,7 +251,12 @@ results::Summary Watch::finish() {
     summary_.probes = beam_ != nullptr;
     summary_.deflection = extreme(deflection);
     summary_.acceleration = extreme(acceleration);
+    summary_.moments = !scene_.by_given_modes();
     summary_.moment = extreme(moment);
+  }
+  if (!axle_passages_.empty()) {
+    recorder_.datasets(axle_passages_.datasets());
+    recorder_.tables({{"/passages/wheel", axle_passages_.wheels(system_.fleet())}});
   }
   if (deck_) {
     deck_->finish(summary_);
@@ -264,7 +273,12 @@ results::Summary Watch::finish() {
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
   recorder_.shape(shape_of(*beam_, scene_, worst_));
-  recorder_.datasets(envelope_.datasets());
+  std::vector<results::Recorder::Dataset> envelope = envelope_.datasets();
+  if (scene_.by_given_modes())
+    std::erase_if(envelope, [](const auto& set) {
+      return set.name.find("moment") != std::string::npos || set.name.find("shear") != std::string::npos;
+    });
+  recorder_.datasets(envelope);
   note_static_deflections();
   return summary_;
 }

@@ -10,6 +10,7 @@
 #include "recovery/viscous_lag.hpp"
 #include "results/recorder.hpp"
 #include "results/terminal.hpp"
+#include "run/axle_passages.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/envelope.hpp"
 #include "run/outputs.hpp"
@@ -35,6 +36,9 @@ class Watch {
 
   /// The wheels' forces are filtered when the run has ended.
   void keep_wheel_forces(FilteredWheels wheels) { filtered_wheels_ = std::move(wheels); }
+
+  /// The passages of wheels over places of the track are noted.
+  void note_axle_passages(AxlePassages passages) { axle_passages_ = std::move(passages); }
 
   /// The run is judged by the scene's limits when it has ended.
   void judge() { judge_.emplace(scene_, system_.fleet(), beam_); }
@@ -87,6 +91,7 @@ class Watch {
   WheelExtremes wheels_;
   WheelUnloading unloading_;
   std::optional<FilteredWheels> filtered_wheels_;
+  AxlePassages axle_passages_;
   train::WheelPaths paths_;  // where wheels are free to change their distances
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;

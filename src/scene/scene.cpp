@@ -155,6 +155,18 @@ void read_wheel_filter(const Options& o, Scene& scene) {
     scene.notes.emplace_back("output_wheel_lowpass has no effect: in sweeps and studies it is for limits");
 }
 
+void read_passages(const Options& o, Scene& scene) {
+  if (!o.has("output_passages")) return;
+  const std::vector<double> places = o.numbers("output_passages");
+  if (scene.analysis != Analysis::transient || wheels_at_start(scene).empty() || scene.sweep || asks_for_study(o)) {
+    scene.notes.emplace_back("output_passages has no effect: it is for a single transient run of vehicles with wheels");
+    return;
+  }
+  if (scene.train.drive != Drive::constant || !(scene.train.speed > 0.0))
+    o.refuse("output_passages", "needs a train that runs at a prescribed speed above 0; allowed: train_drive constant");
+  scene.output.passages = places;
+}
+
 bool has_control_character(const std::string& text) {
   return std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
 }
@@ -178,6 +190,7 @@ void read_output(const Options& o, Scene& scene) {
   read_filter(o, scene);
   read_limits(o, scene);
   read_wheel_filter(o, scene);
+  read_passages(o, scene);
 }
 
 /// A run ends when the last wheel or force has left the beam, or when the user says.

@@ -32,7 +32,7 @@ std::string longitudinal_action(const options::Options& o, const Scene& scene) {
 }  // namespace
 
 void decide_axial(const options::Options& o, Scene& scene) {
-  if (!scene.beam) return;
+  if (!scene.beam || scene.beam->given) return;
   const std::string wanted = o.choice("model_axial");
   std::string missing;
   if (!o.has("beam_EA")) missing = "beam_EA";

@@ -200,6 +200,7 @@ beam::Foundation read_foundation(const Options& o, const beam::BeamModel& beam) 
 }
 
 void read_beam(const Options& o, Scene& scene) {
+  if (read_given_bridge(o, scene)) return;
   if (!o.has("beam_spans")) {
     for (const char* prefix : {"beam_E", "beam_mass", "beam_damping", "beam_rayleigh", "support_", "foundation_"}) {
       const options::Entry* entry = o.first_with_prefix(prefix);

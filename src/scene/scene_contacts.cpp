@@ -1,6 +1,7 @@
 // One vehicle's wheels and contacts between bodies out of the options.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <numbers>
 
 #include "vehicle_reader.hpp"
@@ -112,6 +113,15 @@ void VehicleReader::wheel(const std::string& name) {
   w.law = law(w.radius, "rail");
   w.shape = wheel_shape(w.radius);
   vehicle_.wheels.push_back(w);
+}
+
+void VehicleReader::sensor(const std::string& name) {
+  train::Sensor s;
+  s.name = name;
+  s.body = moving_body(key("body"), o_.text(key("body")));
+  const Eigen::Vector3d& home = vehicle_.mechanism.bodies[static_cast<std::size_t>(s.body)].position;
+  if (has("point")) s.arm = Eigen::Rotation2Dd(-home.z()) * (vector("point") - home.head<2>());
+  vehicle_.sensors.push_back(s);
 }
 
 }  // namespace traverse::app

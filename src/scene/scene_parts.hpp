@@ -49,6 +49,10 @@ void declare_couplers(options::Options& options);
 Coupler read_coupler(const options::Options& options, const Block& train, const std::string& name);
 
 void read_beam(const options::Options& options, Scene& scene);  // beam, supports, damping
+/// A bridge by given modes; false where the scene names none.
+bool read_given_bridge(const options::Options& options, Scene& scene);
+/// How many of these, and what they cannot be asked for: last, in place of read_modal.
+void read_modes_of_given(const options::Options& options, Scene& scene);
 /// Of a beam whose spans and joints are known.
 beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);
 /// A number or a file of x,value, inside the range of its row.

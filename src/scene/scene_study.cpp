@@ -39,7 +39,8 @@ void read_sweep(const Options& o, Scene& scene) {
   }
   const char* given = o.has("sweep_speed") ? "sweep_speed" : "sweep_hslm_a";
   if (scene.analysis != Analysis::transient) o.refuse(given, "a sweep is of transient runs (scene_analysis)");
-  if (!o.has("beam_spans")) o.refuse(given, "a sweep is of a bridge's response: there is no beam (beam_spans)");
+  if (!o.has("beam_spans") && !o.has("bridge_modes_file"))
+    o.refuse(given, "a sweep is of a bridge's response: there is no beam (beam_spans)");
   scene.sweep.emplace();
   scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
   scene.sweep->instants = o.number("sweep_instants");
@@ -60,6 +61,7 @@ void read_sweep(const Options& o, Scene& scene) {
 }
 
 void read_modal(const Options& o, Scene& scene) {
+  if (scene.beam && scene.beam->given) return read_modes_of_given(o, scene);
   const std::string value = o.text("model_modes");
   if (value == "auto" || value == "0") {
     scene.modes_open = value == "auto" && !(scene.beam && scene.beam->foundation.nonlinear());

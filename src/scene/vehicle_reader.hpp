@@ -37,6 +37,7 @@ class VehicleReader {
     each(options::Part::actuator, [this](const std::string& name) { actuator(name); });
     each(options::Part::driver, [this](const std::string& name) { driver(name); });
     each(options::Part::contact, [this](const std::string& name) { body_contact(name); });
+    each(options::Part::sensor, [this](const std::string& name) { sensor(name); });
     return std::move(vehicle_);
   }
 
@@ -106,6 +107,7 @@ class VehicleReader {
   void actuator(const std::string& name);
   void actuator_table(multibody::Actuator& a) const;
   void driver(const std::string& name);
+  void sensor(const std::string& name);
 
   const options::Options& o_;
   std::string prefix_;  // vehicle_NAME_

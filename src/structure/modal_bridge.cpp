@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "beam/cubic.hpp"
+#include "beam/shape.hpp"
 
 namespace traverse::structure {
 namespace {
@@ -25,6 +26,15 @@ ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, modes::B
                          const std::vector<double>& ratios)
     : beam_(beam), statics_(statics), basis_(std::move(basis)) {
   set_damping(ratios);
+  influence_ = influence_of(lines_of_modes(), {});
+}
+
+ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count)
+    : beam_(beam), statics_(statics), basis_(modes::given_basis(beam, count)) {
+  const std::vector<double>& ratio = beam.model().given->ratio;
+  for (std::size_t i = 0; i < modes(); ++i) sigma_.push_back(ratio[i] * basis_.omega[i]);
+  own_drag_.assign(modes(), 0.0);
+  statics_.yield_by(basis_.shape, basis_.omega, beam_.first_column() * beam_.block());
   influence_ = influence_of(lines_of_modes(), {});
 }
 
@@ -131,6 +141,7 @@ std::vector<double> ModalBridge::static_solution(const std::vector<double>& load
 void ModalBridge::add_probes(const std::vector<double>& stations, double gravity) {
   probes_ = {};
   probes_.count = stations.size();
+  if (given()) return add_given_probes(stations);
   beam::Recovery recovery(beam_, stations, 0.0);
   note_forms(recovery);
   if (forces_on_others_.cols() > 0) note_others(recovery);
@@ -139,6 +150,26 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   std::vector<Line> lines = lines_of_modes();
   for (const auto quantity : {&beam::Response::deflection, &beam::Response::moment})
     for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
+  influence_ = influence_of(lines, stations);
+}
+
+// Deflections by the shapes; moments and what other modes would add are zero.
+void ModalBridge::add_given_probes(const std::vector<double>& stations) {
+  for (const std::vector<double>& shape : basis_.shape)
+    for (const double x : stations) {
+      const beam::Station at = beam_.mesh().locate(x);
+      const beam::Hermite psi = beam::hermite(at.xi, beam_.mesh().element(at.element).length);
+      const auto unknowns = beam_.bridge().transverse(at.element);
+      double sum = 0.0;
+      for (std::size_t k = 0; k < 4; ++k) sum += psi.value[k] * shape[static_cast<std::size_t>(unknowns[k])];
+      probes_.deflection.push_back(sum);
+    }
+  for (std::vector<double>* moment : {&probes_.moment, &probes_.moment_by_rate, &probes_.moment_by_acceleration})
+    moment->assign(probes_.deflection.size(), 0.0);
+  probes_.weight_deflection.assign(stations.size(), 0.0);
+  probes_.weight_moment.assign(stations.size(), 0.0);
+  std::vector<Line> lines = lines_of_modes();
+  lines.resize(lines.size() + 2 * stations.size(), {std::vector<double>(basis_.shape.front().size(), 0.0)});
   influence_ = influence_of(lines, stations);
 }
 

@@ -60,6 +60,10 @@ class ModalBridge {
   ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count, const std::vector<double>& ratios)
       : ModalBridge(beam, statics, modes::bending_basis(beam, count), ratios) {}
 
+  /// Collective. The `count` lowest of the modes that the beam's model gives, and nothing besides: there are no others
+  /// that could deflect statically, and moments are not known. The operator's statics are theirs from then on.
+  ModalBridge(const beam::Beam& beam, BeamOperator& statics, int count);
+
   /// Collective. Adds the response at stations to the forms, and its static correction to the influence. gravity: 0
   /// without self-weight.
   void add_probes(const std::vector<double>& stations, double gravity);
@@ -67,6 +71,8 @@ class ModalBridge {
   /// Collective. Rotations of nodes given by their unknowns, where dampers do not couple modes.
   ModalSlopes slopes(const std::vector<int>& unknowns, double gravity);
 
+  /// Whether the modes were given, and are all there is.
+  bool given() const { return beam_.model().given.has_value(); }
   std::size_t modes() const { return basis_.omega.size(); }
   const modes::Basis& basis() const { return basis_; }
   const std::vector<double>& omega() const { return basis_.omega; }  // rad/s
@@ -110,6 +116,7 @@ class ModalBridge {
   Eigen::MatrixXd share_of_modes(const Eigen::MatrixXd& forces) const;
   void set_damping(const std::vector<double>& ratios);
   void set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share);
+  void add_given_probes(const std::vector<double>& stations);
   void note_forms(beam::Recovery& recovery);
   void note_others(beam::Recovery& recovery);
   void note_weight(beam::Recovery& recovery, double gravity);

@@ -166,6 +166,8 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   }
   MPI_Bcast(q.data(), static_cast<int>(3 * modes_), MPI_DOUBLE, 0, beam_.comm());
 
+  out.coordinates.assign(q.begin(), q.begin() + static_cast<std::ptrdiff_t>(modes_));
+
   // Forces but its own weight; what they and dampers deflect it by at rest, less the modes' share of that.
   out.P.assign(size, 0.0);
   add_contacts(contacts, out.P.data());
@@ -178,7 +180,12 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
   Eigen::Map<Eigen::VectorXd>(share.data(), modes).noalias() =
       phi.transpose() * Eigen::Map<const Eigen::VectorXd>(rest_.data(), rows);
   MPI_Allreduce(MPI_IN_PLACE, share.data(), static_cast<int>(modes_), MPI_DOUBLE, MPI_SUM, beam_.comm());
-  statics_->solve_static(rest_.data());
+  if (bridge_.given()) {  // there are no other modes
+    std::fill(rest_.begin(), rest_.end(), 0.0);
+    std::fill(share.begin(), share.end(), 0.0);
+  } else {
+    statics_->solve_static(rest_.data());
+  }
   for (std::size_t i = 0; i < modes_; ++i) share[i] /= bridge_.omega()[i] * bridge_.omega()[i];
 
   Eigen::Map<Eigen::MatrixXd> motion(q.data(), modes, 4);  // q, q', q'', and how damping drags

@@ -48,6 +48,7 @@ struct NodalMotion {
   std::vector<double> a;     // accelerations
   std::vector<double> P;     // loads, on held unknowns too
   std::vector<double> drag;  // what damping that acts like inertia adds to the accelerations in all forces; empty: none
+  std::vector<double> coordinates;  // of a bridge by its modes: q of each, m kg^(1/2), on every rank
   NonlinearForces foundation;
   std::vector<beam::ElementLoad> foundation_loads;  // of the foundation that is not linear
 };

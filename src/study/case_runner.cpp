@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <set>
@@ -16,6 +17,8 @@
 
 namespace traverse::app {
 namespace {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
 // As measured. Peaks by modes take that much at each instant for every mode, and for every mode and probe;
 // with modes that dampers couple, whose runs go one by one, several times that.
@@ -114,6 +117,9 @@ std::vector<CaseResult> CaseRunner::run_together(std::size_t train, std::span<co
   } else {
     for (const auto& [runner, one] : members) results.push_back(runner->run(train, one, reached));
   }
+  if (first.scene_.by_given_modes())
+    for (CaseResult& result : results)
+      for (integrate::ProbePeaks& peak : result.peaks) peak.moment = {not_known, not_known};
   for (CaseResult& result : results) result.findings.resize(first.scene_.limits.size());  // unknown where not judged
   return results;
 }

@@ -28,8 +28,10 @@ void add(const Accuracy& one, std::optional<Accuracy>& all) {
 }
 
 void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
-  notes.push_back(fmt::format("all runs: {} elements a {}, steps of {:g} s", mesh_of(scene),
-                              scene.beam->track ? "sleeper bay" : "span", *scene.time_step));
+  const std::string mesh = scene.by_given_modes() ? "given modes"
+                                                  : fmt::format("{} elements a {}", mesh_of(scene),
+                                                                scene.beam->track ? "sleeper bay" : "span");
+  notes.push_back(fmt::format("all runs: {}, steps of {:g} s", mesh, *scene.time_step));
   if (scene.vehicle_model == VehicleModel::linear && !scene.vehicles.empty())
     notes.emplace_back("vehicles are taken as linear; a run in which that shows is repeated with the mechanisms");
   std::string expected;
@@ -104,7 +106,8 @@ SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& note
   const std::optional<Accuracy> all = choose_at_speeds(given, choice.scene, notes);
   if (!all) return {given, model_of(given)};
   say(choice.scene, *all, notes);
-  const ModesChoice by = modes_that_do(choice.scene, *all, notes);
+  const ModesChoice by =
+      given.by_given_modes() ? ModesChoice{given.model_modes, 0.0} : modes_that_do(choice.scene, *all, notes);
   choice.scene.model_modes = by.modes;
   choice.model = model_of(choice.scene);
   choice.model.accuracy = given.accuracy;

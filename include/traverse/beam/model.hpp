@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "traverse/beam/foundation.hpp"
+#include "traverse/beam/given_modes.hpp"
 
 namespace traverse::beam {
 
@@ -63,9 +64,10 @@ struct BeamModel {
   std::vector<Support> supports;  // one at every span end: spans + 1; where spans are separate it serves both
   Foundation foundation;
   std::optional<LayeredTrack> track;
-  bool axial = true;            // false: no axial unknowns
-  double start = 0.0;           // x of the left end, m: 0, but for a rail that begins before the bridge
-  double surface_height = 0.0;  // of the running surface above the neutral axis, m: forces along x act up there
+  std::optional<GivenModes> given;  // the bridge is these modes, between whose stations it has one element each
+  bool axial = true;                // false: no axial unknowns
+  double start = 0.0;               // x of the left end, m: 0, but for a rail that begins before the bridge
+  double surface_height = 0.0;      // of the running surface above the neutral axis, m: forces along x act up there
 
   double length() const;
   double end() const { return start + length(); }
@@ -74,6 +76,10 @@ struct BeamModel {
   /// Whether all its spans are beams of their own.
   bool all_separate() const;
 };
+
+/// A bridge of given modes: what its elements are between the stations of the shapes. They carry the shapes and
+/// neither bend nor weigh.
+BeamModel bridge_of(GivenModes modes);
 
 /// Whether a kind of foundation has an effect on the beam: a longitudinal one needs axial unknowns.
 inline bool acts(const FoundationKind& kind, const BeamModel& model) {

@@ -46,8 +46,8 @@ struct Row {
 };
 
 /// The kinds of parts of a vehicle, in the order of `part_lists`.
-enum class Part { body, joint, spring, torsion_spring, wheel, actuator, driver, contact };
-inline constexpr int part_kinds = 8;
+enum class Part { body, joint, spring, torsion_spring, wheel, actuator, driver, contact, sensor };
+inline constexpr int part_kinds = 9;
 /// The option that lists the parts of a kind: "bodies", ...
 std::string_view part_list(Part part);
 /// "body", "joint", ... for messages.

@@ -49,6 +49,7 @@ struct Output {
   double wheel_low_pass = 20.0;    // Hz, up to which wheel forces count
   bool wheels_filtered = false;    // asked for; else where limits ask for it
   double unloading_level = 0.6;    // part of its force from which on a wheel counts as unloaded
+  std::vector<double> passages;    // m: where the force of every wheel that passes is noted
 };
 
 /// The random running surfaces that one spectrum describes.
@@ -136,8 +137,10 @@ struct Scene {
       return !options::limit_quantity(limit.quantity)->of_norm;
     });
   }
-  /// Modes under moving forces alone, whose motion is known exactly.
-  bool exact_in_time() const { return model_modes > 0 && vehicles.empty() && load.courses.empty(); }
+  /// Whether the bridge is modes that were given, without elements behind them.
+  bool by_given_modes() const { return beam && beam->given; }
+  /// Modes under moving forces alone, whose motion is known exactly; single runs of given modes are stepped.
+  bool exact_in_time() const { return model_modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep); }
 };
 
 /// x of the wheels of vehicle `i` of the train at t = 0, in m.

@@ -1,6 +1,7 @@
 // Vehicles, trains and moving forces as they meet the track.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <memory>
@@ -25,12 +26,20 @@ struct Wheel {
   track::WheelShape shape;  // what is out of round
 };
 
+/// A point fixed to a body, whose motion is stored.
+struct Sensor {
+  std::string name;
+  int body = 0;
+  Eigen::Vector2d arm = Eigen::Vector2d::Zero();  // from the centre of mass, in the body's axes, m
+};
+
 /// One vehicle type; positions relative to the vehicle's origin.
 struct Vehicle {
   std::string name;
   multibody::MechanismModel mechanism;
   std::vector<Wheel> wheels;
   std::vector<contact::BodyContact> contacts;
+  std::vector<Sensor> sensors;
 };
 
 /// constant: x of each vehicle's first body is prescribed; free: only forces act.

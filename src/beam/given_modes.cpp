@@ -1,0 +1,64 @@
+#include "traverse/beam/given_modes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "traverse/beam/model.hpp"
+
+namespace traverse::beam {
+namespace {
+
+constexpr std::size_t end_stations = 4;  // that the slope at an end follows from
+constexpr double not_bending = 1e40;     // N m2: a force inside an element moves nothing but the modes
+
+/// The slope at stations[at] of the polynomial through `count` stations from the first on (Lagrange).
+double polynomial_slope(const double* x, const double* values, std::size_t count, std::size_t at) {
+  double slope = 0.0;
+  for (std::size_t j = 0; j < count; ++j) {
+    double weight = 0.0;  // the derivative of Lagrange's polynomial j at the station
+    for (std::size_t m = 0; m < count; ++m) {
+      if (m == j) continue;
+      double product = 1.0 / (x[j] - x[m]);
+      for (std::size_t k = 0; k < count; ++k)
+        if (k != j && k != m) product *= (x[at] - x[k]) / (x[j] - x[k]);
+      weight += product;
+    }
+    slope += weight * values[j];
+  }
+  return slope;
+}
+
+}  // namespace
+
+std::vector<double> spline_slopes(const std::vector<double>& x, const std::vector<double>& values) {
+  const std::size_t n = x.size(), near = std::min(n, end_stations);
+  std::vector<double> slope(n, 0.0), diagonal(n, 1.0), above(n, 0.0);
+  slope.front() = polynomial_slope(x.data(), values.data(), near, 0);
+  slope.back() = polynomial_slope(x.data() + (n - near), values.data() + (n - near), near, near - 1);
+  // Equal curvatures on both sides of every inner station, by elimination from left to right.
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    const double left = x[i] - x[i - 1], right = x[i + 1] - x[i];
+    const double rise =
+        3.0 * ((values[i] - values[i - 1]) / (left * left) + (values[i + 1] - values[i]) / (right * right));
+    const double factor = 1.0 / left / diagonal[i - 1];
+    above[i] = 1.0 / right;
+    diagonal[i] = 2.0 / left + 2.0 / right - factor * above[i - 1];
+    slope[i] = rise - factor * slope[i - 1];
+  }
+  for (std::size_t i = n - 1; i-- > 1;) slope[i] = (slope[i] - above[i] * slope[i + 1]) / diagonal[i];
+  return slope;
+}
+
+BeamModel bridge_of(GivenModes modes) {
+  BeamModel model;
+  model.spans = {modes.x.back()};
+  model.elements = {1};
+  model.EI = not_bending;
+  model.mass = 1.0;
+  model.supports = {Support::free, Support::free};
+  model.axial = false;
+  model.given = std::move(modes);
+  return model;
+}
+
+}  // namespace traverse::beam

@@ -1,0 +1,242 @@
+#include "given_modes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <sstream>
+
+#include "options/data_file.hpp"
+#include "options/input_texts.hpp"
+#include "results/modes_text.hpp"
+#include "results/origin.hpp"
+#include "traverse/base/error.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr std::size_t most_given_modes = 10'000, most_shape_stations = 100'000;
+
+std::string trimmed(const std::string& text) {
+  const std::size_t from = text.find_first_not_of(" \t\r"), past = text.find_last_not_of(" \t\r");
+  return from == std::string::npos ? "" : text.substr(from, past - from + 1);
+}
+
+std::vector<std::string> cells_of(const std::string& line) {
+  std::vector<std::string> cells;
+  std::istringstream stream(line.substr(0, line.find('#')));
+  for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(trimmed(cell));
+  if (cells.size() == 1 && cells.front().empty()) cells.clear();
+  return cells;
+}
+
+bool is_name(const std::string& word) {
+  return !word.empty() && std::all_of(word.begin(), word.end(),
+                                      [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+}
+
+/// The text of one file, line by line.
+class ModesText {
+ public:
+  ModesText(std::string path, int track) : path_(std::move(path)), track_(track) {}
+
+  beam::GivenModes read(std::istream& text) {
+    for (std::string line; std::getline(text, line);) {
+      ++line_;
+      if (const std::vector<std::string> cells = cells_of(line); !cells.empty()) take(cells);
+    }
+    check_whole();
+    normalise();
+    return std::move(modes_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const {
+    throw InputError(fmt::format("{}:{}: {}", path_, line_, why));
+  }
+  [[noreturn]] void refuse_file(const std::string& why) const { throw InputError(fmt::format("{}: {}", path_, why)); }
+
+  double number(const std::string& word) const {
+    double value = 0.0;
+    if (!options::parse_number(word, value)) refuse(fmt::format("'{}' is no finite number", word));
+    if (!options::is_quantity(value)) refuse(fmt::format("'{}' is beyond any quantity in SI units", word));
+    return value;
+  }
+  std::vector<double> numbers(const std::vector<std::string>& cells, std::size_t from) const {
+    std::vector<double> values;
+    for (std::size_t i = from; i < cells.size(); ++i) values.push_back(number(cells[i]));
+    return values;
+  }
+  /// One for each mode.
+  std::vector<double> of_modes(const std::vector<std::string>& cells, std::size_t from) const {
+    if (frequency_.empty()) refuse(fmt::format("{} before frequency, which says how many modes there are", cells[0]));
+    std::vector<double> values = numbers(cells, from);
+    if (values.size() != frequency_.size())
+      refuse(fmt::format("{} holds {} numbers for {} modes; wanted: one a mode", cells[0], values.size(),
+                         frequency_.size()));
+    return values;
+  }
+
+  void take(const std::vector<std::string>& cells) {
+    const std::string& word = cells.front();
+    if (word == "frequency") return take_frequencies(cells);
+    if (word == "modal_mass") return take_masses(cells);
+    if (word == "damping_ratio") return take_ratios(cells);
+    if (word == "output") return take_output(cells);
+    if (word == "track") return take_track(cells);
+    double x = 0.0;
+    if (!options::parse_number(word, x))
+      refuse(
+          fmt::format("'{}' begins no line of modes; allowed: frequency, modal_mass, damping_ratio, output, track, or "
+                      "a station in m",
+                      word));
+    take_station(cells);
+  }
+
+  void take_frequencies(const std::vector<std::string>& cells) {
+    if (!frequency_.empty()) refuse("frequency is given twice");
+    frequency_ = numbers(cells, 1);
+    if (frequency_.empty() || frequency_.size() > most_given_modes)
+      refuse(fmt::format("frequency holds {} numbers; allowed: 1 to {}", frequency_.size(), most_given_modes));
+    for (std::size_t i = 0; i < frequency_.size(); ++i)
+      if (!(frequency_[i] > 0.0))
+        refuse(fmt::format("the frequency of mode {} is {:g} Hz; allowed: above 0", i + 1, frequency_[i]));
+  }
+
+  void take_masses(const std::vector<std::string>& cells) {
+    mass_ = of_modes(cells, 1);
+    for (std::size_t i = 0; i < mass_.size(); ++i)
+      if (!(mass_[i] > 0.0))
+        refuse(fmt::format("the modal mass of mode {} is {:g} kg; allowed: above 0", i + 1, mass_[i]));
+  }
+
+  void take_ratios(const std::vector<std::string>& cells) {
+    ratio_ = cells.size() == 2 && !frequency_.empty() ? std::vector<double>(frequency_.size(), number(cells[1]))
+                                                      : of_modes(cells, 1);
+    for (std::size_t i = 0; i < ratio_.size(); ++i)
+      if (!(ratio_[i] >= 0.0))
+        refuse(fmt::format("the damping ratio of mode {} is {:g}; allowed: from 0 on", i + 1, ratio_[i]));
+    const auto lowest = std::min_element(frequency_.begin(), frequency_.end()) - frequency_.begin();
+    if (const double first = ratio_[static_cast<std::size_t>(lowest)]; first >= 1.0)
+      refuse(fmt::format(
+          "the damping ratio of the lowest mode is {:g}; allowed: below 1, critical damping (no per cent)", first));
+  }
+
+  void take_output(const std::vector<std::string>& cells) {
+    if (cells.size() < 3 || !is_name(cells[1]) || cells[2].empty())
+      refuse("an output is: output, NAME, UNIT, one number a mode; a name is a word of letters, digits and _");
+    for (const beam::GivenModes::Output& other : modes_.outputs)
+      if (other.name == cells[1]) refuse(fmt::format("two outputs are called {}", cells[1]));
+    modes_.outputs.push_back({cells[1], cells[2], of_modes(cells, 3)});
+  }
+
+  void take_track(const std::vector<std::string>& cells) {
+    const double number_of = cells.size() == 2 ? number(cells[1]) : 0.0;
+    if (number_of != tracks_ + 1.0)
+      refuse(fmt::format("wanted here: track, {}; tracks are counted from 1", tracks_ + 1));
+    if (tracks_ == 0 && !modes_.x.empty()) refuse("track, 1 has to stand before the first station");
+    ++tracks_;
+    last_x_ = 0.0;
+    stations_ = 0;
+  }
+
+  void take_station(const std::vector<std::string>& cells) {
+    const std::size_t modes = frequency_.size();
+    if (modes == 0) refuse("a station before frequency, which says how many modes there are");
+    if (cells.size() != 1 + modes && cells.size() != 1 + 2 * modes)
+      refuse(fmt::format(
+          "a station with {} numbers behind x, for {} modes; wanted: a shape of each, or all shapes and then "
+          "all slopes",
+          cells.size() - 1, modes));
+    const double x = number(cells.front());
+    if (stations_ == 0 && x != 0.0)
+      refuse(fmt::format("the first station is {:g} m; x counts from the bridge's left end, 0", x));
+    if (stations_ > 0 && !(x > last_x_))
+      refuse(fmt::format("stations must increase strictly: {:g} m after {:g} m", x, last_x_));
+    last_x_ = x;
+    if (++stations_ > most_shape_stations)
+      refuse(fmt::format("too many stations; allowed: at most {}", most_shape_stations));
+    if (std::max(tracks_, 1) != track_) return;
+    const bool slopes = cells.size() > 1 + modes;
+    if (!modes_.x.empty() && slopes != has_slopes_) refuse("slopes have to be given at all stations or at none");
+    has_slopes_ = slopes;
+    modes_.x.push_back(x);
+    modes_.shape.resize(modes);
+    modes_.slope.resize(modes);
+    for (std::size_t i = 0; i < modes; ++i) {
+      modes_.shape[i].push_back(number(cells[1 + i]));
+      if (slopes) modes_.slope[i].push_back(number(cells[1 + modes + i]));
+    }
+  }
+
+  void check_whole() const {
+    if (frequency_.empty()) refuse_file("there is no line frequency, of the modes' frequencies in Hz");
+    if (mass_.empty()) refuse_file("there is no line modal_mass, of the modes' masses in kg");
+    if (ratio_.empty()) refuse_file("there is no line damping_ratio");
+    const int tracks = std::max(tracks_, 1);
+    if (track_ > tracks)
+      refuse_file(fmt::format("bridge_track is {}; the file has {} track{}", track_, tracks, tracks == 1 ? "" : "s"));
+    if (modes_.x.size() < 2) refuse_file(fmt::format("{} stations; wanted: at least 2", modes_.x.size()));
+    const auto moves = [](const std::vector<double>& shape) {
+      return std::any_of(shape.begin(), shape.end(), [](double value) { return value != 0.0; });
+    };
+    if (std::none_of(modes_.shape.begin(), modes_.shape.end(), moves))
+      refuse_file("all shapes are zero along the track");
+  }
+
+  /// Ascending frequencies, shapes of a modal mass of 1 kg.
+  void normalise() {
+    const std::size_t modes = frequency_.size();
+    std::vector<std::size_t> order(modes);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return frequency_[a] < frequency_[b]; });
+    beam::GivenModes sorted;
+    sorted.source = path_;
+    sorted.x = modes_.x;
+    for (const beam::GivenModes::Output& output : modes_.outputs)
+      sorted.outputs.push_back({output.name, output.unit, {}});
+    for (const std::size_t i : order) {
+      const double root = std::sqrt(mass_[i]);
+      sorted.omega.push_back(2.0 * std::numbers::pi * frequency_[i]);
+      sorted.ratio.push_back(ratio_[i]);
+      std::vector<double> slope = has_slopes_ ? modes_.slope[i] : beam::spline_slopes(modes_.x, modes_.shape[i]);
+      for (std::vector<double>* values : {&modes_.shape[i], &slope})
+        for (double& value : *values) value /= root;
+      sorted.shape.push_back(modes_.shape[i]);
+      sorted.slope.push_back(std::move(slope));
+      for (std::size_t k = 0; k < sorted.outputs.size(); ++k)
+        sorted.outputs[k].of_mode.push_back(modes_.outputs[k].of_mode[i] / root);
+    }
+    modes_ = std::move(sorted);
+  }
+
+  std::string path_;
+  int track_, tracks_ = 0, line_ = 0;
+  std::vector<double> frequency_, mass_, ratio_;  // Hz, kg, 1
+  beam::GivenModes modes_;                        // shapes, slopes and outputs as the file has them
+  bool has_slopes_ = false;
+  double last_x_ = 0.0;
+  std::size_t stations_ = 0;  // of the track under way
+};
+
+}  // namespace
+
+beam::GivenModes read_given_modes(const std::string& path, int track) {
+  if (!options::is_mounted(path) && results::is_hdf5(path)) {
+    const std::string text = results::modes_as_text(path);
+    options::note_text(path, text);
+    std::istringstream stream(text);
+    return ModesText(path, track).read(stream);
+  }
+  const std::unique_ptr<std::istream> file = options::open_input(path);
+  if (file == nullptr) throw InputError(path + ": the file cannot be read");
+  beam::GivenModes modes = ModesText(path, track).read(*file);
+  options::note_input(path, true);
+  return modes;
+}
+
+}  // namespace traverse::app
