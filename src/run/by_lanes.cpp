@@ -122,6 +122,7 @@ std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
   if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
   if (scene.self_weight) return "the bridge's own weight bends it";
+  if (scene.beam->strained()) return "temperature or settlements bend the bridge";
   if (!integrate::own_method(scene.integrator)) return "ts_type is one of PETSc's own";
   if (!scene.time_step) return "the step is not known";
   return level_ends(*shared.modal) ? "" : "wheels meet a step at the bridge's ends, which yield";

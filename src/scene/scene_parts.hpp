@@ -26,6 +26,11 @@ Coupler read_coupler(const options::Options& options, const std::string& name);
 void read_beam(const options::Options& options, Scene& scene);  // beam, supports, damping
 /// Of a beam whose spans and joints are known.
 beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);
+/// Cracks as springs, or as stretches of less EI; of a beam whose EI is known.
+void read_cracks(const options::Options& options, beam::BeamModel& beam);
+/// Supports that yield or have settled; of a beam whose supports and foundation are known.
+void read_bearings(const options::Options& options, beam::BeamModel& beam);
+std::optional<beam::Temperature> read_temperature(const options::Options& options);
 /// A number or a file of x,value, inside the range of its row.
 beam::Distribution read_distribution(const options::Options& options, const std::string& name);
 void read_train(const options::Options& options, const std::vector<std::string>& names, Scene& scene);

@@ -266,7 +266,7 @@ class Chooser {
   /// Of all peaks: wheels touch a slope s by R s ahead of their centres, which the kernel leaves out. Beside a hinge
   /// they are on slopes where deflections are largest.
   double touch_ahead() {
-    if (scene_.beam->hinges.empty()) return 0.0;
+    if (scene_.beam->hinges.empty() && scene_.beam->cracks.empty()) return 0.0;
     double deflection = 0.0;
     for (const CrossingResult& run : beginnings_->run(model_))
       for (const lanes::CrossingPeak& peak : run.deflection) deflection = std::max(deflection, peak.value);
