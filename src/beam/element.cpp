@@ -9,6 +9,8 @@
 namespace traverse::beam {
 namespace {
 
+constexpr double enough_turning = 32.0;  // times rho I/(m h^2), from which on it keeps every such mass positive
+
 template <std::size_t N>
 void add_outer(std::array<double, N * N>& matrix, double c, const std::array<double, N>& s) {
   for (std::size_t i = 0; i < N; ++i) {
@@ -39,6 +41,32 @@ Transverse bending(const Distribution& EI, const Element& e) {
 void add_shearing(const Distribution& GA, const Element& e, Transverse& stiffness) {
   const auto gamma = shear_strain(e.length, e.shear);
   integrate(GA, e.x, e.x + e.length, [&](double, double weight) { add_outer<4>(stiffness, weight, gamma); });
+}
+
+/// To the mass what one gamma an element leaves out of the answer to its inertia, to fourth order in its length: with
+/// s = shear/(1 + shear) and means over the element
+///   m h^2/12 v' gamma + s rho I (h^2/12 theta'^2 - theta gamma/shear).
+/// The first is what the mean of consistent and lumped mass has for a bar; it is taken as far as the rotary inertia
+/// keeps the mass positive.
+void add_sheared_mass(const BeamModel& model, const Element& e, Transverse& mass) {
+  const double h = e.length, s = e.shear / (1.0 + e.shear);
+  const auto gamma = shear_strain(h, e.shear);
+  const auto add_pair = [&](double factor, const std::array<double, 4>& other) {
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) mass[4 * i + j] += 0.5 * factor * (gamma[i] * other[j] + other[i] * gamma[j]);
+  };
+  double all = 0.0, turning = 0.0;
+  std::array<double, 4> turned{};  // integral of rho I theta
+  integrate(model.mass, e.x, e.x + h, [&](double, double weight) { all += weight; });
+  integrate(model.rotary_inertia, e.x, e.x + h, [&](double x, double weight) {
+    const double xi = (x - e.x) / h;
+    const auto theta = rotation(xi, h, e.shear);
+    turning += weight;
+    for (std::size_t i = 0; i < 4; ++i) turned[i] += weight * theta[i];
+    add_outer<4>(mass, s * h * h / 12.0 * weight, hermite(xi, h, e.shear).curvature);
+  });
+  add_pair(std::min(1.0, enough_turning * turning / (all * h * h)) * all * h / 12.0, {-1.0, 0.0, 1.0, 0.0});
+  add_pair(-s / e.shear, turned);
 }
 
 Axial stretching(const Distribution& EA, const Element& e) {
@@ -126,6 +154,7 @@ ElementMatrices element_matrices(const BeamModel& model, const Element& element)
   if (model.rotary_inertia.maximum() > 0.0) {
     const Transverse turning = slope_bed(model.rotary_inertia, element);
     for (std::size_t i = 0; i < turning.size(); ++i) m.mass[i] += turning[i];
+    if (element.shear != 0.0) add_sheared_mass(model, element, m.mass);
   }
   m.stiffness = bending(model.EI, element);
   if (element.shear != 0.0) add_shearing(*model.GA, element, m.stiffness);

@@ -110,6 +110,9 @@ void check_cracks(const BeamModel& model) {
               "the beam does not go through there (beam_continuity)");
     }
   }
+  if (model.track && !model.cuts.empty())
+    throw InputError(
+        "beam_cracks_width: the rail sets the bridge's nodes under a layered track; allowed there: beam_cracks_k");
   for (const double x : model.cuts)
     require(std::isfinite(x) && x >= model.start && x <= model.end(), "beam_cracks_width", number(x),
             "a crack of a width lies within the beam");

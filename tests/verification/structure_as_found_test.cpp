@@ -133,8 +133,9 @@ TEST(AsFound, AddsToMovingForces) {
                          {"output_interval", "0.01"},
                          {"scene_tail", "0.2"},
                          {"beam_damping_ratios", "0.02"}};
-  const Values found = with(warm_top, {{"support_settlement", "0,-0.01,0.004"}});
-  Results plain = run_yaml(two_spans, moving), bent = run_yaml(two_spans, with(found, moving));
+  const Values bed = {{"foundation_vertical_bed_k", "5e5"}};
+  const Values found = with(with(warm_top, bed), {{"support_settlement", "0,-0.01,0.004"}});
+  Results plain = run_yaml(two_spans, with(bed, moving)), bent = run_yaml(two_spans, with(found, moving));
   Results rest = run_yaml(two_spans, found);
   for (const char* name : {"/probes/deflection", "/probes/moment", "/probes/shear"}) {
     const std::vector<double> at_rest = rest(name);
@@ -149,6 +150,41 @@ TEST(AsFound, AddsToMovingForces) {
   EXPECT_NEAR(bent.column("/supports/reaction", 4)[3] - plain.column("/supports/reaction", 4)[3], R[4],
               1e-7 * std::abs(R[4]));
   EXPECT_LT(energy_error(bent), 1e-6);
+}
+
+// A prop in the element that a settled support turns: it bears as a spring does where the beam comes down on it, and
+// nothing where it goes up.
+TEST(AsFound, OneSidedFoundationsStartFromIt) {
+  const Values prop = {
+      {"foundation_vertical_x", "20"}, {"foundation_vertical_k", "5e7"}, {"beam_elements_per_span", "2"}};
+  const Values one_sided = with(prop, {{"foundation_vertical_one_sided", "true"}});
+  const Values down = {{"support_settlement", "0,-0.02"}}, up = {{"support_settlement", "0,0.02"}};
+  Results spring = run_yaml(one_span, with(prop, down)), pressed = run_yaml(one_span, with(one_sided, down));
+  Results apart = run_yaml(one_span, with(one_sided, up));
+  const double force = spring("/foundation/vertical/force")[0];
+  EXPECT_GT(force, 1e3);
+  EXPECT_NEAR(pressed("/foundation/vertical/force")[0], force, 1e-7 * force);
+  for (std::size_t p = 0; p < 3; ++p) {
+    EXPECT_NEAR(pressed("/probes/deflection")[p], spring("/probes/deflection")[p], 1e-11) << p;
+    EXPECT_NEAR(apart("/probes/deflection")[p], 0.02 * apart("/probes/x")[p] / L, 1e-11) << p;
+  }
+  EXPECT_EQ(apart("/foundation/vertical/force")[0], 0.0);
+}
+
+// What is at rest on settled supports, bent by the sun, stays out of the steps and stays where it is.
+TEST(AsFound, RestsOutsideTheWindow) {
+  const std::string scene = R"(
+beam: {spans: 20.0*8, EI: 4.0e9, mass: 2000.0, continuity: simply_supported, elements_per_span: 6, damping_ratios: 0.05}
+support: {settlement: [0, 0, -0.01, 0, 0, 0.02, 0, 0, 0]}
+load: {forces: [1.0e5, 1.0e5], speed: 60.0}
+ts: {dt: 2.0e-3}
+output: {interval: 0.02, probes: [30.0, 50.0, 90.0, 130.0]}
+)";
+  Results all = run_yaml(scene, with(warm_top, {{"model_window", "0"}})),
+          window = run_yaml(scene, with(warm_top, {{"model_window", "1e-6"}}));
+  EXPECT_LT(relative_difference(window("/probes/deflection"), all("/probes/deflection")), 1e-5);
+  EXPECT_LT(relative_difference(window("/supports/reaction"), all("/supports/reaction")), 1e-4);
+  EXPECT_LT(energy_error(window), 1e-5);
 }
 
 // A coach starts in equilibrium on the bent bridge and the balance of energy holds; linear vehicles agree.
