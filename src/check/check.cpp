@@ -72,6 +72,8 @@ void print_as_found(const Page& page, const beam::BeamModel& beam) {
   if (beam.rotary_inertia.maximum() > 0.0) page.line("rotary inertia", range_text(beam.rotary_inertia, "kg m"));
   for (const beam::Crack& crack : beam.cracks)
     page.line("crack", fmt::format("at x = {:g} m, {:.4g} N m/rad", crack.x, crack.k));
+  if (!beam.cuts.empty())
+    page.line("cracks of a width", fmt::format("with ends at x = {:g} m", fmt::join(beam.cuts, ", ")));
   for (std::size_t end = 0; end < beam.settlement.size(); ++end)
     if (beam.settlement[end] != 0.0)
       page.line("settlement", fmt::format("support {}: {:g} mm", end, 1e3 * beam.settlement[end]));

