@@ -160,7 +160,7 @@ def space_time(motion, path, rows):
     figure, ax = plt.subplots(figsize=(11.0, 6.2))
     time = motion.time[rows]
     shown = slice(None, None, -(-len(motion.x) // MOST_PLACES))
-    values = 1e3 * motion.at_stations[rows] @ motion.matrix[shown].T
+    values = 1e3 * (motion.at_stations[rows] @ motion.matrix[shown].T + motion.settled[shown])
     most = max(np.nanmax(np.abs(values)), 1e-12)
     mesh = ax.pcolormesh(time, motion.x[shown], values.T, cmap="RdBu", vmin=-most, vmax=most, shading="nearest",
                          rasterized=True)

@@ -10,7 +10,7 @@ MOST_SYMBOLS = 80  # of one kind that are drawn one by one
 MARKERS = {"pinned": "^", "roller": "o", "clamped": "s", "guided": "D"}
 WORDS = {"pinned": "pinned", "roller": "roller", "clamped": "clamped", "guided": "guided: slides up and down",
          "vertical": "spring", "longitudinal": "spring along the track", "rotational": "spring against rotation",
-         "hinge": "hinge", "separate": "joint of separate spans"}
+         "hinge": "hinge", "crack": "crack, a rotational spring", "separate": "joint of separate spans"}
 
 
 def way_gone(times, speeds, end):
@@ -34,7 +34,9 @@ class Model:
             self.supports = [tuple(row) for row in self.group["supports"].asstr()[:]]
         if not len(self.span_ends) and "spans" in self.group:
             self.span_ends = np.concatenate([[0.0], np.cumsum(self.group["spans"][:])])
-        self.hinges = self.array("hinges")
+        self.hinges, self.cracks = self.array("hinges"), self.array("cracks", 2)[:, 0]
+        settled = self.array("settlement")
+        self.settlement = settled if len(settled) else np.zeros(len(self.span_ends))
         self.notes = [row[1] for row in self.group["notes"].asstr()[:]] if "notes" in self.group else []
         self.foundation = {kind: data[:] for kind, data in self.group.get("foundation", {}).items()}
         self.train = self.array("train", 2)
@@ -125,15 +127,18 @@ def draw_supports(ax, model, low, high):
         if joint in ("hinge", "separate"):
             draw_hinge(ax, x, joint)
             drawn.add(joint)
-    for x in model.hinges[(model.hinges >= low) & (model.hinges <= high)]:
-        draw_hinge(ax, x, "hinge")
-        drawn.add("hinge")
+    for kind, places in (("hinge", model.hinges), ("crack", model.cracks)):
+        for x in places[(places >= low) & (places <= high)]:
+            draw_hinge(ax, x, kind)
+            drawn.add(kind)
     return drawn
 
 
 def draw_hinge(ax, x, joint):
     if joint == "hinge":
         ax.plot([x], [0.0], "o", ms=6.5, color="white", mec=DARK, mew=1.3, zorder=7, clip_on=False)
+    elif joint == "crack":
+        draw_points(ax, (x, 0.0), [(-1.5, -5.0), (1.5, -1.5), (-1.5, 1.5), (1.5, 5.0)], 1.2)
     else:
         draw_points(ax, (x, 0.0), [(-1.3, -4.0), (-1.3, 7.0)], 1.0)
         draw_points(ax, (x, 0.0), [(1.3, -4.0), (1.3, 7.0)], 1.0)
@@ -141,7 +146,7 @@ def draw_hinge(ax, x, joint):
 
 def symbols_in_words(kinds):
     """'▲ pinned   ● roller   spring', of what has been drawn."""
-    shapes = {"pinned": "△ ", "roller": "○ ", "clamped": "□ ", "guided": "◇ ", "hinge": "∘ ", "separate": "‖ "}
+    shapes = {"pinned": "△ ", "roller": "○ ", "clamped": "□ ", "guided": "◇ ", "hinge": "∘ ", "crack": "≀ ", "separate": "‖ "}
     return "    ".join(shapes.get(kind, "") + WORDS[kind] for kind in WORDS if kind in kinds)
 
 

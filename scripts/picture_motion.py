@@ -62,6 +62,7 @@ class Motion:
         self.low, self.high = float(ends[0]), float(ends[-1])
         points = int(np.clip(POINTS * (len(ends) - 1), FEWEST_POINTS, MOST_POINTS))
         self.x = np.unique(np.concatenate([np.linspace(self.low, self.high, points), ends, self.stations]))
+        self.settled = np.zeros(len(self.x))  # m, what supports that have settled make of the line
         self.matrix = self.between_stations()
         self.bodies = [self.body(k, name, results.over_time(vehicle[name]["position"]))
                        for k, vehicle in enumerate(results.vehicles) for name in vehicle if "position" in vehicle[name]]
@@ -78,8 +79,9 @@ class Motion:
         held = [x for x, (kind, _) in zip(ends, kinds) if kind in HOLDS_HEIGHT]
         flat = [x for x, (kind, _) in zip(ends, kinds) if kind in HOLDS_SLOPE]
         breaks = [x for x, (_, joint) in zip(ends, kinds) if joint in ("hinge", "separate")]
-        cuts = np.unique(np.concatenate([[self.low, self.high], breaks, self.model.hinges]))
+        cuts = np.unique(np.concatenate([[self.low, self.high], breaks, self.model.hinges, self.model.cracks]))
         matrix = np.zeros((len(self.x), len(self.stations)))
+        lies = dict(zip(ends, self.model.settlement))
         for left, right in zip(cuts, cuts[1:]):
             inside = (self.x >= left) & (self.x <= right)
             own = np.flatnonzero((self.stations >= left) & (self.stations <= right))
@@ -92,6 +94,7 @@ class Motion:
                 back = np.empty(len(knots), dtype=int)
                 back[order] = np.arange(len(knots))
                 matrix[np.ix_(inside, own)] = piece[:, back[:len(own)]]
+                self.settled[inside] = piece[:, back[len(own):]] @ np.array([lies[x] for x in fixed])
         for left, right in [*zip(ends, ends[1:]), *zip(cuts, cuts[1:])]:
             if not np.any((self.stations >= left) & (self.stations <= right) & ~np.isin(self.stations, held)):
                 matrix[(self.x > left) & (self.x < right)] = np.nan
@@ -99,7 +102,7 @@ class Motion:
 
     def deflection(self, row):
         """At self.x, m upward; NaN where it is not known."""
-        return self.matrix @ self.at_stations[row]
+        return self.matrix @ self.at_stations[row] + self.settled
 
     def in_words(self):
         many = len(self.stations) > 1

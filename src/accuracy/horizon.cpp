@@ -54,6 +54,8 @@ std::vector<double> numbers_of(const beam::BeamModel& beam, std::size_t span, do
   };
   along(beam.EI);
   along(beam.mass);
+  along(beam.rotary_inertia);
+  if (beam.GA) along(*beam.GA);
   const auto law = [&](const beam::FoundationLaw& l) {
     numbers.insert(numbers.end(), {l.one_sided ? 1.0 : 0.0, l.gap, l.cubic});
   };
@@ -73,6 +75,9 @@ std::vector<double> numbers_of(const beam::BeamModel& beam, std::size_t span, do
   });
   for (const double x : beam.hinges)
     if (x > left && x < left + length) numbers.push_back((x - left) / length);
+  for (const beam::Crack& crack : beam.cracks)
+    if (crack.x > left && crack.x < left + length) numbers.insert(numbers.end(), {(crack.x - left) / length, crack.k});
+  if (!beam.settlement.empty()) numbers.insert(numbers.end(), {beam.settlement[span], beam.settlement[span + 1]});
   return numbers;
 }
 

@@ -54,7 +54,7 @@ void leave_out_spans(Scene& scene, double end) {
   beam::BeamModel& beam = *scene.beam;
   const auto there = [&](const beam::FoundationKind& kind) { return present(beam.foundation, kind); };
   const bool founded = std::any_of(beam::foundation_kinds.begin(), beam::foundation_kinds.end(), there);
-  const bool plain = !founded && !beam.track && beam.hinges.empty();
+  const bool plain = !founded && !beam.track && beam.hinges.empty() && beam.cracks.empty() && !beam.strained();
   if (!plain || beam.spans.size() <= few_spans || scene.train.drive != train::Drive::constant ||
       !scene.train.courses.empty() || !scene.load.courses.empty())
     return;

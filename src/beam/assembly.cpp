@@ -26,7 +26,8 @@ Station station_of(const Mesh& mesh, const PointFoundation& point) { return mesh
 
 void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness) {
   const BeamModel& model = line.model;
-  const bool uniform = model.EI.uniform() && model.EA.uniform() && model.mass.uniform();
+  const bool uniform = model.EI.uniform() && model.EA.uniform() && (!model.GA || model.GA->uniform()) &&
+                       model.mass.uniform() && model.rotary_inertia.uniform();
   for_elements(
       line, slice, uniform, [&](const Element& e) { return element_matrices(model, e); },
       [&](int e, const ElementMatrices& m) {
@@ -36,6 +37,16 @@ void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness)
         mass.add(line.axial(e), m.axial_mass);
         stiffness.add(line.axial(e), m.axial_stiffness);
       });
+}
+
+void add_cracks(const Line& line, const Slice& slice, Rows& stiffness) {
+  const auto [first, past] = line.elements_at(slice.first, slice.local);
+  for (const Crack& crack : line.model.cracks) {
+    const int e = line.mesh.locate(crack.x).element, node = line.mesh.element(e).left;
+    if (e + 1 < first || e > past) continue;
+    stiffness.add(std::array{line.unknown(node, 2), line.unknown(node, 3)},
+                  std::array{crack.k, -crack.k, -crack.k, crack.k});
+  }
 }
 
 Rows points_of(const FoundationKind& kind, const Line& line, const Slice& slice, Term term) {

@@ -9,6 +9,9 @@ namespace traverse::beam {
 /// Mass and stiffness of a beam itself, eqs. 8-12.
 void add_beam(const Line& line, const Slice& slice, Rows& mass, Rows& stiffness);
 
+/// The springs of cracks, each between the rotations of its node: into K*, no part of what is damped by b K.
+void add_cracks(const Line& line, const Slice& slice, Rows& stiffness);
+
 /// An element of a line, and where in it: for a point of the foundation.
 Station station_of(const Mesh& mesh, const PointFoundation& point);
 

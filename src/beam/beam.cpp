@@ -3,6 +3,7 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "assembly.hpp"
@@ -136,10 +137,13 @@ void Beam::assemble(const Slice& slice) {
     stiffness.add(1.0, track_stiffness);
     damping.add(1.0, track_damping);
   }
+  add_cracks(bridge_, slice, stiffness);
+  const bool sprung = !own.empty() || !model().cracks.empty();
   for (auto& [handle, rows] : own) *handle = rows.matrix(comm_, rows);
   const Rows springs = stiffness;
   stiffness.add(1.0, beams);
-  note_reactions(slice, mass, beam_mass, beam_stiffness, stiffness, damping);
+  if (model().strained()) note_strains(slice, springs);
+  note_reactions(slice, beams, mass, beam_mass, beam_stiffness, stiffness, damping);
   const auto falls = [&](int unknown) {
     const Kind kind = layout_.kind[index(unknown % block())];
     return kind == rail_v || kind == sleeper || kind == v;
@@ -151,8 +155,8 @@ void Beam::assemble(const Slice& slice) {
   mass_ = mass.matrix(comm_, pattern);
   beam_mass_ = rail_ ? beam_mass.matrix(comm_, pattern) : shared(mass_);
   beam_stiffness_ = beam_stiffness.matrix(comm_, pattern);
-  stiffness_ = own.empty() ? shared(beam_stiffness_) : stiffness.matrix(comm_, pattern);
-  if (!own.empty()) springs_ = springs.matrix(comm_, springs);
+  stiffness_ = sprung ? stiffness.matrix(comm_, pattern) : shared(beam_stiffness_);
+  if (sprung) springs_ = springs.matrix(comm_, springs);
   if (!own.empty()) foundation_damping_ = damping.matrix(comm_, pattern);
 }
 
@@ -167,6 +171,37 @@ void Beam::add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
                        (kind.bed != nullptr ? bed_of : points_of)(kind, bridge_, slice, term));
       (term == Term::stiffness ? stiffness : damping).add(1.0, own.back().second);
     }
+  }
+}
+
+double Beam::settlement_of(int unknown) const {
+  const auto found = std::lower_bound(settled_.begin(), settled_.end(), std::pair(unknown, -HUGE_VAL));
+  return found != settled_.end() && found->first == unknown ? found->second : 0.0;
+}
+
+void Beam::note_strains(const Slice& slice, const Rows& springs) {
+  strain_forces_.assign(index(local_unknowns()), 0.0);
+  const std::vector<double>& settlement = model().settlement;
+  for (std::size_t end = 0; end < settlement.size(); ++end) {
+    const auto [left, right] = mesh().nodes_at(static_cast<int>(end));
+    for (int node = left; node <= right && settlement[end] != 0.0; ++node)
+      settled_.emplace_back(bridge_.unknown(node, 1), settlement[end]);
+  }
+  for (int i = 0; i < local_unknowns() && !settled_.empty(); ++i) {
+    const int unknown = first_ * block() + i;
+    imposed_.push_back(settlement_of(unknown));
+    strain_forces_[index(i)] -= springs.times(unknown, [&](int j) { return settlement_of(j); });
+  }
+  if (!model().temperature) return;
+  const auto [first, past] = bridge_.elements_at(slice.first, slice.local);
+  const auto add = [&](int unknown, double force) {
+    if (unknown >= 0 && local(unknown) >= 0) strain_forces_[index(local(unknown))] += force;
+  };
+  for (int e = first; e < past; ++e) {
+    const auto bent = strain_load(model(), mesh().element(e));
+    const auto stretched = axial_strain_load(model(), mesh().element(e));
+    for (std::size_t i = 0; i < 4; ++i) add(bridge_.transverse(e)[i], bent[i]);
+    for (std::size_t i = 0; i < 2; ++i) add(bridge_.axial(e)[i], stretched[i]);
   }
 }
 

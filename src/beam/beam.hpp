@@ -13,6 +13,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "base/petsc.hpp"
@@ -91,6 +92,13 @@ class Beam {
   /// fall of all that has mass), g > 0 pulls down; added to P.
   void add_self_weight(double gravity, double* P) const;
 
+  /// Displacements of held unknowns, settlements, which nodal displacements hold there: this rank's, 0 elsewhere;
+  /// empty: none. They are no part of the matrices' columns: products with the elements' forces (InternalForces) see
+  /// them.
+  const std::vector<double>& imposed() const { return imposed_; }
+  /// Nodal forces of the beam's temperature, and of springs that a settlement turns or bends; this rank's. Empty: none.
+  const std::vector<double>& strain_forces() const { return strain_forces_; }
+
   /// Collective. Forces and moment of the supports ON the beam at every span end, {fx, fy, moment} each, on all
   /// ranks (eq. 18 as corrected in doc/theory.md: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal
   /// vectors.
@@ -108,17 +116,20 @@ class Beam {
     std::size_t unknown;  // local
     double mass, beam_mass, beam_stiffness, stiffness, foundation_damping, damping;
   };
-  /// Where the load on a held unknown enters.
+  /// Where the load on a held unknown enters, and what settlements make of the elements' forces there.
   struct HeldLoad {
     std::size_t slot, unknown;
+    double by_settlement = 0.0;
   };
 
   Slice slice() const;
   void assemble(const Slice& slice);
   void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
                       std::vector<std::pair<base::Handle<Mat>*, Rows>>& own);
-  void note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_mass, const Rows& beam_stiffness,
-                      const Rows& stiffness, const Rows& foundation_damping);
+  double settlement_of(int unknown) const;
+  void note_strains(const Slice& slice, const Rows& springs);
+  void note_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
+                      const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping);
 
   MPI_Comm comm_;
   Layout layout_;
@@ -131,6 +142,8 @@ class Beam {
   base::Handle<Mat> mass_, beam_mass_, beam_stiffness_, springs_, stiffness_, damping_;
   base::Handle<Mat> foundation_damping_;  // of all kinds together, with the pattern of the mass; null without any
   std::vector<double> weight_;            // nodal forces of self-weight for a gravity of 1 m/s2, this rank
+  std::vector<std::pair<int, double>> settled_;  // held unknowns of the whole beam, ascending, and by how much
+  std::vector<double> imposed_, strain_forces_;
   FoundationMats foundation_;
   std::vector<ReactionTerm> reaction_terms_;
   std::vector<HeldLoad> held_loads_;

@@ -8,10 +8,12 @@ namespace traverse::beam {
 
 using Cubic = std::array<double, 4>;  // by powers
 
-/// Through the values and slopes at both ends (v1, theta1, v2, theta2) of an element of length h.
-inline Cubic hermite_cubic(const std::array<double, 4>& end, double h) {
+/// An element's deflection by its nodal values (v1, theta1, v2, theta2): of length h, shear as in shape.hpp.
+inline Cubic hermite_cubic(const std::array<double, 4>& end, double h, double shear) {
   const double rise = (end[2] - end[0]) / h;
-  return {end[0], end[1], (3.0 * rise - 2.0 * end[1] - end[3]) / h, (end[1] + end[3] - 2.0 * rise) / (h * h)};
+  const double gamma = shear / (1.0 + shear) * (rise - 0.5 * (end[1] + end[3]));
+  const double left = end[1] + gamma, right = end[3] + gamma;
+  return {end[0], left, (3.0 * rise - 2.0 * left - right) / h, (left + right - 2.0 * rise) / (h * h)};
 }
 
 /// Through four points inside a piece of length h, at whose ends a response may jump.

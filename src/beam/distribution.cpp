@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "traverse/base/error.hpp"
@@ -51,6 +52,25 @@ Distribution Distribution::plus(double value) const {
   Distribution sum = *this;
   for (double& v : sum.values_) v += value;
   return sum;
+}
+
+Distribution Distribution::with_factor(double from, double to, double factor) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  std::vector<double> stations = breaks(-infinity, infinity);
+  stations.insert(stations.end(), {from, to});
+  std::sort(stations.begin(), stations.end());
+  stations.erase(std::unique(stations.begin(), stations.end()), stations.end());
+  std::vector<double> x, values;
+  for (const double s : stations) {
+    const double left = at(s, -infinity) * (s > from && s <= to ? factor : 1.0);
+    const double right = at(s, infinity) * (s >= from && s < to ? factor : 1.0);
+    x.push_back(s);
+    values.push_back(left);
+    if (left == right) continue;
+    x.push_back(s);
+    values.push_back(right);
+  }
+  return {std::move(x), std::move(values), "a stretch of another stiffness"};
 }
 
 std::vector<double> Distribution::breaks(double a, double b) const {

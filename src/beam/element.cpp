@@ -9,6 +9,8 @@
 namespace traverse::beam {
 namespace {
 
+constexpr double enough_turning = 32.0;  // times rho I/(m h^2), from which on it keeps every such mass positive
+
 template <std::size_t N>
 void add_outer(std::array<double, N * N>& matrix, double c, const std::array<double, N>& s) {
   for (std::size_t i = 0; i < N; ++i) {
@@ -28,10 +30,43 @@ std::array<double, N * N> integral(const Distribution& density, const Element& e
 Transverse bending(const Distribution& EI, const Element& e) {
   const double h = e.length;
   const auto constant = constant_value(EI, e.x, e.x + h);
-  if (!constant) return integral<4>(EI, e, [h](double xi) { return hermite(xi, h).curvature; });
+  if (!constant || e.shear != 0.0)
+    return integral<4>(EI, e, [&](double xi) { return hermite(xi, h, e.shear).curvature; });
   const double c = *constant / (h * h * h);
   const double a = 12 * c, b = 6 * h * c, d = 4 * h * h * c, f = 2 * h * h * c;
   return {a, b, -a, b, b, d, -b, f, -a, -b, a, -b, b, f, -b, d};
+}
+
+/// Integral of GA gamma gamma^T.
+void add_shearing(const Distribution& GA, const Element& e, Transverse& stiffness) {
+  const auto gamma = shear_strain(e.length, e.shear);
+  integrate(GA, e.x, e.x + e.length, [&](double, double weight) { add_outer<4>(stiffness, weight, gamma); });
+}
+
+/// To the mass what one gamma an element leaves out of the answer to its inertia, to fourth order in its length: with
+/// s = shear/(1 + shear) and means over the element
+///   m h^2/12 v' gamma + s rho I (h^2/12 theta'^2 - theta gamma/shear).
+/// The first is what the mean of consistent and lumped mass has for a bar; it is taken as far as the rotary inertia
+/// keeps the mass positive.
+void add_sheared_mass(const BeamModel& model, const Element& e, Transverse& mass) {
+  const double h = e.length, s = e.shear / (1.0 + e.shear);
+  const auto gamma = shear_strain(h, e.shear);
+  const auto add_pair = [&](double factor, const std::array<double, 4>& other) {
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < 4; ++j) mass[4 * i + j] += 0.5 * factor * (gamma[i] * other[j] + other[i] * gamma[j]);
+  };
+  double all = 0.0, turning = 0.0;
+  std::array<double, 4> turned{};  // integral of rho I theta
+  integrate(model.mass, e.x, e.x + h, [&](double, double weight) { all += weight; });
+  integrate(model.rotary_inertia, e.x, e.x + h, [&](double x, double weight) {
+    const double xi = (x - e.x) / h;
+    const auto theta = rotation(xi, h, e.shear);
+    turning += weight;
+    for (std::size_t i = 0; i < 4; ++i) turned[i] += weight * theta[i];
+    add_outer<4>(mass, s * h * h / 12.0 * weight, hermite(xi, h, e.shear).curvature);
+  });
+  add_pair(std::min(1.0, enough_turning * turning / (all * h * h)) * all * h / 12.0, {-1.0, 0.0, 1.0, 0.0});
+  add_pair(-s / e.shear, turned);
 }
 
 Axial stretching(const Distribution& EA, const Element& e) {
@@ -47,7 +82,8 @@ Axial stretching(const Distribution& EA, const Element& e) {
 Transverse transverse_bed(const Distribution& density, const Element& e) {
   const double h = e.length;
   const auto constant = constant_value(density, e.x, e.x + h);
-  if (!constant) return integral<4>(density, e, [h](double xi) { return hermite(xi, h).value; });
+  if (!constant || e.shear != 0.0)
+    return integral<4>(density, e, [&](double xi) { return hermite(xi, h, e.shear).value; });
   const double c = *constant * h / 420;
   const double a = 156 * c, b = 22 * h * c, d = 54 * c, f = 13 * h * c, g = 4 * h * h * c, k = 3 * h * h * c;
   return {a, b, d, -f, b, g, f, -k, d, f, a, -b, -f, -k, -b, g};
@@ -61,19 +97,18 @@ Axial axial_bed(const Distribution& density, const Element& e) {
 }
 
 Transverse slope_bed(const Distribution& density, const Element& e) {
-  const double h = e.length;
-  return integral<4>(density, e, [h](double xi) { return hermite(xi, h).slope; });
+  return integral<4>(density, e, [&](double xi) { return rotation(xi, e.length, e.shear); });
 }
 
 std::array<double, 4> transverse_load(const Distribution& density, const Element& e) {
   const double h = e.length;
-  if (const auto constant = constant_value(density, e.x, e.x + h)) {
+  if (const auto constant = constant_value(density, e.x, e.x + h)) {  // sheared elements have the same ones
     const double force = *constant * h / 2, moment = *constant * h * h / 12;
     return {force, moment, force, -moment};
   }
   std::array<double, 4> load{};
   integrate(density, e.x, e.x + e.length, [&](double x, double weight) {
-    const auto psi = hermite((x - e.x) / h, h).value;
+    const auto psi = hermite((x - e.x) / h, h, e.shear).value;
     for (std::size_t i = 0; i < 4; ++i) load[i] += weight * psi[i];
   });
   return load;
@@ -90,16 +125,39 @@ std::array<double, 4> slope_load(const Distribution& density, const Element& e) 
   const double h = e.length;
   std::array<double, 4> load{};
   integrate(density, e.x, e.x + h, [&](double x, double weight) {
-    const auto slope = hermite((x - e.x) / h, h).slope;
-    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * slope[i];
+    const auto turn = rotation((x - e.x) / h, h, e.shear);
+    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * turn[i];
   });
   return load;
+}
+
+std::array<double, 4> strain_load(const BeamModel& model, const Element& element) {
+  const double curvature = model.temperature ? model.temperature->curvature() : 0.0;
+  std::array<double, 4> load{};
+  if (curvature == 0.0) return load;
+  integrate(model.EI, element.x, element.x + element.length, [&](double x, double weight) {
+    const auto form = hermite((x - element.x) / element.length, element.length, element.shear).curvature;
+    for (std::size_t i = 0; i < 4; ++i) load[i] += weight * curvature * form[i];
+  });
+  return load;
+}
+
+std::array<double, 2> axial_strain_load(const BeamModel& model, const Element& element) {
+  if (!model.temperature || !model.axial) return {};
+  const double force = stretching(model.EA, element)[0] * element.length * model.temperature->strain();
+  return {-force, force};
 }
 
 ElementMatrices element_matrices(const BeamModel& model, const Element& element) {
   ElementMatrices m;
   m.mass = transverse_bed(model.mass, element);
+  if (model.rotary_inertia.maximum() > 0.0) {
+    const Transverse turning = slope_bed(model.rotary_inertia, element);
+    for (std::size_t i = 0; i < turning.size(); ++i) m.mass[i] += turning[i];
+    if (element.shear != 0.0) add_sheared_mass(model, element, m.mass);
+  }
   m.stiffness = bending(model.EI, element);
+  if (element.shear != 0.0) add_shearing(*model.GA, element, m.stiffness);
   m.axial_mass = axial_bed(model.mass, element);
   if (model.axial) m.axial_stiffness = stretching(model.EA, element);
   return m;

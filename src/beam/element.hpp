@@ -1,4 +1,5 @@
-// Element matrices of the Bernoulli-Euler beam, the paper's eqs. 4-11, and what acts along an element.
+// Element matrices of the beam, the paper's eqs. 4-11, with shear and rotary inertia where the model has them, and what
+// acts along an element.
 #pragma once
 
 #include <array>
@@ -26,14 +27,20 @@ ElementMatrices element_matrices(const BeamModel& model, const Element& element)
 Transverse transverse_bed(const Distribution& density, const Element& element);
 /// Integral of density(x) phi phi^T: the axial mass matrix, a longitudinal bed (eqs. 36 and 38).
 Axial axial_bed(const Distribution& density, const Element& element);
-/// Integral of density(x) psi' psi'^T: a bed that holds the slope.
+/// Integral of density(x) theta theta^T, theta the shapes of the rotation (psi' without shear): a bed that holds the
+/// rotation, rotary inertia.
 Transverse slope_bed(const Distribution& density, const Element& element);
 /// Integral of density(x) psi: nodal forces of a distributed force (eq. 10).
 std::array<double, 4> transverse_load(const Distribution& density, const Element& element);
 /// Integral of density(x) phi: of one along x.
 std::array<double, 2> axial_load(const Distribution& density, const Element& element);
-/// Integral of density(x) psi': of a distributed moment.
+/// Integral of density(x) theta: of a distributed moment.
 std::array<double, 4> slope_load(const Distribution& density, const Element& element);
+
+/// Nodal forces of a bridge's own strains, its temperature: what its elements would push their ends apart and turn them
+/// by if these were held. They balance each other.
+std::array<double, 4> strain_load(const BeamModel& model, const Element& element);
+std::array<double, 2> axial_strain_load(const BeamModel& model, const Element& element);
 
 /// c s s^T, the matrix of a spring or damper c at one station with the shape vector s.
 template <std::size_t N>

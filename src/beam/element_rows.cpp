@@ -13,7 +13,7 @@ ElementRows::Run ElementRows::run_of(const Beam& beam, const Line& line) {
   std::vector<Numbers> all(static_cast<std::size_t>(beam.local_columns()) + 1, Numbers{});
   const BeamModel& model = line.model;
   const auto [from, past] = line.elements_at(beam.first_column(), beam.local_columns());
-  const bool uniform = model.EI.uniform() && (!model.axial || model.EA.uniform());
+  const bool uniform = model.EI.uniform() && (!model.GA || model.GA->uniform()) && (!model.axial || model.EA.uniform());
   double length = 0.0;
   Numbers c{};
   for (int e = from; e < past; ++e) {

@@ -29,7 +29,7 @@ std::vector<Part> parts_of(const BeamModel& model) {
     Part& part = parts.back();
     part.last_end = piece.span + 1;
     open = piece.next != Joint::separate;
-    if (piece.next != Joint::continuous) part.x.push_back(piece.right);
+    if (piece.next == Joint::hinge || piece.next == Joint::separate) part.x.push_back(piece.right);
   }
   return parts;
 }

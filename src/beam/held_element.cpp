@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "section.hpp"
+
 namespace traverse::beam {
 namespace {
 
@@ -41,9 +43,10 @@ double without_bed(double x, double s, bool over_x, bool over_s) {
 
 }  // namespace
 
-HeldElement::HeldElement(double xi, double h, double EI, double bed, const std::vector<InnerSpring>& springs)
-    : h_(h), EI_(EI), lambda_(h * std::pow(0.25 * bed / EI, 0.25)) {
-  if (lambda_ < softest) lambda_ = 0.0;
+HeldElement::HeldElement(double xi, double h, double EI, double bed, const std::vector<InnerSpring>& springs,
+                         double shear)
+    : h_(h), EI_(EI), shear_(shear), lambda_(h * std::pow(0.25 * bed / EI, 0.25)) {
+  if (lambda_ < softest || shear_ != 0.0) lambda_ = 0.0;
   lines_.push_back(line(xi, false));
   std::vector<Line> held;
   std::vector<double> stiffness;
@@ -101,6 +104,7 @@ HeldElement::Line HeldElement::line(double xi, bool rotation) const {
 }
 
 double HeldElement::value(const Line& line, double load, bool slope) const {
+  if (shear_ != 0.0) return sheared_between_held_ends(line.xi, load, shear_, line.rotation, slope);
   if (lambda_ == 0.0)
     return line.xi <= load ? without_bed(line.xi, load, line.rotation, slope)
                            : without_bed(load, line.xi, slope, line.rotation);

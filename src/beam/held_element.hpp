@@ -18,8 +18,9 @@ struct InnerSpring {
 /// The deflection at one station of a held element, as a line over the place of what acts on it.
 class HeldElement {
  public:
-  /// EI in N m2; bed in N/m2, 0 where there is none.
-  HeldElement(double xi, double h, double EI, double bed, const std::vector<InnerSpring>& springs);
+  /// EI in N m2; bed in N/m2, 0 where there is none; shear: 12 EI/(GA h^2). What a bed does to the deflection of an
+  /// element that shears is left out: about k h^4/(500 EI) of it.
+  HeldElement(double xi, double h, double EI, double bed, const std::vector<InnerSpring>& springs, double shear = 0.0);
 
   /// m/N: under a unit force upward at `load`.
   double by_force(double load) const { return sum(load, false); }
@@ -41,7 +42,7 @@ class HeldElement {
   double value(const Line& line, double load, bool slope) const;
   double sum(double load, bool moment) const;
 
-  double h_, EI_;
+  double h_, EI_, shear_;
   double lambda_;  // h (k/(4 EI))^(1/4); 0: the bed is too soft to count
   std::vector<Line> lines_;
 };

@@ -18,7 +18,7 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
   run.v = line.place[1];
   run.theta = line.place[2];
   const BeamModel& model = line.model;
-  const bool uniform = model.EI.uniform() && (!model.axial || model.EA.uniform());
+  const bool uniform = model.EI.uniform() && (!model.GA || model.GA->uniform()) && (!model.axial || model.EA.uniform());
   const auto [first, past] = line.elements_at(beam.first_column(), local_);
   double length = 0.0;
   Stiffness s{};

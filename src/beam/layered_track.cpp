@@ -29,19 +29,20 @@ void add_layer(const Layer& layer, Rows& stiffness, Rows& damping, Add add) {
 void add_on_bridge(const Sleeper& s, const Line& bridge, const Layout& layout, const LayeredTrack& track, Rows& mass,
                    Rows& stiffness, Rows& damping) {
   const auto [v1, theta1, v2, theta2] = bridge.transverse(s.at.element);
-  const auto psi = hermite(s.at.xi, bridge.mesh.element(s.at.element).length).value;
+  const Element& element = bridge.mesh.element(s.at.element);
+  const auto psi = hermite(s.at.xi, element.length, element.shear).value;
   const Ride ride = ride_of(s, track, layout);
   mass.add(bridge.transverse(s.at.element), outer(ride.mass, psi));
   const std::array<double, 5> direction{1.0, -psi[0], -psi[1], -psi[2], -psi[3]};
   const std::array<int, 5> unknowns{ride.unknown, v1, theta1, v2, theta2};
   add_layer(ride.spring, stiffness, damping, [&](double k, Rows& rows) { rows.add(unknowns, outer(k, direction)); });
   if (ride.along < 0) return;
-  // The beam's surface at height e above its axis moves by u - e v' along x.
+  // The beam's surface at height e above its axis moves by u - e theta along x.
   const auto [u1, u2] = bridge.axial(s.at.element);
   const auto phi = linear(s.at.xi);
-  const auto slope = hermite(s.at.xi, bridge.mesh.element(s.at.element).length).slope;
+  const auto turn = rotation(s.at.xi, element.length, element.shear);
   const double e = bridge.model.surface_height;
-  const std::array<double, 7> along{1.0, -phi[0], -phi[1], e * slope[0], e * slope[1], e * slope[2], e * slope[3]};
+  const std::array<double, 7> along{1.0, -phi[0], -phi[1], e * turn[0], e * turn[1], e * turn[2], e * turn[3]};
   const std::array<int, 7> moved{ride.along, u1, u2, v1, theta1, v2, theta2};
   add_layer(track.longitudinal, stiffness, damping, [&](double k, Rows& rows) { rows.add(moved, outer(k, along)); });
 }

@@ -8,7 +8,8 @@ namespace traverse::beam {
 Layout::Layout(const BeamModel& model) {
   place.fill(-1);
   const auto pieces = pieces_of(model);
-  const bool hinges = std::any_of(pieces.begin(), pieces.end(), [](const Piece& p) { return p.next == Joint::hinge; });
+  const bool hinges = std::any_of(pieces.begin(), pieces.end(),
+                                  [](const Piece& p) { return p.next == Joint::hinge || p.next == Joint::cracked; });
   const auto add = [&](Kind k) {
     kind[block] = k;
     place[k] = block++;

@@ -7,6 +7,15 @@
 #include "base/whole.hpp"
 
 namespace traverse::beam {
+namespace {
+
+/// From x on, of length h.
+Element element_of(const BeamModel& model, int left, int span, double x, double h) {
+  const double middle = x + 0.5 * h, EI = model.EI.at(middle, x);
+  return {left, span, x, h, EI, model.GA ? 12.0 * EI / (model.GA->at(middle, x) * h * h) : 0.0};
+}
+
+}  // namespace
 
 Mesh::Mesh(const BeamModel& model) {
   const std::vector<Piece> pieces = pieces_of(model);
@@ -19,12 +28,13 @@ Mesh::Mesh(const BeamModel& model) {
     piece_ends_.push_back(piece.left);
     first_element_.push_back(elements());
     for (int i = 0; i < piece.elements; ++i) {
-      elements_.push_back({nodes() - 1, piece.span, x_.back(), length / piece.elements});
+      const double h = length / piece.elements;
+      elements_.push_back(element_of(model, nodes() - 1, piece.span, x_.back(), h));
       x_.push_back(i + 1 < piece.elements ? piece.left + length * (i + 1) / piece.elements : piece.right);
     }
     hinged_.resize(x_.size(), 0);
     const int left = nodes() - 1;
-    if (piece.next == Joint::hinge) hinged_.back() = 1;
+    if (piece.next == Joint::hinge || piece.next == Joint::cracked) hinged_.back() = 1;
     if (piece.next != Joint::continuous) kinks_.push_back(piece.right);
     if (piece.next == Joint::separate && &piece != &pieces.back()) x_.push_back(piece.right);
     hinged_.resize(x_.size(), 0);

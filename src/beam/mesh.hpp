@@ -12,6 +12,8 @@ struct Element {
   int span = 0;
   double x = 0.0;       // of the left node, m
   double length = 0.0;  // m
+  double EI = 0.0;      // in its middle, N m2
+  double shear = 0.0;   // 12 EI/(GA length^2) there; 0: it does not shear
 };
 
 /// A station inside an element.

@@ -93,6 +93,44 @@ void check_joints(const BeamModel& model) {
   }
 }
 
+void check_cracks(const BeamModel& model) {
+  double before = model.start;
+  for (const Crack& crack : model.cracks) {
+    require(std::isfinite(crack.x) && crack.x > before && crack.x < model.end(), "beam_cracks_x", number(crack.x),
+            "cracks lie within the beam, from left to right, each at a station of its own");
+    require(std::isfinite(crack.k) && crack.k > 0.0, "beam_cracks_k", number(crack.k),
+            "it must be positive (N m/rad); without stiffness it is a hinge (beam_hinges)");
+    before = crack.x;
+    require(std::find(model.hinges.begin(), model.hinges.end(), crack.x) == model.hinges.end(), "beam_cracks_x",
+            number(crack.x), "there is a hinge there (beam_hinges)");
+    double end = model.start;
+    for (std::size_t i = 1; i < model.spans.size(); ++i) {
+      end += model.spans[i - 1];
+      require(end != crack.x || model.joint(static_cast<int>(i)) == Joint::continuous, "beam_cracks_x", number(crack.x),
+              "the beam does not go through there (beam_continuity)");
+    }
+  }
+  if (model.track && !model.cuts.empty())
+    throw InputError(
+        "beam_cracks_width: the rail sets the bridge's nodes under a layered track; allowed there: beam_cracks_k");
+  for (const double x : model.cuts)
+    require(std::isfinite(x) && x >= model.start && x <= model.end(), "beam_cracks_width", number(x),
+            "a crack of a width lies within the beam");
+}
+
+void check_strains(const BeamModel& model) {
+  require(model.settlement.empty() || model.settlement.size() == model.supports.size(), "support_settlement",
+          std::to_string(model.settlement.size()) + " numbers", "one at every span end is needed");
+  for (std::size_t i = 0; i < model.settlement.size(); ++i)
+    require(std::isfinite(model.settlement[i]) && (model.settlement[i] == 0.0 || fixes_vertical(model.supports[i])),
+            "support_settlement", number(model.settlement[i]),
+            "what settles holds the beam vertically; 0 elsewhere (m)");
+  if (!model.temperature) return;
+  const Temperature& t = *model.temperature;
+  for (const double value : {t.uniform, t.gradient, t.expansion, t.strain(), t.curvature()})
+    require(std::isfinite(value), "beam_temperature", number(value), "it must be a number");
+}
+
 void check_layer(const Layer& layer, const std::string& option, bool needed) {
   require_not_negative(layer.k, option + "_k", "N/m");
   require_not_negative(layer.c, option + "_c", "N s/m");
@@ -108,6 +146,7 @@ void check_track(const BeamModel& model) {
   positive(t.rail_EI, "track_rail_EI", "N m2");
   if (model.axial) positive(t.rail_EA, "track_rail_EA", "N");
   positive(t.rail_mass, "track_rail_mass", "kg/m");
+  if (t.rail_GA) positive(*t.rail_GA, "track_rail_GA", "N");
   positive(t.spacing, "track_spacing", "m");
   require(t.elements_per_bay >= 1, "track_elements_per_bay", std::to_string(t.elements_per_bay), "at least 1");
   require_not_negative(t.approach, "track_approach", "m");
@@ -129,7 +168,9 @@ void check_track(const BeamModel& model) {
 
 }  // namespace
 
-bool fixes_axial(Support s) { return s == Support::pinned || s == Support::clamped || s == Support::guided; }
+bool fixes_axial(Support s) {
+  return s == Support::pinned || s == Support::clamped || s == Support::guided || s == Support::along;
+}
 bool fixes_vertical(Support s) { return s == Support::roller || s == Support::pinned || s == Support::clamped; }
 bool fixes_rotation(Support s) { return s == Support::clamped || s == Support::guided; }
 
@@ -158,6 +199,11 @@ BeamModel linearised(const BeamModel& model) {
   return linear;
 }
 
+bool BeamModel::strained() const {
+  return (temperature && (temperature->strain() != 0.0 || temperature->curvature() != 0.0)) ||
+         std::any_of(settlement.begin(), settlement.end(), [](double s) { return s != 0.0; });
+}
+
 bool BeamModel::all_separate() const {
   return !joints.empty() && std::all_of(joints.begin(), joints.end(), [](Joint j) { return j == Joint::separate; });
 }
@@ -166,8 +212,13 @@ void check(const BeamModel& model) {
   check_spans(model);
   require_positive(model.EI, "beam_EI", "N m2");
   if (model.axial) require_positive(model.EA, "beam_EA", "N");
+  if (model.GA) require_positive(*model.GA, "beam_GA", "N");
   require_positive(model.mass, "beam_mass", "kg/m");
+  for (const double value : {model.rotary_inertia.minimum(), model.rotary_inertia.maximum()})
+    require_not_negative(value, "beam_rotary_inertia", "kg m");
   check_joints(model);
+  check_cracks(model);
+  check_strains(model);
   if (model.track) check_track(model);
   check_foundation(model.foundation, model.length());
 }

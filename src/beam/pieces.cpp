@@ -38,23 +38,41 @@ void divide_at_steps(const BeamModel& model, std::vector<Piece>& pieces) {
   }
 }
 
+/// Where a beam is divided besides its span ends, and what joins it there.
+struct Division {
+  double x = 0.0;
+  Joint joint = Joint::hinge;
+};
+
+std::vector<Division> divisions_of(const BeamModel& model) {
+  std::vector<Division> divisions;
+  for (const double x : model.hinges) divisions.push_back({x, Joint::hinge});
+  for (const Crack& crack : model.cracks) divisions.push_back({crack.x, Joint::cracked});
+  for (const double x : model.cuts) divisions.push_back({x, Joint::continuous});
+  std::stable_sort(divisions.begin(), divisions.end(), [](const Division& a, const Division& b) { return a.x < b.x; });
+  const auto same = [](const Division& a, const Division& b) { return a.x == b.x; };
+  divisions.erase(std::unique(divisions.begin(), divisions.end(), same), divisions.end());
+  return divisions;
+}
+
 /// The pieces without their numbers of elements.
 std::vector<Piece> divided(const BeamModel& model) {
   std::vector<Piece> pieces;
-  auto hinge = model.hinges.begin();
+  const std::vector<Division> divisions = divisions_of(model);
+  auto division = divisions.begin();
   double left = model.start, end = model.start;
   const int spans = static_cast<int>(model.spans.size());
   for (int span = 0; span < spans; ++span) {
     end += model.spans[span];
-    for (; hinge != model.hinges.end() && *hinge < end; ++hinge) {
-      pieces.push_back({span, left, *hinge, 0, Joint::hinge, false});
+    for (; division != divisions.end() && division->x < end; ++division) {
+      pieces.push_back({span, left, division->x, 0, division->joint, false});
       if (!model.track) divide_at_steps(model, pieces);
-      left = *hinge;
+      left = division->x;
     }
     Joint next = span + 1 < spans ? model.joint(span + 1) : Joint::separate;
-    if (hinge != model.hinges.end() && *hinge == end) {
-      ++hinge;
-      if (next == Joint::continuous) next = Joint::hinge;
+    if (division != divisions.end() && division->x == end) {
+      if (next == Joint::continuous) next = division->joint;
+      ++division;
     }
     pieces.push_back({span, left, end, 0, next, true});
     if (!model.track) divide_at_steps(model, pieces);
@@ -113,6 +131,7 @@ BeamModel rail_model(const BeamModel& model) {
   rail.elements = {mesh.elements};
   rail.EI = model.track->rail_EI;
   rail.EA = model.track->rail_EA;
+  if (model.track->rail_GA) rail.GA = *model.track->rail_GA;
   rail.mass = model.track->rail_mass;
   rail.supports = {Support::free, Support::free};
   rail.axial = model.axial;

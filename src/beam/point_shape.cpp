@@ -16,15 +16,15 @@ std::array<int, 4> unknowns_of(const Line& line, Direction direction, int elemen
   return {u1, u2, -1, -1};
 }
 
-std::array<double, 4> shape_of(Direction direction, double xi, double h) {
-  if (direction == Direction::vertical) return hermite(xi, h).value;
-  if (direction == Direction::rotational) return hermite(xi, h).slope;
+std::array<double, 4> shape_of(Direction direction, double xi, const Element& element) {
+  if (direction == Direction::vertical) return hermite(xi, element.length, element.shear).value;
+  if (direction == Direction::rotational) return rotation(xi, element.length, element.shear);
   const auto [left, right] = linear(xi);
   return {left, right, 0.0, 0.0};
 }
 
 PointShape shape_at(const Line& line, Direction direction, const Station& at) {
-  return {unknowns_of(line, direction, at.element), shape_of(direction, at.xi, line.mesh.element(at.element).length)};
+  return {unknowns_of(line, direction, at.element), shape_of(direction, at.xi, line.mesh.element(at.element))};
 }
 
 Transverse bed_matrix(Direction direction, const Distribution& density, const Element& element) {

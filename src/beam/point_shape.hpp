@@ -11,8 +11,8 @@ namespace traverse::beam {
 
 /// The unknowns of an element that a direction reaches: four, of the longitudinal one two (-1: none).
 std::array<int, 4> unknowns_of(const Line& line, Direction direction, int element);
-/// The displacement, or the slope, at xi of an element is the sum of shape*unknown.
-std::array<double, 4> shape_of(Direction direction, double xi, double h);
+/// The displacement, or the rotation of the sections, at xi of an element is the sum of shape*unknown.
+std::array<double, 4> shape_of(Direction direction, double xi, const Element& element);
 
 /// Both at a station.
 struct PointShape {

@@ -7,8 +7,8 @@
 
 namespace traverse::beam {
 
-void Beam::note_reactions(const Slice& slice, const Rows& mass, const Rows& beam_mass, const Rows& beam_stiffness,
-                          const Rows& stiffness, const Rows& foundation_damping) {
+void Beam::note_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
+                          const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping) {
   // By symmetry the entry of the held row in a free column is that of the free row in the held column.
   const auto note_column = [&](std::size_t slot, int unknown, int held) {
     if (!slice.owns(unknown) || slice.held(unknown)) return;
@@ -30,7 +30,11 @@ void Beam::note_reactions(const Slice& slice, const Rows& mass, const Rows& beam
         const int held = bridge_.unknown(node, which);
         if (held < 0 || !slice.reaches(held) || !slice.held(held)) continue;
         const std::size_t slot = index(3 * end + std::min(which, 2));
-        if (slice.owns(held)) held_loads_.push_back({slot, index(local(held))});
+        if (slice.owns(held)) {
+          held_loads_.push_back({slot, index(local(held))});
+          if (!settled_.empty())
+            held_loads_.back().by_settlement = beams.times(held, [&](int j) { return settlement_of(j); });
+        }
         for (int i = (held / b - 1) * b; i < (held / b + 2) * b; ++i) note_column(slot, i, held);
       }
     }
@@ -52,7 +56,7 @@ void Beam::reactions(const double* v, const double* w, const double* a, const do
   for (const ReactionTerm& t : reaction_terms_) {
     sums[t.slot] += t.mass * a[t.unknown] + t.damping * w[t.unknown] + t.stiffness * v[t.unknown];
   }
-  for (const HeldLoad& load : held_loads_) sums[load.slot] -= P[load.unknown];
+  for (const HeldLoad& load : held_loads_) sums[load.slot] += load.by_settlement - P[load.unknown];
   MPI_Allreduce(MPI_IN_PLACE, sums, static_cast<int>(count), MPI_DOUBLE, MPI_SUM, comm_);
 }
 

@@ -20,7 +20,7 @@ void SectionForms::add_end_forces(const Axial& matrix) {
 void SectionForms::add_transverse_density(const Distribution& density) {
   const double h = element_.length, section = element_.x + xi_ * h;
   integrate(density, element_.x, section, [&](double x, double weight) {
-    const auto psi = hermite((x - element_.x) / h, h).value;
+    const auto psi = hermite((x - element_.x) / h, h, element_.shear).value;
     for (std::size_t j = 0; j < 4; ++j) {
       shear_[j] -= weight * psi[j];
       moment_[j] -= weight * psi[j] * (section - x);
@@ -37,7 +37,7 @@ void SectionForms::add_axial_density(const Distribution& density) {
 }
 
 void SectionForms::add_vertical_spring(double c, double xi) {
-  const auto psi = hermite(xi, element_.length).value;
+  const auto psi = hermite(xi, element_.length, element_.shear).value;
   add_end_forces(outer(c, psi));
   if (!is_left(xi, xi_)) return;
   for (std::size_t j = 0; j < 4; ++j) {
@@ -47,10 +47,10 @@ void SectionForms::add_vertical_spring(double c, double xi) {
 }
 
 void SectionForms::add_rotational_spring(double c, double xi) {
-  const auto slope = hermite(xi, element_.length).slope;
-  add_end_forces(outer(c, slope));
+  const auto turn = rotation(xi, element_.length, element_.shear);
+  add_end_forces(outer(c, turn));
   if (!is_left(xi, xi_)) return;
-  for (std::size_t j = 0; j < 4; ++j) moment_[j] += c * slope[j];
+  for (std::size_t j = 0; j < 4; ++j) moment_[j] += c * turn[j];
 }
 
 void SectionForms::add_longitudinal_spring(double c, double xi) {
@@ -60,11 +60,11 @@ void SectionForms::add_longitudinal_spring(double c, double xi) {
   for (std::size_t j = 0; j < 2; ++j) axial_force_[j] += c * phi[j];
 }
 
-void SectionForms::add_slope_density(const Distribution& density) {
+void SectionForms::add_rotational_density(const Distribution& density) {
   const double h = element_.length;
   integrate(density, element_.x, element_.x + xi_ * h, [&](double x, double weight) {
-    const auto slope = hermite((x - element_.x) / h, h).slope;
-    for (std::size_t j = 0; j < 4; ++j) moment_[j] += weight * slope[j];
+    const auto turn = rotation((x - element_.x) / h, h, element_.shear);
+    for (std::size_t j = 0; j < 4; ++j) moment_[j] += weight * turn[j];
   });
 }
 
@@ -78,7 +78,7 @@ void SectionForms::add_bed(Direction direction, const Distribution& density) {
       return add_axial_density(density);
     case Direction::rotational:
       add_end_forces(slope_bed(density, element_));
-      return add_slope_density(density);
+      return add_rotational_density(density);
   }
 }
 
@@ -93,13 +93,29 @@ void SectionForms::add_spring(Direction direction, double c, double xi) {
   }
 }
 
-double fixed_end_by_force(double xi, double load, double h, double EI) {
+double sheared_between_held_ends(double xi, double load, double shear, bool turn, bool moment) {
+  // From the left end on: nothing up to the load; w'' = M and w' = theta - V shear/12 behind it.
+  struct Shape {
+    double value, turn;
+  };
+  const auto behind = [&](double d) -> Shape {
+    if (d <= 0.0) return {0.0, 0.0};
+    return moment ? Shape{-0.5 * d * d, -d} : Shape{d * (d * d / 6.0 - shear / 12.0), 0.5 * d * d};
+  };
+  const Shape here = behind(xi - load), end = behind(1.0 - load);
+  const auto form = turn ? rotation(xi, 1.0, shear) : hermite(xi, 1.0, shear).value;
+  return (turn ? here.turn : here.value) - form[2] * end.value - form[3] * end.turn;
+}
+
+double fixed_end_by_force(double xi, double load, double h, double EI, double shear) {
+  if (shear != 0.0) return h * h * h / EI * sheared_between_held_ends(xi, load, shear, false, false);
   if (xi > load) return fixed_end_by_force(1.0 - xi, 1.0 - load, h, EI);
   const double b = 1.0 - load;
   return h * h * h / (6.0 * EI) * b * b * xi * xi * (3.0 * load - (1.0 + 2.0 * load) * xi);
 }
 
-double fixed_end_by_moment(double xi, double load, double h, double EI) {
+double fixed_end_by_moment(double xi, double load, double h, double EI, double shear) {
+  if (shear != 0.0) return h * h / EI * sheared_between_held_ends(xi, load, shear, false, true);
   if (xi > load) return -fixed_end_by_moment(1.0 - xi, 1.0 - load, h, EI);
   return h * h / (2.0 * EI) * xi * xi * (1.0 - load) * (1.0 - 3.0 * load + 2.0 * load * xi);
 }

@@ -21,8 +21,10 @@ class SectionForms {
   /// Inertia or a bed: the force on the beam is -density(x) psi v, or -density(x) phi u; without end forces.
   void add_transverse_density(const Distribution& density);
   void add_axial_density(const Distribution& density);
+  /// Rotary inertia or a bed that holds the rotation: the moment on the beam is -density(x) theta.
+  void add_rotational_density(const Distribution& density);
   /// A foundation in a direction, with its end forces. A bed: a force -density(x) psi v per length, a moment
-  /// -density(x) psi' v, or a force -density(x) phi u; a spring at xi: the same concentrated, with c.
+  /// -density(x) theta v, or a force -density(x) phi u; a spring at xi: the same concentrated, with c.
   void add_bed(Direction direction, const Distribution& density);
   void add_spring(Direction direction, double c, double xi);
 
@@ -34,7 +36,6 @@ class SectionForms {
   void add_vertical_spring(double c, double xi);
   void add_rotational_spring(double c, double xi);
   void add_longitudinal_spring(double c, double xi);
-  void add_slope_density(const Distribution& density);
 
   Element element_;
   double xi_ = 0.0;
@@ -45,9 +46,12 @@ class SectionForms {
 /// Whether what stands at xi is left of a section.
 inline bool is_left(double xi, double section) { return xi < section || (xi == section && section < 1.0); }
 
-/// Deflection at xi of an element clamped at both ends under a unit force at `load`, m/N.
-double fixed_end_by_force(double xi, double load, double h, double EI);
+/// Deflection at xi of an element clamped at both ends under a unit force at `load`, m/N. shear: 12 EI/(GA h^2).
+double fixed_end_by_force(double xi, double load, double h, double EI, double shear = 0.0);
 /// The same under a unit moment, counter-clockwise, m/(N m).
-double fixed_end_by_moment(double xi, double load, double h, double EI);
+double fixed_end_by_moment(double xi, double load, double h, double EI, double shear = 0.0);
+/// Of a clamped element with h = 1 and EI = 1 that shears: the deflection at xi, or the rotation (`turn`), under a unit
+/// force at `load`, or a unit moment.
+double sheared_between_held_ends(double xi, double load, double shear, bool turn, bool moment);
 
 }  // namespace traverse::beam

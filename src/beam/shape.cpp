@@ -1,8 +1,22 @@
 #include "beam/shape.hpp"
 
 namespace traverse::beam {
+namespace {
 
-Hermite hermite(double xi, double h) {
+/// To a form the gamma that the slopes at both ends hold besides the rotations.
+void add_strain(std::array<double, 4>& form, const std::array<double, 4>& gamma) {
+  const double both = form[1] + form[3];
+  for (std::size_t i = 0; i < 4; ++i) form[i] += both * gamma[i];
+}
+
+}  // namespace
+
+std::array<double, 4> shear_strain(double h, double shear) {
+  const double part = shear / (1.0 + shear);
+  return {-part / h, -0.5 * part, part / h, -0.5 * part};
+}
+
+Hermite hermite(double xi, double h, double shear) {
   const double xi2 = xi * xi, xi3 = xi2 * xi;
   const double per_h = 1.0 / h, per_h2 = per_h * per_h, per_h3 = per_h2 * per_h;
   Hermite s{};
@@ -11,7 +25,18 @@ Hermite hermite(double xi, double h) {
   s.curvature = {(12.0 * xi - 6.0) * per_h2, (6.0 * xi - 4.0) * per_h, (6.0 - 12.0 * xi) * per_h2,
                  (6.0 * xi - 2.0) * per_h};
   s.third = {12.0 * per_h3, 6.0 * per_h2, -12.0 * per_h3, 6.0 * per_h2};
+  if (shear == 0.0) return s;
+  const std::array<double, 4> gamma = shear_strain(h, shear);
+  for (std::array<double, 4>* form : {&s.value, &s.slope, &s.curvature, &s.third}) add_strain(*form, gamma);
   return s;
+}
+
+std::array<double, 4> rotation(double xi, double h, double shear) {
+  std::array<double, 4> form = hermite(xi, h, shear).slope;
+  if (shear == 0.0) return form;
+  const std::array<double, 4> gamma = shear_strain(h, shear);
+  for (std::size_t i = 0; i < 4; ++i) form[i] -= gamma[i];
+  return form;
 }
 
 }  // namespace traverse::beam

@@ -57,7 +57,8 @@ class ShapePoints {
         for (std::size_t i = 0; i < 2; ++i) sum += phi[i] * value(unknowns[i]);
       } else {
         const auto unknowns = line.transverse(p.at.element);
-        const auto psi = hermite(p.at.xi, line.mesh.element(p.at.element).length).value;
+        const Element& element = line.mesh.element(p.at.element);
+        const auto psi = hermite(p.at.xi, element.length, element.shear).value;
         for (std::size_t i = 0; i < 4; ++i) sum += psi[i] * value(unknowns[i]);
       }
       out.push_back(sum);

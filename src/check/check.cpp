@@ -1,6 +1,7 @@
 #include "check.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,6 +62,28 @@ std::string count_text(std::size_t count, const char* one, const char* many) {
   return fmt::format("{} {}", count, count == 1 ? one : many);
 }
 
+std::string range_text(const beam::Distribution& d, const char* unit) {
+  return d.uniform() ? fmt::format("{:.4g} {}", d.minimum(), unit)
+                     : fmt::format("{:.4g} to {:.4g} {}", d.minimum(), d.maximum(), unit);
+}
+
+/// What a beam has besides EI and mass, and what bends it without a load.
+void print_as_found(const Page& page, const beam::BeamModel& beam) {
+  if (beam.GA) page.line("GA, shear", range_text(*beam.GA, "N"));
+  if (beam.rotary_inertia.maximum() > 0.0) page.line("rotary inertia", range_text(beam.rotary_inertia, "kg m"));
+  for (const beam::Crack& crack : beam.cracks)
+    page.line("crack", fmt::format("at x = {:g} m, {:.4g} N m/rad", crack.x, crack.k));
+  if (!beam.cuts.empty())
+    page.line("cracks of a width", fmt::format("with ends at x = {:g} m", fmt::join(beam.cuts, ", ")));
+  for (std::size_t end = 0; end < beam.settlement.size(); ++end)
+    if (beam.settlement[end] != 0.0)
+      page.line("settlement", fmt::format("support {}: {:g} mm", end, 1e3 * beam.settlement[end]));
+  if (!beam.temperature) return;
+  page.line("temperature", fmt::format("{:g} K warmer, strain {:.4g}; {:g} K from bottom to top, curvature {:.4g} 1/m",
+                                       beam.temperature->uniform, beam.temperature->strain(),
+                                       beam.temperature->gradient, beam.temperature->curvature()));
+}
+
 void print_bridge(const Page& page, const Look& look) {
   const beam::BeamModel& beam = *look.scene.beam;
   page.heading("bridge");
@@ -68,8 +91,8 @@ void print_bridge(const Page& page, const Look& look) {
   if (!beam.given) {
     const double mass = mass_of(beam);
     page.line("mass", fmt::format("{}, {:.4g} kg/m in the mean", mass_text(mass), mass / beam.length()));
-    page.line("EI", beam.EI.uniform() ? fmt::format("{:.4g} N m2", beam.EI.minimum())
-                                      : fmt::format("{:.4g} to {:.4g} N m2", beam.EI.minimum(), beam.EI.maximum()));
+    page.line("EI", range_text(beam.EI, "N m2"));
+    print_as_found(page, beam);
   }
   std::string frequencies;
   for (const double one : look.frequencies)

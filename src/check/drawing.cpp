@@ -17,8 +17,8 @@ constexpr Symbol body{'#', "█", "body"}, wheel{'o', "●", "wheel"}, force{'v'
     coil{'z', "≈", "spring"}, link{'.', "·", ""}, ground{'_', "▁", "ground"}, front{'[', "▐", ""}, rear{']', "▌", ""},
     car{'=', "█", "vehicle"}, deck{'=', "━", "beam"}, rail{'-', "─", "rail"}, sleeper{':', "┴", "sleepers"},
     hinge{'+', "◦", "hinge"}, apart{'|', "┃", "spans end"}, bed{'~', "≋", "bed"};
-constexpr Symbol supports[] = {
-    {' ', " ", ""}, {'O', "○", "roller"}, {'^', "▲", "pinned"}, {'#', "█", "clamped"}, {'H', "╫", "guided"}};
+constexpr Symbol supports[] = {{' ', " ", ""},        {'O', "○", "roller"}, {'^', "▲", "pinned"},
+                               {'#', "█", "clamped"}, {'H', "╫", "guided"}, {' ', " ", ""}};
 
 struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -109,6 +109,7 @@ class SideView {
       if (i < beam_.spans.size()) x += beam_.spans[i];
     }
     for (const double at : beam_.hinges) canvas_.put(column(at), decks, hinge);
+    for (const beam::Crack& at : beam_.cracks) canvas_.put(column(at.x), decks, hinge);
   }
   void draw_foundation() {
     for_points(beam_.foundation, [&](const beam::FoundationKind&, const auto& points) {

@@ -27,7 +27,8 @@ constexpr double one_share = 1e-3;                 // of the mean: a wheel that 
 /// Whether it spans from support to support, as figure 6.10 of EN 1991-2 has it.
 bool is_bridge(const beam::BeamModel& beam) {
   const bool held = std::all_of(beam.supports.begin(), beam.supports.end(), beam::fixes_vertical);
-  return held && beam.foundation.vertical.empty() && !beam.foundation.vertical_bed && beam.hinges.empty();
+  return held && beam.foundation.vertical.empty() && !beam.foundation.vertical_bed && beam.hinges.empty() &&
+         beam.cracks.empty();
 }
 
 bool between(double value, const std::pair<double, double>& bounds, double slack) {

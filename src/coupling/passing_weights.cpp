@@ -29,7 +29,8 @@ struct PassingWeights::InfluenceLine {
   double at(const beam::Mesh& mesh, double x) const {
     if (x < mesh.start() || x > mesh.end()) return 0.0;
     const beam::Station s = mesh.locate(x);
-    const beam::Hermite psi = beam::hermite(s.xi, mesh.element(s.element).length);
+    const beam::Element& element = mesh.element(s.element);
+    const beam::Hermite psi = beam::hermite(s.xi, element.length, element.shear);
     double sum = inside ? inside->deflection_inside(0, {s.element, s.xi, 0.0, -1.0, 0.0}) : 0.0;
     for (int i = 0; i < 4; ++i) sum += psi.value[i] * nodal[4 * static_cast<std::size_t>(s.element) + i];
     return sum;
@@ -54,6 +55,7 @@ PassingWeights::InfluenceLine PassingWeights::influence_line(double station) {
   for (std::size_t i = 0; i < nodal.size(); ++i) of_weight -= nodal[i] * structure_->dead_load()[i];
   MPI_Allreduce(MPI_IN_PLACE, &of_weight, 1, MPI_DOUBLE, MPI_SUM, comm_);
   line.of_weight += of_weight;
+  if (beam.model().strained()) line.of_weight = rest_at(station);
   for (int e = 0; e < structure_->line().mesh.elements(); ++e) {
     const auto unknowns = structure_->line().transverse(e);
     for (int i = 0; i < 4; ++i) {
@@ -63,6 +65,15 @@ PassingWeights::InfluenceLine PassingWeights::influence_line(double station) {
   }
   MPI_Allreduce(MPI_IN_PLACE, line.nodal.data(), static_cast<int>(line.nodal.size()), MPI_DOUBLE, MPI_SUM, comm_);
   return line;
+}
+
+// The deflection of a station under the dead load, the beam's strains and settlements.
+double PassingWeights::rest_at(double station) {
+  const std::vector<double> rest = structure_->rest(), none(rest.size(), 0.0);
+  beam::Recovery recovery(structure_->beam(), {station}, gravity_);
+  std::vector<beam::Response> found;
+  recovery.evaluate(rest.data(), none.data(), none.data(), {}, found);
+  return found.front().deflection;
 }
 
 bool PassingWeights::pass_together(const train::WheelPaths& paths) const {

@@ -45,6 +45,7 @@ class PassingWeights {
  private:
   struct InfluenceLine;
   InfluenceLine influence_line(double station);
+  double rest_at(double station);
   double peak_of_train(const InfluenceLine& line, double constant) const;
   bool steady() const;
   double peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const;

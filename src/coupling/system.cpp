@@ -45,7 +45,7 @@ System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, S
           input_.types[static_cast<std::size_t>(input_.train.vehicles[i])]);
   }
   fleet_ = train::Fleet(input_.types, input_.train, input_.gravity, false, line_ != nullptr ? &line_->mesh : nullptr,
-                        &input_.profile, surface_height(), inner_EI());
+                        &input_.profile, surface_height(), yields_inside());
   fleet_.partition(0.0);
   fleet_.start_rolling();
   on_beam_.assign(input_.load.forces.size(), 0);
@@ -71,11 +71,7 @@ double System::surface_height() const {
   return structure_ && beam()->rail() == nullptr ? beam()->model().surface_height : 0.0;
 }
 
-// A rail bends between its nodes under a wheel; of a bridge's elements, which are as many as its modes ask for, that is
-// hardly anything.
-double System::inner_EI() const {
-  return structure_ && beam()->rail() != nullptr ? beam()->model().track->rail_EI : 0.0;
-}
+bool System::yields_inside() const { return structure_ && structure_->yields_inside(); }
 
 int System::local_size() const { return 2 * n_ + (rank_ == 0 ? 2 * fleet_.freedom() + 2 : 0); }
 

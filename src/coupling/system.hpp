@@ -277,7 +277,7 @@ class System {
   base::SpeedLaw law_of_wheel(int wheel) const;
   bool is_driven(int wheel) const;
   double surface_height() const;
-  double inner_EI() const;
+  bool yields_inside() const;
   void note_weights();
   void share_coordinates(const double* y);
   Solution settle(Terms terms, double tie = 0.0);

@@ -77,7 +77,7 @@ void System::go_with_the_train(double* w) {
 // Every drive stands still, every body is where the scene puts it.
 void System::stand_still(const train::Train& train) {
   fleet_ = train::Fleet(input_.types, train, input_.gravity, true, line_ != nullptr ? &line_->mesh : nullptr,
-                        &input_.profile, surface_height(), inner_EI());
+                        &input_.profile, surface_height(), yields_inside());
   fleet_.partition(0.0);
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
@@ -87,7 +87,7 @@ void System::stand_still(const train::Train& train) {
 
 // Statics, from p_still_. `tie`: what holds all masses where they are, 1/s2.
 System::Solution System::settle(Terms terms, double tie) {
-  if (structure_) structure_->begin_statics(input_.self_weight || !loads_.empty());
+  if (structure_) structure_->begin_statics(structure_->bent_at_rest() || !loads_.empty());
   return solve_coupled({0.0, 0.0, tie}, terms);
 }
 

@@ -15,7 +15,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) 
   const bool weighed = !equilibrium && weigh_at_rest();
   if (equilibrium) {
     find_equilibrium(y);
-  } else if (input_.self_weight && structure_) {
+  } else if (structure_ && structure_->bent_at_rest()) {
     structure_->load({});
     if (const Solution found = settle(Terms::beam); found != Solution::found) refuse_start(found);
     structure_->end_stage(y, y + n_);

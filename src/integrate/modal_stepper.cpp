@@ -105,7 +105,8 @@ void ModalStepper::load_now(double* nodal) const {
     const double x = load_.positions[j] + load_.speed * before;
     if (x < line.mesh.start() || x > line.mesh.end()) continue;
     const beam::Station s = line.mesh.locate(load_.positions[j] + load_.speed * t);
-    const beam::Hermite psi = beam::hermite(s.xi, line.mesh.element(s.element).length);
+    const beam::Element& element = line.mesh.element(s.element);
+    const beam::Hermite psi = beam::hermite(s.xi, element.length, element.shear);
     const auto unknowns = line.transverse(s.element);
     for (std::size_t i = 0; i < 4; ++i) {
       const int local = bridge_.beam().local(unknowns[i]);

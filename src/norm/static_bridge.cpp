@@ -18,11 +18,14 @@ constexpr int deflection = 1, rotation = 2, rotation_right = 3;            // of
 beam::BeamModel model_for_statics(const beam::BeamModel& given) {
   beam::BeamModel model = given.track ? bridge_alone(given) : given;
   model.axial = false;
+  model.temperature.reset();
+  model.settlement.clear();
   if (const std::string floating = floating_motion(model); !floating.empty())
     throw InputError("support_types: the beam can float away (" + floating + "); static effects need it held");
   const beam::Foundation& f = model.foundation;
-  const bool plain = model.EI.uniform() && f.vertical.empty() && f.rotational.empty() && !f.vertical_bed &&
-                     !f.rotational_bed && model.hinges.empty();
+  const bool plain = model.EI.uniform() && (!model.GA || model.GA->uniform()) && model.cracks.empty() &&
+                     f.vertical.empty() && f.rotational.empty() && !f.vertical_bed && !f.rotational_bed &&
+                     model.hinges.empty();
   double fading = 0.0;
   beam::for_beds(f, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
     fading = std::max(fading, beam::fading_of_bending(kind.direction, bed.k.maximum(), model.EI.minimum()));
@@ -66,7 +69,7 @@ InfluenceLine StaticBridge::line_of(std::vector<double> nodal, const beam::Recov
     const auto unknowns = beam_.bridge().transverse(e);
     std::array<double, 4> ends{};
     for (std::size_t k = 0; k < 4; ++k) ends[k] = nodal[static_cast<std::size_t>(unknowns[k])];
-    const beam::Cubic cubic = beam::hermite_cubic(ends, element.length);
+    const beam::Cubic cubic = beam::hermite_cubic(ends, element.length, element.shear);
     double left = 0.0;
     const auto add_piece = [&](double right) {
       beam::Cubic piece = beam::shifted(cubic, left);

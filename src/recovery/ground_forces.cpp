@@ -95,7 +95,8 @@ void GroundForces::add_track() {
     for (const auto& [unknown, mass] : masses_of(s, track, layout)) add_mass(masses_[1], unknown, mass);
     if (!s.on_bridge) continue;
     const double mass = ride_of(s, track, layout).mass;
-    const auto psi = hermite(s.at.xi, beam_.mesh().element(s.at.element).length).value;
+    const Element& element = beam_.mesh().element(s.at.element);
+    const auto psi = hermite(s.at.xi, element.length, element.shear).value;
     const auto places = beam_.bridge().transverse(s.at.element);
     for (std::size_t i = 0; i < 4; ++i) add_mass(masses_[1], places[i], mass * psi[i]);
   }

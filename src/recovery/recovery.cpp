@@ -23,6 +23,7 @@ struct Recovery::Section {
   template <class Sum>
   void along_held(const Distribution& density, bool moments, Sum sum) const;
   void note_riders(const Beam& beam);
+  void add_strains(const BeamModel& model);
   void add_weight(const BeamModel& model, double gravity);
   void add_weight_at_points(const Bed& bed, const Distribution& mass_per_length, double gravity);
   void add_load(const ElementLoad& load, Response& r) const;
@@ -41,7 +42,7 @@ struct Recovery::Section {
   std::array<double, 2> phi;
   SectionForms bending;                   // K_e of the beam, for nodal values less the element's rigid motion
   SectionForms stiffness, damping, mass;  // K_e and C_e of the foundation, M_e
-  Response weight;                        // of the beam's own weight: deflection, moment and shear
+  Response weight;                        // of the beam's own weight and temperature: deflection and forces
   /// Where a foundation acts inside the element: the deflection that the shape functions leave out, under loads, and
   /// under what the foundation and inertia do to the beam as it moves by them.
   std::optional<HeldElement> held;
@@ -52,7 +53,7 @@ struct Recovery::Section {
 Recovery::Section::Section(const Line& line, double x)
     : at(line.mesh.locate(x)),
       element(line.mesh.element(at.element)),
-      psi(hermite(at.xi, element.length)),
+      psi(hermite(at.xi, element.length, element.shear)),
       phi(linear(at.xi)),
       bending(element, at.xi),
       stiffness(element, at.xi),
@@ -68,6 +69,7 @@ Recovery::Section::Section(const Line& line, double x)
   bending.add_end_forces(matrices.stiffness);
   mass.add_end_forces(matrices.mass);
   mass.add_transverse_density(model.mass);
+  if (model.rotary_inertia.maximum() > 0.0) mass.add_rotational_density(model.rotary_inertia);
   if (model.axial) {
     EA = model.EA.at(middle, element.x);
     bending.add_end_forces(matrices.axial_stiffness);
@@ -75,6 +77,15 @@ Recovery::Section::Section(const Line& line, double x)
     mass.add_axial_density(model.mass);
   }
   add_foundation(line);
+  if (model.temperature) add_strains(model);
+}
+
+/// What the forces at the left end are less by: the elastic strain is the whole one less the temperature's.
+void Recovery::Section::add_strains(const BeamModel& model) {
+  const auto bent = strain_load(model, element);
+  weight.shear -= bent[0];
+  weight.moment -= at.xi * element.length * bent[0] - bent[1];
+  weight.axial_force += axial_strain_load(model, element)[0];
 }
 
 void Recovery::Section::note_riders(const Beam& beam) {
@@ -138,21 +149,22 @@ void Recovery::Section::hold(const BeamModel& model, const std::vector<InnerSpri
     if (kind.direction == Direction::vertical && !bed.law.nonlinear())
       integrate(bed.k, element.x, element.x + h, [&](double, double piece) { mean += piece / h; });
   });
-  held.emplace(at.xi, h, EI, mean, springs);
+  held.emplace(at.xi, h, EI, mean, springs, element.shear);
   const auto add = [&](const Distribution& density, Direction direction, std::array<double, 4>& form) {
     along_held(density, direction == Direction::rotational, [&](double s, double line) {
-      const auto shape = shape_of(direction, s, h);
+      const auto shape = shape_of(direction, s, element);
       for (std::size_t i = 0; i < 4; ++i) form[i] -= line * shape[i];
     });
   };
   const auto add_points = [&](const std::vector<InnerSpring>& points, std::array<double, 4>& form) {
     for (const InnerSpring& p : points) {
-      const Hermite s = hermite(p.xi, h);
+      const auto shape = shape_of(p.rotational ? Direction::rotational : Direction::vertical, p.xi, element);
       const double line = p.k * (p.rotational ? held->by_moment(p.xi) : held->by_force(p.xi));
-      for (std::size_t i = 0; i < 4; ++i) form[i] -= line * (p.rotational ? s.slope[i] : s.value[i]);
+      for (std::size_t i = 0; i < 4; ++i) form[i] -= line * shape[i];
     }
   };
   add(model.mass, Direction::vertical, held_by_mass);
+  if (model.rotary_inertia.maximum() > 0.0) add(model.rotary_inertia, Direction::rotational, held_by_mass);
   for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
     if (kind.direction == Direction::longitudinal || bed.law.nonlinear()) return;
     add(bed.k, kind.direction, held_by_stiffness);
@@ -165,8 +177,8 @@ void Recovery::Section::hold(const BeamModel& model, const std::vector<InnerSpri
 void Recovery::Section::add_weight(const BeamModel& model, double gravity) {
   const double h = element.length, x = at.xi * h;
   const auto end = transverse_load(model.mass, element);
-  weight.shear = gravity * end[0];
-  weight.moment = gravity * (x * end[0] - end[1]);
+  weight.shear += gravity * end[0];
+  weight.moment += gravity * (x * end[0] - end[1]);
   const Bed* pushing = nullptr;
   for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
     if (kind.direction == Direction::vertical && bed.law.nonlinear()) pushing = &bed;
@@ -181,7 +193,8 @@ void Recovery::Section::add_weight(const BeamModel& model, double gravity) {
     return;
   }
   const double bubble = at.xi * (1.0 - at.xi) * h * h, middle = element.x + 0.5 * h;
-  weight.deflection = -gravity * model.mass.at(middle, element.x) * bubble * bubble / (24.0 * EI);
+  const double bent = bubble * (bubble + element.shear * h * h);
+  weight.deflection = -gravity * model.mass.at(middle, element.x) * bent / (24.0 * EI);
 }
 
 /// Where a bed pushes at its points of integration the weight acts there too: it cancels where the beam rests.
@@ -189,7 +202,8 @@ void Recovery::Section::add_weight_at_points(const Bed& bed, const Distribution&
   for (const auto& [left, right] : bed_pieces(bed, element)) {
     integrate(mass_per_length, left, right, [&](double s, double piece) {
       const double xi = (s - element.x) / element.length, force = gravity * piece;
-      weight.deflection -= force * (held ? held->by_force(xi) : fixed_end_by_force(at.xi, xi, element.length, EI));
+      weight.deflection -=
+          force * (held ? held->by_force(xi) : fixed_end_by_force(at.xi, xi, element.length, EI, element.shear));
       if (!is_left(xi, at.xi)) return;
       weight.shear -= force;
       weight.moment -= force * (at.xi - xi) * element.length;
@@ -199,17 +213,18 @@ void Recovery::Section::add_weight_at_points(const Bed& bed, const Distribution&
 
 void Recovery::Section::add_load(const ElementLoad& load, Response& r) const {
   const double h = element.length, x = at.xi * h;
-  const Hermite s = hermite(load.xi, h);
-  const double f1 = -load.fy * s.value[0] - load.moment * s.slope[0];
-  const double m1 = -load.fy * s.value[1] - load.moment * s.slope[1];
+  const Hermite s = hermite(load.xi, h, element.shear);
+  const auto turn = element.shear == 0.0 ? s.slope : rotation(load.xi, h, element.shear);
+  const double f1 = -load.fy * s.value[0] - load.moment * turn[0];
+  const double m1 = -load.fy * s.value[1] - load.moment * turn[1];
   r.shear += f1;
   r.moment += f1 * x - m1;
   if (held)
     r.deflection +=
         load.fy * held->by_force(load.xi) + (load.moment == 0.0 ? 0.0 : load.moment * held->by_moment(load.xi));
   else
-    r.deflection +=
-        load.fy * fixed_end_by_force(at.xi, load.xi, h, EI) + load.moment * fixed_end_by_moment(at.xi, load.xi, h, EI);
+    r.deflection += load.fy * fixed_end_by_force(at.xi, load.xi, h, EI, element.shear) +
+                    load.moment * fixed_end_by_moment(at.xi, load.xi, h, EI, element.shear);
   const bool left = is_left(load.xi, at.xi);
   if (left) {
     r.shear += load.fy;
@@ -334,15 +349,15 @@ Response Recovery::respond(const Section& s, const Values& v, const Values& w, c
   r.shear += r.nodal_shear + transverse(s.stiffness.shear(), v) + transverse(s.damping.shear(), w) +
              transverse(s.mass.shear(), inertial);
   r.axial_displacement = axial(s.phi, v);
-  r.axial_force = r.nodal_axial_force + axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) +
-                  axial(s.mass.axial_force(), inertial);
+  r.axial_force += r.nodal_axial_force + axial(s.stiffness.axial_force(), v) + axial(s.damping.axial_force(), w) +
+                   axial(s.mass.axial_force(), inertial);
   return r;
 }
 
 // What the sleepers on the element do to it: the spring below each, the mass that rides, the spring along x.
 void Recovery::add_riders(const Section& s, const Values* values, const double* riders, Response& r) const {
   for (const Section::Rider& rider : s.riders) {
-    const auto psi = hermite(rider.xi, s.element.length).value;
+    const auto psi = hermite(rider.xi, s.element.length, s.element.shear).value;
     const auto beam = [&](const Values& y) { return psi[0] * y[1] + psi[1] * y[2] + psi[2] * y[4] + psi[3] * y[5]; };
     const double force = rider.ride.spring.k * (riders[0] - beam(values[0])) +
                          rider.ride.spring.c * (riders[1] - beam(values[1])) -
@@ -350,10 +365,10 @@ void Recovery::add_riders(const Section& s, const Values* values, const double* 
     double along = 0.0;
     if (rider.ride.along >= 0) {
       const auto phi = linear(rider.xi);
-      const auto slope = hermite(rider.xi, s.element.length).slope;
+      const auto turns = rotation(rider.xi, s.element.length, s.element.shear);
       const double e = line_.model.surface_height;
       const auto surface = [&](const Values& y) {
-        const double turn = slope[0] * y[1] + slope[1] * y[2] + slope[2] * y[4] + slope[3] * y[5];
+        const double turn = turns[0] * y[1] + turns[1] * y[2] + turns[2] * y[4] + turns[3] * y[5];
         return phi[0] * y[0] + phi[1] * y[3] - e * turn;
       };
       const Layer& layer = line_.model.track->longitudinal;

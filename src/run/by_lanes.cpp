@@ -123,6 +123,7 @@ std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (!scene.train.courses.empty()) return "several trains run, or one whose speed changes or is below 0";
   if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
   if (scene.self_weight) return "the bridge's own weight bends it";
+  if (scene.beam->strained()) return "temperature or settlements bend the bridge";
   if (!integrate::own_method(scene.integrator)) return "ts_type is one of PETSc's own";
   if (!scene.time_step) return "the step is not known";
   if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";

@@ -201,7 +201,8 @@ class BySpans final : public coupling::SteppedApart {
 
 std::string spans_obstacle(const Scene& scene) {
   if (!scene.beam || !scene.beam->all_separate() || scene.beam->spans.size() < 2) return "its spans touch";
-  if (!scene.beam->hinges.empty() || scene.beam->track || scene.beam->axial) return "its spans do not bend alone";
+  if (!scene.beam->hinges.empty() || !scene.beam->cracks.empty() || scene.beam->track || scene.beam->axial)
+    return "its spans do not bend alone";
   if (scene.model_modes > 0) return "the bridge goes by modes of the whole";
   if (scene.vehicles.empty()) return "no vehicles run";
   if (!scene.load.forces.empty()) return "forces move beside the vehicles";
@@ -210,6 +211,8 @@ std::string spans_obstacle(const Scene& scene) {
   if (!scene.profile.level()) return "the track is not level";
   if (scene.start != Start::equilibrium) return "the run does not start in equilibrium";
   if (scene.self_weight) return "the bridge's own weight bends it";
+  if (scene.beam->strained()) return "temperature or settlements bend the bridge";
+  if (scene.beam->GA) return "the bridge shears";
   if (scene.beam->surface_height != 0.0) return "wheels run above the beam's axis";
   if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";
   const int elements = *std::max_element(scene.beam->elements.begin(), scene.beam->elements.end());

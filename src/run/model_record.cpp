@@ -8,7 +8,7 @@ namespace {
 using results::Recorder;
 using Pairs = std::vector<std::pair<std::string, std::string>>;
 
-constexpr const char* support_words[] = {"free", "roller", "pinned", "clamped", "guided"};
+constexpr const char* support_words[] = {"free", "roller", "pinned", "clamped", "guided", "along"};
 constexpr const char* joint_words[] = {"continuous", "hinge", "separate"};
 
 /// Rows of so many numbers; nothing where there are no rows.
@@ -64,6 +64,15 @@ void record_bridge(const beam::BeamModel& beam, Recorder& recorder) {
   if (beam.given) return;
   add_rows(recorder, "hinges", 1, beam.hinges, "m");
   add_rows(recorder, "EI", 2, along(beam.EI, beam.start, beam.end()), "m, N m2");
+  if (beam.GA) add_rows(recorder, "GA", 2, along(*beam.GA, beam.start, beam.end()), "m, N");
+  if (beam.rotary_inertia.maximum() > 0.0)
+    add_rows(recorder, "rotary_inertia", 2, along(beam.rotary_inertia, beam.start, beam.end()), "m, kg m");
+  std::vector<double> cracks;
+  for (const beam::Crack& crack : beam.cracks) cracks.insert(cracks.end(), {crack.x, crack.k});
+  add_rows(recorder, "cracks", 2, std::move(cracks), "m, N m/rad");
+  add_rows(recorder, "settlement", 1, beam.settlement, "m");
+  if (beam.temperature)
+    add_rows(recorder, "temperature", 2, {beam.temperature->strain(), beam.temperature->curvature()}, "1, 1/m");
   add_rows(recorder, "mass", 2, along(beam.mass, beam.start, beam.end()), "m, kg/m");
   record_foundation(beam, recorder);
 }

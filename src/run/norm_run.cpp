@@ -59,7 +59,7 @@ norm::Passed passed_once(const Scene& scene, const Peaks& peaks) {
 
 bool compares_with_lm71(const Scene& scene) {
   const std::vector<std::string>& models = scene.norm->load_models;
-  return !scene.self_weight && !scene.output.probes.empty() &&
+  return !scene.self_weight && !scene.beam->strained() && !scene.output.probes.empty() &&
          std::find(models.begin(), models.end(), "lm71") != models.end();
 }
 

@@ -15,6 +15,7 @@ bool acts_along_x(const options::Options& o, const std::string& actuator) {
 std::string longitudinal_action(const options::Options& o, const Scene& scene) {
   const beam::Foundation& foundation = scene.beam->foundation;
   if (present(foundation, beam::Direction::longitudinal)) return "longitudinal foundations";
+  if (scene.beam->temperature && scene.beam->temperature->strain() != 0.0) return "temperature";
   if (scene.analysis == Analysis::modes) return "modes are asked for";
   for (const Vehicle& vehicle : scene.vehicles) {
     const bool rolls = !vehicle.wheels.empty();
@@ -40,6 +41,10 @@ void decide_axial(const options::Options& o, Scene& scene) {
     if (scene.beam->track && !o.has(name)) missing += (missing.empty() ? "" : ", ") + std::string(name);
   }
   const bool stiffness = missing.empty();
+  const bool lengthens = scene.beam->temperature && scene.beam->temperature->strain() != 0.0;
+  if (lengthens && (!stiffness || wanted == "false"))
+    o.refuse("beam_temperature_uniform", stiffness ? "lengthens the beam; allowed with it: model_axial auto or true"
+                                                   : "lengthens the beam, which needs " + missing);
   if (wanted == "true" && !stiffness) o.refuse("model_axial", "needs " + missing);
   if (wanted != "auto") {
     scene.beam->axial = wanted == "true";

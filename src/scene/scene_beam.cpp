@@ -92,6 +92,7 @@ void read_damping(const Options& o, Damping& damping) {
 /// Whether two ends of beams meet at x, or the slope may jump there.
 bool is_joint(const beam::BeamModel& beam, double x) {
   if (std::find(beam.hinges.begin(), beam.hinges.end(), x) != beam.hinges.end()) return true;
+  if (std::any_of(beam.cracks.begin(), beam.cracks.end(), [&](const beam::Crack& c) { return c.x == x; })) return true;
   double end = beam.start;
   for (std::size_t i = 1; i < beam.spans.size(); ++i) {
     end += beam.spans[i - 1];
@@ -202,7 +203,8 @@ beam::Foundation read_foundation(const Options& o, const beam::BeamModel& beam) 
 void read_beam(const Options& o, Scene& scene) {
   if (read_given_bridge(o, scene)) return;
   if (!o.has("beam_spans")) {
-    for (const char* prefix : {"beam_E", "beam_mass", "beam_damping", "beam_rayleigh", "support_", "foundation_"}) {
+    for (const char* prefix : {"beam_E", "beam_GA", "beam_mass", "beam_rotary", "beam_cracks", "beam_temperature",
+                               "beam_damping", "beam_rayleigh", "support_", "foundation_"}) {
       const options::Entry* entry = o.first_with_prefix(prefix);
       if (entry != nullptr) o.refuse(entry->name, "there is no beam without beam_spans");
     }
@@ -214,9 +216,14 @@ void read_beam(const Options& o, Scene& scene) {
   beam.EI = read_distribution(o, "beam_EI");
   if (o.has("beam_EA")) beam.EA = read_distribution(o, "beam_EA");
   beam.mass = read_distribution(o, "beam_mass");
+  if (o.has("beam_GA")) beam.GA = read_distribution(o, "beam_GA");
+  if (o.has("beam_rotary_inertia")) beam.rotary_inertia = read_distribution(o, "beam_rotary_inertia");
   read_joints(o, beam);
+  read_cracks(o, beam);
   read_supports(o, beam);
   beam.foundation = read_foundation(o, beam);
+  read_bearings(o, beam);
+  beam.temperature = read_temperature(o);
   read_damping(o, scene.damping);
   scene.self_weight = o.flag("beam_self_weight");
   beam.surface_height = o.number("beam_surface_height");

@@ -57,6 +57,7 @@ void read_layers(const Options& o, Scene& scene) {
   beam::LayeredTrack track;
   track.rail_EI = o.number("track_rail_EI");
   track.rail_EA = o.optional_number("track_rail_EA").value_or(0.0);
+  track.rail_GA = o.optional_number("track_rail_GA");
   track.rail_mass = o.number("track_rail_mass");
   track.spacing = o.number("track_spacing");
   track.offset = std::fmod(o.number("track_offset"), track.spacing);

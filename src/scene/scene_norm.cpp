@@ -99,6 +99,9 @@ void read_norm(const Options& o, Scene& scene) {
   if (scene.self_weight && scene.analysis == Analysis::transient)
     scene.notes.emplace_back(
         "beam_self_weight: peaks hold the bridge's own weight, so there is no verdict of EN 1991-2 6.4.6.5");
+  else if (scene.beam->strained() && scene.analysis == Analysis::transient)
+    scene.notes.emplace_back(
+        "peaks hold what temperature and settlements do, so there is no verdict of EN 1991-2 6.4.6.5");
   if (scene.beam->track)
     scene.notes.emplace_back("static effects: loads stand on the bridge itself, the track spreads none");
 }

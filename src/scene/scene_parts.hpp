@@ -55,6 +55,11 @@ bool read_given_bridge(const options::Options& options, Scene& scene);
 void read_modes_of_given(const options::Options& options, Scene& scene);
 /// Of a beam whose spans and joints are known.
 beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);
+/// Cracks as springs, or as stretches of less EI; of a beam whose EI is known.
+void read_cracks(const options::Options& options, beam::BeamModel& beam);
+/// Supports that yield or have settled; of a beam whose supports and foundation are known.
+void read_bearings(const options::Options& options, beam::BeamModel& beam);
+std::optional<beam::Temperature> read_temperature(const options::Options& options);
 /// A number or a file of x,value, inside the range of its row.
 beam::Distribution read_distribution(const options::Options& options, const std::string& name);
 void read_trains(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);

@@ -157,9 +157,11 @@ void note_table(const std::string& option, const beam::Distribution& table, doub
 void note_tables(Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   const double length = std::accumulate(beam.spans.begin(), beam.spans.end(), 0.0);
-  note_table("beam_EI", beam.EI, length, scene);
+  if (beam.cuts.empty()) note_table("beam_EI", beam.EI, length, scene);
   note_table("beam_EA", beam.EA, length, scene);
+  if (beam.GA) note_table("beam_GA", *beam.GA, length, scene);
   note_table("beam_mass", beam.mass, length, scene);
+  note_table("beam_rotary_inertia", beam.rotary_inertia, length, scene);
   for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
     const std::string option = "foundation_" + std::string(kind.name);
     note_table(option + "_k", bed.k, length, scene);

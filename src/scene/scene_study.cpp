@@ -64,7 +64,8 @@ void read_modal(const Options& o, Scene& scene) {
   if (scene.beam && scene.beam->given) return read_modes_of_given(o, scene);
   const std::string value = o.text("model_modes");
   if (value == "auto" || value == "0") {
-    scene.modes_open = value == "auto" && !(scene.beam && scene.beam->foundation.nonlinear());
+    scene.modes_open =
+        value == "auto" && !(scene.beam && (scene.beam->foundation.nonlinear() || scene.beam->strained()));
     if (o.has("model_damping_ratios")) o.refuse("model_damping_ratios", "needs model_modes, whose ratios these are");
     return;
   }
@@ -82,6 +83,8 @@ void read_modal(const Options& o, Scene& scene) {
   if (scene.beam->track) o.refuse("model_modes", "with a layered track: not there yet; allowed: auto or 0");
   if (scene.beam->foundation.nonlinear())
     o.refuse("model_modes", "the foundation is one-sided, has a gap or a cubic term; allowed: auto or 0");
+  if (scene.beam->strained())
+    o.refuse("model_modes", "the beam is bent by its temperature or settlements; allowed: auto or 0");
   if (const options::Entry* type = o.entries().find("ts_type");
       scene.vehicles.empty() && type != nullptr && type->value != "modal")
     o.refuse("ts_type", "with model_modes and forces alone the motion is exact in time; allowed: modal, or left out");

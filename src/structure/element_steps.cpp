@@ -23,13 +23,7 @@ void ElementStructure::begin_motion(const Method& method) {
   motion_.emplace(beam_, *statics_, heavy ? dead_load_.data() : nullptr);
   motion_->begin(method);
   if (rest_tolerance_ == 0.0 || !motion_->fused()) return;
-  int weighs = heavy ? 1 : 0;
-  MPI_Allreduce(MPI_IN_PLACE, &weighs, 1, MPI_INT, MPI_MAX, beam_.comm());
-  if (weighs != 0) {
-    rest_ = dead_load_;
-    release_held(rest_.data());
-    statics_->solve_static(rest_.data());
-  }
+  if (bent_at_rest()) rest_ = rest();
   window_.emplace(beam_, *statics_, rest_tolerance_, watched_, rest_.empty() ? nullptr : rest_.data());
 }
 

@@ -24,7 +24,8 @@ void ElementStructure::expect_weights(double sum, double greatest) {
 void ElementStructure::load(const std::vector<beam::ElementLoad>& forces) {
   nodal_forces_.clear();
   for (const beam::ElementLoad& force : forces) {
-    const beam::Hermite psi = beam::hermite(force.xi, line_.mesh.element(force.element).length);
+    const beam::Element& element = line_.mesh.element(force.element);
+    const beam::Hermite psi = beam::hermite(force.xi, element.length, element.shear);
     const auto unknowns = line_.transverse(force.element);
     for (int i = 0; i < 4; ++i) {
       const int local = beam_.local(unknowns[i]);
@@ -100,7 +101,10 @@ void ElementStructure::begin_statics(bool loaded) {
   stage_ = {};
   stage_.loaded = loaded;
   for (std::vector<double>* still : {&v_still_, &w_still_}) std::fill(still->begin(), still->end(), 0.0);
-  if (nonlinear_) nonlinear_->begin(0.0, nullptr, nullptr, nullptr);
+  const bool settled = !beam_.imposed().empty();
+  if (settled) v_still_ = beam_.imposed();
+  if (nonlinear_) nonlinear_->begin(0.0, settled ? v_still_.data() : nullptr, nullptr, nullptr);
+  if (settled) return load_of_stills();
   external_load(z_.data());
   release_held(z_.data());
   if (nonlinear_) stage_load_ = z_;

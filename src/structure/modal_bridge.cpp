@@ -305,7 +305,7 @@ PiecewiseCubic ModalBridge::influence_of(const std::vector<Line>& lines, const s
         const Line& line = lines[channel];
         std::array<double, 4> nodal{};
         for (std::size_t k = 0; k < 4; ++k) nodal[k] = line.nodal[static_cast<std::size_t>(unknowns[k])];
-        beam::Cubic cubic = beam::shifted(beam::hermite_cubic(nodal, element.length), left);
+        beam::Cubic cubic = beam::shifted(beam::hermite_cubic(nodal, element.length, element.shear), left);
         if (line.direct != nullptr && mesh.locate(stations[line.probe]).element == e) {
           const beam::Cubic more = beam::cubic_through(right - left, [&](double x) {
             const beam::ElementLoad unit = {e, (left + x) / element.length, 0.0, -1.0, 0.0};

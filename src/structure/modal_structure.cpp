@@ -56,7 +56,8 @@ void ModalStructure::load(const std::vector<beam::ElementLoad>& forces) {
   forces_ = forces;
   std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
   for (const beam::ElementLoad& force : forces_) {
-    const beam::Hermite psi = beam::hermite(force.xi, line_.mesh.element(force.element).length);
+    const beam::Element& element = line_.mesh.element(force.element);
+    const beam::Hermite psi = beam::hermite(force.xi, element.length, element.shear);
     const auto unknowns = line_.transverse(force.element);
     for (std::size_t k = 0; k < 4; ++k) {
       const double* phi = shapes(unknowns[k]);

@@ -160,6 +160,7 @@ void NonlinearFoundation::begin(double shift, const double* v_still, const doubl
   iteration_ = 0;
   if (shift == 0.0) {
     for (Point& p : points_) p.still = p.still_rate = 0.0;
+    if (v_still != nullptr) gather(v_still, &Point::still);
     return;
   }
   gather(v_still, &Point::still);
@@ -171,7 +172,7 @@ void NonlinearFoundation::begin(double shift, const double* v_still, const doubl
 // Statics begins as if whatever can carry weight did, from where it first touches.
 void NonlinearFoundation::start_statics(Point& p) const {
   const bool carries = p.its.direction == Direction::vertical;
-  p.zeta0 = carries ? -p.its.law.gap : 0.0;
+  p.zeta0 = (carries ? -p.its.law.gap : 0.0) - p.still;
   p.state = {};
   p.state.by_displacement = carries || p.its.law.gap == 0.0 ? p.reference : 0.0;
 }

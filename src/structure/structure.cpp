@@ -11,9 +11,25 @@ Structure::Structure(const beam::Beam& beam, std::shared_ptr<BeamOperator> stati
       line_(beam.running()),
       statics_(statics ? std::move(statics) : std::make_shared<BeamOperator>(beam)),
       dead_load_(static_cast<std::size_t>(beam.local_unknowns()), 0.0),
+      gravity_(gravity),
       n_(beam.local_unknowns()) {
   MPI_Comm_size(beam.comm(), &ranks_);
   if (gravity != 0.0) beam_.add_self_weight(gravity, dead_load_.data());
+  for (std::size_t i = 0; i < beam.strain_forces().size(); ++i) dead_load_[i] += beam.strain_forces()[i];
+}
+
+std::vector<double> Structure::rest() {
+  const std::vector<double>& imposed = beam_.imposed();
+  std::vector<double> v = dead_load_;
+  if (!imposed.empty()) {
+    std::vector<double> forces(v.size());
+    statics_->multiply(-1.0, nullptr, nullptr, imposed.data(), forces.data());
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] += forces[i];
+  }
+  release_held(v.data());
+  statics_->solve_static(v.data());
+  for (std::size_t i = 0; i < imposed.size(); ++i) v[i] += imposed[i];
+  return v;
 }
 
 void Structure::release_held(double* nodal) const {
@@ -23,7 +39,8 @@ void Structure::release_held(double* nodal) const {
 }
 
 void Structure::add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const {
-  const beam::Hermite psi = beam::hermite(force.xi, line.mesh.element(force.element).length);
+  const beam::Element& element = line.mesh.element(force.element);
+  const beam::Hermite psi = beam::hermite(force.xi, element.length, element.shear);
   const auto unknowns = line.transverse(force.element);
   for (std::size_t i = 0; i < 4; ++i)
     if (const int local = beam_.local(unknowns[i]); local >= 0) nodal[local] += force.fy * psi.value[i];

@@ -68,8 +68,16 @@ class Structure {
   int unknowns() const { return n_; }
   /// The beam's matrices, for what is at rest.
   BeamOperator& statics() const { return *statics_; }
-  /// Nodal forces of the beam's own weight, this rank's unknowns of the beam.
+  /// Nodal forces of the beam's own weight and of its strains, this rank's unknowns of the beam.
   const std::vector<double>& dead_load() const { return dead_load_; }
+  /// Whether what an element yields between its nodes counts under a wheel. A rail bends there; a bridge's elements,
+  /// which are as many as its modes ask for, hardly do, but one that shears has a kink under a wheel, and none at its
+  /// nodes.
+  virtual bool yields_inside() const { return beam_.rail() != nullptr || beam_.model().GA.has_value(); }
+  /// Whether it is bent or stretched without vehicles and moving forces.
+  bool bent_at_rest() const { return gravity_ != 0.0 || beam_.model().strained(); }
+  /// Collective. Its displacements then, without foundations that are not linear: this rank's unknowns of the beam.
+  std::vector<double> rest();
   /// Sets nodal forces on unknowns that a support holds to zero: they go into the reactions.
   void release_held(double* nodal) const;
   /// Adds a vertical force (N, upward) inside an element of a line to this rank's nodal forces.
@@ -169,6 +177,7 @@ class Structure {
   const beam::Line& line_;
   std::shared_ptr<BeamOperator> statics_;
   std::vector<double> dead_load_;
+  double gravity_;
   int n_, ranks_ = 1;
 
  private:

@@ -166,7 +166,7 @@ class Chooser {
       for (const lanes::CrossingPeak& peak : run.deflection) deflection = std::max(deflection, peak.value);
     const std::vector<double>& spans = scene_.beam->spans;
     const double length = *std::min_element(spans.begin(), spans.end());
-    const double weight = scene_.beam->hinges.empty() ? weight_of_touch : beside_a_hinge;
+    const double weight = scene_.beam->hinges.empty() && scene_.beam->cracks.empty() ? weight_of_touch : beside_a_hinge;
     return weight * scene_.vehicles.front().wheels.front().radius * deflection / (length * length);
   }
 

@@ -48,7 +48,7 @@ bool simple_spans(const beam::BeamModel& beam) {
                                                               : !(beam.foundation.*kind.points).empty());
       });
   return std::all_of(beam.supports.begin(), beam.supports.end(), holds_ends_alone) && beam.EI.uniform() &&
-         beam.mass.uniform() && !beam.track && beam.hinges.empty() && !foundation &&
+         beam.mass.uniform() && !beam.track && beam.hinges.empty() && beam.cracks.empty() && !foundation &&
          (beam.spans.size() == 1 || beam.all_separate()) &&
          std::all_of(beam.spans.begin(), beam.spans.end(), [&](double span) { return span == beam.spans.front(); });
 }

@@ -102,10 +102,10 @@ class Fleet {
  public:
   Fleet() = default;
   /// mesh: of the beam that wheels run on, null for rigid ground alone, its surface at a height above its axis.
-  /// inner_EI: its bending stiffness, N m2, where its elements bend between their nodes under wheels; 0: they do not.
+  /// yields_inside: whether what its elements yield between their nodes under wheels counts.
   /// frozen: every drive stands still at its place at t = 0, and a free train is held: for the static start.
   Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
-        const track::Profile* profile, double surface_height, double inner_EI = 0.0);
+        const track::Profile* profile, double surface_height, bool yields_inside = false);
 
   std::vector<MovingVehicle> vehicles;
   std::vector<Member> members;  // the vehicles of the train
@@ -282,7 +282,8 @@ class Fleet {
   bool jumps_ = false;                                           // prescribed accelerations do
   bool frozen_ = false;
   int stuck_ = -1;
-  double surface_height_ = 0.0, inner_EI_ = 0.0;
+  double surface_height_ = 0.0;
+  bool yields_inside_ = false;
   Crowded crowded_;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p

@@ -24,9 +24,11 @@ void Fleet::add_patch(WheelContact& c, int element, double start, double low, do
   patch.start = start;
   if (element < 0) return;
   patch.height = surface_height_;
-  patch.x = mesh_->element(element).x;
-  patch.length = mesh_->element(element).length;
-  if (inner_EI_ > 0.0) patch.yield = patch.length * patch.length * patch.length / (3.0 * inner_EI_);
+  const beam::Element& e = mesh_->element(element);
+  patch.x = e.x;
+  patch.length = e.length;
+  patch.shear = e.shear;
+  if (yields_inside_) patch.yield = e.length * e.length * e.length / (3.0 * e.EI);
 }
 
 // The patches within [low, high] under a contact at x: the one there, and its neighbour across a kink between `from`
@@ -287,7 +289,7 @@ void Fleet::expected_loads(int per_node, std::vector<double>& loads) const {
     if (c.force.normal == 0.0 || c.candidates == 0 || c.slots[0] < 0) continue;
     const Patch& patch = c.patches[0];
     const double xi = std::clamp((coordinates(c).x() - patch.x) / patch.length, 0.0, 1.0);
-    const beam::Hermite psi = beam::hermite(xi, patch.length);
+    const beam::Hermite psi = beam::hermite(xi, patch.length, patch.shear);
     double* f = &loads[static_cast<std::size_t>(c.slots[0]) * m] + per_node - 2;
     for (int i = 0; i < 2; ++i) {
       f[i] -= c.force.normal * psi.value[i];

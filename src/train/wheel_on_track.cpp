@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "beam/shape.hpp"
 
@@ -9,7 +11,7 @@ namespace traverse::train {
 namespace {
 
 // The surface point that belongs to the material station x, and how it changes along x. At a height e above the
-// neutral axis it moves by -e v' along x, as the plane sections turn.
+// neutral axis it moves by -e theta along x, as the plane sections turn; theta = v' without shear.
 struct SurfacePoint {
   Eigen::Vector2d P, P_x, P_xx;
 };
@@ -19,8 +21,8 @@ struct Surface {
   const track::Profile& profile;
   int block;
   const double* v;
-  double per_length = 0.0;
-  std::array<double, 4> deflection{};  // of the element: coefficients of the powers of xi
+  double per_length = 0.0, strain = 0.0;  // strain: v' - theta
+  std::array<double, 4> deflection{};     // of the element: coefficients of the powers of xi
 
   Surface(const Patch& patch_, const track::Profile& profile_, int block_, const double* v_)
       : patch(patch_), profile(profile_), block(block_), v(v_) {
@@ -28,7 +30,13 @@ struct Surface {
     per_length = 1.0 / patch.length;
     const int o = block - 2;  // where v stands among a node's unknowns
     const double difference = v[block + o] - v[o];
-    const double left = patch.length * v[o + 1], right = patch.length * v[block + o + 1];
+    double left = patch.length * v[o + 1], right = patch.length * v[block + o + 1];
+    if (patch.shear != 0.0) {
+      const double sheared = patch.shear / (1.0 + patch.shear) * (difference - 0.5 * (left + right));
+      strain = sheared * per_length;
+      left += sheared;
+      right += sheared;
+    }
     deflection = {v[o], left, 3.0 * difference - 2.0 * left - right, left + right - 2.0 * difference};
   }
 
@@ -41,7 +49,7 @@ struct Surface {
     const double slope = (c1 + xi * (2.0 * c2 + xi * 3.0 * c3)) * per_length;
     const double curvature = (2.0 * c2 + xi * 6.0 * c3) * per_length * per_length;
     const double third = 6.0 * c3 * per_length * per_length * per_length;
-    s.P += Eigen::Vector2d(-patch.height * slope, c0 + xi * (c1 + xi * (c2 + xi * c3)));
+    s.P += Eigen::Vector2d(-patch.height * (slope - strain), c0 + xi * (c1 + xi * (c2 + xi * c3)));
     s.P_x += Eigen::Vector2d(-patch.height * curvature, slope);
     s.P_xx += Eigen::Vector2d(-patch.height * third, curvature);
     if (block == 3) {
@@ -51,6 +59,16 @@ struct Surface {
     return s;
   }
 };
+
+/// What an element clamped at its nodes yields to a force at xi, m/N, and its derivative over x. With u = xi (1 - xi)
+/// and s = 12 EI/(GA h^2) it is h^3/(12 EI) ((4 u^3 + s u^2)/(1 + s) + s u).
+std::pair<double, double> seat_of(const Patch& patch, double xi) {
+  const double hump = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / patch.length;
+  if (patch.shear == 0.0) return {patch.yield * hump * hump * hump, patch.yield * 3.0 * hump * hump * by_x};
+  const double s = patch.shear, quarter = 0.25 * patch.yield;
+  return {quarter * hump * ((4.0 * hump + s) * hump / (1.0 + s) + s),
+          quarter * ((12.0 * hump + 2.0 * s) * hump / (1.0 + s) + s) * by_x};
+}
 
 // Station of the point s closest to the centre c: (c - P).P_x = 0, by Newton.
 double closest_station(const Surface& surface, const Eigen::Vector2d& c, double start, SurfacePoint& s) {
@@ -113,14 +131,14 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
   out.ahead = x - c.x();
   if (patch.element >= 0) {
     out.xi = (x - patch.x) * surface.per_length;
-    const double hump = out.xi * (1.0 - out.xi);
-    out.seat = patch.yield * hump * hump * hump;
-    out.seat_by_x = patch.yield * 3.0 * hump * hump * (1.0 - 2.0 * out.xi) * surface.per_length;
-    const beam::Hermite psi = beam::hermite(out.xi, patch.length);
+    std::tie(out.seat, out.seat_by_x) = seat_of(patch, out.xi);
+    const beam::Hermite psi = beam::hermite(out.xi, patch.length, patch.shear);
+    const std::array<double, 4> turn =
+        patch.shear == 0.0 ? psi.slope : beam::rotation(out.xi, patch.length, patch.shear);
     const int o = block - 2;
     const std::array<int, 4> place = {o, o + 1, block + o, block + o + 1};
     for (int i = 0; i < 4; ++i) {
-      const double along = -patch.height * psi.slope[i];
+      const double along = -patch.height * turn[i];
       out.normal_on_beam[place[i]] = n.y() * psi.value[i] + n.x() * along;
       out.tangent_on_beam[place[i]] = -tau.y() * psi.value[i] - tau.x() * along;
       relative.y() -= psi.value[i] * w[place[i]];

@@ -4,9 +4,10 @@
 // action and reaction cancel to rounding and the power of the pair is -f_n alpha' - f_t beta' (paper, eqs. 45-50).
 //
 // v is the element's cubic. Under a force inside it the element sinks further, as a beam clamped at its nodes does: by
-// h^3 xi^3 (1 - xi)^3/(3 EI) a newton at the force itself. Where that counts it is condensed into the contact, as a
-// seat in series with the law (contact::Law::seat): it has no mass, so that it needs no unknowns. Its energy s f^2/2
-// changes with the place too: the wheel is driven on by f^2/2 ds/dx, which is what the slope of that shape makes of f.
+// h^3 xi^3 (1 - xi)^3/(3 EI) a newton at the force itself, and by more where it shears (seat_of). Where that counts it
+// is condensed into the contact, as a seat in series with the law (contact::Law::seat): it has no mass, so that it
+// needs no unknowns. Its energy s f^2/2 changes with the place too: the wheel is driven on by f^2/2 ds/dx, which is
+// what the slope of that shape makes of f.
 #pragma once
 
 #include <Eigen/Core>
@@ -22,6 +23,7 @@ namespace traverse::train {
 struct Patch {
   int element = -1;              // -1: rigid ground
   double x = 0.0, length = 0.0;  // of the element, m
+  double shear = 0.0;            // 12 EI/(GA length^2)
   double height = 0.0;           // of the surface above the beam's neutral axis, m
   double yield = 0.0;            // length^3/(3 EI), m/N, where the element's inner shape counts
   double low = 0.0, high = 0.0;  // stations between which the piece reaches; a wheel beyond touches its corner

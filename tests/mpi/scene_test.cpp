@@ -116,6 +116,16 @@ TEST(Ranks, FreeTrainOnABridgeWithFoundationAndBump) {
                            35);
 }
 
+// Settled and scoured supports, a crack, a warm deck; shear, with a crack that is a spring.
+TEST(Ranks, BridgesAsFoundAndThatShear) {
+  const Values short_run = {{"ts_dt", "2e-3"}, {"ts_max_time", "0.5"}, {"output_interval", "0.02"}};
+  expect_same_on_all_ranks("bridge_as_found", short_run + Values{{"beam_elements_per_span", "10"}}, 30, 1e-8);
+  expect_same_on_all_ranks(
+      "deep_short_span",
+      short_run + Values{{"beam_elements_per_span", "12"}, {"beam_cracks_x", "4.1"}, {"beam_cracks_k", "2e9"}}, 30,
+      1e-8);
+}
+
 // A flat on one wheel, a polygon on the other, over a bump that is sharper than the wheels.
 // Until all of its cars are on the bridge: before, their accelerations are rounding.
 TEST(Ranks, ArticulatedTrain) {

@@ -15,14 +15,14 @@ namespace traverse::test {
 inline beam::ElementLoad add_load(const beam::Beam& b, double x, double fy, double moment, double fx, double* P) {
   const beam::Station at = b.mesh().locate(x);
   const beam::Element& e = b.mesh().element(at.element);
-  const auto s = beam::hermite(at.xi, e.length);
+  const auto psi = beam::hermite(at.xi, e.length, e.shear).value, turn = beam::rotation(at.xi, e.length, e.shear);
   const auto phi = beam::linear(at.xi);
   const auto add = [&](int unknown, double value) {
     const int local = unknown < 0 ? -1 : b.local(unknown);
     if (local >= 0) P[local] += value;
   };
   for (int i = 0; i < 2; ++i) add(b.bridge().axial(at.element)[i], fx * phi[i]);
-  for (int i = 0; i < 4; ++i) add(b.bridge().transverse(at.element)[i], fy * s.value[i] + moment * s.slope[i]);
+  for (int i = 0; i < 4; ++i) add(b.bridge().transverse(at.element)[i], fy * psi[i] + moment * turn[i]);
   return {at.element, at.xi, fx, fy, moment};
 }
 

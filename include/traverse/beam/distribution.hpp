@@ -21,6 +21,8 @@ class Distribution {
   double maximum() const;
   /// The same quantity with `value` more everywhere.
   Distribution plus(double value) const;
+  /// The same quantity `factor` times as large from `from` to `to`, with a step at either.
+  Distribution with_factor(double from, double to, double factor) const;
   /// Stations of the table strictly inside (a, b), without repetition: where an integration has to be split.
   std::vector<double> breaks(double a, double b) const;
   /// Stations strictly inside (a, b) at which the value steps.

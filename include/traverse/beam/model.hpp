@@ -18,6 +18,7 @@ enum class Support {
   pinned,   // u and v
   clamped,  // u, v and the rotation
   guided,   // u and the rotation: slides vertically
+  along,    // u
 };
 bool fixes_axial(Support s);
 bool fixes_vertical(Support s);
@@ -28,6 +29,24 @@ enum class Joint {
   continuous,  // it goes through
   hinge,       // it goes through, but its slope may jump: no moment there
   separate,    // two beams that end there, side by side on one support
+  cracked,     // it goes through, but its slope may jump against a rotational spring
+};
+
+/// A crack: a rotational spring between the beam's two sides.
+struct Crack {
+  double x = 0.0;  // m
+  double k = 0.0;  // N m/rad, > 0
+};
+
+/// What the beam would do by itself since it was built in: it lengthens and, warmer above than below, curves upward.
+struct Temperature {
+  double uniform = 0.0;    // K
+  double gradient = 0.0;   // K, of the top over the bottom
+  double expansion = 0.0;  // 1/K
+  double depth = 1.0;      // m, over which the gradient is
+
+  double strain() const { return expansion * uniform; }
+  double curvature() const { return -expansion * gradient / depth; }  // 1/m, positive in sagging
 };
 
 /// A spring and a damper of a layer of track: N/m and N s/m for each sleeper.
@@ -41,6 +60,7 @@ struct Layer {
 /// and its mass rides there. A layer that is left out is rigid: the sleeper stands on the next one.
 struct LayeredTrack {
   double rail_EI = 0.0, rail_EA = 0.0, rail_mass = 0.0;  // N m2, N, kg/m
+  std::optional<double> rail_GA;                         // N; none: it does not shear
   double spacing = 0.6;                                  // from sleeper to sleeper, m
   double offset = 0.0;                                   // station of one of them, m
   int elements_per_bay = 2;                              // of the rail
@@ -54,14 +74,20 @@ struct LayeredTrack {
 };
 
 struct BeamModel {
-  std::vector<double> spans;      // m, each > 0
-  std::vector<int> elements;      // one number a span, each >= 1; with a layered track its rail's mesh decides instead
-  Distribution EI;                // N m2, > 0
-  Distribution EA;                // N, > 0 where axial
-  Distribution mass;              // kg/m, > 0
-  std::vector<Joint> joints;      // at the inner span ends, one for all or one each; empty: continuous
-  std::vector<double> hinges;     // further hinges within spans, m, ascending
-  std::vector<Support> supports;  // one at every span end: spans + 1; where spans are separate it serves both
+  std::vector<double> spans;       // m, each > 0
+  std::vector<int> elements;       // one number a span, each >= 1; with a layered track its rail's mesh decides instead
+  Distribution EI;                 // N m2, > 0
+  Distribution EA;                 // N, > 0 where axial
+  std::optional<Distribution> GA;  // N, > 0: shear stiffness kappa G A; none: the beam does not shear
+  Distribution mass;               // kg/m, > 0
+  Distribution rotary_inertia;     // kg m, >= 0: of a section about its neutral axis, rho I
+  std::vector<Joint> joints;       // at the inner span ends, one for all or one each; empty: continuous
+  std::vector<double> hinges;      // further hinges within spans, m, ascending
+  std::vector<Crack> cracks;       // ascending, none at a hinge
+  std::vector<double> cuts;        // stations that always get a node, m, ascending
+  std::vector<Support> supports;   // one at every span end: spans + 1; where spans are separate it serves both
+  std::vector<double> settlement;  // m upward, of what holds v there: one at every span end, or none at all
+  std::optional<Temperature> temperature;
   Foundation foundation;
   std::optional<LayeredTrack> track;
   std::optional<GivenModes> given;  // the bridge is these modes, between whose stations it has one element each
@@ -75,6 +101,8 @@ struct BeamModel {
   Joint joint(int span_end) const;
   /// Whether all its spans are beams of their own.
   bool all_separate() const;
+  /// Whether settlements or temperature bend or stretch it without a load.
+  bool strained() const;
 };
 
 /// A bridge of given modes: what its elements are between the stations of the shapes. They carry the shapes and

@@ -1,0 +1,112 @@
+// A bridge as it is found: cracks, supports that yield or have settled, its temperature.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene_parts.hpp"
+
+namespace traverse::app {
+namespace {
+
+using options::Options;
+
+/// Cracks of a width: EI is less there, and nodes stand at both ends whatever the mesh.
+void read_weak_stretches(const Options& o, const std::vector<double>& x, beam::BeamModel& beam) {
+  if (!o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_width", "needs beam_cracks_EI_factor");
+  const std::vector<double> width = o.numbers("beam_cracks_width", x.size(), "as many as stations");
+  const std::vector<double> factor = o.numbers("beam_cracks_EI_factor", x.size(), "as many as stations");
+  double before = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double from = x[i] - 0.5 * width[i], to = x[i] + 0.5 * width[i];
+    if (from < before || to > beam.length())
+      o.refuse("beam_cracks_width",
+               fmt::format("the crack from {:g} to {:g} m is not within the beam, or meets the one "
+                           "before; allowed: within 0 to {:g} m, from left to right",
+                           from, to, beam.length()));
+    before = to;
+    beam.EI = beam.EI.with_factor(from, to, factor[i]);
+    for (const double end : {from, to})
+      if (end > 0.0 && end < beam.length()) beam.cuts.push_back(end);
+  }
+}
+
+beam::Support without_vertical(const Options& o, beam::Support support) {
+  using beam::Support;
+  if (support == Support::roller) return Support::free;
+  if (support == Support::pinned) return Support::along;
+  if (support == Support::clamped) return Support::guided;
+  o.refuse("support_stiffness",
+           "stands at a support that does not hold the beam vertically; allowed: at rollers, "
+           "pinned and clamped ones (support_types)");
+}
+
+void yield_vertically(const Options& o, const std::vector<double>& stiffness, const std::vector<double>& scour,
+                      beam::BeamModel& beam) {
+  double x = 0.0;
+  for (std::size_t end = 0; end < stiffness.size(); ++end) {
+    if (scour[end] > 0.0 && stiffness[end] == 0.0)
+      o.refuse("support_scour", "takes a part of support_stiffness, which is 0 there: rigid");
+    if (stiffness[end] > 0.0) {
+      const bool inner = end > 0 && end < beam.spans.size();
+      if (inner && beam.joint(static_cast<int>(end)) == beam::Joint::separate)
+        o.refuse("support_stiffness",
+                 "stands where two beams end on one support; allowed: where the beam goes through");
+      beam.supports[end] = without_vertical(o, beam.supports[end]);
+      beam::PointFoundation spring;
+      spring.x = std::min(x, beam.length());
+      spring.k = stiffness[end] * (1.0 - scour[end]);
+      beam.foundation.vertical.push_back(spring);
+    }
+    if (end < beam.spans.size()) x += beam.spans[end];
+  }
+}
+
+}  // namespace
+
+void read_cracks(const Options& o, beam::BeamModel& beam) {
+  if (!o.has("beam_cracks_x")) {
+    if (const options::Entry* entry = o.first_with_prefix("beam_cracks"))
+      o.refuse(entry->name, "needs beam_cracks_x, the stations");
+    return;
+  }
+  const std::vector<double> x = o.numbers("beam_cracks_x");
+  const bool springs = o.has("beam_cracks_k"), wide = o.has("beam_cracks_width");
+  if (springs == wide) o.refuse("beam_cracks_x", "needs either beam_cracks_k or beam_cracks_width with its EI_factor");
+  if (wide) return read_weak_stretches(o, x, beam);
+  if (o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_EI_factor", "needs beam_cracks_width");
+  const std::vector<double> k = o.numbers("beam_cracks_k", x.size(), "as many as stations");
+  for (std::size_t i = 0; i < x.size(); ++i) beam.cracks.push_back({x[i], k[i]});
+}
+
+void read_bearings(const Options& o, beam::BeamModel& beam) {
+  const std::size_t ends = beam.spans.size() + 1;
+  const auto numbers = [&](const char* name) { return o.numbers(name, ends, "one for every span end"); };
+  if (o.has("support_scour") && !o.has("support_stiffness"))
+    o.refuse("support_scour", "needs support_stiffness, of which it takes a part");
+  if (o.has("support_settlement")) beam.settlement = numbers("support_settlement");
+  if (!o.has("support_stiffness")) return;
+  const std::vector<double> stiffness = numbers("support_stiffness"), scour = numbers("support_scour");
+  yield_vertically(o, stiffness, scour, beam);
+  for (std::size_t end = 0; end < beam.settlement.size(); ++end)
+    if (beam.settlement[end] != 0.0 && stiffness[end] > 0.0)
+      o.refuse("support_settlement", "a support that settles is rigid; allowed: support_stiffness 0 there");
+}
+
+std::optional<beam::Temperature> read_temperature(const Options& o) {
+  beam::Temperature t;
+  t.uniform = o.number("beam_temperature_uniform");
+  t.gradient = o.number("beam_temperature_gradient");
+  t.expansion = o.number("beam_temperature_expansion");
+  if (t.uniform == 0.0 && t.gradient == 0.0) {
+    for (const char* name : {"beam_temperature_expansion", "beam_temperature_depth"})
+      if (o.has(name) && !o.has("beam_temperature_uniform") && !o.has("beam_temperature_gradient"))
+        o.refuse(name, "needs beam_temperature_uniform or beam_temperature_gradient");
+    return std::nullopt;
+  }
+  const std::optional<double> depth = o.optional_number("beam_temperature_depth");
+  if (t.gradient != 0.0 && !depth) o.refuse("beam_temperature_gradient", "needs beam_temperature_depth");
+  t.depth = depth.value_or(1.0);
+  return t;
+}
+
+}  // namespace traverse::app
