@@ -44,11 +44,12 @@ std::vector<Piece> divided(const BeamModel& model) {
   auto hinge = model.hinges.begin();
   double left = model.start, end = model.start;
   const int spans = static_cast<int>(model.spans.size());
+  const bool at_steps = model.nodes_at_steps && !model.track;
   for (int span = 0; span < spans; ++span) {
     end += model.spans[span];
     for (; hinge != model.hinges.end() && *hinge < end; ++hinge) {
       pieces.push_back({span, left, *hinge, 0, Joint::hinge, false});
-      if (!model.track) divide_at_steps(model, pieces);
+      if (at_steps) divide_at_steps(model, pieces);
       left = *hinge;
     }
     Joint next = span + 1 < spans ? model.joint(span + 1) : Joint::separate;
@@ -57,7 +58,7 @@ std::vector<Piece> divided(const BeamModel& model) {
       if (next == Joint::continuous) next = Joint::hinge;
     }
     pieces.push_back({span, left, end, 0, next, true});
-    if (!model.track) divide_at_steps(model, pieces);
+    if (at_steps) divide_at_steps(model, pieces);
     left = end;
   }
   return pieces;
@@ -71,6 +72,21 @@ void follow_rail(const RailMesh& rail, std::vector<Piece>& pieces) {
     const int nodes = rail.first_from(piece.right) - rail.first_from(piece.left);
     piece.elements = nodes - (piece.next == Joint::separate ? 1 : 0);
   }
+}
+
+/// The mass that a sleeper brings onto the bridge, its ballast's or where there is none its own: the mean of those on
+/// the bridge.
+double riding_mass(const BeamModel& model, const LayeredTrack& track) {
+  const auto mass = [&](double x) {
+    const TrackValues values = track.at(x);
+    return track.ballast ? values.ballast_mass : values.sleeper_mass;
+  };
+  if (track.uniform()) return mass(model.start);
+  const int first = base::whole(std::ceil((model.start - track.offset) / track.spacing));
+  const int last = base::whole(std::floor((model.end() - track.offset) / track.spacing));
+  double sum = 0.0;
+  for (int i = first; i <= last; ++i) sum += mass(track.offset + i * track.spacing);
+  return last < first ? 0.0 : sum / (last - first + 1);
 }
 
 }  // namespace
@@ -92,7 +108,7 @@ BeamModel bridge_alone(const BeamModel& model) {
   BeamModel bridge = model;
   if (!model.track) return bridge;
   const LayeredTrack& track = *model.track;
-  bridge.mass = model.mass.plus((track.ballast ? track.ballast_mass : track.sleeper_mass) / track.spacing);
+  bridge.mass = model.mass.plus(riding_mass(model, track) / track.spacing);
   bridge.track.reset();
   return bridge;
 }
@@ -108,6 +124,8 @@ BeamModel rail_model(const BeamModel& model) {
   rail.supports = {Support::free, Support::free};
   rail.axial = model.axial;
   rail.start = mesh.start;
+  rail.hinges = model.track->rail_hinges;
+  rail.nodes_at_steps = false;
   return rail;
 }
 

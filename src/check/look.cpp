@@ -98,7 +98,7 @@ void Look::choose_mesh_and_step() {
 
 void Look::find_frequencies() {
   const beam::Beam& beam = *shared->beam;
-  const bool plain = beam.rail() == nullptr && !beam.model().foundation.nonlinear();
+  const bool plain = beam.rail() == nullptr && !beam.model().nonlinear();
   const std::vector<double> omega =
       plain ? modes::distinct_frequencies(beam, told_frequencies)
             : modes::distinct_frequencies(beam::Beam(PETSC_COMM_SELF, linearised(bridge_alone(beam.model()))),

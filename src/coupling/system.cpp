@@ -67,8 +67,8 @@ double System::surface_height() const {
 
 // A rail bends between its nodes under a wheel; of a bridge's elements, which are as many as its modes ask for, that is
 // hardly anything.
-double System::inner_EI() const {
-  return structure_ && beam()->rail() != nullptr ? beam()->model().track->rail_EI : 0.0;
+const beam::Distribution* System::inner_EI() const {
+  return structure_ && beam()->rail() != nullptr ? &beam()->rail()->model.EI : nullptr;
 }
 
 int System::local_size() const { return 2 * n_ + (rank_ == 0 ? 2 * fleet_.freedom() + 2 : 0); }

@@ -268,7 +268,7 @@ class System {
   [[noreturn]] void refuse_start(Solution found) const;
   void add_flats(const train::WheelContact& c, double end, std::vector<double>& events) const;
   double surface_height() const;
-  double inner_EI() const;
+  const beam::Distribution* inner_EI() const;
   void note_weights();
   void share_coordinates(const double* y);
   Solution settle(Terms terms, double tie = 0.0);

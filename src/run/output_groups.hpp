@@ -16,9 +16,10 @@ void add_supports(const Source& source, Outputs& outputs);    // outputs_beam.cp
 void add_balance(const Source& source, Outputs& outputs);     // outputs_beam.cpp
 void add_rail(const Source& source, Outputs& outputs);        // outputs_beam.cpp
 void add_foundation(const Source& source, Outputs& outputs);  // outputs_foundation.cpp
+void add_hanging(const Source& source, Outputs& outputs);     // outputs_foundation.cpp
 
 inline constexpr OutputGroup output_groups[] = {add_couplers, add_vehicles, add_energy};
-inline constexpr OutputGroup output_groups_of_a_bridge[] = {add_probes, add_supports, add_foundation, add_balance,
-                                                            add_rail};
+inline constexpr OutputGroup output_groups_of_a_bridge[] = {add_probes,  add_supports, add_foundation,
+                                                            add_balance, add_rail,     add_hanging};
 
 }  // namespace traverse::app

@@ -20,6 +20,8 @@ Vehicle read_vehicle(const options::Options& options, const std::string& name);
 
 /// Makes the options of the train's couplers known.
 void declare_couplers(options::Options& options);
+/// Makes the options of a layered track's stretches known.
+void declare_stretches(options::Options& options);
 /// Bodies are not yet looked for.
 Coupler read_coupler(const options::Options& options, const std::string& name);
 

@@ -35,9 +35,7 @@ Roughness rough(const Options& o, const Scene& scene, const track::Spectrum& spe
   return {spectrum, wavelengths[0], wavelengths[1], start};
 }
 
-}  // namespace
-
-void read_track(const Options& o, Scene& scene) {
+void read_profile(const Options& o, Scene& scene) {
   const std::string profile = o.text("track_profile");
   const options::Entry* bump = o.first_with_prefix("track_bump");
   if (profile == "bump") {
@@ -63,6 +61,33 @@ void read_track(const Options& o, Scene& scene) {
   const std::string path = o.path("track_profile");
   auto columns = options::read_columns(path, 2, 2);
   scene.profile = track::Profile::table(std::move(columns[0]), std::move(columns[1]), "track_profile (" + path + ")");
+}
+
+/// Dips and humps on top of the profile.
+void read_dips(const Options& o, Scene& scene) {
+  if (!o.has("track_dips_x")) {
+    if (const options::Entry* entry = o.first_with_prefix("track_dips"))
+      o.refuse(entry->name, "belongs to dips, which need track_dips_x");
+    return;
+  }
+  const std::vector<double> x = o.numbers("track_dips_x");
+  const std::vector<double> length = o.numbers("track_dips_length", x.size(), "one a dip");
+  const std::vector<double> depth = o.numbers("track_dips_depth", x.size(), "one a dip");
+  const std::vector<std::string> shape = o.texts("track_dips_shape", x.size(), "one a dip");
+  if (scene.roughness)
+    o.refuse("track_dips_x", "with a rough track_profile: not there yet; allowed: none, bump or a file");
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (shape[i] == "joint" && depth[i] < 0.0)
+      o.refuse("track_dips_depth", "a dip of the shape joint is below 0; allowed: from 0 on");
+    scene.profile = scene.profile.with_dip(x[i], length[i], depth[i], shape[i] == "joint");
+  }
+}
+
+}  // namespace
+
+void read_track(const Options& o, Scene& scene) {
+  read_profile(o, scene);
+  read_dips(o, scene);
 }
 
 }  // namespace traverse::app

@@ -300,6 +300,7 @@ Scene read_study(const Options& given) {
   Options o = given;
   const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
+  declare_stretches(o);
   declare_study(o);
   o.check_names();
   o.check_values();

@@ -25,7 +25,7 @@ MovingVehicle::MovingVehicle(Unit unit)
 }
 
 Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
-             const track::Profile* profile, double surface_height, double inner_EI)
+             const track::Profile* profile, double surface_height, const beam::Distribution* inner_EI)
     : mesh_(mesh),
       profile_(profile),
       speed_(frozen ? 0.0 : train.speed),

@@ -101,10 +101,11 @@ class Fleet {
  public:
   Fleet() = default;
   /// mesh: of the beam that wheels run on, null for rigid ground alone, its surface at a height above its axis.
-  /// inner_EI: its bending stiffness, N m2, where its elements bend between their nodes under wheels; 0: they do not.
-  /// frozen: every drive stands still at its place at t = 0, and a free train is held: for the static start.
+  /// inner_EI: its bending stiffness along x, N m2, where its elements bend between their nodes under wheels; null:
+  /// they do not. frozen: every drive stands still at its place at t = 0, and a free train is held: for the static
+  /// start.
   Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
-        const track::Profile* profile, double surface_height, double inner_EI = 0.0);
+        const track::Profile* profile, double surface_height, const beam::Distribution* inner_EI = nullptr);
 
   std::vector<MovingVehicle> vehicles;
   std::vector<Member> members;  // the vehicles of the train
@@ -269,7 +270,8 @@ class Fleet {
   double speed_ = 0.0;
   bool frozen_ = false;
   int stuck_ = -1;
-  double surface_height_ = 0.0, inner_EI_ = 0.0;
+  double surface_height_ = 0.0;
+  const beam::Distribution* inner_EI_ = nullptr;
   Crowded crowded_;
   std::vector<int> elements_;
   std::vector<double> home_, cruise_;        // coordinates = home + cruise*t + p

@@ -26,7 +26,9 @@ void Fleet::add_patch(WheelContact& c, int element, double start, double low, do
   patch.height = surface_height_;
   patch.x = mesh_->element(element).x;
   patch.length = mesh_->element(element).length;
-  if (inner_EI_ > 0.0) patch.yield = patch.length * patch.length * patch.length / (3.0 * inner_EI_);
+  if (inner_EI_ == nullptr) return;
+  const double EI = inner_EI_->at(patch.x + 0.5 * patch.length, patch.x);
+  patch.yield = patch.length * patch.length * patch.length / (3.0 * EI);
 }
 
 // The patches within [low, high] under a contact at x: the one there, and its neighbour across a kink between `from`
