@@ -20,7 +20,10 @@ std::string what_track(const beam::Beam& beam) {
       !t.subballast ? ""
       : t.own_mass  ? ", sub-ballast"
                     : ", sub-ballast on the ground",
-      shear ? ", shear" : "", t.stretches.empty() ? "" : fmt::format(", {} stretches of its own", t.stretches.size()),
+      shear ? ", shear" : "",
+      t.stretches.empty()
+          ? ""
+          : fmt::format(", {} stretch{} of other properties", t.stretches.size(), t.stretches.size() == 1 ? "" : "es"),
       beam.block());
 }
 

@@ -38,7 +38,7 @@ TEST(BadTracks, AreRefusedByName) {
            {"track_weak_sleepers", "few", {"track_weak_sleepers = few", "standard, none"}},
            {"track_weak_to", "2.0", {"track_weak_to = 2.0", "not below track_weak_from, 3 m"}},
            {"track_weak_subballast_k", "0", {"track_weak_subballast_k is 0", "it must be positive"}},
-           {"track_stretches", "weak,rail", {"track_stretches", "track_rail_EI", "rename"}},
+           {"track_stretches", "weak,weak", {"track_stretches", "track_weak_from", "rename"}},
            {"track_pad_k", "0", {"too few sleepers"}},
            {"track_gap", "1e-3", {"too few sleepers"}},
            {"track_rail_hinges", "3.1", {"track_rail_hinges is 3.1", "0.3 m apart"}},
@@ -68,7 +68,7 @@ TEST(BadTracks, NothingLeftToStandOn) {
         run_yaml(track, {{"track_weak_from", "3.1"}, {"track_weak_to", "3.5"}});
       },
       {"track_weak_from", "no sleeper of the track stands from 3.1 to 3.5 m"});
-  expect_refused([&] { run_yaml(track, {{"track_rail_hinges", "3.0,3.3"}}); }, {"float away"});
+  expect_refused([&] { run_yaml(track, {{"track_rail_hinges", "2.7,3.0,3.3"}, {"track_weak_sleepers", "none"}}); }, {"float away"});
 }
 
 TEST(BadTracks, ShearNeedsBallastThatMoves) {
