@@ -319,7 +319,9 @@ TEST(Ranks, PropBelowALayeredTrack) {
 }
 
 // Hanging, missing and weak sleepers, ballast in shear and with a mass of its own on the bridge, a joint of the rail;
-// the cut between two ranks lies in the bridge.
+// the cut between two ranks lies in the bridge. Newton's method for the gaps stops at 1e-12 of the greatest force a
+// stage, in the course of which wheel forces of 1.1e5 N come to differ by 3e-5 N: on the 1,813 kg of a wheelset 1e-7 of
+// its acceleration, which is 0.2 m/s2 at most.
 TEST(Ranks, TrackByStretch) {
   expect_same_on_all_ranks("r8_ballasted_bridge",
                            {{"track_elements_per_bay", "2"},
@@ -341,7 +343,7 @@ TEST(Ranks, TrackByStretch) {
                             {"track_gone_from", "9"},
                             {"track_gone_to", "9"},
                             {"track_gone_sleepers", "none"}},
-                           20, 1e-8);
+                           20, 1e-6);
 }
 
 TEST(Ranks, ExplicitContact) {
