@@ -68,7 +68,11 @@ TEST(BadTracks, NothingLeftToStandOn) {
         run_yaml(track, {{"track_weak_from", "3.1"}, {"track_weak_to", "3.5"}});
       },
       {"track_weak_from", "no sleeper of the track stands from 3.1 to 3.5 m"});
-  expect_refused([&] { run_yaml(track, {{"track_rail_hinges", "2.7,3.0,3.3"}, {"track_weak_sleepers", "none"}}); }, {"float away"});
+  expect_refused(
+      [&] {
+        run_yaml(track, {{"track_rail_hinges", "2.7,3.0,3.3"}, {"track_weak_sleepers", "none"}});
+      },
+      {"float away"});
 }
 
 TEST(BadTracks, ShearNeedsBallastThatMoves) {
