@@ -12,6 +12,7 @@ constexpr std::size_t crossed_in_full = 3;  // spans
 constexpr double behind = 1.1;              // spans, until what the last wheel does as it leaves is seen
 constexpr double same_number = 1e-9;        // relative
 constexpr int places_a_span = 8;
+constexpr double bays_behind = 10.0;      // of a layered track, until what stirs wheels there is seen
 constexpr double most_places = 200000.0;  // of a profile's table
 
 /// x of what has to be crossed for a vehicle to have been seen.
@@ -132,6 +133,26 @@ void add_profile(const Scene& scene, std::vector<Meeting>& list) {
     list.push_back({passed(scene, x + behind * scene.beam->spans[0]), fmt::format("the track's profile at {:g} m", x)});
 }
 
+/// Stretches of a layered track, where its tables change last, joints of its rail.
+void add_track(const Scene& scene, std::vector<Meeting>& list) {
+  if (!scene.beam->track) return;
+  const beam::LayeredTrack& track = *scene.beam->track;
+  const auto add = [&](double x, const std::string& what) {
+    list.push_back({passed(scene, x + bays_behind * track.spacing), what});
+  };
+  for (const beam::TrackStretch& stretch : track.stretches)
+    add(stretch.to, fmt::format("the stretch {} of the track", stretch.name));
+  for (const beam::TrackProperty& property : beam::track_properties) {
+    const beam::Distribution* along = property.along(track);
+    if (along == nullptr || along->uniform()) continue;
+    const std::vector<double> breaks =
+        along->breaks(scene.beam->start - track.approach, scene.beam->end() + track.approach);
+    if (!breaks.empty()) add(breaks.back(), fmt::format("track_{} at {:g} m", property.name, breaks.back()));
+  }
+  if (!track.rail_hinges.empty())
+    add(track.rail_hinges.back(), fmt::format("the joint of the rail at {:g} m", track.rail_hinges.back()));
+}
+
 void add_forces(const Scene& scene, std::vector<Meeting>& list) {
   for (const int type : scene.train.vehicles)
     for (const multibody::Actuator& actuator : scene.vehicles[static_cast<std::size_t>(type)].mechanism.actuators)
@@ -163,6 +184,7 @@ std::vector<Meeting> met_later(const Scene& scene, double seen, double end) {
     add_spans(scene, list);
     add_vehicles(scene, list);
     add_profile(scene, list);
+    add_track(scene, list);
   }
   add_forces(scene, list);
   for (Meeting& meeting : list) meeting.until = std::min(meeting.until, end);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "assembly.hpp"
+#include "ballast_shear.hpp"
 #include "layered_track.hpp"
 
 namespace traverse::beam {
@@ -112,8 +113,8 @@ Slice Beam::slice() const {
   release_nodes(bridge_, slice);
   if (rail_) {
     release_nodes(*rail_, slice);
-    for (const Sleeper& s : sleepers_of(bridge_, first_ - 1, first_ + local_ + 1))
-      release_sleeper(s, *model().track, layout_, slice);
+    for (const Sleeper& s : sleepers_of(bridge_, first_ - 1, first_ + local_ + 1)) release_sleeper(s, layout_, slice);
+    release_links(bridge_, layout_, slice);
   }
   hold_supports(bridge_, slice);
   return slice;
@@ -132,6 +133,7 @@ void Beam::assemble(const Slice& slice) {
     add_beam(*rail_, slice, mass, beams);
     Rows track_stiffness(slice), track_damping(slice);
     add_track(bridge_, layout_, slice, mass, track_stiffness, track_damping);
+    add_shear(bridge_, layout_, slice, mass, track_stiffness, track_damping);
     own.emplace_back(&foundation_.layered_track[0], track_stiffness);
     own.emplace_back(&foundation_.layered_track[1], track_damping);
     stiffness.add(1.0, track_stiffness);
@@ -144,10 +146,7 @@ void Beam::assemble(const Slice& slice) {
   stiffness.add(1.0, beams);
   if (model().strained()) note_strains(slice, springs);
   note_reactions(slice, beams, mass, beam_mass, beam_stiffness, stiffness, damping);
-  const auto falls = [&](int unknown) {
-    const Kind kind = layout_.kind[index(unknown % block())];
-    return kind == rail_v || kind == sleeper || kind == v;
-  };
+  const auto falls = [&](int unknown) { return Layout::falls(layout_.kind[index(unknown % block())]); };
   for (int i = begin; i < end; ++i) weight_.push_back(mass.times(i, [&](int j) { return falls(j) ? -1.0 : 0.0; }));
 
   Rows pattern(slice);

@@ -14,7 +14,9 @@ namespace traverse::beam {
 class ElementRows {
  public:
   /// Whether a beam is of this kind: without hinges, whose nodes have two rotations.
-  static bool fit(const Beam& beam) { return beam.layout().place[theta_right] < 0; }
+  static bool fit(const Beam& beam) {
+    return beam.layout().place[theta_right] < 0 && beam.layout().place[rail_theta_right] < 0;
+  }
   explicit ElementRows(const Beam& beam);
 
   /// r += K_aa x for this rank's nodes [first, past), at most `tile`. x begins at node first - 1 and ends at node past;

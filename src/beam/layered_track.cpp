@@ -19,11 +19,11 @@ Station on_grid(Station station) {
 /// k (a - b)^2/2 between two unknowns: [k, -k; -k, k].
 std::array<double, 4> between(double k) { return {k, -k, -k, k}; }
 
-/// The track's own term of one kind of layer: into the stiffness by k, into the damping by c.
+/// The track's own term of a spring and a damper: into the stiffness by k, into the damping by c.
 template <class Add>
-void add_layer(const Layer& layer, Rows& stiffness, Rows& damping, Add add) {
-  add(layer.k, stiffness);
-  add(layer.c, damping);
+void add_layer(const Spring& spring, Rows& stiffness, Rows& damping, Add add) {
+  add(spring.k, stiffness);
+  add(spring.c, damping);
 }
 
 void add_on_bridge(const Sleeper& s, const Line& bridge, const Layout& layout, const LayeredTrack& track, Rows& mass,
@@ -44,19 +44,7 @@ void add_on_bridge(const Sleeper& s, const Line& bridge, const Layout& layout, c
   const double e = bridge.model.surface_height;
   const std::array<double, 7> along{1.0, -phi[0], -phi[1], e * turn[0], e * turn[1], e * turn[2], e * turn[3]};
   const std::array<int, 7> moved{ride.along, u1, u2, v1, theta1, v2, theta2};
-  add_layer(track.longitudinal, stiffness, damping, [&](double k, Rows& rows) { rows.add(moved, outer(k, along)); });
-}
-
-void add_on_ground(const Sleeper& s, const Layout& layout, const LayeredTrack& track, Rows& stiffness, Rows& damping) {
-  const int column = s.rail_node * layout.block;
-  visit_ground_springs(s, track, layout, [&](int unknown, const Layer& layer, bool) {
-    add_layer(layer, stiffness, damping, [&](double k, Rows& rows) { rows.add(std::array{unknown}, std::array{k}); });
-  });
-  if (!track.ballast || !track.subballast) return;
-  const int ballast = column + layout.place[v];
-  add_layer(*track.ballast, stiffness, damping, [&](double k, Rows& rows) {
-    rows.add(std::array{column + layout.place[sleeper], ballast}, between(k));
-  });
+  add_layer(ride.spring_along, stiffness, damping, [&](double k, Rows& rows) { rows.add(moved, outer(k, along)); });
 }
 
 }  // namespace
@@ -69,10 +57,17 @@ std::vector<Sleeper> sleepers_of(const Line& bridge, int first, int past) {
   const int each = track.elements_per_bay;
   for (int node = (std::max(first, 0) + each - 1) / each * each; node < std::min(past, rail.elements + 1);
        node += each) {
-    Sleeper s{rail.x(node), node, false, {}};
+    Sleeper s;
+    s.x = rail.x(node);
+    s.rail_node = node;
     s.on_bridge = s.x >= bridge.mesh.start() - rounding && s.x <= bridge.mesh.end() + rounding;
+    s.side = s.on_bridge ? 0 : s.x < bridge.mesh.start() ? -1 : 1;
     // The right-hand one of two separate spans, as the numbering has it, whatever the rounding of x.
     if (s.on_bridge) s.at = on_grid(bridge.mesh.locate(s.x + rounding));
+    s.values = track.at(s.x);
+    s.missing = !track.has_sleeper(s.x);
+    s.sleeper_moves = !s.missing && (track.ballast || (track.subballast && !s.on_bridge));
+    s.ballast_moves = track.ballast && track.subballast && (!s.on_bridge || track.own_mass);
     sleepers.push_back(s);
   }
   return sleepers;
@@ -81,22 +76,21 @@ std::vector<Sleeper> sleepers_of(const Line& bridge, int first, int past) {
 Ride ride_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout) {
   const int column = s.rail_node * layout.block;
   const int along = layout.place[rail_u] < 0 ? -1 : column + layout.place[rail_u];
-  if (track.ballast) return {column + layout.place[sleeper], *track.ballast, track.ballast_mass, along};
-  return {column + layout.place[rail_v], track.pad, track.sleeper_mass, along};
+  const Spring& below_along = s.values.longitudinal;
+  if (s.ballast_moves) return {s.ballast_unknown(layout), s.values.subballast, 0.0, along, below_along};
+  if (track.ballast) return {s.unknown(layout), s.linear_ballast(), s.values.ballast_mass, along, below_along};
+  return {column + layout.place[rail_v], s.values.pad, s.values.sleeper_mass, along, below_along};
 }
 
-std::vector<std::pair<int, double>> masses_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout) {
+std::vector<std::pair<int, double>> masses_of(const Sleeper& s, const Layout& layout) {
   std::vector<std::pair<int, double>> masses;
-  const int column = s.rail_node * layout.block;
-  if (track.ballast || (track.subballast && !s.on_bridge))
-    masses.emplace_back(column + layout.place[sleeper], track.sleeper_mass);
-  if (track.ballast && track.subballast && !s.on_bridge)
-    masses.emplace_back(column + layout.place[v], track.ballast_mass);
+  if (s.sleeper_moves) masses.emplace_back(s.unknown(layout), s.values.sleeper_mass);
+  if (s.ballast_moves) masses.emplace_back(s.ballast_unknown(layout), s.values.ballast_mass);
   return masses;
 }
 
-void release_sleeper(const Sleeper& s, const LayeredTrack& track, const Layout& layout, Slice& slice) {
-  for (const auto& [unknown, mass] : masses_of(s, track, layout)) slice.release(unknown);
+void release_sleeper(const Sleeper& s, const Layout& layout, Slice& slice) {
+  for (const auto& [unknown, mass] : masses_of(s, layout)) slice.release(unknown);
 }
 
 void add_track(const Line& bridge, const Layout& layout, const Slice& slice, Rows& mass, Rows& stiffness,
@@ -106,15 +100,20 @@ void add_track(const Line& bridge, const Layout& layout, const Slice& slice, Row
     if (s.on_bridge) {
       add_on_bridge(s, bridge, layout, track, mass, stiffness, damping);
     } else {
-      add_on_ground(s, layout, track, stiffness, damping);
+      visit_ground_springs(s, track, layout, [&](int unknown, const Spring& spring, bool) {
+        add_layer(spring, stiffness, damping,
+                  [&](double k, Rows& rows) { rows.add(std::array{unknown}, std::array{k}); });
+      });
     }
-    const auto masses = masses_of(s, track, layout);
-    for (const auto& [unknown, its_mass] : masses) mass.add(std::array{unknown}, std::array{its_mass});
-    if (masses.empty()) continue;  // no sleeper of its own: the pad stands on the next layer
-    const int column = s.rail_node * layout.block;
-    add_layer(track.pad, stiffness, damping, [&](double k, Rows& rows) {
-      rows.add(std::array{column + layout.place[rail_v], column + layout.place[sleeper]}, between(k));
-    });
+    const auto join = [&](const Spring& spring, int above, int below) {
+      add_layer(spring, stiffness, damping, [&](double k, Rows& rows) {
+        rows.add(std::array{above, below}, between(k));
+      });
+    };
+    if (s.ballast_moves && s.sleeper_moves) join(s.linear_ballast(), s.unknown(layout), s.ballast_unknown(layout));
+    for (const auto& [unknown, its_mass] : masses_of(s, layout)) mass.add(std::array{unknown}, std::array{its_mass});
+    // Without a sleeper of its own the pad stands on the next layer.
+    if (s.sleeper_moves) join(s.values.pad, s.rail_node * layout.block + layout.place[rail_v], s.unknown(layout));
   }
 }
 

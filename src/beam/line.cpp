@@ -18,7 +18,9 @@ Layout::Layout(const BeamModel& model) {
     if (model.axial) add(rail_u);
     add(rail_v);
     add(rail_theta);
+    if (!model.track->rail_hinges.empty()) add(rail_theta_right);
     add(sleeper);
+    if (model.track->own_mass) add(Kind::ballast);
   }
   if (model.axial) add(Kind::u);
   add(Kind::v);
@@ -34,7 +36,7 @@ Line::Line(BeamModel its_model, const Layout& layout, bool rail, int its_first_c
       per_node(model.axial ? 3 : 2) {
   const auto& at = layout.place;
   if (rail) {
-    place = {at[rail_u], at[rail_v], at[rail_theta], -1};
+    place = {at[rail_u], at[rail_v], at[rail_theta], at[rail_theta_right]};
   } else {
     place = {at[Kind::u], at[Kind::v], at[Kind::theta], at[Kind::theta_right]};
   }

@@ -1,8 +1,9 @@
 // How the structure's unknowns are numbered: column by column along x, the same number in each.
 //
 // A column holds a node of the bridge, (u, v, theta) with a second rotation where the beam has hinges. Under a layered
-// track it also holds a node of the rail and the sleeper that stands there; on the ground the ballast's mass takes the
-// place of the bridge's deflection. Neighbouring columns alone couple, whatever is modelled.
+// track it also holds a node of the rail, with a second rotation where the rail has joints, and the sleeper that stands
+// there; on the ground the ballast's mass takes the place of the bridge's deflection, unless it has one of its own
+// because ballast moves by itself on the bridge too. Neighbouring columns alone couple, whatever is modelled.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@
 
 namespace traverse::beam {
 
-enum Kind { rail_u, rail_v, rail_theta, sleeper, u, v, theta, theta_right, kinds };
+enum Kind { rail_u, rail_v, rail_theta, rail_theta_right, sleeper, ballast, u, v, theta, theta_right, kinds };
 
 /// Which unknowns a column has, and where.
 struct Layout {
@@ -22,8 +23,17 @@ struct Layout {
   std::array<int, kinds> place{};  // within a column; -1: not modelled
   std::array<Kind, kinds> kind{};  // of each place < block
 
+  /// Where the ballast's mass has its place in a column.
+  int ballast_place() const { return place[Kind::ballast] >= 0 ? place[Kind::ballast] : place[Kind::v]; }
+
   static bool axial(Kind k) { return k == rail_u || k == Kind::u; }
-  static bool rotation(Kind k) { return k == rail_theta || k == Kind::theta || k == Kind::theta_right; }
+  static bool rotation(Kind k) {
+    return k == rail_theta || k == rail_theta_right || k == Kind::theta || k == Kind::theta_right;
+  }
+  /// Whether it moves vertically.
+  static bool falls(Kind k) { return !axial(k) && !rotation(k); }
+  /// Whether it belongs to the bridge, or on the ground may stand in the place of what does.
+  static bool of_bridge(Kind k) { return k == Kind::u || k == Kind::v || k == Kind::theta || k == Kind::theta_right; }
 };
 
 /// A run of beam elements among the columns: the bridge, or the rail on its sleepers.

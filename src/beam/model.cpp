@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "check_track.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::beam {
@@ -131,41 +132,6 @@ void check_strains(const BeamModel& model) {
     require(std::isfinite(value), "beam_temperature", number(value), "it must be a number");
 }
 
-void check_layer(const Layer& layer, const std::string& option, bool needed) {
-  require_not_negative(layer.k, option + "_k", "N/m");
-  require_not_negative(layer.c, option + "_c", "N s/m");
-  require(!needed || layer.k > 0.0, option + "_k", number(layer.k), "it must be positive (N/m)");
-}
-
-void check_track(const BeamModel& model) {
-  const LayeredTrack& t = *model.track;
-  const auto positive = [](double value, const char* option, const char* unit) {
-    require(std::isfinite(value) && value > 0.0, option, number(value),
-            "it must be positive (" + std::string(unit) + ")");
-  };
-  positive(t.rail_EI, "track_rail_EI", "N m2");
-  if (model.axial) positive(t.rail_EA, "track_rail_EA", "N");
-  positive(t.rail_mass, "track_rail_mass", "kg/m");
-  if (t.rail_GA) positive(*t.rail_GA, "track_rail_GA", "N");
-  positive(t.spacing, "track_spacing", "m");
-  require(t.elements_per_bay >= 1, "track_elements_per_bay", std::to_string(t.elements_per_bay), "at least 1");
-  require_not_negative(t.approach, "track_approach", "m");
-  check_layer(t.pad, "track_pad", true);
-  check_layer(t.longitudinal, "track_longitudinal", model.axial);
-  if (t.ballast || t.subballast) positive(t.sleeper_mass, "track_sleeper_mass", "kg");
-  if (t.ballast) {
-    check_layer(*t.ballast, "track_ballast", true);
-    if (t.subballast) positive(t.ballast_mass, "track_ballast_mass", "kg");
-  }
-  if (t.subballast) check_layer(*t.subballast, "track_subballast", true);
-  require((model.length() + 2.0 * t.approach) / t.spacing * t.elements_per_bay < 1e8, "track_spacing",
-          number(t.spacing), "fewer than 1e8 rail elements are possible");
-  for (const Piece& piece : pieces_of(model)) {
-    require(piece.elements >= 1, "track_spacing", number(t.spacing),
-            "every span, and what hinges leave of it, needs two rail elements or more (track_elements_per_bay)");
-  }
-}
-
 }  // namespace
 
 bool fixes_axial(Support s) {
@@ -196,6 +162,7 @@ BeamModel linearised(const BeamModel& model) {
       bed.law = {};
     }
   });
+  if (linear.track) linear.track->gaps_stay_open = true;
   return linear;
 }
 
@@ -219,7 +186,7 @@ void check(const BeamModel& model) {
   check_joints(model);
   check_cracks(model);
   check_strains(model);
-  if (model.track) check_track(model);
+  if (model.track) check_track(model);  // check_track.cpp
   check_foundation(model.foundation, model.length());
 }
 

@@ -4,6 +4,7 @@
 
 #include "assembly.hpp"
 #include "gauss.hpp"
+#include "layered_track.hpp"
 
 namespace traverse::beam {
 namespace {
@@ -69,8 +70,45 @@ std::vector<NonlinearPoint> nonlinear_points(const Line& bridge, int first, int 
   return points;
 }
 
-PointShape shape_of(const Line& bridge, const NonlinearPoint& point) {
-  return shape_at(bridge, point.direction, point.at);
+std::vector<NonlinearPoint> hanging_sleepers(const Line& bridge, const Layout& layout, int first, int past) {
+  std::vector<NonlinearPoint> points;
+  if (!bridge.model.track || !bridge.model.track->hangs()) return points;
+  int index = 0;
+  for (const Sleeper& s : sleepers_of(bridge, 0, past)) {
+    if (!s.hangs()) continue;
+    NonlinearPoint point;
+    point.kind = below_a_sleeper;
+    point.index = index++;
+    point.x = s.x;
+    point.at = s.at;
+    point.k = s.values.ballast.k;
+    point.c = s.values.ballast.c;
+    point.law.one_sided = true;
+    point.law.gap = s.values.gap;
+    point.above = s.unknown(layout);
+    point.below = s.ballast_moves ? s.ballast_unknown(layout) : -1;
+    point.on_bridge = s.on_bridge && !s.ballast_moves;
+    if (s.rail_node >= first) points.push_back(point);
+  }
+  return points;
+}
+
+NonlinearShape shape_of(const Line& bridge, const NonlinearPoint& point) {
+  NonlinearShape shape;
+  double sign = 1.0;
+  const auto add = [&](int unknown, double value) {
+    shape.unknown[index(shape.count)] = unknown;
+    shape.shape[index(shape.count++)] = value;
+  };
+  if (point.above >= 0) {
+    add(point.above, 1.0);
+    sign = -1.0;
+  }
+  if (point.below >= 0) add(point.below, -1.0);
+  if (!point.on_bridge) return shape;
+  const PointShape beam = shape_at(bridge, point.direction, point.at);
+  for (std::size_t i = 0; i < 4; ++i) add(beam.unknown[i], sign * beam.shape[i]);
+  return shape;
 }
 
 }  // namespace traverse::beam

@@ -12,14 +12,20 @@
 
 namespace traverse::beam {
 
+/// Instead of a row of foundation_kinds: a sleeper over a gap.
+inline constexpr std::size_t below_a_sleeper = foundation_kind_count;
+
 struct NonlinearPoint {
-  std::size_t kind = 0;  // a row of foundation_kinds
+  std::size_t kind = 0;  // a row of foundation_kinds, or below_a_sleeper
   Direction direction = Direction::vertical;
   int index = 0;  // in the foundation's list of points of this kind; of a bed its span
   double x = 0.0;
   Station at;
   double k = 0.0, c = 0.0;  // N/m, N s/m, or N m/rad, N m s/rad
   FoundationLaw law;
+  int above = -1,
+      below = -1;         // of a sleeper: its unknown, and that of the ballast below it; -1: the bridge or the ground
+  bool on_bridge = true;  // it acts on the bridge, at `at`
 };
 
 /// Those on the elements [first, past) of the bridge: the points of the lists, then the beds, element by element.
@@ -28,7 +34,16 @@ std::vector<NonlinearPoint> nonlinear_points(const Line& bridge, int first, int 
 /// The pieces of an element between whose ends a bed's tables have no break, each integrated by itself.
 std::vector<std::pair<double, double>> bed_pieces(const Bed& bed, const Element& element);
 
-/// That of the displacement at a point.
-PointShape shape_of(const Line& bridge, const NonlinearPoint& point);
+/// The sleepers over a gap whose columns are among [first, past): what they do to the layer below. Their numbers count
+/// from the left end of the track.
+std::vector<NonlinearPoint> hanging_sleepers(const Line& bridge, const Layout& layout, int first, int past);
+
+/// The displacement at a point as a sum of shape*unknown: of the beam, or of a sleeper less what lies below it.
+struct NonlinearShape {
+  int count = 0;
+  std::array<int, 5> unknown{-1, -1, -1, -1, -1};  // global
+  std::array<double, 5> shape{};
+};
+NonlinearShape shape_of(const Line& bridge, const NonlinearPoint& point);
 
 }  // namespace traverse::beam

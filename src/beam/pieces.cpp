@@ -62,11 +62,12 @@ std::vector<Piece> divided(const BeamModel& model) {
   auto division = divisions.begin();
   double left = model.start, end = model.start;
   const int spans = static_cast<int>(model.spans.size());
+  const bool at_steps = model.nodes_at_steps && !model.track;
   for (int span = 0; span < spans; ++span) {
     end += model.spans[span];
     for (; division != divisions.end() && division->x < end; ++division) {
       pieces.push_back({span, left, division->x, 0, division->joint, false});
-      if (!model.track) divide_at_steps(model, pieces);
+      if (at_steps) divide_at_steps(model, pieces);
       left = division->x;
     }
     Joint next = span + 1 < spans ? model.joint(span + 1) : Joint::separate;
@@ -75,7 +76,7 @@ std::vector<Piece> divided(const BeamModel& model) {
       ++division;
     }
     pieces.push_back({span, left, end, 0, next, true});
-    if (!model.track) divide_at_steps(model, pieces);
+    if (at_steps) divide_at_steps(model, pieces);
     left = end;
   }
   return pieces;
@@ -100,6 +101,21 @@ std::vector<Piece> pieces_between(const std::vector<double>& x) {
   return pieces;
 }
 
+/// The mass that a sleeper brings onto the bridge, its ballast's or where there is none its own: the mean of those on
+/// the bridge.
+double riding_mass(const BeamModel& model, const LayeredTrack& track) {
+  const auto mass = [&](double x) {
+    const TrackValues values = track.at(x);
+    return track.ballast ? values.ballast_mass : values.sleeper_mass;
+  };
+  if (track.uniform()) return mass(model.start);
+  const int first = base::whole(std::ceil((model.start - track.offset) / track.spacing));
+  const int last = base::whole(std::floor((model.end() - track.offset) / track.spacing));
+  double sum = 0.0;
+  for (int i = first; i <= last; ++i) sum += mass(track.offset + i * track.spacing);
+  return last < first ? 0.0 : sum / (last - first + 1);
+}
+
 }  // namespace
 
 int RailMesh::first_from(double station) const {
@@ -119,7 +135,7 @@ BeamModel bridge_alone(const BeamModel& model) {
   BeamModel bridge = model;
   if (!model.track) return bridge;
   const LayeredTrack& track = *model.track;
-  bridge.mass = model.mass.plus((track.ballast ? track.ballast_mass : track.sleeper_mass) / track.spacing);
+  bridge.mass = model.mass.plus(riding_mass(model, track) / track.spacing);
   bridge.track.reset();
   return bridge;
 }
@@ -136,6 +152,8 @@ BeamModel rail_model(const BeamModel& model) {
   rail.supports = {Support::free, Support::free};
   rail.axial = model.axial;
   rail.start = mesh.start;
+  rail.hinges = model.track->rail_hinges;
+  rail.nodes_at_steps = false;
   return rail;
 }
 

@@ -108,7 +108,7 @@ void Look::find_frequencies() {
       if (frequencies.size() < told_frequencies) frequencies.push_back(one / (2.0 * std::numbers::pi));
     return;
   }
-  const bool plain = beam.rail() == nullptr && !beam.model().foundation.nonlinear();
+  const bool plain = beam.rail() == nullptr && !beam.model().nonlinear();
   const std::vector<double> omega =
       plain ? modes::distinct_frequencies(beam, told_frequencies)
             : modes::distinct_frequencies(beam::Beam(PETSC_COMM_SELF, linearised(bridge_alone(beam.model()))),

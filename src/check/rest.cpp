@@ -93,7 +93,7 @@ Rest rest_of(const Look& look) {
     rest.why_not = "nothing is asked of it";
   else if (beam.given)
     rest.why_not = "given modes say nothing of supports";
-  else if (beam.foundation.nonlinear())
+  else if (beam.nonlinear())
     rest.why_not = "the foundation is not linear: it bears what the run finds";
   else if (beam.spans.size() > norm::StaticBridge::most_spans)
     rest.why_not = fmt::format("of bridges of more than {} spans they are not listed", norm::StaticBridge::most_spans);

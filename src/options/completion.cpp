@@ -12,7 +12,8 @@ namespace {
 
 using Words = std::set<std::string>;
 
-constexpr const char* user_named[] = {"vehicle_NAME_PART_", "vehicle_NAME_", "train_NAME_", "study_vary_NAME_"};
+constexpr const char* user_named[] = {"vehicle_NAME_PART_", "vehicle_NAME_", "train_NAME_", "track_NAME_",
+                                      "study_vary_NAME_"};
 
 /// "beam_EI", or of what users name themselves "vehicle_*_mass": a pattern of the shell.
 std::string pattern_of(std::string name) {

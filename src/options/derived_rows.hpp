@@ -14,6 +14,9 @@ std::span<const Row> joint_rows();
 /// Options foundation_<kind>_<row>, with their full names.
 std::span<const Row> foundation_rows();
 
+/// Options of a layered track, with their full names.
+std::span<const Row> track_rows();
+
 /// Keeps a text for as long as the program runs: rows only look at theirs.
 std::string_view kept(std::string text);
 

@@ -106,6 +106,8 @@ std::vector<HelpGroup> help_groups() {
   groups.push_back(
       {"coupler", "Each coupler NAME in the list of train_couplers, besides what a spring or a joint has", {}});
   add("train_NAME_", coupler_rows());
+  groups.push_back({"stretch", "Each stretch NAME in the list of track_stretches", {}});
+  add("track_NAME_", stretch_rows());
   groups.push_back({"vary", "Each option NAME that a study varies", {}});
   add("study_vary_NAME", {&vary_list_row(), 1});
   add("study_vary_NAME_", vary_rows());

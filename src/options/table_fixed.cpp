@@ -118,25 +118,13 @@ constexpr Row run_rows[] = {
   {"track_bump_height", number, "m", "", any, "", 0, "its height in the middle"},
   {"track_seed", integer, "", "1", {0, 2147483647.0}, "", 0, "of the random phases of roads and rails"},
   {"track_wavelengths", numbers, "m", "(iso8608 0.1, 100; german 0.5, 80; fra 1.5, 300)", positive, "", 2, "shortest and longest wave of the roughness"},
-  {"track_rail_EI", number, "N m2", "", positive, "", 0, "layered track: rail's bending stiffness (both rails)"},
-  {"track_rail_EA", number, "N", "", positive, "", 0, "layered track: rail's axial stiffness; needed for longitudinal action only"},
-  {"track_rail_GA", number, "N", "", positive, "", 0, "layered track: rail's shear stiffness; left out: it does not shear"},
-  {"track_rail_mass", number, "kg/m", "", positive, "", 0, "layered track: rail's mass per length"},
-  {"track_spacing", number, "m", "", positive, "", 0, "layered track: from sleeper to sleeper"},
-  {"track_offset", number, "m", "0", any, "", 0, "layered track: x of one of the sleepers"},
-  {"track_elements_per_bay", integer, "", "2", {1, 100}, "", 0, "layered track: rail elements from sleeper to sleeper; the bridge has as many"},
-  {"track_pad_k", number, "N/m", "", positive, "", 0, "layered track: stiffness of the pads on a sleeper"},
-  {"track_pad_c", number, "Ns/m", "0", not_negative, "", 0, "layered track: damping of a pad"},
-  {"track_sleeper_mass", number, "kg", "0", not_negative, "", 0, "layered track: mass of a sleeper"},
-  {"track_ballast_mass", number, "kg", "0", not_negative, "", 0, "layered track: ballast mass per sleeper"},
-  {"track_ballast_k", number, "N/m", "", not_negative, "", 0, "layered track: ballast stiffness per sleeper; left out: sleepers stand on the next layer"},
-  {"track_ballast_c", number, "Ns/m", "0", not_negative, "", 0, "layered track: ballast damping per sleeper"},
-  {"track_subballast_k", number, "N/m", "", not_negative, "", 0, "layered track: sub-ballast stiffness, on the ground only; left out: rigid"},
-  {"track_subballast_c", number, "Ns/m", "0", not_negative, "", 0, "layered track: sub-ballast damping, on the ground only"},
-  {"track_longitudinal_k", number, "N/m", "", positive, "", 0, "layered track: stiffness between rail and bridge or ground along x, per sleeper"},
-  {"track_longitudinal_c", number, "Ns/m", "0", not_negative, "", 0, "layered track: its damping"},
-  {"track_approach", number, "m", "(the train's length and more)", not_negative, "", 0, "layered track: length modelled on either side"},
+  {"track_dips_x", numbers, "m", "", any, "", 0, "stations of dips, which come on top of track_profile"},
+  {"track_dips_length", numbers, "m", "", positive, "", 0, "length of the dips, one serves all"},
+  {"track_dips_depth", numbers, "m", "", any, "", 0, "depth in their middle, one serves all; below 0 they are humps"},
+  {"track_dips_shape", choice_list, "", "smooth", any, "smooth joint", 0, "smooth: a wave of a cosine, as of a weld; joint: two parabolas that meet at a corner, as of a dipped rail joint; one word serves all"},
+};
 
+constexpr Row later_rows[] = {
   {"gravity", number, "m/s2", "9.81", not_negative, "", 0, "downward"},
   {"scene_name", text, "", "(the first options file)", any, "", 0, "names the scene in messages and the results file"},
   {"scene_analysis", choice, "", analyses[0].name, any, names_of_analyses, 0, text_of_analyses},
@@ -248,7 +236,8 @@ constexpr std::string_view petsc_names[] = {
 std::span<const Row> fixed_rows() {
   static const std::vector<Row> rows = [] {
     std::vector<Row> all(std::begin(beam_rows), std::end(beam_rows));
-    for (const std::span<const Row> more : {foundation_rows(), std::span<const Row>(run_rows)})
+    for (const std::span<const Row> more :
+         {foundation_rows(), std::span<const Row>(run_rows), track_rows(), std::span<const Row>(later_rows)})
       all.insert(all.end(), more.begin(), more.end());
     return all;
   }();

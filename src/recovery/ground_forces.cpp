@@ -4,6 +4,7 @@
 
 #include "base/dot.hpp"
 #include "beam/assembly.hpp"
+#include "beam/ballast_shear.hpp"
 #include "beam/layered_track.hpp"
 #include "beam/point_shape.hpp"
 #include "beam/shape.hpp"
@@ -37,8 +38,7 @@ GroundForces::GroundForces(const Beam& beam) : beam_(beam) {
   mass_ = 0.0;
   // A rigid fall moves every deflection alike.
   for (int i = 0; i < beam.local_unknowns(); ++i) {
-    const Kind kind = beam.layout().kind[index(i % beam.block())];
-    if (kind == rail_v || kind == sleeper || kind == v) mass_ += masses_[1][index(i)];
+    if (Layout::falls(beam.layout().kind[index(i % beam.block())])) mass_ += masses_[1][index(i)];
   }
   MPI_Allreduce(MPI_IN_PLACE, &mass_, 1, MPI_DOUBLE, MPI_SUM, beam.comm());
 }
@@ -89,10 +89,10 @@ void GroundForces::add_track() {
   const LayeredTrack& track = *beam_.model().track;
   const Layout& layout = beam_.layout();
   for (const Sleeper& s : sleepers_of(beam_.bridge(), 0, beam_.columns())) {
-    visit_ground_springs(s, track, layout, [&](int unknown, const Layer& layer, bool along_x) {
-      add(track_ + (along_x ? 0 : 1), unknown, layer.c, layer.k);
+    visit_ground_springs(s, track, layout, [&](int unknown, const Spring& spring, bool along_x) {
+      add(track_ + (along_x ? 0 : 1), unknown, spring.c, spring.k);
     });
-    for (const auto& [unknown, mass] : masses_of(s, track, layout)) add_mass(masses_[1], unknown, mass);
+    for (const auto& [unknown, mass] : masses_of(s, layout)) add_mass(masses_[1], unknown, mass);
     if (!s.on_bridge) continue;
     const double mass = ride_of(s, track, layout).mass;
     const Element& element = beam_.mesh().element(s.at.element);
@@ -100,6 +100,8 @@ void GroundForces::add_track() {
     const auto places = beam_.bridge().transverse(s.at.element);
     for (std::size_t i = 0; i < 4; ++i) add_mass(masses_[1], places[i], mass * psi[i]);
   }
+  for (const auto& [left, right] : sheared(beam_.bridge(), layout, 0, beam_.columns()))
+    visit_links(left, right, layout, [&](int unknown, double mass) { add_mass(masses_[1], unknown, mass); });
 }
 
 void GroundForces::evaluate(const double* v, const double* w, const double* a) {

@@ -371,8 +371,8 @@ void Recovery::add_riders(const Section& s, const Values* values, const double* 
         const double turn = turns[0] * y[1] + turns[1] * y[2] + turns[2] * y[4] + turns[3] * y[5];
         return phi[0] * y[0] + phi[1] * y[3] - e * turn;
       };
-      const Layer& layer = line_.model.track->longitudinal;
-      along = layer.k * (riders[2] - surface(values[0])) + layer.c * (riders[3] - surface(values[1]));
+      const Spring& spring = rider.ride.spring_along;
+      along = spring.k * (riders[2] - surface(values[0])) + spring.c * (riders[3] - surface(values[1]));
     }
     s.add_load({s.at.element, rider.xi, along, force, -line_.model.surface_height * along}, r);
     riders += 4;

@@ -48,10 +48,7 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
     drag_ = with_neighbour(std::move(drag));
   }
   for (int i = 0; i < beam.block(); ++i) {
-    const beam::Kind kind = beam.layout().kind[i];
-    const bool bridge =
-        kind != beam::rail_u && kind != beam::rail_v && kind != beam::rail_theta && kind != beam::sleeper;
-    damped_part_.push_back(bridge ? stiffness_damping_ : 0.0);
+    damped_part_.push_back(beam::Layout::of_bridge(beam.layout().kind[i]) ? stiffness_damping_ : 0.0);
   }
   damped_ = drag_ || mass_damping_.value_or(0.0) != 0.0 || stiffness_damping_ != 0.0;
   relative_.resize(unknowns());
@@ -79,7 +76,7 @@ BeamOperator::BeamOperator(const beam::Beam& beam)
 // Parts of this rank alone, whatever springs come later.
 void BeamOperator::find_parts(const beam::Beam& beam, const Shifted& all) {
   const std::vector<int>& parts = beam.parts();
-  if (static_cast<int>(parts.size()) - 1 < std::max(2, ranks_) || beam.model().foundation.nonlinear()) return;
+  if (static_cast<int>(parts.size()) - 1 < std::max(2, ranks_) || beam.model().nonlinear()) return;
   std::vector<std::ptrdiff_t> begins;
   for (int begin : parts)
     if (begin >= beam.first_column() && begin <= beam.first_column() + nodes_)

@@ -36,7 +36,7 @@ std::vector<double> first_frequencies(const SharedBeam& shared) {
   std::vector<double> found;
   if (shared.modal)
     found = distinct_of_modes(shared.modal->omega());
-  else if (const beam::Beam& beam = *shared.beam; beam.rail() == nullptr && !beam.model().foundation.nonlinear())
+  else if (const beam::Beam& beam = *shared.beam; beam.rail() == nullptr && !beam.model().nonlinear())
     found = modes::distinct_frequencies(beam, counted);
   else
     found = modes::distinct_frequencies(beam::Beam(beam.comm(), linearised(bridge_alone(beam.model()))), counted);

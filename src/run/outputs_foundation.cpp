@@ -1,4 +1,5 @@
 // Outputs of the foundation: the forces of points one by one, those of beds on each span.
+#include "beam/nonlinear_points.hpp"
 #include "output_groups.hpp"
 
 namespace traverse::app {
@@ -38,6 +39,20 @@ void add_foundation(const Source& source, Outputs& outputs) {
                           return i < other.size() ? linear + other[i] : linear;
                         });
   }
+}
+
+// Sleepers over a gap.
+void add_hanging(const Source& source, Outputs& outputs) {
+  const beam::Beam& beam = *source.beam;
+  std::vector<double> x;
+  for (const beam::NonlinearPoint& sleeper : beam::hanging_sleepers(beam.bridge(), beam.layout(), 0, beam.columns()))
+    x.push_back(sleeper.x);
+  if (x.empty() || x.size() > most_points) return;
+  outputs.add_constant("/track/hanging/x", x, "m");
+  outputs.add_numbers("/track/hanging/force", "N", x.size(),
+                      [](const Observed& now, std::size_t i) { return now.motion.beam.foundation.below_sleepers[i]; });
+  outputs.add_numbers("/track/hanging/gap", "m", x.size(),
+                      [](const Observed& now, std::size_t i) { return now.motion.beam.foundation.open_gaps[i]; });
 }
 
 }  // namespace traverse::app

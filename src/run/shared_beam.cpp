@@ -15,10 +15,19 @@ constexpr double distinct = 1e-6;  // relative difference of two frequencies
 
 std::string what_track(const beam::Beam& beam) {
   const beam::LayeredTrack& t = *beam.model().track;
+  const bool shear = t.shear.k > 0.0 || t.shear.c > 0.0;
   return fmt::format(
-      "layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}, {} unknowns a column",
+      "layered track from {:g} to {:g} m: rail with {} elements, sleepers every {:g} m{}{}{}{}, {} unknowns a column",
       beam.rail()->mesh.start(), beam.rail()->mesh.end(), beam.rail()->mesh.elements(), t.spacing,
-      t.ballast ? ", ballast" : "", t.subballast ? ", sub-ballast on the ground" : "", beam.block());
+      t.ballast ? ", ballast" : "",
+      !t.subballast ? ""
+      : t.own_mass  ? ", sub-ballast"
+                    : ", sub-ballast on the ground",
+      shear ? ", shear" : "",
+      t.stretches.empty()
+          ? ""
+          : fmt::format(", {} stretch{} of other properties", t.stretches.size(), t.stretches.size() == 1 ? "" : "es"),
+      beam.block());
 }
 
 std::string what_given(const beam::Beam& beam) {
@@ -49,11 +58,16 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
   if (!floating.empty())
     throw InputError("support_types: the beam can float away (" + floating +
                      "); hold it with supports or a foundation");
-  const bool nonlinear = scene.beam->foundation.nonlinear();
-  if (nonlinear)
+  const bool nonlinear = scene.beam->nonlinear();
+  if (scene.beam->foundation.nonlinear())
     notes.emplace_back(
         "one-sided foundations and those with a gap or a cubic term are forces; frequencies are those of "
         "small motions: what has no gap with its k, what has one without");
+  if (scene.beam->track && scene.beam->track->hangs())
+    notes.emplace_back(
+        "sleepers hang over gaps, which close on one side: forces; frequencies are those of small motions, with all "
+        "gaps "
+        "open");
   beam.emplace(comm, nonlinear && scene.analysis == Analysis::modes ? linearised(*scene.beam) : *scene.beam);
   notes.push_back(scene.beam->given ? what_given(*beam) : what_beam(*beam));
   if (beam->rail() != nullptr) notes.push_back(what_track(*beam));

@@ -267,6 +267,7 @@ Scene read_scene(Options o) {
   declare_blocks(o);
   const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
+  declare_stretches(o);
   o.check_names();
   o.check_values();
   read_run(o, scene);

@@ -181,7 +181,7 @@ beam::Distribution read_distribution(const Options& o, const std::string& name) 
   const std::string path = o.path(name);
   const auto columns = options::read_columns(path, 2, 2);
   beam::Distribution table(columns[0], columns[1], name + " (" + path + ")");
-  const options::Row& row = *options::find_row(options::fixed_rows(), name);
+  const options::Row& row = *o.find_known(name);
   for (const double value : {table.minimum(), table.maximum()}) {
     if (!row.range.holds(value)) o.refuse(name, fmt::format("holds {:g}; allowed: {}", value, options::allowed(row)));
   }

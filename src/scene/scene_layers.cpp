@@ -28,7 +28,7 @@ double approach_of(const Scene& scene) {
 }
 
 beam::Layer read_layer(const Options& o, const std::string& name) {
-  return {o.number("track_" + name + "_k"), o.number("track_" + name + "_c")};
+  return {read_distribution(o, "track_" + name + "_k"), read_distribution(o, "track_" + name + "_c")};
 }
 
 /// A layer is there when its stiffness is given.
@@ -41,13 +41,54 @@ std::optional<beam::Layer> read_optional_layer(const Options& o, const std::stri
   return std::nullopt;
 }
 
+/// A stretch of the track, whose layers are known.
+beam::TrackStretch read_stretch(const Options& o, const std::string& name, const beam::LayeredTrack& track) {
+  const std::string prefix = "track_" + name + "_";
+  beam::TrackStretch stretch{name, o.number(prefix + "from"), o.number(prefix + "to"), {}, true};
+  if (stretch.to < stretch.from)
+    o.refuse(prefix + "to", fmt::format("allowed: not below {}from, {:g} m", prefix, stretch.from));
+  stretch.sleepers = o.choice(prefix + "sleepers") != "none";
+  for (std::size_t i = 0; i < beam::track_property_count; ++i) {
+    const beam::TrackProperty& property = beam::track_properties[i];
+    const std::string option = prefix + std::string(property.name);
+    if (!o.has(option)) continue;
+    if (property.along(track) == nullptr) {
+      const std::string_view layer = property.name.substr(0, property.name.find('_'));
+      o.refuse(option, fmt::format("the track has no {}: it needs track_{}_k", layer, layer));
+    }
+    stretch.values[i] = read_distribution(o, option);
+  }
+  return stretch;
+}
+
+/// Joints of the rail, in ascending order.
+void read_hinges(const Options& o, Scene& scene, beam::LayeredTrack& track) {
+  if (!o.has("track_rail_hinges")) return;
+  track.rail_hinges = o.numbers("track_rail_hinges");
+  std::sort(track.rail_hinges.begin(), track.rail_hinges.end());
+  if (scene.mesh_open)
+    scene.notes.push_back(fmt::format("the rail has {} elements a bay, which its joints (track_rail_hinges) stand on",
+                                      track.elements_per_bay));
+  scene.mesh_open = false;
+}
+
 }  // namespace
+
+void declare_stretches(Options& o) {
+  if (!o.has("track_stretches")) return;
+  for (const std::string& name : o.texts("track_stretches"))
+    for (const options::Row& row : options::stretch_rows()) {
+      const std::string full = fmt::format("track_{}_{}", name, row.name);
+      if (!o.declare(full, row))
+        o.refuse("track_stretches", fmt::format("there would be two options {}; rename a stretch", full));
+    }
+}
 
 void read_layers(const Options& o, Scene& scene) {
   if (!o.has("track_rail_EI")) {
-    for (const char* prefix :
-         {"track_rail", "track_spacing", "track_offset", "track_pad", "track_sleeper", "track_ballast",
-          "track_subballast", "track_longitudinal", "track_approach", "track_elements"}) {
+    for (const char* prefix : {"track_rail", "track_spacing", "track_offset", "track_pad", "track_sleeper",
+                               "track_ballast", "track_subballast", "track_longitudinal", "track_approach",
+                               "track_elements", "track_gap", "track_shear", "track_stretches"}) {
       if (const options::Entry* entry = o.first_with_prefix(prefix))
         o.refuse(entry->name, "belongs to a layered track, which needs track_rail_EI");
     }
@@ -55,20 +96,30 @@ void read_layers(const Options& o, Scene& scene) {
   }
   if (!scene.beam) o.refuse("track_rail_EI", "a layered track needs a bridge (beam_spans)");
   beam::LayeredTrack track;
-  track.rail_EI = o.number("track_rail_EI");
-  track.rail_EA = o.optional_number("track_rail_EA").value_or(0.0);
+  track.rail_EI = read_distribution(o, "track_rail_EI");
+  if (o.has("track_rail_EA")) track.rail_EA = read_distribution(o, "track_rail_EA");
   track.rail_GA = o.optional_number("track_rail_GA");
-  track.rail_mass = o.number("track_rail_mass");
+  track.rail_mass = read_distribution(o, "track_rail_mass");
   track.spacing = o.number("track_spacing");
   track.offset = std::fmod(o.number("track_offset"), track.spacing);
   track.elements_per_bay = o.integer("track_elements_per_bay");
   scene.mesh_open = !o.has("track_elements_per_bay");
-  track.pad = {o.number("track_pad_k"), o.number("track_pad_c")};
-  track.sleeper_mass = o.number("track_sleeper_mass");
+  read_hinges(o, scene, track);
+  track.pad = read_layer(o, "pad");
+  track.sleeper_mass = read_distribution(o, "track_sleeper_mass");
   track.ballast = read_optional_layer(o, "ballast");
-  track.ballast_mass = track.ballast ? o.number("track_ballast_mass") : 0.0;
+  if (track.ballast) track.ballast_mass = read_distribution(o, "track_ballast_mass");
   track.subballast = read_optional_layer(o, "subballast");
-  track.longitudinal = {o.optional_number("track_longitudinal_k").value_or(0.0), o.number("track_longitudinal_c")};
+  if (o.has("track_longitudinal_k")) track.longitudinal.k = read_distribution(o, "track_longitudinal_k");
+  track.longitudinal.c = read_distribution(o, "track_longitudinal_c");
+  track.gap = read_distribution(o, "track_gap");
+  track.own_mass = o.flag("track_ballast_own_mass");
+  track.shear = {o.number("track_shear_k"), o.number("track_shear_c")};
+  for (const char* name : {"track_ballast_own_mass", "track_shear_k", "track_shear_c"})
+    if (o.has(name) && !(track.ballast && track.subballast))
+      o.refuse(name, "needs ballast that moves by itself: track_ballast_k, track_ballast_mass and track_subballast_k");
+  if (o.has("track_stretches"))
+    for (const std::string& name : o.texts("track_stretches")) track.stretches.push_back(read_stretch(o, name, track));
   const auto approach = o.optional_number("track_approach");
   track.approach = approach.value_or(approach_of(scene));
   if (!approach)

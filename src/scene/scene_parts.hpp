@@ -45,6 +45,8 @@ void check_courses(const options::Options& options, Scene& scene);
 
 /// Makes the options of the trains' couplers known.
 void declare_couplers(options::Options& options);
+/// Makes the options of a layered track's stretches known.
+void declare_stretches(options::Options& options);
 /// Bodies are not yet looked for.
 Coupler read_coupler(const options::Options& options, const Block& train, const std::string& name);
 

@@ -49,6 +49,26 @@ double start_of_roughness(const Scene& scene, bool& to_the_left) {
   return right ? *right : left.value_or(0.0);
 }
 
+/// Dips and humps on top of the profile.
+void read_dips(const Options& o, Scene& scene) {
+  if (!o.has("track_dips_x")) {
+    if (const options::Entry* entry = o.first_with_prefix("track_dips"))
+      o.refuse(entry->name, "belongs to dips, which need track_dips_x");
+    return;
+  }
+  const std::vector<double> x = o.numbers("track_dips_x");
+  const std::vector<double> length = o.numbers("track_dips_length", x.size(), "one a dip");
+  const std::vector<double> depth = o.numbers("track_dips_depth", x.size(), "one a dip");
+  const std::vector<std::string> shape = o.texts("track_dips_shape", x.size(), "one a dip");
+  if (scene.roughness)
+    o.refuse("track_dips_x", "dips do not go with a rough track_profile; allowed there: none, bump or a file");
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (shape[i] == "joint" && depth[i] < 0.0)
+      o.refuse("track_dips_depth", "a dip of the shape joint is below 0; allowed: from 0 on");
+    scene.profile = scene.profile.with_dip(x[i], length[i], depth[i], shape[i] == "joint");
+  }
+}
+
 }  // namespace
 
 ReadProfile read_profile(const Options& o, const std::string& prefix, double start, bool to_the_left, Scene& scene) {
@@ -84,6 +104,7 @@ void read_track(const Options& o, Scene& scene) {
   ReadProfile read = read_profile(o, "track", start, to_the_left, scene);
   scene.profile = std::move(read.profile);
   scene.roughness = std::move(read.roughness);
+  read_dips(o, scene);
 }
 
 }  // namespace traverse::app

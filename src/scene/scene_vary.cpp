@@ -305,6 +305,7 @@ Scene read_study(const Options& given) {
   declare_blocks(o);
   const NamedVehicles vehicles = declare_vehicles(o);
   declare_couplers(o);
+  declare_stretches(o);
   declare_study(o);
   o.check_names();
   o.check_values();

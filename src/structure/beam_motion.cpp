@@ -22,7 +22,7 @@ BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* d
       nodes_(beam.local_columns()),
       past_(nodes_) {
   proportional_ = op.mass_damping().has_value();
-  if (beam::ElementRows::fit(beam) && !beam.model().foundation.nonlinear()) elements_.emplace(beam);
+  if (beam::ElementRows::fit(beam) && !beam.model().nonlinear()) elements_.emplace(beam);
   for (int i = 0; i < n_; ++i)
     if (beam.fixed()[i] != 0) held_.push_back(i);
 }

@@ -14,7 +14,7 @@ ElementStructure::ElementStructure(const beam::Beam& beam, double gravity, std::
 }
 
 void ElementStructure::expect_weights(double sum, double greatest) {
-  if (!beam_.model().foundation.nonlinear()) return;
+  if (!beam_.model().nonlinear()) return;
   nonlinear_.emplace(beam_, *statics_, sum, greatest);
   stage_load_.resize(static_cast<std::size_t>(n_));
 }

@@ -36,20 +36,10 @@ NonlinearFoundation::NonlinearFoundation(const beam::Beam& beam, const BeamOpera
       point_load_(point_load),
       borders_(2 * static_cast<std::size_t>(op.block()), 0.0) {
   const auto [first, past] = beam.bridge().elements_at(beam.first_column(), beam.local_columns());
-  for (const beam::NonlinearPoint& its : beam::nonlinear_points(beam.bridge(), first, past)) {
-    Point p;
-    p.its = its;
-    const beam::PointShape shape = beam::shape_of(beam.bridge(), its);
-    p.shape = shape.shape;
-    for (std::size_t i = 0; i < 4; ++i) {
-      const int from_first = shape.unknown[i] - beam.first_column() * block_;
-      p.place[i] = shape.unknown[i] < 0 ? -1 : from_first < 0 ? n_ + block_ + from_first : from_first;
-      // The left neighbour's column follows this rank's unknowns, then the right neighbour's.
-      if (shape.unknown[i] >= 0 && from_first >= n_) p.place[i] = from_first + block_;
-    }
-    p.counted = beam.local(shape.unknown[0]) >= 0;
-    p.reference = its.k + std::cbrt(its.law.cubic * load * load);
-    points_.push_back(p);
+  for (const beam::NonlinearPoint& its : beam::nonlinear_points(beam.bridge(), first, past)) add_point(beam, its, load);
+  for (const beam::NonlinearPoint& its : beam::hanging_sleepers(beam.bridge(), beam.layout(), 0, beam.columns())) {
+    add_point(beam, its, load);
+    ++sleepers_;
   }
   note_terms(beam);
   wanted_k_.resize(points_.size());
@@ -61,14 +51,36 @@ NonlinearFoundation::NonlinearFoundation(const beam::Beam& beam, const BeamOpera
   }
 }
 
+void NonlinearFoundation::add_point(const beam::Beam& beam, const beam::NonlinearPoint& its, double load) {
+  const beam::NonlinearShape shape = beam::shape_of(beam.bridge(), its);
+  Point p;
+  p.its = its;
+  p.terms = static_cast<std::size_t>(shape.count);
+  p.shape = shape.shape;
+  p.place.fill(-1);
+  bool here = its.kind != beam::below_a_sleeper;
+  for (std::size_t i = 0; i < p.terms; ++i) {
+    const int from_first = shape.unknown[i] - beam.first_column() * block_;
+    p.place[i] = shape.unknown[i] < 0 ? -1 : from_first < 0 ? n_ + block_ + from_first : from_first;
+    // The left neighbour's column follows this rank's unknowns, then the right neighbour's.
+    if (shape.unknown[i] >= 0 && from_first >= n_) p.place[i] = from_first + block_;
+    here = here || beam.local(shape.unknown[i]) >= 0;
+  }
+  if (!here) return;
+  p.counted = beam.local(shape.unknown[0]) >= 0;
+  p.reference = its.k + std::cbrt(its.law.cubic * load * load);
+  points_.push_back(p);
+}
+
 void NonlinearFoundation::note_terms(const beam::Beam& beam) {
   const int b = block_;
   for (std::size_t n = 0; n < points_.size(); ++n) {
-    const beam::PointShape s = beam::shape_of(beam.bridge(), points_[n].its);
-    for (std::size_t i = 0; i < 4; ++i) {
+    const beam::NonlinearShape s = beam::shape_of(beam.bridge(), points_[n].its);
+    const std::size_t terms = points_[n].terms;
+    for (std::size_t i = 0; i < terms; ++i) {
       const int row = s.unknown[i] < 0 ? -1 : beam.local(s.unknown[i]);
       if (row < 0) continue;
-      for (std::size_t j = 0; j < 4; ++j) {
+      for (std::size_t j = 0; j < terms; ++j) {
         if (s.unknown[j] < 0 || s.shape[i] * s.shape[j] == 0.0) continue;
         const int ahead = s.unknown[j] / b - s.unknown[i] / b;
         const int place = ahead < 0 ? -1 : (row / b * b + s.unknown[j] % b) * b + row % b;
@@ -84,7 +96,7 @@ void NonlinearFoundation::gather(const double* x, double Point::*into) {
   operator_.borders(x, borders_.data(), borders_.data() + block_);
   for (Point& p : points_) {
     double sum = 0.0;
-    for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t i = 0; i < p.terms; ++i)
       if (p.place[i] >= 0) sum += p.shape[i] * (p.place[i] < n_ ? x[p.place[i]] : borders_[p.place[i] - n_]);
     p.*into = sum;
   }
@@ -100,7 +112,7 @@ void NonlinearFoundation::evaluate(const double* v, const double* w) {
 
 void NonlinearFoundation::add_forces(double* nodal) const {
   for (const Point& p : points_)
-    for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t i = 0; i < p.terms; ++i)
       if (p.place[i] >= 0 && p.place[i] < n_) nodal[p.place[i]] += p.shape[i] * p.state.force;
 }
 
@@ -126,8 +138,19 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
     forces.of_kind[i].assign(count, 0.0);
   }
   std::vector<beam::ElementLoad> mine;
+  forces.below_sleepers.assign(sleepers_, 0.0);
+  forces.open_gaps.assign(sleepers_, 0.0);
+  forces.of_ground = 0.0;
   for (const Point& p : points_) {
-    if (!p.counted || p.state.force == 0.0) continue;
+    if (!p.counted) continue;
+    if (p.its.kind == beam::below_a_sleeper) {
+      forces.below_sleepers[static_cast<std::size_t>(p.its.index)] = p.state.force;
+      forces.open_gaps[static_cast<std::size_t>(p.its.index)] = p.still + p.its.law.gap;
+      if (!p.its.on_bridge && p.its.below < 0) forces.of_ground += p.state.force;
+      if (p.its.on_bridge && p.state.force != 0.0) mine.push_back({p.its.at.element, p.its.at.xi, 0.0, -p.state.force});
+      continue;
+    }
+    if (p.state.force == 0.0) continue;
     forces.of_kind[p.its.kind][static_cast<std::size_t>(p.its.index)] += p.state.force;
     beam::ElementLoad load{p.its.at.element, p.its.at.xi};
     (p.its.direction == Direction::vertical       ? load.fy
@@ -135,8 +158,14 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
                                                   : load.moment) = p.state.force;
     mine.push_back(load);
   }
-  for (std::vector<double>& list : forces.of_kind)
-    MPI_Allreduce(MPI_IN_PLACE, list.data(), static_cast<int>(list.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  const auto sum = [&](std::vector<double>& list) {
+    if (!list.empty())
+      MPI_Allreduce(MPI_IN_PLACE, list.data(), static_cast<int>(list.size()), MPI_DOUBLE, MPI_SUM, comm_);
+  };
+  for (std::vector<double>& list : forces.of_kind) sum(list);
+  sum(forces.below_sleepers);
+  sum(forces.open_gaps);
+  if (sleepers_ > 0) MPI_Allreduce(MPI_IN_PLACE, &forces.of_ground, 1, MPI_DOUBLE, MPI_SUM, comm_);
 
   int ranks = 1;
   MPI_Comm_size(comm_, &ranks);
@@ -222,7 +251,7 @@ void NonlinearFoundation::add_linearised(double* nodal) const {
   for (std::size_t n = 0; n < points_.size(); ++n) {
     const Point& p = points_[n];
     const double force = p.force0 + (tangent.k[n] + shift_ * tangent.c[n]) * p.zeta0;
-    for (std::size_t i = 0; i < 4; ++i)
+    for (std::size_t i = 0; i < p.terms; ++i)
       if (p.place[i] >= 0 && p.place[i] < n_) nodal[p.place[i]] += p.shape[i] * force;
   }
 }
@@ -301,8 +330,11 @@ std::string NonlinearFoundation::worst_point() const {
   MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm_);
   MPI_Bcast(which, 2, MPI_DOUBLE, worst.rank, comm_);
   char text[96];
-  std::snprintf(text, sizeof text, "foundation_%s at x = %.6g m",
-                beam::foundation_kinds[static_cast<std::size_t>(which[0])].name.data(), which[1]);
+  const auto kind = static_cast<std::size_t>(which[0]);
+  if (kind == beam::below_a_sleeper)
+    std::snprintf(text, sizeof text, "the gap below the sleeper at x = %.6g m", which[1]);
+  else
+    std::snprintf(text, sizeof text, "foundation_%s at x = %.6g m", beam::foundation_kinds[kind].name.data(), which[1]);
   return text;
 }
 

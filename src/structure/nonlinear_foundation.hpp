@@ -29,6 +29,10 @@ namespace traverse::structure {
 /// such list or bed.
 struct NonlinearForces {
   std::array<std::vector<double>, beam::foundation_kind_count> of_kind;
+  /// Of the sleepers over a gap, from left to right: what pushes each up, N, and how far its gap is open, m; below zero
+  /// it is closed and the ballast's spring is pressed by so much.
+  std::vector<double> below_sleepers, open_gaps;
+  double of_ground = 0.0;  // of all that on sleepers whose ballast stands on the ground without a mass, N
 };
 
 class NonlinearFoundation {
@@ -68,8 +72,9 @@ class NonlinearFoundation {
  private:
   struct Point {
     beam::NonlinearPoint its;
-    std::array<int, 4> place{};  // in the local unknowns, then the left and the right neighbour's column; -1: none
-    std::array<double, 4> shape{};
+    std::size_t terms = 4;       // of the displacement
+    std::array<int, 5> place{};  // in the local unknowns, then the left and the right neighbour's column; -1: none
+    std::array<double, 5> shape{};
     bool counted = false;    // by this rank, in sums
     double reference = 0.0;  // N/m, at a displacement of the order of that under the load
     double still = 0.0;      // displacement and rate at z = 0
@@ -86,6 +91,7 @@ class NonlinearFoundation {
     }
   };
 
+  void add_point(const beam::Beam& beam, const beam::NonlinearPoint& its, double load);
   void note_terms(const beam::Beam& beam);
   void gather(const double* x, double Point::*into);
   beam::FoundationForce force_at(const Point& p, double zeta) const;
@@ -97,6 +103,7 @@ class NonlinearFoundation {
   MPI_Comm comm_;
   const BeamOperator& operator_;
   const beam::Foundation& foundation_;
+  std::size_t sleepers_ = 0;  // over a gap, on all ranks
   int spans_, n_, block_;
   double point_load_;
   std::vector<Point> points_;

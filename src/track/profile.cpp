@@ -187,8 +187,40 @@ Height faded(const Height& w, double s, double fade) {
 }  // namespace
 
 double Profile::shortest_wave() const {
-  if (kind_ == Kind::bump) return length_;
-  return kind_ == Kind::waves ? stations_a_wave * resolution_ : std::numeric_limits<double>::infinity();
+  double wave = std::numeric_limits<double>::infinity();
+  for (const Dip& dip : dips_) wave = std::min(wave, dip.length);
+  if (kind_ == Kind::bump) wave = std::min(wave, length_);
+  if (kind_ == Kind::waves) wave = std::min(wave, stations_a_wave * resolution_);
+  return wave;
+}
+
+Height Profile::Dip::at(double x) const {
+  const double s = x - middle, half = 0.5 * length;
+  if (!corner) return bump_at(s + half, length, -depth);
+  if (std::abs(s) >= half) return {};
+  const double left = 1.0 - std::abs(s) / half, slope = 2.0 * depth / half;
+  return {-depth * left * left, s < 0.0 ? -slope * left : slope * left, -slope / half};
+}
+
+Profile Profile::with_dip(double middle, double length, double depth, bool corner) const {
+  if (!(length > 0.0) || !std::isfinite(length)) throw InputError("a dip needs a length above 0");
+  if (!std::isfinite(middle) || !std::isfinite(depth)) throw InputError("a dip needs a finite place and depth");
+  if (corner && depth < 0.0) throw InputError("a dip with a corner needs a depth above 0");
+  Profile p = *this;
+  if (depth == 0.0) return p;
+  const auto after =
+      std::upper_bound(p.dips_.begin(), p.dips_.end(), middle, [](double x, const Dip& dip) { return x < dip.middle; });
+  p.dips_.insert(after, {middle, length, depth, corner});
+  p.longest_dip_ = std::max(p.longest_dip_, length);
+  for (const double kink : {middle - 0.5 * length, middle, middle + 0.5 * length})
+    if (corner || kink != middle) p.kinks_.push_back(kink);
+  std::sort(p.kinks_.begin(), p.kinks_.end());
+  const double slope = corner ? 4.0 * depth / length : 0.5 * std::abs(depth) * two_pi / length;
+  const double valley = corner ? 0.0 : slope * two_pi / length;
+  p.greatest_slope_ += slope;
+  p.greatest_valley_ += corner && 2.0 * slope > least_corner ? std::numeric_limits<double>::infinity() : valley;
+  p.resolution_ = level() ? length / stations_a_wave : std::min(p.resolution_, length / stations_a_wave);
+  return p;
 }
 
 Profile Profile::reversed() const {
@@ -208,6 +240,20 @@ Height Profile::at(double x) const {
 
 // Before it is turned round.
 Height Profile::ahead(double x) const {
+  Height height = base_at(x);
+  if (dips_.empty()) return height;
+  auto dip = std::lower_bound(dips_.begin(), dips_.end(), x - 0.5 * longest_dip_,
+                              [](const Dip& d, double place) { return d.middle < place; });
+  for (; dip != dips_.end() && dip->middle <= x + 0.5 * longest_dip_; ++dip) {
+    const Height more = dip->at(x);
+    height.value += more.value;
+    height.slope += more.slope;
+    height.curvature += more.curvature;
+  }
+  return height;
+}
+
+Height Profile::base_at(double x) const {
   switch (kind_) {
     case Kind::level:
       return {};
@@ -227,10 +273,10 @@ std::vector<Height> Profile::along(double x, double distance, std::size_t count)
     for (std::size_t i = 0; i < count; ++i) heights.push_back(at(x + static_cast<double>(i) * distance));
     return heights;
   }
-  if (kind_ == Kind::waves) heights = waves_.sums(x - start_, distance, count);
+  if (kind_ == Kind::waves && dips_.empty()) heights = waves_.sums(x - start_, distance, count);
   for (std::size_t i = 0; i < count; ++i) {
     const double place = x + static_cast<double>(i) * distance;
-    if (kind_ != Kind::waves)
+    if (kind_ != Kind::waves || !dips_.empty())
       heights.push_back(at(place));
     else
       heights[i] = place > start_ ? faded(heights[i], place - start_, length_) : Height{};

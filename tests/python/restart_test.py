@@ -34,6 +34,8 @@ KINDS = [
     ("mechanism", "slider_crank", [], 100),
     ("foundation with a gap", "prop_with_gap", ["-ts_max_time", "0.1"], 100),
     ("layered track", "ballasted_viaduct", ["-ts_dt", "2e-3", "-ts_max_time", "0.06"], 12),
+    ("hanging sleepers", "transition_zone",
+     ["-ts_dt", "2e-3", "-track_elements_per_bay", "2", "-train_positions", "-12", "-ts_max_time", "0.12"], 30),
     ("exact in time", "r1_moving_force", ["-model_modes", "3"], 7),
     ("adaptive steps", "three_span_half_car",
      ["-beam_elements_per_span", "4", "-ts_dt", "2e-3", "-ts_adapt_type", "ladder", "-ts_type", "esdirk4",

@@ -42,8 +42,8 @@ inline Eigen::MatrixXd dense_inverse(const beam::Beam& beam, Eigen::MatrixXd A) 
 /// The displacement at a point of the foundation is this times the unknowns.
 inline Eigen::VectorXd dense_shape(const beam::Beam& beam, const beam::NonlinearPoint& point) {
   Eigen::VectorXd N = Eigen::VectorXd::Zero(beam.local_unknowns());
-  const beam::PointShape shape = beam::shape_of(beam.bridge(), point);
-  for (std::size_t i = 0; i < 4; ++i)
+  const beam::NonlinearShape shape = beam::shape_of(beam.bridge(), point);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(shape.count); ++i)
     if (shape.unknown[i] >= 0) N[shape.unknown[i]] += shape.shape[i];
   return N;
 }

@@ -48,6 +48,19 @@ TEST(Horizon, ABump) {
   EXPECT_NEAR(late[0].until, (102.0 + 1.1 * 30.0) / 50.0, 1e-12);
 }
 
+// Sleepers that hang late on the way have to be seen.
+TEST(Horizon, AStretchOfTheTrack) {
+  const std::string track =
+      "track: {rail: {EI: 1.3e7, mass: 121.0}, spacing: 0.6, pad: {k: 1.3e8}, sleeper: {mass: 251.0}, ballast: {k: "
+      "2.7e8, "
+      "mass: 1000.0}, approach: 30.0, stretches: hung, hung: {gap: 1.0e-4, ";
+  EXPECT_TRUE(later(scene_of(track + "from: -3.0, to: 0.0}}\n")).empty());
+  const std::vector<Meeting> late = later(scene_of(track + "from: 90.0, to: 99.0}}\n"));
+  ASSERT_EQ(late.size(), 1U);
+  EXPECT_NEAR(late[0].until, (99.0 + 10.0 * 0.6) / 50.0, 1e-12);
+  EXPECT_EQ(late[0].what, "the stretch hung of the track");
+}
+
 TEST(Accuracy, IsWithdrawnWhereContactsWereLostUnseen) {
   Accuracy accuracy;
   accuracy.measured = true;

@@ -86,6 +86,35 @@ TEST(Profile, BoundsOfTables) {
   }
 }
 
+// On top of a bump: values by hand, derivatives by differences, stations where they jump.
+TEST(Profile, DipsOnTop) {
+  const Profile weld = Profile().with_dip(3.0, 1.0, -2e-3, false), joint = Profile().with_dip(3.0, 1.0, 2e-3, true);
+  EXPECT_FALSE(weld.level());
+  EXPECT_DOUBLE_EQ(weld.at(3.0).value, 2e-3);
+  EXPECT_NEAR(weld.at(3.25).value, 1e-3, 1e-15);
+  EXPECT_DOUBLE_EQ(joint.at(3.0).value, -2e-3);
+  EXPECT_DOUBLE_EQ(joint.at(3.25).value, -5e-4);
+  EXPECT_NEAR(joint.at(3.0 + 1e-12).slope - joint.at(3.0 - 1e-12).slope, 8.0 * 2e-3 / 1.0, 1e-12);
+  EXPECT_EQ(weld.at(3.5001).value, 0.0);
+  EXPECT_EQ(weld.kinks(), (std::vector<double>{2.5, 3.5}));
+  EXPECT_EQ(joint.kinks(), (std::vector<double>{2.5, 3.0, 3.5}));
+  EXPECT_TRUE(std::isinf(joint.greatest_valley()));
+  EXPECT_DOUBLE_EQ(joint.shortest_wave(), 1.0);
+  const Profile all = Profile::bump(1.0, 4.0, 5e-3).with_dip(3.0, 1.0, 2e-3, true).with_dip(2.5, 0.6, 1e-3, false);
+  constexpr double h = 1e-5;
+  for (const double x : {1.3, 2.3, 2.51, 2.9, 3.1, 3.4, 4.2}) {
+    const track::Height a = all.at(x - h), b = all.at(x), c = all.at(x + h);
+    EXPECT_NEAR(b.slope, (c.value - a.value) / (2 * h), 1e-9) << x;
+    EXPECT_NEAR(b.curvature, (c.slope - a.slope) / (2 * h), 1e-6) << x;
+    const double alone = Profile::bump(1.0, 4.0, 5e-3).at(x).value +
+                         Profile().with_dip(3.0, 1.0, 2e-3, true).at(x).value +
+                         Profile().with_dip(2.5, 0.6, 1e-3, false).at(x).value;
+    EXPECT_DOUBLE_EQ(b.value, alone);
+  }
+  EXPECT_THROW(Profile().with_dip(3.0, 1.0, -1e-3, true), InputError);
+  EXPECT_THROW(Profile().with_dip(3.0, 0.0, 1e-3, false), InputError);
+}
+
 TEST(Profile, TwoPointsAreALine) {
   const Profile p = Profile::table({0.0, 2.0}, {0.0, 0.1}, "t.csv");
   EXPECT_DOUBLE_EQ(p.at(1.0).value, 0.05);

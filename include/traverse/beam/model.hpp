@@ -8,6 +8,7 @@
 
 #include "traverse/beam/foundation.hpp"
 #include "traverse/beam/given_modes.hpp"
+#include "traverse/beam/layered_track.hpp"
 
 namespace traverse::beam {
 
@@ -49,30 +50,6 @@ struct Temperature {
   double curvature() const { return -expansion * gradient / depth; }  // 1/m, positive in sagging
 };
 
-/// A spring and a damper of a layer of track: N/m and N s/m for each sleeper.
-struct Layer {
-  double k = 0.0;
-  double c = 0.0;
-};
-
-/// Rail, pads, sleepers, ballast and sub-ballast, all for both rails together. On the ground a sleeper stands on its
-/// ballast spring, the ballast's mass, the sub-ballast's spring; on the bridge the ballast's spring stands on the beam
-/// and its mass rides there. A layer that is left out is rigid: the sleeper stands on the next one.
-struct LayeredTrack {
-  double rail_EI = 0.0, rail_EA = 0.0, rail_mass = 0.0;  // N m2, N, kg/m
-  std::optional<double> rail_GA;                         // N; none: it does not shear
-  double spacing = 0.6;                                  // from sleeper to sleeper, m
-  double offset = 0.0;                                   // station of one of them, m
-  int elements_per_bay = 2;                              // of the rail
-  Layer pad;
-  double sleeper_mass = 0.0;  // kg
-  std::optional<Layer> ballast;
-  double ballast_mass = 0.0;  // kg a sleeper
-  std::optional<Layer> subballast;
-  Layer longitudinal;     // between rail and bridge, or rail and ground, along x
-  double approach = 0.0;  // of track on either side of the bridge, m; made whole bays
-};
-
 struct BeamModel {
   std::vector<double> spans;       // m, each > 0
   std::vector<int> elements;       // one number a span, each >= 1; with a layered track its rail's mesh decides instead
@@ -94,6 +71,7 @@ struct BeamModel {
   bool axial = true;                // false: no axial unknowns
   double start = 0.0;               // x of the left end, m: 0, but for a rail that begins before the bridge
   double surface_height = 0.0;      // of the running surface above the neutral axis, m: forces along x act up there
+  bool nodes_at_steps = true;       // of EI and mass
 
   double length() const;
   double end() const { return start + length(); }
@@ -103,6 +81,8 @@ struct BeamModel {
   bool all_separate() const;
   /// Whether settlements or temperature bend or stretch it without a load.
   bool strained() const;
+  /// Whether some of its foundation, or sleepers over a gap, obey a law that is not linear.
+  bool nonlinear() const { return foundation.nonlinear() || (track && track->hangs()); }
 };
 
 /// A bridge of given modes: what its elements are between the stations of the shapes. They carry the shapes and
@@ -135,12 +115,12 @@ struct RailMesh {
 };
 RailMesh rail_mesh(const BeamModel& model);
 
-/// The bridge without its layered track, whose masses that ride on the bridge are spread over its length. Damping
-/// ratios refer to the frequencies of this beam.
+/// The bridge without its layered track, whose ballast (without ballast its sleepers) is spread over its length: the
+/// mean of what stands on the bridge. Damping ratios refer to the frequencies of this beam.
 BeamModel bridge_alone(const BeamModel& model);
 
 /// With every foundation linear, as it acts about rest under load: without a gap by its k and c, with one not at all.
-/// Its frequencies are those of small motions.
+/// Sleepers over a gap hang on the rail. Its frequencies are those of small motions.
 BeamModel linearised(const BeamModel& model);
 
 /// The rail as a beam, eqs. 1-12: free at both ends, without foundation; its layers join it to the sleepers.

@@ -63,6 +63,9 @@ std::span<const Row> part_rows(Part part);
 /// Options train_<coupler>_<row>, besides those of springs and joints.
 std::span<const Row> coupler_rows();
 
+/// Options track_<stretch>_<row>.
+std::span<const Row> stretch_rows();
+
 /// Options study_vary_<option>_<row>, and study_vary_<option> itself.
 std::span<const Row> vary_rows();
 const Row& vary_list_row();

@@ -32,7 +32,12 @@ class Profile {
   /// does so to the left from -start on.
   Profile reversed() const;
 
-  bool level() const { return kind_ == Kind::level; }
+  /// The same profile with a dip on top: of a cosine, depth/2*(1 + cos(2 pi (x - middle)/length)) deep, as of a weld,
+  /// or with a corner, two parabolas that meet at their lowest point, depth*(1 - |x - middle|/(length/2))^2 deep, as of
+  /// a dipped rail joint. A depth below 0 is a hump; at a corner there is none.
+  Profile with_dip(double middle, double length, double depth, bool corner) const;
+
+  bool level() const { return kind_ == Kind::level && dips_.empty(); }
   bool is_rough() const { return kind_ == Kind::waves; }
   Height at(double x) const;
   /// The same at `count` places from x on, `distance` apart: of roughness in much less time.
@@ -47,11 +52,18 @@ class Profile {
   double greatest_slope() const { return greatest_slope_; }
   /// Stations this far apart (m) show every crest and valley.
   double resolution() const { return resolution_; }
-  /// Length of the bump or of the shortest wave of roughness, m; infinite for level tracks and tables.
+  /// Length of the bump, of the shortest dip or of the shortest wave of roughness, m; infinite for level tracks and
+  /// tables.
   double shortest_wave() const;
 
  private:
   enum class Kind { level, bump, table, waves };
+  struct Dip {
+    double middle = 0.0, length = 0.0, depth = 0.0;  // m
+    bool corner = false;
+    Height at(double x) const;
+  };
+  Height base_at(double x) const;
   void check_swing(const std::string& name) const;
   void bound_table();
 
@@ -62,6 +74,8 @@ class Profile {
   double start_ = 0.0, length_ = 0.0, height_ = 0.0;  // length: of the bump, or of the fade
   std::vector<double> x_, h_, h2_;                    // table
   Waves waves_;
+  std::vector<Dip> dips_;  // by ascending middle
+  double longest_dip_ = 0.0;
   std::vector<double> kinks_;
   double greatest_valley_ = 0.0, greatest_slope_ = 0.0, resolution_ = 0.0;
 };
