@@ -84,7 +84,7 @@ class ModesFile {
     if (H5Tis_variable_str(type.get()) <= 0) {
       std::string text(H5Tget_size(type.get()), '\0');
       H5Aread(attribute.get(), type.get(), text.data());
-      return text.c_str();
+      return text.substr(0, text.find('\0'));
     }
     char* text = nullptr;
     if (H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return "1";
