@@ -134,6 +134,8 @@ WAYS = [
         Row("every dataset of all other scenes, of its peak", "the same scene on one rank", "Ranks.*",
             [Check("double at_rest = 0.0, double bound = {}) {")]),
         Row("an articulated train", "the same scene on one rank", "Ranks.ArticulatedTrain", [Check("60, {});")]),
+        Row("a bridge as found, a span that shears", "the same scenes on one rank", "Ranks.BridgesAsFoundAndThatShear",
+            [Check("30, {});")]),
         Row("linear vehicles", "the same scene on one rank", "Ranks.LinearVehicles", [Check("35, {});")]),
         Row("a prop below a layered track", "the same scene on one rank", "Ranks.PropBelowALayeredTrack",
             [Check("20, {});")]),

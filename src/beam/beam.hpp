@@ -3,10 +3,10 @@
 //   M a + C* w + K* v = P        v, w, a: nodal displacements, velocities, accelerations
 //
 // A column holds the unknowns of one node (line.hpp). The vectors have all of them; those that a support holds, or
-// that nothing belongs to, stay zero: their rows and columns are empty in M, C and K ("aa" of eq. 17), and the rows
-// "c" of eq. 18 are kept apart for the reactions. A foundation with a law that is not linear is a force in P. All
-// matrices are AIJ, assembled by each rank from its own columns without communication; M, K_aa, K* and C* have the same
-// pattern of non-zeros.
+// that nothing belongs to, stay zero, or at their settlement: their rows and columns are empty in M, C and K ("aa" of
+// eq. 17), and the rows "c" of eq. 18 are kept apart for the reactions. A foundation with a law that is not linear is a
+// force in P. All matrices are AIJ, assembled by each rank from its own columns without communication; M, K_aa, K* and
+// C* have the same pattern of non-zeros.
 #pragma once
 
 #include <mpi.h>
