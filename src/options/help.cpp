@@ -21,6 +21,7 @@ constexpr Heading headings[] = {
     {"modes", "scene", ""},
     {"check", "scene", ""},
     {"help", "scene", ""},
+    {"bridge", "bridge", "Bridge by given modes"},
     {"beam", "beam", "Bridge"},
     {"support", "support", "Supports"},
     {"foundation", "foundation", "Foundation: springs, dampers and beds"},

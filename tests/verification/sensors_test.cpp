@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "support/curve.hpp"
 #include "support/message.hpp"
@@ -59,12 +60,15 @@ double off_the_body(Results& run, const Place& place) {
 
 // By mechanisms, by linear vehicles, and by these over modes, which a kernel of its own steps.
 TEST(Sensors, MoveWithTheirRigidBodies) {
-  for (const char* way : {"", "model: {vehicles: linear}\n", "model: {vehicles: linear, modes: 6}\n"}) {
-    SCOPED_TRACE(way);
+  const std::pair<const char*, const char*> ways[] = {{"mechanisms", ""},
+                                                      {"linear", "model: {vehicles: linear}\n"},
+                                                      {"over_modes", "model: {vehicles: linear, modes: 6}\n"}};
+  for (const auto& [name, way] : ways) {
+    SCOPED_TRACE(name);
     Results run = run_yaml(train(way), {{"output_interval", "5e-3"}});
     for (const Place& place : places) {
       const double difference = off_the_body(run, place);
-      testing::Test::RecordProperty(std::string(place.sensor) + way, text(difference));
+      testing::Test::RecordProperty(std::string(place.sensor) + "_" + name, text(difference));
       EXPECT_LT(difference, 1e-10) << place.sensor;
     }
   }
