@@ -315,7 +315,6 @@ MovingLoad read_one_load(const Options& o, const ReadLoad& from, const std::stri
   if (swept) scene.sweep->loads = std::move(others);
   if (option != from.block.option("en15528") && o.has(from.block.option("wagons")))
     scene.notes.push_back(from.block.option("wagons") + " has no effect: it is for " + from.block.option("en15528"));
-  if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
   return load;
 }
 
@@ -339,6 +338,7 @@ void read_load(const Options& o, Scene& scene) {
     const std::string option = swept ? "sweep_hslm_a" : load_option(o, block.name);
     if (option.empty() && o.has("loads")) o.refuse(block.option("forces"), "missing: the forces of this load");
     if (option.empty()) return;
+    if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
     const bool file = o.has(block.option("speed_file"));
     const double speed = file ? 0.0 : read_load_speed(o, block, scene);
     const ReadLoad from{block, file ? direction_of(o, block) : speed < 0.0 ? -1.0 : 1.0};
