@@ -83,7 +83,7 @@ void read_track(const Options& o, Scene& scene) {
   const double start = start_of_roughness(scene, to_the_left);
   ReadProfile read = read_profile(o, "track", start, to_the_left, scene);
   scene.profile = std::move(read.profile);
-  scene.roughness = std::move(read.roughness);
+  scene.roughness = read.roughness;
 }
 
 }  // namespace traverse::app
