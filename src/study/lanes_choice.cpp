@@ -42,8 +42,8 @@ constexpr double weight_of_touch = 50.0;  // as measured: accelerations beside a
 constexpr double elements_a_wave = 4.0;   // of the highest mode; a mesh twice as fine has to agree
 
 bool open(const Scene& scene) {
-  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full &&
-         scene.beam && options::in_force().find("ts_type") == nullptr;
+  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open &&
+         scene.vehicle_model != VehicleModel::full && scene.beam && options::in_force().find("ts_type") == nullptr;
 }
 
 /// Whether a single run is left open, and of a kind that the lanes' kernel takes: what is fixed, and accelerations that
@@ -53,8 +53,8 @@ bool open_alone(const Scene& scene) {
   const bool damped =
       (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
   return open(scene) && scene.mesh_open && damped && scene.step_lanes && scene.analysis == Analysis::transient &&
-         !scene.beam->track && scene.train.steady() &&
-         scene.beam->spans.size() <= most_spans_alone && own_measure() == nullptr;
+         !scene.beam->track && scene.train.steady() && scene.beam->spans.size() <= most_spans_alone &&
+         own_measure() == nullptr;
 }
 
 /// Neighbouring speeds of one class around each of the given places among all.
