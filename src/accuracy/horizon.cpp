@@ -166,20 +166,19 @@ void add_forces(const Scene& scene, std::vector<Meeting>& list) {
 double beginning(const Scene& scene, double end) {
   double until = 0.0;
   if (!scene.train.vehicles.empty())
-    until = scene.train.steady()
-                ? (reach(scene) - last_to_watch(scene, 0)) / scene.train.speed
-                : end;
+    until = scene.train.steady() ? (reach(scene) - last_to_watch(scene, 0)) / scene.train.speed : end;
   if (!scene.load.forces.empty())
-    until =
-        std::max(until, scene.load.courses.empty() && scene.load.speed > 0.0 ? (reach(scene) - last_force_to_watch(scene)) / scene.load.speed : end);
+    until = std::max(until, scene.load.courses.empty() && scene.load.speed > 0.0
+                                ? (reach(scene) - last_force_to_watch(scene)) / scene.load.speed
+                                : end);
   return until > 0.0 && until < end ? until : end;
 }
 
 std::vector<Meeting> met_later(const Scene& scene, double seen, double end) {
   std::vector<Meeting> list;
   const bool train = !scene.train.vehicles.empty();
-  const bool constant = train ? scene.train.steady()
-                              : !scene.load.forces.empty() && scene.load.courses.empty() && scene.load.speed > 0.0;
+  const bool constant =
+      train ? scene.train.steady() : !scene.load.forces.empty() && scene.load.courses.empty() && scene.load.speed > 0.0;
   if (constant) {
     add_spans(scene, list);
     add_vehicles(scene, list);

@@ -17,7 +17,8 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 double direction_of(const std::vector<double>& speeds) {
   const auto [least, greatest] = std::minmax_element(speeds.begin(), speeds.end());
   if (*least < 0.0 && *greatest > 0.0)
-    throw InputError("speeds of both signs; a train runs to the right (all from 0 up) or to the left (all from 0 down)");
+    throw InputError(
+        "speeds of both signs; a train runs to the right (all from 0 up) or to the left (all from 0 down)");
   if (*least == 0.0 && *greatest == 0.0) throw InputError("every speed is 0; wanted: at least one that is not");
   return *greatest > 0.0 ? 1.0 : -1.0;
 }
@@ -28,7 +29,8 @@ void check_rows(const std::vector<double>& x, const std::vector<double>& speeds)
     if (!(x[i + 1] > x[i])) throw InputError("the first column of a table of speeds must rise strictly");
 }
 
-/// The smallest s above 0 with v s + a/2 s^2 = d, for d, v not below 0 and at least one of v, a above 0; infinite: none.
+/// The smallest s above 0 with v s + a/2 s^2 = d, for d, v not below 0 and at least one of v, a above 0; infinite:
+/// none.
 double time_for(double d, double v, double a) {
   const double square = v * v + 2.0 * a * d;
   return square < 0.0 ? infinite : 2.0 * d / (v + std::sqrt(square));

@@ -57,7 +57,7 @@ std::array<double, 2> CornerEvents::turning_times(const Corner& corner, double t
   MPI_Allreduce(MPI_IN_PLACE, seen.data(), numbers, MPI_DOUBLE, MPI_SUM, comm_);
   const double far = std::numeric_limits<double>::infinity();
   if (seen[speed] == 0.0 || seen[radius] == 0.0) return {far, far};  // at rest or in flight
-  const double straight = t + (corner.x - seen[x]) / seen[speed];      // the centre over the corner
+  const double straight = t + (corner.x - seen[x]) / seen[speed];    // the centre over the corner
   // The rotations at the end of the element on the left and at the start of that on the right.
   elements_ = {mesh.locate(corner.x, true).element, mesh.locate(corner.x, false).element};
   structure_->gather(elements_, v, w, v_, w_);

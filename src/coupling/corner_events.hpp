@@ -43,9 +43,9 @@ class CornerEvents {
  private:
   /// A wheel's centre passes a corner of the surface.
   struct Corner {
-    double time = 0.0;  // s
-    int wheel = 0;      // of the fleet's
-    double x = 0.0;     // m
+    double time = 0.0;   // s
+    int wheel = 0;       // of the fleet's
+    double x = 0.0;      // m
     double speed = 0.0;  // m/s
   };
   double longest_turn(const Corner& corner) const;

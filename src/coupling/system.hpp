@@ -196,10 +196,9 @@ class System {
   /// Collective. Why the last stage could not be solved, and what to do about it.
   std::string trouble() const;
 
-  /// Times in (0, end) at which a force comes onto the beam or leaves it, an actuator's table has a kink or a prescribed
-  /// acceleration jumps; with
-  /// `kinks`, for a prescribed speed, also those at which a wheel or force passes a kink of the running surface or the
-  /// end of its own flat.
+  /// Times in (0, end) at which a force comes onto the beam or leaves it, an actuator's table has a kink or a
+  /// prescribed acceleration jumps; with `kinks`, for a prescribed speed, also those at which a wheel or force passes a
+  /// kink of the running surface or the end of its own flat.
   std::vector<double> known_events(double end, bool kinks = true) const;
   /// Ascending stations at which the running surface may have a corner: of the profile, and span ends.
   std::vector<double> corners() const { return corners(input_.profile); }

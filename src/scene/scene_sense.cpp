@@ -21,9 +21,9 @@ constexpr double rounding = 1e-6;        // of a length
 struct Moving {
   std::vector<double> x;  // at the start, m
   base::SpeedLaw law;
-  bool driven = true;       // goes on at that speed
-  const char* what = "";    // one of them, in words
-  std::string option;       // that places them
+  bool driven = true;     // goes on at that speed
+  const char* what = "";  // one of them, in words
+  std::string option;     // that places them
 };
 
 std::vector<Moving> moving_things(const Scene& scene) {
@@ -36,8 +36,7 @@ std::vector<Moving> moving_things(const Scene& scene) {
     if (things.empty() || things.back().what != what || course != last)
       things.push_back({{}, law, driven, what, (course ? course->name : block) + std::string("_positions")});
     last = course;
-    for (const double one : x)
-      things.back().x.push_back(law.direction() < 0.0 ? scene.beam->length() - one : one);
+    for (const double one : x) things.back().x.push_back(law.direction() < 0.0 ? scene.beam->length() - one : one);
   };
   static constexpr const char *wheel = "wheel", *force = "force";
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
@@ -105,9 +104,8 @@ void note_overlaps(const Options& o, Scene& scene) {
   }
   const std::vector<double>& x = scene.train.positions;
   const auto course = [&](std::size_t i) { return course_of(scene.train, i); };
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return course(a) != course(b) ? a < b : x[a] > x[b];
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return course(a) != course(b) ? a < b : x[a] > x[b]; });
   std::size_t pairs = 0, first = 0;
   double deepest = 0.0;
   for (std::size_t i = 0; i + 1 < order.size(); ++i) {

@@ -33,8 +33,8 @@ Roughness rough(const Options& o, const std::string& prefix, const track::Spectr
   return {spectrum, wavelengths[0], wavelengths[1], start, to_the_left};
 }
 
-/// Where the track's roughness begins: at the foremost wheel of what runs to the right or, where all runs to the left, at
-/// the foremost one of that, so that the train starts on level track.
+/// Where the track's roughness begins: at the foremost wheel of what runs to the right or, where all runs to the left,
+/// at the foremost one of that, so that the train starts on level track.
 double start_of_roughness(const Scene& scene, bool& to_the_left) {
   std::optional<double> right, left;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
@@ -76,9 +76,9 @@ ReadProfile read_profile(const Options& o, const std::string& prefix, double sta
   const std::string option = key("profile"), profile = o.text(option);
   const options::Entry* bump = o.first_with_prefix(key("bump"));
   if (profile == "bump")
-    return {track::Profile::bump(o.number(key("bump_start")), o.number(key("bump_length")),
-                                 o.number(key("bump_height"))),
-            {}};
+    return {
+        track::Profile::bump(o.number(key("bump_start")), o.number(key("bump_length")), o.number(key("bump_height"))),
+        {}};
   if (bump != nullptr) scene.notes.push_back(bump->name + " has no effect: " + option + " is " + profile);
   const std::optional<track::Spectrum> spectrum = spectrum_of(profile);
   if (!spectrum && o.has(key("wavelengths")))
@@ -103,7 +103,7 @@ void read_track(const Options& o, Scene& scene) {
   const double start = start_of_roughness(scene, to_the_left);
   ReadProfile read = read_profile(o, "track", start, to_the_left, scene);
   scene.profile = std::move(read.profile);
-  scene.roughness = std::move(read.roughness);
+  scene.roughness = read.roughness;
   read_dips(o, scene);
 }
 

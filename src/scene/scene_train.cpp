@@ -65,8 +65,8 @@ std::vector<double> read_positions(const Options& o, const ReadTrain& train, con
     if (x.size() > 1 && o.has(spacing)) o.refuse(spacing, "all positions are given: leave the spacing out");
     if (x.size() != order.size()) {
       o.refuse(positions, order.size() == 1 ? fmt::format("has {} entries; wanted: 1, one a vehicle", x.size())
-                                            : fmt::format("has {} entries; wanted: one, or {}, one a vehicle",
-                                                          x.size(), order.size()));
+                                            : fmt::format("has {} entries; wanted: one, or {}, one a vehicle", x.size(),
+                                                          order.size()));
     }
     return x;
   }
@@ -128,9 +128,8 @@ AxleList named_train(const Options& o, const Block& block, const std::string& op
 
 void read_forces(const Options& o, const ReadLoad& from, const Scene& scene, MovingLoad& load) {
   const std::string positions_option = from.block.option("positions"), forces_option = from.block.option("forces");
-  const std::vector<double> positions = o.has(positions_option)
-                                            ? o.numbers(positions_option)
-                                            : std::vector<double>{entrance(scene, from.direction)};
+  const std::vector<double> positions =
+      o.has(positions_option) ? o.numbers(positions_option) : std::vector<double>{entrance(scene, from.direction)};
   const std::vector<double> forces = o.numbers(forces_option);
   if (forces.size() == 1 || forces.size() == positions.size()) {
     load.forces = o.numbers(forces_option, positions.size(), "one a position");
@@ -302,8 +301,8 @@ MovingLoad read_one_load(const Options& o, const ReadLoad& from, const std::stri
     read_forces(o, from, scene, load);
   } else {
     const double first = read_first_axle(o, from, scene, option);
-    load = placed(swept ? hslm_a(scene.sweep->trains.front()) : named_train(o, from.block, option), first,
-                  from.direction);
+    load =
+        placed(swept ? hslm_a(scene.sweep->trains.front()) : named_train(o, from.block, option), first, from.direction);
     if (swept)
       for (const int train : scene.sweep->trains) others.push_back(placed(hslm_a(train), first, from.direction));
   }
@@ -315,7 +314,6 @@ MovingLoad read_one_load(const Options& o, const ReadLoad& from, const std::stri
   if (swept) scene.sweep->loads = std::move(others);
   if (option != from.block.option("en15528") && o.has(from.block.option("wagons")))
     scene.notes.push_back(from.block.option("wagons") + " has no effect: it is for " + from.block.option("en15528"));
-  if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
   return load;
 }
 
@@ -332,13 +330,14 @@ double read_load_speed(const Options& o, const Block& block, const Scene& scene)
 void read_load(const Options& o, Scene& scene) {
   const bool swept = scene.sweep && !scene.sweep->trains.empty();
   const std::vector<Block> blocks = blocks_of(o, "loads");
-  const bool courses = needs_courses(o, blocks) ||
-                       (o.has("train_speed") && !o.has("load_speed") && o.number("train_speed") < 0.0);
+  const bool courses =
+      needs_courses(o, blocks) || (o.has("train_speed") && !o.has("load_speed") && o.number("train_speed") < 0.0);
   if (swept && o.has("loads")) o.refuse("sweep_hslm_a", "is of one load; loads names several");
   for (const Block& block : blocks) {
     const std::string option = swept ? "sweep_hslm_a" : load_option(o, block.name);
     if (option.empty() && o.has("loads")) o.refuse(block.option("forces"), "missing: the forces of this load");
     if (option.empty()) return;
+    if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
     const bool file = o.has(block.option("speed_file"));
     const double speed = file ? 0.0 : read_load_speed(o, block, scene);
     const ReadLoad from{block, file ? direction_of(o, block) : speed < 0.0 ? -1.0 : 1.0};

@@ -108,9 +108,8 @@ void check_defined(const Options& o, const std::string& option, const std::strin
   if (is_defined(o, name)) return;
   std::vector<std::string> known = vehicles_in(o);
   const std::string near = options::nearest(name, known);
-  o.refuse(option,
-           fmt::format("vehicle '{}' is not defined: neither vehicle_{}_bodies nor vehicle_{}_file is given{}", name,
-                       name, name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
+  o.refuse(option, fmt::format("vehicle '{}' is not defined: neither vehicle_{}_bodies nor vehicle_{}_file is given{}",
+                               name, name, name, near.empty() ? "" : fmt::format("; did you mean {}?", near)));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ constexpr double part_alone = 0.7;  // of the error: the trials of a single run 
 constexpr double weight_of_touch = 20.0, beside_a_hinge = 50.0;  // as measured: of accelerations
 
 bool open(const Scene& scene) {
-  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open && scene.vehicle_model != VehicleModel::full &&
-         scene.beam && options::in_force().find("ts_type") == nullptr;
+  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open &&
+         scene.vehicle_model != VehicleModel::full && scene.beam && options::in_force().find("ts_type") == nullptr;
 }
 
 /// Whether a single run is left open, and of a kind that the lanes' kernel takes: what is fixed, and accelerations that
@@ -47,8 +47,8 @@ bool open_alone(const Scene& scene) {
   const bool damped =
       (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
   return open(scene) && scene.mesh_open && damped && scene.step_lanes && scene.analysis == Analysis::transient &&
-         !scene.beam->track && scene.train.steady() &&
-         scene.beam->spans.size() <= most_spans_alone && own_measure() == nullptr;
+         !scene.beam->track && scene.train.steady() && scene.beam->spans.size() <= most_spans_alone &&
+         own_measure() == nullptr;
 }
 
 /// Neighbouring speeds of one class around each of the given places among all.

@@ -167,8 +167,8 @@ class Fleet {
   std::string lost_since(const Fleet& start) const;
   /// Mechanism::apply for a body of a vehicle of the train. InputError where that vehicle is taken as linear.
   void apply(int member, int body, const Eigen::Vector3d& action);
-  /// A step is about to be taken, whose middle this is: where prescribed accelerations jump, they are those of this step.
-  /// True when one has jumped.
+  /// A step is about to be taken, whose middle this is: where prescribed accelerations jump, they are those of this
+  /// step. True when one has jumped.
   bool begin_step(double middle);
   /// Times at which actuators' tables have kinks, or prescribed accelerations jump, s.
   std::vector<double> kinks_of_actions() const;
@@ -276,8 +276,8 @@ class Fleet {
   const track::Profile* profile_ = nullptr;
   int freedom_ = 0;
   int first_own_ = 0, past_own_ = 0;
-  std::vector<double> speeds_;  // of each of `vehicles` at t = 0, m/s
-  std::vector<int> course_;     // of each; -1: none
+  std::vector<double> speeds_;                                   // of each of `vehicles` at t = 0, m/s
+  std::vector<int> course_;                                      // of each; -1: none
   std::vector<std::shared_ptr<const track::Profile>> profiles_;  // of the courses; null: profile_
   bool jumps_ = false;                                           // prescribed accelerations do
   bool frozen_ = false;

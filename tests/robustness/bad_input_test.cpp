@@ -35,7 +35,7 @@ TEST(BadNumbers, NegativeZeroInfiniteAndWords) {
            {"beam_damping_ratios", true, false},
            {"foundation_vertical_bed_k", true, false},
            {"gravity", true, false},
-           {"train_speed", true, false},
+           {"train_speed", true, true},
            {"train_positions", true, true},
            {"ts_dt", false, false},
            {"ts_max_time", false, false},

@@ -7,18 +7,19 @@
 
 namespace traverse::base {
 
-/// A speed (m/s) that is constant or piecewise linear in time, all of one sign: above 0 to the right, below 0 to the left.
+/// A speed (m/s) that is constant or piecewise linear in time, all of one sign: above 0 to the right, below 0 to the
+/// left.
 class SpeedLaw {
  public:
   SpeedLaw() = default;
   explicit SpeedLaw(double speed) : way_(0.0, speed) {}
-  /// Straight lines between the rows t (s), v (m/s), the end values outside. InputError where times do not rise, speeds are
-  /// of both signs or all 0.
+  /// Straight lines between the rows t (s), v (m/s), the end values outside. InputError where times do not rise, speeds
+  /// are of both signs or all 0.
   static SpeedLaw over_time(std::vector<double> times, std::vector<double> speeds);
-  /// Rows x (m), v (m/s) for something that is at `start` at t = 0: the acceleration is constant between two rows, so that
-  /// v^2 is linear in x, and the end speeds hold outside. Something at rest in a row begins to move with the acceleration
-  /// of the interval before it. InputError as above, where two rows next to each other have the speed 0, and where
-  /// `start` lies where the speed is 0 for good.
+  /// Rows x (m), v (m/s) for something that is at `start` at t = 0: the acceleration is constant between two rows, so
+  /// that v^2 is linear in x, and the end speeds hold outside. Something at rest in a row begins to move with the
+  /// acceleration of the interval before it. InputError as above, where two rows next to each other have the speed 0,
+  /// and where `start` lies where the speed is 0 for good.
   static SpeedLaw over_place(std::vector<double> places, std::vector<double> speeds, double start);
 
   /// Whether the speed is the same at all times.

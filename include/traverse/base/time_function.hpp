@@ -1,5 +1,5 @@
-// A prescribed quantity over time with its first two derivatives: a polynomial of degree one, a table, or the integral of
-// one.
+// A prescribed quantity over time with its first two derivatives: a polynomial of degree one, a table, or the integral
+// of one.
 #pragma once
 
 #include <vector>
@@ -17,8 +17,8 @@ class TimeFunction {
   /// A force's table: straight lines between its rows, the end values outside; its rate jumps at its times.
   static TimeFunction piecewise_linear(std::vector<double> times, std::vector<double> values);
 
-  /// value plus the integral of a rate from time 0 on: straight lines between the table's rows, the end rates outside. Its
-  /// acceleration jumps at the times, where that of either side is meant: see take_piece. Throws as a table does.
+  /// value plus the integral of a rate from time 0 on: straight lines between the table's rows, the end rates outside.
+  /// Its acceleration jumps at the times, where that of either side is meant: see take_piece. Throws as a table does.
   static TimeFunction integral(double value, std::vector<double> times, std::vector<double> rates);
 
   double value(double t) const;
@@ -30,8 +30,8 @@ class TimeFunction {
   std::vector<double> kinks() const { return curvatures_.empty() ? times_ : std::vector<double>(); }
   /// Of an integral: whether its acceleration jumps at times.
   bool jumps() const { return !rates_.empty(); }
-  /// Of an integral: goes on by the piece that holds t, at all times, until another one is taken: the acceleration at the
-  /// end of a step is then that of the step. True when it is another piece than before.
+  /// Of an integral: goes on by the piece that holds t, at all times, until another one is taken: the acceleration at
+  /// the end of a step is then that of the step. True when it is another piece than before.
   bool take_piece(double t);
   /// Gives value and rate the other sign at all times.
   void reverse();

@@ -28,8 +28,8 @@ class Profile {
     return rough(spectrum, spectrum.shortest, spectrum.longest, start, seed);
   }
 
-  /// The same for somebody who looks from the other side: h(-x). Of roughness: what fades in to the right from `start` on
-  /// does so to the left from -start on.
+  /// The same for somebody who looks from the other side: h(-x). Of roughness: what fades in to the right from `start`
+  /// on does so to the left from -start on.
   Profile reversed() const;
 
   /// The same profile with a dip on top: of a cosine, depth/2*(1 + cos(2 pi (x - middle)/length)) deep, as of a weld,
