@@ -26,11 +26,7 @@ MovingVehicle::MovingVehicle(Unit unit)
 
 Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravity, bool frozen, const beam::Mesh* mesh,
              const track::Profile* profile, double surface_height, bool yields_inside)
-    : mesh_(mesh),
-      profile_(profile),
-      frozen_(frozen),
-      surface_height_(surface_height),
-      yields_inside_(yields_inside) {
+    : mesh_(mesh), profile_(profile), frozen_(frozen), surface_height_(surface_height), yields_inside_(yields_inside) {
   AssembledTrain assembled = assemble(types, train, gravity, frozen);
   members = std::move(assembled.members);
   speeds_.assign(assembled.units.size(), 0.0);

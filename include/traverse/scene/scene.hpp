@@ -140,7 +140,9 @@ struct Scene {
   /// Whether the bridge is modes that were given, without elements behind them.
   bool by_given_modes() const { return beam && beam->given; }
   /// Modes under moving forces alone, whose motion is known exactly; single runs of given modes are stepped.
-  bool exact_in_time() const { return model_modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep); }
+  bool exact_in_time() const {
+    return model_modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep);
+  }
 };
 
 /// x of the wheels of vehicle `i` of the train at t = 0, in m.
