@@ -131,7 +131,7 @@ void print_study(const StudyTable& table) {
   print("peak deflection", "peak_deflection", true, 1e3, "mm");
   print("peak acceleration", "peak_acceleration", true, 1.0, "m/s2");
   print("peak moment", "peak_moment", true, 1e-3, "kN m");
-  print("greatest amplification", "amplification", true, 1.0, "");
+  print("amplification", "amplification", true, 1.0, "");
   print("least wheel force", "least_wheel_force", false, 1e-3, "kN");
   print("greatest wheel force", "greatest_wheel_force", true, 1e-3, "kN");
 }
