@@ -139,6 +139,8 @@ WAYS = [
         Row("linear vehicles", "the same scene on one rank", "Ranks.LinearVehicles", [Check("35, {});")]),
         Row("a prop below a layered track", "the same scene on one rank", "Ranks.PropBelowALayeredTrack",
             [Check("20, {});")]),
+        Row("a track by stretches, hanging sleepers among them", "the same scene on one rank", "Ranks.TrackByStretch",
+            [Check("20, {});")]),
         Row("losses of contact and impacts", "the same scene on one rank", "Ranks.ContactLossAndImpacts",
             [Check("20, {});")]),
         Row("steps chosen by their errors, two scenes", "the same scenes on one rank", "Ranks.StepsChosenByTheirErrors",
