@@ -1,6 +1,7 @@
 #include "run/axle_passages.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace traverse::app {
 namespace {
@@ -19,10 +20,16 @@ std::vector<const train::WheelContact*> first_points(const train::Fleet& fleet) 
 
 std::vector<AxlePassages::Due> AxlePassages::due_of(const Scene& scene) {
   std::vector<Due> due;
-  const std::vector<double> start = wheels_at_start(scene);
-  for (std::size_t i = 0; i < start.size(); ++i)
-    for (const double place : scene.output.passages)
-      if (place > start[i]) due.push_back({(place - start[i]) / scene.train.speed, place, i});
+  std::size_t wheel = 0;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
+    const base::SpeedLaw law = train::law_of(scene.train, i);
+    for (const double start : wheels_at_start(scene, i)) {
+      for (const double place : scene.output.passages)
+        if (const double time = law.time_of(place - start); time > 0.0 && std::isfinite(time))
+          due.push_back({time, place, wheel});
+      ++wheel;
+    }
+  }
   std::stable_sort(due.begin(), due.end(), [](const Due& a, const Due& b) { return a.time < b.time; });
   return due;
 }
@@ -46,7 +53,8 @@ void AxlePassages::add(double t, const train::Fleet& fleet) {
     const Due& due = due_[next_];
     const train::WheelContact& c = *wheels[due.wheel];
     const double ahead = due.place - fleet.coordinates(c).x(), speed = fleet.velocities(c).x();
-    found_.push_back({t + ahead / speed, due.place, speed, fleet.load(c).normal, at_start_[due.wheel], due.wheel});
+    const double late = speed != 0.0 ? ahead / speed : 0.0;
+    found_.push_back({t + late, due.place, speed, fleet.load(c).normal, at_start_[due.wheel], due.wheel});
   }
 }
 

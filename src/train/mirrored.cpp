@@ -61,6 +61,7 @@ Vehicle mirrored(Vehicle vehicle) {
     if (driver.coordinate != 1) driver.value.reverse();
   for (Wheel& wheel : vehicle.wheels) turn(wheel);
   for (contact::BodyContact& contact : vehicle.contacts) turn(contact);
+  for (Sensor& sensor : vehicle.sensors) turn(sensor.arm);
   return vehicle;
 }
 

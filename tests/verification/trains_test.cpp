@@ -16,7 +16,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 /// A car that has all that a mirror image turns round: joints, springs, a torsion spring with an uneven table, an
-/// actuator with a table, a driver, wheels out of round.
+/// actuator with a table, a driver, wheels out of round, a sensor.
 std::string car(const TemporaryFolder& folder, bool turned) {
   const double s = turned ? -1.0 : 1.0;
   const std::string twist = folder.write(turned ? "twist_turned.csv" : "twist.csv",
@@ -34,6 +34,9 @@ vehicle:
     actuators: [push]
     drivers: [level]
     wheels:  [front_wheel, rear_wheel]
+    sensors: [seat]
+    seat:       {body: box, point: [)" +
+         x(1.1) + R"(, 2.7]}
     frame:      {mass: 9000.0, inertia: 8.0e4, position: [)" +
          x(0.1) + R"(, 1.5]}
     box:        {mass: 3000.0, inertia: 4.0e3, position: [)" +
@@ -95,6 +98,34 @@ Difference difference_of_mirrored(Results& one, Results& other, const std::vecto
   return worst;
 }
 
+/// Along x and in rotation sensors see the opposite, upward the same.
+void expect_mirrored_sensors(Results& one, Results& other, const std::vector<int>& vehicles) {
+  for (const int vehicle : vehicles)
+    for (const auto& [name, sign] :
+         {std::pair("acceleration_x", -1.0), std::pair("acceleration_y", 1.0), std::pair("pitch_rate", -1.0)}) {
+      const std::string path = "/vehicles/" + std::to_string(vehicle) + "/seat/" + name;
+      const std::vector<double> a = one(path), b = other(path);
+      ASSERT_EQ(a.size(), b.size()) << path;
+      const double largest = std::abs(peak(a).first);
+      EXPECT_GT(largest, 1e-4) << path;
+      for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], sign * b[i], 1e-9 * largest) << path << " " << i;
+    }
+}
+
+/// The same wheels at the same times with the same forces, at places that are mirrored.
+void expect_mirrored_passages(Results& one, Results& other, double length) {
+  const std::vector<double> x = one("/passages/x"), x_turned = other("/passages/x");
+  ASSERT_GT(x.size(), 5U);
+  ASSERT_EQ(x.size(), x_turned.size());
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], length - x_turned[i], 1e-12);
+  for (const auto& [name, sign] : {std::pair("time", 1.0), std::pair("speed", -1.0), std::pair("normal_force", 1.0)}) {
+    const std::string path = std::string("/passages/") + name;
+    const std::vector<double> a = one(path), b = other(path);
+    for (std::size_t i = 0; i < a.size(); ++i)
+      EXPECT_NEAR(a[i], sign * b[i], 1e-9 * std::abs(a[i])) << path << " " << i;
+  }
+}
+
 // The program mirrors a train that runs to the left: to the mirror image of the whole scene that is one.
 TEST(Trains, MirroredSceneIsTheSame) {
   const TemporaryFolder folder;
@@ -108,10 +139,11 @@ up: {vehicles: car*2, spacing: 9.0, couplers: [bar], bar: {bodies: [frame, frame
 down: {vehicles: car, positions: 58.0}
 ts_max_time: 3.0
 )";
-  Results one = run_yaml(scene, {{"up_speed_file", stop}, {"down_speed_file", start}});
-  Results other = run_yaml(
-      scene, turned_bridge +
-                 Values{{"up_speed_file", stop_turned}, {"down_speed_file", start_turned}, {"down_positions", "7"}});
+  Results one = run_yaml(scene, {{"up_speed_file", stop}, {"down_speed_file", start}, {"output_passages", "9,30"}});
+  Results other = run_yaml(scene, turned_bridge + Values{{"up_speed_file", stop_turned},
+                                                         {"down_speed_file", start_turned},
+                                                         {"down_positions", "7"},
+                                                         {"output_passages", "56,35"}});
   // Places of some 60 m are known to 7e-15 m, and a contact of 1e9 N/m^1.5 makes 1e-7 N of that: 1e-12 of a force.
   const Difference two = difference_of_mirrored(one, other, {0, 1, 2});
   testing::Test::RecordProperty("mirrored_deflection", text(two.deflection));
@@ -119,6 +151,8 @@ ts_max_time: 3.0
   EXPECT_LT(two.deflection, 1e-12);
   EXPECT_LT(two.force, 1e-11);
   EXPECT_GT(std::abs(peak(one("/probes/deflection")).first), 1e-3);
+  expect_mirrored_sensors(one, other, {0, 1, 2});
+  expect_mirrored_passages(one, other, 65.0);
 
   // A vehicle written as its own mirror image, run to the right, is the vehicle run to the left.
   const Values right = {{"train_vehicles", "car"}, {"train_speed", "25"}, {"ts_max_time", "2.5"}};
