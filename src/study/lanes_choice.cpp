@@ -25,6 +25,7 @@ using Errors = LaneErrors;
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
 constexpr std::size_t most_spans_alone = 8;  // each wants some sixteen modes
+constexpr double finest_alone = 3e-4;        // accuracy: errors of the kernel itself have been 3e-4 of a moment
 // Times its speed: the trials of a single run, whose peaks may agree by chance.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
 constexpr double part_of_all = 0.95;     // of the wanted error
@@ -47,8 +48,8 @@ bool open_alone(const Scene& scene) {
   const bool damped =
       (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
   return open(scene) && scene.mesh_open && damped && scene.step_lanes && scene.analysis == Analysis::transient &&
-         !scene.beam->track && scene.train.steady() && scene.beam->spans.size() <= most_spans_alone &&
-         own_measure() == nullptr;
+         !scene.beam->track && scene.train.steady() && scene.accuracy >= finest_alone &&
+         scene.beam->spans.size() <= most_spans_alone && own_measure() == nullptr;
 }
 
 /// Neighbouring speeds of one class around each of the given places among all.
