@@ -32,6 +32,7 @@ struct Job {
 // Collective. Each writes the results file and the summary, and returns the exit status as `run` does.
 int run_in_time(Job job);  // the motion in time, or rest at t = 0
 int run_modes(Job job);
+int run_rail(Job job);      // forces between rail and bridge along the track
 int run_envelope(Job job);  // the largest static effects of the loads, wherever they stand
 
 struct AnalysisRun {
@@ -44,6 +45,7 @@ inline constexpr AnalysisRun analysis_runs[] = {
     {options::Analysis::modes, run_modes},
     {options::Analysis::static_response, run_in_time},
     {options::Analysis::static_envelope, run_envelope},
+    {options::Analysis::rail_forces, run_rail},
 };
 
 constexpr const AnalysisRun* run_of(options::Analysis analysis) {

@@ -21,7 +21,7 @@ int run_in_time(Job job) {
   int halvings = goes_on || !scene.step_open ? 0 : most_halvings;
   Job first{job.comm, scene, std::move(job.place), accuracy, job.beam, std::move(job.notes), job.earlier};
   RunEnd end = run_once(first, with_mechanisms, halvings > 0);
-  for (; end.again != Retry::none; --halvings) {
+  while (end.again != Retry::none) {
     std::vector<std::string> notes;
     if (end.again == Retry::mechanisms) {
       scene.vehicle_model = VehicleModel::full;
@@ -31,6 +31,7 @@ int run_in_time(Job job) {
           "the mechanisms",
           scene.most_defect));
     } else {
+      --halvings;
       scene.time_step = 0.5 * end.step;
       accuracy.promise_nothing();
       notes.push_back(fmt::format("the run is repeated with steps of {:g} s, and nothing is promised: {}",
@@ -38,7 +39,7 @@ int run_in_time(Job job) {
     }
     SharedBeam beam(job.comm, scene, notes);
     Job again{job.comm, scene, results::claim_place(job.comm, scene.output.file), accuracy, beam, std::move(notes)};
-    end = run_once(again, with_mechanisms, halvings > 1);
+    end = run_once(again, with_mechanisms, halvings > 0);
   }
   return end.status;
 }

@@ -229,12 +229,14 @@ RunEnd run_once(Job& job, bool with_mechanisms, bool may_shorten) {
     if (system.defect() <= scene.most_defect) check_balance(scene, watch.extremes());
   } catch (const FileError& error) {
     leave_together(comm, error);
-  } catch (const Error& error) {
-    const bool too_long = dynamic_cast<const StepTooLong*>(&error) != nullptr;
-    repeated = may_shorten && too_long;
+  } catch (const StepTooLong& error) {
+    repeated = may_shorten;
     summarise(error.what());
     if (!repeated) throw;
     return {0, Retry::shorter_steps, error.what(), passage.plan().time_step};
+  } catch (const Error& error) {
+    summarise(error.what());
+    throw;
   }
   reaches_end = stopped == 0;
   results::Summary summary;

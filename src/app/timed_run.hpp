@@ -7,18 +7,20 @@
 
 namespace traverse::app {
 
-/// How a run has to be taken again: by the mechanisms, where linear vehicles have left out more than they may.
+/// Whether a run has to be taken again, and how. mechanisms: linear vehicles were out of balance by more than
+/// Scene::most_defect; shorter_steps: StepTooLong.
 enum class Retry { none, mechanisms, shorter_steps };
 
 struct RunEnd {
   int status = 0;  // of the program, where the run is not taken again
   Retry again = Retry::none;
-  std::string why;    // the steps were too long
-  double step = 0.0;  // s: which
+  std::string why;    // of shorter_steps: the message of StepTooLong
+  double step = 0.0;  // s, of shorter_steps: the longest step that was taken
 };
 
-/// Collective. The motion in time, or rest where the loads stand. with_mechanisms: the run is taken again that way;
-/// may_shorten: it may be taken again with shorter steps, else StepTooLong is thrown as any other error.
+/// Collective. Computes the motion in time, or rest where the loads stand, and writes results and summary. InputError,
+/// SolverError and FileError as the program ends with. with_mechanisms: checkpoints note that the mechanisms have taken
+/// the place of linear vehicles; may_shorten: StepTooLong is not thrown but returned as shorter_steps.
 RunEnd run_once(Job& job, bool with_mechanisms, bool may_shorten);
 
 }  // namespace traverse::app

@@ -56,7 +56,7 @@ Rows points_of(const FoundationKind& kind, const Line& line, const Slice& slice,
     if (p.law.nonlinear()) continue;
     const Station at = station_of(line.mesh, p);
     if (at.element < first || at.element >= past) continue;
-    const PointShape s = shape_at(line, kind.direction, at);
+    const PointShape s = shape_at(line, kind.direction, at, p.depth);
     rows.add(s.unknown, outer(term == Term::stiffness ? p.k : p.c, s.shape));
   }
   return rows;

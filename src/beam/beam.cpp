@@ -117,6 +117,8 @@ Slice Beam::slice() const {
     release_links(bridge_, layout_, slice);
   }
   hold_supports(bridge_, slice);
+  if (rail_ && model().track->rail_ends_held)
+    for (const int node : {0, rail_->mesh.nodes() - 1}) slice.hold(rail_->unknown(node, 0));
   return slice;
 }
 
@@ -191,16 +193,21 @@ void Beam::note_strains(const Slice& slice, const Rows& springs) {
     imposed_.push_back(settlement_of(unknown));
     strain_forces_[index(i)] -= springs.times(unknown, [&](int j) { return settlement_of(j); });
   }
-  if (!model().temperature) return;
-  const auto [first, past] = bridge_.elements_at(slice.first, slice.local);
+  note_temperature(slice, bridge_);
+  if (rail_) note_temperature(slice, *rail_);
+}
+
+void Beam::note_temperature(const Slice& slice, const Line& line) {
+  if (!line.model.temperature) return;
+  const auto [first, past] = line.elements_at(slice.first, slice.local);
   const auto add = [&](int unknown, double force) {
     if (unknown >= 0 && local(unknown) >= 0) strain_forces_[index(local(unknown))] += force;
   };
   for (int e = first; e < past; ++e) {
-    const auto bent = strain_load(model(), mesh().element(e));
-    const auto stretched = axial_strain_load(model(), mesh().element(e));
-    for (std::size_t i = 0; i < 4; ++i) add(bridge_.transverse(e)[i], bent[i]);
-    for (std::size_t i = 0; i < 2; ++i) add(bridge_.axial(e)[i], stretched[i]);
+    const auto bent = strain_load(line.model, line.mesh.element(e));
+    const auto stretched = axial_strain_load(line.model, line.mesh.element(e));
+    for (std::size_t i = 0; i < 4; ++i) add(line.transverse(e)[i], bent[i]);
+    for (std::size_t i = 0; i < 2; ++i) add(line.axial(e)[i], stretched[i]);
   }
 }
 

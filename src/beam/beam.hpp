@@ -128,6 +128,7 @@ class Beam {
                       std::vector<std::pair<base::Handle<Mat>*, Rows>>& own);
   double settlement_of(int unknown) const;
   void note_strains(const Slice& slice, const Rows& springs);
+  void note_temperature(const Slice& slice, const Line& line);
   void note_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
                       const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping);
 

@@ -28,4 +28,13 @@ FoundationForce foundation_force(const FoundationLaw& law, double k, double c, d
   return f;
 }
 
+FoundationForce sliding_force(double k, double limit, double then, double d) {
+  const double trial = std::clamp(then, -limit, limit) - k * d;
+  FoundationForce f;
+  f.force = std::clamp(trial, -limit, limit);
+  f.by_displacement = f.force == trial ? k : 0.0;
+  f.energy = 0.5 * f.force * f.force / k;
+  return f;
+}
+
 }  // namespace traverse::beam

@@ -76,7 +76,7 @@ std::vector<Sleeper> sleepers_of(const Line& bridge, int first, int past) {
 Ride ride_of(const Sleeper& s, const LayeredTrack& track, const Layout& layout) {
   const int column = s.rail_node * layout.block;
   const int along = layout.place[rail_u] < 0 ? -1 : column + layout.place[rail_u];
-  const Spring& below_along = s.values.longitudinal;
+  const Spring below_along = s.linear_longitudinal();
   if (s.ballast_moves) return {s.ballast_unknown(layout), s.values.subballast, 0.0, along, below_along};
   if (track.ballast) return {s.unknown(layout), s.linear_ballast(), s.values.ballast_mass, along, below_along};
   return {column + layout.place[rail_v], s.values.pad, s.values.sleeper_mass, along, below_along};

@@ -21,6 +21,12 @@ struct Sleeper {
   bool hangs() const { return values.gap > 0.0; }
   /// The ballast's spring as the matrices know it: none over a gap.
   Spring linear_ballast() const { return hangs() ? Spring{} : values.ballast; }
+  /// Whether it slides along x where the force on it reaches a limit.
+  bool slides() const { return values.slides_at > 0.0; }
+  /// The longitudinal spring as the matrices know it: of one that slides its damper alone.
+  Spring linear_longitudinal() const {
+    return slides() ? Spring{0.0, values.longitudinal.c} : values.longitudinal;
+  }
   /// The unknown of the sleeper, and that of the ballast's mass: in the place of the bridge's deflection on the ground,
   /// or in one of its own where ballast moves by itself on the bridge too.
   int unknown(const Layout& layout) const { return rail_node * layout.block + layout.place[sleeper]; }
@@ -43,7 +49,7 @@ template <class Visit>
 void visit_ground_springs(const Sleeper& s, const LayeredTrack& track, const Layout& layout, Visit visit) {
   if (s.on_bridge) return;
   const int column = s.rail_node * layout.block;
-  if (layout.place[rail_u] >= 0) visit(column + layout.place[rail_u], s.values.longitudinal, true);
+  if (layout.place[rail_u] >= 0) visit(column + layout.place[rail_u], s.linear_longitudinal(), true);
   if (s.ballast_moves) {
     visit(s.ballast_unknown(layout), s.values.subballast, false);
   } else if (s.sleeper_moves) {

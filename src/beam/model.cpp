@@ -162,12 +162,13 @@ BeamModel linearised(const BeamModel& model) {
       bed.law = {};
     }
   });
-  if (linear.track) linear.track->gaps_stay_open = true;
+  if (linear.track) linear.track->gaps_stay_open = linear.track->holds_fast = true;
   return linear;
 }
 
 bool BeamModel::strained() const {
   return (temperature && (temperature->strain() != 0.0 || temperature->curvature() != 0.0)) ||
+         (track && axial && track->rail_temperature * track->rail_expansion != 0.0) ||
          std::any_of(settlement.begin(), settlement.end(), [](double s) { return s != 0.0; });
 }
 

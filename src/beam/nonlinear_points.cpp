@@ -17,6 +17,7 @@ void add_points(std::size_t kind, const Line& bridge, int first, int past, std::
     const Station at = station_of(bridge.mesh, p);
     if (at.element < first || at.element >= past) continue;
     points.push_back({kind, foundation_kinds[kind].direction, static_cast<int>(i), p.x, at, p.k, p.c, p.law});
+    points.back().depth = p.depth;
   }
 }
 
@@ -93,6 +94,28 @@ std::vector<NonlinearPoint> hanging_sleepers(const Line& bridge, const Layout& l
   return points;
 }
 
+std::vector<NonlinearPoint> sliding_sleepers(const Line& bridge, const Layout& layout, int first, int past) {
+  std::vector<NonlinearPoint> points;
+  if (!bridge.model.axial || !bridge.model.track || !bridge.model.track->slides()) return points;
+  int index = 0;
+  for (const Sleeper& s : sleepers_of(bridge, 0, past)) {
+    if (!s.slides()) continue;
+    NonlinearPoint point;
+    point.kind = along_a_sleeper;
+    point.direction = Direction::longitudinal;
+    point.index = index++;
+    point.x = s.x;
+    point.at = s.at;
+    point.k = s.values.longitudinal.k;
+    point.sliding = s.values.sliding();
+    point.above = s.rail_node * layout.block + layout.place[rail_u];
+    point.on_bridge = s.on_bridge;
+    point.height = bridge.model.surface_height;
+    if (s.rail_node >= first) points.push_back(point);
+  }
+  return points;
+}
+
 NonlinearShape shape_of(const Line& bridge, const NonlinearPoint& point) {
   NonlinearShape shape;
   double sign = 1.0;
@@ -106,8 +129,14 @@ NonlinearShape shape_of(const Line& bridge, const NonlinearPoint& point) {
   }
   if (point.below >= 0) add(point.below, -1.0);
   if (!point.on_bridge) return shape;
-  const PointShape beam = shape_at(bridge, point.direction, point.at);
-  for (std::size_t i = 0; i < 4; ++i) add(beam.unknown[i], sign * beam.shape[i]);
+  const auto add_beam = [&](Direction direction, double factor) {
+    const PointShape beam = shape_at(bridge, direction, point.at, point.depth);
+    for (std::size_t i = 0; i < 4; ++i)
+      if (beam.unknown[i] >= 0) add(beam.unknown[i], factor * beam.shape[i]);
+  };
+  add_beam(point.direction, sign);
+  // At a height above its axis the beam moves along x by u - height*theta.
+  if (point.height != 0.0) add_beam(Direction::rotational, -sign * point.height);
   return shape;
 }
 

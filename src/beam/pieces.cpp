@@ -149,8 +149,11 @@ BeamModel rail_model(const BeamModel& model) {
   rail.EA = model.track->rail_EA;
   if (model.track->rail_GA) rail.GA = *model.track->rail_GA;
   rail.mass = model.track->rail_mass;
-  rail.supports = {Support::free, Support::free};
+  const Support end = model.track->rail_ends_held ? Support::along : Support::free;
+  rail.supports = {end, end};
   rail.axial = model.axial;
+  if (model.track->rail_temperature != 0.0)
+    rail.temperature = Temperature{model.track->rail_temperature, 0.0, model.track->rail_expansion, 1.0};
   rail.start = mesh.start;
   rail.hinges = model.track->rail_hinges;
   rail.nodes_at_steps = false;

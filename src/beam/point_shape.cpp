@@ -27,6 +27,12 @@ PointShape shape_at(const Line& line, Direction direction, const Station& at) {
   return {unknowns_of(line, direction, at.element), shape_of(direction, at.xi, line.mesh.element(at.element))};
 }
 
+PointShape shape_at(const Line& line, Direction direction, const Station& at, double depth) {
+  if (depth == 0.0) return shape_at(line, direction, at);
+  const std::size_t end = at.xi < 0.5 ? 0 : 1;
+  return {{line.axial(at.element)[end], line.transverse(at.element)[2 * end + 1], -1, -1}, {1.0, depth, 0.0, 0.0}};
+}
+
 Transverse bed_matrix(Direction direction, const Distribution& density, const Element& element) {
   if (direction == Direction::vertical) return transverse_bed(density, element);
   if (direction == Direction::rotational) return slope_bed(density, element);

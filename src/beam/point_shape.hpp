@@ -20,6 +20,9 @@ struct PointShape {
   std::array<double, 4> shape{};
 };
 PointShape shape_at(const Line& line, Direction direction, const Station& at);
+/// The same of a point of the foundation: at a depth below the axis of a span end the beam moves along x by
+/// u + depth*theta.
+PointShape shape_at(const Line& line, Direction direction, const Station& at, double depth);
 
 /// Integral of density(x) s s^T over the element, s the shape of a direction: a bed's matrix (eqs. 27, 29, 36 and 38).
 Transverse bed_matrix(Direction direction, const Distribution& density, const Element& element);

@@ -35,6 +35,12 @@ const std::array<TrackProperty, track_property_count> track_properties = {{
      [](TrackValues& v) -> double& { return v.longitudinal.k; }, [](const LayeredTrack& t) -> const Distribution* { return &t.longitudinal.k; }},
     {"longitudinal_c", "Ns/m", "its damping",
      [](TrackValues& v) -> double& { return v.longitudinal.c; }, [](const LayeredTrack& t) -> const Distribution* { return &t.longitudinal.c; }},
+    {"longitudinal_limit", "N", "force at which a sleeper slides along x; 0: it holds",
+     [](TrackValues& v) -> double& { return v.slides_at; }, [](const LayeredTrack& t) -> const Distribution* { return &t.slides_at; }},
+    {"longitudinal_loaded_k", "N/m", "stiffness along x below a train; 0: as without one",
+     [](TrackValues& v) -> double& { return v.loaded_k; }, [](const LayeredTrack& t) -> const Distribution* { return &t.loaded_k; }},
+    {"longitudinal_loaded_limit", "N", "force at which a sleeper slides below a train; 0: as without one",
+     [](TrackValues& v) -> double& { return v.loaded_slides_at; }, [](const LayeredTrack& t) -> const Distribution* { return &t.loaded_slides_at; }},
     {"gap", "m", "gap below the unloaded sleepers, which hang on the rail until it closes",
      [](TrackValues& v) -> double& { return v.gap; }, [](const LayeredTrack& t) -> const Distribution* { return &t.gap; }},
 }};
@@ -53,12 +59,13 @@ TrackValues LayeredTrack::at(double x) const {
   }
   if (!has_sleeper(x)) {
     values.pad = values.ballast = values.longitudinal = {};
-    values.sleeper_mass = values.gap = 0.0;
+    values.sleeper_mass = values.gap = values.slides_at = 0.0;
   }
   if (gaps_stay_open && values.gap > 0.0) {
     values.ballast = {};
     values.gap = 0.0;
   }
+  if (holds_fast) values.slides_at = 0.0;
   return values;
 }
 
@@ -69,13 +76,19 @@ bool LayeredTrack::has_sleeper(double x) const {
   return there;
 }
 
-bool LayeredTrack::hangs() const {
-  const auto gapped = [](const TrackStretch& s) {
-    const std::optional<Distribution>& its = s.values[track_property_count - 1];  // the last row
-    return its && its->maximum() > 0.0;
-  };
-  return !gaps_stay_open && (gap.maximum() > 0.0 || std::any_of(stretches.begin(), stretches.end(), gapped));
+bool LayeredTrack::somewhere(std::string_view name) const {
+  const auto row = static_cast<std::size_t>(
+      std::find_if(track_properties.begin(), track_properties.end(), [&](const auto& p) { return p.name == name; }) -
+      track_properties.begin());
+  const Distribution* everywhere = track_properties[row].along(*this);
+  return (everywhere != nullptr && everywhere->maximum() > 0.0) ||
+         std::any_of(stretches.begin(), stretches.end(), [row](const TrackStretch& s) {
+           return s.values[row] && s.values[row]->maximum() > 0.0;
+         });
 }
+
+bool LayeredTrack::hangs() const { return !gaps_stay_open && somewhere("gap"); }
+bool LayeredTrack::slides() const { return !holds_fast && somewhere("longitudinal_limit"); }
 
 bool LayeredTrack::uniform() const {
   return stretches.empty() &&

@@ -139,7 +139,7 @@ results::Finding NormCheck::of_trains() const {
 void NormCheck::find(std::vector<results::Verdict>& verdicts) const {
   for (results::Verdict& verdict : verdicts) {
     const std::string& quantity = verdict.limit.quantity;
-    if (!options::limit_quantity(quantity)->of_norm) continue;
+    if (options::limit_quantity(quantity)->finder != options::LimitFinder::norm) continue;
     verdict.found = quantity == "train_over_lm71"       ? of_trains()
                     : quantity == "lm71_end_rotation"   ? of_lm71(Effect::end_rotation, false)
                     : quantity == "lm71_joint_rotation" ? of_lm71(Effect::joint_rotation, false)

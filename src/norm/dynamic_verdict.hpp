@@ -51,7 +51,7 @@ class NormCheck {
   const std::vector<Row>& rows() const { return rows_; }
   const StaticEffects& effects() const { return effects_; }
 
-  /// Puts findings in the place of those of limits that are of_norm.
+  /// Puts findings in the place of those of limits that static effects find.
   void find(std::vector<results::Verdict>& verdicts) const;
   void print() const;
   /// /static and /norm of the file.

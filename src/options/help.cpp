@@ -35,6 +35,7 @@ constexpr Heading headings[] = {
     {"accuracy", "accuracy", "Accuracy"},
     {"model", "model", "What is modelled"},
     {"limits", "norm", "Limits and load models of EN 1990 and EN 1991-2"},
+    {"uic774", "rail", "Rail and bridge together: scene_analysis rail, UIC 774-3"},
     {"output", "output", "Results"},
     {"sweep", "sweep", "Sweeps over speeds and trains"},
     {"study", "study", "Studies of varied options"},

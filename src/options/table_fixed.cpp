@@ -161,6 +161,15 @@ constexpr Row later_rows[] = {
   {"norm_length", number, "m", "(from the spans)", positive, "", 0, "determinant length L_Phi of EN 1991-2 6.4.5.3"},
   {"norm_spacing", number, "m", "(a twentieth of each span)", positive, "", 0, "largest distance of the sections at which static effects are computed"},
 
+  {"uic774_train_length", number, "m", "300", positive, "", 0, "scene_analysis rail: length of the train"},
+  {"uic774_weight", number, "N/m", "8.0e4", not_negative, "", 0, "its weight, LM71's by default"},
+  {"uic774_braking", number, "N/m", "2.0e4", not_negative, "", 0, "its braking force on the rails"},
+  {"uic774_most_braking", number, "N", "6.0e6", positive, "", 0, "the greatest braking force of all its length, from its front on"},
+  {"uic774_traction", number, "N/m", "3.3e4", not_negative, "", 0, "its traction"},
+  {"uic774_most_traction", number, "N", "1.0e6", positive, "", 0, "the greatest traction, from its front on"},
+  {"uic774_fronts", numbers, "m", "(0, to 90 m behind the bridge, every 10 m)", any, "", 3, "places of its front beyond the end of the bridge where it comes from: first, last, step"},
+  {"uic774_direction", choice, "", "right", any, "right left both", 0, "which way it runs"},
+
   {"output_file", text, "", "results/<scene>.h5", any, "", 0, "HDF5 file of results; none: no file"},
   {"output_interval", number, "s", "(from the step)", positive, "", 0, "between stored samples"},
   {"output_probes", numbers, "m", "(middle of each span, of 200)", not_negative, "", 0, "stations on the beam where the response is stored"},

@@ -39,6 +39,8 @@ void add_points(const FoundationKind& kind, std::vector<Row>& rows) {
   add("spacing", number, "m", "", positive, "", "of stations at equal distances: x holds the first and the last");
   add("k", numbers, unit(units.k), "0", not_negative, "", "their stiffness, one serves all");
   add("c", numbers, unit(units.c), "0", not_negative, "", "their damping, one serves all");
+  if (kind.direction == Direction::longitudinal)
+    add("depth", numbers, "m", "0", not_negative, "", "how far below the beam's axis they hold, as bearings do, one serves all; at span ends");
   if (kind.direction == Direction::vertical)
     add("one_sided", choice_list, "", "false", any, "true false", "pushes only, where the beam is pressed down; one word serves all");
   add("gap", numbers, unit(units.gap), "0", not_negative, "", fmt::format("{} before it acts, one serves all", way));

@@ -18,6 +18,10 @@ constexpr Row rail_rows[] = {
   {"track_rail_EA", number_or_file, "N", "", positive, "", 0, "layered track: rail's axial stiffness, or a file x,value; needed for longitudinal action only"},
   {"track_rail_GA", number, "N", "", positive, "", 0, "layered track: rail's shear stiffness; left out: it does not shear"},
   {"track_rail_mass", number_or_file, "kg/m", "", positive, "", 0, "layered track: rail's mass per length, or a file x,value"},
+  {"track_rail_area", number, "m2", "", positive, "", 0, "layered track: cross-section of both rails, for their stress along x"},
+  {"track_rail_temperature", number, "K", "0", any, "", 0, "layered track: warmer than when the rail was laid"},
+  {"track_rail_expansion", number, "1/K", "1.2e-5", not_negative, "", 0, "layered track: rail's coefficient of expansion"},
+  {"track_rail_ends", choice, "", "free", any, "free held", 0, "layered track: whether the ends of the modelled rail are held along x, as where the track goes on"},
   {"track_rail_hinges", numbers, "m", "", any, "", 0, "layered track: stations of rail joints that carry no moment, at nodes of the rail"},
   {"track_spacing", number, "m", "", positive, "", 0, "layered track: from sleeper to sleeper"},
   {"track_offset", number, "m", "0", any, "", 0, "layered track: x of one of the sleepers"},
@@ -40,7 +44,9 @@ constexpr Row ends_of_stretch[] = {
 // clang-format on
 
 /// What a property is when it is not given; stiffnesses have none.
-std::string_view fallback_of(std::string_view name) { return name.ends_with("_k") ? "" : "0"; }
+std::string_view fallback_of(std::string_view name) {
+  return name.ends_with("_k") && !name.ends_with("loaded_k") ? "" : "0";
+}
 
 std::string more_of(std::string_view name) {
   if (name == "ballast_k") return "; left out: sleepers stand on the next layer";

@@ -57,7 +57,7 @@ void GroundForces::add_points(std::size_t kind, const Line& line) {
   std::size_t sum = first_[kind];
   for (const PointFoundation& p : line.model.foundation.*foundation_kinds[kind].points) {
     if (!p.law.nonlinear()) {
-      const PointShape s = shape_at(line, foundation_kinds[kind].direction, station_of(line.mesh, p));
+      const PointShape s = shape_at(line, foundation_kinds[kind].direction, station_of(line.mesh, p), p.depth);
       for (std::size_t i = 0; i < 4; ++i) add(sum, s.unknown[i], p.c * s.shape[i], p.k * s.shape[i]);
     }
     ++sum;

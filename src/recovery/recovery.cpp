@@ -104,7 +104,7 @@ void Recovery::Section::add_foundation(const Line& line) {
   for_points(f, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
     if (!acts(kind, model)) return;
     for (const PointFoundation& p : points) {
-      if (p.law.nonlinear()) continue;  // a load
+      if (p.law.nonlinear() || p.depth != 0.0) continue;  // a load, or at a node
       // locate() is the judge, as in the assembly; a glance at x spares most of the calls.
       if (p.x < element.x - element.length || p.x > element.x + 2.0 * element.length) continue;
       const Station s = station_of(line.mesh, p);

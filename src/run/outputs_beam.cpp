@@ -58,6 +58,7 @@ Balance balance_of(const Observed& now, double gravity, bool axial) {
     b.support[1] += r[1];
   }
   b.foundation = ground.foundation();
+  b.foundation[0] += now.motion.beam.foundation.along_ground;
   b.foundation[1] += now.motion.beam.foundation.of_ground;
   for (std::size_t k = 0; k < beam::foundation_kind_count; ++k) {
     const beam::Direction direction = beam::foundation_kinds[k].direction;

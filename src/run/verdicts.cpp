@@ -85,6 +85,7 @@ struct Findings {
 
   /// Found by norm::NormCheck, where there is one.
   Finding of_norm() const { return unknown("static effects of EN 1991-2 are not computed here"); }
+  Finding of_rail() const { return unknown("scene_analysis rail finds it"); }
 
  private:
   static Finding at(double value, double time, double x) { return {value, time, x, "", ""}; }
@@ -142,6 +143,11 @@ constexpr FindingRow finding_rows[] = {
     {"lm71_end_rotation", &Findings::of_norm},
     {"lm71_joint_rotation", &Findings::of_norm},
     {"train_over_lm71", &Findings::of_norm},
+    {"rail_tension", &Findings::of_rail},
+    {"rail_compression", &Findings::of_rail},
+    {"rail_slip", &Findings::of_rail},
+    {"deck_displacement", &Findings::of_rail},
+    {"deck_end_displacement", &Findings::of_rail},
 };
 
 constexpr const FindingRow* row_of(std::string_view quantity) {

@@ -137,8 +137,10 @@ void read_limits(const Options& o, Scene& scene) {
   if (!o.has("limits")) return;
   scene.limits = options::read_verdict_limits(o.path("limits"));
   if (scene.analysis == Analysis::transient) return;
-  if (scene.analysis == Analysis::static_envelope) {
-    std::erase_if(scene.limits, [](const auto& limit) { return !options::limit_quantity(limit.quantity)->of_norm; });
+  if (scene.analysis == Analysis::static_envelope || scene.analysis == Analysis::rail_forces) {
+    const auto finder = scene.analysis == Analysis::rail_forces ? options::LimitFinder::rail : options::LimitFinder::norm;
+    std::erase_if(scene.limits,
+                  [&](const auto& limit) { return options::limit_quantity(limit.quantity)->finder != finder; });
     return;
   }
   scene.limits.clear();
@@ -283,6 +285,7 @@ Scene read_scene(Options o) {
   read_modal(o, scene);
   read_damping_bound(o, scene);
   read_norm(o, scene);
+  read_rail_loads(o, scene);
   check_scene(o, scene);
   if (const options::Entry* study = o.first_with_prefix("study_"))
     scene.notes.push_back(study->name + " has no effect: study_vary names no option to vary");

@@ -10,12 +10,22 @@ bool acts_along_x(const options::Options& o, const std::string& actuator) {
   return o.has(actuator + "_table") || o.numbers(actuator + "_force").front() != 0.0;
 }
 
+/// What of a layered track is there for its motion along x alone; empty: nothing.
+std::string option_along_the_track(const options::Options& o, const Scene& scene) {
+  if (!scene.beam->track) return "";
+  if (o.number("track_rail_temperature") != 0.0) return "track_rail_temperature";
+  if (scene.beam->track->slides()) return "track_longitudinal_limit";
+  return "";
+}
+
 /// What acts along the beam, in words; empty when nothing does. Normal forces have a horizontal part where the
 /// surface is inclined; it is too small to count.
 std::string longitudinal_action(const options::Options& o, const Scene& scene) {
   const beam::Foundation& foundation = scene.beam->foundation;
   if (present(foundation, beam::Direction::longitudinal)) return "longitudinal foundations";
   if (scene.beam->temperature && scene.beam->temperature->strain() != 0.0) return "temperature";
+  if (!option_along_the_track(o, scene).empty()) return "the track's resistance along x";
+  if (scene.analysis == Analysis::rail_forces) return "forces of the rail are asked for";
   if (scene.analysis == Analysis::modes) return "modes are asked for";
   for (const Vehicle& vehicle : scene.vehicles) {
     const bool rolls = !vehicle.wheels.empty();
@@ -46,6 +56,8 @@ void decide_axial(const options::Options& o, Scene& scene) {
     o.refuse("beam_temperature_uniform", stiffness ? "lengthens the beam; allowed with it: model_axial auto or true"
                                                    : "lengthens the beam, which needs " + missing);
   if (wanted == "true" && !stiffness) o.refuse("model_axial", "needs " + missing);
+  if (const std::string along = option_along_the_track(o, scene); !along.empty() && (!stiffness || wanted == "false"))
+    o.refuse(along, stiffness ? "acts along x; allowed with it: model_axial auto or true" : "acts along x, which needs " + missing);
   if (wanted != "auto") {
     scene.beam->axial = wanted == "true";
     scene.notes.push_back(fmt::format("axial unknowns: {}, as asked", scene.beam->axial ? "modelled" : "none"));

@@ -101,6 +101,16 @@ bool is_joint(const beam::BeamModel& beam, double x) {
   return false;
 }
 
+bool is_span_end(const beam::BeamModel& beam, double x) {
+  double end = beam.start;
+  bool found = x == end;
+  for (const double span : beam.spans) {
+    end += span;
+    found = found || x == end;
+  }
+  return found;
+}
+
 /// Adds a point to the list, on the side of a joint that the user names; or one on each.
 void add_point(const Options& o, const beam::BeamModel& beam, const std::string& option, const std::string& side,
                beam::PointFoundation point, std::vector<beam::PointFoundation>& points) {
@@ -135,7 +145,7 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
   const bool vertical = kind.direction == beam::Direction::vertical;
   std::vector<beam::PointFoundation> points;
   if (!o.has(name + "_x")) {
-    for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided", "_spacing"}) {
+    for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided", "_depth", "_spacing"}) {
       if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_x, the stations");
     }
     return points;
@@ -144,6 +154,9 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
   const auto numbers = [&](const char* what) { return o.numbers(name + what, x.size(), "as many as stations"); };
   const auto words = [&](const char* what) { return o.texts(name + what, x.size(), "as many as stations"); };
   const std::vector<double> k = numbers("_k"), c = numbers("_c"), gap = numbers("_gap"), cubic = numbers("_cubic");
+  const std::vector<double> depth = kind.direction == beam::Direction::longitudinal
+                                        ? numbers("_depth")
+                                        : std::vector<double>(x.size(), 0.0);
   const std::vector<std::string> side = words("_side");
   const std::vector<std::string> one_sided =
       vertical ? words("_one_sided") : std::vector<std::string>(x.size(), "false");
@@ -155,7 +168,11 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
       o.refuse(name + "_x", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x[i], length));
     }
     const beam::FoundationLaw law{one_sided[i] == "true", gap[i], cubic[i]};
-    add_point(o, beam, name + "_side", side[i], {std::min(x[i], length), k[i], c[i], false, law}, points);
+    beam::PointFoundation point{std::min(x[i], length), k[i], c[i], false, law};
+    point.depth = depth[i];
+    if (point.depth != 0.0 && !is_span_end(beam, point.x))
+      o.refuse(name + "_depth", fmt::format("at {:g} m, within a span; allowed: 0, or at span ends", point.x));
+    add_point(o, beam, name + "_side", side[i], point, points);
   }
   return points;
 }

@@ -112,6 +112,12 @@ void read_layers(const Options& o, Scene& scene) {
   track.subballast = read_optional_layer(o, "subballast");
   if (o.has("track_longitudinal_k")) track.longitudinal.k = read_distribution(o, "track_longitudinal_k");
   track.longitudinal.c = read_distribution(o, "track_longitudinal_c");
+  track.slides_at = read_distribution(o, "track_longitudinal_limit");
+  track.loaded_k = read_distribution(o, "track_longitudinal_loaded_k");
+  track.loaded_slides_at = read_distribution(o, "track_longitudinal_loaded_limit");
+  track.rail_temperature = o.number("track_rail_temperature");
+  track.rail_expansion = o.number("track_rail_expansion");
+  track.rail_ends_held = o.choice("track_rail_ends") == "held";
   track.gap = read_distribution(o, "track_gap");
   track.own_mass = o.flag("track_ballast_own_mass");
   track.shear = {o.number("track_shear_k"), o.number("track_shear_c")};

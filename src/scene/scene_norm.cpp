@@ -25,7 +25,7 @@ std::string asks_for_static_effects(const Options& o, const Scene& scene) {
   if (o.has("norm_load_models")) return "norm_load_models";
   if (scene.analysis == Analysis::static_envelope) return "scene_analysis";
   const bool limited = std::any_of(scene.limits.begin(), scene.limits.end(), [](const options::VerdictLimit& limit) {
-    return options::limit_quantity(limit.quantity)->of_norm;
+    return options::limit_quantity(limit.quantity)->finder == options::LimitFinder::norm;
   });
   return limited ? "limits" : "";
 }
@@ -63,7 +63,7 @@ void read_norm(const Options& o, Scene& scene) {
     return;
   }
   if (!scene.beam) o.refuse(asked, "static effects are those of a bridge: there is none (beam_spans)");
-  if (scene.analysis == Analysis::modes || scene.analysis == Analysis::static_response) {
+  if (scene.analysis != Analysis::transient && scene.analysis != Analysis::static_envelope) {
     scene.notes.push_back(asked +
                           " has no effect: static effects belong to transient runs and to scene_analysis envelope");
     return;

@@ -90,6 +90,7 @@ void read_layers(const options::Options& options, Scene& scene);         // afte
 void decide_axial(const options::Options& options, Scene& scene);        // after beam and train
 void read_damping_bound(const options::Options& options, Scene& scene);  // after modal
 void read_norm(const options::Options& options, Scene& scene);           // after beam and output, whose limits it reads
+void read_rail_loads(const options::Options& options, Scene& scene);     // after the track
 /// Refuses what can run but cannot be meant, notes what is possible but unusual. Last.
 void check_sense(const options::Options& options, const NamedVehicles& vehicles, Scene& scene);
 

@@ -1,5 +1,6 @@
 // Steps of the structure by its elements, in second-order form (one_step_methods.hpp).
 #include <algorithm>
+#include <limits>
 
 #include "structure/element_structure.hpp"
 
@@ -86,6 +87,11 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
     measuring_ = measured_between_steps() && statics_->damped() && (to_measure_ || unmeasured_ > 0.999 * interval);
     motion_->measure(measuring_);
   }
+  if (nonlinear_) {
+    Reach train{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const Reach& reach : loaded) train = {std::min(train.from, reach.from), std::max(train.to, reach.to)};
+    nonlinear_->stand(train.from, train.to);
+  }
   before_.dissipated = dissipated_;
   before_.worked = worked_;
   if (keep) {
@@ -136,6 +142,7 @@ void ElementStructure::complete_step(double* v, double* w) {
     }
     unmeasured_ += length_;
   }
+  if (nonlinear_) nonlinear_->settle(v);
   if (window_) window_->close(*motion_, v, w);
 }
 

@@ -196,6 +196,10 @@ void ElementStructure::end_stage(double* v, double* w) {
   }
 }
 
+void ElementStructure::settle(const double* v) {
+  if (nonlinear_) nonlinear_->settle(v);
+}
+
 std::string ElementStructure::trouble() const { return nonlinear_ ? nonlinear_->worst_point() : std::string(); }
 
 // --- what is seen --------------------------------------------------------------------------------------------------
@@ -214,9 +218,10 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
     e.strain = 0.5 * base::dot(work_, v);
   }
   if (nonlinear_) e.strain += nonlinear_->energy();
+  const double slid = nonlinear_ ? nonlinear_->slid() : 0.0;
   if (!motion_) return e;
   measure_dissipation(v, w);
-  e.dissipated = dissipated_;
+  e.dissipated = dissipated_ + slid;
   if (window_) e.dissipated += window_->energy_left();
   e.work = worked_;
   return e;

@@ -46,6 +46,7 @@ class ElementStructure final : public Structure {
   void take(const std::vector<double>& loads) override;
   Verdict judge() override;
   void end_stage(double* v, double* w) override;
+  void settle(const double* v) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
   std::string trouble() const override;
 

@@ -41,6 +41,8 @@ NonlinearFoundation::NonlinearFoundation(const beam::Beam& beam, const BeamOpera
     add_point(beam, its, load);
     ++sleepers_;
   }
+  for (const beam::NonlinearPoint& its : beam::sliding_sleepers(beam.bridge(), beam.layout(), 0, beam.columns()))
+    add_point(beam, its, load);
   note_terms(beam);
   wanted_k_.resize(points_.size());
   wanted_c_.resize(points_.size());
@@ -58,7 +60,7 @@ void NonlinearFoundation::add_point(const beam::Beam& beam, const beam::Nonlinea
   p.terms = static_cast<std::size_t>(shape.count);
   p.shape = shape.shape;
   p.place.fill(-1);
-  bool here = its.kind != beam::below_a_sleeper;
+  bool here = its.kind < beam::foundation_kind_count;
   for (std::size_t i = 0; i < p.terms; ++i) {
     const int from_first = shape.unknown[i] - beam.first_column() * block_;
     p.place[i] = shape.unknown[i] < 0 ? -1 : from_first < 0 ? n_ + block_ + from_first : from_first;
@@ -106,7 +108,7 @@ void NonlinearFoundation::evaluate(const double* v, const double* w) {
   gather(v, &Point::still);
   gather(w, &Point::still_rate);
   for (Point& p : points_) {
-    p.state = beam::foundation_force(p.its.law, p.its.k, p.its.c, p.still, p.still_rate);
+    p.state = force_of(p, p.still, p.still_rate);
   }
 }
 
@@ -140,7 +142,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
   std::vector<beam::ElementLoad> mine;
   forces.below_sleepers.assign(sleepers_, 0.0);
   forces.open_gaps.assign(sleepers_, 0.0);
-  forces.of_ground = 0.0;
+  forces.of_ground = forces.along_ground = 0.0;
   for (const Point& p : points_) {
     if (!p.counted) continue;
     if (p.its.kind == beam::below_a_sleeper) {
@@ -151,11 +153,18 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
       continue;
     }
     if (p.state.force == 0.0) continue;
+    if (p.slides()) {
+      const double height = p.its.height, on_beam = -p.state.force;
+      if (p.its.on_bridge) mine.push_back({p.its.at.element, p.its.at.xi, on_beam, 0.0, -height * on_beam});
+      if (!p.its.on_bridge) forces.along_ground += p.state.force;
+      continue;
+    }
     forces.of_kind[p.its.kind][static_cast<std::size_t>(p.its.index)] += p.state.force;
     beam::ElementLoad load{p.its.at.element, p.its.at.xi};
     (p.its.direction == Direction::vertical       ? load.fy
      : p.its.direction == Direction::longitudinal ? load.fx
                                                   : load.moment) = p.state.force;
+    if (p.its.depth != 0.0) load.moment = p.its.depth * p.state.force;
     mine.push_back(load);
   }
   const auto sum = [&](std::vector<double>& list) {
@@ -165,7 +174,8 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
   for (std::vector<double>& list : forces.of_kind) sum(list);
   sum(forces.below_sleepers);
   sum(forces.open_gaps);
-  if (sleepers_ > 0) MPI_Allreduce(MPI_IN_PLACE, &forces.of_ground, 1, MPI_DOUBLE, MPI_SUM, comm_);
+  for (double* ground : {&forces.of_ground, &forces.along_ground})
+    MPI_Allreduce(MPI_IN_PLACE, ground, 1, MPI_DOUBLE, MPI_SUM, comm_);
 
   int ranks = 1;
   MPI_Comm_size(comm_, &ranks);
@@ -178,10 +188,57 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
   MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, loads.data() + before, counts.data(), starts.data(), MPI_BYTE, comm_);
 }
 
+// --- sleepers that slide -------------------------------------------------------------------------------------------
+
+void NonlinearFoundation::stand(double from, double to) {
+  for (Point& p : points_) p.loaded = p.slides() && p.its.x >= from && p.its.x <= to;
+}
+
+void NonlinearFoundation::settle(const double* v) {
+  gather(v, &Point::still);
+  for (Point& p : points_) {
+    if (!p.slides()) continue;
+    const double k = p.its.sliding.k_of(p.loaded), limit = p.its.sliding.limit_of(p.loaded);
+    p.state = force_of(p, p.still, 0.0);
+    const double start = std::clamp(p.settled_force, -limit, limit), force = p.state.force;
+    const double slide = std::abs(p.still - p.settled) - std::abs(force - start) / k;
+    const double work = 0.5 * (force * force - start * start) / k + std::abs(force) * slide;
+    if (p.counted) slid_ += p.settled_energy + work - p.state.energy;
+    p.settled_force = force;
+    p.settled = p.still;
+    p.settled_energy = p.state.energy;
+  }
+}
+
+NonlinearFoundation::History NonlinearFoundation::history() const {
+  History history;
+  for (const Point& p : points_) {
+    if (!p.slides()) continue;
+    history.force.push_back(p.settled_force);
+    history.displacement.push_back(p.settled);
+  }
+  return history;
+}
+
+void NonlinearFoundation::set_history(const History& history) {
+  std::size_t i = 0;
+  for (Point& p : points_) {
+    if (!p.slides()) continue;
+    p.settled_force = history.force.empty() ? 0.0 : history.force[i];
+    p.settled = history.force.empty() ? 0.0 : history.displacement[i++];
+  }
+}
+
 // --- within a stage ------------------------------------------------------------------------------------------------
 
+beam::FoundationForce NonlinearFoundation::force_of(const Point& p, double displacement, double rate) {
+  if (!p.slides()) return beam::foundation_force(p.its.law, p.its.k, p.its.c, displacement, rate);
+  const beam::Sliding& law = p.its.sliding;
+  return beam::sliding_force(law.k_of(p.loaded), law.limit_of(p.loaded), p.settled_force, displacement - p.settled);
+}
+
 beam::FoundationForce NonlinearFoundation::force_at(const Point& p, double zeta) const {
-  return beam::foundation_force(p.its.law, p.its.k, p.its.c, p.still + zeta, p.still_rate + shift_ * zeta);
+  return force_of(p, p.still + zeta, p.still_rate + shift_ * zeta);
 }
 
 void NonlinearFoundation::begin(double shift, const double* v_still, const double* w_still, const double* w_guess) {
@@ -198,8 +255,14 @@ void NonlinearFoundation::begin(double shift, const double* v_still, const doubl
   for (Point& p : points_) p.zeta0 = (p.zeta0 - p.still_rate) / shift;
 }
 
-// Statics begins as if whatever can carry weight did, from where it first touches.
+// Statics begins as if whatever can carry weight did, from where it first touches, and as if nothing slid.
 void NonlinearFoundation::start_statics(Point& p) const {
+  if (p.slides()) {
+    p.zeta0 = p.settled - p.still;
+    p.state = force_of(p, p.settled, 0.0);
+    p.state.by_displacement = p.its.sliding.k_of(p.loaded);
+    return;
+  }
   const bool carries = p.its.direction == Direction::vertical;
   p.zeta0 = (carries ? -p.its.law.gap : 0.0) - p.still;
   p.state = {};
@@ -333,6 +396,8 @@ std::string NonlinearFoundation::worst_point() const {
   const auto kind = static_cast<std::size_t>(which[0]);
   if (kind == beam::below_a_sleeper)
     std::snprintf(text, sizeof text, "the gap below the sleeper at x = %.6g m", which[1]);
+  else if (kind == beam::along_a_sleeper)
+    std::snprintf(text, sizeof text, "the longitudinal resistance of the sleeper at x = %.6g m", which[1]);
   else
     std::snprintf(text, sizeof text, "foundation_%s at x = %.6g m", beam::foundation_kinds[kind].name.data(), which[1]);
   return text;
@@ -345,7 +410,7 @@ const AddedSprings* NonlinearFoundation::tangents(long version) const {
 }
 
 void NonlinearFoundation::keep(base::Bytes& bytes) {
-  bytes(points_, current_, versions_, shift_, iteration_);
+  bytes(points_, current_, versions_, shift_, slid_, iteration_);
   for (AddedSprings& kept : kept_) bytes(kept.version, kept.k, kept.c);
 }
 

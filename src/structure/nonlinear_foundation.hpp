@@ -11,6 +11,10 @@
 // In statics (s = 0) a point that does not touch keeps a small stiffness, which holds what nothing else holds and has
 // no effect on the answer.
 //
+// Sleepers that slide along x remember the force and the place that they have settled at. Within a step their law is
+// that of a spring between two limits, which is monotone like the others; settle() after the step makes the next start
+// from there.
+//
 // A rank has the points of all elements that touch its columns, so that neighbours compute the same from the same.
 #pragma once
 
@@ -33,6 +37,7 @@ struct NonlinearForces {
   /// it is closed and the ballast's spring is pressed by so much.
   std::vector<double> below_sleepers, open_gaps;
   double of_ground = 0.0;  // of all that on sleepers whose ballast stands on the ground without a mass, N
+  double along_ground = 0.0;  // of sleepers that slide on the ground, on the rail along x, N
 };
 
 class NonlinearFoundation {
@@ -46,11 +51,25 @@ class NonlinearFoundation {
   void evaluate(const double* v, const double* w);
   /// Nodal forces of this rank's unknowns, held ones included.
   void add_forces(double* nodal) const;
-  /// This rank's share, J and W.
+  /// This rank's share, J and W. What sleepers have lost by sliding is no part of the dissipation.
   double energy() const;
   double dissipation() const;
+  double slid() const { return slid_; }  // J, lost by sliding so far, this rank's share
   /// Collective. The same on all ranks; `loads` of the bridge are appended.
   void report(NonlinearForces& forces, std::vector<beam::ElementLoad>& loads) const;
+
+  // Sleepers that slide ----------------------------------------------------------------------------------------------
+  /// Where trains stand from here on, m: between these stations sleepers are loaded. An empty stretch: none are.
+  void stand(double from, double to);
+  /// Collective. What has slid by v stays where it is: the forces of what follows start from those at v.
+  void settle(const double* v);
+  /// Of every point that slides, on this rank: the force that it has settled at (N), and where (m).
+  struct History {
+    std::vector<double> force, displacement;
+  };
+  History history() const;
+  /// Empty: nothing has slid.
+  void set_history(const History& history);
 
   // Within a stage ---------------------------------------------------------------------------------------------------
   /// Collective. w_guess: rates to begin from. Null pointers, shift 0: statics from scratch.
@@ -73,8 +92,9 @@ class NonlinearFoundation {
   struct Point {
     beam::NonlinearPoint its;
     std::size_t terms = 4;       // of the displacement
-    std::array<int, 5> place{};  // in the local unknowns, then the left and the right neighbour's column; -1: none
-    std::array<double, 5> shape{};
+    /// In the local unknowns, then the left and the right neighbour's column; -1: none.
+    std::array<int, beam::NonlinearShape::most> place{};
+    std::array<double, beam::NonlinearShape::most> shape{};
     bool counted = false;    // by this rank, in sums
     double reference = 0.0;  // N/m, at a displacement of the order of that under the load
     double still = 0.0;      // displacement and rate at z = 0
@@ -86,14 +106,21 @@ class NonlinearFoundation {
     double balanced_force = 0.0;  // G at zeta0
     double misfit = 0.0;          // of force and tangent, beyond rounding
     beam::FoundationForce state;
+    // Of a sleeper that slides: whether it is loaded, what it has settled at, and the energy that it held then.
+    bool loaded = false;
+    double settled_force = 0.0, settled = 0.0, settled_energy = 0.0;
+
+    bool slides() const { return its.kind == beam::along_a_sleeper; }
     void keep(base::Bytes& bytes) {
       bytes(still, still_rate, zeta0, force0, zeta, linear_force, balanced_force, misfit, state);
+      bytes(loaded, settled_force, settled, settled_energy);
     }
   };
 
   void add_point(const beam::Beam& beam, const beam::NonlinearPoint& its, double load);
   void note_terms(const beam::Beam& beam);
   void gather(const double* x, double Point::*into);
+  static beam::FoundationForce force_of(const Point& p, double displacement, double rate);
   beam::FoundationForce force_at(const Point& p, double zeta) const;
   void start_statics(Point& p) const;
   void choose_tangents();
@@ -114,6 +141,7 @@ class NonlinearFoundation {
   std::vector<double> wanted_k_, wanted_c_;
   std::vector<double> borders_;  // the neighbours' columns
   double shift_ = 0.0;
+  double slid_ = 0.0;
   int iteration_ = 0;
 };
 

@@ -28,7 +28,6 @@ constexpr double seconds_a_lane_vehicle = 2e-8, seconds_a_lane_mode = 4e-9;
 constexpr double alone_over_beside = 20.0;
 constexpr double rough_over_level = 3.5;  // no vehicle rests, and contacts take more iterations
 constexpr double coupled_over_uncoupled = 8.0;
-constexpr int most_halved = 4;
 constexpr double seconds_a_look = 1e-7;  // of limits at a run by modes
 constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
 
@@ -204,24 +203,7 @@ double CaseRunner::cost_of_all() const {
 }
 
 CaseResult CaseRunner::run(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached) {
-  return by_modes_alone() ? run_by_modes(train, {&run, 1}).front() : run_in_steps(train, run, reached);
-}
-
-// A step that was chosen for all runs may be too long for one of them.
-CaseResult CaseRunner::run_in_steps(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached) {
-  const std::optional<double> chosen = scene_.time_step;
-  const VehicleModel model = scene_.vehicle_model;
-  for (int halvings = scene_.step_open ? most_halved : 0;; --halvings) {
-    try {
-      CaseResult result = run_by_elements(train, run, reached);
-      scene_.time_step = chosen;
-      return result;
-    } catch (const StepTooLong&) {
-      if (halvings == 0) throw;
-      scene_.time_step = 0.5 * last_step_;
-      scene_.vehicle_model = model;
-    }
-  }
+  return by_modes_alone() ? run_by_modes(train, {&run, 1}).front() : run_by_elements(train, run, reached);
 }
 
 CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
@@ -232,7 +214,6 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
   // this rank has had.
   beam_->statics->forget_steps();
   Passage passage(scene, *beam_, ignored);
-  last_step_ = passage.plan().time_step;
   passage.start(ignored);
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
   Watch watch(scene, passage.system(), beam_->bridge(), none);

@@ -79,7 +79,6 @@ class CaseRunner {
  private:
   /// The scene of one run.
   const Scene& scene_of(std::size_t train, const CaseRun& run);
-  CaseResult run_in_steps(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
   CaseResult run_by_elements(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
   CaseResult run_with_mechanisms(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached);
   std::vector<CaseResult> run_by_modes(std::size_t train, std::span<const CaseRun> runs);
@@ -103,7 +102,6 @@ class CaseRunner {
   std::string why_no_lanes_;
   bool by_kernel_ = false;  // of the lanes, be it alone
   double counting_ = 0.0;   // Hz, up to which limits count accelerations; 0: they are not filtered
-  double last_step_ = 0.0;  // s: the longest of the last run
   long alone_ = 0;
 };
 

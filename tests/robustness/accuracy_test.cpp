@@ -119,7 +119,6 @@ output: {file: r2.h5, interval: 1.0e-3}
   EXPECT_TRUE(says(again, "the run is repeated with steps of 0.00025 s, and nothing is promised: ")) << again.out;
   const Results results(workplace.path("r2.h5"));
   EXPECT_NEAR(results.attribute("/summary", "deflection"), -2.40731635e-3, 1e-6);
-  expect_success(run({"-sweep_speed", "20,30,5"}));
   EXPECT_EQ(run({"-ts_dt", "5e-4"}).status, 3);
 }
 

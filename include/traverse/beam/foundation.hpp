@@ -25,6 +25,7 @@ struct PointFoundation {
   double c = 0.0;
   bool from_left = false;  // on the end of two separate spans, or beside a hinge: it holds the left one
   FoundationLaw law = {};
+  double depth = 0.0;  // m below the beam's axis at which it holds along x; only at span ends
 };
 
 /// A bed along the whole beam: a point's k and c per length, neither negative.

@@ -29,4 +29,16 @@ struct FoundationForce {
 };
 FoundationForce foundation_force(const FoundationLaw& law, double k, double c, double d, double w);
 
+/// A spring that slides where its force reaches a limit: the resistance of a sleeper along the track, UIC 774-3. Under
+/// a train it is stiffer, and holds more.
+struct Sliding {
+  double k = 0.0, limit = 0.0;                // N/m, N; a limit of 0: it does not slide
+  double loaded_k = 0.0, loaded_limit = 0.0;  // the same where a train stands
+
+  double k_of(bool loaded) const { return loaded ? loaded_k : k; }
+  double limit_of(bool loaded) const { return loaded ? loaded_limit : limit; }
+};
+/// After it has been moved by d (m) from where its force was `then` (N): what is beyond the limit was lost before.
+FoundationForce sliding_force(double k, double limit, double then, double d);
+
 }  // namespace traverse::beam

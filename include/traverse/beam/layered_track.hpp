@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "traverse/beam/distribution.hpp"
+#include "traverse/beam/foundation_law.hpp"
 
 namespace traverse::beam {
 
@@ -30,6 +31,13 @@ struct TrackValues {
   Spring pad, ballast, subballast, longitudinal;
   double sleeper_mass = 0.0, ballast_mass = 0.0;  // kg
   double gap = 0.0;                               // m, below the unloaded sleeper, which hangs on the rail
+  /// Of the longitudinal spring, N, and with its stiffness, N/m, below a train; 0: it holds, and it is the same there.
+  double slides_at = 0.0, loaded_k = 0.0, loaded_slides_at = 0.0;
+
+  Sliding sliding() const {
+    return {longitudinal.k, slides_at, loaded_k > 0.0 ? loaded_k : longitudinal.k,
+            loaded_slides_at > 0.0 ? loaded_slides_at : slides_at};
+  }
 };
 
 struct LayeredTrack;
@@ -41,7 +49,7 @@ struct TrackProperty {
   double& (*of)(TrackValues& values);
   const Distribution* (*along)(const LayeredTrack& track);  // null where the model leaves the layer out
 };
-inline constexpr std::size_t track_property_count = 11;
+inline constexpr std::size_t track_property_count = 14;
 
 /// Sleepers from `from` to `to`, both included, with properties of their own.
 struct TrackStretch {
@@ -70,6 +78,12 @@ struct LayeredTrack {
   bool own_mass = false;      // the ballast moves by itself on the bridge too
   std::optional<Layer> subballast;
   Layer longitudinal;                   // between rail and bridge, or rail and ground, along x
+  Distribution slides_at;               // N a sleeper: where the longitudinal spring slides; 0: it holds
+  Distribution loaded_k, loaded_slides_at;  // N/m and N: the same below a train; 0: as without one
+  bool holds_fast = false;                  // it never slides: of small motions
+  double rail_temperature = 0.0;            // K, since the rail was laid
+  double rail_expansion = 0.0;              // 1/K
+  bool rail_ends_held = false;              // along x, as where the track goes on; false: free
   Distribution gap;                     // m, below unloaded sleepers
   bool gaps_stay_open = false;          // sleepers over a gap never reach what is below: of small motions
   Spring shear;                         // between neighbouring masses of ballast that move by themselves, N/m, N s/m
@@ -80,8 +94,12 @@ struct LayeredTrack {
   TrackValues at(double x) const;
   /// Whether there is a sleeper at this station of the grid.
   bool has_sleeper(double x) const;
+  /// Whether a property, by its name, is above zero at some sleepers.
+  bool somewhere(std::string_view name) const;
   /// Whether some sleepers may hang over a gap.
   bool hangs() const;
+  /// Whether some longitudinal springs may slide.
+  bool slides() const;
   /// Whether every sleeper is like every other.
   bool uniform() const;
 };

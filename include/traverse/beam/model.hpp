@@ -81,8 +81,8 @@ struct BeamModel {
   bool all_separate() const;
   /// Whether settlements or temperature bend or stretch it without a load.
   bool strained() const;
-  /// Whether some of its foundation, or sleepers over a gap, obey a law that is not linear.
-  bool nonlinear() const { return foundation.nonlinear() || (track && track->hangs()); }
+  /// Whether some of its foundation, or sleepers over a gap or that slide, obey a law that is not linear.
+  bool nonlinear() const { return foundation.nonlinear() || (track && (track->hangs() || track->slides())); }
 };
 
 /// A bridge of given modes: what its elements are between the stations of the shapes. They carry the shapes and

@@ -14,11 +14,14 @@ struct VerdictLimit {
   std::string text;      // what it means, in the user's words
 };
 
+/// What finds a quantity: a run in time, the static effects of EN 1991-2, or scene_analysis rail.
+enum class LimitFinder { run, norm, rail };
+
 struct LimitQuantity {
   std::string_view name;  // as the user writes it
   std::string_view unit;  // "1" for a ratio
   std::string_view words;
-  bool of_norm = false;  // by the static effects of EN 1991-2, not by a run
+  LimitFinder finder = LimitFinder::run;
 };
 
 /// How each follows from a run stands in src/run/verdicts.cpp.
@@ -36,12 +39,20 @@ inline constexpr LimitQuantity limit_quantities[] = {
     {"contact_loss", "s", "longest time that a wheel is off the track"},
     {"amplification", "1", "largest deflection over the largest static one at its probe"},
     {"lm71_deflection_over_span", "1", "static deflection under LM71 times alpha and Phi over the length of its span",
-     true},
+     LimitFinder::norm},
     {"lm71_end_rotation", "rad", "static rotation of the deck at the bridge's ends under LM71 times alpha and Phi",
-     true},
+     LimitFinder::norm},
     {"lm71_joint_rotation", "rad",
-     "difference of static rotations of two decks at a joint under LM71 times alpha and Phi", true},
-    {"train_over_lm71", "1", "dynamic effect of the trains over Phi times LM71, EN 1991-2 6.4.6.5", true},
+     "difference of static rotations of two decks at a joint under LM71 times alpha and Phi", LimitFinder::norm},
+    {"train_over_lm71", "1", "dynamic effect of the trains over Phi times LM71, EN 1991-2 6.4.6.5", LimitFinder::norm},
+    {"rail_tension", "Pa", "largest additional tension of the rails along x (track_rail_area)", LimitFinder::rail},
+    {"rail_compression", "Pa", "largest additional compression", LimitFinder::rail},
+    {"rail_slip", "m", "largest displacement of the rail against the deck or the ground by braking or traction",
+     LimitFinder::rail},
+    {"deck_displacement", "m", "largest displacement of a deck's end along x by braking or traction",
+     LimitFinder::rail},
+    {"deck_end_displacement", "m", "largest displacement of the top of a deck's end along x as the deck bends",
+     LimitFinder::rail},
 };
 
 /// Null where there is none.

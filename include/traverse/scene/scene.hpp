@@ -14,6 +14,7 @@
 #include "traverse/options/analyses.hpp"
 #include "traverse/options/norm_rules.hpp"
 #include "traverse/options/options.hpp"
+#include "traverse/options/rail_loads.hpp"
 #include "traverse/options/study.hpp"
 #include "traverse/options/verdict_limit.hpp"
 #include "traverse/track/profile.hpp"
@@ -125,16 +126,17 @@ struct Scene {
   Output output;
   std::vector<options::VerdictLimit> limits;                 // that runs are checked against
   std::optional<options::NormRules> norm;                    // static effects and the verdict of EN 1991-2 are wanted
+  std::optional<options::RailLoads> rail_loads;              // of scene_analysis rail
   bool quiet = false;                                        // -output_quiet: no progress
   bool check = false;                                        // -check: it is shown, nothing is run
   std::vector<std::string> notes;                            // what was chosen and why, one line each
   std::vector<std::string> unusual;                          // of these, what is no error and hardly meant
   std::vector<std::pair<std::string, std::string>> options;  // all as given, those of vehicle files too
 
-  /// Whether limits ask something of runs: those of the norm alone are judged by static effects.
+  /// Whether limits ask something of runs, not of static effects alone.
   bool judges_runs() const {
     return std::any_of(limits.begin(), limits.end(), [](const options::VerdictLimit& limit) {
-      return !options::limit_quantity(limit.quantity)->of_norm;
+      return options::limit_quantity(limit.quantity)->finder == options::LimitFinder::run;
     });
   }
   /// Whether the bridge is modes that were given, without elements behind them.

@@ -1,0 +1,66 @@
+// Forces between rail and bridge as a table on the terminal and in the results file.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "rail/rail_forces.hpp"
+#include "results/terminal.hpp"
+
+namespace traverse::rail {
+namespace {
+
+std::string at_text(const Peak& peak, double factor, const char* unit) {
+  return fmt::format("{:.4g} {} @ {:.4g}", factor * peak.value, unit, peak.x);
+}
+
+}  // namespace
+
+void RailForces::print() const {
+  fmt::print("UIC 774-3: additional stress of the rails, rail against deck or ground, and forces of bearings along x, "
+             "each @ x in m\n");
+  std::vector<std::vector<std::string>> rows = {{"", "tension", "compression", "slip", "deck end", "greatest bearing"}};
+  for (const Case& one : cases_) {
+    if (!one.there) continue;
+    Peak bearing;
+    for (const Peak& its : one.bearings) bearing.see(its.value, its.x, its.front);
+    rows.push_back({std::string(one.words), at_text(one.tension, 1e-6, "MPa"), at_text(one.compression, 1e-6, "MPa"),
+                    at_text(one.slip, 1e3, "mm"), at_text(one.end, 1e3, "mm"), at_text(bearing, 1e-3, "kN")});
+  }
+  results::print_columns(std::move(rows));
+  std::fflush(stdout);
+}
+
+void RailForces::record(results::Recorder& recorder) const {
+  using Dataset = results::Recorder::Dataset;
+  const std::string group = "/rail_forces/";
+  std::vector<Dataset> sets = {{group + "x", {bridge_.elements().size()}, bridge_.elements(), "m"},
+                               {group + "sleeper_x", {bridge_.sleepers().size()}, bridge_.sleepers(), "m"},
+                               {group + "bearing_x", {bridge_.bearings().size()}, bridge_.bearings(), "m"},
+                               {group + "front", {loads_.fronts.size()}, loads_.fronts, "m"}};
+  for (const Case& one : cases_) {
+    if (!one.there) continue;
+    const std::string its = group + std::string(one.name) + "/";
+    const auto add = [&](const char* name, const std::vector<double>& values, const char* unit) {
+      sets.push_back({its + name, {values.size()}, values, unit});
+    };
+    add("least_stress", one.least, "Pa");
+    add("greatest_stress", one.greatest, "Pa");
+    add("least_slip", one.least_slip, "m");
+    add("greatest_slip", one.greatest_slip, "m");
+    std::vector<double> forces;
+    for (const Peak& bearing : one.bearings) forces.push_back(bearing.value);
+    add("bearing", forces, "N");
+    const auto peak = [&](const char* name, const Peak& p, const char* unit) {
+      sets.push_back({its + name, {3}, {p.value, p.x, p.front}, unit});
+    };
+    peak("tension", one.tension, "Pa, m, m");
+    peak("compression", one.compression, "Pa, m, m");
+    peak("slip", one.slip, "m, m, m");
+    peak("end", one.end, "m, m, m");
+  }
+  recorder.datasets(sets);
+  recorder.attributes("/rail_forces", {{"residual", residual_}});
+}
+
+}  // namespace traverse::rail
