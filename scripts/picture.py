@@ -15,6 +15,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.transforms import blended_transform_factory  # noqa: E402
+import picture_rail
 from picture_axes import (  # noqa: E402
     COLOURS, GREY, LABEL_SIZE, PALE, STYLES, End, label_at_ends, time_panel)
 from picture_data import (  # noqa: E402
@@ -280,6 +281,8 @@ def heading(figure, results, modes_only):
         title += ", at rest"
     elif results.options.get("scene_analysis") == "envelope":
         title += ", largest static effects"
+    elif results.options.get("scene_analysis") == "rail":
+        title += ", rail and bridge together (UIC 774-3)"
     elif "sweep/speed" in results.file:
         title += f", {sweep_in_words(results)}"
     elif "study/finished" in results.file:
@@ -336,6 +339,8 @@ def panels(results, asked=()):
         found.append(lambda ax, worst: draw_study(ax, results))
     if not found and "static/x" in file:
         found += [lambda ax, worst, name=name: draw_static(ax, results, name) for name in STATIC]
+    if not found and "rail_forces/x" in file:
+        found += [lambda ax, worst, panel=panel: panel(ax, results) for panel in picture_rail.PANELS]
     return found
 
 

@@ -41,10 +41,8 @@ struct AnalysisRun {
 };
 
 inline constexpr AnalysisRun analysis_runs[] = {
-    {options::Analysis::transient, run_in_time},
-    {options::Analysis::modes, run_modes},
-    {options::Analysis::static_response, run_in_time},
-    {options::Analysis::static_envelope, run_envelope},
+    {options::Analysis::transient, run_in_time},       {options::Analysis::modes, run_modes},
+    {options::Analysis::static_response, run_in_time}, {options::Analysis::static_envelope, run_envelope},
     {options::Analysis::rail_forces, run_rail},
 };
 

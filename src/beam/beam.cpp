@@ -117,9 +117,13 @@ Slice Beam::slice() const {
     release_links(bridge_, layout_, slice);
   }
   hold_supports(bridge_, slice);
-  if (rail_ && model().track->rail_ends_held)
-    for (const int node : {0, rail_->mesh.nodes() - 1}) slice.hold(rail_->unknown(node, 0));
+  for (const int node : ends_held_of_rail()) slice.hold(rail_->unknown(node, 0));
   return slice;
+}
+
+std::vector<int> Beam::ends_held_of_rail() const {
+  if (!rail_ || !model().axial || !model().track->rail_ends_held) return {};
+  return {0, rail_->mesh.nodes() - 1};
 }
 
 void Beam::assemble(const Slice& slice) {

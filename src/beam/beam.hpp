@@ -99,10 +99,10 @@ class Beam {
   /// Nodal forces of the beam's temperature, and of springs that a settlement turns or bends; this rank's. Empty: none.
   const std::vector<double>& strain_forces() const { return strain_forces_; }
 
-  /// Collective. Forces and moment of the supports ON the beam at every span end, {fx, fy, moment} each, on all
-  /// ranks (eq. 18 as corrected in doc/theory.md: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal
-  /// vectors.
-  /// P must hold the load on held unknowns too. Where spans are separate both spans' parts are added.
+  /// Collective. Forces and moment of the supports ON the beam at every span end, {fx, fy, moment} each, and last,
+  /// where the ends of the rail are held along x, {fx, 0, 0} of both; on all ranks (eq. 18 as corrected in
+  /// doc/theory.md: M_ca a + C_ca w + K_ca v - P_c), from this rank's slices of the nodal vectors. P must hold the load
+  /// on held unknowns too. Where spans are separate both spans' parts are added.
   void reactions(const double* v, const double* w, const double* a, const double* P,
                  std::vector<std::array<double, 3>>& out) const;
   /// Adds `factor` times a reaction at rest (component 0 fx, 1 fy, 2 moment), as a form of this rank's nodal
@@ -123,6 +123,7 @@ class Beam {
   };
 
   Slice slice() const;
+  std::vector<int> ends_held_of_rail() const;  // its nodes
   void assemble(const Slice& slice);
   void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
                       std::vector<std::pair<base::Handle<Mat>*, Rows>>& own);

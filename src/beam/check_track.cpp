@@ -158,7 +158,8 @@ void check_track(const BeamModel& model) {
   check_properties(t);
   for (const char* name : {"longitudinal_loaded_k", "longitudinal_loaded_limit"})
     if (t.somewhere(name) && !t.slides())
-      throw InputError(std::string("track_") + name + " needs track_longitudinal_limit: it is that of sleepers that slide");
+      throw InputError(std::string("track_") + name +
+                       " needs track_longitudinal_limit: it is that of sleepers that slide");
   if (!t.ballast && t.hangs()) throw InputError("track_gap needs track_ballast_k: it lies below a sleeper on ballast");
   if (t.uniform()) {
     if (!(t.pad.k.maximum() > 0.0)) refuse_track("track_pad_k", 0.0, "it must be positive (N/m)");

@@ -24,9 +24,7 @@ struct Sleeper {
   /// Whether it slides along x where the force on it reaches a limit.
   bool slides() const { return values.slides_at > 0.0; }
   /// The longitudinal spring as the matrices know it: of one that slides its damper alone.
-  Spring linear_longitudinal() const {
-    return slides() ? Spring{0.0, values.longitudinal.c} : values.longitudinal;
-  }
+  Spring linear_longitudinal() const { return slides() ? Spring{0.0, values.longitudinal.c} : values.longitudinal; }
   /// The unknown of the sleeper, and that of the ballast's mass: in the place of the bridge's deflection on the ground,
   /// or in one of its own where ballast moves by itself on the bridge too.
   int unknown(const Layout& layout) const { return rail_node * layout.block + layout.place[sleeper]; }

@@ -23,22 +23,24 @@ void Beam::note_reactions(const Slice& slice, const Rows& beams, const Rows& mas
     if (term.mass != 0.0 || term.stiffness != 0.0 || term.foundation_damping != 0.0) reaction_terms_.push_back(term);
   };
   const int b = block();
+  const auto note = [&](int held, std::size_t slot) {
+    if (held < 0 || !slice.reaches(held) || !slice.held(held)) return;
+    if (slice.owns(held)) {
+      held_loads_.push_back({slot, index(local(held))});
+      if (!settled_.empty())
+        held_loads_.back().by_settlement = beams.times(held, [&](int j) { return settlement_of(j); });
+    }
+    for (int i = (held / b - 1) * b; i < (held / b + 2) * b; ++i) note_column(slot, i, held);
+  };
   for (int end = 0; end <= mesh().spans(); ++end) {
     const auto [left, right] = mesh().nodes_at(end);
     for (int node = left; node <= right; ++node) {
       for (int which = 0; which < (mesh().hinged(node) ? 4 : 3); ++which) {
-        const int held = bridge_.unknown(node, which);
-        if (held < 0 || !slice.reaches(held) || !slice.held(held)) continue;
-        const std::size_t slot = index(3 * end + std::min(which, 2));
-        if (slice.owns(held)) {
-          held_loads_.push_back({slot, index(local(held))});
-          if (!settled_.empty())
-            held_loads_.back().by_settlement = beams.times(held, [&](int j) { return settlement_of(j); });
-        }
-        for (int i = (held / b - 1) * b; i < (held / b + 2) * b; ++i) note_column(slot, i, held);
+        note(bridge_.unknown(node, which), index(3 * end + std::min(which, 2)));
       }
     }
   }
+  for (const int node : ends_held_of_rail()) note(rail_->unknown(node, 0), index(3 * (mesh().spans() + 1)));
 }
 
 void Beam::add_reaction_form(int span_end, int component, double factor, double* forces) const {
@@ -49,7 +51,7 @@ void Beam::add_reaction_form(int span_end, int component, double factor, double*
 
 void Beam::reactions(const double* v, const double* w, const double* a, const double* P,
                      std::vector<std::array<double, 3>>& out) const {
-  out.resize(mesh().span_ends().size());
+  out.resize(mesh().span_ends().size() + (ends_held_of_rail().empty() ? 0 : 1));
   double* sums = out.front().data();
   const std::size_t count = 3 * out.size();
   std::fill(sums, sums + count, 0.0);

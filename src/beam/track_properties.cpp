@@ -82,9 +82,8 @@ bool LayeredTrack::somewhere(std::string_view name) const {
       track_properties.begin());
   const Distribution* everywhere = track_properties[row].along(*this);
   return (everywhere != nullptr && everywhere->maximum() > 0.0) ||
-         std::any_of(stretches.begin(), stretches.end(), [row](const TrackStretch& s) {
-           return s.values[row] && s.values[row]->maximum() > 0.0;
-         });
+         std::any_of(stretches.begin(), stretches.end(),
+                     [row](const TrackStretch& s) { return s.values[row] && s.values[row]->maximum() > 0.0; });
 }
 
 bool LayeredTrack::hangs() const { return !gaps_stay_open && somewhere("gap"); }

@@ -95,9 +95,10 @@ State RailBridge::rest(const Loads& loads, const State* before) {
     verdict = nonlinear_.judge(state.v.data());
   }
   if (verdict == Verdict::failed)
-    throw SolverError(fmt::format("rail and bridge find no rest, worst {}: can the track hold the forces along x "
-                                  "(track_longitudinal_limit, uic774_braking), or does it slide as a whole?",
-                                  nonlinear_.worst_point()));
+    throw SolverError(
+        fmt::format("rail and bridge find no rest, worst {}: can the track hold the forces along x "
+                    "(track_longitudinal_limit, uic774_braking), or does it slide as a whole?",
+                    nonlinear_.worst_point()));
   for (std::size_t i = 0; i < P.size(); ++i) state.v[i] += still[i];
   nonlinear_.settle(state.v.data());
   state.slid = nonlinear_.history();
@@ -136,6 +137,7 @@ void RailBridge::recover(const std::vector<double>& P, State& state) {
   const std::vector<double> still(v.size(), 0.0);
   std::vector<std::array<double, 3>> reactions;
   beam_.reactions(v.data(), still.data(), still.data(), P.data(), reactions);
+  if (reactions.size() > beam_.mesh().span_ends().size()) state.rail_ends = reactions.back()[0];
   for (const int end : held_ends_) state.bearings.push_back(reactions[static_cast<std::size_t>(end)][0]);
   structure::NonlinearForces other;
   std::vector<beam::ElementLoad> loads;
@@ -160,9 +162,8 @@ double RailBridge::residual(const Loads& loads, const State& state) {
                                           state.bearings.begin() + static_cast<std::ptrdiff_t>(held_ends_.size()), 0.0);
   const std::size_t kind = beam::foundation_kind("longitudinal");
   const double springs = std::accumulate(other.of_kind[kind].begin(), other.of_kind[kind].end(), 0.0);
-  const double rail_ends = beam_.model().track->rail_ends_held ? area_ * (state.stress.back() - state.stress.front()) : 0.0;
   return loads.along * (loads.along_to - loads.along_from) + supports + springs + ground_.foundation()[0] +
-         other.along_ground + rail_ends;
+         other.along_ground + state.rail_ends;
 }
 
 }  // namespace traverse::rail

@@ -15,19 +15,20 @@ namespace traverse::rail {
 
 /// What acts at once.
 struct Loads {
-  bool strains = false;                               // temperatures of deck and rail, settlements
-  double from = 0.0, to = 0.0;                        // m: where a train stands, and sleepers are loaded; equal: none
-  double weight = 0.0;                                // N/m, of this train
+  bool strains = false;         // temperatures of deck and rail, settlements
+  double from = 0.0, to = 0.0;  // m: where a train stands, and sleepers are loaded; equal: none
+  double weight = 0.0;          // N/m, of this train
   double along_from = 0.0, along_to = 0.0, along = 0.0;  // m, N/m: forces on the rail, towards +x
 };
 
 struct State {
-  std::vector<double> v;                           // m and rad, of all unknowns
+  std::vector<double> v;  // m and rad, of all unknowns
   structure::NonlinearFoundation::History slid;
   std::vector<double> stress;        // Pa, of each rail element: EA u'/A, without that of a rail which cannot lengthen
   std::vector<double> displacement;  // m, of the rail against the deck or the ground, at each sleeper
   std::vector<double> bearings;      // N along x on the bridge, of each bearing
   std::vector<double> ends;          // m along x, of the deck's running surface at each end
+  double rail_ends = 0.0;            // N along x on the rail, of what holds its ends
 };
 
 /// A bridge with a layered track and axial unknowns, on this rank alone.
@@ -62,7 +63,7 @@ class RailBridge {
   beam::GroundForces ground_;
   double area_;
   std::vector<double> elements_, sleepers_, bearings_, ends_;
-  std::vector<int> held_ends_;            // span ends whose support holds the bridge along x
+  std::vector<int> held_ends_;  // span ends whose support holds the bridge along x
   std::vector<beam::Station> end_stations_;
 };
 

@@ -7,12 +7,8 @@ namespace traverse::rail {
 namespace {
 
 constexpr std::pair<std::string_view, std::string_view> names[case_count] = {
-    {"temperature", "temperature"},
-    {"bending", "the train's weight"},
-    {"braking", "braking"},
-    {"traction", "traction"},
-    {"separate", "these added up"},
-    {"in_sequence", "one after the other"},
+    {"temperature", "temperature"}, {"bending", "the train's weight"}, {"braking", "braking"},
+    {"traction", "traction"},       {"separate", "these added up"},    {"in_sequence", "one after the other"},
     {"at_once", "all at once"},
 };
 
@@ -36,7 +32,9 @@ void add(std::vector<double>& sum, const std::vector<double>& more) {
 RailForces::RailForces(const beam::BeamModel& model, const options::RailLoads& loads)
     : loads_(loads), bridge_(model, loads.rail_area, greatest_load(loads)), length_(model.length()) {
   for (const auto& [name, words] : names) {
-    Case one{name, words};
+    Case one;
+    one.name = name;
+    one.words = words;
     one.least.assign(bridge_.elements().size(), HUGE_VAL);
     one.greatest.assign(bridge_.elements().size(), -HUGE_VAL);
     one.least_slip.assign(bridge_.sleepers().size(), HUGE_VAL);
@@ -139,9 +137,9 @@ void RailForces::find(std::vector<results::Verdict>& verdicts) const {
   const auto larger = [](const Peak& a, const Peak& b) { return std::abs(a.value) >= std::abs(b.value) ? a : b; };
   for (results::Verdict& verdict : verdicts) {
     const std::string& quantity = verdict.limit.quantity;
-    const Peak peak = quantity == "rail_tension"       ? cases_[in_sequence].tension
-                      : quantity == "rail_compression" ? cases_[in_sequence].compression
-                      : quantity == "rail_slip"        ? larger(cases_[braking].slip, cases_[traction].slip)
+    const Peak peak = quantity == "rail_tension"        ? cases_[in_sequence].tension
+                      : quantity == "rail_compression"  ? cases_[in_sequence].compression
+                      : quantity == "rail_slip"         ? larger(cases_[braking].slip, cases_[traction].slip)
                       : quantity == "deck_displacement" ? larger(cases_[braking].end, cases_[traction].end)
                                                         : cases_[bending].end;
     verdict.found = {std::abs(peak.value), results::Finding::unknown, peak.x, "", ""};

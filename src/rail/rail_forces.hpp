@@ -25,13 +25,13 @@ struct Peak {
 };
 
 struct Case {
-  std::string_view name;   // in the results file
-  std::string_view words;  // on the terminal
-  bool there = false;      // it was computed
-  std::vector<double> least, greatest;              // Pa, of each rail element: additional stress
-  std::vector<double> least_slip, greatest_slip;    // m, of each sleeper: the rail against deck or ground
-  Peak tension, compression, slip, end;             // Pa, Pa, m, m: of the running surface at deck ends
-  std::vector<Peak> bearings;                       // N along x, of each
+  std::string_view name;                          // in the results file
+  std::string_view words;                         // on the terminal
+  bool there = false;                             // it was computed
+  std::vector<double> least, greatest;            // Pa, of each rail element: additional stress
+  std::vector<double> least_slip, greatest_slip;  // m, of each sleeper: the rail against deck or ground
+  Peak tension, compression, slip, end;           // Pa, Pa, m, m: of the running surface at deck ends
+  std::vector<Peak> bearings;                     // N along x, of each
 };
 
 /// In the order of RailForces::cases.

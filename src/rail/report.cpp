@@ -11,14 +11,15 @@ namespace traverse::rail {
 namespace {
 
 std::string at_text(const Peak& peak, double factor, const char* unit) {
-  return fmt::format("{:.4g} {} @ {:.4g}", factor * peak.value, unit, peak.x);
+  return fmt::format("{:.4g} {} @ {:.4g}", factor * peak.value, unit, 1e-3 * std::round(1e3 * peak.x));
 }
 
 }  // namespace
 
 void RailForces::print() const {
-  fmt::print("UIC 774-3: additional stress of the rails, rail against deck or ground, and forces of bearings along x, "
-             "each @ x in m\n");
+  fmt::print(
+      "UIC 774-3: additional stress of the rails, rail against deck or ground, and forces of bearings along x, "
+      "each @ x in m\n");
   std::vector<std::vector<std::string>> rows = {{"", "tension", "compression", "slip", "deck end", "greatest bearing"}};
   for (const Case& one : cases_) {
     if (!one.there) continue;

@@ -138,7 +138,8 @@ void read_limits(const Options& o, Scene& scene) {
   scene.limits = options::read_verdict_limits(o.path("limits"));
   if (scene.analysis == Analysis::transient) return;
   if (scene.analysis == Analysis::static_envelope || scene.analysis == Analysis::rail_forces) {
-    const auto finder = scene.analysis == Analysis::rail_forces ? options::LimitFinder::rail : options::LimitFinder::norm;
+    const auto finder =
+        scene.analysis == Analysis::rail_forces ? options::LimitFinder::rail : options::LimitFinder::norm;
     std::erase_if(scene.limits,
                   [&](const auto& limit) { return options::limit_quantity(limit.quantity)->finder != finder; });
     return;

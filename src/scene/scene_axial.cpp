@@ -57,7 +57,8 @@ void decide_axial(const options::Options& o, Scene& scene) {
                                                    : "lengthens the beam, which needs " + missing);
   if (wanted == "true" && !stiffness) o.refuse("model_axial", "needs " + missing);
   if (const std::string along = option_along_the_track(o, scene); !along.empty() && (!stiffness || wanted == "false"))
-    o.refuse(along, stiffness ? "acts along x; allowed with it: model_axial auto or true" : "acts along x, which needs " + missing);
+    o.refuse(along, stiffness ? "acts along x; allowed with it: model_axial auto or true"
+                              : "acts along x, which needs " + missing);
   if (wanted != "auto") {
     scene.beam->axial = wanted == "true";
     scene.notes.push_back(fmt::format("axial unknowns: {}, as asked", scene.beam->axial ? "modelled" : "none"));

@@ -154,9 +154,8 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
   const auto numbers = [&](const char* what) { return o.numbers(name + what, x.size(), "as many as stations"); };
   const auto words = [&](const char* what) { return o.texts(name + what, x.size(), "as many as stations"); };
   const std::vector<double> k = numbers("_k"), c = numbers("_c"), gap = numbers("_gap"), cubic = numbers("_cubic");
-  const std::vector<double> depth = kind.direction == beam::Direction::longitudinal
-                                        ? numbers("_depth")
-                                        : std::vector<double>(x.size(), 0.0);
+  const std::vector<double> depth =
+      kind.direction == beam::Direction::longitudinal ? numbers("_depth") : std::vector<double>(x.size(), 0.0);
   const std::vector<std::string> side = words("_side");
   const std::vector<std::string> one_sided =
       vertical ? words("_one_sided") : std::vector<std::string>(x.size(), "false");

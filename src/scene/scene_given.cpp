@@ -54,7 +54,8 @@ void read_modes_of_given(const Options& o, Scene& scene) {
   if (scene.rest_tolerance > 0.0)
     scene.notes.emplace_back("model_window has no effect: a bridge by its modes moves as a whole");
   for (const options::VerdictLimit& limit : scene.limits)
-    if (limit.quantity == "deflection_over_span" || options::limit_quantity(limit.quantity)->finder != options::LimitFinder::run)
+    if (limit.quantity == "deflection_over_span" ||
+        options::limit_quantity(limit.quantity)->finder != options::LimitFinder::run)
       o.refuse("limits", fmt::format("{} {}", limit.quantity, needs_elements));
 }
 

@@ -40,8 +40,9 @@ void read_rail_loads(const Options& o, Scene& scene) {
   if (!scene.beam->axial) o.refuse("scene_analysis", "rail needs beam_EA, track_rail_EA and track_longitudinal_k");
   if (!o.has("track_rail_area")) o.refuse("scene_analysis", "rail needs track_rail_area, for the stress of the rails");
   if (!scene.vehicles.empty() || !scene.load.forces.empty())
-    scene.notes.emplace_back("scene_analysis rail: the train is that of uic774_train_length; vehicles and moving "
-                             "forces have no effect");
+    scene.notes.emplace_back(
+        "scene_analysis rail: the train is that of uic774_train_length; vehicles and moving "
+        "forces have no effect");
   RailLoads loads;
   loads.length = o.number("uic774_train_length");
   loads.weight = o.number("uic774_weight");

@@ -36,7 +36,7 @@ struct NonlinearForces {
   /// Of the sleepers over a gap, from left to right: what pushes each up, N, and how far its gap is open, m; below zero
   /// it is closed and the ballast's spring is pressed by so much.
   std::vector<double> below_sleepers, open_gaps;
-  double of_ground = 0.0;  // of all that on sleepers whose ballast stands on the ground without a mass, N
+  double of_ground = 0.0;     // of all that on sleepers whose ballast stands on the ground without a mass, N
   double along_ground = 0.0;  // of sleepers that slide on the ground, on the rail along x, N
 };
 
@@ -91,7 +91,7 @@ class NonlinearFoundation {
  private:
   struct Point {
     beam::NonlinearPoint its;
-    std::size_t terms = 4;       // of the displacement
+    std::size_t terms = 4;  // of the displacement
     /// In the local unknowns, then the left and the right neighbour's column; -1: none.
     std::array<int, beam::NonlinearShape::most> place{};
     std::array<double, beam::NonlinearShape::most> shape{};

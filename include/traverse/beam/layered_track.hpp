@@ -77,15 +77,15 @@ struct LayeredTrack {
   Distribution ballast_mass;  // kg a sleeper
   bool own_mass = false;      // the ballast moves by itself on the bridge too
   std::optional<Layer> subballast;
-  Layer longitudinal;                   // between rail and bridge, or rail and ground, along x
-  Distribution slides_at;               // N a sleeper: where the longitudinal spring slides; 0: it holds
+  Layer longitudinal;                       // between rail and bridge, or rail and ground, along x
+  Distribution slides_at;                   // N a sleeper: where the longitudinal spring slides; 0: it holds
   Distribution loaded_k, loaded_slides_at;  // N/m and N: the same below a train; 0: as without one
   bool holds_fast = false;                  // it never slides: of small motions
   double rail_temperature = 0.0;            // K, since the rail was laid
   double rail_expansion = 0.0;              // 1/K
   bool rail_ends_held = false;              // along x, as where the track goes on; false: free
-  Distribution gap;                     // m, below unloaded sleepers
-  bool gaps_stay_open = false;          // sleepers over a gap never reach what is below: of small motions
+  Distribution gap;                         // m, below unloaded sleepers
+  bool gaps_stay_open = false;              // sleepers over a gap never reach what is below: of small motions
   Spring shear;                         // between neighbouring masses of ballast that move by themselves, N/m, N s/m
   std::vector<TrackStretch> stretches;  // where they overlap the last one counts
   double approach = 0.0;                // of track on either side of the bridge, m; made whole bays

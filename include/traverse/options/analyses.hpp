@@ -19,7 +19,8 @@ inline constexpr AnalysisRow analyses[] = {
     {Analysis::modes, "modes", "natural frequencies and shapes"},
     {Analysis::static_response, "static", "rest where the loads stand at t = 0"},
     {Analysis::static_envelope, "envelope", "the largest static effects of the loads, wherever they stand"},
-    {Analysis::rail_forces, "rail", "rail and bridge together at rest under temperature, braking and a train's weight, UIC 774-3"},
+    {Analysis::rail_forces, "rail",
+     "rail and bridge together at rest under temperature, braking and a train's weight, UIC 774-3"},
 };
 
 /// Of a name in the list; the default otherwise.
