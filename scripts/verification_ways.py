@@ -141,6 +141,8 @@ WAYS = [
             [Check("20, {});")]),
         Row("a track by stretches, hanging sleepers among them", "the same scene on one rank", "Ranks.TrackByStretch",
             [Check("20, {});")]),
+        Row("sleepers that slide along the track", "the same scene on one rank", "Ranks.SleepersThatSlide",
+            [Check("20, {});")]),
         Row("losses of contact and impacts", "the same scene on one rank", "Ranks.ContactLossAndImpacts",
             [Check("20, {});")]),
         Row("steps chosen by their errors, two scenes", "the same scenes on one rank", "Ranks.StepsChosenByTheirErrors",

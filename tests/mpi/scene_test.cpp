@@ -356,6 +356,17 @@ TEST(Ranks, TrackByStretch) {
                            20, 1e-6);
 }
 
+// A braked wagon that rolls freely; the deck is warm, and sleepers slide on either side of the cut.
+TEST(Ranks, SleepersThatSlide) {
+  expect_same_on_all_ranks("braking_on_ballast",
+                           {{"train_vehicles", "wagon"},
+                            {"track_approach", "60"},
+                            {"ts_dt", "2e-3"},
+                            {"ts_max_time", "0.4"},
+                            {"output_interval", "0.02"}},
+                           20, 1e-6);
+}
+
 TEST(Ranks, ExplicitContact) {
   expect_same_on_all_ranks("r4_hertz_wheel",
                            {{"beam_elements_per_span", "5"},

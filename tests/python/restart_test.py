@@ -36,6 +36,8 @@ KINDS = [
     ("layered track", "ballasted_viaduct", ["-ts_dt", "2e-3", "-ts_max_time", "0.06"], 12),
     ("hanging sleepers", "transition_zone",
      ["-ts_dt", "2e-3", "-track_elements_per_bay", "2", "-train_positions", "-12", "-ts_max_time", "0.12"], 30),
+    ("sleepers that slide", "braking_on_ballast",
+     ["-ts_dt", "2e-3", "-train_vehicles", "wagon", "-track_approach", "60", "-ts_max_time", "0.2"], 50),
     ("exact in time", "r1_moving_force", ["-model_modes", "3"], 7),
     ("adaptive steps", "three_span_half_car",
      ["-beam_elements_per_span", "4", "-ts_dt", "2e-3", "-ts_adapt_type", "ladder", "-ts_type", "esdirk4",
