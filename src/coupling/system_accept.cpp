@@ -37,7 +37,8 @@ bool System::accept(double t, double* y) {
     note_wheels_apart();
     return false;
   }
-  if (motion_ && structure_) structure_->complete_step(y, y + n_);
+  if (structure_ && motion_) structure_->complete_step(y, y + n_);
+  if (structure_ && !motion_) structure_->settle(y, loaded(t, 0.0));
   if (fleet_.vehicles.empty()) return false;
   arrive(t, y);
   const double lost = events_.accept(t);

@@ -20,7 +20,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) 
     if (const Solution found = settle(Terms::beam); found != Solution::found) refuse_start(found);
     structure_->end_stage(y, y + n_);
   }
-  if (structure_) structure_->settle(y);
+  if (structure_) structure_->settle(y, loaded(0.0, 0.0));
   fleet_.start_moving();
   if (equilibrium) {
     fleet_.let_wheels_roll();

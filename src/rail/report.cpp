@@ -11,7 +11,7 @@ namespace traverse::rail {
 namespace {
 
 std::string at_text(const Peak& peak, double factor, const char* unit) {
-  return fmt::format("{:.4g} {} @ {:.4g}", factor * peak.value, unit, 1e-3 * std::round(1e3 * peak.x));
+  return fmt::format("{:.4g} {} @ {:.4g}", factor * peak.value, unit, 1e-3 * std::round(1e3 * peak.x) + 0.0);  // no -0
 }
 
 }  // namespace

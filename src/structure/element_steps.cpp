@@ -1,6 +1,5 @@
 // Steps of the structure by its elements, in second-order form (one_step_methods.hpp).
 #include <algorithm>
-#include <limits>
 
 #include "structure/element_structure.hpp"
 
@@ -87,11 +86,7 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
     measuring_ = measured_between_steps() && statics_->damped() && (to_measure_ || unmeasured_ > 0.999 * interval);
     motion_->measure(measuring_);
   }
-  if (nonlinear_) {
-    Reach train{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (const Reach& reach : loaded) train = {std::min(train.from, reach.from), std::max(train.to, reach.to)};
-    nonlinear_->stand(train.from, train.to);
-  }
+  if (nonlinear_) stand(loaded);
   before_.dissipated = dissipated_;
   before_.worked = worked_;
   if (keep) {

@@ -1,6 +1,7 @@
 #include "structure/element_structure.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <tuple>
 
 #include "base/dot.hpp"
@@ -196,8 +197,17 @@ void ElementStructure::end_stage(double* v, double* w) {
   }
 }
 
-void ElementStructure::settle(const double* v) {
-  if (nonlinear_) nonlinear_->settle(v);
+void ElementStructure::settle(const double* v, const std::vector<Reach>& loaded) {
+  if (!nonlinear_) return;
+  nonlinear_->settle(v);
+  stand(loaded);
+}
+
+// From the first to the last wheel or force.
+void ElementStructure::stand(const std::vector<Reach>& loaded) {
+  Reach train{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const Reach& reach : loaded) train = {std::min(train.from, reach.from), std::max(train.to, reach.to)};
+  nonlinear_->stand(train.from, train.to);
 }
 
 std::string ElementStructure::trouble() const { return nonlinear_ ? nonlinear_->worst_point() : std::string(); }

@@ -46,7 +46,7 @@ class ElementStructure final : public Structure {
   void take(const std::vector<double>& loads) override;
   Verdict judge() override;
   void end_stage(double* v, double* w) override;
-  void settle(const double* v) override;
+  void settle(const double* v, const std::vector<Reach>& loaded) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
   std::string trouble() const override;
 
@@ -89,6 +89,7 @@ class ElementStructure final : public Structure {
                   double* w_elements) const override;
   void external_load(double* nodal) const;
   void load_of_stills();
+  void stand(const std::vector<Reach>& loaded);
   double dissipation(const double* w);
   int local_node(int column) const;
   bool measured_between_steps() const;

@@ -13,11 +13,12 @@ using beam::Direction;
 constexpr double tolerance = 1e-12;        // of the greatest force: what tangents may leave
 constexpr int most_stage_iterations = 40;  // of a stage; else the step is cut
 constexpr int most_static_iterations = 100;
-constexpr double near_tangent = 0.1;  // of a stiffness: tangents that are kept
-constexpr int patience = 4;           // iterations with them, then only with the true ones
-constexpr double loose = 1e-6;        // of the reference stiffness: what holds in statics where nothing touches
-constexpr double overshoot = 0.5;     // of the slope at the start of a step, at its end
-constexpr int most_trials = 50;       // for the length of a step
+constexpr double near_tangent = 0.1;   // of a stiffness: tangents that are kept
+constexpr int patience = 4;            // iterations with them, then only with the true ones
+constexpr double loose = 1e-6;         // of the reference stiffness: what holds in statics where nothing touches
+constexpr double overshoot = 0.5;      // of the slope at the start of a step, at its end
+constexpr int most_trials = 50;        // for the length of a step
+constexpr double same_station = 1e-6;  // m
 constexpr double unit_rounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 bool near(double kept, double wanted, double share) {
@@ -191,7 +192,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
 // --- sleepers that slide -------------------------------------------------------------------------------------------
 
 void NonlinearFoundation::stand(double from, double to) {
-  for (Point& p : points_) p.loaded = p.slides() && p.its.x >= from && p.its.x <= to;
+  for (Point& p : points_) p.loaded = p.slides() && p.its.x >= from - same_station && p.its.x <= to + same_station;
 }
 
 void NonlinearFoundation::settle(const double* v) {

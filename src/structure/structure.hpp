@@ -122,8 +122,8 @@ class Structure {
   virtual Verdict judge() { return Verdict::settled; }
   /// v and w of a stage that is not one of a step.
   virtual void end_stage(double* v, double* w) = 0;
-  /// What slides has slid to v, from which the motion begins.
-  virtual void settle(const double* /*v*/) {}
+  /// What slides has slid to v, from which the motion goes on with wheels and forces there.
+  virtual void settle(const double* /*v*/, const std::vector<Reach>& /*loaded*/) {}
   /// Keeps what the step needs of its stage i.
   virtual void end_stage(std::size_t i, const double* v, const double* w) = 0;
   /// Why a stage has no solution, for messages.

@@ -196,7 +196,7 @@ class HandRailModel {
   }
   Law law(std::size_t i, const HandLoads& loads, const HandState* before) const {
     const double x = sleepers_[i].x;
-    const bool loaded = loads.to > loads.from && x >= loads.from && x <= loads.to;
+    const bool loaded = loads.to > loads.from && x >= loads.from - 1e-6 && x <= loads.to + 1e-6;
     Law law{loaded ? t_.loaded_k : t_.k, loaded ? t_.loaded_limit : t_.limit, 0.0, 0.0};
     if (before != nullptr) {
       law.then = std::clamp(before->force[i], -law.limit, law.limit);

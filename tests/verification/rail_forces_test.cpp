@@ -251,7 +251,7 @@ output: {interval: 0.01, probes: [3.0, 6.0, 9.0]}
     return std::vector<std::pair<double, double>>{{-1.0 + 20.0 * t, 1e5}, {-7.0 + 20.0 * t, 1e5}};
   };
   HandMotion motion = model.at_rest(forces_at(0.0));
-  constexpr int steps = 80;  // a sample
+  constexpr int steps = 160;  // a sample
   const double h = 0.01 / steps;
   std::vector<double> rail_u, deck_u, deck_v;
   bool slid = false;

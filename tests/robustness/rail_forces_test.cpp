@@ -1,0 +1,71 @@
+// Forces between rail and bridge: what is refused, by one line, and limits.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "support/extremes.hpp"
+#include "support/scene_run.hpp"
+
+namespace traverse::test {
+namespace {
+
+constexpr const char* deck = R"(
+scene: {analysis: rail}
+beam: {spans: 12.0, EI: 2.0e9, EA: 4.0e9, mass: 3000.0, surface_height: 1.0}
+support: {types: [roller, roller]}
+foundation: {longitudinal: {x: 0.0, k: 2.0e8, depth: 0.5}}
+track:
+  rail: {EI: 1.28e7, EA: 3.2212e9, mass: 120.0, area: 0.0153, ends: held}
+  spacing: 0.6
+  pad: {k: 1.0e8}
+  longitudinal: {k: 6.0e6, limit: 12000.0, loaded_k: 1.8e7, loaded_limit: 36000.0}
+  approach: 60.0
+uic774: {train_length: 30.0, fronts: [0.0, 12.0, 6.0]}
+)";
+
+TEST(BadRailForces, AreRefusedByName) {
+  struct Bad {
+    Values values;
+    std::vector<std::string> parts;
+  };
+  for (const Bad& bad : std::vector<Bad>{
+           {{{"track_longitudinal_limit", "0"}}, {"track_longitudinal_loaded_k", "needs track_longitudinal_limit"}},
+           {{{"foundation_longitudinal_x", "6"}}, {"foundation_longitudinal_depth = 0.5", "at span ends"}},
+           {{{"track_approach", "20"}}, {"track_approach = 20", "at least 30 m"}},
+           {{{"uic774_fronts", "0,12,0"}}, {"uic774_fronts", "first, last, step"}},
+           {{{"uic774_fronts", "0,12"}}, {"uic774_fronts"}},
+           {{{"uic774_direction", "up"}}, {"uic774_direction = up", "right, left, both"}},
+           {{{"model_axial", "false"}}, {"track_longitudinal_limit", "acts along x"}},
+           {{{"track_rail_ends", "loose"}}, {"track_rail_ends = loose", "free, held"}},
+       }) {
+    SCOPED_TRACE(bad.parts.front());
+    expect_refused([&] { run_yaml(deck, bad.values); }, bad.parts);
+  }
+}
+
+TEST(BadRailForces, NeedATrackAndTheAreaOfItsRails) {
+  expect_refused([] { run_yaml("scene: {analysis: rail}\nbeam: {spans: 12.0, EI: 2.0e9, mass: 3000.0}"); },
+                 {"scene_analysis = rail", "layered track"});
+  std::string text(deck);
+  const std::string area = "area: 0.0153, ";
+  text.erase(text.find(area), area.size());
+  expect_refused([&] { run_yaml(text); }, {"scene_analysis = rail", "track_rail_area"});
+}
+
+// A train that runs the other way over a symmetric bridge does the mirror image.
+TEST(RailForcesBothWays, AreMirrorImages) {
+  const Values free_bearings = {{"foundation_longitudinal_x", "0,12"}, {"foundation_longitudinal_side", "right"}};
+  Results right = run_yaml(deck, free_bearings);
+  Values back = free_bearings;
+  back.emplace_back("uic774_direction", "left");
+  Results left = run_yaml(deck, back);
+  for (const char* name : {"bending", "braking", "traction", "in_sequence"}) {
+    const std::string its = "/rail_forces/" + std::string(name) + "/greatest_stress";
+    std::vector<double> mirrored = left(its);
+    std::reverse(mirrored.begin(), mirrored.end());
+    EXPECT_LT(relative_difference(mirrored, right(its)), 1e-7) << name;
+  }
+}
+
+}  // namespace
+}  // namespace traverse::test
