@@ -279,6 +279,7 @@ Scene read_scene(Options o) {
   read_load(o, scene);
   read_track(o, scene);
   read_layers(o, scene);
+  read_output_sleepers(o, scene);
   check_courses(o, scene);
   decide_axial(o, scene);
   read_output(o, scene);

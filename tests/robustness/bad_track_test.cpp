@@ -37,6 +37,8 @@ TEST(BadTracks, AreRefusedByName) {
            {"track_gap", "1e-3", {"too few sleepers"}},
            {"track_rail_hinges", "3.1", {"track_rail_hinges is 3.1", "0.3 m apart"}},
            {"track_dips_length", "1", {"track_dips_length = 1", "need track_dips_x"}},
+           {"output_sleepers", "5,40", {"output_sleepers = 5,40", "no track at x = 40 m", "from -6 to 15 m"}},
+           {"output_sleepers", "3,3.1", {"the sleeper at x = 3 m twice", "each once"}},
        }) {
     SCOPED_TRACE(bad.option);
     const bool ground = std::string(bad.option) == "track_weak_subballast_k";
@@ -67,6 +69,19 @@ TEST(BadTracks, NothingLeftToStandOn) {
         run_yaml(track, {{"track_rail_hinges", "2.7,3.0,3.3"}, {"track_weak_sleepers", "none"}});
       },
       {"float away"});
+}
+
+TEST(BadTracks, OfTheSleepersThatAreThere) {
+  expect_refused(
+      [&] {
+        run_yaml(track, {{"track_weak_sleepers", "none"}, {"output_sleepers", "3.6"}});
+      },
+      {"output_sleepers = 3.6", "the sleeper at x = 3.6 m is missing"});
+  expect_refused(
+      [&] {
+        run_scene("r2_sprung_mass", {{"output_sleepers", "3"}});
+      },
+      {"output_sleepers = 3", "needs a layered track"});
 }
 
 TEST(BadTracks, BridgesMoveByTheirElements) {

@@ -1,11 +1,9 @@
-// A small layered track: the layers of a scene's text and of a model, and a short bridge below them.
+// The layers of a small track, and a scene's text of them.
 #pragma once
 
 #include <fmt/format.h>
 
 #include <string>
-
-#include "traverse/beam/model.hpp"
 
 namespace traverse::test {
 
@@ -36,31 +34,6 @@ track:
 {})",
                      t.rail_EI, t.rail_mass, t.pad_k, t.pad_c, t.sleeper_mass, t.ballast_mass, t.ballast_k, t.ballast_c,
                      t.subballast_k, t.subballast_c, more);
-}
-
-/// A bridge of 12 bays under zhai_layers, with 10 bays on either side.
-inline beam::BeamModel short_bridge(int elements_per_bay) {
-  beam::BeamModel model;
-  model.spans = {7.2};
-  model.elements = {1};
-  model.EI = 4e9;
-  model.EA = 1e10;
-  model.mass = 5000.0;
-  model.axial = false;
-  model.supports = {beam::Support::pinned, beam::Support::roller};
-  const TrackLayers& layers = zhai_layers;
-  beam::LayeredTrack t;
-  t.rail_EI = layers.rail_EI;
-  t.rail_mass = layers.rail_mass;
-  t.elements_per_bay = elements_per_bay;
-  t.pad = {layers.pad_k, layers.pad_c};
-  t.sleeper_mass = layers.sleeper_mass;
-  t.ballast = beam::Layer{layers.ballast_k, layers.ballast_c};
-  t.ballast_mass = layers.ballast_mass;
-  t.subballast = beam::Layer{layers.subballast_k, layers.subballast_c};
-  t.approach = 6.0;
-  model.track = t;
-  return model;
 }
 
 }  // namespace traverse::test

@@ -11,7 +11,7 @@
 #include "beam/beam.hpp"
 #include "support/curve.hpp"
 #include "support/dense.hpp"
-#include "support/small_track.hpp"
+#include "support/short_bridge.hpp"
 #include "support/track_model.hpp"
 
 namespace traverse::test {

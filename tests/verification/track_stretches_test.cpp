@@ -11,8 +11,7 @@
 #include "support/curve.hpp"
 #include "support/dense.hpp"
 #include "support/scene_run.hpp"
-#include "support/small_track.hpp"
-#include "support/track_model.hpp"
+#include "support/short_bridge.hpp"
 
 namespace traverse::test {
 namespace {
@@ -26,34 +25,6 @@ TrackStretch stretch(double from, double to, const std::vector<std::pair<std::st
       if (beam::track_properties[i].name == name) s.values[i] = beam::Distribution(value);
   return s;
 }
-
-/// The same by hand: `change` says what differs from sleeper to sleeper.
-DenseTrack by_hand(const beam::BeamModel& model, const std::function<void(DenseSleeper&)>& change) {
-  DenseTrack t;
-  const int each = model.track->elements_per_bay;
-  t.rail_EI = zhai_layers.rail_EI;
-  t.rail_mass = zhai_layers.rail_mass;
-  t.rail_start = -6.0;
-  t.rail_element = 0.6 / each;
-  t.rail_elements = 32 * each;
-  t.EI = 4e9;
-  t.mass = 5000.0;
-  t.length = 7.2;
-  t.elements = 12 * each - 1;  // a node for each of the rail's but the last
-  for (int i = 0; i <= 32; ++i) {
-    const TrackLayers& l = zhai_layers;
-    DenseSleeper s{-6.0 + 0.6 * i, l.pad_k,        l.pad_c,        l.sleeper_mass, l.ballast_k,
-                   l.ballast_c,    l.ballast_mass, l.subballast_k, l.subballast_c};
-    change(s);
-    t.sleepers.push_back(s);
-  }
-  t.own_mass = model.track->own_mass;
-  t.shear_k = model.track->shear.k;
-  t.shear_c = model.track->shear.c;
-  return t;
-}
-
-bool within(double x, double from, double to) { return x > from - 1e-6 && x < to + 1e-6; }
 
 /// Harmonic responses to a force on the rail, of the rail under it and elsewhere, sleepers, ballast and the bridge.
 void expect_same_responses(const beam::BeamModel& model, const DenseTrack& hand, double tolerance) {
@@ -138,15 +109,6 @@ TEST(TrackStretches, RailOfTwoSections) {
   expect_same_responses(model, hand, by_stations);
 }
 
-const std::string ground_and_bridge = track_of(zhai_layers, R"(
-  elements_per_bay: 2
-  approach: 6.0
-beam: {spans: 7.2, EI: 4.0e9, mass: 5000.0, rayleigh: [0.0, 0.0]}
-load: {forces: 1.0e5, positions: -5.0, speed: 30.0}
-gravity: 9.81
-output: {probes: [1.8, 3.6, 5.4]}
-)");
-
 const Values hanging = {{"track_stretches", "hung,over"}, {"track_hung_from", "-2.4"}, {"track_hung_to", "-1.2"},
                         {"track_hung_gap", "2e-4"},       {"track_over_from", "3.6"},  {"track_over_to", "3.6"},
                         {"track_over_gap", "1e-4"},       {"ts_dt", "1e-4"},           {"ts_max_time", "0.38"},
@@ -155,7 +117,7 @@ const Values hanging = {{"track_stretches", "hung,over"}, {"track_hung_from", "-
 // Three sleepers hang before the bridge, one on it; a force closes the gaps as it passes. Against Newmark's method with
 // steps of 2e-5 s on the dense model.
 TEST(TrackStretches, HangingSleepersAgainstAnotherIntegration) {
-  Results run = run_yaml(ground_and_bridge, hanging);
+  Results run = run_yaml(short_bridge_scene, hanging);
   const std::vector<double> stations = run("/track/hanging/x"), time = run.time();
   ASSERT_EQ(stations.size(), 4U);
   const beam::BeamModel model = short_bridge(2);
@@ -204,14 +166,14 @@ TEST(TrackStretches, HangingSleepersAgainstAnotherIntegration) {
 // A stretch with the values of the rest, tables that are constant: nothing changes, to the last bit.
 TEST(TrackStretches, OfTheSameValuesChangeNothing) {
   const Values times = {{"ts_dt", "5e-4"}, {"ts_max_time", "0.3"}, {"output_interval", "5e-3"}};
-  Results plain = run_yaml(ground_and_bridge, times);
-  Results same = run_yaml(ground_and_bridge, times + Values{{"track_stretches", "a"},
-                                                            {"track_a_from", "-3"},
-                                                            {"track_a_to", "5"},
-                                                            {"track_a_pad_k", "1.3e8"},
-                                                            {"track_a_ballast_c", "1.2e5"},
-                                                            {"track_a_gap", "0"},
-                                                            {"track_a_sleepers", "standard"}});
+  Results plain = run_yaml(short_bridge_scene, times);
+  Results same = run_yaml(short_bridge_scene, times + Values{{"track_stretches", "a"},
+                                                             {"track_a_from", "-3"},
+                                                             {"track_a_to", "5"},
+                                                             {"track_a_pad_k", "1.3e8"},
+                                                             {"track_a_ballast_c", "1.2e5"},
+                                                             {"track_a_gap", "0"},
+                                                             {"track_a_sleepers", "standard"}});
   for (const char* name : {"/probes/deflection", "/rail/acceleration", "/energy/dissipated"})
     EXPECT_EQ(plain(name), same(name)) << name;
 }
@@ -220,7 +182,7 @@ TEST(TrackStretches, OfTheSameValuesChangeNothing) {
 TEST(TrackStretches, MirrorImages) {
   const Values rest = {{"scene_analysis", "static"}, {"load_speed", "0"}, {"track_shear_k", "1.5e8"}};
   const auto with = [&](const char* loads, const char* hung, const char* gone) {
-    return run_yaml(ground_and_bridge,
+    return run_yaml(short_bridge_scene,
                     rest + Values{{"load_positions", loads},
                                   {"load_forces", "1e5,8e4"},
                                   {"track_stretches", "hung,gone"},
@@ -242,19 +204,19 @@ TEST(TrackStretches, MirrorImages) {
 
 // What the shear's dampers take is in the balance.
 TEST(TrackStretches, EnergyOfBallastInShear) {
-  Results run = run_yaml(ground_and_bridge, {{"track_shear_k", "1.568e8"},
-                                             {"track_shear_c", "1.6e5"},
-                                             {"track_ballast_own_mass", "true"},
-                                             {"beam_self_weight", "true"},
-                                             {"ts_dt", "1e-4"},
-                                             {"ts_max_time", "0.5"}});
+  Results run = run_yaml(short_bridge_scene, {{"track_shear_k", "1.568e8"},
+                                              {"track_shear_c", "1.6e5"},
+                                              {"track_ballast_own_mass", "true"},
+                                              {"beam_self_weight", "true"},
+                                              {"ts_dt", "1e-4"},
+                                              {"ts_max_time", "0.5"}});
   EXPECT_LT(energy_error(run), 1e-6);
   EXPECT_LT(std::abs(peak(run("/balance/residual")).first), 1e-9 * 9.81 * 12 * 5000.0);
-  Results without = run_yaml(ground_and_bridge, {{"track_shear_k", "1.568e8"},
-                                                 {"track_ballast_own_mass", "true"},
-                                                 {"beam_self_weight", "true"},
-                                                 {"ts_dt", "1e-4"},
-                                                 {"ts_max_time", "0.5"}});
+  Results without = run_yaml(short_bridge_scene, {{"track_shear_k", "1.568e8"},
+                                                  {"track_ballast_own_mass", "true"},
+                                                  {"beam_self_weight", "true"},
+                                                  {"ts_dt", "1e-4"},
+                                                  {"ts_max_time", "0.5"}});
   EXPECT_GT(relative_difference(run("/energy/dissipated"), without("/energy/dissipated")), 1e-3);
 }
 
