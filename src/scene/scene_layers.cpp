@@ -140,30 +140,4 @@ void read_layers(const Options& o, Scene& scene) {
   scene.beam->track = track;
 }
 
-void read_output_sleepers(const Options& o, Scene& scene) {
-  if (!o.has("output_sleepers")) return;
-  if (!scene.beam || !scene.beam->track) o.refuse("output_sleepers", "needs a layered track (track_rail_EI)");
-  const bool runs = scene.analysis == Analysis::transient || scene.analysis == Analysis::static_response;
-  if (!runs || scene.sweep || asks_for_study(o)) {
-    scene.notes.emplace_back("output_sleepers has no effect: it is for a single run in time or at rest");
-    return;
-  }
-  const beam::LayeredTrack& track = *scene.beam->track;
-  const beam::RailMesh rail = beam::rail_mesh(*scene.beam);
-  const int last = rail.elements / track.elements_per_bay;
-  std::vector<double>& chosen = scene.output.sleepers;
-  for (const double x : o.numbers("output_sleepers")) {
-    const double bay = std::round((x - rail.start) / track.spacing);
-    if (!(bay >= 0.0 && bay <= last))
-      o.refuse("output_sleepers", fmt::format("there is no track at x = {:g} m; allowed: from {:g} to {:g} m", x,
-                                              rail.start, rail.x(rail.elements)));
-    const double station = rail.x(static_cast<int>(bay) * track.elements_per_bay);
-    if (!track.has_sleeper(station))
-      o.refuse("output_sleepers", fmt::format("the sleeper at x = {:g} m is missing (track_stretches)", station));
-    if (std::find(chosen.begin(), chosen.end(), station) != chosen.end())
-      o.refuse("output_sleepers", fmt::format("names the sleeper at x = {:g} m twice; allowed: each once", station));
-    chosen.push_back(station);
-  }
-}
-
 }  // namespace traverse::app

@@ -89,8 +89,7 @@ struct ReadProfile {
 ReadProfile read_profile(const options::Options& options, const std::string& prefix, double start, bool to_the_left,
                          Scene& scene);
 void read_layers(const options::Options& options, Scene& scene);         // after train and load: the track is as long
-/// The sleepers of output_sleepers; after the layers.
-void read_output_sleepers(const options::Options& options, Scene& scene);
+void read_output(const options::Options& options, Scene& scene);         // after layers and limits
 void decide_axial(const options::Options& options, Scene& scene);        // after beam and train
 void read_damping_bound(const options::Options& options, Scene& scene);  // after modal
 void read_norm(const options::Options& options, Scene& scene);           // after beam and output, whose limits it reads
