@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """One page that shows a run: picture.py RESULTS.h5 OUT.png
 
-Draws what the file holds and leaves out the rest: the bridge's shape at its worst instant, deflections, wheel forces
-and accelerations over time; or natural shapes; or the peaks of a sweep over the speed. Curves carry their names.
+Draws what the file holds and leaves out the rest: the bridge's shape at its worst instant, deflections, wheel forces,
+accelerations and sensors over time; or natural shapes; or the peaks of a sweep over the speed. Curves carry their names.
 """
 
 import argparse
@@ -19,9 +19,10 @@ import picture_rail
 from picture_axes import (  # noqa: E402
     COLOURS, GREY, LABEL_SIZE, PALE, STYLES, End, label_at_ends, time_panel)
 from picture_data import (  # noqa: E402
-    MOST_CURVES, MOST_TRAINS, MOST_WHEELS, Results, car_body, choose, choose_probes, envelope, natural, ordinal,
-    place_in_words)
+    MOST_CURVES, MOST_TRAINS, Results, choose, choose_probes, ordinal, place_in_words)
 from picture_model import Model, draw_forces, draw_foundation, draw_supports, symbols_in_words  # noqa: E402
+from picture_vehicles import (  # noqa: E402
+    SIGNALS, cars_of, draw_accelerations, draw_sensors, draw_static_wheels, draw_wheels, sensors_of, wheels_of)
 from picture_words import (  # noqa: E402
     method_in_words, modes_in_words, summary_in_words, sweep_in_words, worst_in_words)
 
@@ -38,6 +39,7 @@ def draw_deflection(ax, results, worst):
 ASKED = {"acceleration": ("Vertical acceleration of the bridge, unfiltered", "m/s²", 1.0),
          "moment": ("Bending moment of the bridge, positive in sagging", "kN m", 1e-3),
          "shear": ("Shear force of the bridge", "kN", 1e-3)}
+MAY_BE_ASKED = [*ASKED, "bearings", "sensors"]
 
 
 STATIC = {"deflection": ("Static deflection wherever the load stands, upward positive", "mm", 1e3),
@@ -66,46 +68,6 @@ def draw_bearings(ax, results):
     chosen = choose(len(found), MOST_CURVES, np.array([np.abs(values).max() for _, values in found]))
     note = "" if len(chosen) == len(found) else f" ({len(chosen)} of {len(found)})"
     time_panel(ax, results, f"Bearing forces on the bridge, upward positive{note}", "kN", [found[i] for i in chosen])
-
-
-def draw_wheels(ax, results, wheels):
-    count = len(results.vehicles)
-    title = "Wheel forces on the track" if results.supports is not None else "Wheel forces"
-    if len(wheels) <= MOST_WHEELS:
-        curves = [(f"{ordinal(k, count, 'vehicle')}, {name.replace('_', ' ')}", 1e-3 * results.over_time(data))
-                  for k, name, data in wheels]
-        time_panel(ax, results, title, "kN", curves)
-        return
-    least, greatest = envelope(results, (1e-3 * results.over_time(data) for _, _, data in wheels))
-    curves = [(f"{end} wheel of the train", 1e-3 * results.over_time(wheels[i][2]))
-              for i, end in ((0, "first"), (-1, "last"))]
-    time_panel(ax, results, title, "kN", curves, (f"all {len(wheels)} wheels, least to greatest", least, greatest))
-
-
-def draw_static_wheels(ax, results, wheels):
-    """One instant only: a bar a wheel, from the front of the train."""
-    forces = [1e-3 * data[0] for _, _, data in wheels]
-    ax.set_title("Wheel forces, from the front of the train")
-    ax.set_ylabel("kN")
-    ax.bar(np.arange(len(forces)), forces, width=0.6, color=COLOURS[0])
-    ax.set_xmargin(0.03)
-    ax.grid(False, axis="x")
-    if len(forces) <= MOST_CURVES:
-        names = [f"{ordinal(k, len(results.vehicles), 'vehicle')},\n{name.replace('_', ' ')}" for k, name, _ in wheels]
-        ax.set_xticks(np.arange(len(forces)), names, fontsize=9)
-    else:
-        ax.set_xticks([])
-
-
-def draw_accelerations(ax, results, cars):
-    count = len(cars)
-    series = [results.over_time(car["acceleration"])[:, 1] for car in cars]
-    title = "Vertical acceleration of the car " + ("body" if count == 1 else "bodies")
-    if count <= MOST_WHEELS:
-        time_panel(ax, results, title, "m/s²", [(ordinal(k, count, "car"), a) for k, a in enumerate(series)])
-        return
-    band = (f"all {count} cars, least to greatest", *envelope(results, series))
-    time_panel(ax, results, title, "m/s²", [("first car", series[0]), ("last car", series[-1])], band)
 
 
 def draw_symbols(ax, results, low, high):
@@ -309,10 +271,15 @@ def heading(figure, results, modes_only):
 def asked_panels(results, asked):
     """Of those asked for by name what the file holds."""
     found = []
+    sensors = sensors_of(results)
     for name in asked:
-        if name == "bearings" and ("supports/reaction" in results.file or "foundation/vertical/force" in results.file):
-            found.append(lambda ax, worst: draw_bearings(ax, results))
-        elif name != "bearings" and f"probes/{name}" in results.file:
+        if name == "bearings":
+            if "supports/reaction" in results.file or "foundation/vertical/force" in results.file:
+                found.append(lambda ax, worst: draw_bearings(ax, results))
+        elif name == "sensors":
+            found += [lambda ax, worst, signal=signal: draw_sensors(ax, results, sensors, signal)
+                      for signal in list(SIGNALS)[1:] if sensors]
+        elif f"probes/{name}" in results.file:
             found.append(lambda ax, worst, name=name: draw_asked(ax, results, name))
     return found if results.rows > 1 else []
 
@@ -322,9 +289,7 @@ def panels(results, asked=()):
     file, found = results.file, []
     if "shape/deflection" in file and len(file["shape/x"]) > 1:
         found.append(lambda ax, worst: draw_shape(ax, results))
-    wheels = [(k, name, vehicle[name]["normal_force"]) for k, vehicle in enumerate(results.vehicles)
-              for name in sorted(vehicle, key=natural) if "normal_force" in vehicle[name]]
-    cars = [vehicle[name] for vehicle in results.vehicles if (name := car_body(vehicle)) is not None]
+    wheels, cars, sensors = wheels_of(results), cars_of(results), sensors_of(results)
     if results.rows > 1 and "probes/deflection" in file and len(results.probes):
         found.append(lambda ax, worst: draw_deflection(ax, results, worst))
     found += asked_panels(results, asked)
@@ -333,6 +298,8 @@ def panels(results, asked=()):
         found.append(lambda ax, worst: drawing(ax, results, wheels))
     if results.rows > 1 and cars:
         found.append(lambda ax, worst: draw_accelerations(ax, results, cars))
+    if results.rows > 1 and sensors:
+        found.append(lambda ax, worst: draw_sensors(ax, results, sensors, next(iter(SIGNALS))))
     if "sweep/peak_deflection" in file:
         found.append(lambda ax, worst: draw_sweep(ax, results))
     if "study/finished" in file:
@@ -373,12 +340,12 @@ def main():
     parser.add_argument("results", help="a results file (HDF5)")
     parser.add_argument("out", help="the picture: .png, .pdf or .svg")
     parser.add_argument("--panels", default="", metavar="LIST", help="what a crossing shows besides, with commas between: "
-                        f"{', '.join([*ASKED, 'bearings'])}")
+                        f"{', '.join(MAY_BE_ASKED)}")
     arguments = parser.parse_args()
     asked = [name for name in arguments.panels.split(",") if name]
     for name in asked:
-        if name not in ASKED and name != "bearings":
-            print(f"picture.py: --panels {name}: allowed: {', '.join([*ASKED, 'bearings'])}", file=sys.stderr)
+        if name not in MAY_BE_ASKED:
+            print(f"picture.py: --panels {name}: allowed: {', '.join(MAY_BE_ASKED)}", file=sys.stderr)
             return 1
     try:
         with h5py.File(arguments.results, "r", locking=False) as file:

@@ -125,7 +125,7 @@ double sharpest_place(const track::Profile& profile, double length) {
 
 void add_profile(const Scene& scene, std::vector<Meeting>& list) {
   const track::Profile& profile = scene.profile;
-  if (profile.level() || profile.is_rough()) return;
+  if (profile.level() || (profile.is_rough() && profile.kinks().empty())) return;  // no dips on top
   const double length = scene.beam->length();
   const bool bump = std::isfinite(profile.shortest_wave());
   const double x = bump ? profile.kinks().back() : sharpest_place(profile, length);

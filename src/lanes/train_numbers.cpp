@@ -85,7 +85,7 @@ VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
 std::array<double, 2> rolled(const track::Profile& profile, double radius, double x, track::Height h) {
   double ahead = radius * h.slope / (1.0 - radius * h.curvature);
   double height = h.value + ahead * (h.slope + 0.5 * ahead * h.curvature), slope = h.slope + ahead * h.curvature;
-  if (!profile.is_rough()) {
+  if (!profile.is_rough() || profile.has_dip(x - radius, x + radius)) {
     // Corners and short bumps: the profile itself, until the place is exact.
     for (int i = 0; i < 30; ++i) {
       h = profile.at(x + ahead);

@@ -178,6 +178,7 @@ constexpr Row later_rows[] = {
   {"output_lowpass_series", flag, "", "false", any, "", 0, "stores the filtered accelerations beside the others"},
   {"output_wheel_lowpass", number, "Hz", "20", {1.0, 1e6}, "", 0, "frequency up to which wheel forces count where a limit is of filtered ones; given, a single run says how much of its force a wheel loses without a filter and with a low-pass there"},
   {"output_passages", numbers, "m", "", any, "", 0, "places along the track at which time, speed and force of every wheel that passes are stored, as scales in a track find them"},
+  {"output_sleepers", numbers, "m", "", any, "", 0, "stations on a layered track; of the sleeper nearest to each the forces in its pads and its ballast are stored"},
   {"output_unloading_level", number, "1", "0.6", {0.0, 1.0, true}, "", 0, "part of its force at the start from which on a wheel counts as unloaded, of low-passed forces"},
   {"checkpoint_interval", number, "s", "900", not_negative, "", 0, "of wall time between two checkpoints of a single run; 0: none, except where SIGUSR1, SIGTERM or SIGINT asks for one"},
   {"checkpoint_file", text, "", "<output_file>.checkpoint", any, "", 0, "where a run's checkpoints are written, each in place of the one before; none: nowhere"},

@@ -33,6 +33,8 @@ struct Response {
 /// Moment (N m), shear and axial force (N).
 using Forces = std::array<double, 3>;
 
+struct RecoverySection;
+
 /// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.
 class Recovery {
  public:
@@ -74,18 +76,17 @@ class Recovery {
   double add_deflection_form(std::size_t station, double factor, double* forces) const;
 
  private:
-  struct Section;  // what is known of a station beforehand
   /// Nodal values of a station's element: u1, v1, theta1, u2, v2, theta2.
   using Values = std::array<double, 6>;
 
   void gather(const double* v, const double* w, const double* a);
-  Response respond(const Section& s, const Values& v, const Values& w, const Values& a) const;
-  void add_riders(const Section& s, const Values* values, const double* riders, Response& r) const;
+  Response respond(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
+  void add_riders(const RecoverySection& s, const Values* values, const double* riders, Response& r) const;
 
   const Beam& beam_;
   const Line& line_;
   std::vector<double> stations_;
-  std::vector<Section> sections_;
+  std::vector<RecoverySection> sections_;
   struct Place {
     int element;
     std::size_t section;

@@ -19,9 +19,10 @@ void add_rail(const Source& source, Outputs& outputs);      // outputs_beam.cpp
 void add_outputs_of_modes(const Source& source, Outputs& outputs);  // outputs_beam.cpp
 void add_foundation(const Source& source, Outputs& outputs);        // outputs_foundation.cpp
 void add_hanging(const Source& source, Outputs& outputs);           // outputs_foundation.cpp
+void add_sleepers(const Source& source, Outputs& outputs);          // outputs_foundation.cpp
 
 inline constexpr OutputGroup output_groups[] = {add_couplers, add_vehicles, add_energy};
 inline constexpr OutputGroup output_groups_of_a_bridge[] = {
-    add_probes, add_supports, add_foundation, add_balance, add_rail, add_outputs_of_modes, add_hanging};
+    add_probes, add_supports, add_foundation, add_balance, add_rail, add_outputs_of_modes, add_hanging, add_sleepers};
 
 }  // namespace traverse::app

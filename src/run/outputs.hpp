@@ -17,6 +17,7 @@
 #include "coupling/system.hpp"
 #include "recovery/ground_forces.hpp"
 #include "recovery/recovery.hpp"
+#include "recovery/sleeper_forces.hpp"
 #include "results/recorder.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -32,7 +33,8 @@ struct Observed {
   std::vector<beam::Response> probes, rail;     // at the scene's probes; empty where there is no bridge or no rail
   std::vector<std::array<double, 3>> supports;  // fx, fy, moment on the beam, at the ends of spans
   coupling::Observation motion;
-  std::optional<beam::GroundForces> ground;  // where there is a bridge
+  std::optional<beam::GroundForces> ground;     // where there is a bridge
+  std::optional<beam::SleeperForces> sleepers;  // of output_sleepers
   EnergyTerms energy;
 };
 

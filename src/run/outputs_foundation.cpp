@@ -1,4 +1,8 @@
-// Outputs of the foundation: the forces of points one by one, those of beds on each span.
+// Outputs of the foundation and of a layered track: the forces of points and of sleepers one by one, those of beds on
+// each span.
+#include <algorithm>
+#include <optional>
+
 #include "beam/nonlinear_points.hpp"
 #include "output_groups.hpp"
 
@@ -18,6 +22,14 @@ std::size_t forces_stored(const beam::BeamModel& model, const beam::FoundationKi
 std::vector<double> stations_of(const std::vector<beam::PointFoundation>& points) {
   std::vector<double> x;
   for (const beam::PointFoundation& point : points) x.push_back(point.x);
+  return x;
+}
+
+/// Where the sleepers over a gap stand, from left to right, m.
+std::vector<double> hanging_at(const beam::Beam& beam) {
+  std::vector<double> x;
+  for (const beam::NonlinearPoint& sleeper : beam::hanging_sleepers(beam.bridge(), beam.layout(), 0, beam.columns()))
+    x.push_back(sleeper.x);
   return x;
 }
 
@@ -43,16 +55,32 @@ void add_foundation(const Source& source, Outputs& outputs) {
 
 // Sleepers over a gap.
 void add_hanging(const Source& source, Outputs& outputs) {
-  const beam::Beam& beam = *source.beam;
-  std::vector<double> x;
-  for (const beam::NonlinearPoint& sleeper : beam::hanging_sleepers(beam.bridge(), beam.layout(), 0, beam.columns()))
-    x.push_back(sleeper.x);
+  const std::vector<double> x = hanging_at(*source.beam);
   if (x.empty() || x.size() > most_points) return;
   outputs.add_constant("/track/hanging/x", x, "m");
   outputs.add_numbers("/track/hanging/force", "N", x.size(),
                       [](const Observed& now, std::size_t i) { return now.motion.beam.foundation.below_sleepers[i]; });
   outputs.add_numbers("/track/hanging/gap", "m", x.size(),
                       [](const Observed& now, std::size_t i) { return now.motion.beam.foundation.open_gaps[i]; });
+}
+
+// What a gap's spring pushes is no part of the linear forces.
+void add_sleepers(const Source& source, Outputs& outputs) {
+  if (source.scene.output.sleepers.empty()) return;
+  const std::vector<double> hanging = hanging_at(*source.beam);
+  const std::vector<double> x = beam::SleeperForces(*source.beam, source.scene.output.sleepers).x();
+  std::vector<std::optional<std::size_t>> gap;  // its number, of sleepers over one
+  for (const double station : x) {
+    const auto found = std::find(hanging.begin(), hanging.end(), station);
+    gap.push_back(found == hanging.end() ? std::nullopt : std::optional<std::size_t>(found - hanging.begin()));
+  }
+  outputs.add_constant("/track/sleepers/x", x, "m");
+  outputs.add_numbers("/track/sleepers/pad_force", "N", x.size(),
+                      [](const Observed& now, std::size_t i) { return now.sleepers->pad(i); });
+  if (!source.beam->model().track->ballast) return;
+  outputs.add_numbers("/track/sleepers/ballast_force", "N", x.size(), [gap](const Observed& now, std::size_t i) {
+    return now.sleepers->ballast(i) + (gap[i] ? now.motion.beam.foundation.below_sleepers[*gap[i]] : 0.0);
+  });
 }
 
 }  // namespace traverse::app

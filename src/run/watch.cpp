@@ -39,6 +39,7 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
   if (beam != nullptr) {
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     now_.ground.emplace(*beam);
+    if (recorded_ && !scene.output.sleepers.empty()) now_.sleepers.emplace(*beam, scene.output.sleepers);
     if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
@@ -84,6 +85,7 @@ void Watch::store(bool end) {
     if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a.data(), now_.motion.loads, now_.rail);
     beam_->reactions(beam.v, beam.w, beam.a.data(), beam.P.data(), now_.supports);
     now_.ground->evaluate(beam.v, beam.w, beam.a.data());
+    if (now_.sleepers) now_.sleepers->evaluate(beam.v, beam.w);
   }
   note_energy();
   if (outputs_ != nullptr) outputs_->fill(now_, sample_.values);

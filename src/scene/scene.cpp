@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "limits.hpp"
 #include "options/read_verdict_limits.hpp"
@@ -15,11 +14,6 @@ namespace traverse::app {
 namespace {
 
 using options::Options;
-
-constexpr std::size_t most_default_probes = 200;
-constexpr double most_even_probes = 1e5;
-constexpr double one_station = 1e-9;        // m: stations nearer than that are one
-constexpr double nearly_one = 1.0 - 1e-12;  // of the parts of a span
 
 constexpr double most_left_out = 0.1;
 
@@ -62,77 +56,6 @@ void read_run(const Options& o, Scene& scene) {
   scene.accuracy_cache = o.flag("accuracy_cache");
 }
 
-/// Evenly in every span, both ends included.
-void add_even_probes(const Options& o, const std::vector<double>& spans, std::vector<double>& probes) {
-  const double spacing = o.number("output_probes_spacing");
-  double count = 1.0, left = 0.0;
-  for (const double span : spans) count += std::ceil(span / spacing * nearly_one);
-  if (count > most_even_probes)
-    o.refuse("output_probes_spacing", fmt::format("{:.3g} stations; allowed: at most {:g}", count, most_even_probes));
-  for (const double span : spans) {
-    const double parts = std::ceil(span / spacing * nearly_one);
-    for (double i = left == 0.0 ? 0.0 : 1.0; i <= parts; ++i) probes.push_back(left + span * i / parts);
-    left += span;
-  }
-  probes.back() = left;
-}
-
-void read_probes(const Options& o, Scene& scene) {
-  const bool named = o.has("output_probes"), even = o.has("output_probes_spacing");
-  if (!scene.beam) {
-    if (named || even)
-      o.refuse(named ? "output_probes" : "output_probes_spacing", "there is no beam to probe (beam_spans)");
-    return;
-  }
-  const std::vector<double>& spans = scene.beam->spans;
-  std::vector<double>& probes = scene.output.probes;
-  double length = 0.0;
-  for (const double span : spans) {
-    if (!named && !even && probes.size() < most_default_probes) probes.push_back(length + 0.5 * span);
-    length += span;
-  }
-  if (!named && !even && spans.size() > most_default_probes)
-    scene.notes.push_back(
-        fmt::format("probes: the middle of the first {} of {} spans", most_default_probes, spans.size()));
-  if (named) probes = o.numbers("output_probes");
-  for (double& x : probes) {
-    if (x > length * (1.0 + 1e-12))
-      o.refuse("output_probes", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x, length));
-    x = std::min(x, length);
-  }
-  if (!even) return;
-  add_even_probes(o, spans, probes);
-  std::sort(probes.begin(), probes.end());
-  const auto same = [](double a, double b) { return b - a < one_station; };
-  probes.erase(std::unique(probes.begin(), probes.end(), same), probes.end());
-}
-
-constexpr double most_frequency = 1e6;  // Hz
-
-// The frequency up to which accelerations count: none where the run decides, 0 where they are not filtered.
-std::optional<double> read_low_pass(const Options& o) {
-  const std::string value = o.text("output_lowpass");
-  if (value == "auto") return {};
-  if (value == "none") return 0.0;
-  char* end = nullptr;
-  const double frequency = std::strtod(value.c_str(), &end);
-  if (value.empty() || *end != 0 || !(frequency > 0.0 && frequency <= most_frequency))
-    o.refuse("output_lowpass",
-             fmt::format("allowed: auto, none, or a frequency above 0 and up to {:g} (Hz)", most_frequency));
-  return frequency;
-}
-
-void read_filter(const Options& o, Scene& scene) {
-  scene.output.low_pass = read_low_pass(o);
-  scene.output.low_passed_series = o.flag("output_lowpass_series");
-  scene.output.low_pass_asked = o.has("output_lowpass") || scene.output.low_passed_series;
-  for (const char* name : {"output_lowpass", "output_lowpass_series"})
-    if (o.has(name) && (!scene.beam || scene.analysis != Analysis::transient))
-      scene.notes.push_back(std::string(name) + " has no effect: it is for transient runs over a bridge");
-  if (scene.output.low_passed_series && scene.sweep)
-    scene.notes.emplace_back("output_lowpass_series has no effect: sweeps store no series");
-}
-
 void read_limits(const Options& o, Scene& scene) {
   if (!o.has("limits")) return;
   scene.limits = options::read_verdict_limits(o.path("limits"));
@@ -146,54 +69,6 @@ void read_limits(const Options& o, Scene& scene) {
   }
   scene.limits.clear();
   scene.notes.emplace_back("limits has no effect: transient runs are checked against limits");
-}
-
-void read_wheel_filter(const Options& o, Scene& scene) {
-  scene.output.wheel_low_pass = o.number("output_wheel_lowpass");
-  scene.output.wheels_filtered = o.has("output_wheel_lowpass") || o.has("output_unloading_level");
-  scene.output.unloading_level = o.number("output_unloading_level");
-  if (scene.output.wheels_filtered && (scene.vehicles.empty() || scene.analysis != Analysis::transient))
-    scene.notes.emplace_back("output_wheel_lowpass has no effect: it is for transient runs with vehicles");
-  if (scene.output.wheels_filtered && scene.sweep && scene.limits.empty())
-    scene.notes.emplace_back("output_wheel_lowpass has no effect: in sweeps and studies it is for limits");
-}
-
-void read_passages(const Options& o, Scene& scene) {
-  if (!o.has("output_passages")) return;
-  const std::vector<double> places = o.numbers("output_passages");
-  if (scene.analysis != Analysis::transient || wheels_at_start(scene).empty() || scene.sweep || asks_for_study(o)) {
-    scene.notes.emplace_back("output_passages has no effect: it is for a single transient run of vehicles with wheels");
-    return;
-  }
-  if (scene.train.drive != Drive::constant || !(scene.train.speed > 0.0))
-    o.refuse("output_passages", "needs a train that runs at a prescribed speed above 0; allowed: train_drive constant");
-  scene.output.passages = places;
-}
-
-bool has_control_character(const std::string& text) {
-  return std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; });
-}
-
-/// The name is a part of a file's name, which stays in the folder of results.
-void check_name(const Options& o, const std::string& name) {
-  if (name.find('/') != std::string::npos || name == "." || name == ".." || has_control_character(name))
-    o.refuse("scene_name", "allowed: a name without / and line breaks; -output_file takes a path");
-}
-
-void read_output(const Options& o, Scene& scene) {
-  check_name(o, scene.name);
-  if (o.has("output_file") && has_control_character(o.text("output_file")))
-    o.refuse("output_file", "allowed: a path without line breaks and other control characters");
-  scene.output.file = o.has("output_file") ? o.text("output_file") : "results/" + scene.name + ".h5";
-  if (scene.output.file == "none") scene.output.file.clear();
-  scene.output.interval = o.optional_number("output_interval");
-  scene.quiet = o.flag("output_quiet");
-  scene.check = o.flag("check");
-  read_probes(o, scene);
-  read_filter(o, scene);
-  read_limits(o, scene);
-  read_wheel_filter(o, scene);
-  read_passages(o, scene);
 }
 
 /// A run ends when the last wheel or force has left the beam, or when the user says.
@@ -282,6 +157,7 @@ Scene read_scene(Options o) {
   read_layers(o, scene);
   check_courses(o, scene);
   decide_axial(o, scene);
+  read_limits(o, scene);
   read_output(o, scene);
   read_modal(o, scene);
   read_damping_bound(o, scene);

@@ -95,6 +95,10 @@ double direction_of(const Options& o, const Block& block) {
   return o.has(speed) && o.number(speed) < 0.0 ? -1.0 : 1.0;
 }
 
+double entrance(const Scene& scene, double direction) {
+  return direction < 0.0 && scene.beam ? scene.beam->length() : 0.0;
+}
+
 base::SpeedLaw read_speed_file(const Options& o, const Block& block, double front) {
   std::vector<std::vector<double>> table = read_speeds_of(o, block);
   const bool over_place = o.choice(block.option("speed_over")) == "position";

@@ -34,6 +34,8 @@ void declare_blocks(options::Options& options);
 std::vector<Block> blocks_of(const options::Options& options, const char* list);
 /// Where a block's speed or speed_file leads: 1 to the right, -1 to the left.
 double direction_of(const options::Options& options, const Block& block);
+/// x where something that runs in this direction enters the bridge, m.
+double entrance(const Scene& scene, double direction);
 /// The law of a block's speed_file for something whose first wheel or force is at `front` at t = 0.
 base::SpeedLaw read_speed_file(const options::Options& options, const Block& block, double front);
 /// Whether the runs of block after block need courses: several of them, or a speed that changes or is below 0.
@@ -87,6 +89,7 @@ struct ReadProfile {
 ReadProfile read_profile(const options::Options& options, const std::string& prefix, double start, bool to_the_left,
                          Scene& scene);
 void read_layers(const options::Options& options, Scene& scene);         // after train and load: the track is as long
+void read_output(const options::Options& options, Scene& scene);         // after layers and limits
 void decide_axial(const options::Options& options, Scene& scene);        // after beam and train
 void read_damping_bound(const options::Options& options, Scene& scene);  // after modal
 void read_norm(const options::Options& options, Scene& scene);           // after beam and output, whose limits it reads

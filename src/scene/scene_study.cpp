@@ -80,7 +80,8 @@ void read_modal(const Options& o, Scene& scene) {
   if (!scene.beam) o.refuse("model_modes", "needs a beam (beam_spans), whose modes these are");
   if (scene.vehicles.empty() && scene.load.forces.empty())
     o.refuse("model_modes", "needs vehicles (train_vehicles) or moving forces (load_forces, load_hslm_a, ...)");
-  if (scene.beam->track) o.refuse("model_modes", "with a layered track: not there yet; allowed: auto or 0");
+  if (scene.beam->track)
+    o.refuse("model_modes", "a bridge under a layered track (track_rail_EI) moves by its elements; allowed: auto or 0");
   if (scene.beam->foundation.nonlinear())
     o.refuse("model_modes", "the foundation is one-sided, has a gap or a cubic term; allowed: auto or 0");
   if (scene.beam->strained())

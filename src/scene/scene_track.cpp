@@ -60,12 +60,12 @@ void read_dips(const Options& o, Scene& scene) {
   const std::vector<double> length = o.numbers("track_dips_length", x.size(), "one a dip");
   const std::vector<double> depth = o.numbers("track_dips_depth", x.size(), "one a dip");
   const std::vector<std::string> shape = o.texts("track_dips_shape", x.size(), "one a dip");
-  if (scene.roughness)
-    o.refuse("track_dips_x", "dips do not go with a rough track_profile; allowed there: none, bump or a file");
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (shape[i] == "joint" && depth[i] < 0.0)
       o.refuse("track_dips_depth", "a dip of the shape joint is below 0; allowed: from 0 on");
-    scene.profile = scene.profile.with_dip(x[i], length[i], depth[i], shape[i] == "joint");
+    const track::Dip dip{x[i], length[i], depth[i], shape[i] == "joint"};
+    scene.profile = scene.profile.with(dip);
+    if (scene.roughness) scene.roughness->dips.push_back(dip);
   }
 }
 

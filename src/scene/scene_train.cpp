@@ -1,4 +1,4 @@
-// train and load of a scene: what moves, from where, how fast.
+// The trains of a scene: which vehicles, from where, how fast.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <memory>
 #include <utility>
 
-#include "load_models.hpp"
 #include "scene_parts.hpp"
 #include "train/mirrored.hpp"
 
@@ -15,8 +14,6 @@ namespace traverse::app {
 namespace {
 
 using options::Options;
-
-constexpr double most_forces = 1e5;
 
 /// x of the wheel's centre that is in front towards `direction`, relative to the origin; 0 without wheels.
 double front_of(const Vehicle& vehicle, double direction) {
@@ -28,11 +25,6 @@ double front_of(const Vehicle& vehicle, double direction) {
     first = false;
   }
   return front;
-}
-
-/// Where something that comes from this side meets the bridge.
-double entrance(const Scene& scene, double direction) {
-  return direction < 0.0 && scene.beam ? scene.beam->length() : 0.0;
 }
 
 /// One train: its options, its types (indices into Scene::vehicles), and where it runs to.
@@ -80,65 +72,6 @@ std::vector<double> read_positions(const Options& o, const ReadTrain& train, con
     x.push_back(x.back() - train.direction * gap);
   }
   return x;
-}
-
-/// One load: its options, and where it runs to.
-struct ReadLoad {
-  const Block& block;
-  double direction = 1.0;
-};
-
-/// x of the first axle at t = 0.
-double read_first_axle(const Options& o, const ReadLoad& load, const Scene& scene, const std::string& trains) {
-  const std::string positions = load.block.option("positions");
-  if (!o.has(positions)) return entrance(scene, load.direction);
-  const std::vector<double> given = o.numbers(positions);
-  if (given.size() != 1) o.refuse(positions, "with " + trains + ": one number, x of the first axle at t = 0");
-  return given.front();
-}
-
-MovingLoad placed(const AxleList& axles, double first, double direction) {
-  MovingLoad load{axles.forces, axles.offsets, 0.0, {}};
-  for (double& x : load.positions) x = first + direction * x;
-  return load;
-}
-
-/// Over three sleepers (EN 1991-2, 6.3.6.1). from_zero: the foremost part stands where the foremost force stood.
-void spread(double spacing, bool from_zero, double direction, MovingLoad& load) {
-  MovingLoad parts;
-  for (std::size_t i = 0; i < load.forces.size(); ++i)
-    for (const auto& [part, ahead] : {std::pair{0.25, 1.0}, {0.5, 0.0}, {0.25, -1.0}}) {
-      parts.forces.push_back(part * load.forces[i]);
-      parts.positions.push_back(load.positions[i] + direction * (ahead - (from_zero ? 1.0 : 0.0)) * spacing);
-    }
-  load.forces = parts.forces;
-  load.positions = parts.positions;
-}
-
-/// The train that an option of the block other than forces and sweep_hslm_a asks for.
-AxleList named_train(const Options& o, const Block& block, const std::string& option) {
-  if (option == block.option("hslm_a")) return hslm_a(o.integer(option));
-  if (option == block.option("en15528")) return en15528(o.text(option), o.integer(block.option("wagons")));
-  if (option == block.option("file")) return read_axles(o.path(option));
-  const std::vector<double> given = o.numbers(option);  // load_hslm_b
-  if (given[0] != std::floor(given[0]) || given[0] > most_forces)
-    o.refuse(option, fmt::format("allowed: a whole number of forces up to {:g}, and their distance in m", most_forces));
-  return hslm_b(static_cast<int>(given[0]), given[1]);
-}
-
-void read_forces(const Options& o, const ReadLoad& from, const Scene& scene, MovingLoad& load) {
-  const std::string positions_option = from.block.option("positions"), forces_option = from.block.option("forces");
-  const std::vector<double> positions =
-      o.has(positions_option) ? o.numbers(positions_option) : std::vector<double>{entrance(scene, from.direction)};
-  const std::vector<double> forces = o.numbers(forces_option);
-  if (forces.size() == 1 || forces.size() == positions.size()) {
-    load.forces = o.numbers(forces_option, positions.size(), "one a position");
-    load.positions = positions;
-    return;
-  }
-  const std::string why =
-      fmt::format("{} forces but {} positions; wanted: one a force", forces.size(), positions.size());
-  o.refuse(positions_option, o.has(positions_option) ? why : "missing: x of each force at t = 0");
 }
 
 /// The gaps of a coupler, each between vehicles that have its bodies, counted from the train's first one.
@@ -272,89 +205,6 @@ void read_trains(const Options& o, const NamedVehicles& vehicles, Scene& scene) 
     const train::Course& course = scene.train.courses.back();
     if (course.drive == Drive::free) scene.train.drive = Drive::free;
     scene.train.speed = std::max(scene.train.speed, course.speed.fastest());
-  }
-}
-
-std::string load_option(const Options& o, const std::string& load) {
-  std::string given;
-  std::vector<std::string> names;
-  for (const char* word : {"_forces", "_hslm_a", "_hslm_b", "_en15528", "_file"}) names.push_back(load + word);
-  if (load == "load") names.emplace_back("sweep_hslm_a");
-  for (const std::string& option : names)
-    if (o.has(option)) {
-      if (!given.empty()) o.refuse(option, fmt::format("give either {} or {}", given, option));
-      given = option;
-    }
-  return given;
-}
-
-bool forces_move(const Options& o) { return o.has("loads") || !load_option(o).empty(); }
-
-namespace {
-
-/// The forces of one load at their places; `option` says which.
-MovingLoad read_one_load(const Options& o, const ReadLoad& from, const std::string& option, Scene& scene) {
-  const bool swept = option == "sweep_hslm_a", anywhere = !o.has(from.block.option("positions"));
-  MovingLoad load;
-  std::vector<MovingLoad> others;
-  if (option == from.block.option("forces")) {
-    read_forces(o, from, scene, load);
-  } else {
-    const double first = read_first_axle(o, from, scene, option);
-    load =
-        placed(swept ? hslm_a(scene.sweep->trains.front()) : named_train(o, from.block, option), first, from.direction);
-    if (swept)
-      for (const int train : scene.sweep->trains) others.push_back(placed(hslm_a(train), first, from.direction));
-  }
-  if (const std::string option_of_spread = from.block.option("spread"); o.has(option_of_spread)) {
-    const double spacing = o.number(option_of_spread);
-    spread(spacing, anywhere, from.direction, load);
-    for (MovingLoad& other : others) spread(spacing, anywhere, from.direction, other);
-  }
-  if (swept) scene.sweep->loads = std::move(others);
-  if (option != from.block.option("en15528") && o.has(from.block.option("wagons")))
-    scene.notes.push_back(from.block.option("wagons") + " has no effect: it is for " + from.block.option("en15528"));
-  return load;
-}
-
-double read_load_speed(const Options& o, const Block& block, const Scene& scene) {
-  const std::string speed = block.option("speed");
-  const bool needed = scene.analysis == Analysis::transient && !o.has("train_speed");
-  if (scene.sweep && !scene.sweep->speeds.empty()) return scene.sweep->speeds.front();
-  if (o.has(speed) || needed) return o.number(speed);
-  return o.has("train_speed") ? o.number("train_speed") : 0.0;
-}
-
-}  // namespace
-
-void read_load(const Options& o, Scene& scene) {
-  const bool swept = scene.sweep && !scene.sweep->trains.empty();
-  const std::vector<Block> blocks = blocks_of(o, "loads");
-  const bool courses =
-      needs_courses(o, blocks) || (o.has("train_speed") && !o.has("load_speed") && o.number("train_speed") < 0.0);
-  if (swept && o.has("loads")) o.refuse("sweep_hslm_a", "is of one load; loads names several");
-  for (const Block& block : blocks) {
-    const std::string option = swept ? "sweep_hslm_a" : load_option(o, block.name);
-    if (option.empty() && o.has("loads")) o.refuse(block.option("forces"), "missing: the forces of this load");
-    if (option.empty()) return;
-    if (!scene.beam) o.refuse(option, "moving forces need a beam (beam_spans)");
-    const bool file = o.has(block.option("speed_file"));
-    const double speed = file ? 0.0 : read_load_speed(o, block, scene);
-    const ReadLoad from{block, file ? direction_of(o, block) : speed < 0.0 ? -1.0 : 1.0};
-    MovingLoad load = read_one_load(o, from, option, scene);
-    if (!courses) {
-      scene.load = std::move(load);
-      scene.load.speed = speed;
-      return;
-    }
-    train::Course course;
-    course.name = block.name;
-    course.first = scene.load.forces.size();
-    course.speed = file ? read_speed_file(o, block, load.positions.front()) : base::SpeedLaw(speed);
-    scene.load.speed = std::max(scene.load.speed, course.speed.fastest());
-    scene.load.courses.push_back(std::move(course));
-    scene.load.forces.insert(scene.load.forces.end(), load.forces.begin(), load.forces.end());
-    scene.load.positions.insert(scene.load.positions.end(), load.positions.begin(), load.positions.end());
   }
 }
 

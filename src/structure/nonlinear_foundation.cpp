@@ -2,28 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <limits>
 
 namespace traverse::structure {
 namespace {
 
 using beam::Direction;
 
-constexpr double tolerance = 1e-12;        // of the greatest force: what tangents may leave
-constexpr int most_stage_iterations = 40;  // of a stage; else the step is cut
-constexpr int most_static_iterations = 100;
-constexpr double near_tangent = 0.1;   // of a stiffness: tangents that are kept
-constexpr int patience = 4;            // iterations with them, then only with the true ones
-constexpr double loose = 1e-6;         // of the reference stiffness: what holds in statics where nothing touches
-constexpr double overshoot = 0.5;      // of the slope at the start of a step, at its end
-constexpr int most_trials = 50;        // for the length of a step
 constexpr double same_station = 1e-6;  // m
-constexpr double unit_rounding = 16.0 * std::numeric_limits<double>::epsilon();
-
-bool near(double kept, double wanted, double share) {
-  return std::abs(kept - wanted) <= share * std::max(std::abs(kept), std::abs(wanted));
-}
 
 }  // namespace
 
@@ -103,6 +88,12 @@ void NonlinearFoundation::gather(const double* x, double Point::*into) {
       if (p.place[i] >= 0) sum += p.shape[i] * (p.place[i] < n_ ? x[p.place[i]] : borders_[p.place[i] - n_]);
     p.*into = sum;
   }
+}
+
+beam::FoundationForce NonlinearFoundation::force_of(const Point& p, double displacement, double rate) {
+  if (!p.slides()) return beam::foundation_force(p.its.law, p.its.k, p.its.c, displacement, rate);
+  const beam::Sliding& law = p.its.sliding;
+  return beam::sliding_force(law.k_of(p.loaded), law.limit_of(p.loaded), p.settled_force, displacement - p.settled);
 }
 
 void NonlinearFoundation::evaluate(const double* v, const double* w) {
@@ -228,186 +219,6 @@ void NonlinearFoundation::set_history(const History& history) {
     p.settled_force = history.force.empty() ? 0.0 : history.force[i];
     p.settled = history.force.empty() ? 0.0 : history.displacement[i++];
   }
-}
-
-// --- within a stage ------------------------------------------------------------------------------------------------
-
-beam::FoundationForce NonlinearFoundation::force_of(const Point& p, double displacement, double rate) {
-  if (!p.slides()) return beam::foundation_force(p.its.law, p.its.k, p.its.c, displacement, rate);
-  const beam::Sliding& law = p.its.sliding;
-  return beam::sliding_force(law.k_of(p.loaded), law.limit_of(p.loaded), p.settled_force, displacement - p.settled);
-}
-
-beam::FoundationForce NonlinearFoundation::force_at(const Point& p, double zeta) const {
-  return force_of(p, p.still + zeta, p.still_rate + shift_ * zeta);
-}
-
-void NonlinearFoundation::begin(double shift, const double* v_still, const double* w_still, const double* w_guess) {
-  shift_ = shift;
-  iteration_ = 0;
-  if (shift == 0.0) {
-    for (Point& p : points_) p.still = p.still_rate = 0.0;
-    if (v_still != nullptr) gather(v_still, &Point::still);
-    return;
-  }
-  gather(v_still, &Point::still);
-  gather(w_still, &Point::still_rate);
-  gather(w_guess, &Point::zeta0);
-  for (Point& p : points_) p.zeta0 = (p.zeta0 - p.still_rate) / shift;
-}
-
-// Statics begins as if whatever can carry weight did, from where it first touches, and as if nothing slid.
-void NonlinearFoundation::start_statics(Point& p) const {
-  if (p.slides()) {
-    p.zeta0 = p.settled - p.still;
-    p.state = force_of(p, p.settled, 0.0);
-    p.state.by_displacement = p.its.sliding.k_of(p.loaded);
-    return;
-  }
-  const bool carries = p.its.direction == Direction::vertical;
-  p.zeta0 = (carries ? -p.its.law.gap : 0.0) - p.still;
-  p.state = {};
-  p.state.by_displacement = carries || p.its.law.gap == 0.0 ? p.reference : 0.0;
-}
-
-const AddedSprings& NonlinearFoundation::linearise() {
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    Point& p = points_[i];
-    if (shift_ == 0.0 && iteration_ == 0) {
-      start_statics(p);
-    } else {
-      p.state = force_at(p, p.zeta0);
-    }
-    p.force0 = p.state.force;
-    wanted_k_[i] = shift_ > 0.0 ? p.state.by_displacement : std::max(p.state.by_displacement, loose * p.reference);
-    wanted_c_[i] = p.state.by_rate;
-  }
-  choose_tangents();
-  return kept_[current_];
-}
-
-// One of those used lately if it is near enough everywhere, else the true ones.
-void NonlinearFoundation::choose_tangents() {
-  const double share = iteration_ < patience ? near_tangent : 0.0;
-  unsigned fitting = 0;
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    const AddedSprings& kept = kept_[i];
-    bool fits = kept.version > 0;
-    for (std::size_t j = 0; fits && j < points_.size(); ++j)
-      fits = near(kept.k[j] + shift_ * kept.c[j], wanted_k_[j] + shift_ * wanted_c_[j], share);
-    fitting |= fits ? 1U << i : 0U;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &fitting, 1, MPI_UNSIGNED, MPI_BAND, comm_);
-  if ((fitting >> current_ & 1U) != 0) return;
-  for (std::size_t i = 0; i < kept_.size(); ++i) {
-    if ((fitting >> i & 1U) == 0) continue;
-    current_ = i;
-    return;
-  }
-  current_ = (current_ + 1) % kept_.size();
-  kept_[current_].version = ++versions_;
-  kept_[current_].k = wanted_k_;
-  kept_[current_].c = wanted_c_;
-}
-
-void NonlinearFoundation::add_linearised(double* nodal) const {
-  const AddedSprings& tangent = kept_[current_];
-  for (std::size_t n = 0; n < points_.size(); ++n) {
-    const Point& p = points_[n];
-    const double force = p.force0 + (tangent.k[n] + shift_ * tangent.c[n]) * p.zeta0;
-    for (std::size_t i = 0; i < p.terms; ++i)
-      if (p.place[i] >= 0 && p.place[i] < n_) nodal[p.place[i]] += p.shape[i] * force;
-  }
-}
-
-NonlinearFoundation::Verdict NonlinearFoundation::judge(const double* z) {
-  gather(z, &Point::zeta);
-  const AddedSprings& tangent = kept_[current_];
-  double greatest[2] = {0.0, 0.0};  // misfit beyond rounding, force
-  for (std::size_t n = 0; n < points_.size(); ++n) {
-    Point& p = points_[n];
-    const double T = tangent.k[n] + shift_ * tangent.c[n];
-    p.linear_force = p.force0 - T * (p.zeta - p.zeta0);
-    p.state = force_at(p, p.zeta);
-    const double size = std::abs(p.still) + std::abs(p.zeta) + std::abs(p.zeta0) + p.its.law.gap;
-    const double rate = std::abs(p.still_rate) + shift_ * (std::abs(p.zeta) + std::abs(p.zeta0));
-    const double floor = unit_rounding * ((std::abs(p.state.by_displacement) + std::abs(tangent.k[n])) * size +
-                                          (p.state.by_rate + tangent.c[n]) * rate);
-    p.misfit = std::abs(p.state.force - p.linear_force) - floor;
-    if (!std::isfinite(p.zeta)) p.misfit = std::numeric_limits<double>::infinity();
-    greatest[0] = std::max(greatest[0], p.misfit);
-    greatest[1] = std::max(greatest[1], std::abs(p.state.force));
-  }
-  MPI_Allreduce(MPI_IN_PLACE, greatest, 2, MPI_DOUBLE, MPI_MAX, comm_);
-  if (greatest[0] <= tolerance * std::max(greatest[1], point_load_)) return Verdict::settled;
-  if (!std::isfinite(greatest[0]) || ++iteration_ >= (shift_ > 0.0 ? most_stage_iterations : most_static_iterations))
-    return Verdict::failed;
-  const double share = iteration_ == 1 ? 1.0 : best_share();  // of the first step the beginning is not in balance
-  for (Point& p : points_) {
-    p.balanced_force = share == 1.0 ? p.linear_force : p.balanced_force + share * (p.linear_force - p.balanced_force);
-    p.zeta0 = share == 1.0 ? p.zeta : p.zeta0 + share * (p.zeta - p.zeta0);
-  }
-  return Verdict::again;
-}
-
-// Derivative along the step of the function that the solution makes least.
-double NonlinearFoundation::slope(double share) const {
-  double sum = 0.0;
-  for (const Point& p : points_) {
-    if (!p.counted) continue;
-    const double step = p.zeta - p.zeta0;
-    const double balanced = p.balanced_force + share * (p.linear_force - p.balanced_force);
-    sum += step * (balanced - force_at(p, p.zeta0 + share * step).force);
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPI_DOUBLE, MPI_SUM, comm_);
-  return sum;
-}
-
-// The whole step, or where its slope ends if the whole goes far beyond.
-double NonlinearFoundation::best_share() const {
-  const double begin = slope(0.0);
-  const double enough = -overshoot * begin;
-  if (!(begin < 0.0) || slope(1.0) <= enough) return 1.0;
-  double low = 0.0, high = 1.0, middle = 0.5;
-  for (int i = 0; i < most_trials; ++i) {
-    middle = 0.5 * (low + high);
-    const double there = slope(middle);
-    if (std::abs(there) <= 0.1 * enough) break;
-    (there < 0.0 ? low : high) = middle;
-  }
-  return middle;
-}
-
-std::string NonlinearFoundation::worst_point() const {
-  struct {
-    double misfit;
-    int rank;
-  } worst{-1.0, 0};
-  MPI_Comm_rank(comm_, &worst.rank);
-  double which[2] = {0.0, 0.0};  // kind, x
-  for (const Point& p : points_) {
-    if (!(p.misfit > worst.misfit)) continue;
-    worst.misfit = p.misfit;
-    which[0] = static_cast<double>(p.its.kind);
-    which[1] = p.its.x;
-  }
-  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm_);
-  MPI_Bcast(which, 2, MPI_DOUBLE, worst.rank, comm_);
-  char text[96];
-  const auto kind = static_cast<std::size_t>(which[0]);
-  if (kind == beam::below_a_sleeper)
-    std::snprintf(text, sizeof text, "the gap below the sleeper at x = %.6g m", which[1]);
-  else if (kind == beam::along_a_sleeper)
-    std::snprintf(text, sizeof text, "the longitudinal resistance of the sleeper at x = %.6g m", which[1]);
-  else
-    std::snprintf(text, sizeof text, "foundation_%s at x = %.6g m", beam::foundation_kinds[kind].name.data(), which[1]);
-  return text;
-}
-
-const AddedSprings* NonlinearFoundation::tangents(long version) const {
-  const auto* found =
-      std::find_if(kept_.begin(), kept_.end(), [&](const AddedSprings& kept) { return kept.version == version; });
-  return found == kept_.end() ? nullptr : &*found;
 }
 
 void NonlinearFoundation::keep(base::Bytes& bytes) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <tuple>
+#include <utility>
 
 #include "traverse/base/error.hpp"
 #include "two_pi.hpp"
@@ -194,7 +196,7 @@ double Profile::shortest_wave() const {
   return wave;
 }
 
-Height Profile::Dip::at(double x) const {
+Height Dip::at(double x) const {
   const double s = x - middle, half = 0.5 * length;
   if (!corner) return bump_at(s + half, length, -depth);
   if (std::abs(s) >= half) return {};
@@ -202,15 +204,17 @@ Height Profile::Dip::at(double x) const {
   return {-depth * left * left, s < 0.0 ? -slope * left : slope * left, -slope / half};
 }
 
-Profile Profile::with_dip(double middle, double length, double depth, bool corner) const {
+Profile Profile::with(const Dip& dip) const {
+  const auto& [middle, length, depth, corner] = dip;
   if (!(length > 0.0) || !std::isfinite(length)) throw InputError("a dip needs a length above 0");
   if (!std::isfinite(middle) || !std::isfinite(depth)) throw InputError("a dip needs a finite place and depth");
   if (corner && depth < 0.0) throw InputError("a dip with a corner needs a depth above 0");
+  if (reversed_) return reversed().with({-middle, length, depth, corner}).reversed();
   Profile p = *this;
   if (depth == 0.0) return p;
-  const auto after =
-      std::upper_bound(p.dips_.begin(), p.dips_.end(), middle, [](double x, const Dip& dip) { return x < dip.middle; });
-  p.dips_.insert(after, {middle, length, depth, corner});
+  const auto after = std::upper_bound(p.dips_.begin(), p.dips_.end(), middle,
+                                      [](double x, const Dip& other) { return x < other.middle; });
+  p.dips_.insert(after, dip);
   p.longest_dip_ = std::max(p.longest_dip_, length);
   for (const double kink : {middle - 0.5 * length, middle, middle + 0.5 * length})
     if (corner || kink != middle) p.kinks_.push_back(kink);
@@ -221,6 +225,13 @@ Profile Profile::with_dip(double middle, double length, double depth, bool corne
   p.greatest_valley_ += corner && 2.0 * slope > least_corner ? std::numeric_limits<double>::infinity() : valley;
   p.resolution_ = level() ? length / stations_a_wave : std::min(p.resolution_, length / stations_a_wave);
   return p;
+}
+
+bool Profile::has_dip(double from, double to) const {
+  if (reversed_) std::tie(from, to) = std::pair(-to, -from);
+  return std::any_of(dips_.begin(), dips_.end(), [&](const Dip& dip) {
+    return dip.middle + 0.5 * dip.length > from && dip.middle - 0.5 * dip.length < to;
+  });
 }
 
 Profile Profile::reversed() const {
@@ -239,9 +250,9 @@ Height Profile::at(double x) const {
 }
 
 // Before it is turned round.
-Height Profile::ahead(double x) const {
-  Height height = base_at(x);
-  if (dips_.empty()) return height;
+Height Profile::ahead(double x) const { return with_dips(x, base_at(x)); }
+
+Height Profile::with_dips(double x, Height height) const {
   auto dip = std::lower_bound(dips_.begin(), dips_.end(), x - 0.5 * longest_dip_,
                               [](const Dip& d, double place) { return d.middle < place; });
   for (; dip != dips_.end() && dip->middle <= x + 0.5 * longest_dip_; ++dip) {
@@ -269,17 +280,14 @@ Height Profile::base_at(double x) const {
 
 std::vector<Height> Profile::along(double x, double distance, std::size_t count) const {
   std::vector<Height> heights;
-  if (reversed_) {
+  if (kind_ != Kind::waves || reversed_) {
     for (std::size_t i = 0; i < count; ++i) heights.push_back(at(x + static_cast<double>(i) * distance));
     return heights;
   }
-  if (kind_ == Kind::waves && dips_.empty()) heights = waves_.sums(x - start_, distance, count);
+  heights = waves_.sums(x - start_, distance, count);
   for (std::size_t i = 0; i < count; ++i) {
     const double place = x + static_cast<double>(i) * distance;
-    if (kind_ != Kind::waves || !dips_.empty())
-      heights.push_back(at(place));
-    else
-      heights[i] = place > start_ ? faded(heights[i], place - start_, length_) : Height{};
+    heights[i] = with_dips(place, place > start_ ? faded(heights[i], place - start_, length_) : Height{});
   }
   return heights;
 }

@@ -338,6 +338,7 @@ TEST(Ranks, TrackByStretch) {
                             {"ts_dt", "2e-3"},
                             {"ts_max_time", "1.2"},
                             {"output_interval", "0.02"},
+                            {"output_sleepers", "-1.8,6,24,55"},
                             {"track_shear_k", "7.84e7"},
                             {"track_shear_c", "8e4"},
                             {"track_ballast_own_mass", "true"},

@@ -87,6 +87,46 @@ class PictureTest(unittest.TestCase):
         write_run(self.file, vehicles=12, wheels=[f"wheel_{i}" for i in range(1, 5)])
         self.assert_drawn()
 
+    def write_sensors(self, *names):
+        write_run(self.file)
+        t = np.linspace(0.0, 4.0, 400)
+        with h5py.File(self.file, "a") as file:
+            for i, name in enumerate(names):
+                for signal in ("acceleration_x", "acceleration_y", "pitch_rate"):
+                    file[f"vehicles/1/{name}/{signal}"] = (1.0 + i) * np.sin(9.0 * t)
+
+    def test_sensors_have_a_panel(self):
+        write_run(self.file)
+        without = self.assert_drawn()
+        self.write_sensors("axle_box", "floor")
+        self.assertGreater(self.assert_drawn(), without)
+        with h5py.File(self.file) as file:
+            results = picture_data.Results(file)
+            panels = picture.panels(results, ["sensors"])
+            titles, names = [], []
+            for panel in panels[1:]:
+                figure, ax = plt.subplots()
+                panel(ax, None)
+                titles.append(ax.get_title(loc="left"))
+                names = [text.get_text() for text in ax.texts]
+                lines = [line.get_ydata() for line in ax.get_lines()]
+                plt.close(figure)
+        self.assertEqual([title for title in titles if "sensors" in title], [
+            "Acceleration along the track at the sensors", "Pitch rate of the sensors' bodies, counter-clockwise",
+            "Vertical acceleration at the sensors"])
+        self.assertEqual(names, ["last vehicle, axle box", "last vehicle, floor"])
+        self.assertAlmostEqual(np.max(lines[1]), 2.0, places=3)
+
+    def test_many_sensors_are_chosen_from(self):
+        self.write_sensors(*(f"box_{i}" for i in range(9)))
+        with h5py.File(self.file) as file:
+            results = picture_data.Results(file)
+            figure, ax = plt.subplots()
+            picture.panels(results)[-1](ax, None)
+            self.assertIn("(6 of 9)", ax.get_title(loc="left"))
+            self.assertIn("last vehicle, box 8", [text.get_text() for text in ax.texts])  # the greatest
+            plt.close(figure)
+
     def test_no_beam(self):
         write_run(self.file, beam=False)
         self.assert_drawn()

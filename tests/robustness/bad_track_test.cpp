@@ -3,26 +3,20 @@
 
 #include "support/extremes.hpp"
 #include "support/scene_run.hpp"
+#include "support/small_track.hpp"
 
 namespace traverse::test {
 namespace {
 
-constexpr const char* track = R"(
-beam: {spans: 9.0, EI: 4.0e9, mass: 5000.0}
-track:
-  rail: {EI: 1.3e7, mass: 121.0}
-  spacing: 0.6
+const std::string track = track_of(zhai_layers, R"(
   elements_per_bay: 2
-  pad: {k: 1.3e8, c: 1.5e5}
-  sleeper: {mass: 251.0}
-  ballast: {mass: 1060.0, k: 2.7e8, c: 1.2e5}
-  subballast: {k: 1.5e8, c: 6.0e4}
   approach: 6.0
   stretches: [weak]
   weak: {from: 3.0, to: 4.2}
+beam: {spans: 9.0, EI: 4.0e9, mass: 5000.0}
 load: {forces: 1.0e5, positions: 5.0, speed: 0.0}
 scene: {analysis: static}
-)";
+)");
 
 struct BadTrack {
   const char *option, *value;
@@ -43,6 +37,8 @@ TEST(BadTracks, AreRefusedByName) {
            {"track_gap", "1e-3", {"too few sleepers"}},
            {"track_rail_hinges", "3.1", {"track_rail_hinges is 3.1", "0.3 m apart"}},
            {"track_dips_length", "1", {"track_dips_length = 1", "need track_dips_x"}},
+           {"output_sleepers", "5,40", {"output_sleepers = 5,40", "no track at x = 40 m", "from -6 to 15 m"}},
+           {"output_sleepers", "3,3.1", {"the sleeper at x = 3 m twice", "each once"}},
        }) {
     SCOPED_TRACE(bad.option);
     const bool ground = std::string(bad.option) == "track_weak_subballast_k";
@@ -75,6 +71,27 @@ TEST(BadTracks, NothingLeftToStandOn) {
       {"float away"});
 }
 
+TEST(BadTracks, OfTheSleepersThatAreThere) {
+  expect_refused(
+      [&] {
+        run_yaml(track, {{"track_weak_sleepers", "none"}, {"output_sleepers", "3.6"}});
+      },
+      {"output_sleepers = 3.6", "the sleeper at x = 3.6 m is missing"});
+  expect_refused(
+      [&] {
+        run_scene("r2_sprung_mass", {{"output_sleepers", "3"}});
+      },
+      {"output_sleepers = 3", "needs a layered track"});
+}
+
+TEST(BadTracks, BridgesMoveByTheirElements) {
+  expect_refused(
+      [&] {
+        run_yaml(track, {{"scene_analysis", "transient"}, {"model_modes", "3"}});
+      },
+      {"model_modes = 3", "under a layered track", "allowed: auto or 0"});
+}
+
 TEST(BadTracks, ShearNeedsBallastThatMoves) {
   constexpr const char* on_pads = R"(
 beam: {spans: 9.0, EI: 4.0e9, mass: 5000.0}
@@ -85,14 +102,6 @@ scene: {analysis: static}
   for (const char* name : {"track_shear_k", "track_shear_c", "track_ballast_own_mass"})
     expect_refused([&] { run_yaml(on_pads, {{name, "1"}}); }, {name, "needs ballast that moves by itself"});
   expect_refused([&] { run_yaml(on_pads, {{"track_gap", "1e-3"}}); }, {"track_gap needs track_ballast_k"});
-  expect_refused(
-      [&] {
-        run_yaml(on_pads, {{"track_dips_x", "1"},
-                           {"track_dips_length", "1"},
-                           {"track_dips_depth", "1e-3"},
-                           {"track_profile", "german_low"}});
-      },
-      {"track_dips_x", "rough"});
 }
 
 }  // namespace

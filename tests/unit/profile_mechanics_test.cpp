@@ -88,7 +88,7 @@ TEST(Profile, BoundsOfTables) {
 
 // On top of a bump: values by hand, derivatives by differences, stations where they jump.
 TEST(Profile, DipsOnTop) {
-  const Profile weld = Profile().with_dip(3.0, 1.0, -2e-3, false), joint = Profile().with_dip(3.0, 1.0, 2e-3, true);
+  const Profile weld = Profile().with({3.0, 1.0, -2e-3, false}), joint = Profile().with({3.0, 1.0, 2e-3, true});
   EXPECT_FALSE(weld.level());
   EXPECT_DOUBLE_EQ(weld.at(3.0).value, 2e-3);
   EXPECT_NEAR(weld.at(3.25).value, 1e-3, 1e-15);
@@ -100,19 +100,46 @@ TEST(Profile, DipsOnTop) {
   EXPECT_EQ(joint.kinks(), (std::vector<double>{2.5, 3.0, 3.5}));
   EXPECT_TRUE(std::isinf(joint.greatest_valley()));
   EXPECT_DOUBLE_EQ(joint.shortest_wave(), 1.0);
-  const Profile all = Profile::bump(1.0, 4.0, 5e-3).with_dip(3.0, 1.0, 2e-3, true).with_dip(2.5, 0.6, 1e-3, false);
+  const Profile all = Profile::bump(1.0, 4.0, 5e-3).with({3.0, 1.0, 2e-3, true}).with({2.5, 0.6, 1e-3, false});
   constexpr double h = 1e-5;
   for (const double x : {1.3, 2.3, 2.51, 2.9, 3.1, 3.4, 4.2}) {
     const track::Height a = all.at(x - h), b = all.at(x), c = all.at(x + h);
     EXPECT_NEAR(b.slope, (c.value - a.value) / (2 * h), 1e-9) << x;
     EXPECT_NEAR(b.curvature, (c.slope - a.slope) / (2 * h), 1e-6) << x;
     const double alone = Profile::bump(1.0, 4.0, 5e-3).at(x).value +
-                         Profile().with_dip(3.0, 1.0, 2e-3, true).at(x).value +
-                         Profile().with_dip(2.5, 0.6, 1e-3, false).at(x).value;
+                         Profile().with({3.0, 1.0, 2e-3, true}).at(x).value +
+                         Profile().with({2.5, 0.6, 1e-3, false}).at(x).value;
     EXPECT_DOUBLE_EQ(b.value, alone);
   }
-  EXPECT_THROW(Profile().with_dip(3.0, 1.0, -1e-3, true), InputError);
-  EXPECT_THROW(Profile().with_dip(3.0, 0.0, 1e-3, false), InputError);
+  EXPECT_THROW(Profile().with({3.0, 1.0, -1e-3, true}), InputError);
+  EXPECT_THROW(Profile().with({3.0, 0.0, 1e-3, false}), InputError);
+}
+
+// Whichever way round it is looked at, and at many places at once.
+TEST(Profile, DipsOnARoughTrack) {
+  const track::Dip joint{41.0, 1.0, 2e-3, true}, weld{43.5, 0.8, -3e-4, false};
+  const Profile rough = Profile::rough(track::german(false), 0.0, 1), both = rough.with(joint).with(weld);
+  EXPECT_TRUE(both.is_rough());
+  EXPECT_DOUBLE_EQ(both.shortest_wave(), track::german(false).shortest);
+  EXPECT_EQ(both.kinks().size(), 5U);
+  const Profile back = both.reversed(),
+                as_seen = rough.reversed().with({-41.0, 1.0, 2e-3, true}).with({-43.5, 0.8, -3e-4, false});
+  const std::vector<track::Height> at_once = both.along(40.0, 0.01, 400);
+  for (std::size_t i = 0; i < at_once.size(); ++i) {
+    const double x = 40.0 + 0.01 * static_cast<double>(i);
+    const track::Height a = rough.at(x), b = joint.at(x), c = weld.at(x), sum = both.at(x);
+    EXPECT_DOUBLE_EQ(sum.value, a.value + b.value + c.value);
+    EXPECT_DOUBLE_EQ(sum.slope, a.slope + b.slope + c.slope);
+    EXPECT_DOUBLE_EQ(sum.curvature, a.curvature + b.curvature + c.curvature);
+    EXPECT_NEAR(at_once[i].value, sum.value, 1e-12);
+    EXPECT_NEAR(at_once[i].slope, sum.slope, 1e-10);
+    for (const Profile& turned : {back, as_seen}) {
+      EXPECT_DOUBLE_EQ(turned.at(-x).value, sum.value);
+      EXPECT_DOUBLE_EQ(turned.at(-x).slope, -sum.slope);
+    }
+    EXPECT_EQ(both.has_dip(x - 0.05, x + 0.05), (x > 40.45 && x < 41.55) || (x > 43.05 && x < 43.95)) << x;
+    EXPECT_EQ(both.has_dip(x - 0.05, x + 0.05), back.has_dip(-x - 0.05, -x + 0.05)) << x;
+  }
 }
 
 TEST(Profile, TwoPointsAreALine) {

@@ -7,6 +7,7 @@
 
 #include "support/curve.hpp"
 #include "support/scene_run.hpp"
+#include "support/small_track.hpp"
 
 namespace traverse::test {
 namespace {
@@ -129,20 +130,13 @@ scene: {analysis: static}
 
 // Isolated spans whose joints lie anywhere between two sleepers, all forces and energies.
 TEST(LayeredTrack, ForcesAndEnergyBalanceOnSeparateSpans) {
-  const std::string scene = R"(
-beam: {spans: [20.0, 13.3, 20.0], EI: 5.0e10, mass: 1.0e4, continuity: [simply_supported, continuous], damping_ratios: 0.02}
-track:
-  rail: {EI: 1.32476e7, mass: 121.28}
-  spacing: 0.6
+  const std::string scene = track_of(r8_layers, R"(
   elements_per_bay: 2
-  pad: {k: 6.5e7, c: 7.5e4}
-  sleeper: {mass: 251.0}
-  ballast: {mass: 531.4, k: 1.3775e8, c: 5.88e4}
-  subballast: {k: 7.75e7, c: 3.115e4}
+beam: {spans: [20.0, 13.3, 20.0], EI: 5.0e10, mass: 1.0e4, continuity: [simply_supported, continuous], damping_ratios: 0.02}
 load: {forces: [1.5e5, 1.5e5], positions: [0.0, -3.0], speed: 60.0}
 ts: {dt: 5.0e-4}
 output: {interval: 0.005, probes: [10.0, 26.0, 43.0]}
-)";
+)");
   std::vector<double> before;
   for (const char* offset : {"0", "0.15", "0.31", "0.59"}) {
     Results run = run_yaml(scene, {{"track_offset", offset}});

@@ -8,25 +8,19 @@
 #include "support/curve.hpp"
 #include "support/quarter_car.hpp"
 #include "support/scene_run.hpp"
+#include "support/small_track.hpp"
 
 namespace traverse::test {
 namespace {
 
 // The bridge's own Rayleigh damping makes its accelerations settle.
 std::string on_track(const std::string& wheel) {
-  return quarter_car_with(1.35e4, 1800.0, 2.4e6, 2e4, wheel) + R"(
+  return quarter_car_with(1.35e4, 1800.0, 2.4e6, 2e4, wheel) + track_of(r8_layers, R"(
+  approach: 12.0
 beam: {spans: 18.0, EI: 5.0e10, mass: 1.2e4, damping_ratios: 0.02}
 support: {types: [pinned, roller]}
-track:
-  rail: {EI: 1.32476e7, mass: 121.28}
-  spacing: 0.6
-  pad: {k: 6.5e7, c: 7.5e4}
-  sleeper: {mass: 251.0}
-  ballast: {mass: 531.4, k: 1.3775e8, c: 5.88e4}
-  subballast: {k: 7.75e7, c: 3.115e4}
-  approach: 12.0
 train: {vehicles: car, positions: -3.0, speed: 80.0}
-)";
+)");
 }
 constexpr double slope_left_out = 1e-9;  // m
 const std::string hertz = "law: hertz, stiffness: 1.721e11";

@@ -8,40 +8,15 @@
 #include <complex>
 #include <numbers>
 
-#include "support/beam_model.hpp"
 #include "support/curve.hpp"
 #include "support/dense.hpp"
 #include "support/scene_run.hpp"
-#include "support/track_model.hpp"
+#include "support/short_bridge.hpp"
 
 namespace traverse::test {
 namespace {
 
 using beam::TrackStretch;
-
-/// A bridge of 12 bays under a track with 10 bays on either side.
-beam::BeamModel short_bridge(int elements_per_bay) {
-  beam::BeamModel model;
-  model.spans = {7.2};
-  model.elements = {1};
-  model.EI = 4e9;
-  model.EA = 1e10;
-  model.mass = 5000.0;
-  model.axial = false;
-  model.supports = {beam::Support::pinned, beam::Support::roller};
-  beam::LayeredTrack t;
-  t.rail_EI = 1.3e7;
-  t.rail_mass = 121.0;
-  t.elements_per_bay = elements_per_bay;
-  t.pad = {1.3e8, 1.5e5};
-  t.sleeper_mass = 251.0;
-  t.ballast = beam::Layer{2.7e8, 1.2e5};
-  t.ballast_mass = 1060.0;
-  t.subballast = beam::Layer{1.5e8, 6e4};
-  t.approach = 6.0;
-  model.track = t;
-  return model;
-}
 
 TrackStretch stretch(double from, double to, const std::vector<std::pair<std::string, double>>& values) {
   TrackStretch s{"part", from, to, {}, true};
@@ -50,32 +25,6 @@ TrackStretch stretch(double from, double to, const std::vector<std::pair<std::st
       if (beam::track_properties[i].name == name) s.values[i] = beam::Distribution(value);
   return s;
 }
-
-/// The same by hand: `change` says what differs from sleeper to sleeper.
-DenseTrack by_hand(const beam::BeamModel& model, const std::function<void(DenseSleeper&)>& change) {
-  DenseTrack t;
-  const int each = model.track->elements_per_bay;
-  t.rail_EI = 1.3e7;
-  t.rail_mass = 121.0;
-  t.rail_start = -6.0;
-  t.rail_element = 0.6 / each;
-  t.rail_elements = 32 * each;
-  t.EI = 4e9;
-  t.mass = 5000.0;
-  t.length = 7.2;
-  t.elements = 12 * each - 1;  // a node for each of the rail's but the last
-  for (int i = 0; i <= 32; ++i) {
-    DenseSleeper s{-6.0 + 0.6 * i, 1.3e8, 1.5e5, 251.0, 2.7e8, 1.2e5, 1060.0, 1.5e8, 6e4};
-    change(s);
-    t.sleepers.push_back(s);
-  }
-  t.own_mass = model.track->own_mass;
-  t.shear_k = model.track->shear.k;
-  t.shear_c = model.track->shear.c;
-  return t;
-}
-
-bool within(double x, double from, double to) { return x > from - 1e-6 && x < to + 1e-6; }
 
 /// Harmonic responses to a force on the rail, of the rail under it and elsewhere, sleepers, ballast and the bridge.
 void expect_same_responses(const beam::BeamModel& model, const DenseTrack& hand, double tolerance) {
@@ -160,22 +109,6 @@ TEST(TrackStretches, RailOfTwoSections) {
   expect_same_responses(model, hand, by_stations);
 }
 
-constexpr const char* ground_and_bridge = R"(
-beam: {spans: 7.2, EI: 4.0e9, mass: 5000.0, rayleigh: [0.0, 0.0]}
-track:
-  rail: {EI: 1.3e7, mass: 121.0}
-  spacing: 0.6
-  elements_per_bay: 2
-  pad: {k: 1.3e8, c: 1.5e5}
-  sleeper: {mass: 251.0}
-  ballast: {mass: 1060.0, k: 2.7e8, c: 1.2e5}
-  subballast: {k: 1.5e8, c: 6.0e4}
-  approach: 6.0
-load: {forces: 1.0e5, positions: -5.0, speed: 30.0}
-gravity: 9.81
-output: {probes: [1.8, 3.6, 5.4]}
-)";
-
 const Values hanging = {{"track_stretches", "hung,over"}, {"track_hung_from", "-2.4"}, {"track_hung_to", "-1.2"},
                         {"track_hung_gap", "2e-4"},       {"track_over_from", "3.6"},  {"track_over_to", "3.6"},
                         {"track_over_gap", "1e-4"},       {"ts_dt", "1e-4"},           {"ts_max_time", "0.38"},
@@ -184,7 +117,7 @@ const Values hanging = {{"track_stretches", "hung,over"}, {"track_hung_from", "-
 // Three sleepers hang before the bridge, one on it; a force closes the gaps as it passes. Against Newmark's method with
 // steps of 2e-5 s on the dense model.
 TEST(TrackStretches, HangingSleepersAgainstAnotherIntegration) {
-  Results run = run_yaml(ground_and_bridge, hanging);
+  Results run = run_yaml(short_bridge_scene, hanging);
   const std::vector<double> stations = run("/track/hanging/x"), time = run.time();
   ASSERT_EQ(stations.size(), 4U);
   const beam::BeamModel model = short_bridge(2);
@@ -233,14 +166,14 @@ TEST(TrackStretches, HangingSleepersAgainstAnotherIntegration) {
 // A stretch with the values of the rest, tables that are constant: nothing changes, to the last bit.
 TEST(TrackStretches, OfTheSameValuesChangeNothing) {
   const Values times = {{"ts_dt", "5e-4"}, {"ts_max_time", "0.3"}, {"output_interval", "5e-3"}};
-  Results plain = run_yaml(ground_and_bridge, times);
-  Results same = run_yaml(ground_and_bridge, times + Values{{"track_stretches", "a"},
-                                                            {"track_a_from", "-3"},
-                                                            {"track_a_to", "5"},
-                                                            {"track_a_pad_k", "1.3e8"},
-                                                            {"track_a_ballast_c", "1.2e5"},
-                                                            {"track_a_gap", "0"},
-                                                            {"track_a_sleepers", "standard"}});
+  Results plain = run_yaml(short_bridge_scene, times);
+  Results same = run_yaml(short_bridge_scene, times + Values{{"track_stretches", "a"},
+                                                             {"track_a_from", "-3"},
+                                                             {"track_a_to", "5"},
+                                                             {"track_a_pad_k", "1.3e8"},
+                                                             {"track_a_ballast_c", "1.2e5"},
+                                                             {"track_a_gap", "0"},
+                                                             {"track_a_sleepers", "standard"}});
   for (const char* name : {"/probes/deflection", "/rail/acceleration", "/energy/dissipated"})
     EXPECT_EQ(plain(name), same(name)) << name;
 }
@@ -249,7 +182,7 @@ TEST(TrackStretches, OfTheSameValuesChangeNothing) {
 TEST(TrackStretches, MirrorImages) {
   const Values rest = {{"scene_analysis", "static"}, {"load_speed", "0"}, {"track_shear_k", "1.5e8"}};
   const auto with = [&](const char* loads, const char* hung, const char* gone) {
-    return run_yaml(ground_and_bridge,
+    return run_yaml(short_bridge_scene,
                     rest + Values{{"load_positions", loads},
                                   {"load_forces", "1e5,8e4"},
                                   {"track_stretches", "hung,gone"},
@@ -271,19 +204,19 @@ TEST(TrackStretches, MirrorImages) {
 
 // What the shear's dampers take is in the balance.
 TEST(TrackStretches, EnergyOfBallastInShear) {
-  Results run = run_yaml(ground_and_bridge, {{"track_shear_k", "1.568e8"},
-                                             {"track_shear_c", "1.6e5"},
-                                             {"track_ballast_own_mass", "true"},
-                                             {"beam_self_weight", "true"},
-                                             {"ts_dt", "1e-4"},
-                                             {"ts_max_time", "0.5"}});
+  Results run = run_yaml(short_bridge_scene, {{"track_shear_k", "1.568e8"},
+                                              {"track_shear_c", "1.6e5"},
+                                              {"track_ballast_own_mass", "true"},
+                                              {"beam_self_weight", "true"},
+                                              {"ts_dt", "1e-4"},
+                                              {"ts_max_time", "0.5"}});
   EXPECT_LT(energy_error(run), 1e-6);
   EXPECT_LT(std::abs(peak(run("/balance/residual")).first), 1e-9 * 9.81 * 12 * 5000.0);
-  Results without = run_yaml(ground_and_bridge, {{"track_shear_k", "1.568e8"},
-                                                 {"track_ballast_own_mass", "true"},
-                                                 {"beam_self_weight", "true"},
-                                                 {"ts_dt", "1e-4"},
-                                                 {"ts_max_time", "0.5"}});
+  Results without = run_yaml(short_bridge_scene, {{"track_shear_k", "1.568e8"},
+                                                  {"track_ballast_own_mass", "true"},
+                                                  {"beam_self_weight", "true"},
+                                                  {"ts_dt", "1e-4"},
+                                                  {"ts_max_time", "0.5"}});
   EXPECT_GT(relative_difference(run("/energy/dissipated"), without("/energy/dissipated")), 1e-3);
 }
 
@@ -317,97 +250,6 @@ output: {probes: [8.0, 10.0, 12.0]}
   EXPECT_LT(std::abs(4.0 * errors[1] - errors[0]) / 3.0, 1e-4);
   EXPECT_LT(std::abs(4.0 * others[1] - others[0]) / 3.0, 1e-4);
   RecordProperty("extrapolated_error", text((4.0 * errors[1] - errors[0]) / 3.0));
-}
-
-/// Zhai's track by options/tracks/zhai.yml before a short bridge.
-class ZhaiTrack {
- public:
-  explicit ZhaiTrack(bool shear) : beam_(PETSC_COMM_SELF, model(shear)) {
-    beam_.set_rayleigh({0.0, 0.0});
-    M_ = dense(beam_.mass());
-    C_ = dense(beam_.damping());
-    K_ = dense(beam_.stiffness());
-    for (Eigen::Index i = 0; i < K_.rows(); ++i)
-      if (beam_.fixed()[static_cast<std::size_t>(i)] != 0) M_(i, i) = K_(i, i) = 1.0;
-    // A sleeper in the middle of the ground before the bridge.
-    column_ = beam::rail_mesh(beam_.model()).first_from(-9.0) / 2 * 2;
-    ballast_ = column_ * beam_.block() + beam_.layout().ballast_place();
-  }
-
-  /// Greatest acceleration of a mass of ballast as a bogie's axles pass.
-  double passage(double speed) const {
-    DenseNewmark motion(M_, C_, K_, {}, 2e-4);
-    motion.start(K_.llt().solve(axles(-20.0)), axles(-20.0));
-    double greatest = 0.0;
-    for (double t = 2e-4; - 20.0 + speed * t < -3.0; t += 2e-4) {
-      motion.step(axles(-20.0 + speed * t));
-      if (-20.0 + speed * t > -13.0) greatest = std::max(greatest, std::abs(motion.a[ballast_]));
-    }
-    return greatest;
-  }
-
-  /// Its acceleration for a unit force of this frequency on the rail above it, m/s2/N.
-  double response(double hertz) const {
-    const std::complex<double> s(0.0, 2.0 * std::numbers::pi * hertz);
-    Eigen::VectorXcd P = Eigen::VectorXcd::Zero(K_.rows());
-    P[beam_.rail()->unknown(column_, 1)] = 1.0;
-    const Eigen::MatrixXcd A = s * s * M_ + s * C_ + K_;
-    return std::abs(s * s * A.partialPivLu().solve(P)[ballast_]);
-  }
-
- private:
-  static beam::BeamModel model(bool shear) {
-    beam::BeamModel model = short_bridge(2);
-    model.spans = {2.18};
-    beam::LayeredTrack& t = *model.track;
-    t.rail_EI = 1.32476e7;
-    t.rail_mass = 121.28;
-    t.spacing = 0.545;
-    t.pad = {1.3e8, 1.5e5};
-    t.ballast = beam::Layer{2.755e8, 1.176e5};
-    t.ballast_mass = 1062.8;
-    t.subballast = beam::Layer{1.55e8, 6.23e4};
-    t.approach = 20.0;
-    if (shear) t.shear = {1.568e8, 1.6e5};
-    return model;
-  }
-
-  /// Two axles of 170 kN, the first at x.
-  Eigen::VectorXd axles(double x) const {
-    Eigen::VectorXd P = Eigen::VectorXd::Zero(K_.rows());
-    for (const double axle : {x, x - 2.5}) {
-      if (axle < beam_.rail()->mesh.start()) continue;
-      const beam::Station at = beam_.rail()->mesh.locate(axle);
-      const auto unknowns = beam_.rail()->transverse(at.element);
-      const double s = at.xi, l = beam_.rail()->mesh.element(at.element).length;
-      const std::array psi = {1 - 3 * s * s + 2 * s * s * s, l * s * (1 - s) * (1 - s), 3 * s * s - 2 * s * s * s,
-                              l * s * s * (s - 1)};
-      for (std::size_t i = 0; i < 4; ++i) P[unknowns[i]] -= 1.7e5 * psi[i];
-    }
-    return P;
-  }
-
-  beam::Beam beam_;
-  Eigen::MatrixXd M_, C_, K_;
-  int column_ = 0, ballast_ = 0;
-};
-
-// Shear as stiff as the ground below spreads a load over more masses, which then rise and sink more slowly.
-TEST(TrackStretches, ShearCalmsTheBallast) {
-  const ZhaiTrack alone(false), sheared(true);
-  const double passing = sheared.passage(69.4) / alone.passage(69.4);
-  double with = 0.0, without = 0.0;
-  for (double f = 5.0; f <= 300.0; f += 10.0) {
-    with += std::pow(sheared.response(f), 2);
-    without += std::pow(alone.response(f), 2);
-  }
-  const double shaken = std::sqrt(with / without);
-  RecordProperty("ratio_of_passing_axles", text(passing));
-  RecordProperty("ratio_of_a_shaken_rail", text(shaken));
-  EXPECT_LT(passing, 0.95);
-  EXPECT_LT(shaken, 0.95);
-  // Far above the vibration of ballast on its springs (100 Hz) inertia alone counts.
-  EXPECT_NEAR(sheared.response(2000.0) / alone.response(2000.0), 1.0, 0.05);
 }
 
 }  // namespace

@@ -51,6 +51,7 @@ struct Output {
   bool wheels_filtered = false;    // asked for; else where limits ask for it
   double unloading_level = 0.6;    // part of its force from which on a wheel counts as unloaded
   std::vector<double> passages;    // m: where the force of every wheel that passes is noted
+  std::vector<double> sleepers;    // m: of a layered track, whose forces are stored
 };
 
 /// The random running surfaces that one spectrum describes.
@@ -59,10 +60,13 @@ struct Roughness {
   double shortest = 0.0, longest = 0.0;  // m: waves
   double start = 0.0;                    // m: before it the track is level
   bool to_the_left = false;              // else it begins to the right of that
+  std::vector<track::Dip> dips = {};     // on top of each of them
 
   track::Profile profile(std::uint64_t seed) const {
-    if (!to_the_left) return track::Profile::rough(spectrum, shortest, longest, start, seed);
-    return track::Profile::rough(spectrum, shortest, longest, -start, seed).reversed();
+    track::Profile p = track::Profile::rough(spectrum, shortest, longest, to_the_left ? -start : start, seed);
+    if (to_the_left) p = p.reversed();
+    for (const track::Dip& dip : dips) p = p.with(dip);
+    return p;
   }
 };
 

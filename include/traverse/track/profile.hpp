@@ -10,6 +10,16 @@
 
 namespace traverse::track {
 
+/// A place where the running surface lies lower, m: of a cosine, depth/2*(1 + cos(2 pi (x - middle)/length)) deep, as
+/// of a weld, or with a corner, two parabolas that meet at their lowest point, depth*(1 - |x - middle|/(length/2))^2
+/// deep, as of a dipped rail joint. A depth below 0 is a hump; at a corner there is none.
+struct Dip {
+  double middle = 0.0, length = 0.0, depth = 0.0;
+  bool corner = false;
+  /// The height, below 0 in a dip, and its derivatives.
+  Height at(double x) const;
+};
+
 /// h(x), twice differentiable except at `kinks`.
 class Profile {
  public:
@@ -32,13 +42,13 @@ class Profile {
   /// on does so to the left from -start on.
   Profile reversed() const;
 
-  /// The same profile with a dip on top: of a cosine, depth/2*(1 + cos(2 pi (x - middle)/length)) deep, as of a weld,
-  /// or with a corner, two parabolas that meet at their lowest point, depth*(1 - |x - middle|/(length/2))^2 deep, as of
-  /// a dipped rail joint. A depth below 0 is a hump; at a corner there is none.
-  Profile with_dip(double middle, double length, double depth, bool corner) const;
+  /// The same profile with a dip on top. InputError where its numbers are none of a dip.
+  Profile with(const Dip& dip) const;
 
   bool level() const { return kind_ == Kind::level && dips_.empty(); }
   bool is_rough() const { return kind_ == Kind::waves; }
+  /// Whether a dip reaches into [from, to].
+  bool has_dip(double from, double to) const;
   Height at(double x) const;
   /// The same at `count` places from x on, `distance` apart: of roughness in much less time.
   std::vector<Height> along(double x, double distance, std::size_t count) const;
@@ -58,12 +68,8 @@ class Profile {
 
  private:
   enum class Kind { level, bump, table, waves };
-  struct Dip {
-    double middle = 0.0, length = 0.0, depth = 0.0;  // m
-    bool corner = false;
-    Height at(double x) const;
-  };
   Height base_at(double x) const;
+  Height with_dips(double x, Height height) const;
   void check_swing(const std::string& name) const;
   void bound_table();
 

@@ -1,0 +1,194 @@
+#include "recovery/recovery_section.hpp"
+
+#include "beam/assembly.hpp"
+#include "beam/gauss.hpp"
+#include "beam/nonlinear_points.hpp"
+
+namespace traverse::beam {
+
+RecoverySection::RecoverySection(const Line& line, double x)
+    : at(line.mesh.locate(x)),
+      element(line.mesh.element(at.element)),
+      psi(hermite(at.xi, element.length, element.shear)),
+      phi(linear(at.xi)),
+      bending(element, at.xi),
+      stiffness(element, at.xi),
+      damping(element, at.xi),
+      mass(element, at.xi) {
+  const BeamModel& model = line.model;
+  const auto [v1, theta1, v2, theta2] = line.transverse(at.element);
+  const auto [u1, u2] = line.axial(at.element);
+  unknowns = {u1, v1, theta1, u2, v2, theta2};
+  const double middle = element.x + 0.5 * element.length;
+  EI = model.EI.at(middle, element.x);
+  const ElementMatrices matrices = element_matrices(model, element);
+  bending.add_end_forces(matrices.stiffness);
+  mass.add_end_forces(matrices.mass);
+  mass.add_transverse_density(model.mass);
+  if (model.rotary_inertia.maximum() > 0.0) mass.add_rotational_density(model.rotary_inertia);
+  if (model.axial) {
+    EA = model.EA.at(middle, element.x);
+    bending.add_end_forces(matrices.axial_stiffness);
+    mass.add_end_forces(matrices.axial_mass);
+    mass.add_axial_density(model.mass);
+  }
+  add_foundation(line);
+  if (model.temperature) add_strains(model);
+}
+
+/// What the forces at the left end are less by: the elastic strain is the whole one less the temperature's.
+void RecoverySection::add_strains(const BeamModel& model) {
+  const auto bent = strain_load(model, element);
+  weight.shear -= bent[0];
+  weight.moment -= at.xi * element.length * bent[0] - bent[1];
+  weight.axial_force += axial_strain_load(model, element)[0];
+}
+
+void RecoverySection::note_riders(const Beam& beam) {
+  if (beam.rail() == nullptr) return;
+  const int column = beam.bridge().first_column + element.left;
+  for (const Sleeper& s : sleepers_of(beam.bridge(), column - 1, column + 3)) {
+    if (s.on_bridge && s.at.element == at.element)
+      riders.push_back({ride_of(s, *beam.model().track, beam.layout()), s.at.xi});
+  }
+}
+
+void RecoverySection::add_foundation(const Line& line) {
+  const BeamModel& model = line.model;
+  const Foundation& f = model.foundation;
+  std::vector<InnerSpring> springs, dampers;
+  for_points(f, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
+    if (!acts(kind, model)) return;
+    for (const PointFoundation& p : points) {
+      if (p.law.nonlinear() || p.depth != 0.0) continue;  // a load, or at a node
+      // locate() is the judge, as in the assembly; a glance at x spares most of the calls.
+      if (p.x < element.x - element.length || p.x > element.x + 2.0 * element.length) continue;
+      const Station s = station_of(line.mesh, p);
+      if (s.element != at.element) continue;
+      stiffness.add_spring(kind.direction, p.k, s.xi);
+      damping.add_spring(kind.direction, p.c, s.xi);
+      if (kind.direction == Direction::longitudinal || s.xi <= 0.0 || s.xi >= 1.0) continue;
+      springs.push_back({s.xi, p.k, kind.direction == Direction::rotational});
+      dampers.push_back({s.xi, p.c, kind.direction == Direction::rotational});
+    }
+  });
+  bool bends = !springs.empty();
+  for_beds(f, [&](const FoundationKind& kind, const Bed& bed) {
+    if (!acts(kind, model) || bed.law.nonlinear()) return;
+    stiffness.add_bed(kind.direction, bed.k);
+    damping.add_bed(kind.direction, bed.c);
+    bends = bends || kind.direction != Direction::longitudinal;
+  });
+  if (bends) hold(model, springs, dampers);
+}
+
+/// Integrates over the held element: calls sum(s, weight*density(s), G(s)), where G is its line under a force, or under
+/// a moment.
+template <class Sum>
+void RecoverySection::along_held(const Distribution& density, bool moments, Sum sum) const {
+  const std::vector<double> ends = held->ends();
+  const double h = element.length, x = element.x;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i)
+    integrate(density, x + h * ends[i], x + h * ends[i + 1], [&](double s, double piece) {
+      const double xi = (s - x) / h;
+      sum(xi, piece * (moments ? held->by_moment(xi) : held->by_force(xi)));
+    });
+}
+
+/// The element is held by its springs and by the mean of a vertical bed. What a bed that holds the slope does to the
+/// deflection between held ends is left out; that is a part k h^2/(40 EI) of it.
+void RecoverySection::hold(const BeamModel& model, const std::vector<InnerSpring>& springs,
+                           const std::vector<InnerSpring>& dampers) {
+  const double h = element.length;
+  double mean = 0.0;
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    if (kind.direction == Direction::vertical && !bed.law.nonlinear())
+      integrate(bed.k, element.x, element.x + h, [&](double, double piece) { mean += piece / h; });
+  });
+  held.emplace(at.xi, h, EI, mean, springs, element.shear);
+  const auto add = [&](const Distribution& density, Direction direction, std::array<double, 4>& form) {
+    along_held(density, direction == Direction::rotational, [&](double s, double line) {
+      const auto shape = shape_of(direction, s, element);
+      for (std::size_t i = 0; i < 4; ++i) form[i] -= line * shape[i];
+    });
+  };
+  const auto add_points = [&](const std::vector<InnerSpring>& points, std::array<double, 4>& form) {
+    for (const InnerSpring& p : points) {
+      const auto shape = shape_of(p.rotational ? Direction::rotational : Direction::vertical, p.xi, element);
+      const double line = p.k * (p.rotational ? held->by_moment(p.xi) : held->by_force(p.xi));
+      for (std::size_t i = 0; i < 4; ++i) form[i] -= line * shape[i];
+    }
+  };
+  add(model.mass, Direction::vertical, held_by_mass);
+  if (model.rotary_inertia.maximum() > 0.0) add(model.rotary_inertia, Direction::rotational, held_by_mass);
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    if (kind.direction == Direction::longitudinal || bed.law.nonlinear()) return;
+    add(bed.k, kind.direction, held_by_stiffness);
+    add(bed.c, kind.direction, held_by_damping);
+  });
+  add_points(springs, held_by_stiffness);
+  add_points(dampers, held_by_damping);
+}
+
+void RecoverySection::add_weight(const BeamModel& model, double gravity) {
+  const double h = element.length, x = at.xi * h;
+  const auto end = transverse_load(model.mass, element);
+  weight.shear += gravity * end[0];
+  weight.moment += gravity * (x * end[0] - end[1]);
+  const Bed* pushing = nullptr;
+  for_beds(model.foundation, [&](const FoundationKind& kind, const Bed& bed) {
+    if (kind.direction == Direction::vertical && bed.law.nonlinear()) pushing = &bed;
+  });
+  if (pushing != nullptr) return add_weight_at_points(*pushing, model.mass, gravity);
+  integrate(model.mass, element.x, element.x + x, [&](double s, double piece) {
+    weight.shear -= gravity * piece;
+    weight.moment -= gravity * piece * (element.x + x - s);
+  });
+  if (held) {
+    along_held(model.mass, false, [&](double, double line) { weight.deflection -= gravity * line; });
+    return;
+  }
+  const double bubble = at.xi * (1.0 - at.xi) * h * h, middle = element.x + 0.5 * h;
+  const double bent = bubble * (bubble + element.shear * h * h);
+  weight.deflection = -gravity * model.mass.at(middle, element.x) * bent / (24.0 * EI);
+}
+
+/// Where a bed pushes at its points of integration the weight acts there too: it cancels where the beam rests.
+void RecoverySection::add_weight_at_points(const Bed& bed, const Distribution& mass_per_length, double gravity) {
+  for (const auto& [left, right] : bed_pieces(bed, element)) {
+    integrate(mass_per_length, left, right, [&](double s, double piece) {
+      const double xi = (s - element.x) / element.length, force = gravity * piece;
+      weight.deflection -=
+          force * (held ? held->by_force(xi) : fixed_end_by_force(at.xi, xi, element.length, EI, element.shear));
+      if (!is_left(xi, at.xi)) return;
+      weight.shear -= force;
+      weight.moment -= force * (at.xi - xi) * element.length;
+    });
+  }
+}
+
+void RecoverySection::add_load(const ElementLoad& load, Response& r) const {
+  const double h = element.length, x = at.xi * h;
+  const Hermite s = hermite(load.xi, h, element.shear);
+  const auto turn = element.shear == 0.0 ? s.slope : rotation(load.xi, h, element.shear);
+  const double f1 = -load.fy * s.value[0] - load.moment * turn[0];
+  const double m1 = -load.fy * s.value[1] - load.moment * turn[1];
+  r.shear += f1;
+  r.moment += f1 * x - m1;
+  if (held)
+    r.deflection +=
+        load.fy * held->by_force(load.xi) + (load.moment == 0.0 ? 0.0 : load.moment * held->by_moment(load.xi));
+  else
+    r.deflection += load.fy * fixed_end_by_force(at.xi, load.xi, h, EI, element.shear) +
+                    load.moment * fixed_end_by_moment(at.xi, load.xi, h, EI, element.shear);
+  const bool left = is_left(load.xi, at.xi);
+  if (left) {
+    r.shear += load.fy;
+    r.moment += load.fy * (at.xi - load.xi) * h - load.moment;
+  }
+  if (EA <= 0.0) return;
+  r.axial_force += load.fx * (left ? -load.xi : 1.0 - load.xi);
+  r.axial_displacement += load.fx * h / EA * (left ? load.xi * (1.0 - at.xi) : at.xi * (1.0 - load.xi));
+}
+
+}  // namespace traverse::beam
