@@ -11,7 +11,8 @@ install(PROGRAMS scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY scripts/traverse_report DESTINATION ${share}/python FILES_MATCHING PATTERN *.py)
 install(FILES scripts/animate.py scripts/comfort.py scripts/export.py scripts/export_tables.py scripts/export_xdmf.py
         scripts/fatigue.py scripts/picture.py scripts/picture_axes.py scripts/picture_data.py scripts/picture_model.py
-        scripts/picture_motion.py scripts/picture_vehicles.py scripts/picture_words.py DESTINATION ${share}/python)
+        scripts/picture_motion.py scripts/picture_rail.py scripts/picture_vehicles.py scripts/picture_words.py
+        DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})
 install(DIRECTORY packaging/slurm DESTINATION ${share}/examples)
 install(FILES examples/three_span_train.py DESTINATION ${share}/examples)
