@@ -231,7 +231,7 @@ def picture(cases, file):
         axis.set_title(f"{case.scene.name}: {', '.join(promised)}", fontsize=8)
         axis.set(xlabel="seconds of the time loop", ylabel="error")
         axis.grid(True, alpha=0.3)
-    axes[0, 0].legend(fontsize=6)
+    max(axes.ravel(), key=lambda axis: len(axis.get_legend_handles_labels()[1])).legend(fontsize=6)
     figure.savefig(file, dpi=110)
     print(file)
 

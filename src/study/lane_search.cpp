@@ -20,7 +20,9 @@ constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 // Each is compared with half as many more; errors that fall with the square or faster are at most 1.8 times the change.
 constexpr double more_modes = 1.5, of_the_change = 1.8;
 // Where two comparisons have shown by which power they fall, the larger number is judged too, by this power at most.
+// With few modes changes may be small by chance, and another comparison costs little.
 constexpr double least_measured = 2.0, most_measured = 3.0;
+constexpr int fewest_judged = 32;
 constexpr double order_of_modes = 6.0;   // that errors of the modes fall with at most: what is farther off is not tried
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a finer mesh has to agree
 constexpr double clearly_finer = 1.3, order_of_mesh = 4.0;
@@ -112,7 +114,8 @@ bool LaneSearch::add_modes(LaneModel& model) {
     const double order = before > 0.0 ? std::log(change_before / largest) / std::log(modes / before) : 0.0;
     const double ratio = static_cast<double>(more.modes) / modes;
     const double left = 1.0 / (std::pow(ratio, std::min(order, most_measured)) - 1.0);  // of the change, by `more`
-    if (order >= least_measured && left * largest <= allowed && more.modes <= numbers_of_modes.back()) {
+    if (modes >= fewest_judged && order >= least_measured && left * largest <= allowed &&
+        more.modes <= numbers_of_modes.back()) {
       modes_ = times(changes, left);
       model.modes = more.modes;
       model.elements = mesh_for(trials_.scene(), modes);
