@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Errors of peaks over seconds: every integrator at many steps and meshes, and where -accuracy lands among them.
+"""Errors of peaks over seconds: every integrator at many steps or tolerances and meshes, by elements and by modes, and
+where -accuracy lands among them.
 /usr/bin/python3 benchmarks/work_precision.py [BUILD_FOLDER] [OUT_FOLDER] [SCENE...] [--quick] [--smallest]
 
 Writes work_precision.csv (all runs), work_precision_accuracy.csv (the table) and work_precision.png to OUT_FOLDER. SCENE
 is the name of a file, such as r3_sprung_mass; left out: all of them. --quick takes fewer meshes and steps of each,
---smallest one scene on two meshes.
+--smallest one scene on two meshes. Of a way by modes "elements" are its modes, of an adaptive one "step" is its tolerance.
 
 An error is that of the worst of the greatest deflection, acceleration, moment and wheel force, each relative to its own
 peak, of those that -accuracy promises; against a run of esdirk4 with a quarter of the finest element (R8, rail on pads:
@@ -20,99 +21,19 @@ import re
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import runs  # noqa: E402
+from work_precision_scenes import ADAPTIVE, BY_MODES, LOOSEST, MODES, SCENES, SMALLEST, TIGHTER, WAYS, opened  # noqa: E402
 
-INTEGRATORS = {
-    "esdirk4": {},
-    "genalpha": {"ts_type": "genalpha"},
-    "arkimex 3": {"ts_type": "arkimex", "ts_arkimex_type": "3"},
-    "arkimex 4": {"ts_type": "arkimex", "ts_arkimex_type": "4"},
-    "arkimex 3, contacts explicit": {"ts_type": "arkimex", "ts_arkimex_type": "3", "ts_arkimex_fully_implicit": "0"},
-    "arkimex 4, contacts explicit": {"ts_type": "arkimex", "ts_arkimex_type": "4", "ts_arkimex_fully_implicit": "0"},
-    "cn": {"ts_type": "cn"},
-    "bdf": {"ts_type": "bdf"},
-}
-WANTED = [1e-2, 1e-3, 1e-4, 1e-5]
 SETTLED = 10.0  # times what doubling the reference's step and elements changes: errors below are shown as that
 JUDGED = 0.25   # of an accuracy may be in doubt
 LEAST_ROUNDS, MOST_ROUNDS = 3, 20
 SECONDS = 8.0   # of a scene's rounds, where that allows more than the least
 LONG = 10.0     # s of a process that is timed once
-
-
-@dataclass
-class Scene:
-    name: str
-    file: str                  # in options/scenes, without what it says of mesh, step, samples and accuracy
-    step: float                # s, the longest one tried
-    halvings: int              # of it
-    meshes: list
-    mesh: str = "beam_elements_per_span"
-    denser: int = 4            # the reference's elements over the finest of these
-    wanted: list = field(default_factory=lambda: WANTED)
-    options: dict = field(default_factory=dict)
-
-
-MOVING_MASS = """beam: {spans: 25.0, EI: 8.323e9, mass: 2303.0, damping_ratios: 0.01}
-support: {types: [pinned, roller]}
-vehicle:
-  moving_mass:
-    bodies:  [body]
-    wheels:  [contact]
-    drivers: [level]
-    body:    {mass: 14394.0, inertia: 1.0, position: [0.0, 0.1]}
-    contact: {body: body, radius: 0.1, law: linear, stiffness: 1.0e9}
-    level:   {body: body, coordinate: phi}
-train: {vehicles: moving_mass, positions: 0.0, speed: 59.7}
-"""
-WRITTEN = {"r5_moving_mass": MOVING_MASS}
-LINEAR = {f"vehicle_coach_wheel_{i}_{key}": value
-          for i in range(1, 5) for key, value in (("law", "linear"), ("stiffness", 1.2e9))}
-TWO_COACHES = {"train_vehicles": "coach*2", "scene_tail": 0.2}
-COARSE, FINE, FINEST = [4, 8, 16, 32], [8, 16, 32, 64], [8, 16, 32, 64, 128]
-SCENES = [
-    Scene("R1, a force", "r1_moving_force", 0.0125, 8, FINEST),
-    Scene("R2, a sprung mass, linear wheel", "r2_sprung_mass", 0.04, 8, FINE),
-    Scene("R3, another one", "r3_sprung_mass", 0.04, 8, FINE),
-    Scene("R4, a Hertz wheel", "r4_hertz_wheel", 0.04, 8, FINE),
-    Scene("R5, a mass on a stiff linear wheel", "r5_moving_mass", 0.02, 8, FINEST),
-    Scene("R6, a force on three spans", "r6_three_spans", 0.025, 8, FINE),
-    Scene("R7, two masses", "r7_two_masses", 0.04, 8, FINEST),
-    Scene("R8, a coach on a ballasted bridge", "r8_ballasted_bridge", 0.01, 4, [1, 2], "track_elements_per_bay",
-          denser=2, wanted=WANTED[:2],
-          options={"train_positions": -15.8, "track_approach": 28.8, "scene_tail": 0.0}),
-    Scene("two coaches on three spans", "three_span_train", 0.02, 7, COARSE,
-          options=TWO_COACHES),
-    Scene("the same on linear wheels", "three_span_train", 0.02, 7, COARSE,
-          options=TWO_COACHES | LINEAR),
-    Scene("a wheel hops over a bump", "wheel_over_a_bump", 4e-3, 8, FINE, options={"beam_damping_ratios": 0.02}),
-    Scene("a coach on a rail on 100 pads", "rail_on_pads", 4e-3, 5, [200, 400, 800], denser=2, wanted=WANTED[:2],
-          options={"beam_spans": 60.0, "beam_rayleigh": "0,2e-5", "foundation_vertical_x": "0.3,59.7",
-                   "train_positions": 18.0, "ts_max_time": 0.25, "output_probes": "30.0,30.3"}),
-]
-SMALLEST = Scene("R3, a sprung mass", "r3_sprung_mass", 0.04, 3, [4, 8], wanted=[1e-2])
-
-
-def opened(name, folder):
-    """A copy of the scene's file that leaves mesh, step, samples and accuracy open."""
-    if name in WRITTEN:
-        text = WRITTEN[name]
-    else:
-        with open(runs.scene(name)) as file:
-            text = file.read()
-    text = text.replace("../", os.path.join(runs.ROOT, "options", ""))
-    text = re.sub(r"^( +(interval|dt|elements_per_span)|accuracy):.*\n", "", text, flags=re.M)
-    text = re.sub(r"^(output|ts):.*\n(?!\s)", "", text, flags=re.M)
-    path = os.path.join(folder, name + ".yml")
-    with open(path, "w") as file:
-        file.write(text)
-    return path
 
 
 class Point:
@@ -147,8 +68,14 @@ class Case:
         self.meshes = scene.meshes[:2] if quick else scene.meshes
         self.options = {"options_file": opened(scene.file, folder)} | scene.options
 
-    def fixed(self, mesh, step, integrator):
-        return self.options | INTEGRATORS[integrator] | {self.scene.mesh: mesh, "ts_dt": step, "step_probes": "true"}
+    def setting(self, mesh, step, way):
+        """Options of a run: mesh, or how many modes of the finest one; step, or tolerance, whichever the way has."""
+        options = self.options | WAYS[way] | {self.scene.mesh: mesh, "ts_dt": step, "step_probes": "true"}
+        if way in BY_MODES:
+            options |= {self.scene.mesh: self.scene.meshes[-1], "model_modes": mesh}
+        if way in ADAPTIVE:
+            options |= {"ts_dt": self.scene.step, "ts_rtol": step, "ts_atol": 1e-3 * step}
+        return options
 
     def find_reference(self):
         """Peaks, and how far each of them may be off: what doubling step and elements changes."""
@@ -156,7 +83,7 @@ class Case:
         settings = [(mesh, step), (mesh, 2 * step), (mesh // 2, step)]
         with ThreadPoolExecutor(2) as pool:
             fine, longer, coarser = pool.map(
-                lambda s: Point(self.build, self.folder, self.fixed(*s, "esdirk4")), settings)
+                lambda s: Point(self.build, self.folder, self.setting(*s, "esdirk4")), settings)
         self.finest = (mesh, step)
         self.reference = fine.peaks
         self.doubt = {q: (abs(longer.peaks[q] - p) + abs(coarser.peaks[q] - p)) / p for q, p in fine.peaks.items()}
@@ -167,32 +94,36 @@ class Case:
     def shown(self, errors):
         return {q: max(e, SETTLED * self.doubt[q]) for q, e in errors.items()}
 
-    def sequence(self, integrator, mesh):
-        """From the longest step on, until runs take too long or nothing but the mesh's error is left."""
-        points, before = {}, None
+    def sequence(self, way, mesh):
+        """From the longest step or loosest tolerance on, until runs take too long or nothing but the mesh's error is left."""
+        points, before, steps = {}, None, 0
         for k in range(self.halvings + 1):
-            step = self.scene.step / 2**k
+            step = LOOSEST / TIGHTER**k if way in ADAPTIVE else self.scene.step / 2**k
             try:
-                point = Point(self.build, self.folder, self.fixed(mesh, step, integrator))
+                point = Point(self.build, self.folder, self.setting(mesh, step, way))
             except runs.Failed as failed:
-                if not failed.step_is_too_long:
+                if way in BY_MODES and not failed.step_is_too_long:
+                    return []  # such a scene has no modes
+                if not failed.step_is_too_long and way not in ADAPTIVE:
                     raise
                 continue
             points[step] = point
             errors = self.shown(self.errors(point))
-            same = before and all(abs(errors[q] - before[q]) <= 0.03 * errors[q] for q in errors)
+            # Tolerances that the longest step keeps give the same steps.
+            same = before and point.steps != steps and all(abs(errors[q] - before[q]) <= 0.03 * errors[q] for q in errors)
             if same or 2.0 * point.seconds > self.longest:
                 break
-            before = errors
+            before, steps = errors, point.steps
         worst = dict.fromkeys(self.reference, 0.0)
         for step in sorted(points):
             worst = {q: max(worst[q], e) for q, e in self.errors(points[step]).items()}
             points[step].error = worst
-        return [(integrator, mesh, step, point) for step, point in points.items()]
+        return [(way, mesh, step, point) for step, point in points.items()]
 
     def try_all(self):
-        jobs = [(integrator, mesh) for integrator in INTEGRATORS for mesh in self.meshes
-                if "explicit" not in integrator or "wheel force" in self.reference]
+        jobs = [(way, mesh) for way in WAYS
+                for mesh in (MODES[:len(self.meshes)] if way in BY_MODES else self.meshes)
+                if "explicit" not in way or "wheel force" in self.reference]
         with ThreadPoolExecutor(2) as pool:
             self.points = [p for some in pool.map(lambda job: self.sequence(*job), jobs) for p in some]
         self.chosen = {wanted: Point(self.build, self.folder, self.options | {"accuracy": wanted})
@@ -285,10 +216,11 @@ def picture(cases, file):
         axis.axis("off")
     for axis, case in zip(axes.ravel(), cases):
         promised = case.promised(case.scene.wanted[min(2, len(case.scene.wanted) - 1)]) or ["deflection"]
-        for i, integrator in enumerate(INTEGRATORS):
-            own = front([p for p in case.points if p[0] == integrator], promised, case.shown)
+        for i, way in enumerate(WAYS):
+            own = front([p for p in case.points if p[0] == way], promised, case.shown)
             if own:
-                axis.loglog(*zip(*own), "o-", color=f"C{i}", ms=3, lw=1, label=integrator)
+                style = "s--" if way in BY_MODES else "^:" if way in ADAPTIVE else "o-"
+                axis.loglog(*zip(*own), style, color=f"C{i % 10}", ms=3, lw=1, label=way)
         axis.loglog(*zip(*front(case.points, promised, case.shown)), color="#BBBBBB", lw=5, zorder=0,
                     label="Pareto front")
         for wanted, point in case.chosen.items():
@@ -299,7 +231,7 @@ def picture(cases, file):
         axis.set_title(f"{case.scene.name}: {', '.join(promised)}", fontsize=8)
         axis.set(xlabel="seconds of the time loop", ylabel="error")
         axis.grid(True, alpha=0.3)
-    axes[0, 0].legend(fontsize=6)
+    max(axes.ravel(), key=lambda axis: len(axis.get_legend_handles_labels()[1])).legend(fontsize=6)
     figure.savefig(file, dpi=110)
     print(file)
 
@@ -351,7 +283,7 @@ def main():
             cases.append(case)
     summarise(rows)
     runs.write_table(os.path.join(given.out, "work_precision.csv"),
-                     ["scene", "integrator", "elements", "step", "unknowns", "steps", "seconds", "process seconds",
+                     ["scene", "way", "elements", "step", "unknowns", "steps", "seconds", "process seconds",
                       *("error of " + q for q in runs.PEAKS)], every)
     runs.write_table(os.path.join(given.out, "work_precision_accuracy.csv"), HEADER, [list(r.values()) for r in rows])
     picture(cases, os.path.join(given.out, "work_precision.png"))

@@ -49,7 +49,6 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
   peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
   envelope_ = Envelope(passages_of(scene));
   wheels_ = WheelExtremes(wheel_count_, system.corners());
-  unloading_ = WheelUnloading(wheel_count_);
 }
 
 void Watch::sample(const integrate::Instant& instant) {
@@ -162,7 +161,6 @@ void Watch::step(double t) {
   for (const train::WheelContact& c : fleet.wheels)
     if (!c.is_further) {
       const double force = fleet.load(c).normal;
-      unloading_.add(wheel, t, force);
       if (kept) filtered_wheels_->add(force);
       wheels_.add(wheel++, t, fleet.coordinates(c).x(), force);
     }
@@ -191,7 +189,7 @@ void Watch::note_wheels() {
   if (least.wheel < 0) return;
   summary_.least_wheel_force_time = least.time;
   summary_.least_wheel = wheel_name(fleet, static_cast<std::size_t>(least.wheel));
-  const Largest& lost = unloading_.largest();
+  const Largest& lost = wheels_.unloading();
   if (lost.known() && scene_.start == Start::equilibrium)
     summary_.unloading = {lost.value, lost.time, wheel_name(fleet, lost.which)};
 }
@@ -224,8 +222,8 @@ const results::Summary& Watch::finished_extremes() {
 }
 
 void Watch::keep(base::Archive& archive) {
-  archive.same(peaks_, envelope_, wheels_, unloading_, paths_, energy_at_start_, first_, last_apart_, sample_.time,
-               now_.probes, most_deflected_);
+  archive.same(peaks_, envelope_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time, now_.probes,
+               most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);
   archive.same(axle_passages_);

@@ -89,7 +89,6 @@ class Watch {
   std::optional<DeckAcceleration> deck_;
   std::optional<Judge> judge_;
   WheelExtremes wheels_;
-  WheelUnloading unloading_;
   std::optional<FilteredWheels> filtered_wheels_;
   AxlePassages axle_passages_;
   train::WheelPaths paths_;  // where wheels are free to change their distances

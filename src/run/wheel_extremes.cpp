@@ -12,11 +12,13 @@ constexpr double alike = 4.0;
 
 }  // namespace
 
-WheelExtremes::WheelExtremes(std::size_t wheels, std::vector<double> kinks) : seen_(wheels), kinks_(std::move(kinks)) {}
+WheelExtremes::WheelExtremes(std::size_t wheels, std::vector<double> kinks)
+    : seen_(wheels), at_start_(wheels, 0.0), kinks_(std::move(kinks)) {}
 
 void WheelExtremes::note(double force, double time, std::size_t wheel) {
   if (force < least_.force) least_ = {force, time, static_cast<int>(wheel)};
   if (force > greatest_.force) greatest_ = {force, time, static_cast<int>(wheel)};
+  if (at_start_[wheel] > 0.0) unloading_.note(std::max(0.0, 1.0 - force / at_start_[wheel]), time, wheel);
 }
 
 void WheelExtremes::add(std::size_t wheel, double t, double x, double force) {
@@ -26,6 +28,7 @@ void WheelExtremes::add(std::size_t wheel, double t, double x, double force) {
   seen.x = {seen.x[1], seen.x[2], x};
   seen.force = {seen.force[1], seen.force[2], force};
   note(force, t, wheel);
+  if (at_start_[wheel] <= 0.0) at_start_[wheel] = force;
   if (++seen.count >= 3) look_between(seen, wheel);
 }
 

@@ -1,4 +1,5 @@
-// The least and the greatest normal force of all wheels, looked for at every step and between steps by parabolas.
+// The least and the greatest normal force of all wheels, and the largest part of its force at the start that one loses,
+// looked for at every step and between steps by parabolas.
 #pragma once
 
 #include <array>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
+#include "run/judged_motion.hpp"
 
 namespace traverse::app {
 
@@ -27,7 +29,9 @@ class WheelExtremes {
 
   const WheelExtreme& least() const { return least_; }
   const WheelExtreme& greatest() const { return greatest_; }
-  void keep(base::Bytes& bytes) { bytes(seen_, least_, greatest_); }
+  /// Over the force at the start.
+  const Largest& unloading() const { return unloading_; }
+  void keep(base::Bytes& bytes) { bytes(seen_, at_start_, least_, greatest_, unloading_); }
 
  private:
   /// The latest instants of a wheel, the last one at the end.
@@ -39,8 +43,10 @@ class WheelExtremes {
   void look_between(const Seen& seen, std::size_t wheel);
 
   std::vector<Seen> seen_;
+  std::vector<double> at_start_;  // N, of every wheel
   std::vector<double> kinks_;
   WheelExtreme least_{std::numeric_limits<double>::infinity()}, greatest_{-std::numeric_limits<double>::infinity()};
+  Largest unloading_;
 };
 
 }  // namespace traverse::app

@@ -52,13 +52,6 @@ std::string wheel_name(const train::Fleet& fleet, std::size_t wanted) {
   return "";
 }
 
-void WheelUnloading::add(std::size_t wheel, double t, double force) {
-  if (at_start_[wheel] <= 0.0)
-    at_start_[wheel] = force;
-  else
-    largest_.note(std::max(0.0, 1.0 - force / at_start_[wheel]), t, wheel);
-}
-
 bool filters_wheels(const Scene& scene) {
   const bool limited = std::any_of(scene.limits.begin(), scene.limits.end(), [](const options::VerdictLimit& limit) {
     return limit.quantity == "filtered_wheel_unloading" || limit.quantity == "unloading_time";

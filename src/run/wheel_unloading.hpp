@@ -1,4 +1,4 @@
-// How much of its force at the start each wheel loses: as it is, and low-passed.
+// How much of its force at the start each wheel loses, low-passed.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "results/recorder.hpp"
-#include "run/judged_motion.hpp"
 #include "run/plan.hpp"
 #include "train/fleet.hpp"
 #include "traverse/scene/scene.hpp"
@@ -15,20 +14,6 @@ namespace traverse::app {
 
 /// "vehicle 3, rear_wheel", of the wheels in the order of the fleet without further points of contact.
 std::string wheel_name(const train::Fleet& fleet, std::size_t wheel);
-
-/// The largest part, of the forces as they are, at the ends of steps.
-class WheelUnloading {
- public:
-  explicit WheelUnloading(std::size_t wheels = 0) : at_start_(wheels, 0.0) {}
-  void add(std::size_t wheel, double t, double force);
-
-  const Largest& largest() const { return largest_; }  // over the force at the start; which: the wheel
-  void keep(base::Bytes& bytes) { bytes(at_start_, largest_); }
-
- private:
-  std::vector<double> at_start_;  // N
-  Largest largest_;
-};
 
 /// Whether forces are to be low-passed: the scene has wheels at rest at the start, and the user or a limit asks for it.
 bool filters_wheels(const Scene& scene);

@@ -61,8 +61,10 @@ bool lose_contact(const std::vector<CrossingResult>& runs) {
                      [](const CrossingResult& run) { return run.trouble == lanes::contact_lost; });
 }
 
-LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance)
-    : scene_(std::move(scene)) {
+LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
+                       const LaneTrials* before)
+    : scene_(std::move(scene)),
+      before_(before != nullptr && before->scene_.beam->spans == scene_.beam->spans ? before : nullptr) {
   for (const std::vector<double>& group : speeds) {
     std::vector<LaneRun>& runs = groups_.emplace_back();
     for (const std::uint64_t seed : scene_.sweep->seeds)
@@ -92,12 +94,12 @@ double LaneTrials::defect(const LaneModel& model) const {
   return std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; })->defect;
 }
 
-/// That of a setup with the same mesh and more modes; null: none.
+/// That of a setup with the same mesh and at least as many modes; null: none.
 const modes::Basis* LaneTrials::basis_with(const LaneModel& model) const {
   for (const auto& [numbers, setup] : setups_)
-    if (numbers.second == model.elements && numbers.first > model.modes && setup && setup->shared->modal)
+    if (numbers.second == model.elements && numbers.first >= model.modes && setup && setup->shared->modal)
       return &setup->shared->modal->basis();
-  return nullptr;
+  return before_ != nullptr ? before_->basis_with(model) : nullptr;
 }
 
 LaneTrials::Setup& LaneTrials::setup(const LaneModel& model) {

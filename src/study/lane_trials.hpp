@@ -41,7 +41,9 @@ class LaneTrials {
  public:
   /// Groups of speeds, those of a group in one class, or the slowest one first; distance: of every passage, m. A group
   /// of one speed goes over the tracks of the scene's sweep too, its own track last, as many as there are lanes.
-  LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance);
+  /// before: trials whose modes serve for these too, where the bridge is the same; it must outlive these.
+  LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
+             const LaneTrials* before = nullptr);
 
   /// Kept. Refused where runs cannot go side by side.
   const std::vector<lanes::CrossingResult>& run(const LaneModel& model);
@@ -71,6 +73,7 @@ class LaneTrials {
   const modes::Basis* basis_with(const LaneModel& model) const;
 
   Scene scene_;
+  const LaneTrials* before_;
   std::vector<std::vector<LaneRun>> groups_;
   std::map<std::pair<int, int>, std::unique_ptr<Setup>> setups_;  // by modes and elements
   std::deque<Kept> kept_;                                         // references to its entries stay

@@ -13,6 +13,7 @@ import fidelity  # noqa: E402
 import promises  # noqa: E402
 import scene_texts  # noqa: E402
 import work_precision  # noqa: E402
+import work_precision_scenes as wp  # noqa: E402
 
 
 class InAFolder(unittest.TestCase):
@@ -24,14 +25,14 @@ class InAFolder(unittest.TestCase):
 
 class WorkPrecision(InAFolder):
     def test_scenes_leave_mesh_and_step_open(self):
-        for scene in work_precision.SCENES:
-            with open(work_precision.opened(scene.file, self.folder)) as file:
+        for scene in wp.SCENES:
+            with open(wp.opened(scene.file, self.folder)) as file:
                 text = file.read()
             for word in ("elements_per_span:", " dt:", " interval:", "accuracy:"):
                 self.assertNotIn(word, text, scene.file)
 
     def test_a_small_scene(self):
-        scene = work_precision.Scene("R3", "r3_sprung_mass", 0.04, 3, [4, 8], wanted=[1e-2])
+        scene = wp.Scene("R3", "r3_sprung_mass", 0.04, 3, [4, 8], wanted=[1e-2])
         case = work_precision.Case(BUILD, self.folder, scene, quick=False, longest=float("inf"))
         case.find_reference()
         # REAL_CASES R3, converged.
@@ -49,10 +50,10 @@ class WorkPrecision(InAFolder):
 
 
     def test_options_of_a_scene_come_after_its_file(self):
-        scene = work_precision.Scene("two coaches", "three_span_train", 0.02, 0, [4], wanted=[],
-                                     options=work_precision.TWO_COACHES)
+        scene = wp.Scene("two coaches", "three_span_train", 0.02, 0, [4], wanted=[],
+                                     options=wp.TWO_COACHES)
         case = work_precision.Case(BUILD, self.folder, scene, quick=True)
-        point = work_precision.Point(BUILD, self.folder, case.fixed(4, 0.02, "genalpha"))
+        point = work_precision.Point(BUILD, self.folder, case.setting(4, 0.02, "genalpha"))
         self.assertIn("vehicles 2,", point.text)
 
 

@@ -24,6 +24,9 @@ TEST(WheelExtremes, LieBetweenSteps) {
     EXPECT_EQ(extremes.least().wheel, 1);
     EXPECT_NEAR(10.0 * extremes.least().time + 0.1, std::acos(-1.0) / 2.0, std::pow(10.0 * dt, 2));
     EXPECT_NEAR(extremes.greatest().force, 150.0, allowed) << dt;
+    const double at_start = 100.0 - 50.0 * std::sin(0.1);
+    EXPECT_NEAR(extremes.unloading().value, 1.0 - 50.0 / at_start, allowed / at_start) << dt;
+    EXPECT_EQ(extremes.unloading().which, 1u);
   }
 }
 
