@@ -19,10 +19,6 @@ constexpr std::array step_factors = {2.0, 1.4, 1.0, 0.7, 0.5};  // times the ste
 constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 // Each is compared with half as many more; errors that fall with the square or faster are at most 1.8 times the change.
 constexpr double more_modes = 1.5, of_the_change = 1.8;
-// Where two comparisons have shown by which power they fall, the larger number is judged too, by this power at most.
-// With few modes changes may be small by chance, and another comparison costs little.
-constexpr double least_measured = 2.0, most_measured = 3.0;
-constexpr int fewest_judged = 32;
 constexpr double order_of_modes = 6.0;   // that errors of the modes fall with at most: what is farther off is not tried
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a finer mesh has to agree
 constexpr double clearly_finer = 1.3, order_of_mesh = 4.0;
@@ -36,12 +32,9 @@ int mesh_for(const Scene& scene, int modes) {
 }
 
 /// The finer one goes first, as modes of the coarser one may be among its own.
-LaneErrors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to) {
+LaneErrors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to, double factor = 1.0) {
   const std::vector<CrossingResult>& fine = trials.run(to);
-  return difference(trials.scene(), trials.run(from), fine);
-}
-
-LaneErrors times(LaneErrors errors, double factor) {
+  LaneErrors errors = difference(trials.scene(), trials.run(from), fine);
   for (double& error : errors) error *= factor;
   return errors;
 }
@@ -56,21 +49,8 @@ std::optional<LaneModel> LaneSearch::run(double first_step) {
   const int modes = numbers_of_modes.front();
   LaneModel model{modes, mesh_for(trials_.scene(), modes), structure::find_method("esdirk4"), first_step};
   // Steps first, as modes are told apart by what the contacts do to them.
-  if (!halve_step(model) || !add_modes(model) || !refine_mesh(model)) return std::nullopt;
-  return model;
-}
-
-std::optional<LaneModel> LaneSearch::settle_step(LaneModel model) {
-  if (!halve_step(model)) return std::nullopt;
-  LaneModel exact = model;
-  exact.step *= 0.5;
-  return cheaper(model, exact, {}, [](const LaneModel&) { return true; });
-}
-
-LaneModel LaneSearch::with_fewer_solves(const LaneModel& model) {
-  return cheaper(model, model, steps_, [&](const LaneModel& tried) {
-    return tried.method != model.method && follows_contacts(trials_.scene(), tried.step);
-  });
+  if (!halve_step(model) || !add_modes(model) || !refine_mesh(model) || !halve_step(model)) return std::nullopt;
+  return cheaper(model);
 }
 
 bool LaneSearch::halve_step(LaneModel& model) {
@@ -96,70 +76,49 @@ LaneModel LaneSearch::with_more_modes(const LaneModel& model) {
 }
 
 bool LaneSearch::add_modes(LaneModel& model) {
-  const double allowed = part_of_modes * accuracy_;
-  double fewest = 0.0, before = 0.0, change_before = 0.0;
+  double fewest = 0.0;
   for (const int modes : numbers_of_modes) {
     if (modes < fewest) continue;
     model.modes = modes;
-    LaneModel more = with_more_modes(model);
+    const LaneModel more = with_more_modes(model);
     model.elements = more.elements;
-    const LaneErrors changes = change(mixed_, model, more);
-    const double largest = greatest(changes), over = of_the_change * largest / allowed;
-    dense_ = more.elements;
+    modes_ = change(mixed_, model, more, of_the_change);
+    const double over = greatest(modes_) / (part_of_modes * accuracy_);
     if (over <= 1.0) {
-      modes_ = times(changes, of_the_change);
-      model.elements = mesh_for(trials_.scene(), modes);
-      return true;
-    }
-    const double order = before > 0.0 ? std::log(change_before / largest) / std::log(modes / before) : 0.0;
-    const double ratio = static_cast<double>(more.modes) / modes;
-    const double left = 1.0 / (std::pow(ratio, std::min(order, most_measured)) - 1.0);  // of the change, by `more`
-    if (modes >= fewest_judged && order >= least_measured && left * largest <= allowed &&
-        more.modes <= numbers_of_modes.back()) {
-      modes_ = times(changes, left);
-      model.modes = more.modes;
+      dense_ = more.elements;
       model.elements = mesh_for(trials_.scene(), modes);
       return true;
     }
     fewest = modes * std::pow(over, 1.0 / order_of_modes);
-    before = modes;
-    change_before = largest;
   }
   return false;
 }
 
-/// Against the mesh that the modes were compared on, where it is fine enough: its runs are known. The comparison judges
-/// the finer mesh too, as errors of meshes fall with the fourth power.
+/// Against the mesh that the modes were compared on, where it is fine enough: its runs are known.
 bool LaneSearch::refine_mesh(LaneModel& model) {
-  const auto fine_enough = [&] {
-    LaneErrors both = mesh_;
-    for (std::size_t q = 0; q < quantities; ++q) both[q] += modes_[q];
-    return greatest(both) <= (part_of_modes + part_of_mesh) * accuracy_;
-  };
   for (int i = 0; trials_.scene().mesh_open && i < most_halvings; ++i) {
     LaneModel finer = model;
     finer.elements = dense_ >= clearly_finer * model.elements ? dense_ : 2 * model.elements;
-    const double fall = std::pow(static_cast<double>(model.elements) / finer.elements, order_of_mesh);
-    const LaneErrors changes = change(mixed_, model, finer);
-    mesh_ = times(changes, 1.0 / (1.0 - fall));
-    if (fine_enough()) return true;
+    const double ratio = static_cast<double>(model.elements) / finer.elements;
+    mesh_ = change(mixed_, model, finer, 1.0 / (1.0 - std::pow(ratio, order_of_mesh)));
+    LaneErrors both = mesh_;
+    for (std::size_t q = 0; q < quantities; ++q) both[q] += modes_[q];
+    if (greatest(both) <= (part_of_modes + part_of_mesh) * accuracy_) return true;
     model = finer;
-    mesh_ = times(changes, fall / (1.0 - fall));
-    if (fine_enough()) return true;
   }
   return !trials_.scene().mesh_open;
 }
 
-/// A longer step, or the method of one solve a step, where that is allowed and costs less. exact: has the errors `its`.
-LaneModel LaneSearch::cheaper(const LaneModel& model, const LaneModel& exact, const LaneErrors& its,
-                              const std::function<bool(const LaneModel&)>& allowed) {
+/// A longer step, or the method of one solve a step, where that costs less.
+LaneModel LaneSearch::cheaper(const LaneModel& model) {
+  LaneModel exact = model;
+  exact.step *= 0.5;
   LaneModel best = model;
   for (const char* method : methods)
     for (const double factor : step_factors) {
       const LaneModel tried = {model.modes, model.elements, structure::find_method(method), factor * model.step};
-      if (solves(tried) >= solves(best) || !allowed(tried)) continue;
-      LaneErrors own = change(trials_, tried, exact);
-      for (std::size_t q = 0; q < quantities; ++q) own[q] += its[q];
+      if (solves(tried) >= solves(best)) continue;
+      const LaneErrors own = change(trials_, tried, exact);
       const double over = greatest(own) / (part_of_steps * accuracy_);
       if (over > std::pow(factor / step_factors.back(), tried.method->order)) break;  // nor will the shortest do
       if (over > 1.0) continue;

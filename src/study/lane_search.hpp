@@ -1,7 +1,6 @@
 // The search for modes, mesh, method and step of runs by the lanes' kernel.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "study/lane_trials.hpp"
@@ -15,13 +14,8 @@ class LaneSearch {
   LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy)
       : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
-  /// Modes and mesh within the accuracy, and a step that tells them apart, by steps that begin with this one, s; empty:
-  /// none.
+  /// The cheapest model within the accuracy, by steps that begin with this one, s; empty: none.
   std::optional<LaneModel> run(double first_step);
-  /// The model by the cheapest method and step within the accuracy, compared with half the step; empty: none.
-  std::optional<LaneModel> settle_step(LaneModel model);
-  /// By a method of fewer solves, where that differs from the model by no more than the accuracy leaves; or as it is.
-  LaneModel with_fewer_solves(const LaneModel& model);
   /// Of modes and mesh, and of the steps.
   double error_of_model(std::size_t q) const { return modes_[q] + mesh_[q]; }
   double error_of_steps(std::size_t q) const { return steps_[q]; }
@@ -31,8 +25,7 @@ class LaneSearch {
   bool add_modes(LaneModel& model);
   LaneModel with_more_modes(const LaneModel& model);
   bool refine_mesh(LaneModel& model);
-  LaneModel cheaper(const LaneModel& model, const LaneModel& exact, const LaneErrors& its,
-                    const std::function<bool(const LaneModel&)>& allowed);
+  LaneModel cheaper(const LaneModel& model);
 
   LaneTrials &trials_, &mixed_;
   double accuracy_;

@@ -31,8 +31,8 @@ constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
 constexpr double part_of_all = 0.95;     // of the wanted error
 constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
 constexpr int most_shortenings = 6;
-constexpr double shorter = 0.7;                 // a quarter of an error of fourth order
-constexpr std::array longer = {2.0, 1.4, 1.0};  // times the step
+constexpr double shorter = 0.7;  // a quarter of an error of fourth order
+constexpr double longer = 1.4;
 constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
 constexpr double weight_of_touch = 20.0, beside_a_hinge = 50.0;  // as measured: of accelerations
 
@@ -130,22 +130,18 @@ class Chooser {
 
   LanesChoice choose() {
     LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, (alone_ ? part_alone : 1.0) * scene_.accuracy);
-    double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
-    while (alone_ && !follows_contacts(scene_, first)) first *= 0.5;  // peaks may agree by chance
-    std::optional<LaneModel> found = search.run(first);
-    if (found) found = alone_ ? search.with_fewer_solves(*found) : search.settle_step(*found);
+    const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
+    const std::optional<LaneModel> found = search.run(first);
     if (!found) throw NotChosen{"the peaks do not settle to the accuracy by modes"};
     model_ = *found;
     if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
-    const double defect = beginnings_->defect(model_), touch = touch_ahead();
+    const double defect = beginnings_->defect(model_);
     if (scene_.vehicle_model == VehicleModel::automatic && defect > most_defect(scene_))
       throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
     LanesChoice choice;
-    const double factor = alone_ ? settle_alone(search, choice) : check_wholes(search, choice);
-    if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
-    model_.step *= factor;
+    check_wholes(search, choice);
     for (std::size_t q = 0; q < quantities; ++q)
-      if (asks_for(scene_, q)) choice.errors[q] += defect + touch;
+      if (asks_for(scene_, q)) choice.errors[q] += defect + touch_ahead();
     if (greatest(choice.errors) > scene_.accuracy)
       throw NotChosen{"wheels touch the bridge's slopes ahead of their centres"};
     choice.scene = with(scene_, model_);
@@ -175,49 +171,24 @@ class Chooser {
     return weight * scene_.vehicles.front().wheels.front().radius * deflection / (length * length);
   }
 
-  /// Whole passages, as errors add up while the train crosses, against half the step.
-  double check_wholes(const LaneSearch& search, LanesChoice& choice) {
+  /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
+  /// should not cost several, against a longer one, by errors that fall at least with the third power, or the method's.
+  void check_wholes(const LaneSearch& search, LanesChoice& choice) {
     for (int i = 0; i <= most_shortenings; ++i) {
       if (i > 0) model_.step *= shorter;
       LaneModel other = model_;
-      other.method = structure::find_method("esdirk4");
-      other.step *= 0.5;
+      if (!alone_) other.method = structure::find_method("esdirk4");
+      other.step *= alone_ ? longer : 0.5;
       Errors along = difference(scene_, wholes_->run(model_), wholes_->run(other));
-      for (std::size_t q = 0; i == 0 && q < quantities; ++q) along[q] = std::max(along[q], search.error_of_steps(q));
-      if (keeps(search, along, 1.0, choice)) return 1.0;
+      const double growth = std::pow(longer, std::min(model_.method->order, 3));
+      for (double& error : along) error *= alone_ ? 1.0 / (growth - 1.0) : 1.0;
+      for (std::size_t q = 0; q < quantities; ++q)
+        choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
+      if (greatest(choice.errors) <= part_of_all * scene_.accuracy) break;
     }
-    throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, choice.errors))};
-  }
-
-  /// By how much longer a step than the model's whole passages keep the accuracy. They are compared with those of
-  /// longer steps, which cost less than shorter ones would, by errors that fall with the third power, or the method's.
-  double settle_alone(const LaneSearch& search, LanesChoice& choice) {
-    const int order = std::min(model_.method->order, 3);
-    const auto along = [&](double step) {
-      LaneModel other = model_;
-      other.step = step;
-      Errors errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
-      for (double& error : errors) error /= std::pow(step / model_.step, order) - 1.0;
-      return errors;
-    };
-    for (const double ratio : {longer[0], longer[1]}) {
-      const Errors errors = along(ratio * model_.step);
-      for (const double factor : longer)
-        if (follows_contacts(scene_, factor * model_.step) && keeps(search, errors, std::pow(factor, order), choice))
-          return factor;
-    }
-    for (int i = 0; i < most_shortenings; ++i) {
-      const double before = model_.step;
-      model_.step *= shorter;
-      if (keeps(search, along(before), 1.0, choice)) return 1.0;
-    }
-    throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, choice.errors))};
-  }
-
-  /// Whether that keeps the accuracy, with so many times the errors of the steps along the passages.
-  bool keeps(const LaneSearch& search, const Errors& along, double times, LanesChoice& choice) const {
-    for (std::size_t q = 0; q < quantities; ++q) choice.errors[q] = search.error_of_model(q) + times * along[q];
-    return greatest(choice.errors) <= part_of_all * scene_.accuracy;
+    if (greatest(choice.errors) > part_of_all * scene_.accuracy)
+      throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, choice.errors))};
+    if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
   }
 
   const Scene& scene_;
@@ -275,8 +246,9 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
   for (const double part : beside) scene.sweep->speeds.push_back(part * given.train.speed);
   const std::vector<std::vector<double>> speeds = some_speeds(scene.sweep->speeds, {0.0}, trial_lanes);
   try {
-    Chooser chooser(scene, {speeds, {}, speeds}, true);
+    Chooser chooser(scene, {speeds, {}, {{given.train.speed}}}, true);
     LanesChoice choice = chooser.choose();
+    if (!follows_contacts(given, chooser.model().step)) return std::nullopt;  // peaks may agree by chance
     choice.scene.sweep.reset();
     choice.scene.integrator = chooser.model().method->name;
     notes.push_back(fmt::format(

@@ -18,7 +18,7 @@ sys.path.insert(0, str(SOURCE / "benchmarks"))
 WITH_PROGRAMS = {"step_parts": "step_parts_benchmark", "ranks": "step_parts_benchmark",
                  "scaling": "step_parts_benchmark"}
 OF_OTHERS = {"peers_here"}  # runs no program of ours
-PARTS = {"runs", "scene_texts", "beam_solver_picture"}  # imported by the others, or draws a table that is given
+PARTS = {"runs", "scene_texts", "work_precision_scenes", "beam_solver_picture"}  # imported by the others, or draws a table that is given
 
 
 class Scripts(InAFolder):
@@ -120,12 +120,12 @@ class Scripts(InAFolder):
         text = self.run_smallest("work_precision")
         self.assertIn("worst error over the accuracy: 0.", text)
         rows = self.table("work_precision.csv", [
-            "scene", "integrator", "elements", "step", "unknowns", "steps", "seconds", "process seconds",
+            "scene", "way", "elements", "step", "unknowns", "steps", "seconds", "process seconds",
             "error of deflection", "error of acceleration", "error of moment", "error of wheel force"])
-        self.assertEqual(len({row["integrator"] for row in rows}), 8)
+        self.assertEqual(len({row["way"] for row in rows}), 12)
         self.assert_positive(rows, "elements", "step", "unknowns", "steps", "seconds", "process seconds")
         self.assert_errors(rows, "error of deflection", 0.2)
-        best = [row for row in rows if row["integrator"] == "esdirk4" and row["elements"] == "8"]
+        best = [row for row in rows if row["way"] == "esdirk4" and row["elements"] == "8"]
         self.assert_errors([min(best, key=lambda row: float(row["step"]))], "error of deflection", 1e-3)
         row, = self.table("work_precision_accuracy.csv", [
             "scene", "accuracy", "elements", "step", "error over accuracy", "worst", "ms", "process ms", "cheapest",

@@ -47,6 +47,10 @@ TEST_P(SceneFile, RunsToItsEnd) {
     EXPECT_GT(results("/static/moment").size(), 0u);
     return;
   }
+  if (outcome.out.find("UIC 774-3") != std::string::npos) {
+    EXPECT_GT(results("/rail_forces/in_sequence/greatest_stress").size(), 0u);
+    return;
+  }
   EXPECT_NE(outcome.out.find("reached its end"), std::string::npos) << outcome.out;
   const bool sweep = outcome.out.find("  the sweep ") != std::string::npos;
   if (sweep) {
