@@ -52,6 +52,19 @@ TEST(BadRailForces, NeedATrackAndTheAreaOfItsRails) {
   expect_refused([&] { run_yaml(text); }, {"scene_analysis = rail", "track_rail_area"});
 }
 
+// Where no sleeper slides, and a train changes nothing of what holds it, the order of loads does not matter.
+TEST(RailForcesOfALinearTrack, AddUp) {
+  std::string text(deck);
+  const std::string sliding = ", limit: 12000.0, loaded_k: 1.8e7, loaded_limit: 36000.0";
+  text.erase(text.find(sliding), sliding.size());
+  Results run = run_yaml(text, {{"beam_temperature_uniform", "30"}, {"uic774_traction", "0"}});
+  for (const char* side : {"/least_stress", "/greatest_stress", "/greatest_slip"}) {
+    const std::vector<double> sum = run("/rail_forces/separate" + std::string(side));
+    for (const char* name : {"in_sequence", "at_once"})
+      EXPECT_LT(relative_difference(run("/rail_forces/" + std::string(name) + side), sum), 1e-9) << name << side;
+  }
+}
+
 // A train that runs the other way over a symmetric bridge does the mirror image.
 TEST(RailForcesBothWays, AreMirrorImages) {
   const Values free_bearings = {{"foundation_longitudinal_x", "0,12"}, {"foundation_longitudinal_side", "right"}};
