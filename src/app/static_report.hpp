@@ -1,0 +1,47 @@
+// How analyses at rest end: verdicts, a table on the terminal, the results file.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analyses.hpp"
+#include "results/recorder.hpp"
+#include "results/verdict.hpp"
+#include "run/model_record.hpp"
+#include "run/outputs.hpp"
+#include "run/process.hpp"
+#include "run/signals.hpp"
+
+namespace traverse::app {
+
+/// Collective. Found: find(verdicts), print(), record(recorder). The exit status.
+template <class Found>
+int report_at_rest(Job& job, const Found& found) {
+  const Scene& scene = job.scene;
+  std::vector<results::Verdict> verdicts;
+  for (const options::VerdictLimit& limit : scene.limits)
+    verdicts.push_back({limit, std::string(options::limit_quantity(limit.quantity)->unit), {}, 1, 0});
+  found.find(verdicts);
+  int rank = 0;
+  MPI_Comm_rank(job.comm, &rank);
+  if (rank == 0) {
+    found.print();
+    results::print_verdicts(verdicts);
+  }
+  if (scene.output.file.empty()) return 0;
+  const SignalsNoted noted;  // a moment, and the file is complete
+  results::Layout layout;
+  layout.constants = stations({}, job.beam.beam->mesh().span_ends());
+  results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, scene), scene.options);
+  record_model(scene, job.notes, recorder);
+  found.record(recorder);
+  results::record_verdicts(recorder, verdicts);
+  recorder.finish_with({{"ended", "reached its end"}});
+  if (rank == 0) fmt::print("results  {}\n", scene.output.file);
+  return 0;
+}
+
+}  // namespace traverse::app
