@@ -114,13 +114,16 @@ def judge(build, name, text, accuracies, longest=LONGEST):
             run = runs.Run(build, {"options_file": scene, "accuracy": accuracy}, results)
             found, promised = peaks(run)
             errors = {q: abs(found[q] / p - 1.0) for q, p in truth.items() if p > 0.0}
-            judged = [q for q in errors if promised[q] and doubt[q] <= JUDGED * accuracy]
+            certain = [q for q in errors if doubt[q] <= JUDGED * accuracy]
+            judged = [q for q in certain if promised[q]]
+            small = [q for q in certain if errors[q] < 0.5 * accuracy]
             trials = re.search(r"accuracy \S+: (.*?);.*trial runs of \S+ s took (\S+) s", run.text)
             rows.append({
                 "scene": name, "accuracy": accuracy, "worst": max((errors[q] / accuracy for q in judged), default=0.0),
                 "of": max(judged, key=lambda q: errors[q], default=""), "judged": len(judged),
                 "not promised": [q for q in errors if not promised[q]],
                 "in doubt": [q for q in errors if promised[q] and q not in judged],
+                "small": len(small), "small but refused": [q for q in small if not promised[q]],
                 "trials": float(trials[2]) if trials else 0.0, "loop": run.seconds, "process": run.process_seconds,
                 "chosen": trials[1] if trials else ""} | errors)
         return rows
@@ -157,6 +160,8 @@ def main():
     print(f"kept in {sum(worst <= 1.0 for worst in judged)} of {len(judged)} runs that could be judged; the median of true "
           f"errors over what was asked is {judged[len(judged) // 2]:.2g}, {sum(worst < 0.01 for worst in judged)} are more "
           f"than 100 times smaller" if judged else "no run could be judged")
+    print(f"of {sum(row['small'] for row in rows)} peaks whose true error is below half of what was asked "
+          f"{sum(len(row['small but refused']) for row in rows)} were not promised")
     path = os.path.join(given.out, "promises.csv")
     with open(path, "w", newline="") as file:
         table = csv.DictWriter(file, list(rows[0]) + [q for q in QUANTITIES if q not in rows[0]], restval="")

@@ -42,7 +42,7 @@ void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, 
   if (!expected.empty()) notes.push_back("expected errors of the peaks: " + expected);
   for (std::size_t q = 0; q < quantities; ++q)
     if (result.promises[q].present && !result.promises[q].kept)
-      notes.push_back(fmt::format("not promised: {}: {}", quantity_names[q], result.promises[q].why_not));
+      notes.push_back(not_promised(static_cast<Quantity>(q), result.promises[q]));
 }
 
 }  // namespace
@@ -94,6 +94,15 @@ std::string stored_name(std::size_t quantity) { return with_underscores(quantity
 bool asks_for(const Scene& scene, std::size_t quantity) {
   const std::vector<std::string>& asked = scene.accuracy_of;
   return asked.empty() || std::find(asked.begin(), asked.end(), stored_name(quantity)) != asked.end();
+}
+
+std::string not_promised(Quantity quantity, const Promise& promise) {
+  return fmt::format("not promised: {}: {}", quantity_names[quantity], promise.why_not);
+}
+
+bool damps_high_modes(const Scene& scene) {
+  const Damping& damping = scene.damping;
+  return (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
 }
 
 void Accuracy::promise_nothing() {

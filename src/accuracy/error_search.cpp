@@ -18,7 +18,7 @@ namespace traverse::app {
 namespace {
 
 // Of the wanted error, for the step and for the mesh each; less where errors fall too slowly to be told well.
-constexpr double usual_share = 0.4, small_share = 0.25, small_error = 3e-5;
+constexpr double usual_share = 0.4, small_share = 0.25, small_error = 1e-4;
 constexpr double supposed = 1.5;      // times a measured size that an error is extrapolated to by a supposed order
 constexpr double best_effort = 10.0;  // times the wanted error, of what is refused
 constexpr int most_rounds = 14;
@@ -85,14 +85,13 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
   const double left = end - moved_by();
   growth_ = std::clamp(std::min(left, decay > 0.0 ? 1.0 / decay : left) / horizon_, 1.0, most_growth);
   for (std::size_t q = 0; q < quantities; ++q)
-    if (!asks_for(scene, q)) refuse(q, "accuracy_of does not ask for it");
+    if (!asks_for(scene, q)) refuse(q, not_asked_for);
   if (!follows_contacts(scene, step_))
     refuse(wheel_force, fmt::format("the contact vibrates at {:.3g} Hz, which steps of {:.2g} s do not follow",
                                     contact_frequency(scene) / (2.0 * std::numbers::pi), step_));
   // A force that comes onto a beam starts all its modes, the nth with an acceleration like 1/n.
   undamped_ = shared.rayleigh.b <= 0.0 && !scene.beam->track && !scene.by_given_modes();
-  if (undamped_)
-    refuse(acceleration, "without damping that grows with the frequency the accelerations of all modes have no sum");
+  if (undamped_) refuse(acceleration, no_sum);
 }
 
 /// How much later than the run its trials begin, s.
@@ -276,7 +275,7 @@ void ErrorSearch::count_alike() {
 ErrorLaw ErrorSearch::error_in_time(Quantity q) {
   const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
   // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
-  double most = q != moment || !undamped_ ? highest_order : time_[q].size > 0.0 ? 2.0 : 1.0;
+  double most = q != moment || !undamped_ ? highest_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
   if (q == acceleration && dampers_let_go(scene_.beam->foundation)) most = 1.0;
   return error_from(growth_ * change, step_, time_[q], most);
 }

@@ -10,7 +10,7 @@
 #include "accuracy/mechanism_step.hpp"
 #include "accuracy/trials.hpp"
 #include "modes/modes.hpp"
-#include "prepare.hpp"
+#include "ready_run.hpp"
 #include "results/recorder.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
@@ -70,11 +70,15 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
 }
 
 /// Creates the results file, or takes up that of the run that this one goes on from.
-results::Recorder recorder_of(Job& job, const Scene& scene, const results::Layout& layout,
-                              const std::vector<std::string>& notes) {
-  if (job.earlier != nullptr) return {job.comm, std::move(job.place), layout, job.earlier->results};
-  results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, scene), scene.options);
-  record_model(scene, notes, recorder);
+results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
+  Job& job = ready.job;
+  results::Layout layout = outputs.layout();
+  const Plan& plan = ready.passage.plan();
+  if (ready.moves()) layout.interval = plan.interval * static_cast<double>(plan.stored);
+  if (ready.goes_on()) return {job.comm, std::move(job.place), layout, job.earlier->results};
+  results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, ready.scene),
+                             ready.scene.options);
+  record_model(ready.scene, job.notes, recorder);
   store_modes(job.beam, recorder);
   return recorder;
 }
@@ -88,185 +92,192 @@ results::Checkpoint so_far(const Job& job, bool repeated) {
   return checkpoint;
 }
 
-/// What was asked for by a signal is said to have been done.
-void say_written(MPI_Comm comm, const Scene& scene, const Checkpoints& checkpoints, double time) {
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  if (rank == 0 && !scene.quiet)
-    fmt::print("  checkpoint at t = {:g} s: -restart {} goes on from there\n", time, checkpoints.path());
+/// A passage with everything that watches it.
+class WatchedRun {
+ public:
+  WatchedRun(ReadyRun& ready, bool with_mechanisms);
+  RunEnd take(bool may_shorten);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void step_through();
+  results::Summary summarise(const std::string& ended);
+  std::optional<norm::NormCheck> judge_by_norm(std::vector<results::Verdict>& verdicts);
+  void say_what_happened(bool by_signal) const;
+  double wall_seconds() const { return before_ + std::chrono::duration<double>(Clock::now() - begin_).count(); }
+  bool prints() const { return ready_.rank == 0; }
+
+  ReadyRun& ready_;
+  const Scene& scene_;
+  Passage& passage_;
+  coupling::System& system_;
+  std::optional<SignalsNoted> noted_{std::in_place};  // from here on what is stored is to stay readable
+  Outputs outputs_;
+  results::Recorder recorder_;
+  Watch watch_;
+  Checkpoints checkpoints_;
+  double before_, reached_;  // s: of wall time and of motion, of the run that this one goes on from, and so far
+  results::Progress progress_;
+  Clock::time_point begin_ = Clock::now();
+  Asked asked_;
+  bool reaches_end_ = false;
+  bool repeated_ = false;  // or will be
+};
+
+WatchedRun::WatchedRun(ReadyRun& ready, bool with_mechanisms)
+    : ready_(ready),
+      scene_(ready.scene),
+      passage_(ready.passage),
+      system_(passage_.system()),
+      outputs_(outputs_of({scene_, system_.fleet(), ready.job.beam.bridge()})),
+      recorder_(recorder_of(ready, outputs_)),
+      watch_(scene_, system_, ready.job.beam.bridge(), recorder_, &outputs_),
+      checkpoints_(ready.job.comm, scene_, passage_, watch_, recorder_, so_far(ready.job, with_mechanisms)),
+      before_(ready.goes_on() ? ready.job.earlier->wall_seconds : 0.0),
+      reached_(ready.goes_on() ? ready.job.earlier->time : 0.0),
+      progress_(reached_, passage_.plan().end_time, scene_.quiet || !prints()) {
+  if (ready.job.beam.beam) ready.job.beam.beam->release_matrices();
+  const Plan& plan = passage_.plan();
+  if (ready.filters_deck && prints()) watch_.keep_accelerations({ready.counting, plan, scene_.output.probes});
+  if (ready.filters_forces && prints())
+    watch_.keep_wheel_forces({scene_.output.wheel_low_pass, scene_.output.unloading_level, plan, ready.wheels});
+  if (!scene_.output.passages.empty()) watch_.note_axle_passages({scene_, plan.time_step});
+  if (!scene_.limits.empty()) watch_.judge();
+  if (ready.archive) watch_.keep(*ready.archive);
+  ready.archive.reset();
+}
+
+void WatchedRun::step_through() {
+  const results::Stage stage("time steps");
+  passage_.run([&](const integrate::Instant& instant) { watch_.sample(instant); },
+               [&](double t, long steps) {
+                 watch_.step(t);
+                 reached_ = t;
+                 progress_.update(t, steps);
+                 results::Stage::advance(t / passage_.plan().end_time);
+                 asked_ = asked_on_any(ready_.job.comm, checkpoints_.wanted());
+                 return asked_.signal == 0;
+               },
+               [&](double t) {
+                 if (!asked_.wanted) return;
+                 checkpoints_.write(t, wall_seconds());
+                 asked_.wanted = false;
+               });
+}
+
+results::Summary WatchedRun::summarise(const std::string& ended) {
+  const double wall = wall_seconds();
+  results::Summary summary = [&] {
+    const results::Stage stage("summary");
+    return watch_.finish();
+  }();
+  summary.end_time = reached_;
+  summary.steps = passage_.steps();
+  summary.rejected_steps = passage_.rejected();
+  summary.solves = system_.beam_solves();
+  summary.factorisations = system_.factorisations();
+  summary.wall_seconds = wall;
+  summary.linear_defect = system_.defect();
+  if (system_.structure() != nullptr && system_.structure()->energy_left())
+    summary.energy_left = total(ready_.job.comm, *system_.structure()->energy_left());
+  summary.static_error = system_.static_error();
+  const std::string withdrawn = ready_.accuracy.withdrawn(summary.contact_losses);
+  summary.expected_errors = ready_.accuracy.expected();
+  summary.ended = ended;
+  const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.most_defect);
+  std::vector<results::Verdict> verdicts;
+  std::optional<norm::NormCheck> check;
+  if (reaches_end_ && counts) {
+    verdicts = watch_.verdicts(summary);
+    check = judge_by_norm(verdicts);
+  }
+  results::record_verdicts(recorder_, verdicts);
+  recorder_.finish(summary);
+  progress_.done();
+  if (prints() && counts) results::print_summary(summary, scene_.output.file);
+  if (prints() && counts && !withdrawn.empty()) fmt::print("  note: {}\n", withdrawn);
+  if (prints() && check) check->print();
+  if (prints()) results::print_verdicts(verdicts);
+  return summary;
+}
+
+/// Where the scene asks for it; with its own verdicts.
+std::optional<norm::NormCheck> WatchedRun::judge_by_norm(std::vector<results::Verdict>& verdicts) {
+  if (!scene_.norm) return std::nullopt;
+  norm::NormCheck check = norm_check(scene_, {train_at_rest("train", system_.weights().all())});
+  if (compares_with_lm71(scene_)) check.judge(passed_once(scene_, watch_.finished_peaks()));
+  check.find(verdicts);
+  check.record(recorder_);
+  return check;
+}
+
+/// What no summary holds.
+void WatchedRun::say_what_happened(bool by_signal) const {
+  if (!prints()) return;
+  if (const auto& crowded = system_.fleet().crowded(); crowded.contact >= 0) {
+    const train::WheelContact& c = system_.fleet().wheels[static_cast<std::size_t>(crowded.contact)];
+    fmt::print(
+        "  note: {} of vehicle {} overlapped the track's profile at more than {} points (first at x = {:g} m): the {} "
+        "deepest carried\n",
+        system_.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
+  }
+  if (asked_.signal != 0 && !checkpoints_.trouble().empty())
+    fmt::print("  no checkpoint: {}\n", checkpoints_.trouble());
+  if (by_signal && !scene_.quiet)
+    fmt::print("  checkpoint at t = {:g} s: -restart {} goes on from there\n", reached_, checkpoints_.path());
+}
+
+RunEnd WatchedRun::take(bool may_shorten) {
+  const MPI_Comm comm = ready_.job.comm;
+  bool by_signal = false;
+  try {
+    step_through();
+    if (checkpoints_.possible() && (asked_.signal != 0 || passage_.stopped_at_limit())) {
+      checkpoints_.write(reached_, wall_seconds());
+      by_signal = true;
+    }
+    if (system_.defect() <= scene_.most_defect) check_balance(scene_, watch_.extremes());
+  } catch (const FileError& error) {
+    leave_together(comm, error);
+  } catch (const StepTooLong& error) {
+    repeated_ = may_shorten;
+    summarise(error.what());
+    if (!repeated_) throw;
+    return {0, Retry::shorter_steps, error.what(), passage_.plan().time_step};
+  } catch (const Error& error) {
+    summarise(error.what());
+    throw;
+  }
+  const int signal = asked_.signal;
+  reaches_end_ = signal == 0;
+  results::Summary summary;
+  try {
+    summary = summarise(signal != 0                   ? fmt::format("ended by signal {}", signal)
+                        : passage_.stopped_at_limit() ? "ended at the limit of -ts_max_steps"
+                                                      : "reached its end");
+  } catch (const FileError& error) {
+    leave_together(comm, error);
+  }
+  say_what_happened(by_signal);
+  if (reaches_end_ && !passage_.stopped_at_limit()) checkpoints_.forget();
+  noted_.reset();
+  if (reaches_end_ && summary.linear_defect > scene_.most_defect) return {0, Retry::mechanisms, {}, 0.0};
+  check_deflection(comm, scene_, summary.deflection.value);
+  if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
+      !report(comm, scene_, ready_.accuracy, watch_.finished_peaks()))
+    throw SolverError(
+        fmt::format("the accuracy of {:g} was not kept (above); take a smaller -accuracy, and please report the scene",
+                    scene_.accuracy));
+  return {reaches_end_ ? 0 : 128 + signal, Retry::none, {}, 0.0};
 }
 
 }  // namespace
 
 RunEnd run_once(Job& job, bool with_mechanisms, bool may_shorten) {
-  const MPI_Comm comm = job.comm;
-  Scene scene = job.scene;
-  Accuracy accuracy = job.accuracy;
-  SharedBeam& shared = job.beam;
-  std::vector<std::string>& notes = job.notes;
-  int rank = 0;
-  MPI_Comm_rank(comm, &rank);
-  const bool still = scene.analysis == Analysis::static_response;
-  const beam::Beam* beam = shared.bridge();
-  const double counting = prepare(scene, accuracy, shared, notes);
-  const bool wheels = filters_wheels(scene);
-  std::optional<Plan> plan;
-  if (job.earlier != nullptr) plan = Plan{0.0, job.earlier->time_step, job.earlier->interval, job.earlier->stored};
-  if (plan && scene.time_step && plan->time_step < *scene.time_step) accuracy.promise_nothing();
-  Passage passage(scene, shared, notes, plan ? &*plan : nullptr);  // everything is checked before anything is computed
-  if (job.earlier != nullptr && !(passage.plan().end_time > job.earlier->time))
-    throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
-                                 passage.plan().end_time));
-  coupling::System& system = passage.system();
-  for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
-  passage.start(notes);
-  if (system.static_error() > 1e-9)
-    notes.push_back(
-        fmt::format("static deflections: relative error about {:.1g}, by rounding in the many elements "
-                    "between supports",
-                    system.static_error()));
-  const std::string trouble =
-      counting > 0.0 ? no_filter(counting, passage.plan(), scene.output.probes.size()) : std::string();
-  const bool filtered = counting > 0.0 && trouble.empty();
-  if (!trouble.empty()) notes.push_back("deck accelerations are not low-passed: " + trouble);
-  const std::size_t wheel_count = wheels_at_start(scene).size();
-  const std::string no_wheels =
-      wheels ? no_filter(scene.output.wheel_low_pass, passage.plan(), wheel_count, "wheels") : std::string();
-  if (!no_wheels.empty()) notes.push_back("wheel forces are not low-passed: " + no_wheels);
-  std::optional<base::Archive> archive;
-  if (job.earlier != nullptr) {
-    archive.emplace(comm, job.earlier->of_ranks);
-    passage.keep(*archive);
-    notes.push_back(fmt::format("goes on from t = {:g} s", job.earlier->time));
-  }
-  print_notes(comm, notes);
-
-  std::optional<SignalsNoted> noted(std::in_place);  // from here on what is stored is to stay readable
-  const Outputs outputs = outputs_of({scene, system.fleet(), beam});
-  results::Layout layout = outputs.layout();
-  if (!still) layout.interval = passage.plan().interval * static_cast<double>(passage.plan().stored);
-  results::Recorder recorder = recorder_of(job, scene, layout, notes);
-  if (shared.beam) shared.beam->release_matrices();
-  Watch watch(scene, system, beam, recorder, &outputs);
-  if (filtered && rank == 0) watch.keep_accelerations({counting, passage.plan(), scene.output.probes});
-  if (wheels && no_wheels.empty() && rank == 0)
-    watch.keep_wheel_forces({scene.output.wheel_low_pass, scene.output.unloading_level, passage.plan(), wheel_count});
-  if (!scene.output.passages.empty()) watch.note_axle_passages({scene, passage.plan().time_step});
-  if (!scene.limits.empty()) watch.judge();
-  if (archive) watch.keep(*archive);
-  archive.reset();
-  Checkpoints checkpoints(comm, scene, passage, watch, recorder, so_far(job, with_mechanisms));
-  const double before = job.earlier != nullptr ? job.earlier->wall_seconds : 0.0;
-  results::Progress progress(job.earlier != nullptr ? job.earlier->time : 0.0, passage.plan().end_time,
-                             scene.quiet || rank != 0);
-  const auto begin = std::chrono::steady_clock::now();
-  const auto wall_now = [&] {
-    return before + std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  };
-  double reached = job.earlier != nullptr ? job.earlier->time : 0.0;
-  bool reaches_end = false, repeated = false;
-  auto summarise = [&](const std::string& ended) {
-    const double wall = wall_now();
-    results::Summary summary = [&] {
-      const results::Stage stage("summary");
-      return watch.finish();
-    }();
-    summary.end_time = reached;
-    summary.steps = passage.steps();
-    summary.rejected_steps = passage.rejected();
-    summary.solves = system.beam_solves();
-    summary.factorisations = system.factorisations();
-    summary.wall_seconds = wall;
-    summary.linear_defect = system.defect();
-    if (system.structure() != nullptr && system.structure()->energy_left())
-      summary.energy_left = total(comm, *system.structure()->energy_left());
-    summary.static_error = system.static_error();
-    const std::string withdrawn = accuracy.withdrawn(summary.contact_losses);
-    summary.expected_errors = accuracy.expected();
-    summary.ended = ended;
-    const bool counts = !repeated && (!reaches_end || summary.linear_defect <= scene.most_defect);
-    const bool judged = reaches_end && counts;
-    std::vector<results::Verdict> verdicts = judged ? watch.verdicts(summary) : std::vector<results::Verdict>();
-    std::optional<norm::NormCheck> check;
-    if (judged && scene.norm) {
-      check.emplace(norm_check(scene, {train_at_rest("train", system.weights().all())}));
-      if (compares_with_lm71(scene)) check->judge(passed_once(scene, watch.finished_peaks()));
-      check->find(verdicts);
-      check->record(recorder);
-    }
-    results::record_verdicts(recorder, verdicts);
-    recorder.finish(summary);
-    progress.done();
-    if (rank == 0 && counts) results::print_summary(summary, scene.output.file);
-    if (rank == 0 && counts && !withdrawn.empty()) fmt::print("  note: {}\n", withdrawn);
-    if (rank == 0 && check) check->print();
-    if (rank == 0) results::print_verdicts(verdicts);
-    return summary;
-  };
-  Asked asked;
-  bool by_signal = false;
-  const int& stopped = asked.signal;
-  try {
-    const results::Stage stage("time steps");
-    passage.run([&](const integrate::Instant& instant) { watch.sample(instant); },
-                [&](double t, long steps) {
-                  watch.step(t);
-                  reached = t;
-                  progress.update(t, steps);
-                  results::Stage::advance(t / passage.plan().end_time);
-                  asked = asked_on_any(comm, checkpoints.wanted());
-                  return stopped == 0;
-                },
-                [&](double t) {
-                  if (!asked.wanted) return;
-                  checkpoints.write(t, wall_now());
-                  asked.wanted = false;
-                });
-    if (checkpoints.possible() && (stopped != 0 || passage.stopped_at_limit())) {
-      checkpoints.write(reached, wall_now());
-      by_signal = true;
-    }
-    if (system.defect() <= scene.most_defect) check_balance(scene, watch.extremes());
-  } catch (const FileError& error) {
-    leave_together(comm, error);
-  } catch (const StepTooLong& error) {
-    repeated = may_shorten;
-    summarise(error.what());
-    if (!repeated) throw;
-    return {0, Retry::shorter_steps, error.what(), passage.plan().time_step};
-  } catch (const Error& error) {
-    summarise(error.what());
-    throw;
-  }
-  reaches_end = stopped == 0;
-  results::Summary summary;
-  try {
-    summary = summarise(stopped != 0                 ? fmt::format("ended by signal {}", stopped)
-                        : passage.stopped_at_limit() ? "ended at the limit of -ts_max_steps"
-                                                     : "reached its end");
-  } catch (const FileError& error) {
-    leave_together(comm, error);
-  }
-  if (const auto& crowded = system.fleet().crowded(); crowded.contact >= 0 && rank == 0) {
-    const train::WheelContact& c = system.fleet().wheels[static_cast<std::size_t>(crowded.contact)];
-    fmt::print(
-        "  note: {} of vehicle {} overlapped the track's profile at more than {} points (first at x = {:g} m): the {} "
-        "deepest carried\n",
-        system.fleet().wheel(c).name, c.vehicle, track::most_points, crowded.x, track::most_points);
-  }
-  if (stopped != 0 && !checkpoints.trouble().empty() && rank == 0)
-    fmt::print("  no checkpoint: {}\n", checkpoints.trouble());
-  if (by_signal) say_written(comm, scene, checkpoints, reached);
-  if (reaches_end && !passage.stopped_at_limit()) checkpoints.forget();
-  noted.reset();
-  if (reaches_end && summary.linear_defect > scene.most_defect) return {0, Retry::mechanisms, {}, 0.0};
-  check_deflection(comm, scene, summary.deflection.value);
-  if (stopped == 0 && scene.accuracy_report && accuracy.measured &&
-      !report(comm, scene, accuracy, watch.finished_peaks()))
-    throw SolverError(
-        fmt::format("the accuracy of {:g} was not kept (above); take a smaller -accuracy, and please report the scene",
-                    scene.accuracy));
-  return {stopped == 0 ? 0 : 128 + stopped, Retry::none, {}, 0.0};
+  ReadyRun ready(job);
+  WatchedRun run(ready, with_mechanisms);
+  return run.take(may_shorten);
 }
 
 }  // namespace traverse::app

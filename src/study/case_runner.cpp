@@ -130,7 +130,7 @@ std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<co
     beside.push_back({&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed}});
   std::vector<CaseResult> results;
   for (const lanes::CrossingResult& crossing :
-       SideBySide::run(std::span<const SideBySide::Member>(beside), beside.front().lanes->steps())) {
+       SideBySide::ready(std::span<const SideBySide::Member>(beside), beside.front().lanes->steps()).run()) {
     if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const auto& [runner, one] = members[results.size()];
     if (crossing.trouble != lanes::none || runner->lanes_->defect(crossing) > runner->scene_.most_defect) {

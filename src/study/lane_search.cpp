@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
 #include "accuracy/trials.hpp"
 
@@ -14,14 +15,17 @@ using lanes::CrossingResult;
 
 constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4;  // of the wanted error
 constexpr int most_halvings = 8;
+constexpr double first_step_factor = 4.0;  // times the step that the search by elements would begin with
 constexpr std::array methods = {"genalpha", "esdirk4"};
 constexpr std::array step_factors = {2.0, 1.4, 1.0, 0.7, 0.5};  // times the step of esdirk4, of what may cost less
 constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 // Each is compared with half as many more; errors that fall with the square or faster are at most 1.8 times the change.
-constexpr double more_modes = 1.5, of_the_change = 1.8;
+// Without damping that grows with the frequency those of moments fall with the first power: 3 times.
+constexpr double more_modes = 1.5, of_the_change = 1.8, of_an_undamped_moment = 3.0;
 constexpr double order_of_modes = 6.0;   // that errors of the modes fall with at most: what is farther off is not tried
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a finer mesh has to agree
-constexpr double clearly_finer = 1.3, order_of_mesh = 4.0;
+constexpr double order_of_mesh = 4.0;
+constexpr double lowest_order = 0.5, highest_order = 4.0;  // of the steps
 
 int mesh_for(const Scene& scene, int modes) {
   if (!scene.mesh_open) return mesh_of(scene);
@@ -31,12 +35,25 @@ int mesh_for(const Scene& scene, int modes) {
   return aligned_mesh(scene, std::max(first_mesh(scene), elements + elements % 2));
 }
 
-/// The finer one goes first, as modes of the coarser one may be among its own.
 LaneErrors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to, double factor = 1.0) {
-  const std::vector<CrossingResult>& fine = trials.run(to);
-  LaneErrors errors = difference(trials.scene(), trials.run(from), fine);
+  trials.run_at_once(std::array{to, from});  // as modes of a coarser mesh's model may be among those of the finer
+  LaneErrors errors = difference(trials.scene(), trials.run(from), trials.run(to));
   for (double& error : errors) error *= factor;
   return errors;
+}
+
+/// What is left of an error that has become so much smaller by a step half as long: change over change before, which
+/// tell its order.
+double left_of(double change, double before) {
+  const double order = std::clamp(before > change ? std::log2(before / change) : 0.0, lowest_order, highest_order);
+  return change / (std::exp2(order) - 1.0);
+}
+
+LaneModel with_step(const LaneModel& model, double factor, const char* method = nullptr) {
+  LaneModel other = model;
+  other.step *= factor;
+  if (method != nullptr) other.method = structure::find_method(method);
+  return other;
 }
 
 double solves(const LaneModel& model) {
@@ -45,21 +62,41 @@ double solves(const LaneModel& model) {
 
 }  // namespace
 
-std::optional<LaneModel> LaneSearch::run(double first_step) {
+std::optional<LaneModel> LaneSearch::run(double duration) {
   const int modes = numbers_of_modes.front();
-  LaneModel model{modes, mesh_for(trials_.scene(), modes), structure::find_method("esdirk4"), first_step};
+  LaneModel model{modes, mesh_for(trials_.scene(), modes), structure::find_method("esdirk4"), 0.0};
+  const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
+  longest_ = steps.longest;
+  model.step = std::min(first_step_factor * steps.first, longest_);
   // Steps first, as modes are told apart by what the contacts do to them.
-  if (!halve_step(model) || !add_modes(model) || !refine_mesh(model) || !halve_step(model)) return std::nullopt;
+  if (!halve_step(model) || !add_modes(model)) return std::nullopt;
+  return with_steps(model);
+}
+
+std::optional<LaneModel> LaneSearch::with_steps(LaneModel model) {
+  foresee(model);
+  if (!refine_mesh(model) || !halve_step(model)) return std::nullopt;
   return cheaper(model);
+}
+
+/// What is compared in any case goes at once, the longest run first.
+void LaneSearch::foresee(const LaneModel& model) {
+  std::vector<LaneModel> steps = {with_step(model, 0.5), with_step(model, step_factors.front(), methods.front())};
+  for (const double factor : step_factors)
+    if (factor >= 1.0) steps.push_back(with_step(model, factor));
+  trials_.run_at_once(steps);
 }
 
 bool LaneSearch::halve_step(LaneModel& model) {
   for (int i = 0; i < most_halvings; ++i) {
-    LaneModel finer = model;
-    finer.step *= 0.5;
-    steps_ = change(trials_, model, finer);
+    const LaneErrors before = change(trials_, with_step(model, 2.0), model);
+    const LaneErrors now = change(trials_, model, with_step(model, 0.5));
+    for (std::size_t q = 0; q < quantities; ++q) {
+      halved_[q] = left_of(now[q], before[q]);
+      steps_[q] = now[q] + halved_[q];
+    }
     if (greatest(steps_) <= part_of_steps * accuracy_) return true;
-    model = finer;
+    model.step *= 0.5;
   }
   return false;
 }
@@ -83,42 +120,38 @@ bool LaneSearch::add_modes(LaneModel& model) {
     const LaneModel more = with_more_modes(model);
     model.elements = more.elements;
     modes_ = change(mixed_, model, more, of_the_change);
+    if (!damps_high_modes(trials_.scene())) modes_[moment] *= of_an_undamped_moment / of_the_change;
     const double over = greatest(modes_) / (part_of_modes * accuracy_);
-    if (over <= 1.0) {
-      dense_ = more.elements;
-      model.elements = mesh_for(trials_.scene(), modes);
-      return true;
-    }
+    if (over <= 1.0) return true;
     fewest = modes * std::pow(over, 1.0 / order_of_modes);
   }
   return false;
 }
 
-/// Against the mesh that the modes were compared on, where it is fine enough: its runs are known.
+/// On the mesh that the modes were compared on, whose errors a coarser one tells.
 bool LaneSearch::refine_mesh(LaneModel& model) {
   for (int i = 0; trials_.scene().mesh_open && i < most_halvings; ++i) {
-    LaneModel finer = model;
-    finer.elements = dense_ >= clearly_finer * model.elements ? dense_ : 2 * model.elements;
-    const double ratio = static_cast<double>(model.elements) / finer.elements;
-    mesh_ = change(mixed_, model, finer, 1.0 / (1.0 - std::pow(ratio, order_of_mesh)));
+    LaneModel coarser = model;
+    coarser.elements = aligned_mesh(trials_.scene(), model.elements / 2);
+    const double ratio = static_cast<double>(coarser.elements) / model.elements;
+    mesh_ = change(mixed_, coarser, model, 1.0 / (std::pow(ratio, -order_of_mesh) - 1.0));
     LaneErrors both = mesh_;
     for (std::size_t q = 0; q < quantities; ++q) both[q] += modes_[q];
     if (greatest(both) <= (part_of_modes + part_of_mesh) * accuracy_) return true;
-    model = finer;
+    model.elements *= 2;
   }
   return !trials_.scene().mesh_open;
 }
 
 /// A longer step, or the method of one solve a step, where that costs less.
 LaneModel LaneSearch::cheaper(const LaneModel& model) {
-  LaneModel exact = model;
-  exact.step *= 0.5;
   LaneModel best = model;
   for (const char* method : methods)
     for (const double factor : step_factors) {
-      const LaneModel tried = {model.modes, model.elements, structure::find_method(method), factor * model.step};
-      if (solves(tried) >= solves(best)) continue;
-      const LaneErrors own = change(trials_, tried, exact);
+      const LaneModel tried = with_step(model, factor, method);
+      if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
+      LaneErrors own = change(trials_, tried, with_step(model, 0.5));
+      for (std::size_t q = 0; q < quantities; ++q) own[q] += halved_[q];
       const double over = greatest(own) / (part_of_steps * accuracy_);
       if (over > std::pow(factor / step_factors.back(), tried.method->order)) break;  // nor will the shortest do
       if (over > 1.0) continue;

@@ -14,23 +14,28 @@ class LaneSearch {
   LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy)
       : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
-  /// The cheapest model within the accuracy, by steps that begin with this one, s; empty: none.
-  std::optional<LaneModel> run(double first_step);
+  /// The cheapest model within the accuracy, for passages that last so long (s); empty: none.
+  std::optional<LaneModel> run(double duration);
+  /// The same with this number of modes, by steps of esdirk4 that begin with this one.
+  std::optional<LaneModel> with_steps(LaneModel model);
   /// Of modes and mesh, and of the steps.
   double error_of_model(std::size_t q) const { return modes_[q] + mesh_[q]; }
   double error_of_steps(std::size_t q) const { return steps_[q]; }
+  /// By so many more modes, on their mesh, as numbers of modes are compared with.
+  LaneModel with_more_modes(const LaneModel& model);
 
  private:
   bool halve_step(LaneModel& model);
   bool add_modes(LaneModel& model);
-  LaneModel with_more_modes(const LaneModel& model);
+  void foresee(const LaneModel& model);
   bool refine_mesh(LaneModel& model);
   LaneModel cheaper(const LaneModel& model);
 
   LaneTrials &trials_, &mixed_;
   double accuracy_;
-  int dense_ = 0;  // elements a span that the number of modes was found with
+  double longest_ = 0.0;  // s: no step is longer
   LaneErrors modes_{}, steps_{}, mesh_{};
+  LaneErrors halved_{};  // what half the step leaves
 };
 
 }  // namespace traverse::app

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <future>
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/trials.hpp"
@@ -75,24 +77,44 @@ LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& spee
 }
 
 const std::vector<CrossingResult>& LaneTrials::run(const LaneModel& model) {
-  for (const Kept& known : kept_)
-    if (known.model == model) return known.results;
-  Setup& with_modes = setup(model);
-  Kept& kept = kept_.emplace_back();
-  kept.model = model;
-  for (const std::vector<LaneRun>& runs : groups_) {
-    for (CrossingResult& result :
-         with_modes.lanes->run(runs, {model.method->make(model.method->parameter.value), model.step, true})) {
-      if (result.trouble == lanes::none) kept.defect = std::max(kept.defect, with_modes.lanes->defect(result));
-      kept.results.push_back(std::move(result));
-    }
-  }
-  return kept.results;
+  run_at_once({&model, 1});
+  return known(model)->results;
 }
 
-double LaneTrials::defect(const LaneModel& model) const {
-  return std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; })->defect;
+void LaneTrials::run_at_once(std::span<const LaneModel> models) {
+  std::vector<std::vector<SideBySide::Ready>> ready;
+  std::vector<LaneModel> own;
+  for (const LaneModel& model : models) {
+    if (known(model) != nullptr || std::find(own.begin(), own.end(), model) != own.end()) continue;
+    own.push_back(model);
+    std::vector<SideBySide::Ready>& groups = ready.emplace_back();
+    for (const std::vector<LaneRun>& runs : groups_)
+      groups.push_back(
+          setup(model).lanes->ready(runs, {model.method->make(model.method->parameter.value), model.step, true}));
+  }
+  const auto run_all = [](const std::vector<SideBySide::Ready>& groups) {
+    std::vector<CrossingResult> results;
+    for (const SideBySide::Ready& group : groups)
+      for (CrossingResult& result : group.run()) results.push_back(std::move(result));
+    return results;
+  };
+  std::vector<std::future<std::vector<CrossingResult>>> others;
+  for (std::size_t i = 1; i < own.size(); ++i)
+    others.push_back(std::async(std::launch::async, run_all, std::cref(ready[i])));
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    Kept kept{own[i], i == 0 ? run_all(ready[i]) : others[i - 1].get(), 0.0};
+    for (const CrossingResult& result : kept.results)
+      if (result.trouble == lanes::none) kept.defect = std::max(kept.defect, setup(own[i]).lanes->defect(result));
+    kept_.push_back(std::move(kept));
+  }
 }
+
+const LaneTrials::Kept* LaneTrials::known(const LaneModel& model) const {
+  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; });
+  return found == kept_.end() ? nullptr : &*found;
+}
+
+double LaneTrials::defect(const LaneModel& model) const { return known(model)->defect; }
 
 /// That of a setup with the same mesh and at least as many modes; null: none.
 const modes::Basis* LaneTrials::basis_with(const LaneModel& model) const {

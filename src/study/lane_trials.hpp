@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -47,8 +48,11 @@ class LaneTrials {
 
   /// Kept. Refused where runs cannot go side by side.
   const std::vector<lanes::CrossingResult>& run(const LaneModel& model);
+  /// Those of several models that are not known yet, each in a thread of its own.
+  void run_at_once(std::span<const LaneModel> models);
   /// Of the bridge by a model: with all copies of the last frequency.
   int modes(const LaneModel& model) { return static_cast<int>(setup(model).shared->modal->modes()); }
+  double first_omega(const LaneModel& model) { return setup(model).shared->modal->omega().front(); }  // rad/s
   /// The largest SideBySide::defect of a model's runs, which are known.
   double defect(const LaneModel& model) const;
   const Scene& scene() const { return scene_; }
@@ -69,6 +73,7 @@ class LaneTrials {
     std::vector<lanes::CrossingResult> results;
     double defect = 0.0;
   };
+  const Kept* known(const LaneModel& model) const;
   Setup& setup(const LaneModel& model);
   const modes::Basis* basis_with(const LaneModel& model) const;
 

@@ -29,11 +29,10 @@ constexpr double finest_alone = 3e-4;        // accuracy: errors of the kernel i
 // Times its speed: the trials of a single run, whose peaks may agree by chance.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
 constexpr double part_of_all = 0.95;     // of the wanted error
-constexpr double first_step_factor = 4;  // times the step that the accuracy's search would begin with
-constexpr int most_shortenings = 6;
-constexpr double shorter = 0.7;  // a quarter of an error of fourth order
+constexpr int most_tries = 6;
+constexpr double modes_over_wholes = 0.5;  // of the wanted error
+constexpr double shorter = 0.7;            // a quarter of an error of fourth order
 constexpr double longer = 1.4;
-constexpr double part_alone = 0.7;  // of the error: the trials of a single run show less than those of a sweep
 constexpr double weight_of_touch = 20.0, beside_a_hinge = 50.0;  // as measured: of accelerations
 
 bool open(const Scene& scene) {
@@ -41,13 +40,10 @@ bool open(const Scene& scene) {
          scene.vehicle_model != VehicleModel::full && scene.beam && options::in_force().find("ts_type") == nullptr;
 }
 
-/// Whether a single run is left open, and of a kind that the lanes' kernel takes: what is fixed, and accelerations that
-/// no damping makes sums of, are judged by the search by elements.
+/// Whether a single run is left open, and of a kind that the lanes' kernel takes: what is fixed is judged by the search
+/// by elements.
 bool open_alone(const Scene& scene) {
-  const Damping& damping = scene.damping;
-  const bool damped =
-      (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
-  return open(scene) && scene.mesh_open && damped && scene.step_lanes && scene.analysis == Analysis::transient &&
+  return open(scene) && scene.mesh_open && scene.step_lanes && scene.analysis == Analysis::transient &&
          !scene.beam->track && scene.train.steady() && scene.accuracy >= finest_alone &&
          scene.beam->spans.size() <= most_spans_alone && own_measure() == nullptr;
 }
@@ -100,6 +96,12 @@ std::string words_of(const Scene& scene, const Errors& errors) {
   return words;
 }
 
+std::string words_of(const Scene& scene, const std::array<Promise, quantities>& promises) {
+  Errors errors{};
+  for (std::size_t q = 0; q < quantities; ++q) errors[q] = promises[q].expected;
+  return words_of(scene, errors);
+}
+
 /// Where wheels of a train have their trials: groups of speeds, m/s.
 struct TrialSpeeds {
   std::vector<std::vector<double>> beginnings, mixed, wholes;  // mixed: none where the beginnings serve for them
@@ -129,22 +131,22 @@ class Chooser {
   }
 
   LanesChoice choose() {
-    LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, (alone_ ? part_alone : 1.0) * scene_.accuracy);
-    const double first = first_step_factor * first_steps(fastest_, 0.0, whole_ / fastest_.train.speed).first;
-    const std::optional<LaneModel> found = search.run(first);
-    if (!found) throw NotChosen{"the peaks do not settle to the accuracy by modes"};
-    model_ = *found;
+    LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy);
+    take(search.run(whole_ / fastest_.train.speed));
     if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
     const double defect = beginnings_->defect(model_);
     if (scene_.vehicle_model == VehicleModel::automatic && defect > most_defect(scene_))
       throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
-    LanesChoice choice;
-    check_wholes(search, choice);
+    Errors errors = check_wholes(search);
     for (std::size_t q = 0; q < quantities; ++q)
-      if (asks_for(scene_, q)) choice.errors[q] += defect + touch_ahead();
-    if (greatest(choice.errors) > scene_.accuracy)
-      throw NotChosen{"wheels touch the bridge's slopes ahead of their centres"};
+      if (asks_for(scene_, q)) errors[q] += defect + touch_ahead();
+    if (greatest(errors) > scene_.accuracy) throw NotChosen{"wheels touch the bridge's slopes ahead of their centres"};
+    LanesChoice choice;
     choice.scene = with(scene_, model_);
+    for (std::size_t q = 0; q < quantities; ++q) {
+      const bool kept = asks_for(scene_, q);
+      choice.promises[q] = {true, kept, errors[q], kept ? "" : not_asked_for};
+    }
     if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
     choice.scene.step_probes = true;
     return choice;
@@ -171,24 +173,47 @@ class Chooser {
     return weight * scene_.vehicles.front().wheels.front().radius * deflection / (length * length);
   }
 
-  /// Whole passages: errors add up while the train crosses. Of a sweep against half the step; a single passage, which
-  /// should not cost several, against a longer one, by errors that fall at least with the third power, or the method's.
-  void check_wholes(const LaneSearch& search, LanesChoice& choice) {
-    for (int i = 0; i <= most_shortenings; ++i) {
-      if (i > 0) model_.step *= shorter;
-      LaneModel other = model_;
+  void take(const std::optional<LaneModel>& found) {
+    if (!found) throw NotChosen{"the peaks do not settle to the accuracy by modes"};
+    model_ = *found;
+  }
+
+  /// Whole passages: errors add up while the train crosses, and what stirs higher modes may come late. Against more
+  /// modes, and half the step; a single passage, which should not cost several, against a longer one, whose change is
+  /// more than the error where that falls with the second power or faster.
+  Errors check_wholes(LaneSearch& search) {
+    Errors errors{};
+    for (int i = 0; i <= most_tries; ++i) {
+      LaneModel other = search.with_more_modes(model_);
       if (!alone_) other.method = structure::find_method("esdirk4");
       other.step *= alone_ ? longer : 0.5;
-      Errors along = difference(scene_, wholes_->run(model_), wholes_->run(other));
-      const double growth = std::pow(longer, std::min(model_.method->order, 3));
-      for (double& error : along) error *= alone_ ? 1.0 / (growth - 1.0) : 1.0;
+      wholes_->run_at_once(std::array{other, model_});
+      errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
       for (std::size_t q = 0; q < quantities; ++q)
-        choice.errors[q] = search.error_of_model(q) + std::max(i > 0 ? 0.0 : search.error_of_steps(q), along[q]);
-      if (greatest(choice.errors) <= part_of_all * scene_.accuracy) break;
+        errors[q] = std::max(errors[q], search.error_of_model(q) + search.error_of_steps(q));
+      if (greatest(errors) <= part_of_all * scene_.accuracy) {
+        if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
+        return errors;
+      }
+      refine(search, other);
     }
-    if (greatest(choice.errors) > part_of_all * scene_.accuracy)
-      throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, choice.errors))};
-    if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
+    throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, errors))};
+  }
+
+  /// By more modes where it is these that the other one differs by, else by shorter steps.
+  void refine(LaneSearch& search, const LaneModel& other) {
+    LaneModel same_modes = other;
+    same_modes.modes = model_.modes;
+    same_modes.elements = model_.elements;
+    const Errors by_modes = difference(scene_, wholes_->run(same_modes), wholes_->run(other));
+    if (greatest(by_modes) <= modes_over_wholes * scene_.accuracy) {
+      model_.step *= shorter;
+      return;
+    }
+    model_.modes = other.modes;
+    model_.elements = other.elements;
+    model_.method = structure::find_method("esdirk4");
+    take(search.with_steps(model_));
   }
 
   const Scene& scene_;
@@ -198,6 +223,14 @@ class Chooser {
   std::optional<LaneTrials> beginnings_, mixed_, wholes_;
   LaneModel model_;
 };
+
+/// What a single run is asked for and can be judged by.
+std::vector<std::string> judged_alone(const Scene& scene) {
+  std::vector<std::string> judged;
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (asks_for(scene, q) && (q != acceleration || damps_high_modes(scene))) judged.push_back(stored_name(q));
+  return judged;
+}
 
 }  // namespace
 
@@ -224,7 +257,7 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
         fmt::format("{}: {} modes from {} elements a span, linear vehicles, {} with steps of {:g} s or less ({})",
                     given.limits.empty() ? "runs go side by side" : "by modes", chooser.model().modes,
                     mesh_of(choice.scene), chooser.model().method->name, chooser.model().step, lanes::instructions()));
-    notes.push_back("expected errors of the peaks: " + words_of(given, choice.errors));
+    notes.push_back("expected errors of the peaks: " + words_of(given, choice.promises));
     notes.push_back(fmt::format("a run by elements with the mechanisms differs by {}", words_of(given, off)));
     return choice;
   } catch (const NotChosen& none) {
@@ -242,6 +275,8 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
   Scene scene = given;
+  scene.accuracy_of = judged_alone(given);
+  if (scene.accuracy_of.empty()) return std::nullopt;
   scene.sweep.emplace();
   for (const double part : beside) scene.sweep->speeds.push_back(part * given.train.speed);
   const std::vector<std::vector<double>> speeds = some_speeds(scene.sweep->speeds, {0.0}, trial_lanes);
@@ -250,6 +285,7 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
     LanesChoice choice = chooser.choose();
     if (!follows_contacts(given, chooser.model().step)) return std::nullopt;  // peaks may agree by chance
     choice.scene.sweep.reset();
+    choice.scene.accuracy_of = given.accuracy_of;
     choice.scene.integrator = chooser.model().method->name;
     notes.push_back(fmt::format(
         "accuracy {:g}: {} elements a span, of these {} modes, linear vehicles, {} with steps of {:g} s; {} trial runs "
@@ -257,7 +293,11 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
         given.accuracy, mesh_of(choice.scene), chooser.model().modes, chooser.model().method->name,
         chooser.model().step, chooser.trials(), chooser.horizon(),
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
-    notes.push_back("expected errors of the peaks: " + words_of(given, choice.errors));
+    notes.push_back("expected errors of the peaks: " + words_of(scene, choice.promises));
+    if (asks_for(given, acceleration) && !choice.promises[acceleration].kept) {
+      choice.promises[acceleration].why_not = no_sum;
+      notes.push_back(not_promised(acceleration, choice.promises[acceleration]));
+    }
     return choice;
   } catch (const NotChosen&) {
   } catch (const LaneTrials::Refused&) {

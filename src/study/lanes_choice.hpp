@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "run/peaks.hpp"
+#include "accuracy/accuracy.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
 
 struct LanesChoice {
-  Scene scene;                              // complete, with its modes, mesh, step and linear vehicles
-  std::array<double, quantities> errors{};  // expected, relative to the peaks
+  Scene scene;  // complete, with its modes, mesh, step and linear vehicles
+  std::array<Promise, quantities> promises{};
 };
 
 /// Where the scene leaves them open: tries modes, steps and methods on the beginning of the passages at slow and at

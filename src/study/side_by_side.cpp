@@ -76,15 +76,17 @@ structure::Method method_of(const Scene& scene) {
 
 SideBySide::Steps SideBySide::steps() const { return {method_of(scene_), *scene_.time_step}; }
 
-std::vector<lanes::CrossingResult> SideBySide::run(std::span<const LaneRun> runs, const Steps& steps) {
+SideBySide::Ready SideBySide::ready(std::span<const LaneRun> runs, const Steps& steps) {
   std::vector<Member> members;
   for (const LaneRun& run : runs) members.push_back({this, run});
-  return run(members, steps);
+  return ready(members, steps);
 }
 
-std::vector<lanes::CrossingResult> SideBySide::run(std::span<const Member> members, const Steps& steps) {
+SideBySide::Ready SideBySide::ready(std::span<const Member> members, const Steps& steps) {
   const SideBySide& first = *members.front().lanes;
-  lanes::CrossingPlan plan = first.plan_;
+  Ready ready;
+  ready.plan_ = first.plan_;
+  lanes::CrossingPlan& plan = ready.plan_;
   plan.method = steps.method;
   plan.exact_modes = steps.method.stages.size() == 1;
   const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(members.front().run.speed));
@@ -98,13 +100,11 @@ std::vector<lanes::CrossingResult> SideBySide::run(std::span<const Member> membe
   const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
   // Runs that end elsewhere must not shape each other's steps.
   if (last > 0) plan.stretches.push_back({steps.all_to_one_end ? past : from + static_cast<double>(last) * ds, last});
-  std::vector<Track> tracks;
-  std::vector<lanes::CrossingRun> crossings;
   for (const auto& [lanes, run] : members) {
-    tracks.push_back(lanes->track(run.seed, past + ds));
-    crossings.push_back({&lanes->train_, tracks.back().get(), nullptr, &lanes->q_, run.speed, run.end});
+    ready.tracks_.push_back(lanes->track(run.seed, past + ds));
+    ready.crossings_.push_back({&lanes->train_, ready.tracks_.back().get(), nullptr, &lanes->q_, run.speed, run.end});
   }
-  return lanes::cross(plan, crossings);
+  return ready;
 }
 
 bool SideBySide::join(const SideBySide& other) {

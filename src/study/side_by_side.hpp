@@ -45,14 +45,25 @@ class SideBySide {
   /// Tracks shall be known at once for all runs up to this distance gone (m), so that none depends on which runs come
   /// first.
   void expect(double past);
+  /// Runs that any thread may take, while others take theirs; their trains must outlive it.
+  class Ready {
+   public:
+    std::vector<lanes::CrossingResult> run() const { return lanes::cross(plan_, crossings_); }
+
+   private:
+    friend class SideBySide;
+    lanes::CrossingPlan plan_;
+    std::vector<std::shared_ptr<const lanes::TrackNumbers>> tracks_;
+    std::vector<lanes::CrossingRun> crossings_;
+  };
   /// At most lanes::widest runs with speeds of a class (lanes/speed_class.hpp).
-  std::vector<lanes::CrossingResult> run(std::span<const LaneRun> runs, const Steps& steps);
+  Ready ready(std::span<const LaneRun> runs, const Steps& steps);
   /// The same of runs whose trains have numbers of their own; those of different trains have joined one and the same.
   struct Member {
     SideBySide* lanes;
     LaneRun run;
   };
-  static std::vector<lanes::CrossingResult> run(std::span<const Member> members, const Steps& steps);
+  static Ready ready(std::span<const Member> members, const Steps& steps);
   /// From now on its runs may go beside those of another scene on the same bridge: what all lanes have in common it
   /// takes from there. False where the trains differ in more than numbers.
   bool join(const SideBySide& other);

@@ -92,7 +92,7 @@ std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<s
   choice.model = model_of(choice.scene);
   choice.model.accuracy = given.accuracy;
   for (std::size_t q = 0; q < quantities; ++q)
-    if (asks_for(given, q)) choice.model.expected_errors.emplace_back(stored_name(q), lanes->errors[q]);
+    if (lanes->promises[q].kept) choice.model.expected_errors.emplace_back(stored_name(q), lanes->promises[q].expected);
   return choice;
 }
 

@@ -1,0 +1,72 @@
+#include "ready_run.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "prepare.hpp"
+#include "run/deck_acceleration.hpp"
+#include "run/process.hpp"
+#include "run/wheel_unloading.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double rounding_worth_a_note = 1e-9;  // relative, of static deflections
+
+std::optional<Plan> plan_of(const results::Checkpoint* earlier) {
+  if (earlier == nullptr) return std::nullopt;
+  return Plan{0.0, earlier->time_step, earlier->interval, earlier->stored};
+}
+
+}  // namespace
+
+ReadyRun::ReadyRun(Job& given)
+    : job(given),
+      scene(given.scene),
+      accuracy(given.accuracy),
+      counting(prepare(scene, accuracy, given.beam, given.notes)),
+      earlier(plan_of(given.earlier)),
+      passage(scene, given.beam, given.notes, earlier ? &*earlier : nullptr),
+      wheels(wheels_at_start(scene).size()) {
+  MPI_Comm_rank(job.comm, &rank);
+  if (earlier && scene.time_step && earlier->time_step < *scene.time_step) accuracy.promise_nothing();
+  if (goes_on() && !(passage.plan().end_time > job.earlier->time))
+    throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
+                                 passage.plan().end_time));
+  for (const std::string& note : options::check_all_used(options::in_force())) job.notes.push_back(note);
+  passage.start(job.notes);
+  note_rounding();
+  choose_filters();
+  if (goes_on()) {
+    archive.emplace(job.comm, job.earlier->of_ranks);
+    passage.keep(*archive);
+    job.notes.push_back(fmt::format("goes on from t = {:g} s", job.earlier->time));
+  }
+  print_notes(job.comm, job.notes);
+}
+
+void ReadyRun::note_rounding() {
+  const double error = passage.system().static_error();
+  if (error > rounding_worth_a_note)
+    job.notes.push_back(
+        fmt::format("static deflections: relative error about {:.1g}, by rounding in the many elements "
+                    "between supports",
+                    error));
+}
+
+void ReadyRun::choose_filters() {
+  if (counting > 0.0) {
+    const std::string trouble = no_filter(counting, passage.plan(), scene.output.probes.size());
+    filters_deck = trouble.empty();
+    if (!filters_deck) job.notes.push_back("deck accelerations are not low-passed: " + trouble);
+  }
+  if (filters_wheels(scene)) {
+    const std::string trouble = no_filter(scene.output.wheel_low_pass, passage.plan(), wheels, "wheels");
+    filters_forces = trouble.empty();
+    if (!filters_forces) job.notes.push_back("wheel forces are not low-passed: " + trouble);
+  }
+}
+
+}  // namespace traverse::app
