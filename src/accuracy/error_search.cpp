@@ -19,14 +19,8 @@ namespace {
 
 // Of the wanted error, for the step and for the mesh each; less where errors fall too slowly to be told well.
 constexpr double usual_share = 0.4, small_share = 0.25, small_error = 1e-4;
-constexpr double supposed = 1.5;      // times a measured size that an error is extrapolated to by a supposed order
-constexpr double best_effort = 10.0;  // times the wanted error, of what is refused
 constexpr int most_rounds = 14;
-constexpr double hardly_anything = 1.5;  // s of trial runs, estimated
-constexpr double trials_of_run = 0.7;    // for trial runs
-constexpr double farthest_guess = 8.0;   // of the run's mesh and step, for that
-constexpr double passed_over = 2.0;      // times the wanted error, on the way to longer steps
-constexpr double share_between = 0.5;    // of the wanted error, where it is only known for shorter and longer steps
+constexpr double passed_over = 2.0;  // times the wanted error, on the way to longer steps
 constexpr double most_growth = 4.0;
 constexpr std::array fewer_solves_steps = {1.0, 0.7, 0.5};  // times the step of the usual method
 constexpr double trials_that_save = 0.5;                    // of the run, for trying them
@@ -39,16 +33,6 @@ constexpr double usual_trials = 4.0;
 double two_digits(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1.0);
   return std::floor(x / unit * (1.0 + 1e-9)) * unit;
-}
-
-/// Whether there are supports whose dampers act only while they are touched: then accelerations jump.
-bool dampers_let_go(const beam::Foundation& foundation) {
-  bool found = false;
-  for_points(foundation, [&](const beam::FoundationKind&, const auto& points) {
-    for (const beam::PointFoundation& point : points)
-      found = found || (point.c > 0.0 && (point.law.one_sided || point.law.gap > 0.0));
-  });
-  return found;
 }
 
 double first_omega(const SharedBeam& shared) { return shared.omega ? shared.omega->first : 0.0; }
@@ -243,107 +227,6 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
     result.promises[q] = promises_[q];
     result.promises[q].expected = in_time + space_[q].at(static_cast<double>(mesh_) / mesh);
   }
-}
-
-// --- errors --------------------------------------------------------------------------------------------------------
-
-// Those of a given mesh or step too, where there are coarser ones to compare with.
-void ErrorSearch::measure() {
-  const Peaks& fine = trials_.run(mesh_, step_);
-  Errors time = time_, space = space_;
-  for (std::size_t i = 0; i < quantities; ++i) {
-    const auto q = static_cast<Quantity>(i);
-    promises_[q].present = fine.failed() || fine.largest(q).value != 0.0;
-    if (open_step_ || step_ <= longest_step_) time[q] = error_in_time(q);
-    if (mesh_ % 2 == 0) space[q] = error_in_space(q);
-  }
-  time_ = time;
-  space_ = space;
-  count_alike();
-  measured_ = {step_, mesh_};
-}
-
-// Forces of wheels that strike are pulses: a step may agree with the next one by chance.
-void ErrorSearch::count_alike() {
-  const auto alike = [&](Quantity q) { return !promised(q) || time_[q].change <= scene_.accuracy; };
-  if (!trials_.lost_contact() || !open_step_)
-    strikes_alike_ = enough_alike;
-  else
-    strikes_alike_ = alike(acceleration) && alike(wheel_force) ? strikes_alike_ + 1 : 0;
-}
-
-ErrorLaw ErrorSearch::error_in_time(Quantity q) {
-  const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
-  // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
-  double most = q != moment || !undamped_ ? highest_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
-  if (q == acceleration && dampers_let_go(scene_.beam->foundation)) most = 1.0;
-  return error_from(growth_ * change, step_, time_[q], most);
-}
-
-// With twice the step, at half the cost: runs that the error in time asks for too. Steps over more than an element
-// would hide what elements do.
-ErrorLaw ErrorSearch::error_in_space(Quantity q) {
-  const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
-  const double step = open_step_ && 2.0 * step_ * greatest_speed(scene_) < element ? 2.0 * step_ : step_;
-  const double change = difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
-  return error_from(std::pow(growth_, 0.75) * change, 1.0 / mesh_, space_[q]);
-}
-
-/// Of a quantity's error. A track's mesh, of which there are so few to choose from, may have what the step leaves.
-double ErrorSearch::allowed(const Errors& errors, std::size_t q) const {
-  const bool few_meshes = &errors == &space_ && scene_.beam->track;
-  return few_meshes ? wanted_ + std::max(0.0, wanted_ - time_[q].value) : wanted_;
-}
-
-/// Times the step (or the element) at which all that is promised keeps its share.
-double ErrorSearch::room(const Errors& errors) const {
-  double least = at_most * farthest_guess;
-  for (std::size_t q = 0; q < quantities; ++q)
-    if (promised(q)) least = std::min(least, errors[q].room(allowed(errors, q)));
-  return least;
-}
-
-/// What could not be promised is not to become much worse than it was.
-double ErrorSearch::room_to_coarsen(const Errors& errors) const {
-  double least = room(errors);
-  for (std::size_t q = 0; q < quantities; ++q)
-    if (promises_[q].present && tried_[q])
-      least = std::min(least, std::max(1.0, errors[q].room(best_effort * wanted_)));
-  return least;
-}
-
-bool ErrorSearch::within_reach(const Errors& errors) const {
-  for (std::size_t q = 0; q < quantities; ++q) {
-    const ErrorLaw& e = errors[q];
-    const double room = e.room(allowed(errors, q));
-    if (!promised(q) || room >= 1.0) continue;
-    if ((e.known && e.order < 1.0) || room < 1.0 / (e.known ? farthest : supposed)) return false;
-  }
-  return true;
-}
-
-// Longer steps only between two that are measured.
-double ErrorSearch::factor_of_step() const {
-  const double factor = std::clamp(room(time_), 1.0 / at_most, 1.0);
-  if (factor < 1.0 || !coarser_) return factor;
-  double least = std::min(2.0, room_to_coarsen(time_));
-  for (std::size_t q = 0; q < quantities; ++q) {
-    if (!promised(q) || time_[q].value == 0.0) continue;
-    const double growth = (*coarser_)[q].value / time_[q].value, allowed = share_between * wanted_ / time_[q].value;
-    if (growth > allowed) least = std::min(least, std::exp2(std::log(allowed) / std::log(growth)));
-  }
-  return std::max(least, 1.0);
-}
-
-double ErrorSearch::factor_of_elements() const {
-  return std::clamp(room(space_) < 1.0 ? room(space_) : room_to_coarsen(space_), 1.0 / at_most, 2.0);
-}
-
-// Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.
-bool ErrorSearch::worth_it(double step, int mesh) const {
-  const auto guess = [&](const Errors& errors) { return std::clamp(room(errors), 1.0 / farthest_guess, 1.0); };
-  const double run = trials_.seconds(base::whole(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
-  return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, trials_of_run * run);
 }
 
 }  // namespace traverse::app

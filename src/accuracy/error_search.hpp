@@ -32,6 +32,8 @@ class ErrorSearch {
   // Times a measured size that an error is extrapolated to: by a measured order, and where measuring would cost more
   // than it is worth.
   static constexpr double farthest = 2.2, at_most = 2.5;
+  static constexpr double best_effort = 10.0;     // times the wanted error, of what is refused
+  static constexpr double hardly_anything = 1.5;  // s of trial runs, estimated
   static constexpr int enough_alike = 2;
 
   double moved_by() const;
