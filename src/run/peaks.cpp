@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace traverse::app {
 namespace {
 
 constexpr double kept = 0.5;      // of the largest extreme so far
 constexpr double compared = 0.6;  // of the largest one
+// Of the step before: between instants that near the slope is that of rounding, and a parabola through them rises above
+// the curve by as much as the whole step's change.
+constexpr double too_near = 1e-2;
 constexpr double likely = 2.0;    // times the root mean square: what an extreme's error hardly exceeds
 constexpr int bisections = 40;
 constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
@@ -21,6 +25,10 @@ bool between(const std::vector<double>& times, double from, double to) {
 
 template <class Note>
 void Curve::add(double t, double value, const std::vector<double>& kinks, Note&& note) {
+  if (count_ > 1 && t - time_[2] < too_near * (time_[2] - time_[1])) {
+    if (std::abs(value) > std::abs(value_[2])) std::tie(time_[2], value_[2]) = std::tie(t, value);
+    return;
+  }
   time_ = {time_[1], time_[2], t};
   value_ = {value_[1], value_[2], value};
   if (++count_ == 1) return note(value, t);

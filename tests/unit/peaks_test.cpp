@@ -26,6 +26,21 @@ Peaks peaks_of_curve(Curve f, double dt, const std::vector<double>& passages = {
 }
 
 // The error of the parabola's vertex falls with the fourth power of the interval.
+// Two events of a crossing may be 1e-12 s apart. Between such instants the slope is that of rounding.
+TEST(Peaks, InstantsThatNearMakeNoParabola) {
+  Peaks peaks({}, 1);
+  const double crest = 1.03, step = 0.1;
+  const auto force = [&](double t) { return 1e5 * (2.0 - (t - crest) * (t - crest)); };
+  for (double t = 0.0; t < 2.0; t += step) {
+    const double now[] = {force(t)}, rounded[] = {force(t) * (1.0 - 1e-10)};
+    peaks.add(t, {}, now);
+    peaks.add(t + 1e-12, {}, rounded);
+  }
+  peaks.finish();
+  EXPECT_NEAR(peaks.largest(wheel_force).value, force(crest), 1e-8 * force(crest));
+  EXPECT_NEAR(peaks.largest(wheel_force).time, crest, 1e-6);
+}
+
 TEST(Peaks, LieBetweenSamples) {
   const auto wave = [](double t) { return -std::sin(7.0 * t + 0.1); };
   double before = 0.0;
