@@ -143,6 +143,8 @@ WAYS = [
             [Check("20, {});")]),
         Row("sleepers that slide along the track", "the same scene on one rank", "Ranks.SleepersThatSlide",
             [Check("20, {});")]),
+        Row("expansion devices and a bearing that slides", "the same scene on one rank",
+            "Ranks.ExpansionDeviceAndABearingThatSlides", [Check("22, {});")]),
         Row("losses of contact and impacts", "the same scene on one rank", "Ranks.ContactLossAndImpacts",
             [Check("20, {});")]),
         Row("steps chosen by their errors, two scenes", "the same scenes on one rank", "Ranks.StepsChosenByTheirErrors",

@@ -92,7 +92,7 @@ TEST(Ranks, SleepersThatSlide) {
                            20, 1e-6);
 }
 
-// A warm deck beside an expansion device at a rank's border or not, whose other bearing slides.
+// The deck is warm, its movable bearing slides, and the rail has a device on it and one beside it.
 TEST(Ranks, ExpansionDeviceAndABearingThatSlides) {
   expect_same_on_all_ranks("braking_on_ballast",
                            {{"train_vehicles", "wagon"},
