@@ -72,9 +72,9 @@ class VerificationPageTest(unittest.TestCase):
         text = "\n".join(path.read_text() for path in sorted((SOURCE / "tests" / "mpi").glob("*_test.cpp")))
         page = (SOURCE / "doc" / "verification.md").read_text()
         found = 0
-        for body in re.split(r"^TEST\((?=Ranks,)", text, flags=re.MULTILINE)[1:]:
+        for body in re.split(r"^TEST\(", text, flags=re.MULTILINE)[1:]:
             suite, name = re.match(r"(\w+), (\w+)\)", body).groups()
-            if re.search(r"\d, 1e-\d+\);", body):
+            if suite == "Ranks" and re.search(r"\d, 1e-\d+\);", body):
                 found += 1
                 self.assertTrue(f"`{suite}.{name}`" in page, f"{suite}.{name} has a bound of its own and no row")
         self.assertGreaterEqual(found, 7)
