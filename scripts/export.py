@@ -2,7 +2,7 @@
 """What a results file holds, for other programs: export.py RESULTS.h5 [--series NAME...] [-o FOLDER]
 
 Writes a CSV file for each name: a series over time such as probes/deflection, a group of them such as vehicles/0,
-sweep, study, or another table that --list names; without names, all there is. Heads hold names and units, the first
+sweep, study, rail_forces/stress, or another table that --list names; without names, all there is. Heads hold names and units, the first
 column is the time. --xdmf writes the bridge and the vehicles over time for ParaView, NAME.xdmf beside its data NAME.xdmf.h5.
 """
 
@@ -14,14 +14,14 @@ import sys
 
 import export_tables
 import h5py
-from export_xdmf import write_xdmf
+from export_xdmf import write_rail_xdmf, write_xdmf
 from picture_data import Results, opened
 
 
 def listed(file):
     """A line for each name: shape and unit of a series, what else there is."""
     for name in export_tables.names(file):
-        dataset = file[name]
+        dataset = file.get(name)
         if isinstance(dataset, h5py.Dataset):
             yield f"{name:44}{' x '.join(map(str, dataset.shape)):>14}  {dataset.attrs.get('unit', '')}"
         else:
@@ -55,13 +55,14 @@ def export(given):
         folder = pathlib.Path(given.o or ".")
         wanted = given.series if given.series or given.xdmf else all_names(file)
         if not wanted and not given.xdmf:
-            raise ValueError("holds neither series over time nor a sweep or a study")
+            raise ValueError("holds neither series over time nor a sweep or a study nor forces of the rails")
         tables = [export_tables.table_of(file, name) for name in wanted]  # all are known before one is written
         folder.mkdir(parents=True, exist_ok=True)
         written = [write_csv(file, name, folder) for name in wanted]
         if given.xdmf:
-            written += write_xdmf(Results(file), folder / f"{pathlib.Path(given.results).stem}.xdmf",
-                                  given.exaggeration, given.every)
+            path = folder / f"{pathlib.Path(given.results).stem}.xdmf"
+            written += (write_rail_xdmf(file, path) if "rail_forces" in file else
+                        write_xdmf(Results(file), path, given.exaggeration, given.every))
         return written
 
 

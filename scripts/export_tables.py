@@ -6,6 +6,9 @@ import numpy as np
 OVER_TIME = ("probes", "vehicles", "couplers", "supports", "foundation", "rail", "balance", "energy", "outputs")
 OVER_RUNS = {"study": "study/finished", "study/statistics": None, "separations": None, "passages": None, "resonances": None,
              "cancellations": None, "envelope": "probes/x", "shape": "shape/x"}
+ALONG_RAIL = {"stress": ("x", ("least_stress", "greatest_stress")), "slip": ("sleeper_x", ("least_slip", "greatest_slip")),
+              "bearings": ("bearing_x", ("bearing",)), "devices": ("device_x", ("opening",))}  # of rail_forces
+RAIL_PEAKS = ("tension", "compression", "slip", "end")
 PLACES = ("x", "gap")  # datasets that say where columns are
 IN_PLANE, FORCES = ("x", "y", "angle"), ("fx", "fy", "moment")
 SIDES = ("least", "greatest")
@@ -46,7 +49,14 @@ def series_names(file):
 def names(file):
     """What can be asked for: every series over time, and the other tables."""
     others = ["sweep", *OVER_RUNS]
-    return series_names(file) + [name for name in others if datasets(file, name)]
+    return series_names(file) + [name for name in others if datasets(file, name)] + rail_names(file)
+
+
+def rail_names(file):
+    """Tables of scene_analysis rail."""
+    if "rail_forces" not in file:
+        return []
+    return [f"rail_forces/{name}" for name, (at, _) in ALONG_RAIL.items() if at in file["rail_forces"]] + ["rail_forces/peaks"]
 
 
 def units(dataset):
@@ -150,6 +160,24 @@ def over_runs(file, group):
     return table
 
 
+def of_rail(file, name):
+    """Every case along the track; of the peaks a row a case, each with its place and that of the train's front."""
+    group, table = file["rail_forces"], Table()
+    cases = [case for case in group if isinstance(group[case], h5py.Group)]
+    if name == "rail_forces/peaks":
+        table.add("case", "text", cases)
+        for peak in RAIL_PEAKS:
+            for i, (words, unit) in enumerate(zip(("", ", x", ", train's front"), units(group[cases[0]][peak]))):
+                table.add(peak + words, unit, [group[case][peak][i] for case in cases])
+        return table
+    at, quantities = ALONG_RAIL[name.rsplit("/", 1)[-1]]
+    table.add("x", *units(group[at]), group[at][:])
+    for case in cases:
+        for quantity in quantities:
+            table.add(f"{case}/{quantity}", *units(group[case][quantity]), group[case][quantity][:])
+    return table
+
+
 def table_of(file, name):
     """The table of a series, of all series in a group, of the sweep or the study; ValueError where there is none."""
     name = name.strip("/")
@@ -157,6 +185,8 @@ def table_of(file, name):
         return of_sweep(file)
     if name in OVER_RUNS and datasets(file, name):
         return over_runs(file, name)
+    if name in rail_names(file):
+        return of_rail(file, name)
     chosen = [one for one in series_names(file) if one == name or one.startswith(f"{name}/")]
     if not chosen:
         raise ValueError(f"no series, sweep or study {name}; --list names what there is")

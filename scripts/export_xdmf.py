@@ -74,6 +74,31 @@ def path_of(what):
     return what.split(" (")[0]
 
 
+def along_rail(group, at, quantity):
+    """Datasets of least and greatest of every case at places along the track."""
+    x = group[at][:]
+    data = {"points": in_space(x, np.zeros_like(x))[None]}
+    for case in (name for name in group if isinstance(group[name], h5py.Group)):
+        for side in ("least", "greatest"):
+            values = group[case][f"{side}_{quantity}"]
+            data[f"{case} {side} {quantity} ({values.attrs.get('unit', '')})"] = values[:][None]
+    return data
+
+
+def write_rail_xdmf(results, path):
+    """The envelopes of scene_analysis rail along the track, likewise; both paths are returned."""
+    group = results["rail_forces"]
+    root = tree.Element("Xdmf", Version="3.0")
+    whole = tree.SubElement(tree.SubElement(root, "Domain"), "Grid", Name="rail_forces", GridType="Collection",
+                            CollectionType="Spatial")
+    with h5py.File(f"{path}.h5", "w") as out:
+        add_grid(whole, "rails", "Polyline", along_rail(group, "x", "stress"), out, 0)
+        add_grid(whole, "sleepers", "Polyvertex", along_rail(group, "sleeper_x", "slip"), out, 0)
+    tree.indent(root)
+    tree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    return [path, pathlib.Path(f"{path}.h5")]
+
+
 def write_xdmf(results, path, exaggeration=1.0, every=1):
     """Writes PATH, and PATH.h5 with the data; both are returned."""
     if every < 1 or not np.isfinite(exaggeration):

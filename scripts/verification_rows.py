@@ -3,6 +3,7 @@
 from verification_check import (
     FREQUENCY, NEWTON, Check, Row, number, order_in_space, order_in_time, over_accuracy,
     over_accuracy_but_acceleration, over_the_turns, over_tolerance)
+from verification_rail import RAIL
 
 EQUATIONS = [
     ("Published and independent cases", [
@@ -36,22 +37,7 @@ EQUATIONS = [
             [Check("EXPECT_LT(worst_gap, {} * 2e-4);", "gap_error", "gap"),
              Check("EXPECT_LT(worst_force, {} * greatest);", "force_error", "force below a sleeper"),
              Check("EXPECT_LT(worst_bridge, {} * deepest);", "bridge_error", "deflection of the bridge")]),
-        Row("UIC 774-3: rail and a deck of 60 m by temperature, bending, one after the other and at once",
-            "an own sparse model, sleepers' states changed until they agree", "RailForces.AgainstAModelOfItsOwn",
-            [Check("EXPECT_LT(*std::max_element(worst, worst + 4), {});", ".*_error")]),
-        Row("UIC 774-3: a free end of a warm rail that slides", "closed form", "RailForces.FreeEndBreathes",
-            [Check("EXPECT_LT(*std::max_element(error, error + 2), {});", "error")]),
-        Row("UIC 774-3: a rail that is pushed along its bed", "closed form", "RailForces.BrakingOnTheGround",
-            [Check("EXPECT_LT(error[1], {});", "error", "displacement"),
-             Check("EXPECT_GT(std::log2(error[0] / error[1]), {});", "order", "order in the spacing", "above {}", below=False)]),
-        Row("UIC 774-3: all forces along x of the test case E1-3", "equilibrium", "RailForces.Uic774TestCase",
-            [Check("EXPECT_LT(residual, {});", "residual")]),
-        Row("sleepers that slide as two forces cross a deck, of the largest values", "an own model by Newmark's method",
-            "RailForces.SlidingInTimeAgainstNewmark",
-            [Check("EXPECT_LT(rail_error, {});", "rail_error", "displacement of the rail along x"),
-             Check("EXPECT_LT(deck_error, {});", "deck_error", "of the deck along x"),
-             Check("EXPECT_LT(deflection_error, {});", "deflection_error", "deflection"),
-             Check("EXPECT_LT(energy_error(run), {});", "energy_error", "energy")]),
+        *RAIL,
         Row("a force over sleepers of which three hang: forces in pads and in the ballast, of the greatest",
             "a dense model by Newmark's method at 2e-5 s", "SleeperForces.OfAMovingForceAgainstAnotherIntegration",
             [Check("EXPECT_LT(worst_pad, {} * greatest);", "pad_error", "pads"),

@@ -132,7 +132,7 @@ WAYS = [
     ]),
     ("One rank against two and three", [
         Row("every dataset of all other scenes, of its peak", "the same scene on one rank", "Ranks.*",
-            [Check("double at_rest = 0.0, double bound = {}) {")]),
+            [Check("double at_rest = 0.0, double bound = {});", file="tests/support/same_on_ranks.hpp")]),
         Row("an articulated train", "the same scene on one rank", "Ranks.ArticulatedTrain", [Check("60, {});")]),
         Row("a bridge as found, a span that shears", "the same scenes on one rank", "Ranks.BridgesAsFoundAndThatShear",
             [Check("30, {});")]),
@@ -143,6 +143,8 @@ WAYS = [
             [Check("20, {});")]),
         Row("sleepers that slide along the track", "the same scene on one rank", "Ranks.SleepersThatSlide",
             [Check("20, {});")]),
+        Row("expansion devices and a bearing that slides", "the same scene on one rank",
+            "Ranks.ExpansionDeviceAndABearingThatSlides", [Check("22, {});")]),
         Row("losses of contact and impacts", "the same scene on one rank", "Ranks.ContactLossAndImpacts",
             [Check("20, {});")]),
         Row("steps chosen by their errors, two scenes", "the same scenes on one rank", "Ranks.StepsChosenByTheirErrors",

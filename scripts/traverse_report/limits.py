@@ -11,6 +11,8 @@ from .source import ReportError
 UNITS = {"deck_acceleration": "m/s²", "unfiltered_deck_acceleration": "m/s²", "deflection_over_span": "",
          "end_rotation": "rad", "joint_rotation": "rad", "car_acceleration": "m/s²", "wheel_unloading": "",
          "filtered_wheel_unloading": "", "unloading_time": "s", "contact_loss": "s", "amplification": "",
+         "rail_tension": "Pa", "rail_compression": "Pa", "rail_slip": "m", "deck_displacement": "m",
+         "deck_end_displacement": "m", "rail_device_opening": "m",
          "lm71_deflection_over_span": "", "lm71_end_rotation": "rad", "lm71_joint_rotation": "rad", "train_over_lm71": ""}
 # Of static effects of EN 1991-2: no run knows them, the computation judges them once.
 OF_NORM = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "train_over_lm71"}

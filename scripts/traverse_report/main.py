@@ -11,7 +11,7 @@ from typing import NamedTuple, Optional
 import fatigue
 import h5py
 
-from . import comfort_sheet, fatigue_sheet, norm_sheet, sheets, statistics, workbook
+from . import comfort_sheet, fatigue_sheet, norm_sheet, rail_sheet, sheets, statistics, workbook
 from . import governing as again
 from . import limits as judging
 from .model_sheet import sheet as model_page
@@ -86,12 +86,13 @@ def add_pages(report, source, limits, verdicts, governing, asked):
     sheets.front(report, source, verdicts, governing)
     model_page(report, source)
     norm_sheet.sheet(report, source)
+    rail_sheet.sheet(report, source)
     if source.runs is not None:
         sheets.line_sheet(report, source, limits)
         sheets.curve_sheets(report, source, limits)
         sheets.envelope_sheet(report, source)
         statistics.sheet(report, source)
-    one = source if source.runs is None else governing.source if governing is not None else None
+    one = source if source.is_run else governing.source if governing is not None else None
     if one is not None:
         heading = source.title() if source.runs is None else f"governing run, {governing.words}"
         sheets.run_envelope_sheet(report, one, heading)

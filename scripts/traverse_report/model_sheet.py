@@ -143,6 +143,7 @@ def properties(source):
             gap = f"{1e3 * data[:, 3].max():.4g} {'mrad' if 'rad' in unit else 'mm'}"
             where += f", gap up to {gap}" if data[:, 3].any() else ""
             where += ", with a cubic term" if data[:, 5].any() else ""
+            where += f", sliding at {digits(1e-3 * data[:, 6].max())} kN" if data[:, 6:].any() else ""
         if source.runs is not None and f"foundation_{kind}_k" in source.runs.parameters:
             shown = "varied: " + ", ".join(digits(k) for k in np.unique(source.runs.parameters[f"foundation_{kind}_k"])[:8])
         rows.append((f"Foundation: {WORDS[kind.replace('_bed', '')]}", f"{shown} {unit}, {where}"))
@@ -152,6 +153,8 @@ def properties(source):
                      if "study_vary_track_seed" not in options else f"{options['track_profile']}, several seeds"))
     if "track_rail_EI" in options:
         rows.append(("Track", "rail, pads and sleepers modelled in layers"))
+    if "track_rail_expansion_devices" in options:
+        rows.append(("Rail expansion devices", f"at {options['track_rail_expansion_devices']} m"))
     return rows
 
 
@@ -172,7 +175,8 @@ def sheet(report, source):
         draw_bridge(page, source)
     draw_train(page, source)
     page = table(report, page, [("model", 2.0, "left"), ("", 4.7, "left")], properties(source))
-    page = table(report, page, [("promised error", 2.0, "left"), ("", 4.7, "left")], promises(source))
+    if not source.is_rail:
+        page = table(report, page, [("promised error", 2.0, "left"), ("", 4.7, "left")], promises(source))
     if source.model.notes:
         rows = [(str(i), note) for i, note in enumerate(source.model.notes, 1)]
         table(report, page, [("", 0.3, "left"), ("what the program said of its model", 6.4, "left")], rows)

@@ -4,7 +4,7 @@ import numpy as np
 from picture_axes import GREY
 from picture_data import MOST_CURVES, choose, natural, place_in_words
 
-from . import curves, model_sheet, norm_sheet
+from . import curves, model_sheet, norm_sheet, rail_sheet
 from .limits import judge_lines
 from .page import AMBER, GREEN, LEFT, RED, table
 from .source import QUANTITIES, digits, number
@@ -18,7 +18,8 @@ def shown(value, limit):
         return ""
     if limit.quantity.endswith("deflection_over_span") and value > 0.0:
         return f"1/{digits(1.0 / value)}"
-    return f"{1e3 * value:.4g} mrad" if limit.unit == "rad" else f"{value:.4g} {limit.unit}".strip()
+    factor, unit = {"rad": (1e3, "mrad"), "m": (1e3, "mm"), "Pa": (1e-6, "MPa")}.get(limit.unit, (1.0, limit.unit))
+    return f"{factor * value:.4g} {unit}".strip()
 
 
 def outcome(verdicts):
@@ -62,6 +63,8 @@ def is_known(runs, name):
 def peak_rows(source):
     """(quantity, value, run and place) of the greatest of all."""
     rows, runs = [], source.runs
+    if source.is_rail:
+        return rail_sheet.peak_rows(source)
     if runs is None:
         supports = source.results.supports
         for name, words, unit, factor in (("deflection", "greatest deflection", "mm", 1e3),

@@ -156,8 +156,10 @@ class Source:
         elif "study/finished" in self.file:
             self.runs = self._study()
         self.is_run = self.runs is None and "probes/deflection" in self.file and self.results.rows > 0
-        if self.runs is None and not self.is_run:
-            raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study: nothing to report on")
+        self.is_rail = "rail_forces/x" in self.file
+        if self.runs is None and not self.is_run and not self.is_rail:
+            raise ReportError(f"{path} holds neither a run over a bridge nor a sweep or a study, nor forces of the rails: "
+                              "nothing to report on")
 
     def _judged(self, runs):
         """What limits were judged by, one number a run."""
@@ -200,6 +202,8 @@ class Source:
         return self.results.scene()
 
     def kind_in_words(self):
+        if self.is_rail:
+            return "forces between rail and bridge, UIC 774-3"
         if self.is_run:
             speed = self.results.speed()
             return f"one run at {3.6 * speed:.4g} km/h" if speed else "one run"
@@ -219,6 +223,8 @@ class Source:
 
     def train_in_words(self):
         model = self.model
+        if self.is_rail:
+            return f"a train at {len(self.file['rail_forces/front'])} places"
         if len(model.train):
             names = [model.type_name(index) for index, _ in model.train]
             counted = []

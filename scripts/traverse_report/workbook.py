@@ -7,7 +7,7 @@ import openpyxl
 from openpyxl.styles import Alignment, Font, PatternFill
 from openpyxl.utils import get_column_letter
 
-from . import model_sheet, norm_sheet
+from . import model_sheet, norm_sheet, rail_sheet
 from .comfort_sheet import comfort_rows
 from .fatigue_sheet import SLOPES, fatigue_rows
 from .limits import judge_lines, stored
@@ -169,14 +169,16 @@ def write(path, entries, asked):
         rows += [("Modelled", note) for note in source.model.notes] + sorted(source.options.items())
         add_sheet(book, f"{prefix}model", ["what", "value"], [("Results file", str(source.path.name)), *rows])
         for name, (head, rows) in (("EN 1991-2", norm_sheet.workbook_rows(source)),
-                                   ("static effects", norm_sheet.static_rows(source))):
+                                   ("static effects", norm_sheet.static_rows(source)),
+                                   ("rail and bridge", rail_sheet.rows(source)),
+                                   ("stress of the rails", rail_sheet.envelope_rows(source))):
             if rows:
                 add_sheet(book, f"{prefix}{name}", head, rows)
         if source.runs is not None:
             add_lines(book, prefix, source, limits)
             add_runs(book, prefix, source)
             add_statistics(book, prefix, source)
-        else:
+        elif source.is_run:
             add_run(book, prefix, source)
             add_comfort(book, prefix, source)
             add_cycles(book, prefix, source, asked)

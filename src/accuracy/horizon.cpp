@@ -58,7 +58,7 @@ std::vector<double> numbers_of(const beam::BeamModel& beam, std::size_t span, do
   along(beam.rotary_inertia);
   if (beam.GA) along(*beam.GA);
   const auto law = [&](const beam::FoundationLaw& l) {
-    numbers.insert(numbers.end(), {l.one_sided ? 1.0 : 0.0, l.gap, l.cubic});
+    numbers.insert(numbers.end(), {l.one_sided ? 1.0 : 0.0, l.gap, l.cubic, l.slides_at});
   };
   for_points(beam.foundation, [&](const beam::FoundationKind&, const auto& points) {
     for (const beam::PointFoundation& point : points) {
@@ -151,6 +151,9 @@ void add_track(const Scene& scene, std::vector<Meeting>& list) {
   }
   if (!track.rail_hinges.empty())
     add(track.rail_hinges.back(), fmt::format("the joint of the rail at {:g} m", track.rail_hinges.back()));
+  if (!track.expansion_devices.empty())
+    add(track.expansion_devices.back(),
+        fmt::format("the rail's expansion device at {:g} m", track.expansion_devices.back()));
 }
 
 void add_forces(const Scene& scene, std::vector<Meeting>& list) {

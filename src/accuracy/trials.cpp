@@ -111,7 +111,8 @@ Scene moved_up(const Scene& scene) {
   Scene part = scene;
   if (!scene.beam->track || scene.train.vehicles.empty() || !scene.load.forces.empty() || !scene.profile.level() ||
       !scene.beam->track->uniform() || !scene.beam->track->rail_hinges.empty() ||
-      scene.train.drive != train::Drive::constant || !scene.train.courses.empty())
+      !scene.beam->track->expansion_devices.empty() || scene.train.drive != train::Drive::constant ||
+      !scene.train.courses.empty())
     return part;
   const std::vector<double> wheels = wheels_at_start(scene);
   const double front = *std::max_element(wheels.begin(), wheels.end());

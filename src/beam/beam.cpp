@@ -71,6 +71,7 @@ void release_nodes(const Line& line, Slice& slice) {
   const int past = std::min(line.mesh.nodes(), slice.first + slice.local + 1 - line.first_column);
   for (int node = from; node < past; ++node) {
     for (int which = 0; which < (line.mesh.hinged(node) ? 4 : 3); ++which) slice.release(line.unknown(node, which));
+    if (line.mesh.parted(node)) slice.release(line.unknown(node, 4));
   }
 }
 

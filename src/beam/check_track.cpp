@@ -128,19 +128,48 @@ void check_stretches(const BeamModel& model) {
   }
 }
 
-void check_hinges(const BeamModel& model) {
-  const RailMesh rail = rail_mesh(model);
+/// Joints and expansion devices stand at nodes of the rail.
+void check_at_nodes(const RailMesh& rail, const std::vector<double>& stations, const char* option,
+                    const std::string& things) {
   double before = rail.start;
-  for (const double x : model.track->rail_hinges) {
+  for (const double x : stations) {
     if (!(x > before) || !(x < rail.x(rail.elements)))
-      refuse_track("track_rail_hinges", x, "joints lie within the track, from left to right");
+      refuse_track(option, x, things + " lie within the track, from left to right, each at a place of its own");
     const double nodes = (x - rail.start) / rail.element;
     if (std::abs(nodes - std::round(nodes)) > off_node)
-      refuse_track("track_rail_hinges", x,
-                   "joints stand at nodes of the rail, which are " + text_of(rail.element) +
+      refuse_track(option, x,
+                   things + " stand at nodes of the rail, which are " + text_of(rail.element) +
                        " m apart (track_spacing over track_elements_per_bay), one at every sleeper");
     before = x;
   }
+}
+
+/// A sleeper at a device would hold both of its sides; without one between two devices nothing holds the rail there.
+void check_devices(const BeamModel& model) {
+  const LayeredTrack& track = *model.track;
+  const RailMesh rail = rail_mesh(model);
+  const char* option = "track_rail_expansion_devices";
+  const std::vector<double>& devices = track.expansion_devices;
+  check_at_nodes(rail, devices, option, "expansion devices");
+  std::vector<char> held(devices.size() + 1, 0);  // the rail between two devices
+  held.front() = held.back() = track.rail_ends_held ? 1 : 0;
+  const double near = off_node * rail.element;
+  for_sleepers(model, [&](double x, bool) {
+    const auto device = std::lower_bound(devices.begin(), devices.end(), x - near);
+    if (device != devices.end() && *device <= x + near && track.has_sleeper(x))
+      refuse_track(option, *device,
+                   "a sleeper stands there; expansion devices stand between sleepers, at nodes of the rail " +
+                       text_of(rail.element) + " m apart (track_spacing over track_elements_per_bay)");
+    if (track.at(x).longitudinal.k > 0.0) held[static_cast<std::size_t>(device - devices.begin())] = 1;
+  });
+  for (const double x : track.rail_hinges)
+    if (std::any_of(devices.begin(), devices.end(), [&](double device) { return std::abs(device - x) <= near; }))
+      refuse_track(option, x, "a joint of the rail stands there (track_rail_hinges)");
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i] == 0)
+      refuse_track(option, devices[std::min(i, devices.size() - 1)],
+                   i < devices.size() ? "no sleeper to its left holds the rail along x (track_longitudinal_k)"
+                                      : "no sleeper to its right holds the rail along x (track_longitudinal_k)");
 }
 
 }  // namespace
@@ -175,7 +204,8 @@ void check_track(const BeamModel& model) {
     check_stretches(model);
     for_sleepers(model, [&](double x, bool on_bridge) { check_sleeper(t, x, on_bridge); });
   }
-  check_hinges(model);
+  check_at_nodes(rail, t.rail_hinges, "track_rail_hinges", "joints");
+  if (!t.expansion_devices.empty()) check_devices(model);
   if (!t.uniform() || !t.rail_hinges.empty() || t.hangs())
     check_rail_stands(model);
   else if (model.axial)

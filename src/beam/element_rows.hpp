@@ -13,9 +13,10 @@ namespace traverse::beam {
 
 class ElementRows {
  public:
-  /// Whether a beam is of this kind: without hinges, whose nodes have two rotations.
+  /// Whether a beam is of this kind: without hinges and expansion devices, whose nodes have an unknown more.
   static bool fit(const Beam& beam) {
-    return beam.layout().place[theta_right] < 0 && beam.layout().place[rail_theta_right] < 0;
+    const auto& place = beam.layout().place;
+    return place[theta_right] < 0 && place[rail_theta_right] < 0 && place[rail_u_right] < 0;
   }
   explicit ElementRows(const Beam& beam);
 

@@ -28,10 +28,11 @@ InternalForces::Run InternalForces::run_of(const Beam& beam, const Line& line) c
     if (run.elements.empty()) run.first = column;
     if (!uniform || element.length != length) {
       const ElementMatrices m = element_matrices(model, element);
-      s = {element.length, m.stiffness[2], m.stiffness[3], m.stiffness[6], m.stiffness[7], m.axial_stiffness[1], 0};
+      s = {element.length, m.stiffness[2], m.stiffness[3], m.stiffness[6], m.stiffness[7], m.axial_stiffness[1], 0, 0};
     }
     length = element.length;
     s.theta1 = line.mesh.hinged(element.left) ? line.place[3] : line.place[2];
+    s.u1 = line.mesh.parted(element.left) ? line.place[4] : line.place[0];
     run.elements.resize(index(column - run.first + 1));  // leaves a gap between separate spans
     run.elements.back() = s;
   }
@@ -53,13 +54,14 @@ void InternalForces::add_run(const Run& run, double sign, const double* x, const
     const double f = sign * static_cast<double>(Real(s.A) * rise + Real(s.B) * turn);
     const double m = sign * static_cast<double>(Real(s.C) * rise + Real(s.D) * turn);
     double n = 0.0;
-    if constexpr (axial) n = sign * static_cast<double>(Real(s.S) * (Real(x2[u]) - Real(x1[u])));
+    if constexpr (axial) n = sign * static_cast<double>(Real(s.S) * (Real(x2[u]) - Real(x1[s.u1])));
     if (column >= 0) {
       double* node = r + column * b;
       node[v] += force + f;
       node[theta] += moment;
       node[s.theta1] += m;
-      if constexpr (axial) node[u] += along + n;
+      if constexpr (axial) node[u] += s.u1 == u ? along + n : along;
+      if (axial && s.u1 != u) node[s.u1] += n;
     }
     force = -f;
     moment = f * s.h - m;

@@ -25,7 +25,7 @@ class InternalForces {
   /// Along x: S (u2 - u1). All zero between separate spans.
   struct Stiffness {
     double h, A, B, C, D, S;
-    std::ptrdiff_t theta1;  // its place in the left column: beside a hinge another one
+    std::ptrdiff_t theta1, u1;  // their places in the left column: beside a hinge or an expansion device other ones
   };
   struct Run {
     int first = 0;  // local column of its first element's left node, -1: a neighbour rank's

@@ -16,6 +16,7 @@ Layout::Layout(const BeamModel& model) {
   };
   if (model.track) {
     if (model.axial) add(rail_u);
+    if (model.axial && !model.track->expansion_devices.empty()) add(rail_u_right);
     add(rail_v);
     add(rail_theta);
     if (!model.track->rail_hinges.empty()) add(rail_theta_right);
@@ -36,9 +37,9 @@ Line::Line(BeamModel its_model, const Layout& layout, bool rail, int its_first_c
       per_node(model.axial ? 3 : 2) {
   const auto& at = layout.place;
   if (rail) {
-    place = {at[rail_u], at[rail_v], at[rail_theta], at[rail_theta_right]};
+    place = {at[rail_u], at[rail_v], at[rail_theta], at[rail_theta_right], at[rail_u_right]};
   } else {
-    place = {at[Kind::u], at[Kind::v], at[Kind::theta], at[Kind::theta_right]};
+    place = {at[Kind::u], at[Kind::v], at[Kind::theta], at[Kind::theta_right], -1};
   }
 }
 
@@ -67,7 +68,7 @@ std::array<int, 4> Line::transverse(int element) const {
 
 std::array<int, 2> Line::axial(int element) const {
   const int left = mesh.element(element).left;
-  return {unknown(left, 0), unknown(left + 1, 0)};
+  return {unknown(left, mesh.parted(left) ? 4 : 0), unknown(left + 1, 0)};
 }
 
 std::array<int, 6> Line::unknowns(int element) const {

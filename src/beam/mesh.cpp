@@ -32,12 +32,12 @@ Mesh::Mesh(const BeamModel& model) {
       elements_.push_back(element_of(model, nodes() - 1, piece.span, x_.back(), h));
       x_.push_back(i + 1 < piece.elements ? piece.left + length * (i + 1) / piece.elements : piece.right);
     }
-    hinged_.resize(x_.size(), 0);
+    joints_.resize(x_.size(), Joint::continuous);
     const int left = nodes() - 1;
-    if (piece.next == Joint::hinge || piece.next == Joint::cracked) hinged_.back() = 1;
-    if (piece.next != Joint::continuous) kinks_.push_back(piece.right);
+    joints_.back() = piece.next;
+    if (piece.next != Joint::continuous && piece.next != Joint::expansion) kinks_.push_back(piece.right);
     if (piece.next == Joint::separate && &piece != &pieces.back()) x_.push_back(piece.right);
-    hinged_.resize(x_.size(), 0);
+    joints_.resize(x_.size(), Joint::continuous);
     if (!piece.ends_span) continue;
     span_ends_.push_back(piece.right);
     nodes_at_.emplace_back(left, nodes() - 1);

@@ -38,7 +38,9 @@ class Mesh {
   /// Nodes at span end i: {left span's, right span's}; equal but where two spans are separate.
   std::pair<int, int> nodes_at(int span_end) const { return nodes_at_[span_end]; }
   /// Whether the slope may jump at a node: it has a rotation for either side.
-  bool hinged(int node) const { return hinged_[node] != 0; }
+  bool hinged(int node) const { return joints_[node] == Joint::hinge || joints_[node] == Joint::cracked; }
+  /// Whether the displacement along x may jump: it has one for either side.
+  bool parted(int node) const { return joints_[node] == Joint::expansion; }
 
   /// The element that holds x (clamped into [start, end]); at a node shared by two elements the right one,
   /// except at the end of the beam. `from_left`: the left one. Costs O(log spans).
@@ -51,7 +53,7 @@ class Mesh {
 
  private:
   std::vector<double> x_;
-  std::vector<char> hinged_;
+  std::vector<Joint> joints_;  // at each node
   std::vector<Element> elements_;
   std::vector<double> span_ends_, kinks_;
   std::vector<std::pair<int, int>> nodes_at_;

@@ -58,6 +58,14 @@ void check_law(const FoundationLaw& law, const std::string& option, const Founda
   require_not_negative(law.cubic, option + "_cubic", std::string(units.cubic));
 }
 
+/// What slides is a spring and nothing else.
+void check_sliding(const PointFoundation& p, const std::string& option) {
+  require_not_negative(p.law.slides_at, option + "_limit", "N");
+  if (p.law.slides_at == 0.0) return;
+  require(p.k > 0.0 && p.c == 0.0 && p.law.gap == 0.0 && p.law.cubic == 0.0, option + "_limit", number(p.law.slides_at),
+          "what slides is a spring: " + option + "_k above 0, without _c, _gap and _cubic");
+}
+
 void check_foundation(const Foundation& foundation, double length) {
   for_points(foundation, [&](const FoundationKind& kind, const std::vector<PointFoundation>& points) {
     const std::string option = "foundation_" + std::string(kind.name);
@@ -68,6 +76,7 @@ void check_foundation(const Foundation& foundation, double length) {
       require_not_negative(p.k, option + "_k", std::string(units.k));
       require_not_negative(p.c, option + "_c", std::string(units.c));
       check_law(p.law, option, units);
+      check_sliding(p, option);
     }
   });
   for_beds(foundation, [&](const FoundationKind& kind, const Bed& bed) {

@@ -18,6 +18,7 @@ void add_points(std::size_t kind, const Line& bridge, int first, int past, std::
     if (at.element < first || at.element >= past) continue;
     points.push_back({kind, foundation_kinds[kind].direction, static_cast<int>(i), p.x, at, p.k, p.c, p.law});
     points.back().depth = p.depth;
+    points.back().sliding = {p.k, p.law.slides_at, p.k, p.law.slides_at};
   }
 }
 

@@ -29,7 +29,7 @@ struct NonlinearPoint {
       below = -1;         // of a sleeper: its unknown, and that of the ballast below it; -1: the bridge or the ground;
                           // of one that slides: the rail's along x, and none
   bool on_bridge = true;  // it acts on the bridge, at `at`
-  Sliding sliding = {};   // of a sleeper that slides, instead of the law
+  Sliding sliding = {};   // of a sleeper or a bearing that slides, instead of the law
   double height = 0.0;    // m above the bridge's axis, at which a sleeper slides along x
   double depth = 0.0;     // m below it, of a point of a list
 };

@@ -48,6 +48,7 @@ std::vector<Division> divisions_of(const BeamModel& model) {
   std::vector<Division> divisions;
   for (const double x : model.hinges) divisions.push_back({x, Joint::hinge});
   for (const Crack& crack : model.cracks) divisions.push_back({crack.x, Joint::cracked});
+  for (const double x : model.expansion_devices) divisions.push_back({x, Joint::expansion});
   for (const double x : model.cuts) divisions.push_back({x, Joint::continuous});
   std::stable_sort(divisions.begin(), divisions.end(), [](const Division& a, const Division& b) { return a.x < b.x; });
   const auto same = [](const Division& a, const Division& b) { return a.x == b.x; };
@@ -156,6 +157,7 @@ BeamModel rail_model(const BeamModel& model) {
     rail.temperature = Temperature{model.track->rail_temperature, 0.0, model.track->rail_expansion, 1.0};
   rail.start = mesh.start;
   rail.hinges = model.track->rail_hinges;
+  rail.expansion_devices = model.track->expansion_devices;
   rail.nodes_at_steps = false;
   return rail;
 }

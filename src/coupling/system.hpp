@@ -83,6 +83,14 @@ struct Observation {
 std::unique_ptr<structure::Structure> by_elements(const beam::Beam* beam, const SystemInput& input,
                                                   std::shared_ptr<structure::BeamOperator> shared = nullptr);
 
+/// A wheel of a vehicle whose prescribed speed changes: the force that accelerates its share of the vehicle acts on the
+/// track there.
+struct BrakingWheel {
+  double x = 0.0;     // m, at t = 0
+  double mass = 0.0;  // kg, of the vehicle, shared as the weight is
+  base::SpeedLaw law;
+};
+
 class System {
  public:
   /// structure may be null: a mechanism on its own, or vehicles on rigid ground. Throws InputError for a wheel that
@@ -289,6 +297,9 @@ class System {
   void finish_step(double* y);
   double structure_error(const double* y);
   void load_structure(double t);
+  void note_braking();
+  bool brakes_track(int wheel) const;
+  bool take_braking(double t);
   void check_applied() const;
   structure::ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
@@ -313,6 +324,8 @@ class System {
   ContactNewton newton_;
 
   std::vector<beam::ElementLoad> loads_;        // of the moving forces now on the beam
+  std::vector<BrakingWheel> braking_;           // of trains whose speed is prescribed and changes
+  std::vector<double> braking_force_;           // N along x on the line, during the step under way
   std::map<double, double> applied_;            // N by the station, m: the forces of apply_to_beam
   bool applied_anew_ = false;                   // since the last step
   std::vector<char> on_beam_;                   // of each moving force, during the step under way

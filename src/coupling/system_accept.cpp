@@ -79,7 +79,8 @@ void System::keep(base::Archive& archive, double* y) {
     archive.sum(m.powers[0].dissipation, m.powers[0].work, m.dissipated, m.worked);
     if (archive.reads() && m.length > 0.0) set_step(m.length);
   }
-  archive.same(on_beam_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, signs_, defect_apart_);
+  archive.same(on_beam_, braking_force_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, signs_,
+               defect_apart_);
   std::vector<int> owners = share_.owners(fleet_.vehicles.size());
   archive.same(owners);
   fleet_.keep(archive, owners);

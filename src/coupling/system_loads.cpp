@@ -1,4 +1,6 @@
-// What acts on the structure: moving forces and contacts.
+// What acts on the structure: moving forces, contacts, and what trains are braked by whose speed is prescribed.
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "coupling/system.hpp"
@@ -12,6 +14,12 @@ void System::load_structure(double t) {
     if (on_beam_[i] == 0) continue;
     const beam::Station s = line_->mesh.locate(train::place_of(input_.load, i, t));
     loads_.push_back({s.element, s.xi, 0.0, -input_.load.forces[i], 0.0, train::speed_of(input_.load, i, t)});
+  }
+  for (std::size_t i = 0; i < braking_force_.size(); ++i) {
+    if (braking_force_[i] == 0.0) continue;
+    const double x = braking_[i].x + braking_[i].law.distance(t), along = braking_force_[i];
+    const beam::Station s = line_->mesh.locate(x);
+    loads_.push_back({s.element, s.xi, along, 0.0, -surface_height() * along, braking_[i].law.speed(t)});
   }
   for (const auto& [x, force] : applied_) {
     const beam::Station s = line_->mesh.locate(x);
@@ -45,10 +53,55 @@ structure::ElementLoads System::contact_loads() {
   return {fleet_.elements(), element_loads_};
 }
 
+// What accelerates a vehicle comes from the track. Wheels that rub put it there by themselves.
+bool System::brakes_track(int wheel) const {
+  if (line_ == nullptr || line_->per_node != 3 || !is_driven(wheel) || law_of_wheel(wheel).constant()) return false;
+  const auto member = static_cast<std::size_t>(fleet_.member(wheel));
+  const train::Vehicle& type = input_.types[static_cast<std::size_t>(input_.train.vehicles[member])];
+  return std::all_of(type.wheels.begin(), type.wheels.end(),
+                     [](const train::Wheel& w) { return w.law.friction == 0.0; }) &&
+         std::none_of(type.mechanism.drivers.begin(), type.mechanism.drivers.end(),
+                      [](const multibody::Driver& d) { return d.coordinate == 0; });
+}
+
+// The mass of each vehicle on its wheels, by what they carry at rest.
+void System::note_braking() {
+  braking_.clear();
+  std::vector<double> carried(input_.train.vehicles.size(), 0.0);
+  const auto wheels = static_cast<int>(fleet_.wheels.size());
+  const auto member = [&](int wheel) { return static_cast<std::size_t>(fleet_.member(wheel)); };
+  const auto& weights = weights_.all();
+  for (int i = 0; i < wheels; ++i) carried[member(i)] += weights[static_cast<std::size_t>(i)].force;
+  for (int i = 0; i < wheels; ++i) {
+    const PassingWeight& weight = weights[static_cast<std::size_t>(i)];
+    if (!brakes_track(i) || weight.force == 0.0) continue;
+    const auto& bodies = input_.types[static_cast<std::size_t>(input_.train.vehicles[member(i)])].mechanism.bodies;
+    const double mass = std::accumulate(bodies.begin(), bodies.end(), 0.0,
+                                        [](double sum, const multibody::Body& b) { return sum + b.mass; });
+    braking_.push_back({weight.x, mass * weight.force / carried[member(i)], weight.law});
+  }
+  braking_force_.assign(braking_.size(), 0.0);
+}
+
+// The forces of a step whose middle is t. True where they are others than before.
+bool System::take_braking(double t) {
+  bool changed = false;
+  for (std::size_t i = 0; i < braking_.size(); ++i) {
+    const BrakingWheel& wheel = braking_[i];
+    const double x = wheel.x + wheel.law.distance(t);
+    const bool on = x >= line_->mesh.start() && x <= line_->mesh.end();
+    const double force = on ? -wheel.mass * wheel.law.acceleration(t) : 0.0;
+    changed = changed || force != braking_force_[i];
+    braking_force_[i] = force;
+  }
+  return changed;
+}
+
 bool System::begin_step(double from, double to) {
   bool changed = std::exchange(applied_anew_, false);
   changed = fleet_.begin_step(0.5 * (from + to)) || changed;
   if (line_ == nullptr) return changed;
+  changed = take_braking(0.5 * (from + to)) || changed;
   for (std::size_t i = 0; i < on_beam_.size(); ++i) {
     const double x = train::place_of(input_.load, i, 0.5 * (from + to));
     const char on = x >= line_->mesh.start() && x <= line_->mesh.end() ? 1 : 0;

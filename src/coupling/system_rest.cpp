@@ -132,8 +132,8 @@ void System::go_on_from(std::vector<double> p) {
 void System::refuse_start(Solution found) const {
   if (found == Solution::structure_unsettled)
     throw SolverError(
-        "no static equilibrium found to start from: the foundation that is one-sided, has a gap or a "
-        "cubic term does not settle, worst " +
+        "no static equilibrium found to start from: the foundation that is one-sided, slides, has a gap or "
+        "a cubic term does not settle, worst " +
         structure_->trouble() + "; does the beam rest on it, and what else holds the beam?");
   const std::string advice =
       "is every body held by joints, springs or wheels, also against actuators, and every wheel stiff enough to carry "

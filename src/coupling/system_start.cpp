@@ -60,6 +60,7 @@ void System::note_weights() {
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i)
     weights.push_back({input_.load.positions[i], input_.load.forces[i], train::law_of(input_.load, i)});
   weights_.set(std::move(weights), fleet_.wheels.size());
+  note_braking();
 }
 
 base::SpeedLaw System::law_of_wheel(int wheel) const {
@@ -98,10 +99,12 @@ std::vector<double> System::known_events(double end, bool all_kinks) const {
     if (law.standstill() == 0.0) return;
     for (double kink : kinks) note(law.time_of(kink - x));
   };
-  for (int i = 0; all_kinks && i < static_cast<int>(fleet_.wheels.size()); ++i) {
+  for (int i = 0; i < static_cast<int>(fleet_.wheels.size()); ++i) {
     const train::WheelContact& c = fleet_.wheels[static_cast<std::size_t>(i)];
     if (c.is_further || !is_driven(i)) continue;
     const base::SpeedLaw law = law_of_wheel(i);
+    if (brakes_track(i)) add(fleet_.coordinates(c).x(), law, {line_->mesh.start(), line_->mesh.end()});
+    if (!all_kinks) continue;
     add(fleet_.coordinates(c).x(), law, corners(fleet_.profile(c)));
     add_flats(c, law, end, events);
   }

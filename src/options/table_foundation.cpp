@@ -40,6 +40,8 @@ void add_points(const FoundationKind& kind, std::vector<Row>& rows) {
   add("k", numbers, unit(units.k), "0", not_negative, "", "their stiffness, one serves all");
   add("c", numbers, unit(units.c), "0", not_negative, "", "their damping, one serves all");
   if (kind.direction == Direction::longitudinal)
+    add("limit", numbers, "N", "0", not_negative, "", "force at which they slide, as a bearing's friction has it, one serves all; 0: they hold");
+  if (kind.direction == Direction::longitudinal)
     add("depth", numbers, "m", "0", not_negative, "", "how far below the beam's axis they hold, as bearings do, one serves all; at span ends");
   if (kind.direction == Direction::vertical)
     add("one_sided", choice_list, "", "false", any, "true false", "pushes only, where the beam is pressed down; one word serves all");

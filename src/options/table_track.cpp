@@ -23,6 +23,7 @@ constexpr Row rail_rows[] = {
   {"track_rail_expansion", number, "1/K", "1.2e-5", not_negative, "", 0, "layered track: rail's coefficient of expansion"},
   {"track_rail_ends", choice, "", "free", any, "free held", 0, "layered track: whether the ends of the modelled rail are held along x, as where the track goes on"},
   {"track_rail_hinges", numbers, "m", "", any, "", 0, "layered track: stations of rail joints that carry no moment, at nodes of the rail"},
+  {"track_rail_expansion_devices", numbers, "m", "", any, "", 0, "layered track: stations of rail expansion devices, which carry no axial force, at nodes of the rail between sleepers"},
   {"track_spacing", number, "m", "", positive, "", 0, "layered track: from sleeper to sleeper"},
   {"track_offset", number, "m", "0", any, "", 0, "layered track: x of one of the sleepers"},
   {"track_elements_per_bay", integer, "", "2", {1, 100}, "", 0, "layered track: rail elements from sleeper to sleeper; the bridge has as many"},

@@ -28,13 +28,19 @@ RailBridge::RailBridge(const beam::BeamModel& model, double rail_area, double gr
       op_((beam_.set_rayleigh({}), beam_)),
       nonlinear_(beam_, op_, greatest_load, greatest_load),
       ground_(beam_),
+      devices_(beam_),
       area_(rail_area) {
   note_stations();
 }
 
 void RailBridge::note_stations() {
-  const beam::Mesh& rail = beam_.rail()->mesh;
-  for (int e = 0; e < rail.elements(); ++e) elements_.push_back(rail.element(e).x + 0.5 * rail.element(e).length);
+  const beam::Line& rail = *beam_.rail();
+  const double strain = rail.model.temperature ? rail.model.temperature->strain() : 0.0;
+  for (int e = 0; e < rail.mesh.elements(); ++e) {
+    const beam::Element& element = rail.mesh.element(e);
+    elements_.push_back(element.x + 0.5 * element.length);
+    own_stress_.push_back(-rail.model.EA.at(elements_.back(), element.x) / area_ * strain);
+  }
   for (const beam::Sleeper& s : beam::sleepers_of(beam_.bridge(), 0, beam_.columns())) sleepers_.push_back(s.x);
   const beam::Mesh& bridge = beam_.mesh();
   const beam::BeamModel& model = beam_.model();
@@ -134,6 +140,8 @@ void RailBridge::recover(const std::vector<double>& P, State& state) {
     state.displacement.push_back(s.on_bridge ? u - surface(v, s.at) : u);
   }
   for (const beam::Station& end : end_stations_) state.ends.push_back(surface(v, end));
+  devices_.evaluate(v.data());
+  state.openings = devices_.openings();
   const std::vector<double> still(v.size(), 0.0);
   std::vector<std::array<double, 3>> reactions;
   beam_.reactions(v.data(), still.data(), still.data(), P.data(), reactions);

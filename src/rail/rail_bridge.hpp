@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "recovery/ground_forces.hpp"
+#include "recovery/rail_devices.hpp"
 #include "response/beam_operator.hpp"
 #include "structure/nonlinear_foundation.hpp"
 
@@ -28,6 +29,7 @@ struct State {
   std::vector<double> displacement;  // m, of the rail against the deck or the ground, at each sleeper
   std::vector<double> bearings;      // N along x on the bridge, of each bearing
   std::vector<double> ends;          // m along x, of the deck's running surface at each end
+  std::vector<double> openings;      // m, of each expansion device of the rail
   double rail_ends = 0.0;            // N along x on the rail, of what holds its ends
 };
 
@@ -46,8 +48,11 @@ class RailBridge {
   const std::vector<double>& elements() const { return elements_; }  // m: the middle of each rail element
   const std::vector<double>& sleepers() const { return sleepers_; }  // m
   /// What holds the bridge along x: supports, then longitudinal springs at stations.
-  const std::vector<double>& bearings() const { return bearings_; }  // m
-  const std::vector<double>& ends() const { return ends_; }          // m: of every span, left and right
+  const std::vector<double>& bearings() const { return bearings_; }    // m
+  const std::vector<double>& ends() const { return ends_; }            // m: of every span, left and right
+  const std::vector<double>& devices() const { return devices_.x(); }  // m: expansion devices of the rail
+  /// Pa, of each rail element: what its temperature does to a rail that cannot lengthen.
+  const std::vector<double>& own_stress() const { return own_stress_; }
   /// N along x: all forces on rail and bridge together, which are in balance.
   double residual(const Loads& loads, const State& state);
 
@@ -61,8 +66,9 @@ class RailBridge {
   structure::BeamOperator op_;
   structure::NonlinearFoundation nonlinear_;
   beam::GroundForces ground_;
+  beam::RailDevices devices_;
   double area_;
-  std::vector<double> elements_, sleepers_, bearings_, ends_;
+  std::vector<double> elements_, own_stress_, sleepers_, bearings_, ends_;
   std::vector<int> held_ends_;  // span ends whose support holds the bridge along x
   std::vector<beam::Station> end_stations_;
 };

@@ -40,6 +40,7 @@ RailForces::RailForces(const beam::BeamModel& model, const options::RailLoads& l
     one.least_slip.assign(bridge_.sleepers().size(), HUGE_VAL);
     one.greatest_slip.assign(bridge_.sleepers().size(), -HUGE_VAL);
     one.bearings.resize(bridge_.bearings().size());
+    one.openings.resize(bridge_.devices().size());
     cases_.push_back(std::move(one));
   }
   Loads strains;
@@ -85,13 +86,29 @@ void RailForces::see(Which which, const State& state, double front) {
   one.there = true;
   see_envelope(state.stress, one.least, one.greatest);
   see_envelope(state.displacement, one.least_slip, one.greatest_slip);
-  for (std::size_t i = 0; i < state.stress.size(); ++i)
-    (state.stress[i] > 0.0 ? one.tension : one.compression).see(state.stress[i], bridge_.elements()[i], front);
+  see_stress(which, state.stress, front);
   for (std::size_t i = 0; i < state.displacement.size(); ++i)
     one.slip.see(state.displacement[i], bridge_.sleepers()[i], front);
   for (std::size_t i = 0; i < state.ends.size(); ++i) one.end.see(state.ends[i], bridge_.ends()[i], front);
   for (std::size_t i = 0; i < state.bearings.size(); ++i)
     one.bearings[i].see(state.bearings[i], bridge_.bearings()[i], front);
+  for (std::size_t i = 0; i < state.openings.size(); ++i) {
+    one.openings[i].see(state.openings[i], bridge_.devices()[i], front);
+    one.opening.see(state.openings[i], bridge_.devices()[i], front);
+  }
+}
+
+// Expansion devices release what the rail's own temperature does to it: no tension is counted that only takes away
+// compression of warm rails, and the reverse.
+void RailForces::see_stress(Which which, const std::vector<double>& stress, double front) {
+  const bool released = !bridge_.devices().empty() && which != bending && which != braking && which != traction;
+  for (std::size_t i = 0; i < stress.size(); ++i) {
+    const double x = bridge_.elements()[i], own = released ? bridge_.own_stress()[i] : 0.0;
+    const double tension = stress[i] + std::min(own, 0.0), compression = stress[i] + std::max(own, 0.0);
+    const double rounding = 1e-9 * std::abs(own);
+    if (tension > rounding) cases_[which].tension.see(tension, x, front);
+    if (compression < -rounding) cases_[which].compression.see(compression, x, front);
+  }
 }
 
 /// What three states would be together if nothing slid; c: null: two.
@@ -103,6 +120,7 @@ void RailForces::see_sum(const State& a, const State& b, const State* c, double 
     add(sum.displacement, other->displacement);
     add(sum.bearings, other->bearings);
     add(sum.ends, other->ends);
+    add(sum.openings, other->openings);
   }
   see(separate, sum, front);
 }
@@ -137,11 +155,16 @@ void RailForces::find(std::vector<results::Verdict>& verdicts) const {
   const auto larger = [](const Peak& a, const Peak& b) { return std::abs(a.value) >= std::abs(b.value) ? a : b; };
   for (results::Verdict& verdict : verdicts) {
     const std::string& quantity = verdict.limit.quantity;
-    const Peak peak = quantity == "rail_tension"        ? cases_[in_sequence].tension
-                      : quantity == "rail_compression"  ? cases_[in_sequence].compression
-                      : quantity == "rail_slip"         ? larger(cases_[braking].slip, cases_[traction].slip)
-                      : quantity == "deck_displacement" ? larger(cases_[braking].end, cases_[traction].end)
-                                                        : cases_[bending].end;
+    if (quantity == "rail_device_opening" && bridge_.devices().empty()) {
+      verdict.found.why = "the rail has no expansion devices (track_rail_expansion_devices)";
+      continue;
+    }
+    const Peak peak = quantity == "rail_tension"          ? cases_[in_sequence].tension
+                      : quantity == "rail_compression"    ? cases_[in_sequence].compression
+                      : quantity == "rail_slip"           ? larger(cases_[braking].slip, cases_[traction].slip)
+                      : quantity == "deck_displacement"   ? larger(cases_[braking].end, cases_[traction].end)
+                      : quantity == "rail_device_opening" ? cases_[in_sequence].opening
+                                                          : cases_[bending].end;
     verdict.found = {std::abs(peak.value), results::Finding::unknown, peak.x, "", ""};
   }
 }

@@ -30,8 +30,11 @@ struct Case {
   bool there = false;                             // it was computed
   std::vector<double> least, greatest;            // Pa, of each rail element: additional stress
   std::vector<double> least_slip, greatest_slip;  // m, of each sleeper: the rail against deck or ground
-  Peak tension, compression, slip, end;           // Pa, Pa, m, m: of the running surface at deck ends
+  Peak tension, compression;                      // Pa
+  Peak slip, end;                                 // m, the latter of the running surface at deck ends
+  Peak opening;                                   // m, of expansion devices
   std::vector<Peak> bearings;                     // N along x, of each
+  std::vector<Peak> openings;                     // m, of each expansion device
 };
 
 /// In the order of RailForces::cases.
@@ -58,6 +61,7 @@ class RailForces {
   Loads acting(Loads train, double direction, bool brakes) const;
   State rest(const Loads& loads, const State* before = nullptr);
   void see(Which which, const State& state, double front);
+  void see_stress(Which which, const std::vector<double>& stress, double front);
   void see_sum(const State& a, const State& b, const State* c, double front);
   void stand(double front, double direction);
 

@@ -14,6 +14,12 @@ std::string at_text(const Peak& peak, double factor, const char* unit) {
   return fmt::format("{:.4g} {} @ {:.4g}", factor * peak.value, unit, 1e-3 * std::round(1e3 * peak.x) + 0.0);  // no -0
 }
 
+std::vector<double> values_of(const std::vector<Peak>& peaks) {
+  std::vector<double> values;
+  for (const Peak& peak : peaks) values.push_back(peak.value);
+  return values;
+}
+
 }  // namespace
 
 void RailForces::print() const {
@@ -21,12 +27,15 @@ void RailForces::print() const {
       "UIC 774-3: additional stress of the rails, rail against deck or ground, and forces of bearings along x, "
       "each @ x in m\n");
   std::vector<std::vector<std::string>> rows = {{"", "tension", "compression", "slip", "deck end", "greatest bearing"}};
+  const bool devices = !bridge_.devices().empty();
+  if (devices) rows.front().emplace_back("device opening");
   for (const Case& one : cases_) {
     if (!one.there) continue;
     Peak bearing;
     for (const Peak& its : one.bearings) bearing.see(its.value, its.x, its.front);
     rows.push_back({std::string(one.words), at_text(one.tension, 1e-6, "MPa"), at_text(one.compression, 1e-6, "MPa"),
                     at_text(one.slip, 1e3, "mm"), at_text(one.end, 1e3, "mm"), at_text(bearing, 1e-3, "kN")});
+    if (devices) rows.back().push_back(at_text(one.opening, 1e3, "mm"));
   }
   results::print_columns(std::move(rows));
   std::fflush(stdout);
@@ -39,6 +48,8 @@ void RailForces::record(results::Recorder& recorder) const {
                                {group + "sleeper_x", {bridge_.sleepers().size()}, bridge_.sleepers(), "m"},
                                {group + "bearing_x", {bridge_.bearings().size()}, bridge_.bearings(), "m"},
                                {group + "front", {loads_.fronts.size()}, loads_.fronts, "m"}};
+  const bool devices = !bridge_.devices().empty();
+  if (devices) sets.push_back({group + "device_x", {bridge_.devices().size()}, bridge_.devices(), "m"});
   for (const Case& one : cases_) {
     if (!one.there) continue;
     const std::string its = group + std::string(one.name) + "/";
@@ -49,9 +60,8 @@ void RailForces::record(results::Recorder& recorder) const {
     add("greatest_stress", one.greatest, "Pa");
     add("least_slip", one.least_slip, "m");
     add("greatest_slip", one.greatest_slip, "m");
-    std::vector<double> forces;
-    for (const Peak& bearing : one.bearings) forces.push_back(bearing.value);
-    add("bearing", forces, "N");
+    add("bearing", values_of(one.bearings), "N");
+    if (devices) add("opening", values_of(one.openings), "m");
     const auto peak = [&](const char* name, const Peak& p, const char* unit) {
       sets.push_back({its + name, {3}, {p.value, p.x, p.front}, unit});
     };

@@ -40,10 +40,10 @@ void record_foundation(const beam::BeamModel& beam, Recorder& recorder) {
   beam::for_points(beam.foundation, [&](const beam::FoundationKind& kind, const auto& points) {
     std::vector<double> rows;
     for (const beam::PointFoundation& p : points)
-      rows.insert(rows.end(), {p.x, p.k, p.c, p.law.gap, p.law.one_sided ? 1.0 : 0.0, p.law.cubic});
+      rows.insert(rows.end(), {p.x, p.k, p.c, p.law.gap, p.law.one_sided ? 1.0 : 0.0, p.law.cubic, p.law.slides_at});
     const beam::FoundationUnits units = units_of(kind);
-    add_rows(recorder, fmt::format("foundation/{}", kind.name), 6, std::move(rows),
-             fmt::format("m, {}, {}, {}, 1, {}", units.k, units.c, units.gap, units.cubic));
+    add_rows(recorder, fmt::format("foundation/{}", kind.name), 7, std::move(rows),
+             fmt::format("m, {}, {}, {}, 1, {}, N", units.k, units.c, units.gap, units.cubic));
   });
   beam::for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
     add_rows(recorder, fmt::format("foundation/{}", kind.name), 2, along(bed.k, beam.start, beam.end()),

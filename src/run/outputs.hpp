@@ -16,6 +16,7 @@
 
 #include "coupling/system.hpp"
 #include "recovery/ground_forces.hpp"
+#include "recovery/rail_devices.hpp"
 #include "recovery/recovery.hpp"
 #include "recovery/sleeper_forces.hpp"
 #include "results/recorder.hpp"
@@ -35,6 +36,7 @@ struct Observed {
   coupling::Observation motion;
   std::optional<beam::GroundForces> ground;     // where there is a bridge
   std::optional<beam::SleeperForces> sleepers;  // of output_sleepers
+  std::optional<beam::RailDevices> devices;     // where there is a rail
   EnergyTerms energy;
 };
 

@@ -109,6 +109,11 @@ void add_rail(const Source& source, Outputs& outputs) {
   if (source.beam->rail() == nullptr) return;
   outputs.add_each("/rail/", motion_rows, source.scene.output.probes.size(), rail);
   outputs.add_each("/rail/", force_rows, source.scene.output.probes.size(), rail);
+  const std::vector<double> devices = beam::RailDevices(*source.beam).x();
+  if (devices.empty()) return;
+  outputs.add_constant("/rail/devices/x", devices, "m");
+  outputs.add_numbers("/rail/devices/opening", "m", devices.size(),
+                      [](const Observed& now, std::size_t i) { return now.devices->openings()[i]; });
 }
 
 void add_outputs_of_modes(const Source& source, Outputs& outputs) {

@@ -61,8 +61,8 @@ SharedBeam::SharedBeam(MPI_Comm communicator, const Scene& scene, std::vector<st
   const bool nonlinear = scene.beam->nonlinear();
   if (scene.beam->foundation.nonlinear())
     notes.emplace_back(
-        "one-sided foundations and those with a gap or a cubic term are forces; frequencies are those of "
-        "small motions: what has no gap with its k, what has one without");
+        "one-sided foundations, those that slide and those with a gap or a cubic term are forces; frequencies are "
+        "those of small motions: what has no gap with its k, what has one without");
   if (scene.beam->track && scene.beam->track->hangs())
     notes.emplace_back(
         "sleepers hang over gaps, which close on one side: forces; frequencies are those of small motions, with all "

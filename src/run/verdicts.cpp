@@ -148,6 +148,7 @@ constexpr FindingRow finding_rows[] = {
     {"rail_slip", &Findings::of_rail},
     {"deck_displacement", &Findings::of_rail},
     {"deck_end_displacement", &Findings::of_rail},
+    {"rail_device_opening", &Findings::of_rail},
 };
 
 constexpr const FindingRow* row_of(std::string_view quantity) {

@@ -40,7 +40,10 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
     recovery_.emplace(*beam, scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
     now_.ground.emplace(*beam);
     if (recorded_ && !scene.output.sleepers.empty()) now_.sleepers.emplace(*beam, scene.output.sleepers);
-    if (beam->rail() != nullptr) rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
+    if (beam->rail() != nullptr) {
+      rail_recovery_.emplace(*beam, *beam->rail(), scene.output.probes, 0.0);
+      if (recorded_) now_.devices.emplace(*beam);
+    }
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
   double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
@@ -85,6 +88,7 @@ void Watch::store(bool end) {
     beam_->reactions(beam.v, beam.w, beam.a.data(), beam.P.data(), now_.supports);
     now_.ground->evaluate(beam.v, beam.w, beam.a.data());
     if (now_.sleepers) now_.sleepers->evaluate(beam.v, beam.w);
+    if (now_.devices && !now_.devices->x().empty()) now_.devices->evaluate(beam.v);
   }
   note_energy();
   if (outputs_ != nullptr) outputs_->fill(now_, sample_.values);

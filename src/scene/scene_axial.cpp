@@ -1,6 +1,8 @@
 // Whether the beam has axial unknowns: only where something in the scene acts along it.
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene_parts.hpp"
 
 namespace traverse::app {
@@ -15,6 +17,7 @@ std::string option_along_the_track(const options::Options& o, const Scene& scene
   if (!scene.beam->track) return "";
   if (o.number("track_rail_temperature") != 0.0) return "track_rail_temperature";
   if (scene.beam->track->slides()) return "track_longitudinal_limit";
+  if (!scene.beam->track->expansion_devices.empty()) return "track_rail_expansion_devices";
   return "";
 }
 
@@ -27,9 +30,13 @@ std::string longitudinal_action(const options::Options& o, const Scene& scene) {
   if (!option_along_the_track(o, scene).empty()) return "the track's resistance along x";
   if (scene.analysis == Analysis::rail_forces) return "forces of the rail are asked for";
   if (scene.analysis == Analysis::modes) return "modes are asked for";
+  const auto& courses = scene.train.courses;
+  const bool speed_changes =
+      std::any_of(courses.begin(), courses.end(), [](const train::Course& c) { return !c.speed.constant(); });
   for (const Vehicle& vehicle : scene.vehicles) {
     const bool rolls = !vehicle.wheels.empty();
     if (rolls && scene.train.drive == Drive::free) return "train_drive free";
+    if (rolls && speed_changes) return "trains whose speed changes";
     for (const Wheel& wheel : vehicle.wheels) {
       if (wheel.law.friction > 0.0) return "friction of wheels";
     }

@@ -145,7 +145,7 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
   const bool vertical = kind.direction == beam::Direction::vertical;
   std::vector<beam::PointFoundation> points;
   if (!o.has(name + "_x")) {
-    for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided", "_depth", "_spacing"}) {
+    for (const char* what : {"_k", "_c", "_gap", "_cubic", "_side", "_one_sided", "_depth", "_limit", "_spacing"}) {
       if (o.has(name + what)) o.refuse(name + what, "needs " + name + "_x, the stations");
     }
     return points;
@@ -154,8 +154,10 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
   const auto numbers = [&](const char* what) { return o.numbers(name + what, x.size(), "as many as stations"); };
   const auto words = [&](const char* what) { return o.texts(name + what, x.size(), "as many as stations"); };
   const std::vector<double> k = numbers("_k"), c = numbers("_c"), gap = numbers("_gap"), cubic = numbers("_cubic");
-  const std::vector<double> depth =
-      kind.direction == beam::Direction::longitudinal ? numbers("_depth") : std::vector<double>(x.size(), 0.0);
+  const auto along_x = [&](const char* what) {
+    return kind.direction == beam::Direction::longitudinal ? numbers(what) : std::vector<double>(x.size(), 0.0);
+  };
+  const std::vector<double> depth = along_x("_depth"), limit = along_x("_limit");
   const std::vector<std::string> side = words("_side");
   const std::vector<std::string> one_sided =
       vertical ? words("_one_sided") : std::vector<std::string>(x.size(), "false");
@@ -166,7 +168,7 @@ std::vector<beam::PointFoundation> read_points(const Options& o, const beam::Fou
     if (x[i] > length * (1.0 + 1e-12)) {
       o.refuse(name + "_x", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x[i], length));
     }
-    const beam::FoundationLaw law{one_sided[i] == "true", gap[i], cubic[i]};
+    const beam::FoundationLaw law{one_sided[i] == "true", gap[i], cubic[i], limit[i]};
     beam::PointFoundation point{std::min(x[i], length), k[i], c[i], false, law};
     point.depth = depth[i];
     if (point.depth != 0.0 && !is_span_end(beam, point.x))

@@ -61,15 +61,17 @@ beam::TrackStretch read_stretch(const Options& o, const std::string& name, const
   return stretch;
 }
 
-/// Joints of the rail, in ascending order.
-void read_hinges(const Options& o, Scene& scene, beam::LayeredTrack& track) {
-  if (!o.has("track_rail_hinges")) return;
-  track.rail_hinges = o.numbers("track_rail_hinges");
-  std::sort(track.rail_hinges.begin(), track.rail_hinges.end());
+/// Stations of what stands at nodes of the rail, in ascending order.
+std::vector<double> read_at_nodes(const Options& o, const char* option, const char* things, Scene& scene,
+                                  const beam::LayeredTrack& track) {
+  if (!o.has(option)) return {};
+  std::vector<double> stations = o.numbers(option);
+  std::sort(stations.begin(), stations.end());
   if (scene.mesh_open)
-    scene.notes.push_back(fmt::format("the rail has {} elements a bay, which its joints (track_rail_hinges) stand on",
-                                      track.elements_per_bay));
+    scene.notes.push_back(fmt::format("the rail has {} elements a bay, which its {} ({}) stand on",
+                                      track.elements_per_bay, things, option));
   scene.mesh_open = false;
+  return stations;
 }
 
 }  // namespace
@@ -104,7 +106,8 @@ void read_layers(const Options& o, Scene& scene) {
   track.offset = std::fmod(o.number("track_offset"), track.spacing);
   track.elements_per_bay = o.integer("track_elements_per_bay");
   scene.mesh_open = !o.has("track_elements_per_bay");
-  read_hinges(o, scene, track);
+  track.rail_hinges = read_at_nodes(o, "track_rail_hinges", "joints", scene, track);
+  track.expansion_devices = read_at_nodes(o, "track_rail_expansion_devices", "expansion devices", scene, track);
   track.pad = read_layer(o, "pad");
   track.sleeper_mass = read_distribution(o, "track_sleeper_mass");
   track.ballast = read_optional_layer(o, "ballast");

@@ -71,7 +71,8 @@ void read_norm(const Options& o, Scene& scene) {
   if (several_courses(scene))
     o.refuse(asked, "static effects are of one train or load wherever it stands; several run here (trains, loads)");
   if (scene.beam->foundation.nonlinear()) {
-    const std::string why = "influence lines do not hold: the foundation is one-sided, has a gap or a cubic term";
+    const std::string why =
+        "influence lines do not hold: the foundation is one-sided, slides, has a gap or a cubic term";
     if (asked == "scene_analysis") o.refuse(asked, why);
     scene.notes.push_back(asked + ": " + why + "; there are no static effects and no verdict of EN 1991-2");
     return;

@@ -83,7 +83,7 @@ void read_modal(const Options& o, Scene& scene) {
   if (scene.beam->track)
     o.refuse("model_modes", "a bridge under a layered track (track_rail_EI) moves by its elements; allowed: auto or 0");
   if (scene.beam->foundation.nonlinear())
-    o.refuse("model_modes", "the foundation is one-sided, has a gap or a cubic term; allowed: auto or 0");
+    o.refuse("model_modes", "the foundation is one-sided, slides, has a gap or a cubic term; allowed: auto or 0");
   if (scene.beam->strained())
     o.refuse("model_modes", "the beam is bent by its temperature or settlements; allowed: auto or 0");
   if (const options::Entry* type = o.entries().find("ts_type");

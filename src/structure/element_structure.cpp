@@ -25,12 +25,11 @@ void ElementStructure::expect_weights(double sum, double greatest) {
 void ElementStructure::load(const std::vector<beam::ElementLoad>& forces) {
   nodal_forces_.clear();
   for (const beam::ElementLoad& force : forces) {
-    const beam::Element& element = line_.mesh.element(force.element);
-    const beam::Hermite psi = beam::hermite(force.xi, element.length, element.shear);
-    const auto unknowns = line_.transverse(force.element);
-    for (int i = 0; i < 4; ++i) {
-      const int local = beam_.local(unknowns[i]);
-      if (local >= 0) nodal_forces_.push_back({local, force.fy * psi.value[i]});
+    const auto unknowns = line_.unknowns(force.element);
+    const auto parts = on_unknowns(line_, force);
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+      const int local = unknowns[i] < 0 ? -1 : beam_.local(unknowns[i]);
+      if (local >= 0 && parts[i] != 0.0) nodal_forces_.push_back({local, parts[i]});
     }
   }
   std::sort(nodal_forces_.begin(), nodal_forces_.end(),

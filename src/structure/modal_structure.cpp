@@ -56,12 +56,11 @@ void ModalStructure::load(const std::vector<beam::ElementLoad>& forces) {
   forces_ = forces;
   std::fill(modal_force_.begin(), modal_force_.end(), 0.0);
   for (const beam::ElementLoad& force : forces_) {
-    const beam::Element& element = line_.mesh.element(force.element);
-    const beam::Hermite psi = beam::hermite(force.xi, element.length, element.shear);
-    const auto unknowns = line_.transverse(force.element);
-    for (std::size_t k = 0; k < 4; ++k) {
+    const auto unknowns = line_.unknowns(force.element);
+    const auto parts = on_unknowns(line_, force);
+    for (std::size_t k = 0; k < unknowns.size() && unknowns[k] >= 0; ++k) {
       const double* phi = shapes(unknowns[k]);
-      for (std::size_t i = 0; i < modes_; ++i) modal_force_[i] += phi[i] * psi.value[k] * force.fy;
+      for (std::size_t i = 0; i < modes_; ++i) modal_force_[i] += phi[i] * parts[k];
     }
   }
 }

@@ -145,7 +145,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
       continue;
     }
     if (p.state.force == 0.0) continue;
-    if (p.slides()) {
+    if (p.its.kind == beam::along_a_sleeper) {
       const double height = p.its.height, on_beam = -p.state.force;
       if (p.its.on_bridge) mine.push_back({p.its.at.element, p.its.at.xi, on_beam, 0.0, -height * on_beam});
       if (!p.its.on_bridge) forces.along_ground += p.state.force;
@@ -180,7 +180,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
   MPI_Allgatherv(mine.data(), bytes, MPI_BYTE, loads.data() + before, counts.data(), starts.data(), MPI_BYTE, comm_);
 }
 
-// --- sleepers that slide -------------------------------------------------------------------------------------------
+// --- sleepers and bearings that slide ------------------------------------------------------------------------------
 
 void NonlinearFoundation::stand(double from, double to) {
   for (Point& p : points_) p.loaded = p.slides() && p.its.x >= from - same_station && p.its.x <= to + same_station;

@@ -11,9 +11,9 @@
 // In statics (s = 0) a point that does not touch keeps a small stiffness, which holds what nothing else holds and has
 // no effect on the answer.
 //
-// Sleepers that slide along x remember the force and the place that they have settled at. Within a step their law is
-// that of a spring between two limits, which is monotone like the others; settle() after the step makes the next start
-// from there.
+// Sleepers and bearings that slide along x remember the force and the place that they have settled at. Within a step
+// their law is that of a spring between two limits, which is monotone like the others; settle() after the step makes
+// the next start from there.
 //
 // A rank has the points of all elements that touch its columns, so that neighbours compute the same from the same.
 #pragma once
@@ -51,14 +51,14 @@ class NonlinearFoundation {
   void evaluate(const double* v, const double* w);
   /// Nodal forces of this rank's unknowns, held ones included.
   void add_forces(double* nodal) const;
-  /// This rank's share, J and W. What sleepers have lost by sliding is no part of the dissipation.
+  /// This rank's share, J and W. What has been lost by sliding is no part of the dissipation.
   double energy() const;
   double dissipation() const;
   double slid() const { return slid_; }  // J, lost by sliding so far, this rank's share
   /// Collective. The same on all ranks; `loads` of the bridge are appended.
   void report(NonlinearForces& forces, std::vector<beam::ElementLoad>& loads) const;
 
-  // Sleepers that slide ----------------------------------------------------------------------------------------------
+  // Sleepers and bearings that slide ---------------------------------------------------------------------------------
   /// Where trains stand from here on, m: between these stations sleepers are loaded. An empty stretch: none are.
   void stand(double from, double to);
   /// Collective. What has slid by v stays where it is: the forces of what follows start from those at v.
@@ -106,11 +106,12 @@ class NonlinearFoundation {
     double balanced_force = 0.0;  // G at zeta0
     double misfit = 0.0;          // of force and tangent, beyond rounding
     beam::FoundationForce state;
-    // Of a sleeper that slides: whether it is loaded, what it has settled at, and the energy that it held then.
+    // Of a sleeper or a bearing that slides: whether it is loaded, what it has settled at, and the energy that it held
+    // then.
     bool loaded = false;
     double settled_force = 0.0, settled = 0.0, settled_energy = 0.0;
 
-    bool slides() const { return its.kind == beam::along_a_sleeper; }
+    bool slides() const { return its.sliding.limit > 0.0; }
     void keep(base::Bytes& bytes) {
       bytes(still, still_rate, zeta0, force0, zeta, linear_force, balanced_force, misfit, state);
       bytes(loaded, settled_force, settled, settled_energy);

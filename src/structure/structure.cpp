@@ -38,12 +38,25 @@ void Structure::release_held(double* nodal) const {
     if (fixed[i] != 0) nodal[i] = 0.0;
 }
 
-void Structure::add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const {
+std::array<double, 6> on_unknowns(const beam::Line& line, const beam::ElementLoad& force) {
   const beam::Element& element = line.mesh.element(force.element);
-  const beam::Hermite psi = beam::hermite(force.xi, element.length, element.shear);
-  const auto unknowns = line.transverse(force.element);
-  for (std::size_t i = 0; i < 4; ++i)
-    if (const int local = beam_.local(unknowns[i]); local >= 0) nodal[local] += force.fy * psi.value[i];
+  const auto psi = beam::hermite(force.xi, element.length, element.shear).value;
+  std::array<double, 4> bent{};
+  for (std::size_t i = 0; i < 4; ++i) bent[i] = force.fy * psi[i];
+  if (line.per_node == 2) return {bent[0], bent[1], bent[2], bent[3], 0.0, 0.0};
+  const auto phi = beam::linear(force.xi);
+  if (force.moment != 0.0) {
+    const auto turn = beam::rotation(force.xi, element.length, element.shear);
+    for (std::size_t i = 0; i < 4; ++i) bent[i] += force.moment * turn[i];
+  }
+  return {force.fx * phi[0], bent[0], bent[1], force.fx * phi[1], bent[2], bent[3]};
+}
+
+void Structure::add_force(const beam::Line& line, const beam::ElementLoad& force, double* nodal) const {
+  const auto unknowns = line.unknowns(force.element);
+  const auto parts = on_unknowns(line, force);
+  for (std::size_t i = 0; i < unknowns.size(); ++i)
+    if (const int local = unknowns[i] < 0 ? -1 : beam_.local(unknowns[i]); local >= 0) nodal[local] += parts[i];
 }
 
 void Structure::gather(const std::vector<int>& elements, const double* v, const double* w,

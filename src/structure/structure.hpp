@@ -31,6 +31,10 @@ struct ElementLoads {
   const std::vector<double>& values;
 };
 
+/// A concentrated force on a line as forces on the unknowns of its element, in the order of beam::Line::unknowns. Along
+/// x and as a moment it acts where there are axial unknowns.
+std::array<double, 6> on_unknowns(const beam::Line& line, const beam::ElementLoad& force);
+
 /// A stretch of the line where a wheel or a force is at some time of a step, m.
 struct Reach {
   double from = 0.0, to = 0.0;

@@ -23,7 +23,7 @@ class Model(Computed):
             self.assertEqual(list(model["hinges"]), [26.0])
             kinds = [tuple(row) for row in model["supports"].asstr()[:]]
             self.assertEqual(kinds, [("pinned", "end"), ("free", "continuous"), ("roller", "end")])
-            self.assertEqual(model["foundation/vertical"][:].tolist(), [[20.0, 2.0e9, 0.0, 0.0, 0.0, 0.0]])
+            self.assertEqual(model["foundation/vertical"][:].tolist(), [[20.0, 2.0e9, 0.0, 0.0, 0.0, 0.0, 0.0]])
             self.assertEqual(model["forces/load"][:].tolist(), [[0.0, 2.0e5], [-3.0, 1.0e5]])
             self.assertIn("20", " ".join(row[1] for row in model["notes"].asstr()[:]))
 

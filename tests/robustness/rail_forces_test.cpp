@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "support/extremes.hpp"
 #include "support/scene_run.hpp"
@@ -37,6 +38,28 @@ TEST(BadRailForces, AreRefusedByName) {
            {{{"uic774_direction", "up"}}, {"uic774_direction = up", "right, left, both"}},
            {{{"model_axial", "false"}}, {"track_longitudinal_limit", "acts along x"}},
            {{{"track_rail_ends", "loose"}}, {"track_rail_ends = loose", "free, held"}},
+           {{{"track_rail_expansion_devices", "12"}}, {"track_rail_expansion_devices is 12", "a sleeper stands there"}},
+           {{{"track_rail_expansion_devices", "12.2"}}, {"track_rail_expansion_devices is 12.2", "0.3 m apart"}},
+           {{{"track_rail_expansion_devices", "90.3"}}, {"track_rail_expansion_devices is 90.3", "within the track"}},
+           {{{"track_rail_expansion_devices", "12.3,12.3"}}, {"track_rail_expansion_devices is 12.3", "of its own"}},
+           {{{"track_rail_expansion_devices", "12.3"}, {"track_rail_hinges", "12.3"}},
+            {"track_rail_expansion_devices is 12.3", "a joint of the rail stands there"}},
+           {{{"track_rail_expansion_devices", "12.3"},
+             {"track_stretches", "a"},
+             {"track_a_from", "12.4"},
+             {"track_a_to", "80"},
+             {"track_a_longitudinal_k", "0"},
+             {"track_rail_ends", "free"}},
+            {"track_rail_expansion_devices is 12.3", "to its right"}},
+           {{{"track_rail_expansion_devices", "12.3"},
+             {"track_longitudinal_limit", "0"},
+             {"track_longitudinal_loaded_k", "0"},
+             {"track_longitudinal_loaded_limit", "0"},
+             {"model_axial", "false"}},
+            {"track_rail_expansion_devices", "acts along x"}},
+           {{{"foundation_longitudinal_limit", "1e5"}, {"foundation_longitudinal_c", "1"}},
+            {"foundation_longitudinal_limit", "without _c"}},
+           {{{"foundation_longitudinal_limit", "-1"}}, {"foundation_longitudinal_limit"}},
        }) {
     SCOPED_TRACE(bad.parts.front());
     expect_refused([&] { run_yaml(deck, bad.values); }, bad.parts);
@@ -44,8 +67,13 @@ TEST(BadRailForces, AreRefusedByName) {
 }
 
 TEST(BadRailForces, NeedATrackAndTheAreaOfItsRails) {
-  expect_refused([] { run_yaml("scene: {analysis: rail}\nbeam: {spans: 12.0, EI: 2.0e9, mass: 3000.0}"); },
-                 {"scene_analysis = rail", "layered track"});
+  const std::string bare = "beam: {spans: 12.0, EI: 2.0e9, mass: 3000.0}\n";
+  expect_refused([&] { run_yaml("scene: {analysis: rail}\n" + bare); }, {"scene_analysis = rail", "layered track"});
+  expect_refused(
+      [&] {
+        run_yaml(bare, {{"track_rail_expansion_devices", "3"}});
+      },
+      {"track_rail_expansion_devices", "belongs to a layered track"});
   std::string text(deck);
   const std::string area = "area: 0.0153, ";
   text.erase(text.find(area), area.size());
@@ -62,6 +90,23 @@ TEST(RailForcesOfALinearTrack, AddUp) {
     const std::vector<double> sum = run("/rail_forces/separate" + std::string(side));
     for (const char* name : {"in_sequence", "at_once"})
       EXPECT_LT(relative_difference(run("/rail_forces/" + std::string(name) + side), sum), 1e-9) << name << side;
+  }
+}
+
+// The same with an expansion device beyond either end of the deck.
+TEST(RailForcesBothWays, OpenDevicesAlike) {
+  Values there = {{"foundation_longitudinal_x", "0,12"},
+                  {"foundation_longitudinal_side", "right"},
+                  {"beam_temperature_uniform", "30"},
+                  {"track_rail_temperature", "40"}};
+  Values back = there;
+  there.emplace_back("track_rail_expansion_devices", "12.3");
+  back.emplace_back("track_rail_expansion_devices", "-0.3");
+  back.emplace_back("uic774_direction", "left");
+  Results right = run_yaml(deck, there), left = run_yaml(deck, back);
+  for (const char* name : {"temperature", "bending", "braking", "traction", "in_sequence", "at_once"}) {
+    const std::string its = "/rail_forces/" + std::string(name) + "/opening";
+    EXPECT_NEAR(left(its)[0], right(its)[0], 1e-8 * std::abs(right(its)[0])) << name;
   }
 }
 

@@ -15,6 +15,7 @@ struct HandRail {
   double rail_EA = 0.0, rail_EI = 0.0, rail_strain = 0.0;  // N, N m2, of its temperature
   double start = 0.0, element = 0.0;                       // m
   int elements = 0, each = 1;                              // of the rail; between two sleepers
+  int device = -1;                                         // a node of the rail where u may jump; below 0: none
   double EA = 0.0, EI = 0.0, strain = 0.0, length = 0.0;   // of the deck, from x = 0
   int deck = 0;                                            // elements
   double height = 0.0;                                     // m, of the running surface
@@ -35,6 +36,7 @@ struct HandState {
   std::vector<double> force, displacement;  // of sleepers along x
   std::vector<double> stretch;              // EA u' of each rail element, N
   double bearing = 0.0;                     // N, on the bridge
+  double opening = 0.0;                     // m, of the device
 };
 
 /// A motion at an instant, and what sleepers have settled at.
@@ -45,14 +47,15 @@ struct HandMotion {
 
 class HandRailModel {
  public:
-  explicit HandRailModel(const HandRail& t) : t_(t), n_(3 * (t.elements + 1) + 3 * (t.deck + 1)) {
+  explicit HandRailModel(const HandRail& t)
+      : t_(t), n_(3 * (t.elements + 1) + 3 * (t.deck + 1) + (t.device < 0 ? 0 : 1)) {
     for (int e = 0; e < t.elements; ++e) {
-      add_bar_and_beam(3 * e, t.element, t.rail_EA, t.rail_EI);
-      add_mass(3 * e, t.element, t.rail_mass);
+      add_bar_and_beam(left_u(e), 3 * e, t.element, t.rail_EA, t.rail_EI);
+      add_mass(left_u(e), 3 * e, t.element, t.rail_mass);
     }
     for (int e = 0; e < t.deck; ++e) {
-      add_bar_and_beam(deck(e), t.length / t.deck, t.EA, t.EI);
-      add_mass(deck(e), t.length / t.deck, t.mass);
+      add_bar_and_beam(deck(e), deck(e), t.length / t.deck, t.EA, t.EI);
+      add_mass(deck(e), deck(e), t.length / t.deck, t.mass);
     }
     for (int i = 0; i <= t.elements; i += t.each) {
       const double x = t.start + i * t.element;
@@ -134,6 +137,7 @@ class HandRailModel {
     m.a = next.a;
     settle(m, loads, slides);
   }
+  double opening(const Eigen::VectorXd& v) const { return t_.device < 0 ? 0.0 : v[n_ - 1] - v[3 * t_.device]; }
   double rail_u(const HandMotion& m, int node) const { return m.v[3 * node]; }
   double deck_u(const HandMotion& m, int node) const { return m.v[deck(node)]; }
   double deck_v(const HandMotion& m, int node) const { return m.v[deck(node) + 1]; }
@@ -149,7 +153,8 @@ class HandRailModel {
   };
 
   int deck(int node) const { return 3 * (t_.elements + 1) + 3 * node; }
-
+  /// Along x, of the left end of a rail element: behind the device its own.
+  int left_u(int element) const { return element == t_.device ? n_ - 1 : 3 * element; }
   using Entries = std::vector<Eigen::Triplet<double>>;
   static void add_energy(const Terms& d, double k, Entries& to) {
     for (const auto& [i, a] : d)
@@ -157,14 +162,14 @@ class HandRailModel {
   }
   void add_energy(const Terms& d, double k) { add_energy(d, k, entries_); }
   /// Kinetic energy by Gauss's rule of four points, which is exact.
-  void add_mass(int first, double h, double mass) {
+  void add_mass(int u, int first, double h, double mass) {
     const double near = 0.3399810435848563, far = 0.8611363115940526;
     for (const auto& [at, weight] : {std::pair{-far, 0.3478548451374538},
                                      {-near, 0.6521451548625461},
                                      {near, 0.6521451548625461},
                                      {far, 0.3478548451374538}}) {
       const double s = 0.5 * (1.0 + at), m = 0.5 * weight * mass * h;
-      add_energy({{first, 1 - s}, {first + 3, s}}, m, masses_);
+      add_energy({{u, 1 - s}, {first + 3, s}}, m, masses_);
       const auto psi = hermite_at(s, h);
       add_energy({{first + 1, psi[0]}, {first + 2, psi[1]}, {first + 4, psi[2]}, {first + 5, psi[3]}}, m, masses_);
     }
@@ -172,8 +177,8 @@ class HandRailModel {
   static std::array<double, 4> hermite_at(double s, double h) {
     return {1 - 3 * s * s + 2 * s * s * s, h * s * (1 - s) * (1 - s), 3 * s * s - 2 * s * s * s, h * s * s * (s - 1)};
   }
-  void add_bar_and_beam(int first, double h, double EA, double EI) {
-    add_energy({{first, -1.0}, {first + 3, 1.0}}, EA / h);
+  void add_bar_and_beam(int u, int first, double h, double EA, double EI) {
+    add_energy({{u, -1.0}, {first + 3, 1.0}}, EA / h);
     // The elastic energy of a cubic: the mean curvature and the change of curvature.
     add_energy({{first + 2, -1.0}, {first + 5, 1.0}}, EI / h);
     add_energy({{first + 1, 2.0 / h}, {first + 4, -2.0 / h}, {first + 2, 1.0}, {first + 5, 1.0}}, 3.0 * EI / h);
@@ -262,7 +267,8 @@ class HandRailModel {
       state.force.push_back(slides[i] == 0 ? then - k * (d - at) : slides[i] * limit);
     }
     for (int e = 0; e < t_.elements; ++e)
-      state.stretch.push_back(t_.rail_EA * (state.v[3 * e + 3] - state.v[3 * e]) / t_.element);
+      state.stretch.push_back(t_.rail_EA * (state.v[3 * e + 3] - state.v[left_u(e)]) / t_.element);
+    state.opening = opening(state.v);
     state.bearing = -t_.bearing_k * (state.v[deck(0)] + t_.bearing_depth * state.v[deck(0) + 2]);
     return state;
   }
@@ -271,7 +277,7 @@ class HandRailModel {
     Eigen::VectorXd P = Eigen::VectorXd::Zero(n_);
     for (int e = 0; e < t_.elements; ++e) {
       const double h = t_.element, left = t_.start + e * h;
-      if (loads.strains) P[3 * e] -= t_.rail_EA * t_.rail_strain, P[3 * e + 3] += t_.rail_EA * t_.rail_strain;
+      if (loads.strains) P[left_u(e)] -= t_.rail_EA * t_.rail_strain, P[3 * e + 3] += t_.rail_EA * t_.rail_strain;
       // Loads begin and end at nodes.
       if (left > loads.from - 1e-6 && left + h < loads.to + 1e-6) {
         const double q = -loads.weight;
@@ -279,7 +285,7 @@ class HandRailModel {
         P[3 * e + 2] += q * h * h / 12, P[3 * e + 5] -= q * h * h / 12;
       }
       if (left > loads.along_from - 1e-6 && left + h < loads.along_to + 1e-6)
-        P[3 * e] += loads.along * h / 2, P[3 * e + 3] += loads.along * h / 2;
+        P[left_u(e)] += loads.along * h / 2, P[3 * e + 3] += loads.along * h / 2;
     }
     for (int e = 0; e < t_.deck && loads.strains; ++e)
       P[deck(e)] -= t_.EA * t_.strain, P[deck(e + 1)] += t_.EA * t_.strain;

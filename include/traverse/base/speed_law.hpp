@@ -25,6 +25,8 @@ class SpeedLaw {
   /// Whether the speed is the same at all times.
   bool constant() const { return way_.straight(); }
   double speed(double t) const { return way_.rate(t); }
+  /// m/s2; at a jump that of one of its sides.
+  double acceleration(double t) const { return way_.acceleration(t); }
   /// The way gone since t = 0, m; below 0 to the left.
   double distance(double t) const { return way_.value(t); }
   /// x + distance(t).

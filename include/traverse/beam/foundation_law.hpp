@@ -15,8 +15,11 @@ struct FoundationLaw {
   bool one_sided = false;
   double gap = 0.0;    // on either side, m or rad, >= 0
   double cubic = 0.0;  // N/m3, N m/rad3; of a bed N/m4; >= 0
+  /// N: the force at which a point along x slides, as a bearing does by its friction, and has none of the others; 0: it
+  /// holds.
+  double slides_at = 0.0;
 
-  bool nonlinear() const { return one_sided || gap > 0.0 || cubic > 0.0; }
+  bool nonlinear() const { return one_sided || gap > 0.0 || cubic > 0.0 || slides_at > 0.0; }
 };
 
 /// At one displacement d and its rate w.
@@ -29,8 +32,8 @@ struct FoundationForce {
 };
 FoundationForce foundation_force(const FoundationLaw& law, double k, double c, double d, double w);
 
-/// A spring that slides where its force reaches a limit: the resistance of a sleeper along the track, UIC 774-3. Under
-/// a train it is stiffer, and holds more.
+/// A spring that slides where its force reaches a limit: the resistance of a sleeper along the track, UIC 774-3, or the
+/// friction of a bearing. Under a train a sleeper is stiffer, and holds more.
 struct Sliding {
   double k = 0.0, limit = 0.0;                // N/m, N; a limit of 0: it does not slide
   double loaded_k = 0.0, loaded_limit = 0.0;  // the same where a train stands

@@ -67,10 +67,11 @@ struct TrackStretch {
 struct LayeredTrack {
   Distribution rail_EI, rail_EA, rail_mass;  // N m2, N, kg/m
   std::optional<double> rail_GA;             // N; none: it does not shear
-  std::vector<double> rail_hinges;  // stations of joints that carry no moment, m, ascending; at nodes of the rail
-  double spacing = 0.6;             // from sleeper to sleeper, m
-  double offset = 0.0;              // station of one of them, m
-  int elements_per_bay = 2;         // of the rail
+  std::vector<double> rail_hinges;        // stations of joints that carry no moment, m, ascending; at nodes of the rail
+  std::vector<double> expansion_devices;  // stations where it may lengthen, m, ascending; at nodes between sleepers
+  double spacing = 0.6;                   // from sleeper to sleeper, m
+  double offset = 0.0;                    // station of one of them, m
+  int elements_per_bay = 2;               // of the rail
   Layer pad;
   Distribution sleeper_mass;  // kg
   std::optional<Layer> ballast;

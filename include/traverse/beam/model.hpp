@@ -31,6 +31,7 @@ enum class Joint {
   hinge,       // it goes through, but its slope may jump: no moment there
   separate,    // two beams that end there, side by side on one support
   cracked,     // it goes through, but its slope may jump against a rotational spring
+  expansion,   // it goes through, but its displacement along x may jump: no axial force there
 };
 
 /// A crack: a rotational spring between the beam's two sides.
@@ -61,9 +62,10 @@ struct BeamModel {
   std::vector<Joint> joints;       // at the inner span ends, one for all or one each; empty: continuous
   std::vector<double> hinges;      // further hinges within spans, m, ascending
   std::vector<Crack> cracks;       // ascending, none at a hinge
-  std::vector<double> cuts;        // stations that always get a node, m, ascending
-  std::vector<Support> supports;   // one at every span end: spans + 1; where spans are separate it serves both
-  std::vector<double> settlement;  // m upward, of what holds v there: one at every span end, or none at all
+  std::vector<double> expansion_devices;  // of a rail: stations where it may lengthen, m, ascending, none at a hinge
+  std::vector<double> cuts;               // stations that always get a node, m, ascending
+  std::vector<Support> supports;          // one at every span end: spans + 1; where spans are separate it serves both
+  std::vector<double> settlement;         // m upward, of what holds v there: one at every span end, or none at all
   std::optional<Temperature> temperature;
   Foundation foundation;
   std::optional<LayeredTrack> track;

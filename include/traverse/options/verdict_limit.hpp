@@ -53,6 +53,8 @@ inline constexpr LimitQuantity limit_quantities[] = {
      LimitFinder::rail},
     {"deck_end_displacement", "m", "largest displacement of the top of a deck's end along x as the deck bends",
      LimitFinder::rail},
+    {"rail_device_opening", "m", "largest opening or closing of a rail expansion device since the rail was laid",
+     LimitFinder::rail},
 };
 
 /// Null where there is none.
