@@ -91,8 +91,8 @@ class Scripts(InAFolder):
         text = self.run_smallest("promises")
         self.assertIn("kept in 1 of 1 runs", text)
         row, = self.table("promises.csv", [
-            "scene", "accuracy", "worst", "of", "judged", "not promised", "in doubt", "trials", "loop", "process",
-            "chosen", "deflection", "acceleration", "moment", "wheel force"])
+            "scene", "accuracy", "worst", "of", "judged", "not promised", "in doubt", "small", "small but refused",
+            "trials", "loop", "process", "chosen", "deflection", "acceleration", "moment", "wheel force"])
         self.assert_positive([row], "trials", "loop", "process")
         self.assertEqual(row["judged"], "4")
         for quantity in ("deflection", "acceleration", "moment", "wheel force"):
