@@ -12,7 +12,7 @@ constexpr double compared = 0.6;  // of the largest one
 // Of the step before: between instants that near the slope is that of rounding, and a parabola through them rises above
 // the curve by as much as the whole step's change.
 constexpr double too_near = 1e-2;
-constexpr double likely = 2.0;    // times the root mean square: what an extreme's error hardly exceeds
+constexpr double likely = 2.0;  // times the root mean square: what an extreme's error hardly exceeds
 constexpr int bisections = 40;
 constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
 
