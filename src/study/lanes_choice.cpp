@@ -28,7 +28,7 @@ constexpr std::size_t most_spans_alone = 8;  // each wants some sixteen modes
 constexpr double finest_alone = 3e-4;        // accuracy: errors of the kernel itself have been 3e-4 of a moment
 // Times its speed: the trials of a single run, whose peaks may agree by chance.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
-constexpr double part_of_all = 0.95;     // of the wanted error
+constexpr double part_of_all = 0.95;  // of the wanted error
 constexpr int most_tries = 6;
 constexpr double modes_over_wholes = 0.5;  // of the wanted error
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
