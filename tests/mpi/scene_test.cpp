@@ -1,5 +1,6 @@
 // Scenes on one rank and on all: the same results (support/same_on_ranks.hpp).
 #include <gtest/gtest.h>
+#include <petscsys.h>
 
 #include "support/curve.hpp"
 #include "support/same_on_ranks.hpp"
