@@ -11,8 +11,6 @@
 namespace traverse::app {
 namespace {
 
-using lanes::CrossingResult;
-
 constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4;  // of the wanted error
 constexpr int most_halvings = 8;
 constexpr double first_step_factor = 4.0;  // times the step that the search by elements would begin with
