@@ -2,8 +2,9 @@
 """What a results file holds, for other programs: export.py RESULTS.h5 [--series NAME...] [-o FOLDER]
 
 Writes a CSV file for each name: a series over time such as probes/deflection, a group of them such as vehicles/0,
-sweep, study, rail_forces/stress, or another table that --list names; without names, all there is. Heads hold names and units, the first
-column is the time. --xdmf writes the bridge and the vehicles over time for ParaView, NAME.xdmf beside its data NAME.xdmf.h5.
+sweep, study, rail_forces/stress, or another table that --list names; without names, all there is. Heads hold names and
+units, the first column is the time, or the place along the rails. --xdmf writes the bridge and the vehicles over time for
+ParaView, or the envelopes along the rails: NAME.xdmf beside its data NAME.xdmf.h5.
 """
 
 import argparse

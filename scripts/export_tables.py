@@ -56,7 +56,8 @@ def rail_names(file):
     """Tables of scene_analysis rail."""
     if "rail_forces" not in file:
         return []
-    return [f"rail_forces/{name}" for name, (at, _) in ALONG_RAIL.items() if at in file["rail_forces"]] + ["rail_forces/peaks"]
+    along = [name for name, (at, _) in ALONG_RAIL.items() if at in file["rail_forces"]]
+    return [f"rail_forces/{name}" for name in [*along, "peaks"]]
 
 
 def units(dataset):

@@ -37,13 +37,13 @@ std::string stored_name(std::size_t quantity);
 /// Whether the scene's accuracy_of holds it, or is left out.
 bool asks_for(const Scene& scene, std::size_t quantity);
 
-/// The note that says so.
+/// The note that a quantity's peak is not promised, and why.
 std::string not_promised(Quantity quantity, const Promise& promise);
 /// Why quantities are not promised.
 inline constexpr const char* not_asked_for = "accuracy_of does not ask for it";
 inline constexpr const char* no_sum =
     "without damping that grows with the frequency the accelerations of all modes have no sum";
-/// Whether damping is asked for that does.
+/// Whether the scene asks for damping that grows with the frequency.
 bool damps_high_modes(const Scene& scene);
 
 /// What is promised where there is no bridge: largest errors at any instant, over the largest way from the start or the

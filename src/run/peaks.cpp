@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kept = 0.5;      // of the largest extreme so far
 constexpr double compared = 0.6;  // of the largest one
-// Of the step before: between instants that near the slope is that of rounding, and a parabola through them rises above
-// the curve by as much as the whole step's change.
+// Of the step before: the slope between instants that are nearer than that is made by rounding, and a parabola through
+// them overshoots.
 constexpr double too_near = 1e-2;
 constexpr double likely = 2.0;  // times the root mean square: what an extreme's error hardly exceeds
 constexpr int bisections = 40;

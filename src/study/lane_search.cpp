@@ -40,8 +40,7 @@ LaneErrors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to
   return errors;
 }
 
-/// What is left of an error that has become so much smaller by a step half as long: change over change before, which
-/// tell its order.
+/// The error that half the step leaves, by what halving it has changed now and the time before, which tell the order.
 double left_of(double change, double before) {
   const double order = std::clamp(before > change ? std::log2(before / change) : 0.0, lowest_order, highest_order);
   return change / (std::exp2(order) - 1.0);

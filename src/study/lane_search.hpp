@@ -21,7 +21,7 @@ class LaneSearch {
   /// Of modes and mesh, and of the steps.
   double error_of_model(std::size_t q) const { return modes_[q] + mesh_[q]; }
   double error_of_steps(std::size_t q) const { return steps_[q]; }
-  /// By so many more modes, on their mesh, as numbers of modes are compared with.
+  /// What the number of modes of a model is compared with: half as many modes more, on a mesh that resolves them.
   LaneModel with_more_modes(const LaneModel& model);
 
  private:
