@@ -55,8 +55,9 @@ bool chooses(const Scene& scene) {
 }
 
 void set_first_mesh(Scene& scene) {
-  if (scene.mesh_open)
-    set_mesh(scene, scene.beam->track ? first_mesh(scene) : 2 * aligned_mesh(scene, first_mesh(scene) / 2));
+  if (!scene.mesh_open) return;
+  const int elements = first_mesh(scene), half = aligned_mesh(scene, elements / 2);
+  set_mesh(scene, 2 * half > elements ? 2 * half : aligned_mesh(scene, elements));
 }
 
 const options::Entry* own_measure() {

@@ -87,7 +87,7 @@ double ErrorSearch::room_to_coarsen(const Errors& errors) const {
   double least = room(errors);
   for (std::size_t q = 0; q < quantities; ++q)
     if (promises_[q].present && tried_[q])
-      least = std::min(least, std::max(1.0, errors[q].room(best_effort * wanted_)));
+      least = std::min(least, std::max(1.0, errors[q].room(effort())));
   return least;
 }
 

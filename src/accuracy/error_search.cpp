@@ -111,6 +111,7 @@ void ErrorSearch::search() {
   try {
     refine();
     coarsen();
+    coarsen_mesh();
     take_fewer_solves();
   } catch (const TooMuchWork&) {
     if (!measured_) refuse_scene();
@@ -156,14 +157,30 @@ void ErrorSearch::coarsen() {
     for (std::size_t q = 0; q < quantities; ++q)
       longer[q].value += growth_ * difference(trials_.run(mesh_, step), trials_.run(mesh_, finest_step_),
                                               static_cast<Quantity>(q), 3.0 * step);
-    if (excess(longer) <= 1.0) {
+    if (excess(longer, finest_) <= 1.0) {
       step_ = step;
       time_ = longer;
       coarser_.reset();
     } else if (step == 2.0 * step_) {
       coarser_ = longer;
     }
-    if (excess(longer) > passed_over) return;
+    if (excess(longer, finest_) > passed_over) return;
+  }
+}
+
+// Where something was refused that asked for more elements than all the rest needs.
+void ErrorSearch::coarsen_mesh() {
+  if (!open_mesh_ || std::none_of(tried_.begin(), tried_.end(), [](bool tried) { return tried; })) return;
+  const Errors finest = space_;
+  const int finest_mesh = mesh_;
+  for (int mesh = finest_mesh / 2; mesh % 2 == 0; mesh /= 2) {
+    Errors coarser = finest;
+    for (std::size_t q = 0; q < quantities; ++q)
+      coarser[q].value += growth_ * difference(trials_.run(mesh, step_), trials_.run(finest_mesh, step_),
+                                               static_cast<Quantity>(q), 3.0 * step_);
+    if (excess(coarser, finest) > 1.0) return;
+    mesh_ = mesh;
+    space_ = coarser;
   }
 }
 
@@ -187,7 +204,7 @@ void ErrorSearch::take_fewer_solves() {
         if (promised(q)) most = std::max(most, errors[q].value / (2.0 * wanted_ - std::min(space_[q].value, wanted_)));
       if (most * std::pow(fewer_solves_steps.back() / factor, method.order) > 1.0)
         break;  // not with the shortest either
-      if (most > 1.0 || excess(errors) > 2.0) continue;
+      if (most > 1.0 || excess(errors, finest_) > 2.0) continue;
       integrator_ = method.name;
       step_ = step;
       time_ = errors;
@@ -196,13 +213,13 @@ void ErrorSearch::take_fewer_solves() {
     }
 }
 
-/// What the errors are of those wanted, at most.
-double ErrorSearch::excess(const Errors& errors) const {
+/// What the errors are of those wanted, at most; finest: of the finest run, which nothing that is refused can better.
+double ErrorSearch::excess(const Errors& errors, const Errors& finest) const {
   double most = 0.0;
   for (std::size_t q = 0; q < quantities; ++q) {
     if (promised(q)) most = std::max(most, errors[q].value / wanted_);
     if (promises_[q].present && tried_[q])
-      most = std::max(most, errors[q].value / std::max(best_effort * wanted_, time_[q].value));
+      most = std::max(most, errors[q].value / std::max(effort(), finest[q].value));
   }
   return most;
 }
@@ -213,8 +230,12 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
   const double step = open_step_ ? two_digits(step_ * longer) : step_;
   int mesh = mesh_;
   if (open_mesh_ && scene.beam->track) mesh = base::whole(std::ceil(mesh_ / fewer));
-  if (open_mesh_ && !scene.beam->track)
-    mesh = aligned_mesh(scene_, std::max(4, 2 * base::whole(std::ceil(0.5 * mesh_ / fewer))));
+  if (open_mesh_ && !scene.beam->track) {
+    const int needed = std::max(4, 2 * base::whole(std::ceil(0.5 * mesh_ / fewer)));
+    mesh = aligned_mesh(scene_, needed);
+    // What was measured with nodes at the springs does not hold beside them.
+    if (aligned(scene_, mesh_) && !aligned(scene_, mesh)) mesh = needed <= mesh_ ? mesh_ : 2 * mesh_;
+  }
   set_mesh(scene, mesh);
   scene.time_step = step;
   scene.integrator = integrator_;

@@ -2,6 +2,7 @@
 // fall; what lies near enough is extrapolated.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -32,7 +33,8 @@ class ErrorSearch {
   // Times a measured size that an error is extrapolated to: by a measured order, and where measuring would cost more
   // than it is worth.
   static constexpr double farthest = 2.2, at_most = 2.5;
-  static constexpr double best_effort = 10.0;     // times the wanted error, of what is refused
+  // Of what is refused: times the wanted error, and what it keeps at least where that could be had.
+  static constexpr double best_effort = 10.0, least_effort = 4e-4;
   static constexpr double hardly_anything = 1.5;  // s of trial runs, estimated
   static constexpr int enough_alike = 2;
 
@@ -42,10 +44,12 @@ class ErrorSearch {
   void search();
   [[noreturn]] void refuse_scene() const;
   void coarsen();
+  void coarsen_mesh();
   void take_fewer_solves();
   void measure();
   void count_alike();
-  double excess(const Errors& errors) const;
+  double effort() const { return std::max(best_effort * wanted_, least_effort); }
+  double excess(const Errors& errors, const Errors& finest) const;
   ErrorLaw error_in_time(Quantity q);
   ErrorLaw error_in_space(Quantity q);
   void refuse(std::size_t q, std::string why);

@@ -18,7 +18,7 @@ constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked fo
 constexpr double part_for_linear = 0.1;  // of the wanted error
 constexpr double roughness = 1.3;        // times the work on vehicles on a rough track
 constexpr double same_node = 1e-9;
-constexpr std::size_t few_stations = 100;
+constexpr std::size_t few_stations = 10000;
 constexpr int least_elements = 4;
 constexpr double solves_a_step = 5.0;           // of the beam, by the default method
 constexpr double steps_a_factorisation = 30.0;  // that would cost as much as a step of a new length
@@ -87,18 +87,20 @@ void set_mesh(Scene& scene, int elements) {
                                       2 * base::whole(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
 }
 
-int aligned_mesh(const Scene& scene, int elements) {
-  if (scene.beam->track) return elements;
+bool aligned(const Scene& scene, int elements) {
   std::vector<double> stations = scene.output.probes;
   for_points(scene.beam->foundation, [&](const beam::FoundationKind&, const auto& points) {
     for (const beam::PointFoundation& point : points) stations.push_back(point.x);
   });
-  if (stations.size() > few_stations) return elements;
+  if (scene.beam->track || stations.size() > few_stations) return false;
   Scene tried = scene;
-  for (int count = elements; 2 * count <= 3 * elements; count += 2) {
-    set_mesh(tried, count);
-    if (std::all_of(stations.begin(), stations.end(), [&](double x) { return is_node(*tried.beam, x); })) return count;
-  }
+  set_mesh(tried, elements);
+  return std::all_of(stations.begin(), stations.end(), [&](double x) { return is_node(*tried.beam, x); });
+}
+
+int aligned_mesh(const Scene& scene, int elements) {
+  for (int count = elements; 2 * count <= 3 * elements; count += 2)
+    if (aligned(scene, count)) return count;
   return elements;
 }
 

@@ -17,8 +17,9 @@ namespace traverse::app {
 /// Elements of the longest span, the others in proportion and even; with a layered track elements of the rail a bay.
 void set_mesh(Scene& scene, int elements);
 int mesh_of(const Scene& scene);
-/// So many elements or up to half as many again: where that lets nodes meet probes and the foundation's springs, inside
-/// of whose elements errors fall slowly.
+/// Whether nodes meet probes and the foundation's springs, inside of whose elements errors fall slowly.
+bool aligned(const Scene& scene, int elements);
+/// So many elements, or up to half as many again where these are aligned.
 int aligned_mesh(const Scene& scene, int elements);
 
 /// The scene with a train that comes over a level layered track some bays before the bridge, where it starts farther

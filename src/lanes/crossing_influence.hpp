@@ -8,14 +8,16 @@ namespace traverse::lanes {
 namespace {
 
 template <int W>
-struct CrossingInfluence {
+struct CrossingInfluence : CrossingAlgebra<W> {
+  using Own = CrossingAlgebra<W>;
+  using Own::dot;
   using State = CrossingState<W>;
   using Lane = typename State::Lane;
 
   /// The sum over the modes of influence times q.
   static Lane weigh(const State& s, int j, const Lane* q) {
-    return s.g_ahead == nullptr ? sum(s.g + static_cast<long>(j) * s.task.influence.channels, q, s.modes)
-                                : sum(s.g_ahead + static_cast<long>(j) * s.modes, q, s.modes);
+    return s.g_ahead == nullptr ? dot(s.g + static_cast<long>(j) * s.task.influence.channels, q, s.modes)
+                                : dot(s.g_ahead + static_cast<long>(j) * s.modes, q, s.modes);
   }
   /// Adds to the modal forces those of a force at the wheel.
   static void push(const State& s, int j, Lane force, Lane* modal) {
@@ -31,17 +33,6 @@ struct CrossingInfluence {
   }
 
  private:
-  template <class Number>
-  static Lane sum(const Number* g, const Lane* q, int modes) {
-    Lane even{}, odd{};
-    int i = 0;
-    for (; i + 2 <= modes; i += 2) {
-      even += g[i] * q[i];
-      odd += g[i + 1] * q[i + 1];
-    }
-    for (; i < modes; ++i) even += g[i] * q[i];
-    return even + odd;
-  }
   template <class Number>
   static void add(const Number* g, Lane force, Lane* modal, int modes) {
     for (int i = 0; i < modes; ++i) modal[i] += g[i] * force;

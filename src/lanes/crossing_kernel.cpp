@@ -3,17 +3,22 @@
 
 namespace traverse::lanes::TRAVERSE_LANES_TARGET {
 
-/// Doubles that Task::work needs.
-long work_size(const Task& task) { return size_of_work<Group>(task); }
-void cross(const Task& task) { run_as_wide<Group>(task); }
-
-// A crossing by itself, in two lanes that are the same, step by step: it stands in front of its numbers in Task::work.
+// A crossing by itself, step by step: it stands in front of its numbers in Task::work.
 namespace {
-using One = Group<2>;
+using One = Group<1>;
 constexpr long size_of_one = (sizeof(One) + 63) / 64 * 8;
 }  // namespace
 
-/// Doubles that Task::work needs for that.
+/// Doubles that Task::work needs.
+long work_size(const Task& task) { return task.width == 1 ? One(task, nullptr).size() : size_of_work<Group>(task); }
+void cross(const Task& task) {
+  if (task.width == 1)
+    One(task, task.work).run();
+  else
+    run_as_wide<Group>(task);
+}
+
+/// Doubles that Task::work needs for a crossing step by step.
 long stepped_size(const Task& task) { return size_of_one + One(task, nullptr).size(); }
 void begin(const Task& task) { (new (task.work) One(task, task.work + size_of_one))->begin(); }
 /// Group::step.

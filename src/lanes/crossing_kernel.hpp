@@ -142,9 +142,9 @@ class Group : CrossingAlgebra<W> {
   }
   TaskInstant instant() const {
     const State& s = state_;
-    const auto numbers = [](const Lane* x) { return reinterpret_cast<const double*>(x); };
-    return {s.failed[0],     numbers(s.q),  numbers(s.r),         numbers(s.x),         numbers(s.w),
-            numbers(s.bent), numbers(s.F1), numbers(s.row_of[2]), numbers(&s.all_lost), numbers(&s.all_given)};
+    const auto all = [](const Lane* x) { return reinterpret_cast<const double*>(x); };
+    return {*all(&s.failed), all(s.q),  all(s.r),         all(s.x),         all(s.w),
+            all(s.bent),     all(s.F1), all(s.row_of[2]), all(&s.all_lost), all(&s.all_given)};
   }
 
  private:

@@ -18,6 +18,7 @@ struct CrossingLeftOut : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
   using Own::lanes;
+  using Own::numbers;
   using Own::oscillate;
   using typename Own::Lane;
   using typename Own::Oscillation;
@@ -26,15 +27,14 @@ struct CrossingLeftOut : CrossingAlgebra<W> {
   static void set_step(State& s) {
     const TaskLeftOut& of = s.task.left_out;
     if (of.lag == 0.0) return;
-    const double* h = reinterpret_cast<const double*>(&s.h);
-    const auto set = [](Lane& lanes_of, int lane, double value) { reinterpret_cast<double*>(&lanes_of)[lane] = value; };
+    const double* h = numbers(s.h);
     for (int l = 0; l < W; ++l) {
-      set(s.left_keeps, l, __builtin_exp(-h[l] / of.lag));
+      numbers(s.left_keeps)[l] = __builtin_exp(-h[l] / of.lag);
       for (int from = 0; from < 4; ++from) {
         const Oscillation end = oscillate(of.omega2, of.damping, h[l], from == 0 ? 1.0 : 0.0, from == 1 ? 1.0 : 0.0,
                                           from == 2 ? of.omega2 : 0.0, from == 3 ? of.omega2 : 0.0);
-        set(s.to_left[from], l, end.u);
-        set(s.to_left_rate[from], l, end.w);
+        numbers(s.to_left[from])[l] = end.u;
+        numbers(s.to_left_rate[from])[l] = end.w;
       }
     }
   }

@@ -15,7 +15,9 @@ struct CrossingLooks : CrossingAlgebra<W> {
   using Own::any;
   using Own::fill;
   using Own::lanes;
+  using Own::holds;
   using Own::magnitude;
+  using Own::numbers;
   using typename Own::Lane;
   using typename Own::Mask;
 
@@ -113,22 +115,23 @@ struct CrossingLooks : CrossingAlgebra<W> {
     if (!any(turns)) return;
     const Lane h = s.time[2] - s.time[1];
     for (int l = 0; l < W; ++l) {
-      if (turns[l] == 0) continue;
-      const double step = h[l], lag = s.task.left_out.lag < 100.0 * step ? s.task.left_out.lag : 100.0 * step;
-      const double decay = __builtin_exp(-step / lag), decayed = 1.0 - decay, before = rising[l];
-      const double k = (s.row_of[2][i][l] - start[l] - 0.5 * step * (before + falling[l])) /
+      if (!holds(turns, l)) continue;
+      const double step = numbers(h)[l], lag = s.task.left_out.lag < 100.0 * step ? s.task.left_out.lag : 100.0 * step;
+      const double decay = __builtin_exp(-step / lag), decayed = 1.0 - decay;
+      const double first = numbers(start)[l], before = numbers(rising)[l], after = numbers(falling)[l];
+      const double k = (numbers(s.row_of[2][i])[l] - first - 0.5 * step * (before + after)) /
                        (0.5 * step * (1.0 + decay) - lag * decayed);
-      const double p = before + k, q = 0.5 * (falling[l] - before - k * decayed) / step;
+      const double p = before + k, q = 0.5 * (after - before - k * decayed) / step;
       double from = 0.0, to = step;
       for (int bisection = 0; bisection < bisections; ++bisection) {
         const double t = 0.5 * (from + to);
         ((p + 2.0 * q * t - k * __builtin_exp(-t / lag)) * before > 0.0 ? from : to) = t;
       }
-      const double top = start[l] + from * (p + q * from) - k * lag * (1.0 - __builtin_exp(-from / lag));
+      const double top = first + from * (p + q * from) - k * lag * (1.0 - __builtin_exp(-from / lag));
       const double size = top < 0.0 ? -top : top;
-      if (size <= s.peak[i][l]) continue;
-      s.peak[i][l] = size;
-      s.peak_time[i][l] = s.time[1][l] + from;
+      if (size <= numbers(s.peak[i])[l]) continue;
+      numbers(s.peak[i])[l] = size;
+      numbers(s.peak_time[i])[l] = numbers(s.time[1])[l] + from;
     }
   }
 

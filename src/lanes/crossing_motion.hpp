@@ -15,6 +15,7 @@ struct CrossingMotion : CrossingAlgebra<W> {
   using Own::lanes;
   using Own::magnitude;
   using Own::multiply;
+  using Own::numbers;
   using Own::oscillate;
   using Own::predict;
   using typename Own::Lane;
@@ -25,11 +26,11 @@ struct CrossingMotion : CrossingAlgebra<W> {
   static void set_exact_modes(State& s) {
     const double* k = s.task.omega2;
     const double* c = s.task.damping;
-    const double* h = reinterpret_cast<const double*>(&s.h);
+    const double* h = numbers(s.h);
     for (int i = 0; i < s.modes; ++i) {
       for (int from = 0; from < 4; ++from) {
-        double* u = reinterpret_cast<double*>(&s.to_q[4 * i + from]);
-        double* w = reinterpret_cast<double*>(&s.to_r[4 * i + from]);
+        double* u = numbers(s.to_q[4 * i + from]);
+        double* w = numbers(s.to_r[4 * i + from]);
         for (int l = 0; l < W; ++l) {
           const Oscillation end = oscillate(k[i * W + l], c[i * W + l], h[l], from == 0 ? 1.0 : 0.0,
                                             from == 1 ? 1.0 : 0.0, from == 2 ? 1.0 : 0.0, from == 3 ? 1.0 : 0.0);

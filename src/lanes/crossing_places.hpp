@@ -10,6 +10,7 @@ template <int W>
 struct CrossingPlaces : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
+  using Own::dot;
   using Own::influence_at;
   using Own::influence_slope_at;
   using Own::lanes;
@@ -70,9 +71,7 @@ struct CrossingPlaces : CrossingAlgebra<W> {
       const TaskVehicle& vehicle = s.task.vehicle[v];
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
         if (s.on[j] == 0) continue;
-        const double* slope = s.g_slope + static_cast<long>(j) * s.modes;
-        Lane of_bridge{};
-        for (int i = 0; i < s.modes; ++i) of_bridge -= slope[i] * q[i];
+        const Lane of_bridge = -dot(s.g_slope + static_cast<long>(j) * s.modes, q, s.modes);
         s.free[j] += 0.5 * s.task.radius * of_bridge * of_bridge;
         s.lean[j] += of_bridge;
       }

@@ -13,8 +13,10 @@ template <int W>
 struct CrossingPowers : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
+  using Own::dot;
   using Own::influence_slope_at;
   using Own::lanes;
+  using Own::sum;
   using Own::track_at;
   using typename Own::Lane;
 
@@ -71,11 +73,8 @@ struct CrossingPowers : CrossingAlgebra<W> {
 
   static Lane lost_in_modes(const State& s, const Lane* rate) {
     const Lane* c = lanes(s.task.damping);
+    if (!s.task.coupled) return sum(s.modes, [=](int i) { return c[i] * rate[i] * rate[i]; });
     Lane lost{};
-    if (!s.task.coupled) {
-      for (int i = 0; i < s.modes; ++i) lost += c[i] * rate[i] * rate[i];
-      return lost;
-    }
     for (int i = 0; i < s.modes; ++i)
       for (int j = 0; j < s.modes; ++j) lost += rate[i] * c[i * s.modes + j] * rate[j];
     return lost;
@@ -108,7 +107,7 @@ struct CrossingPowers : CrossingAlgebra<W> {
       while (piece + 1 < line.pieces && x >= line.breaks[piece + 1]) ++piece;
       double* rises = s.g_slope + static_cast<long>(j) * s.modes;
       influence_slope_at(line, x, piece, s.modes, rises);
-      for (int i = 0; i < s.modes; ++i) s.lean[j] -= rises[i] * q[i];
+      s.lean[j] -= dot(rises, q, s.modes);
     }
   }
 };

@@ -117,7 +117,7 @@ struct Task {
   double* work = nullptr;    // as many numbers as work_size() says, aligned as a lane
 };
 
-/// What a crossing that is taken step by step is at, of two lanes that are the same: first entries of pairs.
+/// What a crossing that is taken step by step is at.
 struct TaskInstant {
   double failed = 0.0;
   const double *q = nullptr, *q_rate = nullptr;  // of the modes

@@ -30,14 +30,17 @@ struct Lanes {
 #endif
 
   static Lane fill(double value) { return Lane{} + value; }
+  /// The numbers of a vector, one a lane, and whether a mask holds a lane.
+  static double* numbers(Lane& x) { return reinterpret_cast<double*>(&x); }
+  static const double* numbers(const Lane& x) { return reinterpret_cast<const double*>(&x); }
+  static bool holds(Mask mask, int lane) { return reinterpret_cast<const long*>(&mask)[lane] != 0; }
   static const Lane* lanes(const double* numbers) { return reinterpret_cast<const Lane*>(numbers); }
   static Lane* lanes(double* numbers) { return reinterpret_cast<Lane*>(numbers); }
   /// Without the bit of the sign.
   static Lane magnitude(Lane x) { return (Lane)((Mask)x & 0x7fffffffffffffffL); }
   static Lane greater(Lane a, Lane b) { return a > b ? a : b; }
   static Lane root(Lane x) {
-    double* numbers = reinterpret_cast<double*>(&x);
-    for (int l = 0; l < W; ++l) numbers[l] = __builtin_sqrt(numbers[l]);
+    for (int l = 0; l < W; ++l) numbers(x)[l] = __builtin_sqrt(numbers(x)[l]);
     return x;
   }
   /// Bits, one at least where a > b in some lane, and none where it is in no lane.
@@ -69,13 +72,32 @@ struct Lanes {
   }
 };
 
-/// The next `count` numbers of type T of the memory at `work`, in whole lanes, of which `used` are taken; null while
-/// work is null and the size alone is asked for.
+/// One run alone: its numbers stand behind each other, so that loops over modes go in the processor's vectors.
+template <>
+struct Lanes<1> {
+  using Lane = double;
+  using Mask = long;  // 0 or 1
+
+  static Lane fill(double value) { return value; }
+  static double* numbers(Lane& x) { return &x; }
+  static const double* numbers(const Lane& x) { return &x; }
+  static bool holds(Mask mask, int /*lane*/) { return mask != 0; }
+  static const Lane* lanes(const double* numbers) { return numbers; }
+  static Lane* lanes(double* numbers) { return numbers; }
+  static Lane magnitude(Lane x) { return __builtin_fabs(x); }
+  static Lane greater(Lane a, Lane b) { return a > b ? a : b; }
+  static Lane root(Lane x) { return __builtin_sqrt(x); }
+  static bool any(Mask mask) { return mask != 0; }
+};
+
+/// The next `count` numbers of type T of the memory at `work`, of which `used` lanes are taken, from where the widest
+/// vectors may start; null while work is null and the size alone is asked for.
 template <class T>
 T* take_from(double* work, long& used, int width, long count) {
   double* at = work == nullptr ? nullptr : work + used * width;
-  const long size = 8L * width;
-  used += (count * static_cast<long>(sizeof(T)) + size - 1) / size;
+  constexpr long widest_vector = 8;  // doubles
+  constexpr long bytes = 8 * widest_vector;
+  used += (count * static_cast<long>(sizeof(T)) + bytes - 1) / bytes * (widest_vector / width);
   return reinterpret_cast<T*>(at);
 }
 

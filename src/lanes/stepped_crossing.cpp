@@ -11,12 +11,6 @@ TRAVERSE_LANES_DECLARE(long stepped_size(const Task& task); void begin(const Tas
                        TaskInstant step(const Task& task, double to, bool from_kink, bool to_kink);
                        TaskInstant instant(const Task& task); void go_on_from(const Task& task, const double* memory);)
 
-namespace {
-
-constexpr std::size_t lanes_that_are_the_same = 2;
-
-}  // namespace
-
 SteppedCrossing::SteppedCrossing(CrossingPlan plan, TrainNumbers train, TrackNumbers track, std::vector<double> q,
                                  double speed)
     : plan_(std::move(plan)),
@@ -24,7 +18,7 @@ SteppedCrossing::SteppedCrossing(CrossingPlan plan, TrainNumbers train, TrackNum
       track_(std::move(track)),
       q_(std::move(q)),
       run_{CrossingRun{&train_, &track_, nullptr, &q_, speed, 0.0}},
-      numbers_(plan_, run_, lanes_that_are_the_same),
+      numbers_(plan_, run_, 1),
       task_(numbers_.task()),
       work_(static_cast<std::size_t>(TRAVERSE_LANES_CALL(stepped_size(task_)))) {
   task_.work = work_.data();

@@ -22,7 +22,7 @@ class SteppedCrossing {
 
   /// One number of what TaskInstant names, after the last step.
   using Numbers = const double* TaskInstant::*;
-  double at(Numbers numbers, std::size_t i) const { return (now_.*numbers)[2 * i]; }
+  double at(Numbers numbers, std::size_t i) const { return (now_.*numbers)[i]; }
   /// The state between two steps. FileError where another kind of processor has written it.
   void keep(base::Bytes& bytes);
   std::vector<double> bent() const;  // coordinates of every vehicle where it was farthest from linear

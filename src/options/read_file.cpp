@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <filesystem>
 #include <memory>
@@ -159,9 +160,11 @@ std::string text_of(const std::string& path) {
   if (std::filesystem::is_directory(path)) throw InputError("options_file = " + path + ": is a folder, not a file");
   const std::unique_ptr<std::istream> file = open_input(path);
   if (file == nullptr) throw InputError("options_file = " + path + ": there is no such file, or it cannot be read");
-  std::string text(most_characters + 1, '\0');
-  file->read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file->gcount()));
+  std::string text;
+  for (std::array<char, 65536> part; *file && text.size() <= most_characters;) {
+    file->read(part.data(), part.size());
+    text.append(part.data(), static_cast<std::size_t>(file->gcount()));
+  }
   if (text.size() > most_characters)
     throw InputError(
         fmt::format("options_file = {}: longer than {} characters: this is no options file", path, most_characters));
