@@ -57,7 +57,7 @@ bool chooses(const Scene& scene) {
 void set_first_mesh(Scene& scene) {
   if (!scene.mesh_open) return;
   const int elements = first_mesh(scene), half = aligned_mesh(scene, elements / 2);
-  set_mesh(scene, 2 * half > elements ? 2 * half : aligned_mesh(scene, elements));
+  set_mesh(scene, 2 * half > elements ? 2 * half : aligned_mesh(scene, elements, 2.0));
 }
 
 const options::Entry* own_measure() {

@@ -98,8 +98,8 @@ bool aligned(const Scene& scene, int elements) {
   return std::all_of(stations.begin(), stations.end(), [&](double x) { return is_node(*tried.beam, x); });
 }
 
-int aligned_mesh(const Scene& scene, int elements) {
-  for (int count = elements; 2 * count <= 3 * elements; count += 2)
+int aligned_mesh(const Scene& scene, int elements, double most) {
+  for (int count = elements; count <= most * elements; count += 2)
     if (aligned(scene, count)) return count;
   return elements;
 }

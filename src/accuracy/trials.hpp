@@ -19,8 +19,8 @@ void set_mesh(Scene& scene, int elements);
 int mesh_of(const Scene& scene);
 /// Whether nodes meet probes and the foundation's springs, inside of whose elements errors fall slowly.
 bool aligned(const Scene& scene, int elements);
-/// So many elements, or up to half as many again where these are aligned.
-int aligned_mesh(const Scene& scene, int elements);
+/// So many elements, or up to `most` times as many where these are aligned.
+int aligned_mesh(const Scene& scene, int elements, double most = 1.5);
 
 /// The scene with a train that comes over a level layered track some bays before the bridge, where it starts farther
 /// off, and with so much less of the track: what it does until then tells nothing new.
