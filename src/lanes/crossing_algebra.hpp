@@ -214,14 +214,21 @@ struct CrossingAlgebra : Lanes<W> {
 
   // --- what all lanes have in common ---------------------------------------------------------------------------------
 
-  /// The influence of a unit force at x: `channels` of them, or all. False off the bridge.
-  static bool influence_at(const TaskInfluence& line, double x, int* piece, int channels, double* g) {
+  /// The influence of a unit force at x on so many channels, and by how much that on the first `modes` of them rises
+  /// there, for each metre. False off the bridge.
+  static bool influence_at(const TaskInfluence& line, double x, int* piece, int modes, int channels, double* g,
+                           double* slope) {
     if (line.pieces == 0 || x < line.breaks[0] || x > line.breaks[line.pieces]) return false;
     while (*piece + 1 < line.pieces && x >= line.breaks[*piece + 1]) ++*piece;
     const double* c = line.coefficients + 4L * line.channels * *piece;
     const double d = x - line.breaks[*piece];
     const int n = line.channels;
-    for (int i = 0; i < channels; ++i) g[i] = c[i] + d * (c[n + i] + d * (c[2 * n + i] + d * c[3 * n + i]));
+    for (int i = 0; i < modes; ++i) {
+      const double c1 = c[n + i], c2 = c[2 * n + i], c3 = c[3 * n + i];
+      g[i] = c[i] + d * (c1 + d * (c2 + d * c3));
+      slope[i] = c1 + d * (2.0 * c2 + 3.0 * d * c3);
+    }
+    for (int i = modes; i < channels; ++i) g[i] = c[i] + d * (c[n + i] + d * (c[2 * n + i] + d * c[3 * n + i]));
     return true;
   }
 

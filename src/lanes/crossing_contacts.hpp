@@ -73,11 +73,7 @@ struct CrossingContacts : CrossingAlgebra<W> {
     for (int i = 0; i < s.modes; ++i) s.rhs[i] = Lane{};
     for (int v = 0; v < s.task.vehicles; ++v) {
       if (s.awake[v] == 0 || s.touching[v] == 0) continue;
-      const TaskVehicle& vehicle = s.task.vehicle[v];
-      for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
-        if (s.on[j] == 0) continue;
-        Influence::push(s, j, s.F[j], s.rhs);
-      }
+      Influence::push(s, s.task.vehicle[v], s.rhs);
     }
     s.moved = push ? Lane{} : s.moved;
     for (int i = 0; i < s.modes; ++i) {
@@ -100,9 +96,9 @@ struct CrossingContacts : CrossingAlgebra<W> {
     for (int i = 0; i < w; ++i) {
       Lane c = s.free[first + i] - s.delta[first + i];
       for (int k = 0; k < w; ++k) c -= H[i * w + k] * s.F[first + k];
-      if (s.on[first + i] != 0) c -= Influence::weigh(s, first + i, s.p);
       off[i] = c;
     }
+    if (s.touching[v] != 0) Influence::weigh(s, vehicle, s.p, s.residual);
     Mask wrong{};
     for (int i = 0; i < w; ++i) {
       const int j = first + i;

@@ -34,6 +34,7 @@ class Group : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
   using Contacts = CrossingContacts<W>;
+  using Influence = CrossingInfluence<W>;
   using Motion = CrossingMotion<W>;
   using Looks = CrossingLooks<W>;
   using Places = CrossingPlaces<W>;
@@ -182,9 +183,10 @@ class Group : CrossingAlgebra<W> {
     // The wheels' heights over the bridge as it stands.
     Places::place(s, 0.0, s.task.influence.channels);
     Places::lean_with_bridge(s, s.q);
+    for (int v = 0; v < s.task.vehicles; ++v) Influence::weigh(s, s.task.vehicle[v], s.q, s.free);
     for (int j = 0; j < s.task.wheels; ++j) {
       s.delta[j] = s.end[j] = lanes(s.task.penetration)[j] * (1.0 + 0.5 * s.lean[j] * s.lean[j]);
-      s.offset[j] = s.delta[j] - s.free[j] - Places::surface(s, j, s.q);
+      s.offset[j] = s.delta[j] - s.free[j];
       s.F[j] = Contacts::law(s, j, s.delta[j], s.k[j]);
       s.F0[j] = s.F1[j] = Contacts::normal(s, j);
     }
@@ -260,8 +262,8 @@ class Group : CrossingAlgebra<W> {
     for (int v = 0; v < s.task.vehicles; ++v) {
       if (s.awake[v] == 0) continue;
       const TaskVehicle& vehicle = s.task.vehicle[v];
+      if (s.touching[v] != 0) Influence::weigh(s, vehicle, s.z, s.free);  // the bridge lifts them by so much less
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
-        s.free[j] += Places::surface(s, j, s.z);
         const Lane guess = s.end[j] + ahead * s.slope[j];
         s.delta[j] = guess > 0.5 * s.end[j] ? guess : 0.5 * s.end[j];
         s.F[j] = Contacts::law(s, j, s.delta[j], s.k[j]);

@@ -12,7 +12,6 @@ struct CrossingPlaces : CrossingAlgebra<W> {
   using State = CrossingState<W>;
   using Own::dot;
   using Own::influence_at;
-  using Own::influence_slope_at;
   using Own::lanes;
   using Own::track_at;
   using typename Own::Lane;
@@ -29,14 +28,17 @@ struct CrossingPlaces : CrossingAlgebra<W> {
         track_at(s.task.heights, s.task.x[j] + gone, height, s.lean[j]);
         s.free[j] = s.offset[j] + height;
         double* g = s.g + static_cast<long>(j) * s.task.influence.channels;
-        s.on[j] = influence_at(s.task.influence, s.task.x[j] + gone, &s.piece[j], channels, g) ? 1 : 0;
-        if (s.on[j] != 0) place_ahead(s, j, gone, g);
+        double* slope = s.g_slope + static_cast<long>(j) * s.modes;
+        const double x = s.task.x[j] + gone;
+        s.on[j] = influence_at(s.task.influence, x, &s.piece[j], s.modes, channels, g, slope) ? 1 : 0;
+        if (s.on[j] != 0 && s.g_ahead != nullptr) place_ahead(s, j, g, slope);
         s.touching[v] = static_cast<char>(s.touching[v] | s.on[j]);
       }
     }
     for (int j = 0; j < s.task.loads; ++j) {
       double* g = s.load_g + static_cast<long>(j) * s.task.influence.channels;
-      s.load_on[j] = influence_at(s.task.influence, s.task.load_x[j] + gone, &s.load_piece[j], channels, g) ? 1 : 0;
+      const double x = s.task.load_x[j] + gone;
+      s.load_on[j] = influence_at(s.task.influence, x, &s.load_piece[j], 0, channels, g, nullptr) ? 1 : 0;
     }
     for (int i = 0; i < s.modes; ++i) s.load[i] = Lane{};
     for (int j = 0; j < s.task.loads; ++j) {
@@ -53,11 +55,8 @@ struct CrossingPlaces : CrossingAlgebra<W> {
     for (int v = 0; v < s.task.vehicles; ++v) s.awake[v] = gone + 1e-9 >= s.task.vehicle[v].rests_until ? 1 : 0;
   }
 
-  /// How the influence rises at a wheel, and what it is where the wheel touches the track's slope.
-  static void place_ahead(State& s, int j, double gone, const double* g) {
-    double* slope = s.g_slope + static_cast<long>(j) * s.modes;
-    influence_slope_at(s.task.influence, s.task.x[j] + gone, s.piece[j], s.modes, slope);
-    if (s.g_ahead == nullptr) return;
+  /// The influence where a wheel touches the track's slope.
+  static void place_ahead(State& s, int j, const double* g, const double* slope) {
     const Lane ahead = s.task.arm[j] * s.lean[j];
     Lane* there = s.g_ahead + static_cast<long>(j) * s.modes;
     for (int i = 0; i < s.modes; ++i) there[i] = g[i] + ahead * slope[i];
@@ -76,11 +75,6 @@ struct CrossingPlaces : CrossingAlgebra<W> {
         s.lean[j] += of_bridge;
       }
     }
-  }
-
-  /// By how much the bridge lifts a wheel with its modes at q, m.
-  static Lane surface(const State& s, int j, const Lane* q) {
-    return s.on[j] == 0 ? Lane{} : -CrossingInfluence<W>::weigh(s, j, q);
   }
 };
 
