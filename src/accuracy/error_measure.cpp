@@ -86,8 +86,7 @@ double ErrorSearch::room(const Errors& errors) const {
 double ErrorSearch::room_to_coarsen(const Errors& errors) const {
   double least = room(errors);
   for (std::size_t q = 0; q < quantities; ++q)
-    if (promises_[q].present && tried_[q])
-      least = std::min(least, std::max(1.0, errors[q].room(effort())));
+    if (promises_[q].present && tried_[q]) least = std::min(least, std::max(1.0, errors[q].room(effort())));
   return least;
 }
 

@@ -218,8 +218,7 @@ double ErrorSearch::excess(const Errors& errors, const Errors& finest) const {
   double most = 0.0;
   for (std::size_t q = 0; q < quantities; ++q) {
     if (promised(q)) most = std::max(most, errors[q].value / wanted_);
-    if (promises_[q].present && tried_[q])
-      most = std::max(most, errors[q].value / std::max(effort(), finest[q].value));
+    if (promises_[q].present && tried_[q]) most = std::max(most, errors[q].value / std::max(effort(), finest[q].value));
   }
   return most;
 }

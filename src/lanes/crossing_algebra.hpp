@@ -15,7 +15,8 @@ struct CrossingAlgebra : Lanes<W> {
   using Own::lanes;
   using typename Own::Lane;
 
-  // --- sums and matrices by rows ----------------------------------------------------------------------------------------------
+  // --- sums and matrices by rows
+  // ----------------------------------------------------------------------------------------------
 
   /// The sum of term(i) for i below n, four at a time, which keep the processor busy.
   template <class Term>

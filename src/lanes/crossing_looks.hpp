@@ -14,8 +14,8 @@ struct CrossingLooks : CrossingAlgebra<W> {
   using State = CrossingState<W>;
   using Own::any;
   using Own::fill;
-  using Own::lanes;
   using Own::holds;
+  using Own::lanes;
   using Own::magnitude;
   using Own::numbers;
   using typename Own::Lane;
