@@ -81,6 +81,7 @@ void LaneSearch::foresee(const LaneModel& model) {
   std::vector<LaneModel> steps = {with_step(model, 0.5), with_step(model, step_factors.front(), methods.front())};
   for (const double factor : step_factors)
     if (factor >= 1.0) steps.push_back(with_step(model, factor));
+  if (trials_.scene().mesh_open && &mixed_ == &trials_) steps.push_back(on_coarser_mesh(model));
   trials_.run_at_once(steps);
 }
 
@@ -125,11 +126,15 @@ bool LaneSearch::add_modes(LaneModel& model) {
   return false;
 }
 
+LaneModel LaneSearch::on_coarser_mesh(LaneModel model) const {
+  model.elements = aligned_mesh(trials_.scene(), model.elements / 2);
+  return model;
+}
+
 /// On the mesh that the modes were compared on, whose errors a coarser one tells.
 bool LaneSearch::refine_mesh(LaneModel& model) {
   for (int i = 0; trials_.scene().mesh_open && i < most_halvings; ++i) {
-    LaneModel coarser = model;
-    coarser.elements = aligned_mesh(trials_.scene(), model.elements / 2);
+    const LaneModel coarser = on_coarser_mesh(model);
     const double ratio = static_cast<double>(coarser.elements) / model.elements;
     mesh_ = change(mixed_, coarser, model, 1.0 / (std::pow(ratio, -order_of_mesh) - 1.0));
     LaneErrors both = mesh_;

@@ -28,6 +28,7 @@ class LaneSearch {
   bool halve_step(LaneModel& model);
   bool add_modes(LaneModel& model);
   void foresee(const LaneModel& model);
+  LaneModel on_coarser_mesh(LaneModel model) const;
   bool refine_mesh(LaneModel& model);
   LaneModel cheaper(const LaneModel& model);
 

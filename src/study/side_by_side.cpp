@@ -89,6 +89,7 @@ SideBySide::Ready SideBySide::ready(std::span<const Member> members, const Steps
   lanes::CrossingPlan& plan = ready.plan_;
   plan.method = steps.method;
   plan.exact_modes = steps.method.stages.size() == 1;
+  plan.one_by_itself = steps.trial;
   const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(members.front().run.speed));
   double past = 0.0;
   for (const Member& member : members) past = std::max(past, member.run.speed * member.run.end);
@@ -99,7 +100,7 @@ SideBySide::Ready SideBySide::ready(std::span<const Member> members, const Steps
   }
   const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
   // Runs that end elsewhere must not shape each other's steps.
-  if (last > 0) plan.stretches.push_back({steps.all_to_one_end ? past : from + static_cast<double>(last) * ds, last});
+  if (last > 0) plan.stretches.push_back({steps.trial ? past : from + static_cast<double>(last) * ds, last});
   for (const auto& [lanes, run] : members) {
     ready.tracks_.push_back(lanes->track(run.seed, past + ds));
     ready.crossings_.push_back({&lanes->train_, ready.tracks_.back().get(), nullptr, &lanes->q_, run.speed, run.end});

@@ -36,9 +36,9 @@ class SideBySide {
   /// Why these vehicles on this bridge cannot; empty: they can.
   const std::string& obstacle() const { return obstacle_; }
   struct Steps {
-    structure::Method method;     // for steps of 1 s
-    double longest = 0.0;         // s
-    bool all_to_one_end = false;  // all runs go equally far, and are to be seen there exactly
+    structure::Method method;  // for steps of 1 s
+    double longest = 0.0;      // s
+    bool trial = false;        // all runs go equally far, and are to be seen there exactly; one may go by itself
   };
   /// Those that the scene asks for.
   Steps steps() const;
