@@ -48,7 +48,7 @@ void ErrorSearch::count_alike() {
   if (!trials_.lost_contact() || !open_step_)
     strikes_alike_ = enough_alike;
   else
-    strikes_alike_ = alike(acceleration) && alike(wheel_force) ? strikes_alike_ + 1 : 0;
+    strikes_alike_ = alike(acceleration) && alike(wheel_force) && alike(low_passed) ? strikes_alike_ + 1 : 0;
 }
 
 ErrorLaw ErrorSearch::error_in_time(Quantity q) {

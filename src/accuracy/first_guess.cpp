@@ -7,7 +7,9 @@
 #include <numbers>
 #include <utility>
 
+#include "accuracy/accuracy.hpp"
 #include "base/whole.hpp"
+#include "run/deck_acceleration.hpp"
 #include "run/plan.hpp"
 #include "traverse/base/error.hpp"
 
@@ -111,6 +113,8 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
     no_longer_than(wave / speed / trial_steps_a_wave, wave / speed,
                    "the shortest wave of track and wheels is passed in");
   }
+  if (const double frequency = scene.output.low_pass.value_or(0.0); frequency > 0.0 && asks_for(scene, low_passed))
+    no_longer_than(longest_spacing_for(frequency), 1.0 / frequency, "accelerations are filtered at the period of");
   if (scene.output.interval) no_longer_than(*scene.output.interval, *scene.output.interval, "output_interval is");
   const double contact = contact_frequency(scene);
   if (scene.beam->track && greatest_speed(scene) > 0.0 && (contact == 0.0 || unstirred(scene))) {

@@ -86,13 +86,18 @@ Scene at_speed(const Scene& sweep, double speed) {
 }
 
 std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes) {
-  std::optional<LanesChoice> lanes = lanes_that_do(given, notes);
+  Scene settled = given;
+  std::vector<std::string> ignored;  // the runs say so themselves
+  if (!given.vehicles.empty()) settle_low_pass(PETSC_COMM_SELF, settled, ignored);
+  std::optional<LanesChoice> lanes = lanes_that_do(settled, notes);
   if (!lanes) return {};
+  lanes->scene.output.low_pass = given.output.low_pass;
   SweepChoice choice{std::move(lanes->scene), {}};
   choice.model = model_of(choice.scene);
   choice.model.accuracy = given.accuracy;
   for (std::size_t q = 0; q < quantities; ++q)
-    if (lanes->promises[q].kept) choice.model.expected_errors.emplace_back(stored_name(q), lanes->promises[q].expected);
+    if (lanes->promises[q].kept)
+      choice.model.expected_errors.emplace_back(stored_names[q], lanes->promises[q].expected);
   return choice;
 }
 
