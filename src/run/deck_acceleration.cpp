@@ -13,11 +13,12 @@
 namespace traverse::app {
 namespace {
 
-constexpr double least_frequency = 30.0;   // Hz; EN 1990, A2.4.4.2.1
-constexpr double of_the_first = 1.5;       // times the first frequency, in the same place
-constexpr std::size_t counted = 3;         // distinct frequencies
-constexpr double wanted_instants = 20.0;   // in a period of the frequency that counts
-constexpr double least_instants = 8.0;     // in the same
+constexpr double least_frequency = 30.0;  // Hz; EN 1990, A2.4.4.2.1
+constexpr double of_the_first = 1.5;      // times the first frequency, in the same place
+constexpr std::size_t counted = 3;        // distinct frequencies
+constexpr double wanted_instants = 20.0;  // in a period of the frequency that counts
+constexpr double least_instants = 8.0;    // in the same
+constexpr double slack_of_spacing = 1e-9;
 constexpr double at_an_instant = 1e-6;     // of the interval
 constexpr double copies = 1e-6;            // relative distance below which two frequencies are one
 constexpr int cheap_nodes = 1000;          // up to which frequencies take no time
@@ -85,7 +86,7 @@ double longest_spacing_for(double frequency) { return 1.0 / (least_instants * fr
 double unsettled_end(double frequency) { return unsettled_periods / frequency; }
 
 std::string no_filter(double frequency, const Plan& plan, std::size_t series, const char* what) {
-  if (plan.interval > longest_spacing_for(frequency))
+  if (plan.interval > longest_spacing_for(frequency) * (1.0 + slack_of_spacing))
     return fmt::format("samples or steps of {:g} s are too long for {:g} Hz; allowed: at most {:g} s", plan.interval,
                        frequency, longest_spacing_for(frequency));
   const double numbers = static_cast<double>(series) * (1.0 + plan.end_time / plan.interval);
