@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -131,8 +132,11 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
           fmt::format("wheels vibrate on their contacts at {:.3g} Hz", contact / (2.0 * std::numbers::pi))};
 }
 
-bool follows_contacts(const Scene& scene, double step) {
-  return contact_frequency(scene) * step <= 2.0 * contact_angle || unstirred(scene);
+double longest_following_contacts(const Scene& scene) {
+  const double contact = unstirred(scene) ? 0.0 : contact_frequency(scene);
+  return contact > 0.0 ? 2.0 * contact_angle / contact : std::numeric_limits<double>::infinity();
 }
+
+bool follows_contacts(const Scene& scene, double step) { return step <= longest_following_contacts(scene); }
 
 }  // namespace traverse::app

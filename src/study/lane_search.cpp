@@ -59,11 +59,11 @@ double solves(const LaneModel& model) {
 
 }  // namespace
 
-std::optional<LaneModel> LaneSearch::run(double duration) {
+std::optional<LaneModel> LaneSearch::run(double duration, double longest) {
   const int modes = numbers_of_modes.front();
   LaneModel model{modes, mesh_for(trials_.scene(), modes), structure::find_method("esdirk4"), 0.0};
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
-  longest_ = steps.longest;
+  longest_ = std::min(steps.longest, longest);
   model.step = std::min(first_step_factor * steps.first, longest_);
   // Steps first, as modes are told apart by what the contacts do to them.
   if (!halve_step(model) || !add_modes(model)) return std::nullopt;
