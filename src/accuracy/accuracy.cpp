@@ -138,7 +138,7 @@ std::string Accuracy::withdrawn_at_end(bool unsettled) {
   if (!unsettled || !measured || !promise.present || !promise.kept) return {};
   promise.kept = false;
   return "the low-passed acceleration is not promised after all: it is largest at the end of the run, where the filter "
-         "does not know what follows; a longer scene_tail shows it";
+         "does not know what follows; a longer scene_tail may show it";
 }
 
 std::vector<std::pair<std::string, double>> Accuracy::expected() const {

@@ -137,8 +137,10 @@ class Chooser {
 
   LanesChoice choose() {
     LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy);
-    // The peaks of one passage may agree by chance where steps do not follow the contacts.
-    const double longest = alone_ ? longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
+    // The peaks of one passage may agree by chance where steps do not follow the contacts. Elements, which serve then,
+    // take shorter steps for accelerations.
+    const bool follows = alone_ && asks_for(scene_, low_passed);
+    const double longest = follows ? longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
     take(search.run(whole_ / fastest_.train.speed, longest));
     if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
     const double defect = beginnings_->defect(model_);
@@ -290,6 +292,7 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
   try {
     Chooser chooser(scene, {speeds, {}, {{given.train.speed}}}, true);
     LanesChoice choice = chooser.choose();
+    if (!follows_contacts(given, chooser.model().step)) return std::nullopt;  // peaks may agree by chance
     choice.scene.sweep.reset();
     choice.scene.accuracy_of = given.accuracy_of;
     choice.scene.integrator = chooser.model().method->name;
