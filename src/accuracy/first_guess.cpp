@@ -8,7 +8,6 @@
 #include <numbers>
 #include <utility>
 
-#include "accuracy/accuracy.hpp"
 #include "base/whole.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/plan.hpp"
@@ -114,7 +113,7 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
     no_longer_than(wave / speed / trial_steps_a_wave, wave / speed,
                    "the shortest wave of track and wheels is passed in");
   }
-  if (const double frequency = scene.output.low_pass.value_or(0.0); frequency > 0.0 && asks_for(scene, low_passed))
+  if (const double frequency = scene.output.low_pass.value_or(0.0); frequency > 0.0 && filters_deck(scene))
     no_longer_than(longest_spacing_for(frequency), 1.0 / frequency, "accelerations are filtered at the period of");
   if (scene.output.interval) no_longer_than(*scene.output.interval, *scene.output.interval, "output_interval is");
   const double contact = contact_frequency(scene);
