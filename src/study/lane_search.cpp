@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
@@ -143,7 +144,11 @@ bool LaneSearch::refine_mesh(LaneModel& model) {
 /// A longer step, or the method of one solve a step, where that costs less.
 LaneModel LaneSearch::cheaper(const LaneModel& model) {
   LaneModel best = model;
-  for (const char* method : methods)
+  // With one solve a step wheel forces are off where steps change their length, which accelerations alone show in
+  // trials.
+  const Scene& scene = trials_.scene();
+  const bool unseen = asks_for(scene, low_passed) && asks_for(scene, wheel_force) && !asks_for(scene, acceleration);
+  for (const char* method : std::span(methods).subspan(unseen ? 1 : 0))
     for (const double factor : step_factors) {
       const LaneModel tried = with_step(model, factor, method);
       if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
