@@ -32,9 +32,7 @@ bool report_row(const std::string& name, const Promise& promise, double wanted, 
 /// Its head. against: what the run is compared with; of: what the rows are.
 void report_head(const std::string& against, const std::string& of);
 
-/// A quantity's name in options and the results file.
-std::string stored_name(std::size_t quantity);
-/// Whether the scene's accuracy_of holds it, or is left out.
+/// Whether the scene's accuracy_of holds it, or is left out. Low-passed accelerations only where its runs have them.
 bool asks_for(const Scene& scene, std::size_t quantity);
 
 /// The note that a quantity's peak is not promised, and why.
@@ -58,6 +56,8 @@ struct Accuracy {
   bool lost_contact = false;                    // wheels did in trial runs
   /// After the run, which lost contact so often: where no trial run did, nothing is promised any more. Says so, or "".
   std::string withdrawn(int contact_losses);
+  /// The same of low-passed accelerations, where their peak is within the unsettled end of the run.
+  std::string withdrawn_at_end(bool unsettled);
   void promise_nothing();
   /// Name in the results file and expected error of each quantity that is promised.
   std::vector<std::pair<std::string, double>> expected() const;
@@ -70,6 +70,11 @@ struct Accuracy {
 bool chooses(const Scene& scene);
 /// The mesh that trial runs begin with, where it is open.
 void set_first_mesh(Scene& scene);
+
+/// Collective. Where the deck's accelerations are filtered, and the scene leaves open where: computes the frequency
+/// that counts, by the elements that trial runs begin with, and fills it in. One for all runs that are compared, as it
+/// differs a little from mesh to mesh.
+void settle_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
 
 /// The option that makes the integrator choose its steps by a measure of its own, or treat contacts apart; null: none.
 const options::Entry* own_measure();

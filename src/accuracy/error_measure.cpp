@@ -32,7 +32,8 @@ void ErrorSearch::measure() {
   Errors time = time_, space = space_;
   for (std::size_t i = 0; i < quantities; ++i) {
     const auto q = static_cast<Quantity>(i);
-    promises_[q].present = fine.failed() || fine.largest(q).value != 0.0;
+    const bool filtered = q == low_passed && asks_for(scene_, q);  // a run that soon ends has no peak that is settled
+    promises_[q].present = fine.failed() || fine.largest(q).value != 0.0 || filtered;
     if (open_step_ || step_ <= longest_step_) time[q] = error_in_time(q);
     if (mesh_ % 2 == 0) space[q] = error_in_space(q);
   }
@@ -48,7 +49,7 @@ void ErrorSearch::count_alike() {
   if (!trials_.lost_contact() || !open_step_)
     strikes_alike_ = enough_alike;
   else
-    strikes_alike_ = alike(acceleration) && alike(wheel_force) ? strikes_alike_ + 1 : 0;
+    strikes_alike_ = alike(acceleration) && alike(wheel_force) && alike(low_passed) ? strikes_alike_ + 1 : 0;
 }
 
 ErrorLaw ErrorSearch::error_in_time(Quantity q) {
@@ -65,7 +66,9 @@ ErrorLaw ErrorSearch::error_in_space(Quantity q) {
   const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
   const double step = open_step_ && 2.0 * step_ * greatest_speed(scene_) < element ? 2.0 * step_ : step_;
   const double change = difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
-  return error_from(std::pow(growth_, 0.75) * change, 1.0 / mesh_, space_[q]);
+  // Without damping the contact's vibration meets one mode of the elements or another: nothing falls regularly.
+  const double most = q == low_passed && undamped_ ? 1.0 : highest_order;
+  return error_from(std::pow(growth_, 0.75) * change, 1.0 / mesh_, space_[q], most);
 }
 
 /// Of a quantity's error. A track's mesh, of which there are so few to choose from, may have what the step leaves.

@@ -45,7 +45,7 @@ void ErrorSearch::refuse_what_is_far() {
   };
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!promised(q)) continue;
-    if ((q == acceleration || q == wheel_force) && strikes_alike_ < enough_alike)
+    if ((q == acceleration || q == wheel_force || q == low_passed) && strikes_alike_ < enough_alike)
       refuse(q, fmt::format("wheels strike, and steps of {:.2g} s do not agree with the next two longer ones", step_));
     else if (open_step_ && far(time_[q]))
       refuse(q, fmt::format(

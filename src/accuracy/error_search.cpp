@@ -12,6 +12,7 @@
 #include "horizon.hpp"
 #include "integrate/integrator_choice.hpp"
 #include "methods/one_step_methods.hpp"
+#include "run/deck_acceleration.hpp"
 #include "run/plan.hpp"
 
 namespace traverse::app {
@@ -96,7 +97,8 @@ double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
       unseen_ = meeting.what;
     }
   }
-  return until;
+  if (asks_for(scene_, low_passed)) until += unsettled_end(*scene_.output.low_pass);
+  return std::min(until, end_ - moved_by());
 }
 
 void ErrorSearch::run() {

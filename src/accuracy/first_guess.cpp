@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
 #include "base/whole.hpp"
+#include "run/deck_acceleration.hpp"
 #include "run/plan.hpp"
 #include "traverse/base/error.hpp"
 
@@ -111,6 +113,8 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
     no_longer_than(wave / speed / trial_steps_a_wave, wave / speed,
                    "the shortest wave of track and wheels is passed in");
   }
+  if (const double frequency = scene.output.low_pass.value_or(0.0); frequency > 0.0 && filters_deck(scene))
+    no_longer_than(longest_spacing_for(frequency), 1.0 / frequency, "accelerations are filtered at the period of");
   if (scene.output.interval) no_longer_than(*scene.output.interval, *scene.output.interval, "output_interval is");
   const double contact = contact_frequency(scene);
   if (scene.beam->track && greatest_speed(scene) > 0.0 && (contact == 0.0 || unstirred(scene))) {
@@ -127,8 +131,11 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
           fmt::format("wheels vibrate on their contacts at {:.3g} Hz", contact / (2.0 * std::numbers::pi))};
 }
 
-bool follows_contacts(const Scene& scene, double step) {
-  return contact_frequency(scene) * step <= 2.0 * contact_angle || unstirred(scene);
+double longest_following_contacts(const Scene& scene) {
+  const double contact = unstirred(scene) ? 0.0 : contact_frequency(scene);
+  return contact > 0.0 ? 2.0 * contact_angle / contact : std::numeric_limits<double>::infinity();
 }
+
+bool follows_contacts(const Scene& scene, double step) { return step <= longest_following_contacts(scene); }
 
 }  // namespace traverse::app

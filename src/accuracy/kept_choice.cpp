@@ -53,7 +53,7 @@ void ChosenOf::keep(base::Bytes& bytes) {
   std::vector<int> elements = scene.beam ? scene.beam->elements : std::vector<int>();
   std::string method = scene.sweep ? scene.sweep->method : std::string();
   bytes(elements, bays, method, scene.time_step, scene.integrator, scene.model_modes, scene.step_probes,
-        scene.rest_tolerance, scene.vehicle_model, scene.most_defect);
+        scene.rest_tolerance, scene.vehicle_model, scene.most_defect, scene.output.low_pass);
   if (scene.beam) scene.beam->elements = elements;
   if (scene.beam && scene.beam->track) scene.beam->track->elements_per_bay = bays;
   if (scene.sweep) scene.sweep->method = method;

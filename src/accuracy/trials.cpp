@@ -6,6 +6,7 @@
 #include "base/whole.hpp"
 #include "methods/one_step_methods.hpp"
 #include "results/stage.hpp"
+#include "run/deck_acceleration.hpp"
 #include "run/passage.hpp"
 #include "run/watch.hpp"
 
@@ -18,6 +19,7 @@ constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked fo
 constexpr double part_for_linear = 0.1;  // of the wanted error
 constexpr double roughness = 1.3;        // times the work on vehicles on a rough track
 constexpr double same_node = 1e-9;
+constexpr double twice_as_long = 2.1;  // steps than a run may have, for comparison
 constexpr std::size_t few_stations = 10000;
 constexpr int least_elements = 4;
 constexpr double solves_a_step = 5.0;           // of the beam, by the default method
@@ -69,6 +71,14 @@ void leave_out_spans(Scene& scene, double end) {
   beam.supports.resize(count + 1);
   if (beam.joints.size() > 1) beam.joints.resize(count - 1);
   std::erase_if(scene.output.probes, [&](double x) { return x > beam.length(); });
+}
+
+/// Whether a run's steps see the frequency at which its accelerations are filtered.
+bool keeps_accelerations(const Scene& scene, const Plan& plan) {
+  const double frequency = filters_deck(scene) ? scene.output.low_pass.value_or(0.0) : 0.0;
+  const double numbers = static_cast<double>(scene.output.probes.size()) * plan.end_time / plan.interval;
+  return frequency > 0.0 && plan.interval <= twice_as_long * longest_spacing_for(frequency) &&
+         numbers <= DeckAcceleration::most_kept;
 }
 
 }  // namespace
@@ -146,6 +156,8 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
   shared.beam->release_matrices();
   results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
   Watch watch(scene, passage.system(), shared.bridge(), none);
+  if (keeps_accelerations(scene, passage.plan()))
+    watch.keep_accelerations({*scene.output.low_pass, passage.plan(), scene.output.probes});
   RunPeaks result;
   const auto steps_so_far = [&] {
     const double by_solves = static_cast<double>(passage.system().beam_solves()) / solves_a_step;

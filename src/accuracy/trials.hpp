@@ -39,7 +39,8 @@ struct RunPeaks {
   double defect = 0.0;  // of linear vehicles, coupling::System::defect
 };
 
-/// Collective. A run of the scene, whose step is given, sampled at every step.
+/// Collective. A run of the scene, whose step is given, sampled at every step. Its accelerations are low-passed where
+/// the scene names the frequency.
 RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps = std::numeric_limits<double>::infinity());
 
 /// Trial runs would take more steps than they may: by counting, so that the same scene ends so everywhere.

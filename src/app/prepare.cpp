@@ -12,19 +12,8 @@
 namespace traverse::app {
 namespace {
 
-constexpr int nodes_for_a_check = 1000;  // of a given step by the first period: up to here frequencies take no time
-
-/// Whether there are two frequencies for certain, and finding them takes no time.
-bool frequencies_are_cheap(const beam::Beam& beam) {
-  const std::vector<int>& elements = beam.model().elements;  // of which one may have no two frequencies
-  return beam.mesh().nodes() <= nodes_for_a_check && *std::min_element(elements.begin(), elements.end()) > 1;
-}
-
-}  // namespace
-
-namespace {
-
 Accuracy try_models(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+  if (chooses(scene)) settle_low_pass(comm, scene, notes);
   const std::optional<LanesChoice> lanes = lanes_for_one(scene, notes);
   if (!lanes) return choose(comm, scene, notes);
   scene = lanes->scene;
@@ -55,7 +44,7 @@ double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::
   if (beam != nullptr)
     shared.damp(scene, moves && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
   shared.prepare(scene, notes);
-  const bool limited = limits_deck_acceleration(scene);
+  const bool limited = scene.limits_deck_acceleration();
   const double counting =
       limited || scene.output.low_pass_asked ? frequency_that_counts(scene, shared, cheap || limited, notes) : 0.0;
   if (counting > 0.0) scene.looks = spacing_for(counting);

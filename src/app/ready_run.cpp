@@ -60,6 +60,7 @@ void ReadyRun::choose_filters() {
   if (counting > 0.0) {
     const std::string trouble = no_filter(counting, passage.plan(), scene.output.probes.size());
     filters_deck = trouble.empty();
+    if (!filters_deck) accuracy.promises[low_passed].kept = false;
     if (!filters_deck) job.notes.push_back("deck accelerations are not low-passed: " + trouble);
   }
   if (filters_wheels(scene)) {

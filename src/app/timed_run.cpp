@@ -58,15 +58,17 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
   }();
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
-  bool all_kept = true;
+  int all_kept = 1;
   if (rank == 0) report_head("half the step and elements half as long", "peak of");
   for (std::size_t i = 0; i < quantities; ++i) {
     const auto q = static_cast<Quantity>(i);
     if (truth.largest(q).value == 0.0) continue;
     const double error = peak_difference(peaks, truth, q);
-    all_kept = report_row(quantity_names[i], accuracy.promises[i], scene.accuracy, error, rank == 0) && all_kept;
+    const bool kept = report_row(quantity_names[i], accuracy.promises[i], scene.accuracy, error, rank == 0);
+    all_kept = kept ? all_kept : 0;
   }
-  return all_kept;
+  MPI_Bcast(&all_kept, 1, MPI_INT, 0, comm);  // low-passed accelerations are known on the first rank alone
+  return all_kept != 0;
 }
 
 /// Creates the results file, or takes up that of the run that this one goes on from.
@@ -182,7 +184,8 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   if (system_.structure() != nullptr && system_.structure()->energy_left())
     summary.energy_left = total(ready_.job.comm, *system_.structure()->energy_left());
   summary.static_error = system_.static_error();
-  const std::string withdrawn = ready_.accuracy.withdrawn(summary.contact_losses);
+  const std::string withdrawn = ready_.accuracy.withdrawn(summary.contact_losses),
+                    at_end = ready_.accuracy.withdrawn_at_end(watch_.ends_unsettled());
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
   const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.most_defect);
@@ -196,7 +199,8 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   recorder_.finish(summary);
   progress_.done();
   if (prints() && counts) results::print_summary(summary, scene_.output.file);
-  if (prints() && counts && !withdrawn.empty()) fmt::print("  note: {}\n", withdrawn);
+  for (const std::string& note : {withdrawn, at_end})
+    if (prints() && counts && !note.empty()) fmt::print("  note: {}\n", note);
   if (prints() && check) check->print();
   if (prints()) results::print_verdicts(verdicts);
   return summary;

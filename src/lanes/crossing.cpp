@@ -1,5 +1,7 @@
 #include "lanes/crossing.hpp"
 
+#include <algorithm>
+
 #include "lanes/crossing_numbers.hpp"
 #include "lanes/processor.hpp"
 
@@ -8,12 +10,26 @@ namespace traverse::lanes {
 // Compiled from crossing_kernel.cpp, once for each.
 TRAVERSE_LANES_DECLARE(long work_size(const Task& task); void cross(const Task& task);)
 
+namespace {
+
+/// The start is one of them.
+std::size_t places_kept(const CrossingPlan& plan) {
+  const auto count = std::count_if(plan.stretches.begin(), plan.stretches.end(),
+                                   [](const TaskStretch& stretch) { return stretch.keeps; });
+  return count > 0 ? static_cast<std::size_t>(count) + 1 : 0;
+}
+
+}  // namespace
+
 std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const CrossingRun> runs) {
   const std::size_t width = runs.size() > 4 ? 8 : runs.size() > 2 ? 4 : plan.one_by_itself ? runs.size() : 2;
   const CrossingNumbers numbers(plan, runs, width);
   Task task = numbers.task();
   const std::size_t probes = static_cast<std::size_t>(task.probes.count);
   Aligned peak(3 * probes * width), time(3 * probes * width), least(width), greatest(width), failed(width);
+  const std::size_t kept = places_kept(plan) * probes;
+  Aligned accelerations(kept * width);
+  if (kept > 0) task.kept = accelerations.data();
   Aligned bent(static_cast<std::size_t>(task.coordinates) * width);
   task.peak = peak.data();
   task.peak_time = time.data();
@@ -41,6 +57,7 @@ std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const Cros
     r.moment = peaks(2 * probes);
     r.least_force = least.data()[lane];
     r.greatest_force = greatest.data()[lane];
+    for (std::size_t i = 0; i < kept; ++i) r.kept.push_back(accelerations.data()[i * width + lane]);
     for (int i = 0; i < task.coordinates; ++i)
       r.bent.push_back(bent.data()[static_cast<std::size_t>(i) * width + lane]);
   }

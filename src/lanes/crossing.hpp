@@ -80,6 +80,8 @@ struct CrossingPeak {
 struct CrossingResult {
   Trouble trouble = none;
   std::vector<CrossingPeak> deflection, acceleration, moment;  // of each probe
+  std::vector<double> kept;                                    // accelerations, a row of probes at each place
+  std::vector<CrossingPeak> low_passed;                        // of each probe, where somebody has filtered these
   double least_force = 0.0, greatest_force = 0.0;              // N, of all wheels
   std::vector<double> bent;  // coordinates of every vehicle where it was farthest from linear
 };

@@ -57,11 +57,13 @@ class Group : CrossingAlgebra<W> {
     State& s = state_;
     begin(s);
     double from = 0.0;
+    bool kink = true;
+    if (s.task.kept != nullptr) Looks::keep(s);
     for (int i = 0; i < s.task.stretches; ++i) {
       const TaskStretch& stretch = s.task.stretch[i];
       const double ds = (stretch.to - from) / static_cast<double>(stretch.steps);
       set_step(s, ds);
-      s.behind_kink = true;
+      s.behind_kink = kink;
       for (long k = 0; k < stretch.steps; ++k) {
         Places::place_vehicles(s, from + static_cast<double>(k) * ds);
         for (int stage = 0; stage < s.task.method.stages; ++stage) solve_stage(s, stage);
@@ -69,7 +71,9 @@ class Group : CrossingAlgebra<W> {
         s.distance = k + 1 < stretch.steps ? from + static_cast<double>(k + 1) * ds : stretch.to;
         Looks::look(s, true);
       }
-      s.known = 1;  // moments may have a kink there
+      kink = stretch.kink;
+      if (kink) s.known = 1;  // moments may have one there
+      if (stretch.keeps) Looks::keep(s);
       if (!any(s.failed == fill(0.0))) break;
       from = stretch.to;
     }

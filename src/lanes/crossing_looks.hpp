@@ -168,6 +168,13 @@ struct CrossingLooks : CrossingAlgebra<W> {
     return true;
   }
 
+  /// Keeps the accelerations of the latest instant.
+  static void keep(State& s) {
+    const int n = s.task.probes.count;
+    for (int p = 0; p < n; ++p) lanes(s.task.kept)[s.kept * n + p] = s.row_of[2][n + p];
+    ++s.kept;
+  }
+
   static void give(State& s) {
     for (int i = 0; i < 3 * s.task.probes.count; ++i) {
       lanes(s.task.peak)[i] = s.peak[i];

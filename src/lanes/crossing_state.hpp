@@ -62,10 +62,10 @@ struct CrossingState {
   Lane *yield = nullptr, *D = nullptr, *pivot = nullptr, *residual = nullptr, *reduced = nullptr;
   long* D_begin = nullptr;
 
-  // What is seen: instants since the last kink of moments, since the start, of wheels; the last three instants, s, and
-  // their responses [deflections, accelerations, moments of the probes, rates of the latter]; distances and forces of
-  // the two steps before.
-  long known = 0, looks = 0, seen = 0;
+  // What is seen: instants since the last kink of moments, since the start, of wheels, kept; the last three instants,
+  // s, and their responses [deflections, accelerations, moments of the probes, rates of the latter]; distances and
+  // forces of the two steps before.
+  long known = 0, looks = 0, seen = 0, kept = 0;
   Lane time[3] = {};
   Lane* row_of[3] = {};
   double s_before[2] = {};

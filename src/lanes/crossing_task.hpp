@@ -69,10 +69,12 @@ struct TaskLeftOut {
   double omega2 = 0.0, damping = 0.0, lag = 0.0;
 };
 
-/// A stretch of equal steps; at its end a force may have a kink.
+/// A stretch of equal steps.
 struct TaskStretch {
   double to = 0.0;  // m travelled since t = 0
   long steps = 0;
+  bool kink = true;    // a force may have one at its end
+  bool keeps = false;  // accelerations at its end are kept
 };
 
 struct Task {
@@ -112,6 +114,7 @@ struct Task {
   // Results, lanes: of each probe deflection, acceleration and moment; of all wheels.
   double *peak = nullptr, *peak_time = nullptr;
   double *least_force = nullptr, *greatest_force = nullptr;
+  double* kept = nullptr;    // accelerations of the probes at the start and where stretches keep them; null: not kept
   double* bent = nullptr;    // coordinates of every vehicle where it was farthest from linear
   double* failed = nullptr;  // 0: none of what follows
   double* work = nullptr;    // as many numbers as work_size() says, aligned as a lane

@@ -18,8 +18,12 @@ constexpr double of_the_first = 1.5;      // times the first frequency, in the s
 constexpr std::size_t counted = 3;        // distinct frequencies
 constexpr double wanted_instants = 20.0;  // in a period of the frequency that counts
 constexpr double least_instants = 8.0;    // in the same
-constexpr double at_an_instant = 1e-6;    // of the interval
-constexpr double copies = 1e-6;           // relative distance below which two frequencies are one
+constexpr double slack_of_spacing = 1e-9;
+constexpr double at_an_instant = 1e-6;     // of the interval
+constexpr double copies = 1e-6;            // relative distance below which two frequencies are one
+constexpr int cheap_nodes = 1000;          // up to which frequencies take no time
+constexpr double extremes_behind = 1.5;    // instants: the last one after which an extreme is known from the next
+constexpr double unsettled_periods = 3.0;  // of the filter's frequency, until an end has died away
 
 /// rad/s, ascending: those that differ.
 std::vector<double> distinct_of_modes(const std::vector<double>& omega) {
@@ -44,9 +48,15 @@ std::vector<double> first_frequencies(const SharedBeam& shared) {
   return found;
 }
 
-bool limits_deck_acceleration(const Scene& scene) {
-  return std::any_of(scene.limits.begin(), scene.limits.end(),
-                     [](const options::VerdictLimit& limit) { return limit.quantity == "deck_acceleration"; });
+bool filters_deck(const Scene& scene) {
+  return scene.beam && scene.analysis == Analysis::transient && !scene.output.probes.empty() &&
+         scene.output.low_pass.value_or(least_frequency) > 0.0 &&
+         (scene.limits_deck_acceleration() || scene.output.low_pass_asked);
+}
+
+bool frequencies_are_cheap(const beam::Beam& beam) {
+  const std::vector<int>& elements = beam.model().elements;  // of which one may have no two frequencies
+  return beam.mesh().nodes() <= cheap_nodes && *std::min_element(elements.begin(), elements.end()) > 1;
 }
 
 double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool affordable,
@@ -71,10 +81,14 @@ double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool 
 
 double spacing_for(double frequency) { return 1.0 / (wanted_instants * frequency); }
 
+double longest_spacing_for(double frequency) { return 1.0 / (least_instants * frequency); }
+
+double unsettled_end(double frequency) { return unsettled_periods / frequency; }
+
 std::string no_filter(double frequency, const Plan& plan, std::size_t series, const char* what) {
-  if (plan.interval > 1.0 / (least_instants * frequency))
+  if (plan.interval > longest_spacing_for(frequency) * (1.0 + slack_of_spacing))
     return fmt::format("samples or steps of {:g} s are too long for {:g} Hz; allowed: at most {:g} s", plan.interval,
-                       frequency, 1.0 / (least_instants * frequency));
+                       frequency, longest_spacing_for(frequency));
   const double numbers = static_cast<double>(series) * (1.0 + plan.end_time / plan.interval);
   if (numbers > DeckAcceleration::most_kept)
     return fmt::format("{} {} at {:.3g} instants take more than {:.0f} MB; take fewer of them", series, what,
@@ -97,9 +111,16 @@ void DeckAcceleration::add(double t, std::span<const beam::Response> probes) {
   ++instants_;
 }
 
-void DeckAcceleration::finish(results::Summary& summary) {
-  LowPass(frequency_, interval_).apply(kept_, stations_.size());
-  summary.low_passed = peak_of(kept_, stations_, frequency_, interval_);
+std::size_t filter(std::vector<double>& rows, std::size_t count, double frequency, double interval) {
+  LowPass(frequency, interval).apply(rows, count);
+  const auto instants = static_cast<double>(rows.size() / count);
+  return static_cast<std::size_t>(std::max(0.0, std::ceil(instants - unsettled_end(frequency) / interval)));
+}
+
+void DeckAcceleration::finish(Peaks& peaks) {
+  const std::size_t settled = filter(kept_, stations_.size(), frequency_, interval_);
+  settled_until_ = (static_cast<double>(settled) - extremes_behind) * interval_;
+  peaks.add_low_passed(std::span<const double>(kept_).first(settled * stations_.size()), interval_);
 }
 
 results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,

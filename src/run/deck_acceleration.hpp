@@ -9,14 +9,18 @@
 
 #include "base/bytes.hpp"
 #include "results/recorder.hpp"
+#include "run/peaks.hpp"
 #include "run/plan.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
 
-/// Whether a limit of the scene is on filtered accelerations.
-bool limits_deck_acceleration(const Scene& scene);
+/// Whether a transient run of the scene filters the accelerations of its probes, where its steps allow.
+bool filters_deck(const Scene& scene);
+
+/// Whether there are two frequencies for certain, and finding them takes no time.
+bool frequencies_are_cheap(const beam::Beam& beam);
 
 /// Collective. Hz, ascending: the first three distinct frequencies of bending; with model_modes those of its modes.
 std::vector<double> first_frequencies(const SharedBeam& shared);
@@ -29,6 +33,12 @@ double frequency_that_counts(const Scene& scene, const SharedBeam& shared, bool 
 
 /// Longest distance between instants, s, at which an acceleration is filtered well.
 double spacing_for(double frequency);
+/// The same beyond which it is not filtered.
+double longest_spacing_for(double frequency);
+
+/// The end of a series, s, in which the filter knows too little of what follows: there it gives about what it was
+/// given, with all that is above its frequency.
+double unsettled_end(double frequency);
 
 /// Why so many series of a run of this plan cannot be filtered at this frequency; empty where they can. what: "probes",
 /// which fewer output_probes make fewer, or "wheels".
@@ -37,6 +47,10 @@ std::string no_filter(double frequency, const Plan& plan, std::size_t series, co
 /// The peak of accelerations that have been filtered; rows: of all stations at each instant.
 results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,
                            double interval);
+
+/// Filters series, rows of `count` at instants `interval` s apart from 0 on. Returns how many of the rows lie before
+/// the unsettled end.
+std::size_t filter(std::vector<double>& rows, std::size_t count, double frequency, double interval);
 
 /// Keeps the acceleration of every probe at the plan's interval until the end of the run, when it is filtered. Eight
 /// bytes an instant and probe, `most_kept` at most.
@@ -48,8 +62,12 @@ class DeckAcceleration {
 
   /// Takes an instant at a multiple of the plan's interval, and leaves out the others.
   void add(double t, std::span<const beam::Response> probes);
-  /// After the last instant, once: filters all series and puts their peak into the summary.
-  void finish(results::Summary& summary);
+  /// After the last instant, once: filters all series, and adds the extremes before their unsettled ends to the peaks.
+  void finish(Peaks& peaks);
+  /// After finish. The peak of the whole series.
+  results::LowPassed peak() const { return peak_of(kept_, stations_, frequency_, interval_); }
+  /// Whether that is within the unsettled end.
+  bool ends_unsettled() const { return peak().extreme.time > settled_until_; }
   /// After finish. The filtered series at the stored samples.
   results::Recorder::Dataset stored() const;
   void keep(base::Bytes& bytes) { bytes(kept_, instants_); }
@@ -60,6 +78,7 @@ class DeckAcceleration {
   std::vector<double> stations_;
   std::vector<double> kept_;  // a row of probes for each instant
   std::size_t instants_ = 0;
+  double settled_until_ = 0.0;  // s
 };
 
 }  // namespace traverse::app

@@ -117,18 +117,34 @@ void Peaks::finish() {
     wheels_[i].finish([&](double value, double at) { note(wheel_force, i, value, at); });
 }
 
-Peak largest_peak(std::span<const double> rows, std::size_t series, double interval) {
+namespace {
+
+/// Calls note(value, time) for the extremes of one of the series. Returns its curve.
+template <class Note>
+Curve follow(std::span<const double> rows, std::size_t series, std::size_t which, double interval, Note&& note) {
   const std::vector<double> smooth;
+  Curve curve;
+  double t = 0.0;
+  for (std::size_t at = which, k = 0; at < rows.size(); at += series, t = static_cast<double>(++k) * interval)
+    curve.add(t, rows[at], smooth, note);
+  return curve;
+}
+
+}  // namespace
+
+// The last instant is no end of the run: where a curve still rises there, its extreme is not known.
+void Peaks::add_low_passed(std::span<const double> rows, double interval) {
+  for (std::size_t i = 0; i < probes_.size(); ++i)
+    follow(rows, probes_.size(), i, interval, [&](double value, double at) { note(low_passed, i, value, at); });
+}
+
+Peak largest_peak(std::span<const double> rows, std::size_t series, double interval) {
   Peak largest;
   for (std::size_t i = 0; i < series; ++i) {
-    Curve curve;
     const auto note = [&](double value, double time) {
       if (std::abs(value) > std::abs(largest.value)) largest = {value, time, static_cast<int>(i)};
     };
-    double t = 0.0;
-    for (std::size_t at = i, k = 0; at < rows.size(); at += series, t = static_cast<double>(++k) * interval)
-      curve.add(t, rows[at], smooth, note);
-    curve.finish(note);
+    follow(rows, series, i, interval, note).finish(note);
   }
   return largest;
 }

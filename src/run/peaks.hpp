@@ -14,9 +14,12 @@
 
 namespace traverse::app {
 
-enum Quantity : std::size_t { deflection, acceleration, moment, wheel_force, quantities };
+enum Quantity : std::size_t { deflection, acceleration, moment, wheel_force, low_passed, quantities };
 inline constexpr std::array<const char*, quantities> quantity_names = {"deflection", "acceleration", "moment",
-                                                                       "wheel force"};
+                                                                       "wheel force", "low-passed acceleration"};
+/// The same in options and in the results file.
+inline constexpr std::array<const char*, quantities> stored_names = {"deflection", "acceleration", "moment",
+                                                                     "wheel_force", "acceleration_lowpass"};
 
 struct Peak {
   double value = 0.0;  // signed
@@ -68,6 +71,8 @@ class Peaks {
 
   void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
   void finish();
+  /// The extremes of low-passed accelerations, rows of all probes at instants `interval` s apart from 0 on.
+  void add_low_passed(std::span<const double> rows, double interval);
   /// The peaks of a run that failed: there are none.
   static Peaks of_failure();
   bool failed() const { return failed_; }

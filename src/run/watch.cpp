@@ -213,7 +213,10 @@ void Watch::note_separations() {
 }
 
 const Peaks& Watch::finished_peaks() {
-  if (!finished_) peaks_.finish();
+  if (!finished_) {
+    peaks_.finish();
+    if (deck_) deck_->finish(peaks_);
+  }
   finished_ = true;
   return peaks_;
 }
@@ -263,7 +266,7 @@ results::Summary Watch::finish() {
     recorder_.tables({{"/passages/wheel", axle_passages_.wheels(system_.fleet())}});
   }
   if (deck_) {
-    deck_->finish(summary_);
+    summary_.low_passed = deck_->peak();
     if (scene_.output.low_passed_series) recorder_.datasets({deck_->stored()});
   }
   if (filtered_wheels_) summary_.filtered_unloading = filtered_wheels_->finish(system_.fleet());

@@ -34,6 +34,9 @@ class Watch {
   /// The deck's accelerations are filtered when the run has ended.
   void keep_accelerations(DeckAcceleration deck) { deck_ = std::move(deck); }
 
+  /// After finish. Whether the peak of the filtered accelerations is within their unsettled end.
+  bool ends_unsettled() const { return deck_ && deck_->ends_unsettled(); }
+
   /// The wheels' forces are filtered when the run has ended.
   void keep_wheel_forces(FilteredWheels wheels) { filtered_wheels_ = std::move(wheels); }
 

@@ -78,15 +78,24 @@ std::optional<double> read_low_pass(const Options& o) {
   return frequency;
 }
 
+constexpr const char* low_passed_peak = "acceleration_lowpass";  // in accuracy_of
+
 void read_filter(const Options& o, Scene& scene) {
   scene.output.low_pass = read_low_pass(o);
   scene.output.low_passed_series = o.flag("output_lowpass_series");
-  scene.output.low_pass_asked = o.has("output_lowpass") || scene.output.low_passed_series;
+  const std::vector<std::string>& promised = scene.accuracy_of;
+  const bool named = std::find(promised.begin(), promised.end(), low_passed_peak) != promised.end();
+  if (named && scene.output.low_pass == 0.0)
+    o.refuse("accuracy_of", fmt::format("{} is wanted, but with output_lowpass none nothing is low-passed; leave out "
+                                        "one of the two",
+                                        low_passed_peak));
+  scene.output.low_pass_asked = o.has("output_lowpass") || scene.output.low_passed_series || named;
   for (const char* name : {"output_lowpass", "output_lowpass_series"})
     if (o.has(name) && (!scene.beam || scene.analysis != Analysis::transient))
       scene.notes.push_back(std::string(name) + " has no effect: it is for transient runs over a bridge");
   if (scene.output.low_passed_series && scene.sweep)
     scene.notes.emplace_back("output_lowpass_series has no effect: sweeps store no series");
+  if (scene.sweep) low_pass_by_limits_alone(scene);
 }
 
 void read_wheel_filter(const Options& o, Scene& scene) {
@@ -148,6 +157,15 @@ void check_name(const Options& o, const std::string& name) {
 }
 
 }  // namespace
+
+void low_pass_by_limits_alone(Scene& scene) {
+  scene.output.low_pass_asked = false;
+  if (scene.limits_deck_acceleration() || std::erase(scene.accuracy_of, low_passed_peak) == 0) return;
+  scene.notes.push_back(
+      fmt::format("accuracy_of {} is not promised: the runs of sweeps and studies low-pass deck "
+                  "accelerations only where limits ask for deck_acceleration{}",
+                  low_passed_peak, scene.accuracy_of.empty() ? "; all other peaks are promised instead" : ""));
+}
 
 void read_output(const Options& o, Scene& scene) {
   check_name(o, scene.name);

@@ -88,8 +88,10 @@ struct ReadProfile {
 };
 ReadProfile read_profile(const options::Options& options, const std::string& prefix, double start, bool to_the_left,
                          Scene& scene);
-void read_layers(const options::Options& options, Scene& scene);         // after train and load: the track is as long
-void read_output(const options::Options& options, Scene& scene);         // after layers and limits
+void read_layers(const options::Options& options, Scene& scene);  // after train and load: the track is as long
+void read_output(const options::Options& options, Scene& scene);  // after layers and limits
+/// In sweeps and studies, whose runs filter deck accelerations where limits ask for it alone.
+void low_pass_by_limits_alone(Scene& scene);
 void decide_axial(const options::Options& options, Scene& scene);        // after beam and train
 void read_damping_bound(const options::Options& options, Scene& scene);  // after modal
 void read_norm(const options::Options& options, Scene& scene);           // after beam and output, whose limits it reads

@@ -58,7 +58,7 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std:
 
 void CaseRunner::set_up_limits(std::vector<std::string>& notes) {
   if (filters_wheels(scene_)) scene_.looks = spacing_for(scene_.output.wheel_low_pass);
-  if (!limits_deck_acceleration(scene_)) return;
+  if (!scene_.limits_deck_acceleration()) return;
   counting_ = frequency_that_counts(scene_, *beam_, true, notes);
   if (counting_ > 0.0) scene_.looks = std::min(scene_.looks, spacing_for(counting_));
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
@@ -59,11 +60,11 @@ double solves(const LaneModel& model) {
 
 }  // namespace
 
-std::optional<LaneModel> LaneSearch::run(double duration) {
+std::optional<LaneModel> LaneSearch::run(double duration, double longest) {
   const int modes = numbers_of_modes.front();
   LaneModel model{modes, mesh_for(trials_.scene(), modes), structure::find_method("esdirk4"), 0.0};
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
-  longest_ = steps.longest;
+  longest_ = std::min(steps.longest, longest);
   model.step = std::min(first_step_factor * steps.first, longest_);
   // Steps first, as modes are told apart by what the contacts do to them.
   if (!halve_step(model) || !add_modes(model)) return std::nullopt;
@@ -148,7 +149,11 @@ bool LaneSearch::refine_mesh(LaneModel& model) {
 /// A longer step, or the method of one solve a step, where that costs less.
 LaneModel LaneSearch::cheaper(const LaneModel& model) {
   LaneModel best = model;
-  for (const char* method : methods)
+  // With one solve a step wheel forces are off where steps change their length, which accelerations alone show in
+  // trials.
+  const Scene& scene = trials_.scene();
+  const bool unseen = asks_for(scene, low_passed) && asks_for(scene, wheel_force) && !asks_for(scene, acceleration);
+  for (const char* method : std::span(methods).subspan(unseen ? 1 : 0))
     for (const double factor : step_factors) {
       const LaneModel tried = with_step(model, factor, method);
       if (tried.step > longest_ || solves(tried) >= solves(best)) continue;

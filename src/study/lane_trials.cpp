@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <future>
+#include <iterator>
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/trials.hpp"
 #include "run/by_lanes.hpp"
+#include "run/deck_acceleration.hpp"
 
 namespace traverse::app {
 
@@ -17,6 +18,17 @@ namespace {
 
 void note_difference(double a, double b, double scale, double& worst) {
   if (scale > 0.0) worst = std::max(worst, std::abs(a - b) / scale);
+}
+
+/// Puts the peaks before the unsettled end into the result.
+void filter_kept(CrossingResult& result, std::size_t probes, double frequency, double interval) {
+  if (result.trouble != lanes::none) return;
+  const std::size_t settled = filter(result.kept, probes, frequency, interval);
+  Peaks peaks(std::vector<std::vector<double>>(probes), 0);
+  peaks.add_low_passed(std::span<const double>(result.kept).first(settled * probes), interval);
+  for (const Peak& peak : peaks.largest_of_each(low_passed))
+    result.low_passed.push_back({std::abs(peak.value), peak.time});
+  result.kept = {};
 }
 
 }  // namespace
@@ -48,6 +60,7 @@ LaneErrors difference(const Scene& scene, const std::vector<CrossingResult>& a, 
     compare(&CrossingResult::deflection, deflection);
     compare(&CrossingResult::acceleration, acceleration);
     compare(&CrossingResult::moment, moment);
+    compare(&CrossingResult::low_passed, low_passed);
     note_difference(a[run].greatest_force, b[run].greatest_force, b[run].greatest_force, worst[wheel_force]);
     note_difference(a[run].least_force, b[run].least_force, b[run].greatest_force, worst[wheel_force]);
   }
@@ -87,26 +100,49 @@ void LaneTrials::run_at_once(std::span<const LaneModel> models) {
   for (const LaneModel& model : models) {
     if (known(model) != nullptr || std::find(own.begin(), own.end(), model) != own.end()) continue;
     own.push_back(model);
+    check_memory(model);
     std::vector<SideBySide::Ready>& groups = ready.emplace_back();
-    for (const std::vector<LaneRun>& runs : groups_)
-      groups.push_back(
-          setup(model).lanes->ready(runs, {model.method->make(model.method->parameter.value), model.step, true}));
+    for (const std::vector<LaneRun>& runs : groups_) groups.push_back(setup(model).lanes->ready(runs, steps_of(model)));
   }
-  const auto run_all = [](const std::vector<SideBySide::Ready>& groups) {
-    std::vector<CrossingResult> results;
-    for (const SideBySide::Ready& group : groups)
-      for (CrossingResult& result : group.run()) results.push_back(std::move(result));
-    return results;
-  };
+  const auto results_of = [&](std::size_t i) { return run_all(ready[i], steps_of(own[i])); };
   std::vector<std::future<std::vector<CrossingResult>>> others;
-  for (std::size_t i = 1; i < own.size(); ++i)
-    others.push_back(std::async(std::launch::async, run_all, std::cref(ready[i])));
+  for (std::size_t i = 1; i < own.size(); ++i) others.push_back(std::async(std::launch::async, results_of, i));
   for (std::size_t i = 0; i < own.size(); ++i) {
-    Kept kept{own[i], i == 0 ? run_all(ready[i]) : others[i - 1].get(), 0.0};
+    Kept kept{own[i], i == 0 ? results_of(i) : others[i - 1].get(), 0.0};
     for (const CrossingResult& result : kept.results)
       if (result.trouble == lanes::none) kept.defect = std::max(kept.defect, setup(own[i]).lanes->defect(result));
     kept_.push_back(std::move(kept));
   }
+}
+
+void LaneTrials::check_memory(const LaneModel& model) const {
+  const SideBySide::Steps steps = steps_of(model);
+  double numbers = 0.0;
+  for (const std::vector<LaneRun>& runs : groups_) {
+    const double places = runs.front().speed * runs.front().end / SideBySide::spacing(steps, runs.front().speed);
+    numbers += places * static_cast<double>(runs.size() * scene_.output.probes.size());
+  }
+  if (steps.keeps && numbers > DeckAcceleration::most_kept)
+    throw Refused{"the accelerations of so many probes would have to be kept"};
+}
+
+SideBySide::Steps LaneTrials::steps_of(const LaneModel& model) const {
+  return {model.method->make(model.method->parameter.value), model.step, true, asks_for(scene_, low_passed)};
+}
+
+/// Of one model, whose accelerations are filtered run by run: a place each step is an instant each interval of its own.
+std::vector<CrossingResult> LaneTrials::run_all(const std::vector<SideBySide::Ready>& groups,
+                                                const SideBySide::Steps& steps) const {
+  std::vector<CrossingResult> results;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::vector<LaneRun>& runs = groups_[g];
+    const double spacing = SideBySide::spacing(steps, runs.front().speed);
+    std::vector<CrossingResult> own = groups[g].run();
+    for (std::size_t i = 0; i < own.size() && steps.keeps; ++i)
+      filter_kept(own[i], scene_.output.probes.size(), *scene_.output.low_pass, spacing / runs[i].speed);
+    std::move(own.begin(), own.end(), std::back_inserter(results));
+  }
+  return results;
 }
 
 const LaneTrials::Kept* LaneTrials::known(const LaneModel& model) const {

@@ -74,6 +74,10 @@ class LaneTrials {
     double defect = 0.0;
   };
   const Kept* known(const LaneModel& model) const;
+  void check_memory(const LaneModel& model) const;
+  SideBySide::Steps steps_of(const LaneModel& model) const;
+  std::vector<lanes::CrossingResult> run_all(const std::vector<SideBySide::Ready>& groups,
+                                             const SideBySide::Steps& steps) const;
   Setup& setup(const LaneModel& model);
   const modes::Basis* basis_with(const LaneModel& model) const;
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "accuracy/accuracy.hpp"
@@ -14,6 +15,7 @@
 #include "accuracy/trials.hpp"
 #include "lanes/speed_class.hpp"
 #include "results/stage.hpp"
+#include "run/deck_acceleration.hpp"
 #include "study/lane_search.hpp"
 #include "traverse/options/input.hpp"
 
@@ -84,6 +86,7 @@ Errors off_the_elements(const LaneTrials& trials, const LaneModel& model, const 
   take(by_elements.deflection, deflection);
   take(by_elements.acceleration, acceleration);
   take(by_elements.moment, moment);
+  take(by_elements.low_passed, low_passed);
   by_elements.greatest_force = std::abs(peaks.largest(wheel_force).value);
   return difference(trials.scene(), {lane}, {by_elements});
 }
@@ -124,6 +127,8 @@ class Chooser {
     whole_ += std::min(scene.tail.value_or(0.0) * fastest_.train.speed, *std::max_element(spans.begin(), spans.end()));
     if (scene.end_time) whole_ = *scene.end_time * fastest_.train.speed;
     distance_ = beginning(fastest_, whole_ / fastest_.train.speed) * fastest_.train.speed;
+    if (asks_for(scene, low_passed))
+      distance_ = std::min(whole_, distance_ + unsettled_end(*scene.output.low_pass) * fastest_.train.speed);
     const Scene part = shortened(fastest_, distance_ / fastest_.train.speed);
     beginnings_.emplace(part, speeds.beginnings, distance_);
     if (!speeds.mixed.empty()) mixed_.emplace(part, speeds.mixed, distance_);
@@ -132,7 +137,11 @@ class Chooser {
 
   LanesChoice choose() {
     LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy);
-    take(search.run(whole_ / fastest_.train.speed));
+    // The peaks of one passage may agree by chance where steps do not follow the contacts. Elements, which serve then,
+    // take shorter steps for accelerations.
+    const bool follows = alone_ && asks_for(scene_, low_passed);
+    const double longest = follows ? longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
+    take(search.run(whole_ / fastest_.train.speed, longest));
     if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
     const double defect = beginnings_->defect(model_);
     if (scene_.vehicle_model == VehicleModel::automatic && defect > most_defect(scene_))
@@ -228,7 +237,7 @@ class Chooser {
 std::vector<std::string> judged_alone(const Scene& scene) {
   std::vector<std::string> judged;
   for (std::size_t q = 0; q < quantities; ++q)
-    if (asks_for(scene, q) && (q != acceleration || damps_high_modes(scene))) judged.push_back(stored_name(q));
+    if (asks_for(scene, q) && (q != acceleration || damps_high_modes(scene))) judged.emplace_back(stored_names[q]);
   return judged;
 }
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "case_runner.hpp"
 #include "modes/modes.hpp"
@@ -20,11 +22,27 @@ constexpr double code_frequency = 30.0, code_factor = 1.5;  // Hz; times the fir
 constexpr std::size_t code_modes = 3;
 constexpr int most_counted = 64, nodes_for_a_question = 1000;
 
-/// The largest difference of a peak at any probe, relative to the largest peak of its kind.
-double difference(const CaseResult& modes, const CaseResult& elements) {
+constexpr std::array<std::pair<Quantity, integrate::Peak integrate::ProbePeaks::*>, 3> of_probes = {
+    {{deflection, &integrate::ProbePeaks::deflection},
+     {acceleration, &integrate::ProbePeaks::acceleration},
+     {moment, &integrate::ProbePeaks::moment}}};
+
+/// The same of the low-passed accelerations, as limits have them.
+double difference_low_passed(const Scene& scene, const CaseResult& modes, const CaseResult& elements) {
   double worst = 0.0;
-  for (const auto quantity :
-       {&integrate::ProbePeaks::deflection, &integrate::ProbePeaks::acceleration, &integrate::ProbePeaks::moment}) {
+  for (std::size_t i = 0; i < scene.limits.size(); ++i) {
+    const double value = elements.findings[i].value;
+    if (scene.limits[i].quantity == "deck_acceleration" && value > 0.0)
+      worst = std::max(worst, std::abs(modes.findings[i].value / value - 1.0));
+  }
+  return worst;
+}
+
+/// The largest difference of a peak at any probe of what the scene asks for, relative to the largest peak of its kind.
+double difference(const Scene& scene, const CaseResult& modes, const CaseResult& elements) {
+  double worst = asks_for(scene, low_passed) ? difference_low_passed(scene, modes, elements) : 0.0;
+  for (const auto& [q, quantity] : of_probes) {
+    if (!asks_for(scene, q)) continue;
     double apart = 0.0, largest = 0.0;
     for (std::size_t p = 0; p < elements.peaks.size(); ++p) {
       const double value = (elements.peaks[p].*quantity).value;
@@ -45,8 +63,8 @@ bool allowed(const Scene& scene) {
 
 bool worth_trying(const Scene& scene, const Accuracy& accuracy) {
   if (!scene.modes_open || !accuracy.measured || !allowed(scene)) return false;
-  for (const Quantity q : {deflection, acceleration, moment})
-    if (!accuracy.promises[q].kept) return false;
+  for (const Quantity q : {deflection, acceleration, moment, low_passed})
+    if (asks_for(scene, q) && !accuracy.promises[q].kept) return false;
   return scene.sweep->speeds.size() * std::max<std::size_t>(1, scene.sweep->loads.size()) >= least_runs;
 }
 
@@ -97,7 +115,8 @@ ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vec
       CaseRunner modes(by_modes, ignored);
       if (modes.cost() > elements.cost()) return {};
       double worst = 0.0;
-      for (const Sample& s : samples) worst = std::max(worst, difference(modes.run(s.train, {s.speed, {}}), s.result));
+      for (const Sample& s : samples)
+        worst = std::max(worst, difference(scene, modes.run(s.train, {s.speed, {}}), s.result));
       if (worst > share_of_modes * scene.accuracy) continue;
       notes.push_back(fmt::format(
           "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "

@@ -76,6 +76,36 @@ structure::Method method_of(const Scene& scene) {
 
 SideBySide::Steps SideBySide::steps() const { return {method_of(scene_), *scene_.time_step}; }
 
+double SideBySide::spacing(const Steps& steps, double speed) {
+  return steps.longest * lanes::speed_of_class(lanes::speed_class(speed));
+}
+
+void SideBySide::Ready::stretch(const std::vector<double>& events, double ds, double past, const Steps& steps) {
+  std::vector<lanes::TaskStretch>& stretches = plan_.stretches;
+  double from = 0.0;
+  long kept = 0;
+  const auto add = [&](double to, bool kink, bool keeps) {
+    stretches.push_back({to, std::max(1L, static_cast<long>(std::ceil((to - from) / ds - one_place))), kink, keeps});
+    from = to;
+  };
+  const auto keep_until = [&](double to) {  // and leaves out what is there
+    if (!steps.keeps) return;
+    for (double next = static_cast<double>(kept + 1) * ds; next < to - one_place;
+         next = static_cast<double>(++kept + 1) * ds)
+      add(next, false, true);
+  };
+  for (const double event : events) {
+    keep_until(event);
+    const bool keeps = steps.keeps && static_cast<double>(kept + 1) * ds < event + one_place;
+    add(event, true, keeps);
+    kept += keeps ? 1 : 0;
+  }
+  keep_until(past);
+  const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
+  // Runs that end elsewhere must not shape each other's steps.
+  if (last > 0) stretches.push_back({steps.trial ? past : from + static_cast<double>(last) * ds, last});
+}
+
 SideBySide::Ready SideBySide::ready(std::span<const LaneRun> runs, const Steps& steps) {
   std::vector<Member> members;
   for (const LaneRun& run : runs) members.push_back({this, run});
@@ -90,17 +120,10 @@ SideBySide::Ready SideBySide::ready(std::span<const Member> members, const Steps
   plan.method = steps.method;
   plan.exact_modes = steps.method.stages.size() == 1;
   plan.one_by_itself = steps.trial;
-  const double ds = steps.longest * lanes::speed_of_class(lanes::speed_class(members.front().run.speed));
+  const double ds = spacing(steps, members.front().run.speed);
   double past = 0.0;
   for (const Member& member : members) past = std::max(past, member.run.speed * member.run.end);
-  double from = 0.0;
-  for (const double event : first.events(past)) {
-    plan.stretches.push_back({event, std::max(1L, static_cast<long>(std::ceil((event - from) / ds - one_place)))});
-    from = event;
-  }
-  const auto last = static_cast<long>(std::ceil((past - from) / ds - one_place));
-  // Runs that end elsewhere must not shape each other's steps.
-  if (last > 0) plan.stretches.push_back({steps.trial ? past : from + static_cast<double>(last) * ds, last});
+  ready.stretch(first.events(past), ds, past, steps);
   for (const auto& [lanes, run] : members) {
     ready.tracks_.push_back(lanes->track(run.seed, past + ds));
     ready.crossings_.push_back({&lanes->train_, ready.tracks_.back().get(), nullptr, &lanes->q_, run.speed, run.end});

@@ -39,6 +39,7 @@ class SideBySide {
     structure::Method method;  // for steps of 1 s
     double longest = 0.0;      // s
     bool trial = false;        // all runs go equally far, and are to be seen there exactly; one may go by itself
+    bool keeps = false;        // accelerations at places `spacing` apart, where steps end too
   };
   /// Those that the scene asks for.
   Steps steps() const;
@@ -52,12 +53,16 @@ class SideBySide {
 
    private:
     friend class SideBySide;
+    void stretch(const std::vector<double>& events, double ds, double past, const Steps& steps);
+
     lanes::CrossingPlan plan_;
     std::vector<std::shared_ptr<const lanes::TrackNumbers>> tracks_;
     std::vector<lanes::CrossingRun> crossings_;
   };
   /// At most lanes::widest runs with speeds of a class (lanes/speed_class.hpp).
   Ready ready(std::span<const LaneRun> runs, const Steps& steps);
+  /// m: between the places where runs of the class of such a speed keep accelerations.
+  static double spacing(const Steps& steps, double speed);
   /// The same of runs whose trains have numbers of their own; those of different trains have joined one and the same.
   struct Member {
     SideBySide* lanes;

@@ -51,6 +51,28 @@ TEST(AccuracyOption, OfSomePeaks) {
   EXPECT_TRUE(says(outcome, "not promised: acceleration: accuracy_of does not ask for it")) << outcome.out;
   const Workplace fresh(damped_span);
   expect_refusal(fresh, fresh.run({"-accuracy_of", "speed"}), {"accuracy_of", "'speed' is not allowed"});
+  expect_refusal(fresh, fresh.run({"-accuracy_of", "deflection,acceleration_lowpass", "-output_lowpass", "none"}),
+                 {"accuracy_of", "with output_lowpass none nothing is low-passed"});
+}
+
+// Low-passed accelerations by name, in the report too; sweeps have them for limits alone.
+TEST(AccuracyOption, OfLowPassedAccelerations) {
+  const Workplace workplace(damped_span);
+  const std::vector<std::string> named = {"-accuracy_of", "deflection,acceleration_lowpass"};
+  const auto run = [&](std::vector<std::string> words) {
+    words.insert(words.end(), named.begin(), named.end());
+    Outcome outcome = workplace.run(words);
+    expect_success(outcome);
+    return outcome;
+  };
+  const Outcome reported = run({"-accuracy_report", "-scene_tail", "0.5"});
+  EXPECT_TRUE(says(reported, "expected errors of the peaks: deflection")) << reported.out;
+  EXPECT_TRUE(says(reported, ", low-passed acceleration ")) << reported.out;
+  EXPECT_TRUE(says(reported, "\n  low-passed acceleration")) << reported.out;
+  EXPECT_FALSE(says(reported, "broken")) << reported.out;
+  EXPECT_TRUE(says(run({"-scene_tail", "0.5", "-accuracy_report"}), "chosen as before")) << reported.out;
+  const Outcome sweep = run({"-sweep_speed", "20,60,10"});
+  EXPECT_TRUE(says(sweep, "accuracy_of acceleration_lowpass is not promised: the runs of sweeps")) << sweep.out;
 }
 
 // What was chosen is kept beside the results: the same scene is not tried again, another one is, and a file that is not

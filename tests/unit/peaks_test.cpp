@@ -55,6 +55,23 @@ TEST(Peaks, LieBetweenSamples) {
   }
 }
 
+// Filtered rows have extremes between their instants too; where a curve still rises at the last row none is known.
+TEST(Peaks, OfFilteredRows) {
+  Peaks peaks({{}, {}}, 0);
+  const double h = 0.01;
+  std::vector<double> rows;
+  for (int k = 0; k * h <= 1.0; ++k) {
+    rows.push_back(std::sin(7.0 * k * h));
+    rows.push_back(-3.0 * k * h);
+  }
+  peaks.add_low_passed(rows, h);
+  ASSERT_EQ(peaks.largest_of_each(low_passed).size(), 2U);
+  EXPECT_NEAR(std::abs(peaks.largest_of_each(low_passed)[0].value), 1.0, 1e-5);
+  EXPECT_DOUBLE_EQ(peaks.largest_of_each(low_passed)[1].value, 0.0);
+  EXPECT_EQ(peaks.largest(low_passed).place, 0);
+  EXPECT_TRUE(peaks.of(acceleration).empty());
+}
+
 // At a kink that has a sample no parabola rounds it off or overshoots.
 TEST(Peaks, AtAKinkThatHasASample) {
   const double kink = 0.4321;

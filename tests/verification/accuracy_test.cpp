@@ -105,6 +105,95 @@ TEST_P(Promise, IsKeptAtEveryAccuracy) {
   }
 }
 
+// The acceleration low-passed at the frequency that counts.
+
+const std::string low_passed = "acceleration_lowpass";
+const Values of_low_passed = {{"accuracy_of", "deflection,acceleration_lowpass"}};
+const std::string hertz_wheel_undamped =
+    "beam: {spans: 25.0, EI: 8.323e9, mass: 2303.0}\nsupport: {types: [pinned, roller]}\n" +
+    quarter_car_with(5750.0, 1000.0, 1.595e6, 0.0, "law: hertz, stiffness: 3.642821671e10") +
+    "train: {vehicles: car, positions: 0.0, speed: 27.8}\nscene: {tail: 0.5}\n";
+const std::string coaches_damped =
+    "beam: {spans: [30.0, 36.0], EI: 3.0e11, mass: 2.5e4, damping_ratios: 0.02}\n"
+    "support: {types: [pinned, roller, roller]}\n"
+    "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+    "/options/vehicles/velaro.yml}}\n"
+    "train: {vehicles: coach*2, speed: 70.0}\nscene: {tail: 0.5}\n";
+
+struct LowPassedCase {
+  const char* name;
+  std::string scene;
+  bool by_modes;  // at 1e-2
+};
+void PrintTo(const LowPassedCase& c, std::ostream* out) { *out << c.name; }
+
+class LowPassedPromise : public testing::TestWithParam<LowPassedCase> {};
+INSTANTIATE_TEST_SUITE_P(Accuracy, LowPassedPromise,
+                         testing::Values(LowPassedCase{"hertz_wheel_undamped", hertz_wheel_undamped, true},
+                                         LowPassedCase{"coaches_damped", coaches_damped, true}),
+                         [](const auto& which) { return which.param.name; });
+
+// Against elements half as long and a quarter of the step, by elements and, where that is open, by modes.
+TEST_P(LowPassedPromise, IsKept) {
+  const LowPassedCase& c = GetParam();
+  for (const bool elements : {true, false})
+    for (const char* accuracy : {"1e-2", "1e-3"}) {
+      const Values way = elements ? Values{{"model_modes", "0"}} : Values{};
+      Results run = run_yaml(c.scene, of_low_passed + way + Values{{"accuracy", accuracy}});
+      const double wanted = std::stod(accuracy);
+      const auto expectation = expected(run, low_passed);
+      ASSERT_TRUE(expectation) << accuracy;
+      EXPECT_LE(*expectation, wanted);
+      EXPECT_FALSE(expected(run, "acceleration"));  // nobody asks for it
+      if (!elements) {
+        EXPECT_EQ(run("/modes/frequency").size() > 2, c.by_modes) << accuracy;
+      }
+      const double step = run.attribute("/summary", "acceleration_lowpass_interval");
+      const Results truth =
+          run_yaml(c.scene, {{"accuracy_of", "acceleration_lowpass"},
+                             {"ts_dt", text(std::min(0.25 * step, 1e-4))},
+                             {"beam_elements_per_span", "80"},
+                             {"step_probes", "true"},
+                             {"output_lowpass", text(run.attribute("/summary", "acceleration_lowpass_frequency"))}});
+      const double error = std::abs(peak_of(run, low_passed) / peak_of(truth, low_passed) - 1.0);
+      RecordProperty(std::string(elements ? "elements_" : "modes_") + accuracy, text(error));
+      EXPECT_GT(peak_of(truth, low_passed), 0.0);
+      EXPECT_LE(error, wanted) << accuracy << (elements ? " by elements" : " by modes");
+    }
+}
+
+// Without damping the acceleration of all modes is no sum; what counts of it is. Where the run filters without being
+// asked for the promise it is promised too.
+TEST(Accuracy, LowPassedIsPromisedWhereTheRunHasIt) {
+  const Results run = run_yaml(hertz_wheel_undamped, {{"accuracy", "1e-2"}, {"output_lowpass", "auto"}});
+  EXPECT_FALSE(expected(run, "acceleration"));
+  EXPECT_TRUE(expected(run, "deflection"));
+  EXPECT_TRUE(expected(run, low_passed));
+  const Results without = run_yaml(hertz_wheel_undamped, {{"accuracy", "1e-2"}});
+  EXPECT_FALSE(expected(without, low_passed));
+  EXPECT_TRUE(std::isnan(without.attribute("/summary", low_passed)));
+}
+
+// Where the acceleration drives the cost steps are longer when what counts of it is asked for instead.
+TEST(Accuracy, LowPassedTakesLongerSteps) {
+  for (const char* modes : {"0", "auto"}) {
+    const Values way = {{"model_modes", modes}, {"accuracy", "1e-3"}};
+    const Results raw = run_yaml(coaches_damped, way + Values{{"accuracy_of", "deflection,acceleration"}});
+    const Results filtered = run_yaml(coaches_damped, way + of_low_passed);
+    ASSERT_TRUE(expected(raw, "acceleration"));
+    ASSERT_TRUE(expected(filtered, low_passed));
+    EXPECT_LT(filtered.attribute("/summary", "steps"), 0.5 * raw.attribute("/summary", "steps")) << modes;
+  }
+}
+
+// Where the filter does not know what follows nothing is promised.
+TEST(Accuracy, LowPassedIsNotPromisedAtTheEndOfARun) {
+  const std::string ends_early = one_span + "load: {forces: 2.0e5, speed: 40.0}\nts: {max_time: 0.12}\n";
+  const Results run = run_yaml(ends_early, of_low_passed + Values{{"accuracy", "1e-2"}});
+  EXPECT_GT(peak_of(run, low_passed), 0.0);
+  EXPECT_FALSE(expected(run, low_passed));
+}
+
 // What the user has fixed stays, and says so where it is too coarse.
 TEST(Accuracy, FixedMeshIsNotPromised) {
   const std::string scene = one_span + car_on_tyre;

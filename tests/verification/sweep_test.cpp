@@ -6,6 +6,7 @@
 
 #include "support/curve.hpp"
 #include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace traverse::test {
 namespace {
@@ -100,6 +101,43 @@ TEST(Sweep, ByModes) {
   }
   EXPECT_EQ(sweep.attribute("/sweep", "modes"), 6.0);
   EXPECT_EQ(sweep.attribute("/sweep", "elements_per_span"), 6.0);
+}
+
+// With a limit of it the low-passed acceleration is promised of every run, instead of the acceleration if that is asked
+// for: by elements and modes under forces, by modes with a train.
+TEST(SweepLowPassed, IsPromisedOfEveryRun) {
+  const TemporaryFolder folder;
+  const Values limited = {
+      {"limits", folder.write("limits.yml", "- {clause: A, quantity: deck_acceleration, value: 3.5}\n")},
+      {"accuracy_of", "deflection,acceleration_lowpass"},
+      {"scene_tail", "0.3"}};
+  const std::string bridge =
+      "beam: {spans: 25.0, EI: 3.0e10, mass: 1.5e4, damping_ratios: 0.01}\n"
+      "support: {types: [pinned, roller]}\n";
+  const std::string forces = bridge +
+                             "load: {forces: 1.7e5*6, positions: [0,-3,-18,-21,-36,-39]}\n"
+                             "sweep: {speed: [40.0, 100.0, 3.0]}\n";
+  const std::string train = bridge + "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+                                     "/options/vehicles/velaro.yml}}\n"
+                                     "train: {vehicles: coach*2}\nsweep: {speed: [60.0, 84.0, 6.0]}\n";
+  for (const std::string& scene : {forces, train}) {
+    Results fine = run_yaml(
+        scene,
+        limited +
+            Values{{"ts_dt", "5e-4"}, {"beam_elements_per_span", "60"}, {"model_modes", "0"}, {"step_probes", "true"}});
+    for (const char* modes : {"0", "auto"}) {
+      Results run = run_yaml(scene, limited + Values{{"accuracy", "1e-2"}, {"model_modes", modes}});
+      EXPECT_LT(run.attribute("/summary", "expected_error_acceleration_lowpass"), 1.25e-2) << modes;
+      EXPECT_TRUE(std::isnan(run.attribute("/summary", "expected_error_acceleration"))) << modes;
+      EXPECT_TRUE(std::string(modes) == "auto" || run.attribute("/sweep", "modes") == 0.0);
+      const auto &found = run("/sweep/judged"), &exact = fine("/sweep/judged");
+      ASSERT_EQ(found.size(), exact.size());
+      double worst = 0.0;
+      for (std::size_t i = 0; i < found.size(); ++i) worst = std::max(worst, std::abs(found[i] / exact[i] - 1.0));
+      RecordProperty((scene == forces ? "forces_by_" : "train_by_") + std::string(modes), text(worst));
+      EXPECT_LT(worst, 1e-2) << modes;
+    }
+  }
 }
 
 // What is chosen at some speeds serves all, by elements and, where these do as well, by modes: every peak of every run

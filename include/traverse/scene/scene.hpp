@@ -143,6 +143,11 @@ struct Scene {
       return options::limit_quantity(limit.quantity)->finder == options::LimitFinder::run;
     });
   }
+  /// Whether a limit is on the deck's low-passed accelerations.
+  bool limits_deck_acceleration() const {
+    return std::any_of(limits.begin(), limits.end(),
+                       [](const options::VerdictLimit& limit) { return limit.quantity == "deck_acceleration"; });
+  }
   /// Whether the bridge is modes that were given, without elements behind them.
   bool by_given_modes() const { return beam && beam->given; }
   /// Modes under moving forces alone, whose motion is known exactly; single runs of given modes are stepped.
