@@ -183,6 +183,8 @@ void ErrorSearch::coarsen_mesh() {
     if (excess(coarser, finest) > 1.0) return;
     mesh_ = mesh;
     space_ = coarser;
+    finest_step_ = step_;  // on this mesh
+    finest_ = time_;
   }
 }
 

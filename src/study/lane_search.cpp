@@ -21,7 +21,10 @@ constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 // Each is compared with half as many more; errors that fall with the square or faster are at most 1.8 times the change.
 // Without damping that grows with the frequency those of moments fall with the first power: 3 times.
 constexpr double more_modes = 1.5, of_the_change = 1.8, of_an_undamped_moment = 3.0;
-constexpr double order_of_modes = 6.0;   // that errors of the modes fall with at most: what is farther off is not tried
+constexpr double order_of_modes = 6.0;  // that errors of the modes fall with at most: what is farther off is not tried
+// The modes that are compared reach over the frequency at which wheels vibrate on their contacts, which stirs modes
+// near it: comparisons below it agree whatever these do.
+constexpr double above_contacts = 1.1;
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a finer mesh has to agree
 constexpr double order_of_mesh = 4.0;
 constexpr double lowest_order = 0.5, highest_order = 4.0;  // of the steps
@@ -118,6 +121,7 @@ bool LaneSearch::add_modes(LaneModel& model) {
     model.modes = modes;
     const LaneModel more = with_more_modes(model);
     model.elements = more.elements;
+    if (mixed_.last_omega(more) < above_contacts * contact_frequency(trials_.scene())) continue;
     modes_ = change(mixed_, model, more, of_the_change);
     if (!damps_high_modes(trials_.scene())) modes_[moment] *= of_an_undamped_moment / of_the_change;
     const double over = greatest(modes_) / (part_of_modes * accuracy_);
@@ -152,7 +156,8 @@ LaneModel LaneSearch::cheaper(const LaneModel& model) {
   // With one solve a step wheel forces are off where steps change their length, which accelerations alone show in
   // trials.
   const Scene& scene = trials_.scene();
-  const bool unseen = asks_for(scene, low_passed) && asks_for(scene, wheel_force) && !asks_for(scene, acceleration);
+  const bool unseen = asks_for(scene, wheel_force) && !asks_for(scene, acceleration) &&
+                      (asks_for(scene, low_passed) || damps_high_modes(scene));
   for (const char* method : std::span(methods).subspan(unseen ? 1 : 0))
     for (const double factor : step_factors) {
       const LaneModel tried = with_step(model, factor, method);

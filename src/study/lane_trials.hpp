@@ -52,7 +52,9 @@ class LaneTrials {
   void run_at_once(std::span<const LaneModel> models);
   /// Of the bridge by a model: with all copies of the last frequency.
   int modes(const LaneModel& model) { return static_cast<int>(setup(model).shared->modal->modes()); }
-  double first_omega(const LaneModel& model) { return setup(model).shared->modal->omega().front(); }  // rad/s
+  // rad/s
+  double first_omega(const LaneModel& model) { return setup(model).shared->modal->omega().front(); }
+  double last_omega(const LaneModel& model) { return setup(model).shared->modal->omega().back(); }
   /// The largest SideBySide::defect of a model's runs, which are known.
   double defect(const LaneModel& model) const;
   const Scene& scene() const { return scene_; }
