@@ -113,8 +113,9 @@ void DeckAcceleration::add(double t, std::span<const beam::Response> probes) {
 
 std::size_t filter(std::vector<double>& rows, std::size_t count, double frequency, double interval) {
   LowPass(frequency, interval).apply(rows, count);
-  const auto instants = static_cast<double>(rows.size() / count);
-  return static_cast<std::size_t>(std::max(0.0, std::ceil(instants - unsettled_end(frequency) / interval)));
+  const std::size_t instants = rows.size() / count;
+  const double settled = static_cast<double>(instants) - unsettled_end(frequency) / interval;
+  return static_cast<std::size_t>(std::max(0.0, std::ceil(settled)));
 }
 
 void DeckAcceleration::finish(Peaks& peaks) {
