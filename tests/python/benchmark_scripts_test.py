@@ -89,7 +89,7 @@ class Scripts(InAFolder):
 
     def test_promises(self):
         text = self.run_smallest("promises")
-        self.assertIn("kept in 1 of 1 runs", text)
+        self.assertIn("kept in 2 of 2 runs", text)
         row, = self.table("promises.csv", [
             "scene", "accuracy", "worst", "of", "judged", "not promised", "in doubt", "small", "small but refused",
             "trials", "loop", "process", "chosen", "deflection", "acceleration", "moment", "wheel force"])
