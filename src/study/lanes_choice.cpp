@@ -35,6 +35,7 @@ constexpr int most_tries = 6;
 constexpr double modes_over_wholes = 0.5;  // of the wanted error
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
 constexpr double longer = 1.4;
+constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
 constexpr double weight_of_touch = 20.0, beside_a_hinge = 50.0;  // as measured: of accelerations
 
 bool open(const Scene& scene) {
@@ -140,7 +141,9 @@ class Chooser {
     // The peaks of one passage may agree by chance where steps do not follow the contacts. Elements, which serve then,
     // take shorter steps for accelerations.
     const bool follows = alone_ && asks_for(scene_, low_passed);
-    const double longest = follows ? longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
+    const double part = asks_for(scene_, wheel_force) && !asks_for(scene_, acceleration) ? part_for_forces : 1.0;
+    const double longest =
+        follows ? part * longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
     take(search.run(whole_ / fastest_.train.speed, longest));
     if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
     const double defect = beginnings_->defect(model_);
