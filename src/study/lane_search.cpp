@@ -69,8 +69,14 @@ std::optional<LaneModel> LaneSearch::run(double duration, double longest) {
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
   longest_ = std::min(steps.longest, longest);
   model.step = std::min(first_step_factor * steps.first, longest_);
-  // Steps first, as modes are told apart by what the contacts do to them.
-  if (!halve_step(model) || !add_modes(model)) return std::nullopt;
+  // Steps first, as modes are told apart by what the contacts do to them; and modes again where they want shorter ones.
+  if (!halve_step(model)) return std::nullopt;
+  for (double step = 0.0; step != model.step;) {
+    step = model.step;
+    if (!add_modes(model)) return std::nullopt;
+    foresee(model);
+    if (!halve_step(model)) return std::nullopt;
+  }
   return with_steps(model);
 }
 
@@ -117,7 +123,7 @@ LaneModel LaneSearch::with_more_modes(const LaneModel& model) {
 bool LaneSearch::add_modes(LaneModel& model) {
   double fewest = 0.0;
   for (const int modes : numbers_of_modes) {
-    if (modes < fewest) continue;
+    if (modes < model.modes || modes < fewest) continue;
     model.modes = modes;
     const LaneModel more = with_more_modes(model);
     model.elements = more.elements;
