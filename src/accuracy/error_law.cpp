@@ -25,7 +25,7 @@ double ErrorLaw::room(double wanted) const {
 double ErrorLaw::at(double times) const { return value * std::pow(times, times < 1.0 ? power_refining() : power()); }
 
 ErrorLaw error_from(double change, double size, const ErrorLaw& before, double most) {
-  ErrorLaw error{change, before.order, before.known, change, size};
+  ErrorLaw error{change, before.order, before.known, before.known, change, size};
   if (before.size > 1.5 * size) {
     const double halvings = std::log2(before.size / size);
     error.known = true;

@@ -12,8 +12,9 @@ struct ErrorLaw {
   double value = 0.0;
   double order = 2.0;  // measured where `known`, else supposed
   bool known = false;
-  double change = 0.0;  // what halving changed
-  double size = 0.0;    // the step (s), or the length of elements (in spans)
+  bool confirmed = false;  // known before as well
+  double change = 0.0;     // what halving changed
+  double size = 0.0;       // the step (s), or the length of elements (in spans)
 
   /// The power law to go by towards longer steps or elements.
   double power() const;

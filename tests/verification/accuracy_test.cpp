@@ -224,6 +224,22 @@ TEST(Accuracy, ModesAreComparedAgainByShorterSteps) {
   EXPECT_LT(error, 1e-2);
 }
 
+// Halving the first step says an order of 2.4, halving the second one 0.2: the first error would be a third of the
+// true.
+TEST(Accuracy, ThirdChangeConfirmsAnOrder) {
+  const std::string four_forces =
+      "beam: {spans: 24.7, EI: 9.23241e+10, mass: 24119.3, damping_ratios: 0.009}\n"
+      "support: {types: [pinned, roller]}\n"
+      "load: {forces: 5.948e+04*4, positions: [0.0, -6.69, -11.5, -14.68], speed: 73.7}\nscene: {tail: 0.0}\n";
+  const Results chosen = run_yaml(four_forces, {{"accuracy", "1e-2"}});
+  const Results exact =
+      run_yaml(four_forces, {{"ts_dt", "1e-4"}, {"beam_elements_per_span", "56"}, {"step_probes", "true"}});
+  ASSERT_TRUE(expected(chosen, "acceleration"));
+  const double error = std::abs(peak_of(chosen, "acceleration") / peak_of(exact, "acceleration") - 1.0);
+  RecordProperty("acceleration", text(error));
+  EXPECT_LT(error, *expected(chosen, "acceleration"));
+}
+
 // What the user has fixed stays, and says so where it is too coarse.
 TEST(Accuracy, FixedMeshIsNotPromised) {
   const std::string scene = one_span + car_on_tyre;
