@@ -109,6 +109,10 @@ bool asks_for(const Scene& scene, std::size_t quantity) {
   return asked.empty() || std::find(asked.begin(), asked.end(), stored_names[quantity]) != asked.end();
 }
 
+bool asks_for_forces_alone(const Scene& scene) {
+  return asks_for(scene, wheel_force) && !asks_for(scene, acceleration);
+}
+
 std::string not_promised(Quantity quantity, const Promise& promise) {
   return fmt::format("not promised: {}: {}", quantity_names[quantity], promise.why_not);
 }

@@ -34,6 +34,8 @@ void report_head(const std::string& against, const std::string& of);
 
 /// Whether the scene's accuracy_of holds it, or is left out. Low-passed accelerations only where its runs have them.
 bool asks_for(const Scene& scene, std::size_t quantity);
+/// Whether wheel forces are asked for without the accelerations that show what too long steps do to both.
+bool asks_for_forces_alone(const Scene& scene);
 
 /// The note that a quantity's peak is not promised, and why.
 std::string not_promised(Quantity quantity, const Promise& promise);

@@ -159,11 +159,8 @@ bool LaneSearch::refine_mesh(LaneModel& model) {
 /// A longer step, or the method of one solve a step, where that costs less.
 LaneModel LaneSearch::cheaper(const LaneModel& model) {
   LaneModel best = model;
-  // With one solve a step wheel forces are off where steps change their length, which accelerations alone show in
-  // trials.
-  const Scene& scene = trials_.scene();
-  const bool unseen = asks_for(scene, wheel_force) && !asks_for(scene, acceleration) &&
-                      (asks_for(scene, low_passed) || damps_high_modes(scene));
+  // With one solve a step wheel forces are off where steps change their length.
+  const bool unseen = asks_for_forces_alone(trials_.scene());
   for (const char* method : std::span(methods).subspan(unseen ? 1 : 0))
     for (const double factor : step_factors) {
       const LaneModel tried = with_step(model, factor, method);

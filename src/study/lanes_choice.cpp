@@ -140,8 +140,9 @@ class Chooser {
     LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy);
     // The peaks of one passage may agree by chance where steps do not follow the contacts. Elements, which serve then,
     // take shorter steps for accelerations.
-    const bool follows = alone_ && asks_for(scene_, low_passed);
-    const double part = asks_for(scene_, wheel_force) && !asks_for(scene_, acceleration) ? part_for_forces : 1.0;
+    const bool forces_alone = asks_for_forces_alone(scene_),
+               follows = alone_ && (asks_for(scene_, low_passed) || forces_alone);
+    const double part = forces_alone ? part_for_forces : 1.0;
     const double longest =
         follows ? part * longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
     take(search.run(whole_ / fastest_.train.speed, longest));
