@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 #include <fstream>
-#include <optional>
 
 #include "support/curve.hpp"
 #include "support/paths.hpp"
+#include "support/promised.hpp"
 #include "support/quarter_car.hpp"
 #include "support/scene_run.hpp"
 #include "support/temporary_folder.hpp"
@@ -17,16 +17,6 @@ namespace traverse::test {
 namespace {
 
 constexpr std::array quantities = {"deflection", "acceleration", "moment", "wheel_force"};
-
-double peak_of(const Results& run, const std::string& quantity) {
-  return std::abs(run.attribute("/summary", quantity == "wheel_force" ? "greatest_wheel_force" : quantity));
-}
-
-/// What the run says it expects; none where it does not promise the quantity.
-std::optional<double> expected(const Results& run, const std::string& quantity) {
-  const double error = run.attribute("/summary", "expected_error_" + quantity);
-  return std::isnan(error) ? std::nullopt : std::optional(error);
-}
 
 std::string quarter_car(const std::string& wheel) { return quarter_car_with(18e3, 1200.0, 1.8e6, 2e4, wheel); }
 
@@ -192,69 +182,6 @@ TEST(Accuracy, LowPassedIsNotPromisedAtTheEndOfARun) {
   const Results run = run_yaml(ends_early, of_low_passed + Values{{"accuracy", "1e-2"}});
   EXPECT_GT(peak_of(run, low_passed), 0.0);
   EXPECT_FALSE(expected(run, low_passed));
-}
-
-// The wheel vibrates on its contact at 57 Hz, near the seventh mode: four modes and six agree on what they both leave
-// out.
-TEST(Accuracy, ModesReachOverTheContacts) {
-  const Results chosen = run_scene("r7_two_masses", {{"accuracy", "1e-3"}, {"accuracy_of", "deflection,moment"}});
-  const Results exact =
-      run_scene("r7_two_masses", {{"ts_dt", "1e-4"}, {"beam_elements_per_span", "128"}, {"step_probes", "true"}});
-  for (const char* quantity : {"deflection", "moment"}) {
-    ASSERT_TRUE(expected(chosen, quantity)) << quantity;
-    const double error = std::abs(peak_of(chosen, quantity) / peak_of(exact, quantity) - 1.0);
-    RecordProperty(quantity, text(error));
-    EXPECT_LT(error, 1e-3) << quantity;
-  }
-}
-
-// Six modes and nine agree by steps that do not follow the sixth, and differ by 2 % by those that six modes ask for.
-TEST(Accuracy, ModesAreComparedAgainByShorterSteps) {
-  const std::string coach =
-      "beam: {spans: 55.5, EI: 8.25658e+11, mass: 11463.6, damping_ratios: 0.0234}\n"
-      "support: {types: [pinned, roller]}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
-      "/options/vehicles/s300.yml}}\n"
-      "train: {vehicles: coach, speed: 22.5}\nscene: {tail: 1.0}\n";
-  const Results chosen = run_yaml(coach, {{"accuracy", "1e-2"}});
-  const Results exact = run_yaml(coach, {{"ts_dt", "2e-4"}, {"beam_elements_per_span", "44"}, {"step_probes", "true"}});
-  ASSERT_TRUE(expected(chosen, "acceleration"));
-  const double error = std::abs(peak_of(chosen, "acceleration") / peak_of(exact, "acceleration") - 1.0);
-  RecordProperty("acceleration", text(error));
-  EXPECT_LT(error, 1e-2);
-}
-
-// Without damping accelerations are not promised, and forces are judged alone: steps that hardly follow the contacts
-// agree on a force that is 1.6 % off.
-TEST(Accuracy, ForcesWithoutAccelerationsTakeShorterSteps) {
-  const std::string coaches =
-      "beam: {spans: 16.7, EI: 7.42483e+10, mass: 26876.9}\nsupport: {types: [pinned, roller]}\n"
-      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
-      "/options/vehicles/manchester.yml}}\n"
-      "train: {vehicles: coach*3, speed: 36.2}\nscene: {tail: 1.0}\n";
-  const Results chosen = run_yaml(coaches, {{"accuracy", "1e-2"}});
-  const Results exact =
-      run_yaml(coaches, {{"ts_dt", "2e-4"}, {"beam_elements_per_span", "44"}, {"step_probes", "true"}});
-  ASSERT_TRUE(expected(chosen, "wheel_force"));
-  const double error = std::abs(peak_of(chosen, "wheel_force") / peak_of(exact, "wheel_force") - 1.0);
-  RecordProperty("wheel_force", text(error));
-  EXPECT_LT(error, 1e-2);
-}
-
-// Halving the first step says an order of 2.4, halving the second one 0.2: the first error would be a third of the
-// true.
-TEST(Accuracy, ThirdChangeConfirmsAnOrder) {
-  const std::string four_forces =
-      "beam: {spans: 24.7, EI: 9.23241e+10, mass: 24119.3, damping_ratios: 0.009}\n"
-      "support: {types: [pinned, roller]}\n"
-      "load: {forces: 5.948e+04*4, positions: [0.0, -6.69, -11.5, -14.68], speed: 73.7}\nscene: {tail: 0.0}\n";
-  const Results chosen = run_yaml(four_forces, {{"accuracy", "1e-2"}});
-  const Results exact =
-      run_yaml(four_forces, {{"ts_dt", "1e-4"}, {"beam_elements_per_span", "56"}, {"step_probes", "true"}});
-  ASSERT_TRUE(expected(chosen, "acceleration"));
-  const double error = std::abs(peak_of(chosen, "acceleration") / peak_of(exact, "acceleration") - 1.0);
-  RecordProperty("acceleration", text(error));
-  EXPECT_LT(error, *expected(chosen, "acceleration"));
 }
 
 // What the user has fixed stays, and says so where it is too coarse.
