@@ -120,7 +120,7 @@ double ErrorSearch::factor_of_step() const {
 }
 
 double ErrorSearch::factor_of_elements() const {
-  return std::clamp(room(space_) < 1.0 ? room(space_) : room_to_coarsen(space_), 1.0 / at_most, 2.0);
+  return std::clamp(room(space_) < 1.0 ? room(space_) : room_to_coarsen(space_), 1.0 / at_most, most_coarsening_);
 }
 
 // Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.

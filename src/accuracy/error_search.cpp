@@ -173,6 +173,7 @@ void ErrorSearch::coarsen() {
 // Where something was refused that asked for more elements than all the rest needs.
 void ErrorSearch::coarsen_mesh() {
   if (!open_mesh_ || std::none_of(tried_.begin(), tried_.end(), [](bool tried) { return tried; })) return;
+  most_coarsening_ = 1.0;
   const Errors finest = space_;
   const int finest_mesh = mesh_;
   for (int mesh = finest_mesh / 2; mesh % 2 == 0; mesh /= 2) {

@@ -77,6 +77,7 @@ class ErrorSearch {
   double wanted_;           // error of the step, and of the mesh
   std::string integrator_;  // chosen; empty: the default
   int mesh_, most_elements_;
+  double most_coarsening_ = 2.0;  // times the measured elements; 1 where coarser ones have been measured
   double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s
   double growth_ = 1.0;  // of errors in free oscillations until these have died away, for runs longer than the trials
   std::array<Promise, quantities> promises_{};

@@ -18,9 +18,9 @@ constexpr double first_step_factor = 4.0;  // times the step that the search by 
 constexpr std::array methods = {"genalpha", "esdirk4"};
 constexpr std::array step_factors = {2.0, 1.4, 1.0, 0.7, 0.5};  // times the step of esdirk4, of what may cost less
 constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
-// Each is compared with half as many more; errors that fall with the square or faster are at most 1.8 times the change.
-// Without damping that grows with the frequency those of moments fall with the first power: 3 times.
-constexpr double more_modes = 1.5, of_the_change = 1.8, of_an_undamped_moment = 3.0;
+// Each is compared with half as many more. Without damping that grows with the frequency errors of moments fall with
+// the first power.
+constexpr double more_modes = 1.5, of_an_undamped_moment = 3.0;
 constexpr double order_of_modes = 6.0;  // that errors of the modes fall with at most: what is farther off is not tried
 // The modes that are compared reach over the frequency at which wheels vibrate on their contacts, which stirs modes
 // near it: comparisons below it agree whatever these do.

@@ -7,6 +7,9 @@
 
 namespace traverse::app {
 
+/// Times what half as many modes more change: the most that errors are which fall with the square or faster.
+inline constexpr double of_the_change = 1.8;
+
 class LaneSearch {
  public:
   /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes

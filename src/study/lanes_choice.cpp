@@ -202,6 +202,7 @@ class Chooser {
       other.step *= alone_ ? longer : 0.5;
       wholes_->run_at_once(std::array{other, model_});
       errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
+      if (asks_for_forces_alone(scene_)) errors[wheel_force] *= of_the_change;
       for (std::size_t q = 0; q < quantities; ++q)
         errors[q] = std::max(errors[q], search.error_of_model(q) + search.error_of_steps(q));
       if (greatest(errors) <= part_of_all * scene_.accuracy) {
