@@ -18,7 +18,7 @@ std::string coaches(const std::string& bridge, const std::string& type, const st
          type + ".yml}}\ntrain: {" + train + "}\nscene: {tail: 1.0}\n";
 }
 
-/// Whether the peaks are promised and as near to those of a finer run.
+/// That the peaks are promised and as near to those of a finer run.
 void expect_kept(const Results& chosen, const Results& finer, const std::vector<std::string>& peaks, double accuracy) {
   for (const std::string& quantity : peaks) {
     ASSERT_TRUE(expected(chosen, quantity)) << quantity;
@@ -57,18 +57,19 @@ TEST(MendedPromise, ForcesWithoutAccelerationsTakeShorterSteps) {
     expect_kept(run_yaml(scene, {{"accuracy", accuracy}}), exact, {"wheel_force"}, std::stod(accuracy));
 }
 
-// Halving the first step says an order of 2.4, halving the second one 0.2: the first error would be a third of the
-// true one.
+// Two changes, of 0.12 and 0.023, say an order of 2.4, by which 0.006 was expected of steps of 2.3 ms that were 0.0096
+// off.
 TEST(MendedPromise, ThirdChangeConfirmsAnOrder) {
   const std::string scene =
       "beam: {spans: 24.7, EI: 9.23241e+10, mass: 24119.3, damping_ratios: 0.009}\n"
       "support: {types: [pinned, roller]}\n"
       "load: {forces: 5.948e+04*4, positions: [0.0, -6.69, -11.5, -14.68], speed: 73.7}\nscene: {tail: 0.0}\n";
   const Results chosen = run_yaml(scene, {{"accuracy", "1e-2"}});
-  expect_kept(chosen, run_yaml(scene, finer("56", "1e-4")), {"acceleration"}, *expected(chosen, "acceleration"));
+  expect_kept(chosen, run_yaml(scene, finer("56", "1e-4")), {"acceleration"},
+              expected(chosen, "acceleration").value_or(0.0));
 }
 
-// Elements half as many as those that were found too few are not taken for good by the order of the finer ones.
+// Eight elements were tried and found too few, and were taken nevertheless, by the order in which finer ones settle.
 TEST(MendedPromise, FewerElementsAreThoseThatWereTried) {
   const std::string scene =
       "beam: {spans: [30.0, 30.0], EI: 1.05101e+11, mass: 12848.1, damping_ratios: 0.0207, continuity: "
