@@ -169,7 +169,7 @@ class Hunt {
       const Bracket b = narrow({floor_, high}, at_once, resolution, [this](double sigma) { return unknown(sigma); });
       const double edge = b.high * (1.0 + tolerance_at(b.high));
       const int before = solver_.found_below(edge);
-      solver_.find(shift_below(b), std::clamp(unknown(b.high), 1, 4 * at_once));
+      solver_.find(shift_below(b), std::min(sought(b, count), 4 * at_once));
       // Nothing there after all: the count was off by rounding.
       if (solver_.found_below(edge) == before) floor_ = edge;
     }
@@ -182,6 +182,7 @@ class Hunt {
 
  private:
   static constexpr int at_once = 16;
+  static constexpr double crowded = 1.01;  // high over low of a bracket, beside which all others are far away
 
   void start(int count) {
     Bracket b;
@@ -190,12 +191,18 @@ class Hunt {
       // Two at least: a free beam on a bed has one frequency twice, and no bracket is narrow enough to part them.
       b = narrow(b, std::clamp(count, 2, at_once), resolution, [this](double sigma) { return unknown(sigma); });
       floor_ = b.low;
-      solver_.find(shift_below(b), std::clamp(unknown(b.high), 1, at_once));
+      solver_.find(shift_below(b), std::min(sought(b, count), at_once));
     } else {
       const double shift = shift_below_zero(s_);
       floor_ = -shift * 1e-10;
       solver_.find(shift, std::min(count, at_once));
     }
+  }
+
+  /// How many to look for next to a bracket: what is in it, and of the `count` what will be wanted after that.
+  int sought(const Bracket& b, int count) const {
+    const int inside = std::max(unknown(b.high), 1), missing = count - static_cast<int>(solver_.found().size());
+    return b.high < crowded * b.low ? inside : std::max(inside, std::min(missing, at_once));
   }
 
   /// Relative width within which a count and a computed eigenvalue may disagree by rounding.

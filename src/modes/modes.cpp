@@ -49,23 +49,31 @@ std::vector<double> distinct_of(const Segment& s, std::size_t wanted) {
   }
 }
 
-double product(const Band& A, const std::vector<double>& x, const std::vector<double>& y) {
+std::vector<double> product(const Band& A, const std::vector<double>& x) {
   std::vector<double> Ax(x.size(), 0.0);
   add_product(A, 1.0, x.data(), Ax.data());
-  return std::inner_product(y.begin(), y.end(), Ax.begin(), 0.0);
+  return Ax;
 }
+
+double dot(const std::vector<double>& x, const std::vector<double>& y) {
+  return std::inner_product(x.begin(), x.end(), y.begin(), 0.0);
+}
+
+double modal_mass(const Mode& mode) { return dot(mode.shape, product(mode.segment->M, mode.shape)); }
 
 /// phi^T M phi = 1, by Gram and Schmidt: an iteration leaves copies of a frequency a little oblique.
 void orthonormalise(std::vector<Mode>& modes) {
+  std::vector<std::vector<double>> momenta;  // M phi
   for (std::size_t i = 0; i < modes.size(); ++i) {
     std::vector<double>& shape = modes[i].shape;
     for (std::size_t j = 0; j < i; ++j) {
       if (modes[j].segment != modes[i].segment || modes[j].offset != modes[i].offset) continue;
-      const double part = product(modes[i].segment->M, shape, modes[j].shape);
+      const double part = dot(shape, momenta[j]);
       for (std::size_t k = 0; k < shape.size(); ++k) shape[k] -= part * modes[j].shape[k];
     }
-    const double length = std::sqrt(product(modes[i].segment->M, shape, shape));
+    const double length = std::sqrt(modal_mass(modes[i]));
     for (double& value : shape) value /= length;
+    momenta.push_back(product(modes[i].segment->M, shape));
   }
 }
 
@@ -117,7 +125,7 @@ Modes modes_of(const beam::Beam& beam, int count, const beam::ShapePoints* point
       result.slope.emplace_back(points->points().size(), 0.0);
       result.mass.push_back(1.0);
     } else {
-      add_slopes(beam, *points, all, product(mode.segment->M, mode.shape, mode.shape), result);
+      add_slopes(beam, *points, all, modal_mass(mode), result);
     }
   }
   if (smooth) add_ratios(beam, result);
