@@ -21,6 +21,8 @@ constexpr hsize_t kChunkRows = 256;
 constexpr hsize_t kChunkBytes = 1 << 20;
 constexpr off_t kEndOffset = 40;  // where superblock version 0 keeps the file's end, 8 bytes, little-endian
 constexpr hsize_t kGrowthStep = 1 << 18;
+constexpr std::size_t kMostOpen = 2000;        // datasets at a time, of 20 kB each
+constexpr std::size_t kMostCompact = 1 << 12;  // bytes that are kept beside the dataset's own description
 
 [[noreturn]] void fail(const std::string& path, const std::string& reason) {
   throw FileError("cannot write the results file " + path + ": " + reason);
@@ -77,6 +79,8 @@ void File::open(Id file) {
   // No chunk cache: rows go straight to their place, none is ever rewritten, and no memory waits.
   rows_access_ = Id(check(H5Pcreate(H5P_DATASET_ACCESS)));
   check(H5Pset_chunk_cache(rows_access_.get(), 0, 0, H5D_CHUNK_CACHE_W0_DEFAULT));
+  compact_ = Id(check(H5Pcreate(H5P_DATASET_CREATE)));
+  check(H5Pset_layout(compact_.get(), H5D_COMPACT));
   parents_ = Id(check(H5Pcreate(H5P_LINK_CREATE)));
   check(H5Pset_create_intermediate_group(parents_.get(), 1));
   text_ = Id(check(H5Tcopy(H5T_C_S1)));
@@ -179,6 +183,14 @@ void File::attribute(const std::string& object, const std::string& name, const s
   write_attribute(object, name, text_.get(), &value);
 }
 
+void File::label(const Id& dataset, const std::string& unit) {
+  const std::string valid = printable(unit);
+  const char* value = valid.c_str();
+  const Id space(check(H5Screate(H5S_SCALAR)));
+  const Id attribute(check(H5Acreate2(dataset.get(), "unit", text_.get(), space.get(), H5P_DEFAULT, H5P_DEFAULT)));
+  check(H5Awrite(attribute.get(), text_.get(), &value));
+}
+
 void File::attribute(const std::string& object, const std::string& name, double value) {
   write_attribute(object, name, H5T_NATIVE_DOUBLE, &value);
 }
@@ -189,11 +201,22 @@ void File::attribute(const std::string& object, const std::string& name, long va
 
 void File::dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
                    const std::string& unit) {
+  create(name, shape, values, unit, H5P_DEFAULT);
+}
+
+void File::fixed_dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
+                         const std::string& unit) {
+  const bool small = values.size() * sizeof(double) <= kMostCompact;
+  create(name, shape, values, unit, small ? compact_.get() : H5P_DEFAULT);
+}
+
+void File::create(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
+                  const std::string& unit, hid_t creation) {
   const Id space(check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr)));
   const Id data(
-      check(H5Dcreate2(id(), name.c_str(), H5T_NATIVE_DOUBLE, space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
+      check(H5Dcreate2(id(), name.c_str(), H5T_NATIVE_DOUBLE, space.get(), parents(), creation, H5P_DEFAULT)));
   check(H5Dwrite(data.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()));
-  attribute(name, "unit", unit);
+  label(data, unit);
 }
 
 void File::rewrite(const std::string& name, const std::vector<double>& values) {
@@ -217,10 +240,16 @@ void File::texts(const std::string& name, const std::vector<std::pair<std::strin
   const Id space(check(H5Screate_simple(2, shape, nullptr)));
   const Id data(check(H5Dcreate2(id(), name.c_str(), text_.get(), space.get(), parents(), H5P_DEFAULT, H5P_DEFAULT)));
   if (!rows.empty()) check(H5Dwrite(data.get(), text_.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, cells.data()));
-  attribute(name, "unit", "text");
+  label(data, "text");
 }
 
-Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows,
+Id File::stays_open(Id dataset) {
+  if (open_ == kMostOpen) return {};
+  ++open_;
+  return dataset;
+}
+
+Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, std::size_t rows,
                std::size_t there)
     : name_(std::move(name)),
       shape_{0},
@@ -228,29 +257,30 @@ Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, co
                              [](std::size_t a, hsize_t b) { return a * static_cast<std::size_t>(b); })) {
   shape_.insert(shape_.end(), row.begin(), row.end());
   if (there == 0)
-    make(file, unit, rows);
+    make(file, unit);
   else
     cut(file, there);
-  buffer_.reserve(width_ * static_cast<std::size_t>(rows));
+  buffer_.reserve(width_ * rows);
 }
 
-void Series::make(File& file, const std::string& unit, int rows) {
+void Series::make(File& file, const std::string& unit) {
   auto most = shape_;
   most[0] = H5S_UNLIMITED;
   auto chunk = shape_;
-  chunk[0] = rows == 1 ? 1 : std::clamp<hsize_t>(kChunkBytes / (sizeof(double) * width_), 1, kChunkRows);
+  chunk[0] = std::clamp<hsize_t>(kChunkBytes / (sizeof(double) * width_), 1, kChunkRows);
 
   const Id space(file.check(H5Screate_simple(static_cast<int>(shape_.size()), shape_.data(), most.data())));
   const Id creation(file.check(H5Pcreate(H5P_DATASET_CREATE)));
   file.check(H5Pset_chunk(creation.get(), static_cast<int>(chunk.size()), chunk.data()));
   file.check(H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER));
-  const Id dataset(file.check(H5Dcreate2(file.id(), name_.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
-                                         creation.get(), file.rows_access())));
-  file.attribute(name_, "unit", unit);
+  Id dataset(file.check(H5Dcreate2(file.id(), name_.c_str(), H5T_NATIVE_DOUBLE, space.get(), file.parents(),
+                                   creation.get(), file.rows_access())));
+  file.label(dataset, unit);
+  dataset_ = file.stays_open(std::move(dataset));
 }
 
 void Series::cut(File& file, hsize_t rows) {
-  const Id dataset(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access())));
+  Id dataset(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access())));
   const Id space(file.check(H5Dget_space(dataset.get())));
   std::vector<hsize_t> there(shape_.size());
   const bool fits = H5Sget_simple_extent_ndims(space.get()) == static_cast<int>(shape_.size()) &&
@@ -259,16 +289,21 @@ void Series::cut(File& file, hsize_t rows) {
   if (!fits) fail(file.path(), "the results to take up are not those of the checkpoint");
   shape_[0] = rows;
   file.check(H5Dset_extent(dataset.get(), shape_.data()));
+  dataset_ = file.stays_open(std::move(dataset));
 }
 
 void Series::write(File& file) {
+  if (buffer_.empty()) return;
+  if (dataset_.get() >= 0) return append(file, dataset_);
+  append(file, Id(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access()))));
+}
+
+void Series::append(File& file, const Id& dataset) {
   const hsize_t rows = buffer_.size() / width_;
-  if (rows == 0) return;
   std::vector<hsize_t> start(shape_.size(), 0), count = shape_;
   start[0] = shape_[0];
   count[0] = rows;
   shape_[0] += rows;
-  const Id dataset(file.check(H5Dopen2(file.id(), name_.c_str(), file.rows_access())));
   file.check(H5Dset_extent(dataset.get(), shape_.data()));
   const Id there(file.check(H5Dget_space(dataset.get())));
   const Id here(file.check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));

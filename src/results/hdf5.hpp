@@ -73,12 +73,20 @@ class File {
   /// A complete dataset with its attribute `unit`; groups on the way are made.
   void dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
                const std::string& unit);
+  /// The same of one that is never rewritten: what is small lies beside its description.
+  void fixed_dataset(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
+                     const std::string& unit);
   /// The values of a dataset that is there, in their place: nothing of the file's structure changes.
   void rewrite(const std::string& name, const std::vector<double>& values);
   /// Text in two columns as it is, [n,2].
   void texts(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows);
   /// The same, with an escape for what no reader takes.
   void table(const std::string& name, const std::vector<std::pair<std::string, std::string>>& rows);
+
+  /// The unit of a dataset that has none yet.
+  void label(const Id& dataset, const std::string& unit);
+  /// The dataset to be kept open by its owner, or nothing where there are too many already.
+  Id stays_open(Id dataset);
 
   hid_t id() const { return file_.get(); }
   hid_t parents() const { return parents_.get(); }  // link creation: makes the groups on the way
@@ -88,21 +96,24 @@ class File {
   void open(Id file);
   Id access() const;
   int descriptor() const;
+  void create(const std::string& name, const std::vector<hsize_t>& shape, const std::vector<double>& values,
+              const std::string& unit, hid_t creation);
   void write_attribute(const std::string& object, const std::string& name, hid_t type, const void* value);
 
   Place place_;
   std::string path_;
-  Id file_, parents_, rows_access_, text_;
-  off_t reserved_ = 0;  // bytes of the file that have their place on the disk
+  Id file_, parents_, rows_access_, compact_, text_;
+  off_t reserved_ = 0;    // bytes of the file that have their place on the disk
+  std::size_t open_ = 0;  // datasets that stay open
 };
 
-/// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. It is open only while it is written: an open
-/// one costs 20 kB, and a long train has fifty thousand.
+/// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. Many are open only while they are written:
+/// an open one costs 20 kB, and a long train has fifty thousand.
 class Series {
  public:
   /// `row`: the shape of one sample, empty for a number. `rows`: how many the buffer holds between two writes.
   /// there: rows of the dataset that is there, and keeps no more than these; 0: it is made.
-  Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, int rows,
+  Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, std::size_t rows,
          std::size_t there = 0);
   std::size_t rows() const { return static_cast<std::size_t>(shape_[0]); }  // written so far
 
@@ -116,10 +127,12 @@ class Series {
   void write(File& file);
 
  private:
-  void make(File& file, const std::string& unit, int rows);
+  void make(File& file, const std::string& unit);
   void cut(File& file, hsize_t rows);
+  void append(File& file, const Id& dataset);
 
   std::string name_;
+  Id dataset_;                  // where it stays open
   std::vector<hsize_t> shape_;  // of what is written so far
   std::size_t width_ = 1;       // numbers a row
   std::vector<double> buffer_;

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 #include "recorder_file.hpp"
 #include "results/origin.hpp"
@@ -79,7 +80,7 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Recorder::Earlier& 
   attempt([&] {
     for (const char* name : summary_at_root) file.forget_attribute("/", name);
     file.keep_only(objects);
-    series = create_series("", block_rows, earlier.rows);
+    series = create_series(earlier.rows);
     file.take_place();
   });
 }
@@ -96,12 +97,12 @@ Recorder::Impl::~Impl() {
   }
 }
 
-std::vector<Series> Recorder::Impl::create_series(const std::string& group, std::size_t rows, std::size_t there) {
+std::vector<Series> Recorder::Impl::create_series(std::size_t there) {
   std::vector<Series> created;
-  created.emplace_back(file, group + "/time", std::vector<hsize_t>(), "s", static_cast<int>(rows), there);
+  created.emplace_back(file, "/time", std::vector<hsize_t>(), "s", block_rows, there);
   for (const auto& field : layout.fields) {
     const std::vector<hsize_t> row(field.row.begin(), field.row.end());
-    created.emplace_back(file, group + field.name, row, field.unit, static_cast<int>(rows), there);
+    created.emplace_back(file, field.name, row, field.unit, block_rows, there);
   }
   return created;
 }
@@ -109,31 +110,32 @@ std::vector<Series> Recorder::Impl::create_series(const std::string& group, std:
 void Recorder::Impl::add(const Sample& sample) {
   check_fit(sample);
   if (series.empty()) {
-    series = create_series("", block_rows);
+    series = create_series(0);
     if (layout.interval > 0.0) file.attribute("/time", "interval", layout.interval);
     file.flush();  // from here on the file's structure stays, only lengths grow
   }
-  fill(series, sample);
+  series.front().add(sample.time);
+  const double* next = sample.values.data();
+  for (auto one = series.begin() + 1; one != series.end(); ++one) next = one->add(next);
   ++waiting;
   if (waiting >= block_rows || seconds_since(last_flush) > std::max(kLongestWait, kCostFactor * flush_cost)) flush();
 }
 
 void Recorder::Impl::end(const Sample& sample) {
   check_fit(sample);
-  std::vector<Series> apart = create_series("/end", 1);
-  fill(apart, sample);
-  for (Series& one : apart) one.write(file);
+  file.fixed_dataset("/end/time", {1}, {sample.time}, "s");
+  auto next = sample.values.begin();
+  for (const auto& field : layout.fields) {
+    std::vector<hsize_t> shape(field.row.begin(), field.row.end());
+    shape.insert(shape.begin(), 1);
+    const auto first = std::exchange(next, next + static_cast<std::ptrdiff_t>(field.width()));
+    file.fixed_dataset("/end" + field.name, shape, {first, next}, field.unit);
+  }
   file.flush();
 }
 
 void Recorder::Impl::check_fit(const Sample& sample) const {
   if (sample.values.size() != width) throw std::logic_error("a sample does not fit the layout of the results file");
-}
-
-void Recorder::Impl::fill(std::vector<Series>& series, const Sample& sample) {
-  series.front().add(sample.time);
-  const double* next = sample.values.data();
-  for (auto one = series.begin() + 1; one != series.end(); ++one) next = one->add(next);
 }
 
 void Recorder::Impl::flush() {

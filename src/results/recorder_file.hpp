@@ -38,11 +38,9 @@ struct Recorder::Impl {
   bool closed = false;
 
  private:
-  /// Under `group`, with buffers of so many rows.
   /// there: rows that they have already.
-  std::vector<hdf5::Series> create_series(const std::string& group, std::size_t rows, std::size_t there = 0);
+  std::vector<hdf5::Series> create_series(std::size_t there);
   void check_fit(const Sample& sample) const;
-  static void fill(std::vector<hdf5::Series>& series, const Sample& sample);
 };
 
 template <class Write>
