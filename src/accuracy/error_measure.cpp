@@ -61,14 +61,18 @@ ErrorLaw ErrorSearch::error_in_time(Quantity q) {
 }
 
 // With twice the step, at half the cost: runs that the error in time asks for too. Steps over more than an element
-// would hide what elements do.
+// would hide what elements do, and long ones see more in them than there is.
 ErrorLaw ErrorSearch::error_in_space(Quantity q) {
   const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
-  const double step = open_step_ && 2.0 * step_ * greatest_speed(scene_) < element ? 2.0 * step_ : step_;
-  const double change = difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
+  const auto change = [&](double step) {
+    return std::pow(growth_, 0.75) * difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
+  };
   // Without damping the contact's vibration meets one mode of the elements or another: nothing falls regularly.
   const double most = q == low_passed && undamped_ ? 1.0 : highest_order;
-  return error_from(std::pow(growth_, 0.75) * change, 1.0 / mesh_, space_[q], most);
+  const auto error = [&](double step) { return error_from(change(step), 1.0 / mesh_, space_[q], most); };
+  if (!open_step_ || 2.0 * step_ * greatest_speed(scene_) >= element) return error(step_);
+  const ErrorLaw by_long_steps = error(2.0 * step_);
+  return promised(q) && by_long_steps.value > allowed(space_, q) ? error(step_) : by_long_steps;
 }
 
 /// Of a quantity's error. A track's mesh, of which there are so few to choose from, may have what the step leaves.
@@ -123,10 +127,20 @@ double ErrorSearch::factor_of_elements() const {
   return std::clamp(room(space_) < 1.0 ? room(space_) : room_to_coarsen(space_), 1.0 / at_most, most_coarsening_);
 }
 
+/// Times the step (or the element) that the run will need, as far as is known: what would need still less by the order
+/// that was measured will be refused.
+double ErrorSearch::guess(const Errors& errors) const {
+  double least = 1.0;
+  for (std::size_t q = 0; q < quantities; ++q) {
+    const double room = promised(q) ? errors[q].room(allowed(errors, q)) : 1.0;
+    if (room >= 1.0 / farthest_guess || !errors[q].known) least = std::min(least, std::max(room, 1.0 / farthest_guess));
+  }
+  return least;
+}
+
 // Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.
 bool ErrorSearch::worth_it(double step, int mesh) const {
-  const auto guess = [&](const Errors& errors) { return std::clamp(room(errors), 1.0 / farthest_guess, 1.0); };
-  const double run = trials_.seconds(base::whole(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
+  const double run = trials_.seconds(base::whole(mesh / guess(space_)), guess(time_) * step_) * end_ / horizon_;
   return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, trials_of_run * run);
 }
 

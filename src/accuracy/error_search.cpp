@@ -193,7 +193,8 @@ void ErrorSearch::coarsen_mesh() {
 // saves.
 void ErrorSearch::take_fewer_solves() {
   if (!open_step_ || !open_integrator_) return;
-  const double usual = factor_of_step() * step_, run = trials_.seconds(mesh_, usual) * end_ / horizon_;
+  const double usual = factor_of_step() * step_;
+  const double run = trials_.seconds(base::whole(mesh_ / factor_of_elements()), usual) * end_ / horizon_;
   double spent = 0.0;
   for (const structure::MethodRow& method : structure::methods().subspan(1))
     for (const double factor : fewer_solves_steps) {

@@ -58,6 +58,7 @@ class ErrorSearch {
   void refuse_what_is_given();
   bool promised(std::size_t q) const { return promises_[q].present && promises_[q].kept; }
   bool within_reach(const Errors& errors) const;
+  double guess(const Errors& errors) const;
   bool worth_it(double step, int mesh) const;
   double allowed(const Errors& errors, std::size_t q) const;
   double room(const Errors& errors) const;
