@@ -61,7 +61,8 @@ ErrorLaw ErrorSearch::error_in_time(Quantity q) {
 }
 
 // With twice the step, at half the cost: runs that the error in time asks for too. Steps over more than an element
-// would hide what elements do, and long ones see more in them than there is.
+// would hide what elements do. Along a track, where more elements cost more than a trial run, the step itself is tried
+// before these are: long ones see more in the mesh than there is.
 ErrorLaw ErrorSearch::error_in_space(Quantity q) {
   const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
   const auto change = [&](double step) {
@@ -72,7 +73,8 @@ ErrorLaw ErrorSearch::error_in_space(Quantity q) {
   const auto error = [&](double step) { return error_from(change(step), 1.0 / mesh_, space_[q], most); };
   if (!open_step_ || 2.0 * step_ * greatest_speed(scene_) >= element) return error(step_);
   const ErrorLaw by_long_steps = error(2.0 * step_);
-  return promised(q) && by_long_steps.value > allowed(space_, q) ? error(step_) : by_long_steps;
+  const bool tries_again = scene_.beam->track && promised(q) && by_long_steps.value > allowed(space_, q);
+  return tries_again ? error(step_) : by_long_steps;
 }
 
 /// Of a quantity's error. A track's mesh, of which there are so few to choose from, may have what the step leaves.
