@@ -18,6 +18,7 @@ are minima over rounds in turn.
 
 import os
 import re
+import statistics
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
@@ -168,7 +169,7 @@ class Case:
             mesh, step = re.search(r"accuracy \S+: (\d+) elements .*steps of (\S+) s;", point.text).groups()
             row = dict.fromkeys(HEADER) | {
                 "scene": self.scene.name, "accuracy": wanted, "elements": int(mesh), "step": float(step),
-                "error over accuracy": true.get(worst, 0.0) / wanted, "worst": worst,
+                "error over accuracy": true[worst] / wanted if worst else None, "worst": worst,
                 "ms": 1e3 * point.seconds, "process ms": 1e3 * point.process_seconds,
                 "not promised": "; ".join(f"{q}: {why}" for q, why in self.refused(wanted)),
                 "unsettled": "; ".join(self.unsettled(wanted))}
@@ -190,9 +191,10 @@ def show(row):
     if row["cheapest"]:
         best = f"{row['cheapest']}, {row['its elements']}, {row['its step']:.2g} s"
         ratios = f"{row['ms over its']:7.2f}{row['process over its']:7.2f}"
+    error = f"{row['error over accuracy']:7.2f}" if row["worst"] else f"{'-':>7}"
     left_out = ", ".join(dict.fromkeys(re.findall(r"(?:^|; )([a-z ]+)", row["not promised"])))
     print(f"{row['scene']:36}{row['accuracy']:8.0e}{row['elements']:5}{row['step']:9.2g}"
-          f"{row['error over accuracy']:7.2f} {row['worst']:13}{row['ms']:8.3g}{row['process ms']:7.4g}{ratios}"
+          f"{error} {row['worst']:13}{row['ms']:8.3g}{row['process ms']:7.4g}{ratios}"
           f"  {best:44}{left_out}"
           + (f" (unsettled: {row['unsettled']})" if row["unsettled"] else ""), flush=True)
 
@@ -294,9 +296,13 @@ def summarise(rows):
         row = max((r for r in rows if r[key] is not None), key=lambda r: r[key], default=None)
         return f"{row[key]:.2f} ({row['scene']}, {row['accuracy']:g})" if row else "none"
 
-    print(f"worst error over the accuracy: {worst('error over accuracy')}")
-    print(f"worst cost over the cheapest fixed run: time loop {worst('ms over its')}")
-    print(f"of the whole process: {worst('process over its')}")
+    def median(key):
+        values = [r[key] for r in rows if r[key] is not None]
+        return f"{statistics.median(values):.2f} over {len(values)}" if values else "none"
+
+    print(f"error over the accuracy: median {median('error over accuracy')}, worst {worst('error over accuracy')}")
+    print(f"cost over the cheapest fixed run: time loop median {median('ms over its')}, worst {worst('ms over its')}")
+    print(f"of the whole process: median {median('process over its')}, worst {worst('process over its')}")
 
 
 if __name__ == "__main__":
