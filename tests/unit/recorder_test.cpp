@@ -187,6 +187,33 @@ TEST_F(RecorderTest, KeepsEveryRowAtBlockBoundaries) {
   }
 }
 
+// More than the file keeps open between two blocks.
+TEST_F(RecorderTest, KeepsEveryRowOfThousandsOfDatasets) {
+  constexpr long datasets = 2100;
+  const auto name = [](long k) { return "/many/" + std::to_string(k); };
+  Layout layout;
+  Sample sample;
+  for (long k = 0; k < datasets; ++k) layout.fields.push_back({name(k), {}, "m"});
+  auto recorder = open(layout);
+  const long n = kBlock + 8;
+  for (long i = 0; i < n; ++i) {
+    sample.time = static_cast<double>(i);
+    sample.values.clear();
+    for (long k = 0; k < datasets; ++k) sample.values.push_back(static_cast<double>(i + k));
+    recorder->add(sample);
+  }
+  recorder->end(sample);
+  recorder->finish({});
+
+  const Reader reader(file_);
+  ASSERT_TRUE(reader.opened());
+  for (const long k : {0L, 1998L, 1999L, 2000L, datasets - 1}) {
+    expect_ramp(reader, name(k), static_cast<hsize_t>(n), static_cast<double>(k));
+    EXPECT_EQ(reader.values("/end" + name(k)), std::vector{static_cast<double>(n - 1 + k)});
+    EXPECT_EQ(reader.text(name(k), "unit"), "m");
+  }
+}
+
 TEST_F(RecorderTest, WritesTheTimeWhereThereIsNothingElse) {
   auto recorder = open({});
   Sample sample;
