@@ -25,6 +25,7 @@ constexpr double order_of_modes = 6.0;  // that errors of the modes fall with at
 // The modes that are compared reach over the frequency at which wheels vibrate on their contacts, which stirs modes
 // near it: comparisons below it agree whatever these do.
 constexpr double above_contacts = 1.1;
+constexpr double surely = 0.7;           // of a number of modes that is foreseen: fewer are not looked at
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a finer mesh has to agree
 constexpr double order_of_mesh = 4.0;
 constexpr double lowest_order = 0.5, highest_order = 4.0;  // of the steps
@@ -121,13 +122,15 @@ LaneModel LaneSearch::with_more_modes(const LaneModel& model) {
 }
 
 bool LaneSearch::add_modes(LaneModel& model) {
-  double fewest = 0.0;
+  const double stirred = above_contacts * contact_frequency(trials_.scene());
+  // Frequencies grow with the square of their number at last, and no faster.
+  double fewest = surely * model.modes * std::sqrt(stirred / mixed_.last_omega(model)) / more_modes;
   for (const int modes : numbers_of_modes) {
     if (modes < model.modes || modes < fewest) continue;
     model.modes = modes;
     const LaneModel more = with_more_modes(model);
     model.elements = more.elements;
-    if (mixed_.last_omega(more) < above_contacts * contact_frequency(trials_.scene())) continue;
+    if (mixed_.last_omega(more) < stirred) continue;
     modes_ = change(mixed_, model, more, of_the_change);
     if (!damps_high_modes(trials_.scene())) modes_[moment] *= of_an_undamped_moment / of_the_change;
     const double over = greatest(modes_) / (part_of_modes * accuracy_);

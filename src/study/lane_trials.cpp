@@ -165,9 +165,11 @@ LaneTrials::Setup& LaneTrials::setup(const LaneModel& model) {
   if (place) return *place;
   place = std::make_unique<Setup>();
   place->scene = with(scene_, model);
+  if (const std::optional<beam::Rayleigh> known = damping()) place->scene.damping = {{{known->a, known->b}}, {}, {}};
   std::vector<std::string> ignored;
   place->shared.emplace(PETSC_COMM_SELF, place->scene, ignored);
-  place->shared->damp(place->scene, true, ignored);
+  place->shared->damp(place->scene, false, ignored);
+  damping_ = place->shared->rayleigh;
   place->shared->prepare(place->scene, ignored, basis_with(model));
   if (const std::string why = lanes_obstacle(place->scene, *place->shared); !why.empty()) throw Refused{why};
   place->lanes.emplace(place->scene, *place->shared);

@@ -82,12 +82,17 @@ class LaneTrials {
                                              const SideBySide::Steps& steps) const;
   Setup& setup(const LaneModel& model);
   const modes::Basis* basis_with(const LaneModel& model) const;
+  /// That of the first mesh, for all of them.
+  std::optional<beam::Rayleigh> damping() const {
+    return !damping_ && before_ != nullptr ? before_->damping_ : damping_;
+  }
 
   Scene scene_;
   const LaneTrials* before_;
   std::vector<std::vector<LaneRun>> groups_;
   std::map<std::pair<int, int>, std::unique_ptr<Setup>> setups_;  // by modes and elements
   std::deque<Kept> kept_;                                         // references to its entries stay
+  std::optional<beam::Rayleigh> damping_;
 };
 
 }  // namespace traverse::app
