@@ -108,7 +108,9 @@ size_t traverse_quantities(const traverse_passage* passage) {
 
 int traverse_describe(const traverse_passage* passage, size_t i, traverse_quantity* quantity) {
   return status_of([&] {
-    const auto& [interval, fields, constants] = passage->steps.layout();
+    const auto& layout = passage->steps.layout();
+    const auto& fields = layout.fields;
+    const auto& constants = layout.constants;
     if (i < fields.size()) {
       const auto& field = fields[i];
       *quantity = {field.name.c_str(), field.unit.c_str(), field.row.size(), {0, 0}, 1};

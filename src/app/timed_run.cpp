@@ -76,7 +76,10 @@ results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
   Job& job = ready.job;
   results::Layout layout = outputs.layout();
   const Plan& plan = ready.passage.plan();
-  if (ready.moves()) layout.interval = plan.interval * static_cast<double>(plan.stored);
+  if (ready.moves()) {
+    layout.interval = plan.interval * static_cast<double>(plan.stored);
+    layout.rows = static_cast<std::size_t>(plan.end_time / layout.interval) + 2;
+  }
   if (ready.goes_on()) return {job.comm, std::move(job.place), layout, job.earlier->results};
   results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, ready.scene),
                              ready.scene.options);

@@ -19,9 +19,10 @@ namespace {
 
 constexpr hsize_t kChunkRows = 256;
 constexpr hsize_t kChunkBytes = 1 << 20;
-constexpr off_t kEndOffset = 40;  // where superblock version 0 keeps the file's end, 8 bytes, little-endian
-constexpr hsize_t kGrowthStep = 1 << 18;
-constexpr std::size_t kMostOpen = 2000;        // datasets at a time, of 20 kB each
+constexpr hsize_t kMostChunks = 60;           // of the 64 in a node of the index
+constexpr hsize_t kMostChunkBytes = 1 << 16;  // of those that are longer for that
+constexpr off_t kEndOffset = 40;              // where superblock version 0 keeps the file's end, 8 bytes, little-endian
+constexpr std::size_t kMostOpen = 2000;       // datasets at a time, of 20 kB each
 constexpr std::size_t kMostCompact = 1 << 12;  // bytes that are kept beside the dataset's own description
 
 [[noreturn]] void fail(const std::string& path, const std::string& reason) {
@@ -66,8 +67,9 @@ Id File::access() const {
   Id access(check(H5Pcreate(H5P_FILE_ACCESS)));
   check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));  // the oldest superblock
   check(H5Pset_file_locking(access.get(), false, true));                           // the place is locked
-  check(H5Pset_meta_block_size(access.get(), kGrowthStep));
-  check(H5Pset_small_data_block_size(access.get(), kGrowthStep));
+  // No space in advance: a flush gives back what is left of it, and shortens the file before it says so.
+  check(H5Pset_meta_block_size(access.get(), 0));
+  check(H5Pset_small_data_block_size(access.get(), 0));
   check(H5Pset_sieve_buf_size(access.get(), 0));  // else a failed write shows only when a dataset is closed
   return access;
 }
@@ -249,25 +251,27 @@ Id File::stays_open(Id dataset) {
   return dataset;
 }
 
-Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, std::size_t rows,
-               std::size_t there)
+Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, const Rows& rows)
     : name_(std::move(name)),
       shape_{0},
       width_(std::accumulate(row.begin(), row.end(), std::size_t{1},
                              [](std::size_t a, hsize_t b) { return a * static_cast<std::size_t>(b); })) {
   shape_.insert(shape_.end(), row.begin(), row.end());
-  if (there == 0)
-    make(file, unit);
+  if (rows.there == 0)
+    make(file, unit, rows.expected);
   else
-    cut(file, there);
-  buffer_.reserve(width_ * rows);
+    cut(file, rows.there);
+  buffer_.reserve(width_ * rows.buffered);
 }
 
-void Series::make(File& file, const std::string& unit) {
+// A kill while HDF5 splits the index of the chunks would leave it in pieces: those expected are no more than one node
+// of it holds.
+void Series::make(File& file, const std::string& unit, hsize_t expected) {
   auto most = shape_;
   most[0] = H5S_UNLIMITED;
   auto chunk = shape_;
-  chunk[0] = std::clamp<hsize_t>(kChunkBytes / (sizeof(double) * width_), 1, kChunkRows);
+  const hsize_t row = sizeof(double) * width_, usual = std::clamp<hsize_t>(kChunkBytes / row, 1, kChunkRows);
+  chunk[0] = std::max(usual, std::min(expected / kMostChunks + 1, kMostChunkBytes / row));
 
   const Id space(file.check(H5Screate_simple(static_cast<int>(shape_.size()), shape_.data(), most.data())));
   const Id creation(file.check(H5Pcreate(H5P_DATASET_CREATE)));

@@ -111,10 +111,13 @@ class File {
 /// an open one costs 20 kB, and a long train has fifty thousand.
 class Series {
  public:
-  /// `row`: the shape of one sample, empty for a number. `rows`: how many the buffer holds between two writes.
-  /// there: rows of the dataset that is there, and keeps no more than these; 0: it is made.
-  Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, std::size_t rows,
-         std::size_t there = 0);
+  struct Rows {
+    std::size_t buffered = 1;  // between two writes
+    std::size_t expected = 0;  // in all; 0: not known
+    std::size_t there = 0;     // of the dataset that is there, and keeps no more than these; 0: it is made
+  };
+  /// `row`: the shape of one sample, empty for a number.
+  Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, const Rows& rows);
   std::size_t rows() const { return static_cast<std::size_t>(shape_[0]); }  // written so far
 
   void add(double value) { buffer_.push_back(value); }
@@ -127,7 +130,7 @@ class Series {
   void write(File& file);
 
  private:
-  void make(File& file, const std::string& unit);
+  void make(File& file, const std::string& unit, hsize_t expected);
   void cut(File& file, hsize_t rows);
   void append(File& file, const Id& dataset);
 

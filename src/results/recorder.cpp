@@ -99,10 +99,11 @@ Recorder::Impl::~Impl() {
 
 std::vector<Series> Recorder::Impl::create_series(std::size_t there) {
   std::vector<Series> created;
-  created.emplace_back(file, "/time", std::vector<hsize_t>(), "s", block_rows, there);
+  const Series::Rows rows = {block_rows, layout.rows, there};
+  created.emplace_back(file, "/time", std::vector<hsize_t>(), "s", rows);
   for (const auto& field : layout.fields) {
     const std::vector<hsize_t> row(field.row.begin(), field.row.end());
-    created.emplace_back(file, field.name, row, field.unit, block_rows, there);
+    created.emplace_back(file, field.name, row, field.unit, rows);
   }
   return created;
 }

@@ -18,6 +18,7 @@ namespace traverse::results {
 /// What the file will hold, fixed before the first sample. The time of a sample needs no mention.
 struct Layout {
   double interval = 0.0;  // s between samples; 0: there is one instant only
+  std::size_t rows = 0;   // samples that are expected; 0: not known
   /// A dataset that gains a row with each sample.
   struct Field {
     std::string name;              // its path in the file

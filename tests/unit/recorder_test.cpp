@@ -261,11 +261,14 @@ TEST_F(RecorderTest, KilledRunLeavesItsFullBlocks) {
 
 // Killed while it does nothing but write, which a real run hardly ever does.
 TEST_F(RecorderTest, RunKilledAtAnyTimeLeavesTheRowsOfTime) {
+  constexpr long samples = 60 * kBlock;
+  Layout layout = small_layout();
+  layout.rows = samples;
   for (useconds_t delay = 0; delay < 20000; delay += 997) {
     run_and_kill(
         [&](auto ready) {
-          const auto recorder = open(small_layout());
-          for (long i = 0; i < 60 * kBlock; ++i) {
+          const auto recorder = open(layout);
+          for (long i = 0; i < samples; ++i) {
             recorder->add(sample_at(i));
             if (i == 2 * kBlock) ready();
           }
