@@ -56,7 +56,7 @@ ErrorLaw ErrorSearch::error_in_time(Quantity q) {
   const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
   // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
   double most = q != moment || !undamped_ ? highest_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
-  if (q == acceleration && dampers_let_go(scene_.beam->foundation)) most = 1.0;
+  if ((q == acceleration || q == low_passed) && dampers_let_go(scene_.beam->foundation)) most = 1.0;
   return error_from(growth_ * change, step_, time_[q], most);
 }
 
