@@ -20,7 +20,7 @@ namespace {
 constexpr hsize_t kChunkRows = 256;
 constexpr hsize_t kChunkBytes = 1 << 20;
 constexpr hsize_t kMostChunks = 60;           // of the 64 in a node of the index
-constexpr hsize_t kMostChunkBytes = 1 << 16;  // of those that are longer for that
+constexpr hsize_t kMostChunkBytes = 1 << 15;  // of those that are longer for that
 constexpr off_t kEndOffset = 40;              // where superblock version 0 keeps the file's end, 8 bytes, little-endian
 constexpr std::size_t kMostOpen = 2000;       // datasets at a time, of 20 kB each
 constexpr std::size_t kMostCompact = 1 << 12;  // bytes that are kept beside the dataset's own description
