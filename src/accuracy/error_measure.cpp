@@ -142,7 +142,7 @@ double ErrorSearch::guess(const Errors& errors) const {
 
 // Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.
 bool ErrorSearch::worth_it(double step, int mesh) const {
-  const double run = trials_.seconds(base::whole(mesh / guess(space_)), guess(time_) * step_) * end_ / horizon_;
+  const double run = trials_.seconds(base::whole(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
   return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, trials_of_run * run);
 }
 
