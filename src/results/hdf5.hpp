@@ -107,8 +107,8 @@ class File {
   std::size_t open_ = 0;  // datasets that stay open
 };
 
-/// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. Many are open only while they are written:
-/// an open one costs 20 kB, and a long train has fifty thousand.
+/// A dataset that grows by rows, [n] or [n, ...], with a buffer in memory. The first 2,000 of a file stay open, the
+/// others are open only while they are written: an open one costs 20 kB, and a long train has fifty thousand.
 class Series {
  public:
   struct Rows {

@@ -123,7 +123,7 @@ LaneModel LaneSearch::with_more_modes(const LaneModel& model) {
 
 bool LaneSearch::add_modes(LaneModel& model) {
   const double stirred = above_contacts * contact_frequency(trials_.scene());
-  // Frequencies grow with the square of their number at last, and no faster.
+  // Frequencies of bending grow about with the square of their number.
   double fewest = surely * model.modes * std::sqrt(stirred / mixed_.last_omega(model)) / more_modes;
   for (const int modes : numbers_of_modes) {
     if (modes < model.modes || modes < fewest) continue;
