@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,8 +57,14 @@ struct Accuracy {
   std::array<Promise, quantities> promises;
   std::array<Promise, alone_quantities> alone;  // where there is no bridge
   bool lost_contact = false;                    // wheels did in trial runs
-  /// After the run, which lost contact so often: where no trial run did, nothing is promised any more. Says so, or "".
-  std::string withdrawn(int contact_losses);
+  static constexpr double the_end = std::numeric_limits<double>::infinity();
+  double seen_until = the_end;  // s of the run, until which trial runs went
+  /// After the run, in which wheels lost contact at these times, s: where no trial run has seen some of them, nothing is
+  /// promised any more. Says so, or "".
+  std::string withdrawn(const std::vector<double>& losses);
+  /// After the run, in which curves bend within steps so many times as much as trial runs have seen: errors are larger, by
+  /// the square of that, and what is above `wanted` then is not promised any more. Says so, or "".
+  std::string withdrawn_by_bends(double times, double wanted);
   /// The same of low-passed accelerations, where their peak is within the unsettled end of the run.
   std::string withdrawn_at_end(bool unsettled);
   void promise_nothing();
@@ -65,7 +72,7 @@ struct Accuracy {
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took
 
-  void keep(base::Bytes& bytes) { bytes(measured, promises, alone, lost_contact, seconds); }
+  void keep(base::Bytes& bytes) { bytes(measured, promises, alone, lost_contact, seen_until, seconds); }
 };
 
 /// Whether there is something to choose, and something moves that it can be chosen by.

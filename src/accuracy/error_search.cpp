@@ -45,11 +45,11 @@ int most_trial_elements(const Scene& scene) {
 
 }  // namespace
 
-ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end)
+ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end, bool whole)
     : comm_(comm),
       scene_(scene),
       end_(end),
-      horizon_(until_all_is_met(shared)),
+      horizon_(whole ? end - moved_by() : until_all_is_met(shared)),
       trials_(comm, shortened(moved_up(scene), horizon_)),
       open_mesh_(scene.mesh_open),
       open_step_(!scene.time_step),
@@ -89,9 +89,7 @@ double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
   const double step = scene_.time_step.value_or(first_steps(scene_, first_omega(shared), first).first);
   double until = first;
   for (const Meeting& meeting : met_later(scene, first, end_ - moved_by())) {
-    const Trials longer(comm_, shortened(scene, meeting.until));
-    if (meeting.until <= most_beginnings * first ||
-        usual_trials * longer.seconds(mesh_of(scene_), step) < hardly_anything) {
+    if (affordable(meeting.until, step)) {
       until = meeting.until;
     } else if (unseen_.empty()) {
       unseen_ = meeting.what;
@@ -99,6 +97,17 @@ double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
   }
   if (asks_for(scene_, low_passed)) until += unsettled_end(*scene_.output.low_pass);
   return std::min(until, end_ - moved_by());
+}
+
+bool ErrorSearch::affordable(double until, double step) const {
+  const Scene scene = moved_up(scene_);
+  return until <= most_beginnings * beginning(scene, end_) ||
+         usual_trials * Trials(comm_, shortened(scene, until)).seconds(mesh_of(scene_), step) < hardly_anything;
+}
+
+bool ErrorSearch::should_see_the_whole() const {
+  const double whole = end_ - moved_by();
+  return trials_.lost_contact() && horizon_ < whole && stirs_all_along(scene_) && affordable(whole, step_);
 }
 
 void ErrorSearch::run() {
@@ -231,6 +240,7 @@ double ErrorSearch::excess(const Errors& errors, const Errors& finest) const {
 
 void ErrorSearch::apply(Scene& scene, Accuracy& result) {
   result.lost_contact = trials_.lost_contact();
+  if (horizon_ < end_ - moved_by()) result.seen_until = horizon_ + moved_by();
   const double longer = factor_of_step(), fewer = factor_of_elements();
   const double step = open_step_ ? two_digits(step_ * longer) : step_;
   int mesh = mesh_;

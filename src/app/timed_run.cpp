@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <optional>
@@ -149,6 +150,7 @@ WatchedRun::WatchedRun(ReadyRun& ready, bool with_mechanisms)
     watch_.keep_wheel_forces({scene_.output.wheel_low_pass, scene_.output.unloading_level, plan, ready.wheels});
   if (!scene_.output.passages.empty()) watch_.note_axle_passages({scene_, plan.time_step});
   if (!scene_.limits.empty()) watch_.judge();
+  watch_.tell_apart_after(ready.accuracy.seen_until);
   if (ready.archive) watch_.keep(*ready.archive);
   ready.archive.reset();
 }
@@ -187,8 +189,9 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   if (system_.structure() != nullptr && system_.structure()->energy_left())
     summary.energy_left = total(ready_.job.comm, *system_.structure()->energy_left());
   summary.static_error = system_.static_error();
-  const std::string withdrawn = ready_.accuracy.withdrawn(summary.contact_losses),
-                    at_end = ready_.accuracy.withdrawn_at_end(watch_.ends_unsettled());
+  const std::array withdrawn = {ready_.accuracy.withdrawn(watch_.losses()),
+                                ready_.accuracy.withdrawn_by_bends(watch_.bends_after(), scene_.accuracy),
+                                ready_.accuracy.withdrawn_at_end(watch_.ends_unsettled())};
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
   const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.most_defect);
@@ -202,7 +205,7 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   recorder_.finish(summary);
   progress_.done();
   if (prints() && counts) results::print_summary(summary, scene_.output.file);
-  for (const std::string& note : {withdrawn, at_end})
+  for (const std::string& note : withdrawn)
     if (prints() && counts && !note.empty()) fmt::print("  note: {}\n", note);
   if (prints() && check) check->print();
   if (prints()) results::print_verdicts(verdicts);

@@ -53,7 +53,7 @@ struct Sweep {
     double accuracy = 0.0;   // from which mesh, step and modes were chosen; 0: they were given
     /// Relative, of the peaks whose accuracy is promised.
     std::vector<std::pair<std::string, double>> expected_errors{};
-    bool lost_contact = false;  // wheels did in trial runs
+    bool lost_contact = false;  // wheels did in trial runs as long as these
     /// Whether the expected errors hold in a run that lost contact so often: not where no trial run has seen that.
     bool holds(double contact_losses) const { return lost_contact || !(contact_losses > 0.0); }
     /// How many runs they do not hold in, said in words; "" where there are none.

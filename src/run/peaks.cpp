@@ -41,6 +41,12 @@ void Curve::add(double t, double value, const std::vector<double>& kinks, Note&&
   note(value_[1] + 0.5 * slope * shift, time_[1] + shift);
 }
 
+double Curve::bend() const {
+  const double before = time_[1] - time_[0], after = time_[2] - time_[1];
+  if (count_ < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
+  return std::abs((value_[2] - value_[1]) / after - (value_[1] - value_[0]) / before) * std::min(before, after);
+}
+
 template <class Note>
 void RelaxingCurve::add(double t, double value, double rate, double b, Note&& note) {
   const double h = t - time_, before = rate_, start = value_;
@@ -102,9 +108,25 @@ void Peaks::add(double t, std::span<const beam::Response> probes, std::span<cons
         moments_[i].add(t, values[q], probes[i].moment_rate, lag_, note_of(q));
       else
         probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth, note_of(q));
+    bend_[acceleration] = std::max(bend_[acceleration], probes_[i][acceleration].bend());
   }
-  for (std::size_t i = 0; i < wheel_forces.size(); ++i)
+  for (std::size_t i = 0; i < wheel_forces.size(); ++i) {
     wheels_[i].add(t, wheel_forces[i], smooth, [&](double value, double at) { note(wheel_force, i, value, at); });
+    bend_[wheel_force] = std::max(bend_[wheel_force], wheels_[i].bend());
+  }
+}
+
+Bends Peaks::bends() const {
+  const auto relative = [this](Quantity q) {
+    const double largest = std::abs(largest_[q].value);
+    return largest > 0.0 ? bend_[q] / largest : 0.0;
+  };
+  return {relative(acceleration), relative(wheel_force)};
+}
+
+double Bends::times(const Bends& others) const {
+  const auto ratio = [](double a, double b) { return a > 0.0 ? a / b : 0.0; };
+  return std::max(ratio(acceleration, others.acceleration), ratio(wheel_force, others.wheel_force));
 }
 
 void Peaks::finish() {

@@ -39,6 +39,8 @@ class Curve {
   void finish(Note&& note) const {
     if (count_ > 0) note(value_[2], time_[2]);
   }
+  /// How far the latest three samples are from a straight line: their second difference, 0 where they are fewer.
+  double bend() const;
 
  private:
   std::array<double, 3> time_{}, value_{};  // the latest samples, the last one at the end
@@ -61,6 +63,13 @@ class RelaxingCurve {
   bool known_ = false;
 };
 
+/// Of curves from sample to sample, over their largest value.
+struct Bends {
+  double acceleration = 0.0, wheel_force = 0.0;
+  /// How many times as large these are as others, the worse of both; infinite where those are none.
+  double times(const Bends& others) const;
+};
+
 /// The extremes of a run: those above half of the largest so far.
 class Peaks {
  public:
@@ -79,9 +88,13 @@ class Peaks {
 
   const std::vector<Peak>& of(Quantity q) const { return found_[q]; }
   const Peak& largest(Quantity q) const { return largest_[q]; }
+  /// How much accelerations and wheel forces bend from sample to sample, at most, over their largest: since the start, or
+  /// since they were forgotten.
+  Bends bends() const;
+  void forget_bends() { bend_ = {}; }
   /// The largest extreme of each probe or wheel.
   const std::vector<Peak>& largest_of_each(Quantity q) const { return each_[q]; }
-  void keep(base::Bytes& bytes) { bytes(moments_, probes_, wheels_, found_, largest_, each_); }
+  void keep(base::Bytes& bytes) { bytes(moments_, probes_, wheels_, found_, largest_, each_, bend_); }
 
  private:
   void note(Quantity q, std::size_t place, double value, double time);
@@ -93,6 +106,7 @@ class Peaks {
   std::vector<Curve> wheels_;
   std::array<std::vector<Peak>, quantities> found_;
   std::array<Peak, quantities> largest_{};
+  std::array<double, quantities> bend_{};  // of accelerations and wheel forces
   bool failed_ = false;
   std::array<std::vector<Peak>, quantities> each_;
 };

@@ -120,6 +120,10 @@ void Watch::note_peaks() {
     for (std::size_t i = 0; i < member.type->wheels.size(); ++i)
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
+  if (sample_.time > apart_after_ && !bends_before_) {
+    bends_before_ = peaks_.bends();
+    peaks_.forget_bends();
+  }
   peaks_.add(sample_.time, now_.probes, wheel_forces_);
   envelope_.add(sample_.time, now_.probes);
   if (deck_) deck_->add(sample_.time, now_.probes);
@@ -212,6 +216,13 @@ void Watch::note_separations() {
   recorder_.separations(list);
 }
 
+std::vector<double> Watch::losses() const {
+  std::vector<double> times;
+  for (const train::Separation& s : system_.contacts().separations().list())
+    if (!s.from_start && s.contact < static_cast<int>(system_.fleet().wheels.size())) times.push_back(s.start);
+  return times;
+}
+
 const Peaks& Watch::finished_peaks() {
   if (!finished_) {
     peaks_.finish();
@@ -229,7 +240,7 @@ const results::Summary& Watch::finished_extremes() {
 }
 
 void Watch::keep(base::Archive& archive) {
-  archive.same(peaks_, envelope_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time, now_.probes,
+  archive.same(peaks_, bends_before_, envelope_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time, now_.probes,
                most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);

@@ -1,6 +1,8 @@
 // A transient run: time integration with everything that is recorded on the way.
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,6 +60,12 @@ class Watch {
   const results::Summary& extremes() const { return summary_; }
   /// The peaks, those of wheels and contacts included; after the last sample.
   const results::Summary& finished_extremes();
+  /// How much accelerations and wheel forces bend within steps is told for what comes after t (s) apart.
+  void tell_apart_after(double t) { apart_after_ = t; }
+  /// After finish. So many times as much, at most, as before it; 0 where nothing came after.
+  double bends_after() const { return bends_before_ ? peaks_.bends().times(*bends_before_) : 0.0; }
+  /// When wheels have lost contact, s.
+  std::vector<double> losses() const;
   /// What was seen at the latest sample.
   const Observed& seen() const { return now_; }
   const train::WheelPaths& paths() const { return paths_; }
@@ -88,6 +96,8 @@ class Watch {
   bool recorded_;           // whether some rank stores samples
   std::vector<beam::Response> dragged_, seen_apart_;
   Peaks peaks_;
+  double apart_after_ = std::numeric_limits<double>::infinity();  // s
+  std::optional<Bends> bends_before_;
   Envelope envelope_;
   std::optional<DeckAcceleration> deck_;
   std::optional<Judge> judge_;

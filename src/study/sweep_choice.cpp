@@ -26,6 +26,7 @@ void add(const Accuracy& one, std::optional<Accuracy>& all) {
     all->promises[q].expected = std::max(all->promises[q].expected, one.promises[q].expected);
   }
   all->lost_contact |= one.lost_contact;
+  all->seen_until = std::min(all->seen_until, one.seen_until);
 }
 
 void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
@@ -146,7 +147,7 @@ SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& note
   choice.model = model_of(choice.scene);
   choice.model.accuracy = given.accuracy;
   choice.model.expected_errors = all->expected();
-  choice.model.lost_contact = all->lost_contact;
+  choice.model.lost_contact = all->lost_contact && all->seen_until == Accuracy::the_end;
   for (auto& [quantity, error] : choice.model.expected_errors) error += modes.error;
   return choice;
 }

@@ -65,14 +65,19 @@ TEST(Accuracy, IsWithdrawnWhereContactsWereLostUnseen) {
   Accuracy accuracy;
   accuracy.measured = true;
   for (Promise& promise : accuracy.promises) promise = {true, true, 1e-4, ""};
-  EXPECT_EQ(accuracy.withdrawn(0), "");
+  const std::vector<double> losses = {0.5, 0.9};
+  EXPECT_EQ(accuracy.withdrawn({}), "");
   Accuracy seen = accuracy;
   seen.lost_contact = true;
-  EXPECT_EQ(seen.withdrawn(2), "");
+  seen.seen_until = 1.0;
+  EXPECT_EQ(seen.withdrawn(losses), "");
   EXPECT_EQ(seen.expected().size(), static_cast<std::size_t>(quantities));
-  EXPECT_NE(accuracy.withdrawn(2).find("lost contact 2 times, which no trial run has seen"), std::string::npos);
+  seen.seen_until = 0.7;
+  EXPECT_NE(seen.withdrawn(losses).find("lost contact 1 times after 0.7 s, which no"), std::string::npos);
+  EXPECT_TRUE(seen.expected().empty());
+  EXPECT_NE(accuracy.withdrawn(losses).find("lost contact 2 times, which no trial run has seen"), std::string::npos);
   EXPECT_TRUE(accuracy.expected().empty());
-  EXPECT_EQ(accuracy.withdrawn(2), "");
+  EXPECT_EQ(accuracy.withdrawn(losses), "");
 }
 
 TEST(SweepModel, PromisesNothingOfLossesThatNoTrialHasSeen) {

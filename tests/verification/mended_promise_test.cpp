@@ -18,6 +18,22 @@ std::string coaches(const std::string& bridge, const std::string& type, const st
          type + ".yml}}\ntrain: {" + train + "}\nscene: {tail: 1.0}\n";
 }
 
+/// A mass on a spring and a damper on one wheel.
+const std::string car =
+    "vehicle:\n"
+    "  car:\n"
+    "    bodies: [body, axle]\n"
+    "    joints: [guide]\n"
+    "    springs: [suspension]\n"
+    "    wheels: [wheel]\n"
+    "    drivers: [level]\n"
+    "    body: {mass: 15000.0, inertia: 1.0, position: [0.0, 2.0]}\n"
+    "    axle: {mass: 1200.0, inertia: 1.0, position: [0.0, 0.46]}\n"
+    "    guide: {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}\n"
+    "    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 1.5e6, damping: 2e4}\n"
+    "    wheel: {body: axle, radius: 0.46, law: hertz, stiffness: 3e10}\n"
+    "    level: {body: body, coordinate: phi}\n";
+
 /// That the peaks are promised and as near to those of a finer run.
 void expect_kept(const Results& chosen, const Results& finer, const std::vector<std::string>& peaks, double accuracy) {
   for (const std::string& quantity : peaks) {
@@ -86,27 +102,24 @@ TEST(MendedPromise, LowPassedWhereADamperLetsGo) {
   const std::string scene =
       "beam: {spans: [30.0, 30.0, 30.0, 30.0], EI: 2e10, mass: 1e4, damping_ratios: 0.02}\n"
       "support: {types: [pinned, roller, roller, roller, roller]}\n"
-      "foundation: {vertical: {x: 105.0, k: 2.0e8, c: 1.0e5, one_sided: true}}\n"
-      "vehicle:\n"
-      "  car:\n"
-      "    bodies: [body, axle]\n"
-      "    joints: [guide]\n"
-      "    springs: [suspension]\n"
-      "    wheels: [wheel]\n"
-      "    drivers: [level]\n"
-      "    body: {mass: 15000.0, inertia: 1.0, position: [0.0, 2.0]}\n"
-      "    axle: {mass: 1200.0, inertia: 1.0, position: [0.0, 0.46]}\n"
-      "    guide: {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}\n"
-      "    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 1.5e6, damping: 2e4}\n"
-      "    wheel: {body: axle, radius: 0.46, law: hertz, stiffness: 3e10}\n"
-      "    level: {body: body, coordinate: phi}\n"
-      "train: {vehicles: car, positions: -2.0, speed: 45.0}\n";
+      "foundation: {vertical: {x: 105.0, k: 2.0e8, c: 1.0e5, one_sided: true}}\n" +
+      car + "train: {vehicles: car, positions: -2.0, speed: 45.0}\n";
   const char* const low_passed = "acceleration_lowpass";
   const Values wanted = {{"accuracy", "1e-4"}, {"accuracy_of", "deflection,moment,wheel_force,acceleration_lowpass"}};
   const Results chosen = run_yaml(scene, wanted);
   const Results exact = run_yaml(scene, finer("50", "7.5e-5") + Values{{"output_lowpass", "30"}});
   const double error = std::abs(peak_of(chosen, low_passed) / peak_of(exact, low_passed) - 1.0);
   EXPECT_LT(error, expected(chosen, low_passed).value_or(1e-3));
+}
+
+// Wheels that go on striking on a rough track lose what is known of them: trial runs of the first span expected 7e-4 of a
+// moment that was 1.1e-2 off.
+TEST(MendedPromise, WheelsThatGoOnStriking) {
+  const std::string scene =
+      "beam: {spans: 30.0*4, EI: 2e11, mass: 20000.0, damping_ratios: 0.01, continuity: simply_supported}\n"
+      "support: {types: roller*5}\n" +
+      car + "train: {vehicles: car, speed: 80.0}\ntrack: {profile: german_high, seed: 4}\n";
+  EXPECT_FALSE(expected(run_yaml(scene, {{"accuracy", "1e-2"}}), "moment"));
 }
 
 }  // namespace
