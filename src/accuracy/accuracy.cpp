@@ -20,6 +20,7 @@ namespace {
 
 constexpr double some_step = 1e-6;             // s, to look at a scene before it has a step
 constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
+constexpr double alike = 2.0;  // times what curves bend within steps: no more than runs and their beginnings may differ by
 constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
 
 void leave_out_rest(Scene& scene) {
@@ -127,20 +128,33 @@ void Accuracy::promise_nothing() {
   for (Promise& promise : alone) promise.kept = false;
 }
 
+bool Accuracy::promises_something() const {
+  return measured &&
+         std::any_of(promises.begin(), promises.end(), [](const Promise& p) { return p.present && p.kept; });
+}
+
 std::string Accuracy::withdrawn(const std::vector<double>& losses) {
-  const auto kept = [](const Promise& p) { return p.present && p.kept; };
   const auto unseen = std::count_if(losses.begin(), losses.end(), [&](double t) { return !lost_contact || t > seen_until; });
-  if (!measured || unseen == 0 || std::none_of(promises.begin(), promises.end(), kept)) return {};
+  if (unseen == 0 || !promises_something()) return {};
   promise_nothing();
   return fmt::format(
-      "nothing is promised after all: wheels lost contact {} times{}, which no trial run has seen; "
-      "-accuracy_report shows the errors",
+      "nothing is promised after all: wheels lost contact {} times{}, which no trial run has seen; -accuracy_whole makes "
+      "them as long as the run, -accuracy_report shows the errors",
       unseen, lost_contact ? fmt::format(" after {:.3g} s", seen_until) : "");
+}
+
+std::string Accuracy::withdrawn_by_surprise(const std::string& what) {
+  if (what.empty() || !promises_something()) return {};
+  promise_nothing();
+  return fmt::format(
+      "nothing is promised after all: {}, which no trial run has seen, as these ended at {:.3g} s; -accuracy_whole makes "
+      "them as long as the run, -accuracy_report shows the errors",
+      what, seen_until);
 }
 
 // Within a step a curve of frequency omega bends by (omega h)^2 of itself, and is off by (omega h)^4.
 std::string Accuracy::withdrawn_by_bends(double times, double wanted) {
-  if (!measured || !(times > 1.0)) return {};
+  if (!measured || !(times > alike)) return {};
   std::string names;
   for (std::size_t q = 0; q < quantities; ++q) {
     Promise& promise = promises[q];
@@ -152,7 +166,8 @@ std::string Accuracy::withdrawn_by_bends(double times, double wanted) {
   if (names.empty()) return {};
   return fmt::format(
       "not promised after all: {}: after {:.3g} s, where trial runs ended, accelerations or wheel forces change within "
-      "steps {:.2g} times as much as before; -accuracy_report shows the errors",
+      "steps {:.2g} times as much as before; -accuracy_whole makes them as long as the run, -accuracy_report shows the "
+      "errors",
       names, seen_until, times);
 }
 
@@ -204,10 +219,6 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   std::optional<ErrorSearch> search(std::in_place, comm, known, shared, end);
   try {
     search->run();
-    if (search->should_see_the_whole()) {
-      search.emplace(comm, known, shared, end, true);
-      search->run();
-    }
   } catch (const OutOfBalance& linear) {
     notes.push_back(fmt::format("vehicles stay mechanisms: linear ones are out of balance by {:.1g} of their weights",
                                 linear.defect));

@@ -62,12 +62,16 @@ struct Accuracy {
   /// After the run, in which wheels lost contact at these times, s: where no trial run has seen some of them, nothing is
   /// promised any more. Says so, or "".
   std::string withdrawn(const std::vector<double>& losses);
+  /// After the run, in which something touched or let go that trial runs have not seen, in words: nothing is promised any
+  /// more. Says so, or "".
+  std::string withdrawn_by_surprise(const std::string& what);
   /// After the run, in which curves bend within steps so many times as much as trial runs have seen: errors are larger, by
   /// the square of that, and what is above `wanted` then is not promised any more. Says so, or "".
   std::string withdrawn_by_bends(double times, double wanted);
   /// The same of low-passed accelerations, where their peak is within the unsettled end of the run.
   std::string withdrawn_at_end(bool unsettled);
   void promise_nothing();
+  bool promises_something() const;  // of a bridge
   /// Name in the results file and expected error of each quantity that is promised.
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took

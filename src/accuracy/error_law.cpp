@@ -12,7 +12,7 @@ constexpr double no_limit = 1e3;
 
 }  // namespace
 
-double ErrorLaw::power() const { return std::clamp(order, 1.0, highest_order); }
+double ErrorLaw::power() const { return std::clamp(order, 1.0, full_order); }
 
 double ErrorLaw::power_refining() const { return std::min(power(), refining_order); }
 
@@ -29,7 +29,7 @@ ErrorLaw error_from(double change, double size, const ErrorLaw& before, double m
   if (before.size > 1.5 * size) {
     const double halvings = std::log2(before.size / size);
     error.known = true;
-    error.order = change > 0.0 ? std::log2(before.change / change) / halvings : highest_order;
+    error.order = change > 0.0 ? std::log2(before.change / change) / halvings : full_order;
     if (before.known && before.order < unsettled) error.order = std::min(error.order, supposed_order);
     change = std::max(change, before.change / std::exp2((refining_order + 1.0) * halvings));
   }

@@ -10,7 +10,7 @@ namespace traverse::app {
 namespace {
 
 constexpr double supposed = 1.5;        // times a measured size that an error is extrapolated to by a supposed order
-constexpr double trials_of_run = 0.7;   // for trial runs
+constexpr double trials_of_run = 0.7, whole_trials_of_run = 8.0;  // for trial runs
 constexpr double farthest_guess = 8.0;  // of the run's mesh and step, for that
 constexpr double share_between = 0.5;   // of the wanted error, where it is only known for shorter and longer steps
 
@@ -55,7 +55,7 @@ void ErrorSearch::count_alike() {
 ErrorLaw ErrorSearch::error_in_time(Quantity q) {
   const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
   // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
-  double most = q != moment || !undamped_ ? highest_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
+  double most = q != moment || !undamped_ ? full_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
   if ((q == acceleration || q == low_passed) && dampers_let_go(scene_.beam->foundation)) most = 1.0;
   return error_from(growth_ * change, step_, time_[q], most);
 }
@@ -69,7 +69,7 @@ ErrorLaw ErrorSearch::error_in_space(Quantity q) {
     return std::pow(growth_, 0.75) * difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
   };
   // Without damping the contact's vibration meets one mode of the elements or another: nothing falls regularly.
-  const double most = q == low_passed && undamped_ ? 1.0 : highest_order;
+  const double most = q == low_passed && undamped_ ? 1.0 : full_order;
   const auto error = [&](double step) { return error_from(change(step), 1.0 / mesh_, space_[q], most); };
   if (!open_step_ || 2.0 * step_ * greatest_speed(scene_) >= element) return error(step_);
   const ErrorLaw by_long_steps = error(2.0 * step_);
@@ -143,7 +143,7 @@ double ErrorSearch::guess(const Errors& errors) const {
 // Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.
 bool ErrorSearch::worth_it(double step, int mesh) const {
   const double run = trials_.seconds(base::whole(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
-  return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, trials_of_run * run);
+  return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, (scene_.accuracy_whole ? whole_trials_of_run : trials_of_run) * run);
 }
 
 }  // namespace traverse::app

@@ -45,11 +45,11 @@ int most_trial_elements(const Scene& scene) {
 
 }  // namespace
 
-ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end, bool whole)
+ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end)
     : comm_(comm),
       scene_(scene),
       end_(end),
-      horizon_(whole ? end - moved_by() : until_all_is_met(shared)),
+      horizon_(scene.accuracy_whole ? end - moved_by() : until_all_is_met(shared)),
       trials_(comm, shortened(moved_up(scene), horizon_)),
       open_mesh_(scene.mesh_open),
       open_step_(!scene.time_step),
@@ -89,7 +89,9 @@ double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
   const double step = scene_.time_step.value_or(first_steps(scene_, first_omega(shared), first).first);
   double until = first;
   for (const Meeting& meeting : met_later(scene, first, end_ - moved_by())) {
-    if (affordable(meeting.until, step)) {
+    const Trials longer(comm_, shortened(scene, meeting.until));
+    if (meeting.until <= most_beginnings * first ||
+        usual_trials * longer.seconds(mesh_of(scene_), step) < hardly_anything) {
       until = meeting.until;
     } else if (unseen_.empty()) {
       unseen_ = meeting.what;
@@ -97,17 +99,6 @@ double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
   }
   if (asks_for(scene_, low_passed)) until += unsettled_end(*scene_.output.low_pass);
   return std::min(until, end_ - moved_by());
-}
-
-bool ErrorSearch::affordable(double until, double step) const {
-  const Scene scene = moved_up(scene_);
-  return until <= most_beginnings * beginning(scene, end_) ||
-         usual_trials * Trials(comm_, shortened(scene, until)).seconds(mesh_of(scene_), step) < hardly_anything;
-}
-
-bool ErrorSearch::should_see_the_whole() const {
-  const double whole = end_ - moved_by();
-  return trials_.lost_contact() && horizon_ < whole && stirs_all_along(scene_) && affordable(whole, step_);
 }
 
 void ErrorSearch::run() {

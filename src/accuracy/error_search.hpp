@@ -17,17 +17,13 @@ namespace traverse::app {
 
 class ErrorSearch {
  public:
-  /// The scene with its Rayleigh damping as a and b; both must outlive it. end: of the run, s. whole: trial runs last as
-  /// long as the run.
-  ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end, bool whole = false);
+  /// The scene with its Rayleigh damping as a and b; both must outlive it. end: of the run, s.
+  ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& shared, double end);
 
   /// Collective.
   void run();
   /// Mesh and step of the scene, where they are open, and what they promise.
   void apply(Scene& scene, Accuracy& result);
-
-  /// Whether wheels strike on a track that goes on to stir them behind the trial runs, where whole ones cost little.
-  bool should_see_the_whole() const;
 
   double horizon() const { return horizon_; }  // s, of a trial run
   std::size_t trials() const { return trials_.count(); }
@@ -44,7 +40,6 @@ class ErrorSearch {
 
   double moved_by() const;
   double until_all_is_met(const SharedBeam& shared);
-  bool affordable(double until, double step) const;
   void refine();
   void search();
   [[noreturn]] void refuse_scene() const;

@@ -195,12 +195,4 @@ std::vector<Meeting> met_later(const Scene& scene, double seen, double end) {
   return list;
 }
 
-bool stirs_all_along(const Scene& scene) {
-  const track::Profile& profile = scene.profile;
-  const bool table = !profile.level() && std::isinf(profile.shortest_wave());
-  return profile.is_rough() || table || std::any_of(scene.vehicles.begin(), scene.vehicles.end(), [](const Vehicle& v) {
-           return std::any_of(v.wheels.begin(), v.wheels.end(), [](const Wheel& w) { return !w.shape.round(); });
-         });
-}
-
 }  // namespace traverse::app

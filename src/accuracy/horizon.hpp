@@ -22,7 +22,4 @@ struct Meeting {
 /// profile's table, the last change of a force over time. Ascending.
 std::vector<Meeting> met_later(const Scene& scene, double seen, double end);
 
-/// Whether something stirs wheels all along the way: roughness, a profile's table, a wheel out of round.
-bool stirs_all_along(const Scene& scene);
-
 }  // namespace traverse::app

@@ -150,7 +150,7 @@ WatchedRun::WatchedRun(ReadyRun& ready, bool with_mechanisms)
     watch_.keep_wheel_forces({scene_.output.wheel_low_pass, scene_.output.unloading_level, plan, ready.wheels});
   if (!scene_.output.passages.empty()) watch_.note_axle_passages({scene_, plan.time_step});
   if (!scene_.limits.empty()) watch_.judge();
-  watch_.tell_apart_after(ready.accuracy.seen_until);
+  watch_.tell_beyond_trials(ready.accuracy.seen_until);
   if (ready.archive) watch_.keep(*ready.archive);
   ready.archive.reset();
 }
@@ -190,7 +190,8 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
     summary.energy_left = total(ready_.job.comm, *system_.structure()->energy_left());
   summary.static_error = system_.static_error();
   const std::array withdrawn = {ready_.accuracy.withdrawn(watch_.losses()),
-                                ready_.accuracy.withdrawn_by_bends(watch_.bends_after(), scene_.accuracy),
+                                ready_.accuracy.withdrawn_by_surprise(watch_.beyond_trials().surprise()),
+                                ready_.accuracy.withdrawn_by_bends(watch_.bends_beyond_trials(), scene_.accuracy),
                                 ready_.accuracy.withdrawn_at_end(watch_.ends_unsettled())};
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;

@@ -120,10 +120,7 @@ void Watch::note_peaks() {
     for (std::size_t i = 0; i < member.type->wheels.size(); ++i)
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
-  if (sample_.time > apart_after_ && !bends_before_) {
-    bends_before_ = peaks_.bends();
-    peaks_.forget_bends();
-  }
+  beyond_trials_.add(sample_.time, fleet, now_.motion.beam.foundation, peaks_);
   peaks_.add(sample_.time, now_.probes, wheel_forces_);
   envelope_.add(sample_.time, now_.probes);
   if (deck_) deck_->add(sample_.time, now_.probes);
@@ -216,6 +213,10 @@ void Watch::note_separations() {
   recorder_.separations(list);
 }
 
+void Watch::tell_beyond_trials(double until) {
+  beyond_trials_ = BeyondTrials(until, system_.fleet(), beam_ == nullptr ? nullptr : &beam_->model());
+}
+
 std::vector<double> Watch::losses() const {
   std::vector<double> times;
   for (const train::Separation& s : system_.contacts().separations().list())
@@ -240,7 +241,7 @@ const results::Summary& Watch::finished_extremes() {
 }
 
 void Watch::keep(base::Archive& archive) {
-  archive.same(peaks_, bends_before_, envelope_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time, now_.probes,
+  archive.same(peaks_, beyond_trials_, envelope_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time, now_.probes,
                most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);

@@ -1,7 +1,6 @@
 // A transient run: time integration with everything that is recorded on the way.
 #pragma once
 
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "results/recorder.hpp"
 #include "results/terminal.hpp"
 #include "run/axle_passages.hpp"
+#include "run/beyond_trials.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/envelope.hpp"
 #include "run/outputs.hpp"
@@ -60,10 +60,11 @@ class Watch {
   const results::Summary& extremes() const { return summary_; }
   /// The peaks, those of wheels and contacts included; after the last sample.
   const results::Summary& finished_extremes();
-  /// How much accelerations and wheel forces bend within steps is told for what comes after t (s) apart.
-  void tell_apart_after(double t) { apart_after_ = t; }
-  /// After finish. So many times as much, at most, as before it; 0 where nothing came after.
-  double bends_after() const { return bends_before_ ? peaks_.bends().times(*bends_before_) : 0.0; }
+  /// Trial runs have seen the run until then, s.
+  void tell_beyond_trials(double until);
+  const BeyondTrials& beyond_trials() const { return beyond_trials_; }
+  /// BeyondTrials::bends, after finish.
+  double bends_beyond_trials() const { return beyond_trials_.bends(peaks_); }
   /// When wheels have lost contact, s.
   std::vector<double> losses() const;
   /// What was seen at the latest sample.
@@ -96,8 +97,7 @@ class Watch {
   bool recorded_;           // whether some rank stores samples
   std::vector<beam::Response> dragged_, seen_apart_;
   Peaks peaks_;
-  double apart_after_ = std::numeric_limits<double>::infinity();  // s
-  std::optional<Bends> bends_before_;
+  BeyondTrials beyond_trials_;
   Envelope envelope_;
   std::optional<DeckAcceleration> deck_;
   std::optional<Judge> judge_;

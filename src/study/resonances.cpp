@@ -12,7 +12,7 @@ namespace {
 
 constexpr double same_place = 0.005;  // m: axles that meet
 constexpr double most_of_it = 0.55;   // of the weight, that meets axles again
-constexpr int highest_order = 4;      // i
+constexpr int highest_multiple = 4;      // i
 constexpr double near = 0.5;          // of a resonance's width: its peak is so near, or at one of the speeds beside it
 constexpr double part_of_width = 0.25;   // of a resonance's width: speeds so near show its peak
 constexpr std::size_t most_axles = 400;  // of a train, the first ones, that its distance is looked for among
@@ -104,7 +104,7 @@ std::vector<results::Resonance> resonances_of(const Scene& scene, std::span<cons
     const Axles axles = axles_of(scene, train);
     const double d = regular_distance(axles.x, axles.forces);
     for (std::size_t n = 0; d > 0.0 && n < frequencies.size(); ++n)
-      for (int i = 1; i <= highest_order; ++i) {
+      for (int i = 1; i <= highest_multiple; ++i) {
         const double speed = frequencies[n] * d / i;
         if (speed < slowest || speed > fastest) continue;
         found.push_back(

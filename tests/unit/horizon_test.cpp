@@ -80,6 +80,23 @@ TEST(Accuracy, IsWithdrawnWhereContactsWereLostUnseen) {
   EXPECT_EQ(accuracy.withdrawn(losses), "");
 }
 
+// What bends twice as much is four times as far off; what nobody has seen promises nothing.
+TEST(Accuracy, IsWithdrawnWhereMoreComesThanTrialsSaw) {
+  Accuracy accuracy;
+  accuracy.measured = true;
+  accuracy.seen_until = 0.7;
+  for (Promise& promise : accuracy.promises) promise = {true, true, 1e-4, ""};
+  accuracy.promises[moment].expected = 5e-4;
+  EXPECT_EQ(accuracy.withdrawn_by_bends(1.9, 1e-3), "");
+  const std::string said = accuracy.withdrawn_by_bends(2.5, 1e-3);
+  EXPECT_NE(said.find("not promised after all: moment: after 0.7 s"), std::string::npos) << said;
+  EXPECT_NEAR(accuracy.promises[deflection].expected, 6.25e-4, 1e-15);
+  EXPECT_EQ(accuracy.expected().size(), quantities - 1U);
+  EXPECT_EQ(accuracy.withdrawn_by_surprise(""), "");
+  EXPECT_NE(accuracy.withdrawn_by_surprise("a stop touches at 2 s").find("a stop touches at 2 s"), std::string::npos);
+  EXPECT_TRUE(accuracy.expected().empty());
+}
+
 TEST(SweepModel, PromisesNothingOfLossesThatNoTrialHasSeen) {
   results::Sweep::Model model;
   model.expected_errors = {{"deflection", 1e-3}};

@@ -41,6 +41,19 @@ TEST(Peaks, InstantsThatNearMakeNoParabola) {
   EXPECT_NEAR(peaks.largest(wheel_force).time, crest, 1e-6);
 }
 
+// A sine of frequency omega bends by (omega h)^2 of itself within steps of h.
+TEST(Peaks, BendsOfAWave) {
+  const double h = 0.01, omega = 20.0;
+  Peaks peaks = peaks_of_curve([&](double t) { return 3.0 * std::sin(omega * t); }, h);
+  const Bends slow = peaks.bends();
+  EXPECT_NEAR(slow.acceleration, omega * omega * h * h, 0.01 * omega * omega * h * h);
+  EXPECT_NEAR(slow.wheel_force, slow.acceleration, 1e-3 * slow.acceleration);
+  const Bends fast = peaks_of_curve([&](double t) { return 3.0 * std::sin(2.0 * omega * t); }, h).bends();
+  EXPECT_NEAR(fast.times(slow), 4.0, 0.05);
+  peaks.forget_bends();
+  EXPECT_EQ(peaks.bends().times(slow), 0.0);
+}
+
 TEST(Peaks, LieBetweenSamples) {
   const auto wave = [](double t) { return -std::sin(7.0 * t + 0.1); };
   double before = 0.0;

@@ -122,5 +122,22 @@ TEST(MendedPromise, WheelsThatGoOnStriking) {
   EXPECT_FALSE(expected(run_yaml(scene, {{"accuracy", "1e-2"}}), "moment"));
 }
 
+// A stop that is touched far along the bridge is no part of trial runs of its beginning: with another road a moment was 1.9
+// times off what was wanted. As long as the run they know it.
+TEST(MendedPromise, StopThatIsTouchedLate) {
+  std::string with_stop = car;
+  with_stop.replace(with_stop.find("[suspension]"), 12, "[suspension, stop]");
+  with_stop +=
+      "    stop: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 2e8, side: compression, gap: "
+      "0.107}\n";
+  const std::string scene =
+      "beam: {spans: 30.0*6, EI: 2e11, mass: 20000.0, damping_ratios: 0.01, continuity: simply_supported}\n"
+      "support: {types: roller*7}\n" +
+      with_stop + "train: {vehicles: car, speed: 50.0}\ntrack: {profile: german_low, seed: 1}\n";
+  EXPECT_FALSE(expected(run_yaml(scene, {{"accuracy", "1e-2"}}), "deflection"));
+  expect_kept(run_yaml(scene, {{"accuracy", "1e-2"}, {"accuracy_whole", "true"}}), run_yaml(scene, finer("32", "2e-4")),
+              {"deflection", "acceleration", "moment", "wheel_force"}, 1e-2);
+}
+
 }  // namespace
 }  // namespace traverse::test

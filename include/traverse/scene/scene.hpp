@@ -126,6 +126,7 @@ struct Scene {
   bool mesh_open = false;                // its elements are chosen from the accuracy
   bool step_open = false;                // so is the step
   bool accuracy_report = false;          // a refined run at the end shows the true errors
+  bool accuracy_whole = false;           // trial runs are as long as the run
   bool accuracy_cache = true;            // what was chosen for the same scene before is taken again
   Output output;
   std::vector<options::VerdictLimit> limits;                 // that runs are checked against
