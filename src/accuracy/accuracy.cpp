@@ -11,6 +11,7 @@
 #include "first_guess.hpp"
 #include "mechanism_step.hpp"
 #include "results/stage.hpp"
+#include "run/beyond_trials.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/passage.hpp"
 #include "traverse/options/input.hpp"
@@ -20,7 +21,6 @@ namespace {
 
 constexpr double some_step = 1e-6;             // s, to look at a scene before it has a step
 constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
-constexpr double alike = 2.0;  // times what curves bend within steps: no more than runs and their beginnings may differ by
 constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
 
 void leave_out_rest(Scene& scene) {
@@ -134,11 +134,13 @@ bool Accuracy::promises_something() const {
 }
 
 std::string Accuracy::withdrawn(const std::vector<double>& losses) {
-  const auto unseen = std::count_if(losses.begin(), losses.end(), [&](double t) { return !lost_contact || t > seen_until; });
+  const auto unseen =
+      std::count_if(losses.begin(), losses.end(), [&](double t) { return !lost_contact || t > seen_until; });
   if (unseen == 0 || !promises_something()) return {};
   promise_nothing();
   return fmt::format(
-      "nothing is promised after all: wheels lost contact {} times{}, which no trial run has seen; -accuracy_whole makes "
+      "nothing is promised after all: wheels lost contact {} times{}, which no trial run has seen; -accuracy_whole "
+      "makes "
       "them as long as the run, -accuracy_report shows the errors",
       unseen, lost_contact ? fmt::format(" after {:.3g} s", seen_until) : "");
 }
@@ -147,14 +149,15 @@ std::string Accuracy::withdrawn_by_surprise(const std::string& what) {
   if (what.empty() || !promises_something()) return {};
   promise_nothing();
   return fmt::format(
-      "nothing is promised after all: {}, which no trial run has seen, as these ended at {:.3g} s; -accuracy_whole makes "
+      "nothing is promised after all: {}, which no trial run has seen, as these ended at {:.3g} s; -accuracy_whole "
+      "makes "
       "them as long as the run, -accuracy_report shows the errors",
       what, seen_until);
 }
 
 // Within a step a curve of frequency omega bends by (omega h)^2 of itself, and is off by (omega h)^4.
 std::string Accuracy::withdrawn_by_bends(double times, double wanted) {
-  if (!measured || !(times > alike)) return {};
+  if (!measured || !(times > BeyondTrials::alike)) return {};
   std::string names;
   for (std::size_t q = 0; q < quantities; ++q) {
     Promise& promise = promises[q];

@@ -51,12 +51,13 @@ std::string read_file(const std::string& path) {
 void ChosenOf::keep(base::Bytes& bytes) {
   int bays = scene.beam && scene.beam->track ? scene.beam->track->elements_per_bay : 0;
   std::vector<int> elements = scene.beam ? scene.beam->elements : std::vector<int>();
-  std::string method = scene.sweep ? scene.sweep->method : std::string();
-  bytes(elements, bays, method, scene.time_step, scene.integrator, scene.model_modes, scene.step_probes,
-        scene.rest_tolerance, scene.vehicle_model, scene.most_defect, scene.output.low_pass);
+  Sweep sweep = scene.sweep.value_or(Sweep());
+  bytes(elements, bays, sweep.method, sweep.trials_reach, sweep.trials_lost_contact, scene.time_step, scene.integrator,
+        scene.model_modes, scene.step_probes, scene.rest_tolerance, scene.vehicle_model, scene.most_defect,
+        scene.output.low_pass);
   if (scene.beam) scene.beam->elements = elements;
   if (scene.beam && scene.beam->track) scene.beam->track->elements_per_bay = bays;
-  if (scene.sweep) scene.sweep->method = method;
+  if (scene.sweep) scene.sweep = sweep;
 }
 
 KeptChoice::KeptChoice(MPI_Comm comm, const Scene& scene) {

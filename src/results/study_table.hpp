@@ -33,6 +33,7 @@ inline constexpr StudyColumn study_columns[] = {
     {"greatest_wheel_force", "N", StudyColumn::run, true, true},
     {"contact_losses", "1", StudyColumn::run, true, false},
     {"longest_loss", "s", StudyColumn::run, true, false},
+    {"unseen", "1", StudyColumn::run, false, false},
     {"judged", "as /verdicts/quantity", StudyColumn::limit, false, true},
     {"judged_x", "m", StudyColumn::limit, false, false},
 };

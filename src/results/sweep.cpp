@@ -162,9 +162,8 @@ void record(const Sweep& sweep, Recorder& recorder) {
   of_runs("contact_losses", sweep.contact_losses, "1");
   of_runs("longest_loss", sweep.longest_loss, "s");
   if (!sweep.model.expected_errors.empty()) {
-    std::vector<double> promised = sweep.contact_losses;  // not_run stays
-    for (double& losses : promised)
-      if (!std::isnan(losses)) losses = sweep.model.holds(losses) ? 1.0 : 0.0;
+    std::vector<double> promised = sweep.unseen;
+    for (double& run : promised) run = 1.0 - run;  // not_run stays
     of_runs("promised", promised, "1");
   }
   if (!sweep.judged.limits.empty()) {
@@ -211,10 +210,11 @@ std::vector<Verdict> verdicts_of(const Sweep& sweep) {
   });
 }
 
-std::string Sweep::Model::not_promised(const std::vector<double>& contact_losses) const {
-  const auto count = std::count_if(contact_losses.begin(), contact_losses.end(), [&](double n) { return !holds(n); });
+std::string Sweep::Model::not_promised(const std::vector<double>& unseen) const {
+  const auto count = std::count(unseen.begin(), unseen.end(), 1.0);
   if (expected_errors.empty() || count == 0) return {};
-  return fmt::format("nothing is promised of {} of the runs: wheels lost contact, which no trial run has seen", count);
+  return fmt::format("nothing is promised of {} of the runs: they met what no trial run has seen, as losses of contact",
+                     count);
 }
 
 std::string method_of(const Sweep::Model& model) {

@@ -39,6 +39,7 @@ struct Sweep {
   std::vector<double> static_deflection;   // [trains][probes], m, largest magnitude; not_run: unknown
   // [trains][speeds], all empty without vehicles that roll: N, N, losses of contact of all wheels, s.
   std::vector<double> least_wheel_force, greatest_wheel_force, contact_losses, longest_loss;
+  std::vector<double> unseen;  // [trains][speeds]: 1 where a run has met what no trial run has seen
 
   Judged judged;  // by the scene's limits, runs as [trains][speeds]
 
@@ -53,16 +54,11 @@ struct Sweep {
     double accuracy = 0.0;   // from which mesh, step and modes were chosen; 0: they were given
     /// Relative, of the peaks whose accuracy is promised.
     std::vector<std::pair<std::string, double>> expected_errors{};
-    bool lost_contact = false;  // wheels did in trial runs as long as these
-    /// Whether the expected errors hold in a run that lost contact so often: not where no trial run has seen that.
-    bool holds(double contact_losses) const { return lost_contact || !(contact_losses > 0.0); }
-    /// How many runs they do not hold in, said in words; "" where there are none.
-    std::string not_promised(const std::vector<double>& contact_losses) const;
+    /// How many runs they do not hold in, by Sweep::unseen, said in words; "" where there are none.
+    std::string not_promised(const std::vector<double>& unseen) const;
     std::string method{};  // of runs side by side, as -ts_type names it; empty: as TS takes it
 
-    void keep(base::Bytes& bytes) {
-      bytes(modes, elements, in_bays, time_step, accuracy, expected_errors, lost_contact, method);
-    }
+    void keep(base::Bytes& bytes) { bytes(modes, elements, in_bays, time_step, accuracy, expected_errors, method); }
   } model;
 
   std::size_t rows() const { return trains.empty() ? 1 : trains.size(); }

@@ -36,7 +36,7 @@ Sweep joined(const Sweep& a, const Sweep& b) {
   }
   for (std::vector<double> Sweep::*values :
        {&Sweep::amplification, &Sweep::least_wheel_force, &Sweep::greatest_wheel_force, &Sweep::contact_losses,
-        &Sweep::longest_loss})
+        &Sweep::longest_loss, &Sweep::unseen})
     join(both.*values, a.*values, b.*values);
   if (!a.judged.limits.empty()) {
     join(both.judged.value, a.judged.value, b.judged.value);

@@ -35,7 +35,9 @@ void BeyondTrials::add_springs(const train::Fleet& fleet) {
         if (!springs[i].law || !springs[i].law->lets_go()) continue;
         const auto [kind, is_new] = kinds.try_emplace({member.type, torsion, i}, seen_.size());
         if (is_new) seen_.push_back(0);
-        springs_.push_back({member.unit, first + static_cast<int>(i), torsion,
+        springs_.push_back({member.unit,
+                            first + static_cast<int>(i),
+                            torsion,
                             {kind->second, fmt::format("spring '{}' of vehicle {}", springs[i].name, vehicle)}});
       }
     };
@@ -47,9 +49,9 @@ void BeyondTrials::add_springs(const train::Fleet& fleet) {
 void BeyondTrials::add_supports(const beam::BeamModel& beam) {
   for (std::size_t row = 0; row < beam::foundation_kind_count; ++row) {
     const beam::FoundationKind& kind = beam::foundation_kinds[row];
-    std::map<std::tuple<double, double, double, bool>, std::size_t> alike;
+    std::map<std::tuple<double, double, double, bool>, std::size_t> kinds;
     const auto add = [&](std::size_t place, const auto& numbers, std::string name) {
-      const auto [found, is_new] = alike.try_emplace(numbers, seen_.size());
+      const auto [found, is_new] = kinds.try_emplace(numbers, seen_.size());
       if (is_new) seen_.push_back(0);
       supports_.push_back({row, place, {found->second, std::move(name)}});
     };
@@ -84,8 +86,9 @@ void BeyondTrials::add(double t, const train::Fleet& fleet, const structure::Non
   }
   for (const Spring& s : springs_) {
     const train::MovingVehicle& vehicle = fleet.vehicles[static_cast<std::size_t>(s.vehicle)];
-    see(t, s.part, s.torsion ? vehicle.mechanism.torsion_spring_moment(vehicle.state, s.spring)
-                             : vehicle.mechanism.spring_force(vehicle.state, s.spring));
+    see(t, s.part,
+        s.torsion ? vehicle.mechanism.torsion_spring_moment(vehicle.state, s.spring)
+                  : vehicle.mechanism.spring_force(vehicle.state, s.spring));
   }
   for (const Support& s : supports_)
     if (const std::vector<double>& forces = foundation.of_kind[s.row]; s.place < forces.size())

@@ -19,6 +19,9 @@ namespace traverse::app {
 
 class BeyondTrials {
  public:
+  /// Times what curves bend before, up to which that is no more than runs and their beginnings differ by.
+  static constexpr double alike = 2.0;
+
   BeyondTrials() = default;  // trial runs have seen all
   /// until: when they ended, s of the run. beam: null where there is none.
   BeyondTrials(double until, const train::Fleet& fleet, const beam::BeamModel* beam);
@@ -55,7 +58,7 @@ class BeyondTrials {
   double until_ = std::numeric_limits<double>::infinity();
   std::vector<Spring> springs_;
   std::vector<Support> supports_;
-  Part sleepers_;  // those over a gap
+  Part sleepers_;                    // those over a gap
   std::vector<unsigned char> seen_;  // of each kind, one bit each: loose, pressed, pulled
   std::optional<Bends> bends_before_;
   std::string surprise_;

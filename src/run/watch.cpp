@@ -217,6 +217,12 @@ void Watch::tell_beyond_trials(double until) {
   beyond_trials_ = BeyondTrials(until, system_.fleet(), beam_ == nullptr ? nullptr : &beam_->model());
 }
 
+bool Watch::met_unseen(double losses_seen_until) const {
+  const std::vector<double> lost = losses();
+  return !beyond_trials_.surprise().empty() || beyond_trials_.bends(peaks_) > BeyondTrials::alike ||
+         std::any_of(lost.begin(), lost.end(), [&](double t) { return t > losses_seen_until; });
+}
+
 std::vector<double> Watch::losses() const {
   std::vector<double> times;
   for (const train::Separation& s : system_.contacts().separations().list())
@@ -241,8 +247,8 @@ const results::Summary& Watch::finished_extremes() {
 }
 
 void Watch::keep(base::Archive& archive) {
-  archive.same(peaks_, beyond_trials_, envelope_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time, now_.probes,
-               most_deflected_);
+  archive.same(peaks_, beyond_trials_, envelope_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time,
+               now_.probes, most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);
   archive.same(axle_passages_);

@@ -65,6 +65,9 @@ class Watch {
   const BeyondTrials& beyond_trials() const { return beyond_trials_; }
   /// BeyondTrials::bends, after finish.
   double bends_beyond_trials() const { return beyond_trials_.bends(peaks_); }
+  /// After finish. Whether anything was unlike what trial runs have seen, wheels that lost contact after some time (s)
+  /// among it.
+  bool met_unseen(double losses_seen_until) const;
   /// When wheels have lost contact, s.
   std::vector<double> losses() const;
   /// What was seen at the latest sample.

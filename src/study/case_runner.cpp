@@ -224,6 +224,8 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
   if (filters_wheels(scene) && no_filter(out.wheel_low_pass, passage.plan(), wheels, "wheels").empty())
     watch.keep_wheel_forces({out.wheel_low_pass, out.unloading_level, passage.plan(), wheels});
   if (scene.judges_runs()) watch.judge();
+  const double seen_until = run.speed > 0.0 ? scene.sweep->trials_reach / run.speed : scene.sweep->trials_reach;
+  watch.tell_beyond_trials(seen_until);
   CaseResult result;
   result.peaks.resize(scene.output.probes.size());
   const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
@@ -252,6 +254,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
   result.greatest_wheel_force = extremes.greatest_wheel_force;
   result.contact_losses = extremes.contact_losses;
   result.longest_loss = extremes.longest_loss;
+  result.unseen = watch.met_unseen(scene.sweep->trials_lost_contact ? seen_until : 0.0);
   std::vector<double>& at_rest = static_deflection_[train];
   if (at_rest.empty() || !passage.system().weights().pass_together(watch.paths())) {
     at_rest.clear();

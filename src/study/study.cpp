@@ -88,6 +88,7 @@ std::vector<double> row_of(std::size_t run, const CaseResult& result, const std:
   if (wheels)
     row.insert(row.end(),
                {result.least_wheel_force, result.greatest_wheel_force, result.contact_losses, result.longest_loss});
+  row.push_back(result.unseen ? 1.0 : 0.0);
   for (const results::Finding& finding : result.findings) row.push_back(finding.value);
   for (const results::Finding& finding : result.findings) row.push_back(finding.x);
   return row;

@@ -27,7 +27,8 @@ void join(const SweepChoice& one, SweepChoice& all) {
   model.elements = std::max(model.elements, one.model.elements);
   if (model.time_step > 0.0) model.time_step = *scene.time_step;
   model.method = scene.sweep->method;
-  model.lost_contact |= one.model.lost_contact;
+  scene.sweep->trials_reach = std::min(scene.sweep->trials_reach, other.sweep->trials_reach);
+  scene.sweep->trials_lost_contact |= other.sweep->trials_lost_contact;
   // What is promised of all is what both promise, with the larger error.
   std::erase_if(model.expected_errors, [&](auto& promise) {
     const auto& others = one.model.expected_errors;

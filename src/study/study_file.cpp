@@ -235,8 +235,8 @@ void print_study_course(const results::StudyTable& table, const results::Sweep::
   if (course.refined) results::print(*course.refined);
   results::StudyStatistics(table).print();
   if (table.finished_runs() > 0) results::print_verdicts(table.verdicts());
-  if (const results::StudyTable::Column* losses = table.find("contact_losses"))
-    if (const std::string said = model.not_promised(losses->values); !said.empty()) fmt::print("  note: {}\n", said);
+  if (const std::string said = model.not_promised(table.find("unseen")->values); !said.empty())
+    fmt::print("  note: {}\n", said);
   if (course.left_group > 0)
     fmt::print("  {} of the runs left the others beside them, where wheels lost contact, and were taken alone\n",
                course.left_group);

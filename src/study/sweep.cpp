@@ -184,7 +184,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
     if (runs.ended > 0) results::print(sweep, resonances, cancellations);
     if (check) check->print();
     if (runs.ended > 0) results::print_verdicts(verdicts);
-    if (const std::string said = sweep.model.not_promised(sweep.contact_losses); !said.empty())
+    if (const std::string said = sweep.model.not_promised(sweep.unseen); !said.empty())
       fmt::print("  note: {}\n", said);
     if (alone > 0)
       fmt::print("  {} of the runs left the others beside them, where wheels lost contact, and were taken alone\n",

@@ -25,8 +25,6 @@ void add(const Accuracy& one, std::optional<Accuracy>& all) {
     all->promises[q].kept &= one.promises[q].kept;
     all->promises[q].expected = std::max(all->promises[q].expected, one.promises[q].expected);
   }
-  all->lost_contact |= one.lost_contact;
-  all->seen_until = std::min(all->seen_until, one.seen_until);
 }
 
 void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
@@ -62,6 +60,9 @@ std::optional<Accuracy> choose_at_speeds(const Scene& given, Scene& scene, std::
     scene.step_probes = one.step_probes;
     if (!all || one.vehicle_model == VehicleModel::full) scene.vehicle_model = one.vehicle_model;
     scene.most_defect = one.most_defect;
+    if (accuracy.seen_until != Accuracy::the_end)
+      scene.sweep->trials_reach = std::min(scene.sweep->trials_reach, accuracy.seen_until * speed);
+    scene.sweep->trials_lost_contact |= accuracy.lost_contact;
     add(accuracy, all);
   }
   return all;
@@ -147,7 +148,6 @@ SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& note
   choice.model = model_of(choice.scene);
   choice.model.accuracy = given.accuracy;
   choice.model.expected_errors = all->expected();
-  choice.model.lost_contact = all->lost_contact && all->seen_until == Accuracy::the_end;
   for (auto& [quantity, error] : choice.model.expected_errors) error += modes.error;
   return choice;
 }

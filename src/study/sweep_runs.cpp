@@ -44,6 +44,7 @@ results::Sweep empty_sweep(const Scene& scene, const std::vector<double>& speeds
   const std::vector<double> none(runs * sweep.probes.size(), results::Sweep::not_run);
   sweep.deflection = sweep.acceleration = sweep.moment = {none, none};
   sweep.amplification = none;
+  sweep.unseen.assign(runs, results::Sweep::not_run);
   sweep.static_deflection.assign(sweep.rows() * sweep.probes.size(), results::Sweep::not_run);
   const auto rolls = [](const Vehicle& v) { return !v.wheels.empty(); };
   sweep.judged = results::Judged(scene.limits, runs);
@@ -75,6 +76,7 @@ void store(const CaseResult& result, std::size_t train, std::size_t speed, resul
     sweep.judged.x[at] = result.findings[l].x;
     if (std::isnan(result.findings[l].value)) sweep.judged.why[l] = result.findings[l].why;
   }
+  sweep.unseen[run] = result.unseen ? 1.0 : 0.0;
   if (sweep.least_wheel_force.empty()) return;
   sweep.least_wheel_force[run] = result.least_wheel_force;
   sweep.greatest_wheel_force[run] = result.greatest_wheel_force;
@@ -88,7 +90,7 @@ void gather(MPI_Comm comm, results::Sweep& sweep) {
        {&sweep.deflection.value, &sweep.deflection.time, &sweep.acceleration.value, &sweep.acceleration.time,
         &sweep.moment.value, &sweep.moment.time, &sweep.amplification, &sweep.static_deflection,
         &sweep.least_wheel_force, &sweep.greatest_wheel_force, &sweep.contact_losses, &sweep.longest_loss,
-        &sweep.judged.value, &sweep.judged.x}) {
+        &sweep.unseen, &sweep.judged.value, &sweep.judged.x}) {
     std::vector<double> known(*values);
     for (double& value : known)
       if (value != value) value = -std::numeric_limits<double>::infinity();
