@@ -39,6 +39,13 @@ train:
 """
 
 
+def with_stop(text, stiffness, gap):
+    """The car's scene with a stop beside its spring, which is touched where that is pressed by the gap."""
+    return text.replace("springs: [suspension]", "springs: [suspension, stop]").replace(
+        "    wheel:   {", f"    stop: {{bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: {stiffness:g}, "
+                         f"side: compression, gap: {gap:g}}}\n    wheel:   {{")
+
+
 def forces(draw, speed):
     """Two to six axles of 50 to 250 kN, 2 to 12 m apart."""
     count = draw.randint(1, 6)
