@@ -243,9 +243,10 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
 
 Scene refined(const Scene& scene) {
   Scene fine = scene;
-  if (scene.modes_open && scene.model_modes > 0) {  // both were chosen together
+  if (scene.modes_open && scene.model_modes > 0) {  // chosen together with the steps, which do for modes
     fine.model_modes = 0;
     fine.vehicle_model = VehicleModel::full;
+    fine.integrator.clear();
   }
   if (fine.beam->track)
     fine.beam->track->elements_per_bay *= 2;

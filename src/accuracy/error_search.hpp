@@ -34,7 +34,7 @@ class ErrorSearch {
   // than it is worth.
   static constexpr double farthest = 2.2, at_most = 2.5;
   // Of what is refused: times the wanted error, and what it keeps at least where that could be had.
-  static constexpr double best_effort = 10.0, least_effort = 4e-4;
+  static constexpr double best_effort = 10.0, least_effort = 1e-3;
   static constexpr double hardly_anything = 1.5, next_to_nothing = 0.1;  // s of trial runs, estimated
   static constexpr int enough_alike = 2;
 

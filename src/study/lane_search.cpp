@@ -16,6 +16,7 @@ constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4;  
 constexpr int most_halvings = 8;
 constexpr double first_step_factor = 4.0;  // times the step that the search by elements would begin with
 constexpr std::array methods = {"genalpha", "esdirk4"};
+constexpr double of_one_solve = 1.5;  // times the errors of genalpha's steps, which come and go with where these end
 constexpr std::array step_factors = {2.0, 1.4, 1.0, 0.7, 0.5};  // times the step of esdirk4, of what may cost less
 constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 // Each is compared with half as many more. Without damping that grows with the frequency errors of moments fall with
@@ -169,7 +170,8 @@ LaneModel LaneSearch::cheaper(const LaneModel& model) {
       const LaneModel tried = with_step(model, factor, method);
       if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
       LaneErrors own = change(trials_, tried, with_step(model, 0.5));
-      for (std::size_t q = 0; q < quantities; ++q) own[q] += halved_[q];
+      const double times = tried.method->solves() > 1.0 ? 1.0 : of_one_solve;
+      for (std::size_t q = 0; q < quantities; ++q) own[q] = times * own[q] + halved_[q];
       const double over = greatest(own) / (part_of_steps * accuracy_);
       if (over > std::pow(factor / step_factors.back(), tried.method->order)) break;  // nor will the shortest do
       if (over > 1.0) continue;

@@ -18,21 +18,34 @@ std::string coaches(const std::string& bridge, const std::string& type, const st
          type + ".yml}}\ntrain: {" + train + "}\nscene: {tail: 1.0}\n";
 }
 
-/// A mass on a spring and a damper on one wheel.
-const std::string car =
-    "vehicle:\n"
-    "  car:\n"
-    "    bodies: [body, axle]\n"
-    "    joints: [guide]\n"
-    "    springs: [suspension]\n"
-    "    wheels: [wheel]\n"
-    "    drivers: [level]\n"
-    "    body: {mass: 15000.0, inertia: 1.0, position: [0.0, 2.0]}\n"
-    "    axle: {mass: 1200.0, inertia: 1.0, position: [0.0, 0.46]}\n"
-    "    guide: {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}\n"
-    "    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 1.5e6, damping: 2e4}\n"
-    "    wheel: {body: axle, radius: 0.46, law: hertz, stiffness: 3e10}\n"
-    "    level: {body: body, coordinate: phi}\n";
+/// A mass on a spring and a damper on one wheel. Bodies in kg, spring in N/m, damper in N s/m, wheel as Hertz has it.
+std::string one_wheel(const std::string& body, const std::string& axle, const std::string& spring,
+                      const std::string& damper, const std::string& wheel) {
+  return "vehicle:\n"
+         "  car:\n"
+         "    bodies: [body, axle]\n"
+         "    joints: [guide]\n"
+         "    springs: [suspension]\n"
+         "    wheels: [wheel]\n"
+         "    drivers: [level]\n"
+         "    body: {mass: " +
+         body +
+         ", inertia: 1.0, position: [0.0, 2.0]}\n"
+         "    axle: {mass: " +
+         axle +
+         ", inertia: 1.0, position: [0.0, 0.46]}\n"
+         "    guide: {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}\n"
+         "    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: " +
+         spring + ", damping: " + damper +
+         "}\n"
+         "    wheel: {body: axle, radius: 0.46, law: hertz, stiffness: " +
+         wheel +
+         "}\n"
+         "    level: {body: body, coordinate: phi}\n";
+}
+
+const std::string car = one_wheel("15000.0", "1200.0", "1.5e6", "2e4", "3e10");
+const std::string heavy_axle = one_wheel("24395.6", "5986.65", "1.47532e+07", "0.0", "1.41364e+10");
 
 /// That the peaks are promised and as near to those of a finer run.
 void expect_kept(const Results& chosen, const Results& finer, const std::vector<std::string>& peaks, double accuracy) {
@@ -112,8 +125,21 @@ TEST(MendedPromise, LowPassedWhereADamperLetsGo) {
   EXPECT_LT(error, expected(chosen, low_passed).value_or(1e-3));
 }
 
-// Wheels that go on striking on a rough track lose what is known of them: trial runs of the first span expected 7e-4 of a
-// moment that was 1.1e-2 off.
+// Errors of genalpha's steps come and go with where these end: at 0.542 ms an acceleration was 1.01e-3 off where 7e-4
+// was expected. The report's finer run by elements had genalpha's steps too, which are 8e-3 off without the modes'
+// exact motion.
+TEST(MendedPromise, StepsOfOneSolveCountMore) {
+  const std::string scene =
+      "beam: {spans: 14.1, EI: 1.04571e+10, mass: 6185.48, damping_ratios: 0.0104}\n"
+      "support: {types: [clamped, roller]}\n" +
+      heavy_axle + "train: {vehicles: car, speed: 63.1}\nscene: {tail: 0.3}\n";
+  const Results chosen = run_yaml(scene, {{"accuracy", "1e-3"}, {"accuracy_report", "true"}});
+  expect_kept(chosen, run_yaml(scene, finer("100", "5e-5")), {"deflection", "acceleration", "moment", "wheel_force"},
+              1e-3);
+}
+
+// Wheels that go on striking on a rough track lose what is known of them: trial runs of the first span expected 7e-4 of
+// a moment that was 1.1e-2 off.
 TEST(MendedPromise, WheelsThatGoOnStriking) {
   const std::string scene =
       "beam: {spans: 30.0*4, EI: 2e11, mass: 20000.0, damping_ratios: 0.01, continuity: simply_supported}\n"
@@ -122,8 +148,8 @@ TEST(MendedPromise, WheelsThatGoOnStriking) {
   EXPECT_FALSE(expected(run_yaml(scene, {{"accuracy", "1e-2"}}), "moment"));
 }
 
-// A stop that is touched far along the bridge is no part of trial runs of its beginning: with another road a moment was 1.9
-// times off what was wanted. As long as the run they know it.
+// A stop that is touched far along the bridge is no part of trial runs of its beginning: with another road a moment
+// was 1.9 times off what was wanted. As long as the run they know it.
 TEST(MendedPromise, StopThatIsTouchedLate) {
   std::string with_stop = car;
   with_stop.replace(with_stop.find("[suspension]"), 12, "[suspension, stop]");
