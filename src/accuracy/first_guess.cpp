@@ -85,9 +85,11 @@ double contact_frequency(const Scene& scene) {
     for (const multibody::Body& body : vehicle.mechanism.bodies) mass += body.mass;
     for (const Wheel& wheel : vehicle.wheels) {
       const double weight = mass * scene.gravity / static_cast<double>(vehicle.wheels.size());
-      const double stiffness = wheel.law.kind == contact::LawKind::hertz
-                                   ? 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2))
-                                   : wheel.law.stiffness;
+      double stiffness = wheel.law.kind == contact::LawKind::hertz
+                             ? 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2))
+                             : wheel.law.stiffness;
+      for (const multibody::Spring& spring : vehicle.mechanism.springs)
+        if (spring.bodies[0] == wheel.body || spring.bodies[1] == wheel.body) stiffness += spring.stiffness;
       highest = std::max(highest, stiffness / vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].mass);
     }
   }

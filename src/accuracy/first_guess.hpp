@@ -10,8 +10,8 @@ namespace traverse::app {
 /// Elements of the longest span; with a layered track elements of the rail a sleeper bay.
 int first_mesh(const Scene& scene);
 
-/// The highest frequency at which a wheel vibrates on its contact under its share of the vehicle's weight, rad/s; 0
-/// without wheels.
+/// The highest frequency at which a wheel vibrates between its contact, under its share of the vehicle's weight, and
+/// its linear springs, rad/s; 0 without wheels.
 double contact_frequency(const Scene& scene);
 
 /// s.

@@ -24,8 +24,8 @@ constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 constexpr double more_modes = 1.5, of_an_undamped_moment = 3.0;
 constexpr double order_of_modes = 6.0;  // that errors of the modes fall with at most: what is farther off is not tried
 // The modes that are compared reach over the frequency at which wheels vibrate on their contacts, which stirs modes
-// near it: comparisons below it agree whatever these do.
-constexpr double above_contacts = 1.1;
+// near it: comparisons below it agree whatever these do. Accelerations show modes farther from it.
+constexpr double above_contacts = 1.1, above_them_in_accelerations = 2.0;
 constexpr double surely = 0.7;           // of a number of modes that is foreseen: fewer are not looked at
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a finer mesh has to agree
 constexpr double order_of_mesh = 4.0;
@@ -123,7 +123,8 @@ LaneModel LaneSearch::with_more_modes(const LaneModel& model) {
 }
 
 bool LaneSearch::add_modes(LaneModel& model) {
-  const double stirred = above_contacts * contact_frequency(trials_.scene());
+  const double above = asks_for(trials_.scene(), acceleration) ? above_them_in_accelerations : above_contacts;
+  const double stirred = above * contact_frequency(trials_.scene());
   // Frequencies of bending grow about with the square of their number.
   double fewest = surely * model.modes * std::sqrt(stirred / mixed_.last_omega(model)) / more_modes;
   for (const int modes : numbers_of_modes) {
