@@ -59,14 +59,14 @@ struct Accuracy {
   bool lost_contact = false;                    // wheels did in trial runs
   static constexpr double the_end = std::numeric_limits<double>::infinity();
   double seen_until = the_end;  // s of the run, until which trial runs went
-  /// After the run, in which wheels lost contact at these times, s: where no trial run has seen some of them, nothing is
-  /// promised any more. Says so, or "".
+  /// After the run, in which wheels lost contact at these times, s: where no trial run has seen some of them, nothing
+  /// is promised any more. Says so, or "".
   std::string withdrawn(const std::vector<double>& losses);
-  /// After the run, in which something touched or let go that trial runs have not seen, in words: nothing is promised any
-  /// more. Says so, or "".
+  /// After the run, in which something touched or let go that trial runs have not seen, in words: nothing is promised
+  /// any more. Says so, or "".
   std::string withdrawn_by_surprise(const std::string& what);
-  /// After the run, in which curves bend within steps so many times as much as trial runs have seen: errors are larger, by
-  /// the square of that, and what is above `wanted` then is not promised any more. Says so, or "".
+  /// After the run, in which curves bend within steps so many times as much as trial runs have seen: errors are larger,
+  /// by the square of that, and what is above `wanted` then is not promised any more. Says so, or "".
   std::string withdrawn_by_bends(double times, double wanted);
   /// The same of low-passed accelerations, where their peak is within the unsettled end of the run.
   std::string withdrawn_at_end(bool unsettled);

@@ -9,10 +9,10 @@
 namespace traverse::app {
 namespace {
 
-constexpr double supposed = 1.5;        // times a measured size that an error is extrapolated to by a supposed order
+constexpr double supposed = 1.5;  // times a measured size that an error is extrapolated to by a supposed order
 constexpr double trials_of_run = 0.7, whole_trials_of_run = 8.0;  // for trial runs
-constexpr double farthest_guess = 8.0;  // of the run's mesh and step, for that
-constexpr double share_between = 0.5;   // of the wanted error, where it is only known for shorter and longer steps
+constexpr double farthest_guess = 8.0;                            // of the run's mesh and step, for that
+constexpr double share_between = 0.5;  // of the wanted error, where it is only known for shorter and longer steps
 
 /// Whether there are supports whose dampers act only while they are touched: then accelerations jump.
 bool dampers_let_go(const beam::Foundation& foundation) {
@@ -143,7 +143,8 @@ double ErrorSearch::guess(const Errors& errors) const {
 // Whether trial runs with these cost no more than a part of what the whole run will, or hardly anything.
 bool ErrorSearch::worth_it(double step, int mesh) const {
   const double run = trials_.seconds(base::whole(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
-  return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) < std::max(hardly_anything, (scene_.accuracy_whole ? whole_trials_of_run : trials_of_run) * run);
+  return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) <
+         std::max(hardly_anything, (scene_.accuracy_whole ? whole_trials_of_run : trials_of_run) * run);
 }
 
 }  // namespace traverse::app

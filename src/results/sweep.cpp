@@ -214,7 +214,8 @@ std::string Sweep::Model::not_promised(const std::vector<double>& unseen) const 
   const auto count = std::count(unseen.begin(), unseen.end(), 1.0);
   if (expected_errors.empty() || count == 0) return {};
   return fmt::format(
-      "nothing is promised of {} of the runs: they met what no trial run has seen, as wheels that lose contact or stops "
+      "nothing is promised of {} of the runs: they met what no trial run has seen, as wheels that lose contact or "
+      "stops "
       "that are touched; -accuracy_whole makes trial runs as long as these",
       count);
 }

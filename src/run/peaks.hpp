@@ -88,8 +88,8 @@ class Peaks {
 
   const std::vector<Peak>& of(Quantity q) const { return found_[q]; }
   const Peak& largest(Quantity q) const { return largest_[q]; }
-  /// How much accelerations and wheel forces bend from sample to sample, at most, over their largest: since the start, or
-  /// since they were forgotten.
+  /// How much accelerations and wheel forces bend from sample to sample, at most, over their largest: since the start,
+  /// or since they were forgotten.
   Bends bends() const;
   void forget_bends() { bend_ = {}; }
   /// The largest extreme of each probe or wheel.

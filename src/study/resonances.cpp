@@ -12,7 +12,7 @@ namespace {
 
 constexpr double same_place = 0.005;  // m: axles that meet
 constexpr double most_of_it = 0.55;   // of the weight, that meets axles again
-constexpr int highest_multiple = 4;      // i
+constexpr int highest_multiple = 4;   // i
 constexpr double near = 0.5;          // of a resonance's width: its peak is so near, or at one of the speeds beside it
 constexpr double part_of_width = 0.25;   // of a resonance's width: speeds so near show its peak
 constexpr std::size_t most_axles = 400;  // of a train, the first ones, that its distance is looked for among
