@@ -21,7 +21,9 @@ namespace {
 
 constexpr double some_step = 1e-6;             // s, to look at a scene before it has a step
 constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
-constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
+constexpr const char* what_to_do =
+    "-accuracy_whole makes trial runs as long as the run, -accuracy_report shows the errors";
+constexpr double part_for_rest = 0.02;  // of the wanted error: curves of accelerations lose more than that
 
 void leave_out_rest(Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
@@ -138,21 +140,15 @@ std::string Accuracy::withdrawn(const std::vector<double>& losses) {
       std::count_if(losses.begin(), losses.end(), [&](double t) { return !lost_contact || t > seen_until; });
   if (unseen == 0 || !promises_something()) return {};
   promise_nothing();
-  return fmt::format(
-      "nothing is promised after all: wheels lost contact {} times{}, which no trial run has seen; -accuracy_whole "
-      "makes "
-      "them as long as the run, -accuracy_report shows the errors",
-      unseen, lost_contact ? fmt::format(" after {:.3g} s", seen_until) : "");
+  return fmt::format("nothing is promised after all: wheels lost contact {} times{}, which no trial run has seen; {}",
+                     unseen, lost_contact ? fmt::format(" after {:.3g} s", seen_until) : "", what_to_do);
 }
 
 std::string Accuracy::withdrawn_by_surprise(const std::string& what) {
   if (what.empty() || !promises_something()) return {};
   promise_nothing();
-  return fmt::format(
-      "nothing is promised after all: {}, which no trial run has seen, as these ended at {:.3g} s; -accuracy_whole "
-      "makes "
-      "them as long as the run, -accuracy_report shows the errors",
-      what, seen_until);
+  return fmt::format("nothing is promised after all: {}, which no trial run has seen, as these ended at {:.3g} s; {}",
+                     what, seen_until, what_to_do);
 }
 
 // Within a step a curve of frequency omega bends by (omega h)^2 of itself, and is off by (omega h)^4.
@@ -169,9 +165,8 @@ std::string Accuracy::withdrawn_by_bends(double times, double wanted) {
   if (names.empty()) return {};
   return fmt::format(
       "not promised after all: {}: after {:.3g} s, where trial runs ended, accelerations or wheel forces change within "
-      "steps {:.2g} times as much as before; -accuracy_whole makes them as long as the run, -accuracy_report shows the "
-      "errors",
-      names, seen_until, times);
+      "steps {:.2g} times as much as before; {}",
+      names, seen_until, times, what_to_do);
 }
 
 std::string Accuracy::withdrawn_at_end(bool unsettled) {

@@ -77,7 +77,7 @@ int first_mesh(const Scene& scene) {
   return std::max(wanted, 4 * base::whole(std::ceil(0.25 * elements_a_wave * longest * fading), most_in_a_span / 4));
 }
 
-double contact_frequency(const Scene& scene) {
+double contact_frequency(const Scene& scene, bool with_springs) {
   double highest = 0.0;
   for (const int index : scene.train.vehicles) {
     const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(index)];
@@ -89,7 +89,8 @@ double contact_frequency(const Scene& scene) {
                              ? 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2))
                              : wheel.law.stiffness;
       for (const multibody::Spring& spring : vehicle.mechanism.springs)
-        if (spring.bodies[0] == wheel.body || spring.bodies[1] == wheel.body) stiffness += spring.stiffness;
+        if (with_springs && (spring.bodies[0] == wheel.body || spring.bodies[1] == wheel.body))
+          stiffness += spring.stiffness;
       highest = std::max(highest, stiffness / vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].mass);
     }
   }

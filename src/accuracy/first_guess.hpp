@@ -10,9 +10,9 @@ namespace traverse::app {
 /// Elements of the longest span; with a layered track elements of the rail a sleeper bay.
 int first_mesh(const Scene& scene);
 
-/// The highest frequency at which a wheel vibrates between its contact, under its share of the vehicle's weight, and
-/// its linear springs, rad/s; 0 without wheels.
-double contact_frequency(const Scene& scene);
+/// The highest frequency at which a wheel vibrates on its contact under its share of the vehicle's weight, rad/s; 0
+/// without wheels. with_springs: between that and its linear springs.
+double contact_frequency(const Scene& scene, bool with_springs = false);
 
 /// s.
 struct FirstSteps {

@@ -124,7 +124,7 @@ LaneModel LaneSearch::with_more_modes(const LaneModel& model) {
 
 bool LaneSearch::add_modes(LaneModel& model) {
   const double above = asks_for(trials_.scene(), acceleration) ? above_them_in_accelerations : above_contacts;
-  const double stirred = above * contact_frequency(trials_.scene());
+  const double stirred = above * contact_frequency(trials_.scene(), true);
   // Frequencies of bending grow about with the square of their number.
   double fewest = surely * model.modes * std::sqrt(stirred / mixed_.last_omega(model)) / more_modes;
   for (const int modes : numbers_of_modes) {

@@ -36,7 +36,8 @@ constexpr double modes_over_wholes = 0.5;  // of the wanted error
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
 constexpr double longer = 1.4;
 constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
-constexpr double weight_of_touch = 20.0, beside_a_hinge = 50.0;  // as measured: of accelerations
+// As measured: of all peaks, of those beside a hinge, and of accelerations.
+constexpr double weight_of_touch = 20.0, beside_a_hinge = 50.0, in_accelerations = 100.0;
 
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open &&
@@ -152,7 +153,7 @@ class Chooser {
       throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
     Errors errors = check_wholes(search);
     for (std::size_t q = 0; q < quantities; ++q)
-      if (asks_for(scene_, q)) errors[q] += defect + touch_ahead();
+      if (asks_for(scene_, q)) errors[q] += defect + touch_ahead(q);
     if (greatest(errors) > scene_.accuracy) throw NotChosen{"wheels touch the bridge's slopes ahead of their centres"};
     LanesChoice choice;
     choice.scene = with(scene_, model_);
@@ -174,15 +175,16 @@ class Chooser {
   double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
 
  private:
-  /// Of all peaks: wheels touch a slope s by R s ahead of their centres, where the kernel has their forces. Beside a
-  /// hinge they are on slopes where deflections are largest.
-  double touch_ahead() {
+  /// Of the peaks of a quantity: wheels touch a slope s by R s ahead of their centres, where the kernel has their
+  /// forces. Beside a hinge they are on slopes where deflections are largest.
+  double touch_ahead(std::size_t q) {
     double deflection = 0.0;
     for (const CrossingResult& run : beginnings_->run(model_))
       for (const lanes::CrossingPeak& peak : run.deflection) deflection = std::max(deflection, peak.value);
     const std::vector<double>& spans = scene_.beam->spans;
     const double length = *std::min_element(spans.begin(), spans.end());
-    const double weight = scene_.beam->hinges.empty() && scene_.beam->cracks.empty() ? weight_of_touch : beside_a_hinge;
+    const bool plain = scene_.beam->hinges.empty() && scene_.beam->cracks.empty();
+    const double weight = q == acceleration ? in_accelerations : plain ? weight_of_touch : beside_a_hinge;
     return weight * scene_.vehicles.front().wheels.front().radius * deflection / (length * length);
   }
 
