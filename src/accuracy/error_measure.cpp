@@ -12,6 +12,7 @@ namespace {
 constexpr double supposed = 1.5;  // times a measured size that an error is extrapolated to by a supposed order
 constexpr double trials_of_run = 0.7, whole_trials_of_run = 8.0;  // for trial runs
 constexpr double farthest_guess = 8.0;                            // of the run's mesh and step, for that
+constexpr double by_nodes_below = 2e-4;                           // wanted accuracy
 constexpr double share_between = 0.5;  // of the wanted error, where it is only known for shorter and longer steps
 
 /// Whether there are supports whose dampers act only while they are touched: then accelerations jump.
@@ -69,7 +70,9 @@ ErrorLaw ErrorSearch::error_in_space(Quantity q) {
     return std::pow(growth_, 0.75) * difference(trials_.run(mesh_ / 2, step), trials_.run(mesh_, step), q, 3.0 * step);
   };
   // Without damping the contact's vibration meets one mode of the elements or another: nothing falls regularly.
-  const double most = q == low_passed && undamped_ ? 1.0 : full_order;
+  // At fine accuracies what a mesh leaves of an acceleration comes and goes with where its nodes are.
+  const double by_nodes = q == acceleration && scene_.accuracy < by_nodes_below ? 2.0 : full_order;
+  const double most = q == low_passed && undamped_ ? 1.0 : by_nodes;
   const auto error = [&](double step) { return error_from(change(step), 1.0 / mesh_, space_[q], most); };
   if (!open_step_ || 2.0 * step_ * greatest_speed(scene_) >= element) return error(step_);
   const ErrorLaw by_long_steps = error(2.0 * step_);

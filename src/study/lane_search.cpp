@@ -16,7 +16,9 @@ constexpr double part_of_modes = 0.4, part_of_mesh = 0.1, part_of_steps = 0.4;  
 constexpr int most_halvings = 8;
 constexpr double first_step_factor = 4.0;  // times the step that the search by elements would begin with
 constexpr std::array methods = {"genalpha", "esdirk4"};
-constexpr double of_one_solve = 1.5;  // times the errors of genalpha's steps, which come and go with where these end
+// Times the errors of genalpha's steps, which come and go with where these end; forces are off where a run of its own
+// changes their length, too.
+constexpr double of_one_solve = 1.5, of_its_forces = 2.0;
 constexpr std::array step_factors = {2.0, 1.4, 1.0, 0.7, 0.5};  // times the step of esdirk4, of what may cost less
 constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 // Each is compared with half as many more. Without damping that grows with the frequency errors of moments fall with
@@ -172,6 +174,7 @@ LaneModel LaneSearch::cheaper(const LaneModel& model) {
       if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
       LaneErrors own = change(trials_, tried, with_step(model, 0.5));
       const double times = tried.method->solves() > 1.0 ? 1.0 : of_one_solve;
+      if (times > 1.0) own[wheel_force] *= of_its_forces;
       for (std::size_t q = 0; q < quantities; ++q) own[q] = times * own[q] + halved_[q];
       const double over = greatest(own) / (part_of_steps * accuracy_);
       if (over > std::pow(factor / step_factors.back(), tried.method->order)) break;  // nor will the shortest do
