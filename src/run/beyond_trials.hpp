@@ -2,7 +2,6 @@
 // sleepers that touch or let go for the first time, and curves that bend more within a step than before.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <limits>
 #include <optional>

@@ -108,20 +108,20 @@ void Peaks::add(double t, std::span<const beam::Response> probes, std::span<cons
         moments_[i].add(t, values[q], probes[i].moment_rate, lag_, note_of(q));
       else
         probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth, note_of(q));
-    bend_[acceleration] = std::max(bend_[acceleration], probes_[i][acceleration].bend());
+    bend_.acceleration = std::max(bend_.acceleration, probes_[i][acceleration].bend());
   }
   for (std::size_t i = 0; i < wheel_forces.size(); ++i) {
     wheels_[i].add(t, wheel_forces[i], smooth, [&](double value, double at) { note(wheel_force, i, value, at); });
-    bend_[wheel_force] = std::max(bend_[wheel_force], wheels_[i].bend());
+    bend_.wheel_force = std::max(bend_.wheel_force, wheels_[i].bend());
   }
 }
 
 Bends Peaks::bends() const {
-  const auto relative = [this](Quantity q) {
+  const auto relative = [this](double bend, Quantity q) {
     const double largest = std::abs(largest_[q].value);
-    return largest > 0.0 ? bend_[q] / largest : 0.0;
+    return largest > 0.0 ? bend / largest : 0.0;
   };
-  return {relative(acceleration), relative(wheel_force)};
+  return {relative(bend_.acceleration, acceleration), relative(bend_.wheel_force, wheel_force)};
 }
 
 double Bends::times(const Bends& others) const {

@@ -106,7 +106,7 @@ class Peaks {
   std::vector<Curve> wheels_;
   std::array<std::vector<Peak>, quantities> found_;
   std::array<Peak, quantities> largest_{};
-  std::array<double, quantities> bend_{};  // of accelerations and wheel forces
+  Bends bend_;  // in m/s2 and N
   bool failed_ = false;
   std::array<std::vector<Peak>, quantities> each_;
 };
