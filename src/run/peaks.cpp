@@ -14,6 +14,7 @@ constexpr double compared = 0.6;  // of the largest one
 constexpr double too_near = 1e-2;
 constexpr double likely = 2.0;  // times the root mean square: what an extreme's error hardly exceeds
 constexpr int bisections = 40;
+const std::vector<double> smooth;      // without kinks
 constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
 
 bool between(const std::vector<double>& times, double from, double to) {
@@ -25,26 +26,31 @@ bool between(const std::vector<double>& times, double from, double to) {
 
 template <class Note>
 void Curve::add(double t, double value, const std::vector<double>& kinks, Note&& note) {
-  if (count_ > 1 && t - time_[2] < too_near * (time_[2] - time_[1])) {
-    if (std::abs(value) > std::abs(value_[2])) std::tie(time_[2], value_[2]) = std::tie(t, value);
+  const double latest = seen_.time[4];
+  if (seen_.count > 1 && t - latest < too_near * (latest - seen_.time[3])) {
+    if (std::abs(value) > std::abs(seen_.value[4])) std::tie(seen_.time[4], seen_.value[4]) = std::tie(t, value);
     return;
   }
-  time_ = {time_[1], time_[2], t};
-  value_ = {value_[1], value_[2], value};
-  if (++count_ == 1) return note(value, t);
-  if (count_ < 3 || std::abs(value_[1]) < std::abs(value_[0]) || std::abs(value_[1]) <= std::abs(value_[2])) return;
-  if (between(kinks, time_[0], time_[2])) return note(value_[1], time_[1]);
-  const double before = time_[1] - time_[0], after = time_[2] - time_[1];
-  const double rise = (value_[1] - value_[0]) / before, fall = (value_[2] - value_[1]) / after;
-  const double slope = (rise * after + fall * before) / (before + after), bend = (fall - rise) / (before + after);
-  const double shift = value_[0] * value_[2] > 0.0 ? -0.5 * slope / bend : 0.0;
-  note(value_[1] + 0.5 * slope * shift, time_[1] + shift);
+  seen_.push(t, value);
+  if (seen_.count == 1) return note(value, t);
+  if (seen_.count >= 4) look(2, kinks, note);
+}
+
+template <class Note>
+void Curve::look(std::size_t i, const std::vector<double>& kinks, Note&& note) const {
+  const auto& [t, y, count] = seen_;
+  if (std::abs(y[i]) < std::abs(y[i - 1]) || std::abs(y[i]) <= std::abs(y[i + 1])) return;
+  if (y[i - 1] * y[i + 1] <= 0.0 || between(kinks, t[i - 1], t[i + 1])) return note(y[i], t[i]);
+  const bool five = i == 2 && count >= Samples::most && !between(kinks, t.front(), t.back());
+  const Turn top = five ? turn_of_five(seen_) : turn_of_three(seen_, i);
+  note(top.value, top.time);
 }
 
 double Curve::bend() const {
-  const double before = time_[1] - time_[0], after = time_[2] - time_[1];
-  if (count_ < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
-  return std::abs((value_[2] - value_[1]) / after - (value_[1] - value_[0]) / before) * std::min(before, after);
+  const auto& [t, y, count] = seen_;
+  const double before = t[3] - t[2], after = t[4] - t[3];
+  if (count < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
+  return std::abs((y[4] - y[3]) / after - (y[3] - y[2]) / before) * std::min(before, after);
 }
 
 template <class Note>
@@ -97,7 +103,6 @@ void Peaks::note(Quantity q, std::size_t place, double value, double time) {
 }
 
 void Peaks::add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces) {
-  static const std::vector<double> smooth;
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].moment};
     const auto note_of = [&](std::size_t q) {
@@ -132,11 +137,12 @@ double Bends::times(const Bends& others) const {
 void Peaks::finish() {
   for (std::size_t i = 0; i < probes_.size(); ++i)
     for (std::size_t q = 0; q < wheel_force; ++q)
-      probes_[i][q].finish([&](double value, double at) { note(static_cast<Quantity>(q), i, value, at); });
+      probes_[i][q].finish(q == moment ? passages_[i] : smooth,
+                           [&](double value, double at) { note(static_cast<Quantity>(q), i, value, at); });
   for (std::size_t i = 0; i < moments_.size(); ++i)
     moments_[i].finish([&](double value, double at) { note(moment, i, value, at); });
   for (std::size_t i = 0; i < wheels_.size(); ++i)
-    wheels_[i].finish([&](double value, double at) { note(wheel_force, i, value, at); });
+    wheels_[i].finish(smooth, [&](double value, double at) { note(wheel_force, i, value, at); });
 }
 
 namespace {
@@ -144,7 +150,6 @@ namespace {
 /// Calls note(value, time) for the extremes of one of the series. Returns its curve.
 template <class Note>
 Curve follow(std::span<const double> rows, std::size_t series, std::size_t which, double interval, Note&& note) {
-  const std::vector<double> smooth;
   Curve curve;
   double t = 0.0;
   for (std::size_t at = which, k = 0; at < rows.size(); at += series, t = static_cast<double>(++k) * interval)
@@ -156,8 +161,10 @@ Curve follow(std::span<const double> rows, std::size_t series, std::size_t which
 
 // The last instant is no end of the run: where a curve still rises there, its extreme is not known.
 void Peaks::add_low_passed(std::span<const double> rows, double interval) {
-  for (std::size_t i = 0; i < probes_.size(); ++i)
-    follow(rows, probes_.size(), i, interval, [&](double value, double at) { note(low_passed, i, value, at); });
+  for (std::size_t i = 0; i < probes_.size(); ++i) {
+    const auto note_it = [&](double value, double at) { note(low_passed, i, value, at); };
+    follow(rows, probes_.size(), i, interval, note_it).rest(smooth, note_it);
+  }
 }
 
 Peak largest_peak(std::span<const double> rows, std::size_t series, double interval) {
@@ -166,7 +173,7 @@ Peak largest_peak(std::span<const double> rows, std::size_t series, double inter
     const auto note = [&](double value, double time) {
       if (std::abs(value) > std::abs(largest.value)) largest = {value, time, static_cast<int>(i)};
     };
-    follow(rows, series, i, interval, note).finish(note);
+    follow(rows, series, i, interval, note).finish(smooth, note);
   }
   return largest;
 }

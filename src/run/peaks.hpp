@@ -1,5 +1,5 @@
-// Extremes (peaks) of sampled curves; `accuracy` promises their errors. Between samples a curve is taken for a
-// parabola. Where a wheel passes a probe the moment has a kink, which gets a sample of its own (option step_probes).
+// Extremes (peaks) of sampled curves; `accuracy` promises their errors. Between samples a curve is of fourth degree
+// (turn.hpp). Where a wheel passes a probe the moment has a kink, which gets a sample of its own (option step_probes).
 // With damping b K the moment relaxes behind the kink within a time of b, which may be much shorter than a step.
 #pragma once
 
@@ -10,6 +10,7 @@
 
 #include "base/bytes.hpp"
 #include "recovery/recovery.hpp"
+#include "run/turn.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
@@ -30,21 +31,30 @@ struct Peak {
 /// The extremes of one curve, as samples come.
 class Curve {
  public:
-  /// Calls note(value, time) for the extreme that is known with this sample. kinks: ascending times at which the curve
-  /// may have one.
+  /// Calls note(value, time) for the extreme that is known with this sample, two after it. kinks: ascending times at
+  /// which the curve may have one.
   template <class Note>
   void add(double t, double value, const std::vector<double>& kinks, Note&& note);
-  /// After the last sample: its value counts too.
+  /// After the last sample: the extreme just before it.
   template <class Note>
-  void finish(Note&& note) const {
-    if (count_ > 0) note(value_[2], time_[2]);
+  void rest(const std::vector<double>& kinks, Note&& note) const {
+    if (seen_.count >= 3) look(3, kinks, note);
+  }
+  /// That, and its value counts too.
+  template <class Note>
+  void finish(const std::vector<double>& kinks, Note&& note) const {
+    rest(kinks, note);
+    if (seen_.count > 0) note(seen_.value.back(), seen_.time.back());
   }
   /// How far the latest three samples are from a straight line: their second difference, 0 where they are fewer.
   double bend() const;
 
  private:
-  std::array<double, 3> time_{}, value_{};  // the latest samples, the last one at the end
-  std::size_t count_ = 0;
+  /// If the sample at i is extreme.
+  template <class Note>
+  void look(std::size_t i, const std::vector<double>& kinks, Note&& note) const;
+
+  Samples seen_;
 };
 
 /// The extremes of a curve M that follows a smooth one by M + b dM/dt, but for its kinks, which have samples.

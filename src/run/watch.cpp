@@ -241,6 +241,7 @@ const Peaks& Watch::finished_peaks() {
 
 const results::Summary& Watch::finished_extremes() {
   finished_peaks();
+  wheels_.finish();
   note_wheels();
   note_separations();
   return summary_;

@@ -23,30 +23,37 @@ void WheelExtremes::note(double force, double time, std::size_t wheel) {
 
 void WheelExtremes::add(std::size_t wheel, double t, double x, double force) {
   Seen& seen = seen_[wheel];
-  if (seen.count > 0 && t <= seen.time[2]) return;
-  seen.time = {seen.time[1], seen.time[2], t};
-  seen.x = {seen.x[1], seen.x[2], x};
-  seen.force = {seen.force[1], seen.force[2], force};
+  if (seen.force.count > 0 && t <= seen.force.time.back()) return;
+  seen.force.push(t, force);
+  std::rotate(seen.x.begin(), seen.x.begin() + 1, seen.x.end());
+  seen.x.back() = x;
   note(force, t, wheel);
   if (at_start_[wheel] <= 0.0) at_start_[wheel] = force;
-  if (++seen.count >= 3) look_between(seen, wheel);
+  if (seen.force.count >= 4) look(seen, 2, wheel);
 }
 
-// The vertex of the parabola through three instants of which the middle one is extreme. In flight the force is zero and
-// has corners at both ends.
-void WheelExtremes::look_between(const Seen& seen, std::size_t wheel) {
-  const auto &t = seen.time, &x = seen.x, &f = seen.force;
-  const double before = t[1] - t[0], after = t[2] - t[1];
-  const bool extreme = (f[1] - f[0]) * (f[2] - f[1]) <= 0.0 && f[1] != f[2];
-  if (!extreme || std::max(before, after) > alike * std::min(before, after)) return;
-  if (f[0] <= 0.0 || f[1] <= 0.0 || f[2] <= 0.0) return;
-  const auto [from, to] = std::minmax(x[0], x[2]);
+void WheelExtremes::finish() {
+  for (std::size_t wheel = 0; wheel < seen_.size(); ++wheel)
+    if (seen_[wheel].force.count >= 3) look(seen_[wheel], 3, wheel);
+}
+
+// In flight the force is zero and has corners at both ends.
+bool WheelExtremes::smooth(const Seen& seen, std::size_t i, std::size_t j) const {
+  for (std::size_t k = i; k <= j; ++k)
+    if (seen.force.value[k] <= 0.0) return false;
+  const auto [from, to] = std::minmax(seen.x[i], seen.x[j]);
   const auto kink = std::lower_bound(kinks_.begin(), kinks_.end(), from);
-  if (kink != kinks_.end() && *kink <= to) return;
-  const double rise = (f[1] - f[0]) / before, fall = (f[2] - f[1]) / after;
-  const double slope = (rise * after + fall * before) / (before + after), bend = (fall - rise) / (before + after);
-  const double shift = -0.5 * slope / bend;
-  note(std::max(f[1] + 0.5 * slope * shift, 0.0), t[1] + shift, wheel);
+  return kink == kinks_.end() || *kink > to;
+}
+
+void WheelExtremes::look(const Seen& seen, std::size_t i, std::size_t wheel) {
+  const auto& [t, f, count] = seen.force;
+  const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
+  const bool extreme = (f[i] - f[i - 1]) * (f[i + 1] - f[i]) <= 0.0 && f[i] != f[i + 1];
+  if (!extreme || std::max(before, after) > alike * std::min(before, after) || !smooth(seen, i - 1, i + 1)) return;
+  const bool five = i == 2 && count >= Samples::most && smooth(seen, 0, 4);
+  const Turn turn = five ? turn_of_five(seen.force) : turn_of_three(seen.force, i);
+  note(std::max(turn.value, 0.0), turn.time, wheel);
 }
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
 // The least and the greatest normal force of all wheels, and the largest part of its force at the start that one loses,
-// looked for at every step and between steps by parabolas.
+// looked for at every step and between steps as turn.hpp has it.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 
 #include "base/bytes.hpp"
 #include "run/judged_motion.hpp"
+#include "run/turn.hpp"
 
 namespace traverse::app {
 
@@ -26,6 +27,8 @@ class WheelExtremes {
 
   /// The next instant of a wheel whose centre is at x.
   void add(std::size_t wheel, double t, double x, double force);
+  /// After the last one.
+  void finish();
 
   const WheelExtreme& least() const { return least_; }
   const WheelExtreme& greatest() const { return greatest_; }
@@ -34,13 +37,16 @@ class WheelExtremes {
   void keep(base::Bytes& bytes) { bytes(seen_, at_start_, least_, greatest_, unloading_); }
 
  private:
-  /// The latest instants of a wheel, the last one at the end.
+  /// The latest instants of a wheel.
   struct Seen {
-    std::array<double, 3> time{}, x{}, force{};
-    int count = 0;
+    Samples force;
+    std::array<double, Samples::most> x{};
   };
   void note(double force, double time, std::size_t wheel);
-  void look_between(const Seen& seen, std::size_t wheel);
+  /// If the instant i is extreme.
+  void look(const Seen& seen, std::size_t i, std::size_t wheel);
+  /// Whether there is neither flight nor a corner from instant i to j.
+  bool smooth(const Seen& seen, std::size_t i, std::size_t j) const;
 
   std::vector<Seen> seen_;
   std::vector<double> at_start_;  // N, of every wheel
