@@ -102,7 +102,7 @@ class Group : CrossingAlgebra<W> {
     Powers::finish_step(s);
     s.distance = to;
     Looks::see(s);
-    for (int j = 0; j < s.task.wheels; ++j) s.F1[j] = Contacts::normal(s, j);
+    for (int j = 0; j < s.task.wheels; ++j) s.F_seen[4][j] = Contacts::normal(s, j);
   }
   /// Goes on from where another crossing of the same task was, whose numbers have been copied behind this one.
   void go_on_from(const Group& other) {
@@ -122,10 +122,13 @@ class Group : CrossingAlgebra<W> {
     s.known = o.known;
     s.looks = o.looks;
     s.seen = o.seen;
-    for (int i = 0; i < 2; ++i) s.s_before[i] = o.s_before[i];
+    for (int i = 0; i < 5; ++i) {
+      s.s_seen[i] = o.s_seen[i];
+      s.F_seen[i] = s.x + (o.F_seen[i] - o.x);  // as the rows they take turns
+    }
     for (int i = 0; i < 3; ++i) {
       s.time[i] = o.time[i];
-      s.row_of[i] = s.x + (o.row_of[i] - o.x);  // the rows take turns
+      s.row_of[i] = s.x + (o.row_of[i] - o.x);
     }
     for (int i = 0; i < 2; ++i) s.bent_to[i] = s.x + (o.bent_to[i] - o.x);
     s.left_keeps = o.left_keeps;
@@ -148,8 +151,8 @@ class Group : CrossingAlgebra<W> {
   TaskInstant instant() const {
     const State& s = state_;
     const auto all = [](const Lane* x) { return reinterpret_cast<const double*>(x); };
-    return {*all(&s.failed), all(s.q),  all(s.r),         all(s.x),         all(s.w),
-            all(s.bent),     all(s.F1), all(s.row_of[2]), all(&s.all_lost), all(&s.all_given)};
+    return {*all(&s.failed), all(s.q),         all(s.r),         all(s.x),         all(s.w),
+            all(s.bent),     all(s.F_seen[4]), all(s.row_of[2]), all(&s.all_lost), all(&s.all_given)};
   }
 
  private:
@@ -192,7 +195,7 @@ class Group : CrossingAlgebra<W> {
       s.delta[j] = s.end[j] = lanes(s.task.penetration)[j] * (1.0 + 0.5 * s.lean[j] * s.lean[j]);
       s.offset[j] = s.delta[j] - s.free[j];
       s.F[j] = Contacts::law(s, j, s.delta[j], s.k[j]);
-      s.F0[j] = s.F1[j] = Contacts::normal(s, j);
+      s.F_seen[4][j] = Contacts::normal(s, j);
     }
     Looks::look(s, false);
   }

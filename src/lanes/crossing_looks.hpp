@@ -136,35 +136,76 @@ struct CrossingLooks : CrossingAlgebra<W> {
   }
 
   static void look_at_wheels(State& s, Mask counts) {
+    Lane* const oldest = s.F_seen[0];
+    for (int i = 0; i < 4; ++i) {
+      s.s_seen[i] = s.s_seen[i + 1];
+      s.F_seen[i] = s.F_seen[i + 1];
+    }
+    s.s_seen[4] = s.distance;
+    s.F_seen[4] = oldest;
     ++s.seen;
-    const Lane before = s.time[1] - s.time[0], after = s.time[2] - s.time[1];
-    const double step = s.distance - s.s_before[1], step_before = s.s_before[1] - s.s_before[0];
-    const bool comparable = s.seen >= 3 && step_before <= alike * step && step <= alike * step_before;
     for (int j = 0; j < s.task.wheels; ++j) {
       const Lane force = CrossingContacts<W>::normal(s, j);
+      s.F_seen[4][j] = force;
       s.least = counts & (force < s.least) ? force : s.least;
       s.greatest = counts & (force > s.greatest) ? force : s.greatest;
-      const Lane rise = s.F1[j] - s.F0[j], fall = force - s.F1[j];
-      const Mask turns = counts & (rise * fall <= Lane{}) & (s.F1[j] != force);
-      if (comparable && any(turns) && smooth(s, s.task.x[j])) {
-        const Lane up = rise / before, down = fall / after;
-        const Lane slope = (up * after + down * before) / (before + after), bend = (down - up) / (before + after);
-        const Lane top = s.F1[j] - 0.25 * slope * slope / bend;
-        s.least = turns & (top < s.least) & (top > Lane{}) ? top : s.least;
-        s.greatest = turns & (top > s.greatest) ? top : s.greatest;
-      }
-      s.F0[j] = s.F1[j];
-      s.F1[j] = force;
     }
-    s.s_before[0] = s.s_before[1];
-    s.s_before[1] = s.distance;
+    if (s.seen >= 4) look_at_turns(s, 2);
   }
 
-  /// Whether a wheel has met no corner of the surface within the last two steps.
-  static bool smooth(State& s, double x) {
-    const double from = x + s.s_before[0], to = x + s.distance;
+  /// What forces of wheels were between steps where they turn at the instant i of the last five, as app::WheelExtremes
+  /// has it. Distances take the place of times.
+  static void look_at_turns(State& s, int i) {
+    const double *at = s.s_seen, before = at[i] - at[i - 1], after = at[i + 1] - at[i];
+    if (before > alike * after || after > alike * before) return;
+    const bool five = i == 2 && s.seen >= 5 && alike_all(at);
+    const Mask counts = at[i + 1] / s.speed <= s.end_time * (1.0 + 1e-12);
+    for (int j = 0; j < s.task.wheels; ++j) {
+      const Lane F = s.F_seen[i][j], rise = F - s.F_seen[i - 1][j], fall = s.F_seen[i + 1][j] - F;
+      const Mask turns = counts & (rise * fall <= Lane{}) & (fall != Lane{});
+      if (!any(turns) || !smooth(s, s.task.x[j], at[i - 1], at[i + 1])) continue;
+      const Lane up = rise / before, down = fall / after;
+      const Lane slope = (up * after + down * before) / (before + after), bend = (down - up) / (before + after);
+      Lane top = F - 0.25 * slope * slope / bend;
+      if (five && smooth(s, s.task.x[j], at[0], at[4])) top = turn_of_five(s, j, slope, bend, top);
+      s.least = turns & (top < s.least) & (top > Lane{}) ? top : s.least;
+      s.greatest = turns & (top > s.greatest) ? top : s.greatest;
+    }
+  }
+
+  static bool alike_all(const double* at) {
+    double shortest = at[1] - at[0], longest = shortest;
+    for (int i = 1; i < 4; ++i) {
+      const double gap = at[i + 1] - at[i];
+      shortest = gap < shortest ? gap : shortest;
+      longest = gap > longest ? gap : longest;
+    }
+    return longest <= alike * shortest;
+  }
+
+  /// app::turn_of_five of a wheel's force; otherwise: what counts where it was in flight.
+  static Lane turn_of_five(State& s, int j, Lane slope, Lane bend, Lane otherwise) {
+    constexpr int iterations = 3;
+    const double *at = s.s_seen, s0 = at[0] - at[2], s1 = at[1] - at[2], s3 = at[3] - at[2], s4 = at[4] - at[2];
+    const Lane y = s.F_seen[2][j];
+    const auto missed = [&](double d, Lane F) { return (F - y - d * (slope + bend * d)) / ((d - s1) * d * (d - s3)); };
+    const Lane c = missed(s0, s.F_seen[0][j]), fourth = (missed(s4, s.F_seen[4][j]) - c) / (s4 - s0);
+    const Lane e = c - fourth * s0;
+    const Lane first = slope + e * (s1 * s3), second = bend - e * (s1 + s3) + fourth * (s1 * s3),
+               third = e - fourth * (s1 + s3);
+    Lane d = -0.5 * slope / bend;
+    for (int k = 0; k < iterations; ++k)
+      d -= (first + d * (2.0 * second + d * (3.0 * third + d * 4.0 * fourth))) /
+           (2.0 * second + d * (6.0 * third + d * 12.0 * fourth));
+    Mask valid = (d >= s1) & (d <= s3);
+    for (int i = 0; i < 5; ++i) valid &= s.F_seen[i][j] > Lane{};
+    return valid ? y + d * (first + d * (second + d * (third + d * fourth))) : otherwise;
+  }
+
+  /// Whether a wheel has met no corner of the surface between two distances.
+  static bool smooth(State& s, double x, double from, double to) {
     for (int i = 0; i < s.task.kinks; ++i)
-      if (s.task.kink[i] >= from && s.task.kink[i] <= to) return false;
+      if (s.task.kink[i] >= x + from && s.task.kink[i] <= x + to) return false;
     return true;
   }
 
@@ -176,6 +217,7 @@ struct CrossingLooks : CrossingAlgebra<W> {
   }
 
   static void give(State& s) {
+    if (s.seen >= 3) look_at_turns(s, 3);
     for (int i = 0; i < 3 * s.task.probes.count; ++i) {
       lanes(s.task.peak)[i] = s.peak[i];
       lanes(s.task.peak_time)[i] = s.peak_time[i];

@@ -63,13 +63,13 @@ struct CrossingState {
   long* D_begin = nullptr;
 
   // What is seen: instants since the last kink of moments, since the start, of wheels, kept; the last three instants,
-  // s, and their responses [deflections, accelerations, moments of the probes, rates of the latter]; distances and
-  // forces of the two steps before.
+  // s, and their responses [deflections, accelerations, moments of the probes, rates of the latter]; the last five
+  // distances and the wheels' forces there.
   long known = 0, looks = 0, seen = 0, kept = 0;
   Lane time[3] = {};
   Lane* row_of[3] = {};
-  double s_before[2] = {};
-  Lane *F0 = nullptr, *F1 = nullptr;
+  double s_seen[5] = {};
+  Lane* F_seen[5] = {};
   // What modes left out do at the probes (CrossingLeftOut), [deflections, moments]: what forces bend them to at this
   // instant and the one before, how fast that rose, where they are and how fast they move; what a step makes of [both
   // at its start, what they follow at its start and end] of deflections and keeps of moments; the step before, s;
@@ -115,9 +115,10 @@ struct CrossingMemory {
     s.S = take_from<Lane>(work, s.used, W, modes * modes);
     s.S_inverse = take_from<Lane>(work, s.used, W, modes * (s.task.coupled ? modes : 1));
     s.factor = take_from<Lane>(work, s.used, W, modes * modes);
-    Lane** const of_wheels[] = {&s.offset, &s.delta,    &s.F,     &s.k,  &s.free, &s.end, &s.slope,
-                                &s.yield,  &s.residual, &s.pivot, &s.F0, &s.F1,   &s.lean};
+    Lane** const of_wheels[] = {&s.offset, &s.delta, &s.F,        &s.k,     &s.free, &s.end,
+                                &s.slope,  &s.yield, &s.residual, &s.pivot, &s.lean};
     for (Lane** own : of_wheels) *own = take_from<Lane>(work, s.used, W, wheels);
+    for (Lane*& own : s.F_seen) own = take_from<Lane>(work, s.used, W, wheels);
     s.D_begin = take_from<long>(work, s.used, W, s.task.vehicles + 1);
     long entries = 0;
     for (int v = 0; v < s.task.vehicles; ++v) {

@@ -42,14 +42,14 @@ struct Parabola {
 };
 
 /// The turn of the parabola through three samples, that at i the middle one and extreme: of a wave of angular frequency
-/// w and samples h apart it is off by (w h)^4/128.
+/// w and samples h apart it is off by (w h)^4/40.
 inline Turn turn_of_three(const Samples& samples, std::size_t i) {
   const Parabola parabola(samples, i);
   const double top = parabola.top();
   return {samples.value[i] + 0.5 * parabola.slope * top, samples.time[i] + top};
 }
 
-/// The turn of the curve of fourth degree through five samples, the middle one extreme: off by (w h)^6/1000. Where one
+/// The turn of the curve of fourth degree through five samples, the middle one extreme: off by (w h)^6/200. Where one
 /// interval is more than four times another, that of the middle three.
 inline Turn turn_of_five(const Samples& samples) {
   constexpr std::size_t middle = 2;
