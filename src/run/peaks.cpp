@@ -40,10 +40,10 @@ template <class Note>
 void Curve::look(std::size_t i, const std::vector<double>& kinks, Note&& note) const {
   const auto& [t, y, count] = seen_;
   if (std::abs(y[i]) < std::abs(y[i - 1]) || std::abs(y[i]) <= std::abs(y[i + 1])) return;
-  if (y[i - 1] * y[i + 1] <= 0.0 || between(kinks, t[i - 1], t[i + 1])) return note(y[i], t[i]);
-  const bool five = i == 2 && count >= Samples::most && !between(kinks, t.front(), t.back());
-  const Turn top = five ? turn_of_five(seen_) : turn_of_three(seen_, i);
-  note(top.value, top.time);
+  const Turn turn = turn_about(seen_, i, [&](std::size_t from, std::size_t to) {
+    return y[from] * y[to] > 0.0 && !between(kinks, t[from], t[to]);
+  });
+  note(turn.value, turn.time);
 }
 
 double Curve::bend() const {

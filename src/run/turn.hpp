@@ -27,40 +27,31 @@ struct Turn {
   double value = 0.0, time = 0.0;
 };
 
-/// A curve about a sample i > 0 that is extreme between its neighbours is slope s + bend s^2 above it, s after it.
+/// Steps that end at events may be of any length. Beyond this ratio of intervals the shorter one says more of a jump or
+/// of rounding than of the slope.
+inline constexpr double most_uneven = 4.0;
+
+inline bool are_alike(double a, double b) { return std::max(a, b) <= most_uneven * std::min(a, b); }
+
+/// The curve about a sample i and two others around it is slope s + bend s^2 above it, s after it.
 struct Parabola {
   double slope, bend;
 
-  Parabola(const Samples& samples, std::size_t i) {
+  Parabola(const Samples& samples, std::size_t left, std::size_t i, std::size_t right) {
     const auto& [t, y, count] = samples;
-    const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
-    const double rise = (y[i] - y[i - 1]) / before, fall = (y[i + 1] - y[i]) / after;
+    const double before = t[i] - t[left], after = t[right] - t[i];
+    const double rise = (y[i] - y[left]) / before, fall = (y[right] - y[i]) / after;
     slope = (rise * after + fall * before) / (before + after);
     bend = (fall - rise) / (before + after);
   }
-  double top() const { return -0.5 * slope / bend; }
+  double vertex() const { return -0.5 * slope / bend; }
 };
 
-/// The turn of the parabola through three samples, that at i the middle one and extreme: of a wave of angular frequency
-/// w and samples h apart it is off by (w h)^4/40.
-inline Turn turn_of_three(const Samples& samples, std::size_t i) {
-  const Parabola parabola(samples, i);
-  const double top = parabola.top();
-  return {samples.value[i] + 0.5 * parabola.slope * top, samples.time[i] + top};
-}
-
-/// The turn of the curve of fourth degree through five samples, the middle one extreme: off by (w h)^6/200. Where one
-/// interval is more than four times another, that of the middle three.
+/// The turn of the curve of fourth degree through five samples.
 inline Turn turn_of_five(const Samples& samples) {
-  constexpr std::size_t middle = 2;
-  constexpr double alike = 4.0;
   constexpr int iterations = 3;
   const auto& [t, y, count] = samples;
-  std::array<double, 4> interval{};
-  for (std::size_t i = 0; i < 4; ++i) interval[i] = t[i + 1] - t[i];
-  const auto [shortest, longest] = std::minmax_element(interval.begin(), interval.end());
-  const Parabola inner(samples, middle);
-  if (*longest > alike * *shortest) return turn_of_three(samples, middle);
+  const Parabola inner(samples, 1, 2, 3);
   // Above the parabola by (s - s1) s (s - s3) (c + d (s - s0)), so that it meets the outer two as well.
   const double s0 = t[0] - t[2], s1 = t[1] - t[2], s3 = t[3] - t[2], s4 = t[4] - t[2];
   const auto missed = [&](double s, double value) {
@@ -69,12 +60,34 @@ inline Turn turn_of_five(const Samples& samples) {
   const double c = missed(s0, y[0]), d = (missed(s4, y[4]) - c) / (s4 - s0), e = c - d * s0;
   const double first = inner.slope + e * s1 * s3, second = inner.bend - e * (s1 + s3) + d * s1 * s3,
                third = e - d * (s1 + s3);
-  double s = inner.top();
+  double s = inner.vertex();
   for (int k = 0; k < iterations; ++k)
     s -= (first + s * (2.0 * second + s * (3.0 * third + s * 4.0 * d))) /
          (2.0 * second + s * (6.0 * third + s * 12.0 * d));
-  if (!(s >= s1 && s <= s3)) return turn_of_three(samples, middle);
+  if (!(s >= s1 && s <= s3)) s = 0.0;
   return {y[2] + s * (first + s * (second + s * (third + s * d))), t[2] + s};
+}
+
+/// Where the curve turns about the sample i, which is extreme between its neighbours; smooth(a, b): whether the curve
+/// has no kink from sample a to b. Of a wave of angular frequency w, sampled every h, five samples that are alike make
+/// an error of (w h)^6/200; three make (w h)^4/40. Nearer ones than these are left out, and where none are left it is
+/// the sample.
+template <class Smooth>
+Turn turn_about(const Samples& samples, std::size_t i, Smooth&& smooth) {
+  const auto& [t, y, count] = samples;
+  const auto apart = [&](std::size_t a, std::size_t b) { return t[b] - t[a]; };
+  if (i == 2 && count >= Samples::most && smooth(0, 4) && are_alike(apart(0, 1), apart(1, 2)) &&
+      are_alike(apart(1, 2), apart(2, 3)) && are_alike(apart(2, 3), apart(3, 4)))
+    return turn_of_five(samples);
+  const std::size_t oldest = Samples::most - std::min(count, Samples::most);
+  std::size_t left = i - 1, right = i + 1;
+  while (left > oldest && most_uneven * apart(left, i) < apart(i, i + 1)) --left;
+  while (right + 1 < Samples::most && most_uneven * apart(i, right) < apart(i - 1, i)) ++right;
+  const bool extreme = (y[i] - y[left]) * (y[right] - y[i]) <= 0.0 && y[right] != y[i];
+  if (!extreme || !smooth(left, right) || !are_alike(apart(left, i), apart(i, right))) return {y[i], t[i]};
+  const Parabola parabola(samples, left, i, right);
+  const double s = parabola.vertex();
+  return {y[i] + 0.5 * parabola.slope * s, t[i] + s};
 }
 
 }  // namespace traverse::app

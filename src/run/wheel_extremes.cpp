@@ -4,13 +4,6 @@
 #include <cmath>
 
 namespace traverse::app {
-namespace {
-
-// Of two neighbouring steps, the longer over the shorter: beyond it a contact was lost or gained between them, or the
-// short one says more of rounding than of the slope.
-constexpr double alike = 4.0;
-
-}  // namespace
 
 WheelExtremes::WheelExtremes(std::size_t wheels, std::vector<double> kinks)
     : seen_(wheels), at_start_(wheels, 0.0), kinks_(std::move(kinks)) {}
@@ -47,12 +40,9 @@ bool WheelExtremes::smooth(const Seen& seen, std::size_t i, std::size_t j) const
 }
 
 void WheelExtremes::look(const Seen& seen, std::size_t i, std::size_t wheel) {
-  const auto& [t, f, count] = seen.force;
-  const double before = t[i] - t[i - 1], after = t[i + 1] - t[i];
-  const bool extreme = (f[i] - f[i - 1]) * (f[i + 1] - f[i]) <= 0.0 && f[i] != f[i + 1];
-  if (!extreme || std::max(before, after) > alike * std::min(before, after) || !smooth(seen, i - 1, i + 1)) return;
-  const bool five = i == 2 && count >= Samples::most && smooth(seen, 0, 4);
-  const Turn turn = five ? turn_of_five(seen.force) : turn_of_three(seen.force, i);
+  const auto& f = seen.force.value;
+  if ((f[i] - f[i - 1]) * (f[i + 1] - f[i]) > 0.0 || f[i] == f[i + 1]) return;
+  const Turn turn = turn_about(seen.force, i, [&](std::size_t from, std::size_t to) { return smooth(seen, from, to); });
   note(std::max(turn.value, 0.0), turn.time, wheel);
 }
 

@@ -64,7 +64,9 @@ TEST(Peaks, LieBetweenSamples) {
       worst = std::max(worst, std::abs(std::abs(peaks.largest(deflection).value) - 1.0));
     }
     EXPECT_LT(worst, std::pow(7.0 * dt, 6) / 200.0) << dt;
-    if (before > 0.0) EXPECT_LT(worst, before / 40.0) << dt;
+    if (before > 0.0) {
+      EXPECT_LT(worst, before / 40.0) << dt;
+    }
     before = worst;
   }
 }
