@@ -1,5 +1,4 @@
-// The modes' influence under wheels on the bridge (crossing_kernel.hpp): the same in all lanes on a level track; on
-// another one where each lane's wheel touches it.
+// The modes' influence under wheels on the bridge, where each lane's wheel touches it (crossing_kernel.hpp).
 #pragma once
 
 #include "lanes/crossing_state.hpp"
@@ -16,7 +15,7 @@ struct CrossingInfluence : CrossingAlgebra<W> {
 
   /// Takes from `sums` of the vehicle's wheels on the bridge what the modes at q have of each one's influence.
   static void weigh(const State& s, const TaskVehicle& vehicle, const Lane* q, Lane* sums) {
-    with_influence(s, vehicle, [&](const auto* const* g, const int* wheel, int count) {
+    with_influence(s, vehicle, [&](const Lane* const* g, const int* wheel, int count) {
       if constexpr (W == 1) {
         for (int k = 0; k < count; ++k) sums[wheel[k]] -= dot(g[k], q, s.modes);
       } else {
@@ -28,7 +27,7 @@ struct CrossingInfluence : CrossingAlgebra<W> {
   }
   /// Adds to the modal forces those of the vehicle's wheels on the bridge.
   static void push(const State& s, const TaskVehicle& vehicle, Lane* modal) {
-    with_influence(s, vehicle, [&](const auto* const* g, const int* wheel, int count) {
+    with_influence(s, vehicle, [&](const Lane* const* g, const int* wheel, int count) {
       int k = 0;
       for (; k + 4 <= count; k += 4) push_four(g + k, wheel + k, s.F, s.modes, modal);
       for (; k < count; ++k) add(g[k], s.F[wheel[k]], modal, s.modes);
@@ -36,11 +35,8 @@ struct CrossingInfluence : CrossingAlgebra<W> {
   }
   /// The influence itself of a wheel on the bridge.
   static void copy(const State& s, int j, Lane* to) {
-    for (int i = 0; i < s.modes; ++i) to[i] = Lane{};
-    if (s.g_ahead == nullptr)
-      add(s.g + static_cast<long>(j) * s.task.influence.channels, Own::fill(1.0), to, s.modes);
-    else
-      add(s.g_ahead + static_cast<long>(j) * s.modes, Own::fill(1.0), to, s.modes);
+    const Lane* g = s.g_ahead + static_cast<long>(j) * s.modes;
+    for (int i = 0; i < s.modes; ++i) to[i] = g[i];
   }
 
  private:
@@ -49,30 +45,22 @@ struct CrossingInfluence : CrossingAlgebra<W> {
   /// Calls use(influences, their wheels, how many) for the vehicle's wheels on the bridge, some at a time.
   template <class Use>
   static void with_influence(const State& s, const TaskVehicle& vehicle, Use use) {
-    if (s.g_ahead == nullptr)
-      some_at_a_time(s, vehicle, s.g, s.task.influence.channels, use);
-    else
-      some_at_a_time(s, vehicle, s.g_ahead, s.modes, use);
-  }
-  template <class Number, class Use>
-  static void some_at_a_time(const State& s, const TaskVehicle& vehicle, const Number* g, long channels, Use use) {
-    const Number* influence[most_at_once];
+    const Lane* influence[most_at_once];
     int wheel[most_at_once], count = 0;
     const int end = vehicle.first_wheel + s.task.kind[vehicle.kind].wheels;
     for (int j = vehicle.first_wheel; j < end; ++j) {
       if (s.on[j] != 0) {
-        influence[count] = g + j * channels;
+        influence[count] = s.g_ahead + static_cast<long>(j) * s.modes;
         wheel[count++] = j;
       }
       if (count < most_at_once && (j + 1 < end || count == 0)) continue;
-      use(static_cast<const Number* const*>(influence), static_cast<const int*>(wheel), count);
+      use(influence, wheel, count);
       count = 0;
     }
   }
 
-  template <class Number>
-  static void weigh_four(const Number* const* g, const int* wheel, const Lane* q, int modes, Lane* sums) {
-    const Number *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3];
+  static void weigh_four(const Lane* const* g, const int* wheel, const Lane* q, int modes, Lane* sums) {
+    const Lane *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3];
     Lane s0{}, s1{}, s2{}, s3{};
     for (int i = 0; i < modes; ++i) {
       s0 += g0[i] * q[i];
@@ -85,14 +73,12 @@ struct CrossingInfluence : CrossingAlgebra<W> {
     sums[wheel[2]] -= s2;
     sums[wheel[3]] -= s3;
   }
-  template <class Number>
-  static void push_four(const Number* const* g, const int* wheel, const Lane* F, int modes, Lane* modal) {
-    const Number *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3];
+  static void push_four(const Lane* const* g, const int* wheel, const Lane* F, int modes, Lane* modal) {
+    const Lane *g0 = g[0], *g1 = g[1], *g2 = g[2], *g3 = g[3];
     const Lane F0 = F[wheel[0]], F1 = F[wheel[1]], F2 = F[wheel[2]], F3 = F[wheel[3]];
     for (int i = 0; i < modes; ++i) modal[i] += (g0[i] * F0 + g1[i] * F1) + (g2[i] * F2 + g3[i] * F3);
   }
-  template <class Number>
-  static void add(const Number* g, Lane force, Lane* modal, int modes) {
+  static void add(const Lane* g, Lane force, Lane* modal, int modes) {
     for (int i = 0; i < modes; ++i) modal[i] += g[i] * force;
   }
 };

@@ -190,7 +190,11 @@ class Group : CrossingAlgebra<W> {
     // The wheels' heights over the bridge as it stands.
     Places::place(s, 0.0, s.task.influence.channels);
     Places::lean_with_bridge(s, s.q);
-    for (int v = 0; v < s.task.vehicles; ++v) Influence::weigh(s, s.task.vehicle[v], s.q, s.free);
+    for (int v = 0; v < s.task.vehicles; ++v) {
+      if (s.touching[v] == 0) continue;
+      Places::place_ahead(s, s.task.vehicle[v]);
+      Influence::weigh(s, s.task.vehicle[v], s.q, s.free);
+    }
     for (int j = 0; j < s.task.wheels; ++j) {
       s.delta[j] = s.end[j] = lanes(s.task.penetration)[j] * (1.0 + 0.5 * s.lean[j] * s.lean[j]);
       s.offset[j] = s.delta[j] - s.free[j];
@@ -269,7 +273,10 @@ class Group : CrossingAlgebra<W> {
     for (int v = 0; v < s.task.vehicles; ++v) {
       if (s.awake[v] == 0) continue;
       const TaskVehicle& vehicle = s.task.vehicle[v];
-      if (s.touching[v] != 0) Influence::weigh(s, vehicle, s.z, s.free);  // the bridge lifts them by so much less
+      if (s.touching[v] != 0) {
+        Places::place_ahead(s, vehicle);
+        Influence::weigh(s, vehicle, s.z, s.free);  // the bridge lifts them by so much less
+      }
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
         const Lane guess = s.end[j] + ahead * s.slope[j];
         s.delta[j] = guess > 0.5 * s.end[j] ? guess : 0.5 * s.end[j];

@@ -111,7 +111,9 @@ struct CrossingMotion : CrossingAlgebra<W> {
       if (!leans) continue;
       Lane along{};
       for (int k = 0; k < f; ++k) along += lanes(kind.G_along)[j * f + k] * (x[k] + s.d * a[k]);
-      s.free[vehicle.first_wheel + j] += s.lean[vehicle.first_wheel + j] * along;
+      const int wheel = vehicle.first_wheel + j;
+      s.along[wheel] = along;
+      s.free[wheel] += (s.lean[wheel] - s.lean_of_bridge[wheel]) * along;
     }
   }
 

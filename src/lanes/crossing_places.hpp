@@ -31,7 +31,6 @@ struct CrossingPlaces : CrossingAlgebra<W> {
         double* slope = s.g_slope + static_cast<long>(j) * s.modes;
         const double x = s.task.x[j] + gone;
         s.on[j] = influence_at(s.task.influence, x, &s.piece[j], s.modes, channels, g, slope) ? 1 : 0;
-        if (s.on[j] != 0 && s.g_ahead != nullptr) place_ahead(s, j, g, slope);
         s.touching[v] = static_cast<char>(s.touching[v] | s.on[j]);
       }
     }
@@ -55,25 +54,32 @@ struct CrossingPlaces : CrossingAlgebra<W> {
     for (int v = 0; v < s.task.vehicles; ++v) s.awake[v] = gone + 1e-9 >= s.task.vehicle[v].rests_until ? 1 : 0;
   }
 
-  /// The influence where a wheel touches the track's slope.
-  static void place_ahead(State& s, int j, const double* g, const double* slope) {
-    const Lane ahead = s.task.arm[j] * s.lean[j];
-    Lane* there = s.g_ahead + static_cast<long>(j) * s.modes;
-    for (int i = 0; i < s.modes; ++i) there[i] = g[i] + ahead * slope[i];
-  }
-
-  /// The slope of the bridge added to that of the track, with the modes at q: a wheel touches a slope ahead of its
-  /// centre, where that is higher.
+  /// The slope of the bridge added to that of the track, with the modes at q.
   static void lean_with_bridge(State& s, const Lane* q) {
     for (int v = 0; v < s.task.vehicles; ++v) {
       if (s.awake[v] == 0 || s.touching[v] == 0) continue;
       const TaskVehicle& vehicle = s.task.vehicle[v];
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
+        s.along[j] = s.lean_of_bridge[j] = Lane{};
         if (s.on[j] == 0) continue;
-        const Lane of_bridge = -dot(s.g_slope + static_cast<long>(j) * s.modes, q, s.modes);
-        s.free[j] += 0.5 * s.task.radius * of_bridge * of_bridge;
-        s.lean[j] += of_bridge;
+        s.lean_of_bridge[j] = -dot(s.g_slope + static_cast<long>(j) * s.modes, q, s.modes);
+        s.lean[j] += s.lean_of_bridge[j];
       }
+    }
+  }
+
+  /// The influence where each wheel of a vehicle touches the bridge: it has moved along the track, and on a slope it
+  /// touches ahead of its centre, where that is higher. That lifts it by R times the bridge's slope squared; the circle
+  /// of radius R has risen by half as much there.
+  static void place_ahead(State& s, const TaskVehicle& vehicle) {
+    for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
+      if (s.on[j] == 0) continue;
+      const double* g = s.g + static_cast<long>(j) * s.task.influence.channels;
+      const double* slope = s.g_slope + static_cast<long>(j) * s.modes;
+      Lane* there = s.g_ahead + static_cast<long>(j) * s.modes;
+      const Lane ahead = s.task.arm[j] * s.lean[j] + s.along[j];
+      for (int i = 0; i < s.modes; ++i) there[i] = g[i] + ahead * slope[i];
+      s.free[j] -= 0.5 * s.task.radius * s.lean_of_bridge[j] * s.lean_of_bridge[j];
     }
   }
 };

@@ -49,7 +49,9 @@ struct CrossingState {
        *lean = nullptr;                    // lean: the slope of the surface, which the contact's normal follows
   double *g = nullptr, *load_g = nullptr;  // influence at each wheel and moving force: [wheel][channel]
   double* g_slope = nullptr;               // how the modes' rises, 1/m: [wheel][mode]
-  // The modes' where the wheel touches, which on a track's slope is ahead of its centre: [wheel][mode]; null: no track.
+  // Of the wheels: the slope of the bridge alone; m: how far each has moved along the track.
+  Lane *lean_of_bridge = nullptr, *along = nullptr;
+  // The modes' where the wheel touches the bridge: [wheel][mode].
   Lane* g_ahead = nullptr;
   int *piece = nullptr, *load_piece = nullptr;  // of it, that each is on
   char *on = nullptr, *load_on = nullptr;       // whether it is on the bridge
@@ -115,8 +117,8 @@ struct CrossingMemory {
     s.S = take_from<Lane>(work, s.used, W, modes * modes);
     s.S_inverse = take_from<Lane>(work, s.used, W, modes * (s.task.coupled ? modes : 1));
     s.factor = take_from<Lane>(work, s.used, W, modes * modes);
-    Lane** const of_wheels[] = {&s.offset, &s.delta, &s.F,        &s.k,     &s.free, &s.end,
-                                &s.slope,  &s.yield, &s.residual, &s.pivot, &s.lean};
+    Lane** const of_wheels[] = {&s.offset, &s.delta,    &s.F,     &s.k,    &s.free,           &s.end,  &s.slope,
+                                &s.yield,  &s.residual, &s.pivot, &s.lean, &s.lean_of_bridge, &s.along};
     for (Lane** own : of_wheels) *own = take_from<Lane>(work, s.used, W, wheels);
     for (Lane*& own : s.F_seen) own = take_from<Lane>(work, s.used, W, wheels);
     s.D_begin = take_from<long>(work, s.used, W, s.task.vehicles + 1);
@@ -130,7 +132,7 @@ struct CrossingMemory {
     s.reduced = take_from<Lane>(work, s.used, W, wheels * modes);
     s.g = take_from<double>(work, s.used, W, wheels * s.task.influence.channels);
     s.g_slope = take_from<double>(work, s.used, W, wheels * modes);
-    if (s.task.heights.stations > 0) s.g_ahead = take_from<Lane>(work, s.used, W, wheels * modes);
+    s.g_ahead = take_from<Lane>(work, s.used, W, wheels * modes);
     s.load_g = take_from<double>(work, s.used, W, static_cast<long>(s.task.loads) * s.task.influence.channels);
     s.piece = take_from<int>(work, s.used, W, wheels);
     s.load_piece = take_from<int>(work, s.used, W, s.task.loads);

@@ -91,7 +91,7 @@ Trouble SpanCrossing::step(double t, bool from_kink, bool to_kink) {
     free_modes(rule);
     guess_forces(stage);
     for (Group& group : groups_) free_vehicles(group, rule);
-    for (std::size_t j = 0; j < wheels_.size(); ++j) wheels_[j].free += surface(j, z_);
+    touch_ahead();
     const Trouble trouble = solve_contacts();
     if (trouble != none) return trouble;
     take_forces(stage);

@@ -105,6 +105,7 @@ class SpanCrossing {
     // m: penetration over a level surface with the vehicle at rest; at the end of the last step, and how it grew in
     // that; now, and with all at rest but for the vehicle and the bridge without contacts.
     double offset = 0.0, end = 0.0, slope = 0.0, delta = 0.0, free = 0.0;
+    double along = 0.0;                       // m: how far it has moved along the track
     double force = 0.0, k = 0.0, lean = 0.0;  // N; N/m; the surface's slope
     int span = -1, element = 0;
     double xi = 0.0;
@@ -131,6 +132,7 @@ class SpanCrossing {
   void free_modes(const structure::StageRule& rule);
   void guess_forces(std::size_t stage);
   void free_vehicles(Group& group, const structure::StageRule& rule);
+  void touch_ahead();
   void law(std::size_t wheel, double delta);
   bool take_force(std::size_t wheel, double force);
   void fill_forces();

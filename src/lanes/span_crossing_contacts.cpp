@@ -99,13 +99,28 @@ void SpanCrossing::guess_forces(std::size_t stage) {
     const int modes = kind(wheel.span).modes();
     const double* yields = S_inverse_[plan_.spans[static_cast<std::size_t>(wheel.span)].kind].data();
     const double* phi = &phi_[j * static_cast<std::size_t>(stride_)];
-    double *scaled = &scaled_[j * static_cast<std::size_t>(stride_)], *q = at(expected, wheel.span);
-    for (int m = 0; m < modes; ++m) {
-      scaled[m] = yields[m] * phi[m];
-      q[m] -= scaled[m] * wheel.force;
-    }
+    double* q = at(expected, wheel.span);
+    for (int m = 0; m < modes; ++m) q[m] -= yields[m] * phi[m] * wheel.force;
   }
   lean_at(expected);
+}
+
+// The shapes where wheels touch: they have moved along the track, and on a slope they touch ahead of their centres,
+// where that is higher (CrossingPlaces::place_ahead).
+void SpanCrossing::touch_ahead() {
+  for (std::size_t j = 0; j < wheels_.size(); ++j) {
+    Wheel& wheel = wheels_[j];
+    if (wheel.span < 0) continue;
+    const std::size_t row = j * static_cast<std::size_t>(stride_);
+    const double ahead = train_.arm[j] * wheel.lean + wheel.along;
+    const double* yields = S_inverse_[plan_.spans[static_cast<std::size_t>(wheel.span)].kind].data();
+    for (int m = 0; m < kind(wheel.span).modes(); ++m) {
+      const std::size_t at = row + static_cast<std::size_t>(m);
+      phi_[at] += ahead * phi_slope_[at];
+      scaled_[at] = yields[m] * phi_[at];
+    }
+    wheel.free += surface(j, z_) - 0.5 * train_.radius * wheel.lean * wheel.lean;
+  }
 }
 
 /// The vertical force at a vertical penetration delta: on a slope cos and 1/cos of those along the normal.

@@ -119,7 +119,8 @@ void SpanCrossing::free_vehicles(Group& group, const structure::StageRule& rule)
         up += of.G[static_cast<std::size_t>(j * f + k)] * there;
         along += of.G_along[static_cast<std::size_t>(j * f + k)] * there;
       }
-      wheel.free = wheel.offset - up + wheel.lean * (along + 0.5 * train_.radius * wheel.lean);
+      wheel.free = wheel.offset - up;
+      wheel.along = along;
     }
   }
 }
