@@ -58,6 +58,28 @@ Fading fading_of(const beam::BeamModel& beam) {
   return fastest;
 }
 
+/// Calls look(vehicle, wheel, N: its share of the vehicle's weight).
+template <class Look>
+void for_all_wheels(const Scene& scene, Look look) {
+  for (const int index : scene.train.vehicles) {
+    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(index)];
+    double mass = 0.0;
+    for (const multibody::Body& body : vehicle.mechanism.bodies) mass += body.mass;
+    for (const Wheel& wheel : vehicle.wheels)
+      look(vehicle, wheel, mass * scene.gravity / static_cast<double>(vehicle.wheels.size()));
+  }
+}
+
+/// N/m, under its share of the weight.
+double contact_stiffness(const Wheel& wheel, double weight) {
+  return wheel.law.kind == contact::LawKind::hertz ? 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2))
+                                                   : wheel.law.stiffness;
+}
+
+double mass_of(const Vehicle& vehicle, const Wheel& wheel) {
+  return vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].mass;
+}
+
 }  // namespace
 
 int first_mesh(const Scene& scene) {
@@ -79,22 +101,23 @@ int first_mesh(const Scene& scene) {
 
 double contact_frequency(const Scene& scene, bool with_springs) {
   double highest = 0.0;
-  for (const int index : scene.train.vehicles) {
-    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(index)];
-    double mass = 0.0;
-    for (const multibody::Body& body : vehicle.mechanism.bodies) mass += body.mass;
-    for (const Wheel& wheel : vehicle.wheels) {
-      const double weight = mass * scene.gravity / static_cast<double>(vehicle.wheels.size());
-      double stiffness = wheel.law.kind == contact::LawKind::hertz
-                             ? 1.5 * std::cbrt(weight * std::pow(wheel.law.stiffness, 2))
-                             : wheel.law.stiffness;
-      for (const multibody::Spring& spring : vehicle.mechanism.springs)
-        if (with_springs && (spring.bodies[0] == wheel.body || spring.bodies[1] == wheel.body))
-          stiffness += spring.stiffness;
-      highest = std::max(highest, stiffness / vehicle.mechanism.bodies[static_cast<std::size_t>(wheel.body)].mass);
-    }
-  }
+  for_all_wheels(scene, [&](const Vehicle& vehicle, const Wheel& wheel, double weight) {
+    double stiffness = contact_stiffness(wheel, weight);
+    for (const multibody::Spring& spring : vehicle.mechanism.springs)
+      if (with_springs && (spring.bodies[0] == wheel.body || spring.bodies[1] == wheel.body))
+        stiffness += spring.stiffness;
+    highest = std::max(highest, stiffness / mass_of(vehicle, wheel));
+  });
   return std::sqrt(highest);
+}
+
+double swing_after_a_push(const Scene& scene) {
+  double most = 0.0;
+  for_all_wheels(scene, [&](const Vehicle& vehicle, const Wheel& wheel, double weight) {
+    const double stiffness = contact_stiffness(wheel, weight);
+    most = std::max(most, stiffness * std::sqrt(stiffness / mass_of(vehicle, wheel)) / weight);
+  });
+  return most;
 }
 
 FirstSteps first_steps(const Scene& scene, double omega, double duration) {

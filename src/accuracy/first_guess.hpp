@@ -14,6 +14,10 @@ int first_mesh(const Scene& scene);
 /// without wheels. with_springs: between that and its linear springs.
 double contact_frequency(const Scene& scene, bool with_springs = false);
 
+/// By how much, over what it carries, the force of a wheel swings after it has been pressed down for a moment: 1/(m s)
+/// of that; the most of all wheels.
+double swing_after_a_push(const Scene& scene);
+
 /// s.
 struct FirstSteps {
   double first = 0.0;    // where the contacts' vibration is resolved as far as the accuracy wants

@@ -26,7 +26,7 @@ std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const Cros
   const CrossingNumbers numbers(plan, runs, width);
   Task task = numbers.task();
   const std::size_t probes = static_cast<std::size_t>(task.probes.count);
-  Aligned peak(3 * probes * width), time(3 * probes * width), least(width), greatest(width), failed(width);
+  Aligned peak(3 * probes * width), time(3 * probes * width), least(width), greatest(width), edge(width), failed(width);
   const std::size_t kept = places_kept(plan) * probes;
   Aligned accelerations(kept * width);
   if (kept > 0) task.kept = accelerations.data();
@@ -36,6 +36,7 @@ std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const Cros
   task.least_force = least.data();
   task.greatest_force = greatest.data();
   task.bent = bent.data();
+  task.edge = edge.data();
   task.failed = failed.data();
   Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task))));
   task.work = work.data();
@@ -57,6 +58,7 @@ std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const Cros
     r.moment = peaks(2 * probes);
     r.least_force = least.data()[lane];
     r.greatest_force = greatest.data()[lane];
+    r.edge = edge.data()[lane];
     for (std::size_t i = 0; i < kept; ++i) r.kept.push_back(accelerations.data()[i * width + lane]);
     for (int i = 0; i < task.coordinates; ++i)
       r.bent.push_back(bent.data()[static_cast<std::size_t>(i) * width + lane]);

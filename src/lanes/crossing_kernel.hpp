@@ -147,6 +147,7 @@ class Group : CrossingAlgebra<W> {
     s.end_time = o.end_time;
     s.least = o.least;
     s.greatest = o.greatest;
+    s.edge = o.edge;
   }
   TaskInstant instant() const {
     const State& s = state_;
@@ -183,6 +184,7 @@ class Group : CrossingAlgebra<W> {
     s.failed = Lane{};
     s.least = fill(1e300);
     s.greatest = fill(-1e300);
+    s.edge = Lane{};
     for (int i = 0; i < 3 * s.task.probes.count; ++i) s.peak[i] = s.peak_time[i] = Lane{};
     s.distance = s.start = 0.0;
     s.ds = s.ds_before = 0.0;

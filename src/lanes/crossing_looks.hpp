@@ -224,6 +224,7 @@ struct CrossingLooks : CrossingAlgebra<W> {
     }
     *lanes(s.task.least_force) = s.least;
     *lanes(s.task.greatest_force) = s.greatest;
+    *lanes(s.task.edge) = s.edge;
     for (int i = 0; i < s.task.coordinates; ++i) lanes(s.task.bent)[i] = s.bent[i];
     *lanes(s.task.failed) = s.failed;
   }

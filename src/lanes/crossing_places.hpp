@@ -11,8 +11,10 @@ struct CrossingPlaces : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
   using Own::dot;
+  using Own::greater;
   using Own::influence_at;
   using Own::lanes;
+  using Own::magnitude;
   using Own::track_at;
   using typename Own::Lane;
 
@@ -80,6 +82,7 @@ struct CrossingPlaces : CrossingAlgebra<W> {
       const Lane ahead = s.task.arm[j] * s.lean[j] + s.along[j];
       for (int i = 0; i < s.modes; ++i) there[i] = g[i] + ahead * slope[i];
       s.free[j] -= 0.5 * s.task.radius * s.lean_of_bridge[j] * s.lean_of_bridge[j];
+      s.edge = greater(s.edge, magnitude(s.lean_of_bridge[j]) * s.along[j] * s.along[j]);
     }
   }
 };

@@ -82,7 +82,7 @@ struct CrossingState {
   bool behind_kink = false;
   // W, at the start of a step and at its stages, and their integrals, J: CrossingPowers.
   Lane lost[most_kept] = {}, given[most_kept] = {}, all_lost{}, all_given{};
-  Lane *peak = nullptr, *peak_time = nullptr, least{}, greatest{};
+  Lane *peak = nullptr, *peak_time = nullptr, least{}, greatest{}, edge{};  // CrossingResult
 };
 
 template <int W>

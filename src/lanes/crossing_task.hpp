@@ -116,6 +116,7 @@ struct Task {
   double *least_force = nullptr, *greatest_force = nullptr;
   double* kept = nullptr;    // accelerations of the probes at the start and where stretches keep them; null: not kept
   double* bent = nullptr;    // coordinates of every vehicle where it was farthest from linear
+  double* edge = nullptr;    // CrossingResult::edge
   double* failed = nullptr;  // 0: none of what follows
   double* work = nullptr;    // as many numbers as work_size() says, aligned as a lane
 };

@@ -67,12 +67,16 @@ double solves(const LaneModel& model) {
 
 }  // namespace
 
-std::optional<LaneModel> LaneSearch::run(double duration, double longest) {
+LaneModel LaneSearch::first(double duration, double longest) {
   const int modes = numbers_of_modes.front();
   LaneModel model{modes, mesh_for(trials_.scene(), modes), structure::find_method("esdirk4"), 0.0};
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
   longest_ = std::min(steps.longest, longest);
   model.step = std::min(first_step_factor * steps.first, longest_);
+  return model;
+}
+
+std::optional<LaneModel> LaneSearch::run(LaneModel model) {
   // Steps first, as modes are told apart by what the contacts do to them; and modes again where they want shorter ones.
   if (!halve_step(model)) return std::nullopt;
   for (double step = 0.0; step != model.step;) {

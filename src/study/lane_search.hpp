@@ -17,9 +17,10 @@ class LaneSearch {
   LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy)
       : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
-  /// The cheapest model within the accuracy, for passages that last so long, of steps up to the longest (s); empty:
-  /// none.
-  std::optional<LaneModel> run(double duration, double longest);
+  /// The model that the search begins with, for passages that last so long, of steps up to the longest, s.
+  LaneModel first(double duration, double longest);
+  /// The cheapest model within the accuracy; empty: none.
+  std::optional<LaneModel> run(LaneModel model);
   /// The same with this number of modes, by steps of esdirk4 that begin with this one.
   std::optional<LaneModel> with_steps(LaneModel model);
   /// Of modes and mesh, and of the steps.

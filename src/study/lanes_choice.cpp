@@ -36,8 +36,8 @@ constexpr double modes_over_wholes = 0.5;  // of the wanted error
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
 constexpr double longer = 1.4;
 constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
-// As measured: of all peaks, of those beside a hinge, and of accelerations.
-constexpr double weight_of_touch = 20.0, beside_a_hinge = 50.0, in_accelerations = 100.0;
+// Of the swing of a wheel's force that passes a corner too late: what peaks have of it, as measured.
+constexpr std::array<double, quantities> part_of_swing = {0.1, 1.0, 0.1, 0.4, 0.1};
 
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open &&
@@ -146,15 +146,17 @@ class Chooser {
     const double part = forces_alone ? part_for_forces : 1.0;
     const double longest =
         follows ? part * longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
-    take(search.run(whole_ / fastest_.train.speed, longest));
+    const LaneModel first = search.first(whole_ / fastest_.train.speed, longest);
+    check_corners(beginnings_->run(first), {});
+    take(search.run(first));
     if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
     const double defect = beginnings_->defect(model_);
     if (scene_.vehicle_model == VehicleModel::automatic && defect > most_defect(scene_))
       throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
     Errors errors = check_wholes(search);
     for (std::size_t q = 0; q < quantities; ++q)
-      if (asks_for(scene_, q)) errors[q] += defect + touch_ahead(q);
-    if (greatest(errors) > scene_.accuracy) throw NotChosen{"wheels touch the bridge's slopes ahead of their centres"};
+      if (asks_for(scene_, q)) errors[q] += defect;
+    errors = check_corners(wholes_->run(model_), errors);
     LanesChoice choice;
     choice.scene = with(scene_, model_);
     for (std::size_t q = 0; q < quantities; ++q) {
@@ -175,17 +177,21 @@ class Chooser {
   double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
 
  private:
-  /// Of the peaks of a quantity: wheels touch a slope s by R s ahead of their centres, where the kernel has their
-  /// forces. Beside a hinge they are on slopes where deflections are largest.
-  double touch_ahead(std::size_t q) {
-    double deflection = 0.0;
-    for (const CrossingResult& run : beginnings_->run(model_))
-      for (const lanes::CrossingPeak& peak : run.deflection) deflection = std::max(deflection, peak.value);
-    const std::vector<double>& spans = scene_.beam->spans;
-    const double length = *std::min_element(spans.begin(), spans.end());
-    const bool plain = scene_.beam->hinges.empty() && scene_.beam->cracks.empty();
-    const double weight = q == acceleration ? in_accelerations : plain ? weight_of_touch : beside_a_hinge;
-    return weight * scene_.vehicles.front().wheels.front().radius * deflection / (length * length);
+  /// Errors with those of corners of the surface, at the bridge's ends, joints and hinges: the kernel has wheels pass
+  /// them when they would if they had not moved along the track by d, and in a time of d/v they are pressed down by the
+  /// corner's angle times d/2. Throws NotChosen where that is too much.
+  Errors check_corners(const std::vector<CrossingResult>& runs, Errors errors) const {
+    double edge = 0.0;
+    for (const CrossingResult& run : runs) edge = std::max(edge, run.edge);
+    const beam::BeamModel& beam = *scene_.beam;
+    const bool plain = beam.hinges.empty() && beam.cracks.empty() &&
+                       std::ranges::all_of(beam.joints, [](auto j) { return j == beam::Joint::continuous; });
+    const double angles = plain ? 1.0 : 2.0;  // of the slopes on both sides
+    const double swing = swing_after_a_push(scene_) * 0.5 * angles * edge / fastest_.train.speed;
+    for (std::size_t q = 0; q < quantities; ++q)
+      if (asks_for(scene_, q)) errors[q] += part_of_swing[q] * swing;
+    if (greatest(errors) > scene_.accuracy) throw NotChosen{"wheels pass the corners of the surface at other times"};
+    return errors;
   }
 
   void take(const std::optional<LaneModel>& found) {
