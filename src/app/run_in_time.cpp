@@ -26,6 +26,11 @@ int run_in_time(Job job) {
     if (end.again == Retry::mechanisms) {
       scene.vehicle_model = VehicleModel::full;
       with_mechanisms = true;
+      // What modes leave out has its own motion in the kernel of linear vehicles alone.
+      if (scene.modes_open && scene.model_modes > 0) {
+        scene.model_modes = 0;
+        scene.integrator.clear();
+      }
       notes.push_back(fmt::format(
           "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
           "the mechanisms",

@@ -136,6 +136,8 @@ std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<co
     if (crossing.trouble != lanes::none || runner->lanes_->defect(crossing) > runner->scene_.most_defect) {
       ++runner->alone_;
       results.push_back(runner->run(train, one, reached));
+      // What modes leave out has its own motion in the lanes alone, as the trials had it.
+      if (runner->scene_.modes_open) results.back().unseen = true;
     } else {
       results.push_back(runner->result_of(crossing, train));
     }

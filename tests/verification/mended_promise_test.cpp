@@ -169,6 +169,15 @@ TEST(MendedPromise, MeshesGoOnAsTheyWereCompared) {
   expect_kept(run_yaml(scene, {{"accuracy", "1e-4"}}), run_yaml(scene, finer("240", "1e-4")), {"acceleration"}, 1e-4);
 }
 
+// Linear vehicles that are found out of balance at the end of the run give way to the mechanisms, for which modes left
+// out are static: the moment was 2.6e-4 off, where 2e-5 was expected. The run is repeated by elements.
+TEST(MendedPromise, MechanismsInPlaceOfLinearVehicles) {
+  std::string scene = coaches("beam: {spans: 24.0, EI: 2.07006e+10, mass: 2969.06, damping_ratios: 0.0251}\n", "s300",
+                              "vehicles: coach*3, speed: 74.0");
+  scene.replace(scene.find("pinned"), 6, "clamped");
+  expect_kept(run_yaml(scene, {{"accuracy", "3e-4"}}), run_yaml(scene, finer("128", "1e-4")), {"moment"}, 3e-5);
+}
+
 // Wheels that go on striking on a rough track lose what is known of them: trial runs of the first span expected 7e-4 of
 // a moment that was 1.1e-2 off.
 TEST(MendedPromise, WheelsThatGoOnStriking) {

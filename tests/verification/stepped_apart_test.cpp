@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "support/curve.hpp"
+#include "support/paths.hpp"
 #include "support/separations.hpp"
 
 namespace traverse::test {
