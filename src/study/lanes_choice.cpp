@@ -124,9 +124,7 @@ class Chooser {
   Chooser(const Scene& scene, const TrialSpeeds& speeds, bool alone) : scene_(scene), fastest_(scene), alone_(alone) {
     fastest_.train.speed = scene.sweep->speeds.back();
     for (const double x : wheels_at_start(fastest_)) whole_ = std::max(whole_, scene.beam->length() - x);
-    // What wheels do as they come off the bridge is seen too, where the run goes on as long.
-    const std::vector<double>& spans = scene.beam->spans;
-    whole_ += std::min(scene.tail.value_or(0.0) * fastest_.train.speed, *std::max_element(spans.begin(), spans.end()));
+    whole_ += scene.tail.value_or(0.0) * fastest_.train.speed;
     if (scene.end_time) whole_ = *scene.end_time * fastest_.train.speed;
     distance_ = beginning(fastest_, whole_ / fastest_.train.speed) * fastest_.train.speed;
     if (asks_for(scene, low_passed))
@@ -201,12 +199,13 @@ class Chooser {
 
   /// Whole passages: errors add up while the train crosses, and what stirs higher modes may come late. Against more
   /// modes, and half the step; a single passage, which should not cost several, against a longer one, whose change is
-  /// more than the error where that falls with the second power or faster.
+  /// more than the error where that falls with the second power or faster. By esdirk4: genalpha takes all vibration out
+  /// of wheels in time, and two of its steps may agree on that.
   Errors check_wholes(LaneSearch& search) {
     Errors errors{};
     for (int i = 0; i <= most_tries; ++i) {
       LaneModel other = search.with_more_modes(model_);
-      if (!alone_) other.method = structure::find_method("esdirk4");
+      other.method = structure::find_method("esdirk4");
       other.step *= alone_ ? longer : 0.5;
       wholes_->run_at_once(std::array{other, model_});
       errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
