@@ -33,6 +33,7 @@ constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
 constexpr double part_of_all = 0.95;  // of the wanted error
 constexpr int most_tries = 6;
 constexpr double modes_over_wholes = 0.5;  // of the wanted error
+constexpr int modes_of_a_check = 30;       // at least: few modes may agree on what they all leave out
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
 constexpr double longer = 1.4;
 constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
@@ -205,6 +206,7 @@ class Chooser {
     Errors errors{};
     for (int i = 0; i <= most_tries; ++i) {
       LaneModel other = search.with_more_modes(model_);
+      while (alone_ && other.modes < modes_of_a_check) other = search.with_more_modes(other);
       other.method = structure::find_method("esdirk4");
       other.step *= alone_ ? longer : 0.5;
       wholes_->run_at_once(std::array{other, model_});

@@ -40,6 +40,18 @@ TEST(Peaks, InstantsThatNearMakeNoParabola) {
   EXPECT_NEAR(peaks.largest(wheel_force).time, crest, 1e-6);
 }
 
+// A force that jumps within a short step makes no parabola through the three samples beside it.
+TEST(Peaks, AJumpMakesNoParabola) {
+  Peaks peaks({}, 1);
+  const double jump = 0.505, before = 100.0, after = 110.0;
+  for (const double t : {0.3, 0.4, 0.5, jump, 0.6, 0.7, 0.8}) {
+    const double now[] = {t < jump ? before : after - 10.0 * (t - jump)};
+    peaks.add(t, {}, now);
+  }
+  peaks.finish();
+  EXPECT_NEAR(peaks.largest(wheel_force).value, after, 0.3 * (after - before));
+}
+
 // A sine of frequency omega bends by (omega h)^2 of itself within steps of h.
 TEST(Peaks, BendsOfAWave) {
   const double h = 0.01, omega = 20.0;

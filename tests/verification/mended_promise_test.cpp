@@ -149,8 +149,8 @@ TEST(MendedPromise, StiffSpringsCountWithTheContact) {
               {"deflection", "acceleration", "moment", "wheel_force"}, 1e-2);
 }
 
-// Wheels touch the bridge's slopes ahead of their centres, which runs by modes leave out: accelerations of a short span
-// were 1.5e-3 off, whatever the number of modes.
+// Wheels touch the bridge's slopes ahead of their centres and move along the track, which runs by modes once left out:
+// accelerations of a short span were 1.5e-3 off, whatever the number of modes.
 TEST(MendedPromise, SlopesOfShortSpansCountMore) {
   const std::string scene =
       "beam: {spans: [13.4, 10.8], EI: 3.37012e+09, mass: 4079.67, damping_ratios: 0.0062}\n"
@@ -167,6 +167,29 @@ TEST(MendedPromise, MeshesGoOnAsTheyWereCompared) {
   const std::string scene = coaches("beam: {spans: 24.5, EI: 1.92799e+10, mass: 5021.56, damping_ratios: 0.0031}\n",
                                     "s300", "vehicles: coach, speed: 53.6");
   expect_kept(run_yaml(scene, {{"accuracy", "1e-4"}}), run_yaml(scene, finer("240", "1e-4")), {"acceleration"}, 1e-4);
+}
+
+// A body that swings on undamped springs presses its wheel most behind the bridge, when genalpha has taken all
+// vibration out of it: trial runs ended before, and by two steps of genalpha they would have agreed. The force
+// was 2.2e-2 off.
+TEST(MendedPromise, ForcesAtTheEndOfTheRun) {
+  std::string one = one_wheel("9150.25", "251.124", "3.41941e+06", "0.0", "8.78403e+08");
+  one.replace(one.find("hertz"), 5, "linear");
+  const std::string scene =
+      "beam: {spans: 19.8, EI: 9.94826e+09, mass: 3318.81, damping_ratios: 0.0253}\n"
+      "support: {types: [pinned, roller]}\n" +
+      one + "train: {vehicles: car, speed: 81.8}\nscene: {tail: 0.3}\n";
+  expect_kept(run_yaml(scene, {{"accuracy", "1e-2"}}), run_yaml(scene, finer("64", "1e-4")), {"wheel_force"}, 1e-2);
+}
+
+// Eight modes, twelve and twenty agree to 5e-5 on an acceleration of which the next ten make 9e-4.
+TEST(MendedPromise, FewModesMayAgree) {
+  const std::string scene =
+      "beam: {spans: 25.4, EI: 1.28974e+10, mass: 4009.51, damping_ratios: 0.0458}\n"
+      "support: {types: [pinned, roller]}\n" +
+      one_wheel("12611.6", "5312.01", "1.81976e+06", "0.0", "5.77984e+10") +
+      "train: {vehicles: car, positions: -6.0, speed: 41.7}\nscene: {tail: 0.3}\n";
+  expect_kept(run_yaml(scene, {{"accuracy", "1e-3"}}), run_yaml(scene, finer("120", "1e-4")), {"acceleration"}, 1e-3);
 }
 
 // Linear vehicles that are found out of balance at the end of the run give way to the mechanisms, for which modes left
