@@ -28,6 +28,7 @@ struct CrossingPlaces : CrossingAlgebra<W> {
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
         Lane height;
         track_at(s.task.heights, s.task.x[j] + gone, height, s.lean[j]);
+        s.along[j] = s.lean_of_bridge[j] = Lane{};
         s.free[j] = s.offset[j] + height;
         double* g = s.g + static_cast<long>(j) * s.task.influence.channels;
         double* slope = s.g_slope + static_cast<long>(j) * s.modes;
@@ -62,7 +63,6 @@ struct CrossingPlaces : CrossingAlgebra<W> {
       if (s.awake[v] == 0 || s.touching[v] == 0) continue;
       const TaskVehicle& vehicle = s.task.vehicle[v];
       for (int j = vehicle.first_wheel; j < vehicle.first_wheel + s.task.kind[vehicle.kind].wheels; ++j) {
-        s.along[j] = s.lean_of_bridge[j] = Lane{};
         if (s.on[j] == 0) continue;
         s.lean_of_bridge[j] = -dot(s.g_slope + static_cast<long>(j) * s.modes, q, s.modes);
         s.lean[j] += s.lean_of_bridge[j];
