@@ -72,7 +72,7 @@ class Group : CrossingAlgebra<W> {
         Looks::look(s, true);
       }
       kink = stretch.kink;
-      if (kink) s.known = 1;  // moments may have one there
+      if (kink) Looks::look_before_kink(s);  // moments may have one there
       if (stretch.keeps) Looks::keep(s);
       if (!any(s.failed == fill(0.0))) break;
       from = stretch.to;
@@ -124,10 +124,7 @@ class Group : CrossingAlgebra<W> {
     s.seen = o.seen;
     for (int i = 0; i < 5; ++i) {
       s.s_seen[i] = o.s_seen[i];
-      s.F_seen[i] = s.x + (o.F_seen[i] - o.x);  // as the rows they take turns
-    }
-    for (int i = 0; i < 3; ++i) {
-      s.time[i] = o.time[i];
+      s.F_seen[i] = s.x + (o.F_seen[i] - o.x);  // they take turns
       s.row_of[i] = s.x + (o.row_of[i] - o.x);
     }
     for (int i = 0; i < 2; ++i) s.bent_to[i] = s.x + (o.bent_to[i] - o.x);
@@ -153,7 +150,7 @@ class Group : CrossingAlgebra<W> {
     const State& s = state_;
     const auto all = [](const Lane* x) { return reinterpret_cast<const double*>(x); };
     return {*all(&s.failed), all(s.q),         all(s.r),         all(s.x),         all(s.w),
-            all(s.bent),     all(s.F_seen[4]), all(s.row_of[2]), all(&s.all_lost), all(&s.all_given)};
+            all(s.bent),     all(s.F_seen[4]), all(s.row_of[4]), all(&s.all_lost), all(&s.all_given)};
   }
 
  private:

@@ -21,9 +21,9 @@ struct CrossingLooks : CrossingAlgebra<W> {
   using typename Own::Lane;
   using typename Own::Mask;
 
-  static constexpr double near = 0.9;   // of the largest magnitude so far: no parabola's vertex of less is larger
-  static constexpr double alike = 4.0;  // see WheelExtremes
-  static constexpr int bisections = 30;
+  static constexpr double near = 0.9;         // of the largest magnitude so far: nothing that turns below is larger
+  static constexpr double most_uneven = 4.0;  // as in run/turn.hpp
+  static constexpr int bisections = 30, most = 5, latest = most - 1;
 
   /// The responses of the probes, and whether the motion is finite.
   static void see(State& s) {
@@ -35,25 +35,29 @@ struct CrossingLooks : CrossingAlgebra<W> {
 
   /// That, and the peaks so far.
   static void look(State& s, bool moved) {
-    const Lane time = s.distance / s.speed;
-    const Mask counts = time <= s.end_time * (1.0 + 1e-12);
-    s.time[0] = s.time[1];
-    s.time[1] = s.time[2];
-    s.time[2] = time;
+    const Mask counts = runs_until(s, s.distance);
+    for (int i = 0; i < latest; ++i) s.s_seen[i] = s.s_seen[i + 1];
+    s.s_seen[latest] = s.distance;
     ++s.known;
     ++s.looks;
     see(s);
     look_at_probes(s, counts);
     if (moved) look_at_wheels(s, counts);
   }
+  /// After the last look, or before one with a kink: what turns just before it. Of the responses from `first` on.
+  static void look_at_last(State& s, int first) {
+    for (int i = first; i < 3 * s.task.probes.count; ++i) look_between(s, i, latest - 1);
+  }
+  static void look_before_kink(State& s) {
+    look_at_last(s, 2 * s.task.probes.count);
+    s.known = 1;
+  }
+
+  static Mask runs_until(const State& s, double distance) { return distance / s.speed <= s.end_time * (1.0 + 1e-12); }
 
   static void see_probes(State& s) {
     const int n = s.task.probes.count, count = 4 * n;
-    Lane* const oldest = s.row_of[0];
-    s.row_of[0] = s.row_of[1];
-    s.row_of[1] = s.row_of[2];
-    s.row_of[2] = oldest;
-    Lane* seen = s.row_of[2];
+    Lane* seen = take_turns(s.row_of);
     for (int i = 0; i < count; ++i) seen[i] = Lane{};
     CrossingLeftOut<W>::add(s, seen);
     for (int i = 0; i < s.modes; ++i) {
@@ -73,54 +77,113 @@ struct CrossingLooks : CrossingAlgebra<W> {
     }
   }
 
+  /// The oldest of the rows, which becomes the latest one.
+  static Lane* take_turns(Lane** rows) {
+    Lane* const oldest = rows[0];
+    for (int i = 0; i < latest; ++i) rows[i] = rows[i + 1];
+    return rows[latest] = oldest;
+  }
+
   static void look_at_probes(State& s, Mask counts) {
     const int n = s.task.probes.count, count = 3 * n;
     for (int i = 0; i < count; ++i) {
-      const Lane value = magnitude(s.row_of[2][i]);
+      const Lane value = magnitude(s.row_of[latest][i]);
       const Mask larger = counts & (value > s.peak[i]);
       s.peak[i] = larger ? value : s.peak[i];
-      s.peak_time[i] = larger ? s.time[2] : s.peak_time[i];
+      s.peak_time[i] = larger ? s.distance / s.speed : s.peak_time[i];
       if (i >= 2 * n && s.task.left_out.lag > 0.0) {
         if (s.looks >= 2) look_at_lagging(s, i, counts);
-        continue;
+      } else {
+        look_between(s, i, 2);
       }
-      if ((i < 2 * n ? s.looks : s.known) < 3) continue;
-      const Lane middle = magnitude(s.row_of[1][i]);
-      const Mask turns = counts & (middle > near * s.peak[i]) & (middle > value);
-      if (any(turns)) look_between(s, i, turns);
     }
   }
 
-  /// The vertex of the parabola through the last three instants, of whose magnitudes the middle one is the largest.
-  static void look_between(State& s, int i, Mask turns) {
-    const Lane sign = s.row_of[1][i] < Lane{} ? fill(-1.0) : fill(1.0);
-    const Lane y0 = sign * s.row_of[0][i], y1 = sign * s.row_of[1][i], y2 = sign * s.row_of[2][i];
-    turns &= y1 >= y0;
-    const Lane before = (y1 - y0) / (s.time[1] - s.time[0]), after = (y2 - y1) / (s.time[2] - s.time[1]);
-    const Lane bend = (after - before) / (s.time[2] - s.time[0]);
-    const Lane at = 0.5 * (s.time[0] + s.time[1]) - 0.5 * before / bend;
-    const Lane top = y1 + (at - s.time[1]) * (before + bend * (at - s.time[0]));
-    turns &= top > s.peak[i];
-    s.peak[i] = turns ? top : s.peak[i];
-    s.peak_time[i] = turns ? at : s.peak_time[i];
+  /// Which of the last five instants tell where a curve turns about the one at m: app::turn_about.
+  struct Stencil {
+    int left = 0, right = 0;
+    bool three = false, five = false;
+
+    /// seen: so many instants without a kink.
+    Stencil(const double* at, int m, long seen) : left(m - 1), right(m + 1) {
+      const int oldest = seen < most ? most - static_cast<int>(seen) : 0;
+      if (left < oldest) return;
+      double shortest = at[1] - at[0], longest = shortest;
+      for (int i = 1; i < latest; ++i) {
+        const double gap = at[i + 1] - at[i];
+        shortest = gap < shortest ? gap : shortest;
+        longest = gap > longest ? gap : longest;
+      }
+      five = m == 2 && oldest == 0 && longest <= most_uneven * shortest;
+      while (left > oldest && most_uneven * (at[m] - at[left]) < at[m + 1] - at[m]) --left;
+      while (right < latest && most_uneven * (at[right] - at[m]) < at[m] - at[m - 1]) ++right;
+      const double before = at[m] - at[left], after = at[right] - at[m];
+      three = before <= most_uneven * after && after <= most_uneven * before;
+    }
+  };
+
+  /// The value where the curve of rows turns about the instant m, by three instants or five, and how far behind m.
+  static Lane turn(const double* at, Lane* const* rows, int i, int m, const Stencil& by, bool five, Lane& behind) {
+    constexpr int iterations = 3;
+    const int l = five ? m - 1 : by.left, r = five ? m + 1 : by.right;
+    const double before = at[m] - at[l], after = at[r] - at[m];
+    const Lane y = rows[m][i], up = (y - rows[l][i]) / before, down = (rows[r][i] - y) / after;
+    const Lane slope = (up * after + down * before) / (before + after), bend = (down - up) / (before + after);
+    behind = -0.5 * slope / bend;
+    const Lane of_three = y + 0.5 * slope * behind;
+    if (!five) return of_three;
+    const double s0 = at[0] - at[2], s1 = -before, s3 = after, s4 = at[4] - at[2];
+    const auto missed = [&](double d, Lane Y) { return (Y - y - d * (slope + bend * d)) / ((d - s1) * d * (d - s3)); };
+    const Lane c = missed(s0, rows[0][i]), fourth = (missed(s4, rows[4][i]) - c) / (s4 - s0), e = c - fourth * s0;
+    const Lane first = slope + e * (s1 * s3), second = bend - e * (s1 + s3) + fourth * (s1 * s3),
+               third = e - fourth * (s1 + s3);
+    Lane d = behind;
+    for (int k = 0; k < iterations; ++k)
+      d -= (first + d * (2.0 * second + d * (3.0 * third + d * 4.0 * fourth))) /
+           (2.0 * second + d * (6.0 * third + d * 12.0 * fourth));
+    const Mask inside = (d >= s1) & (d <= s3);
+    behind = inside ? d : behind;
+    return inside ? y + d * (first + d * (second + d * (third + d * fourth))) : of_three;
+  }
+
+  /// Response i, where its magnitude at the instant m is larger than those of its neighbours.
+  static void look_between(State& s, int i, int m) {
+    const bool is_moment = i >= 2 * s.task.probes.count;
+    if (is_moment && s.task.left_out.lag > 0.0) return;
+    const Lane middle = magnitude(s.row_of[m][i]);
+    const Mask large = (middle > near * s.peak[i]) & (middle > magnitude(s.row_of[m + 1][i]));
+    const double* at = s.s_seen;
+    if (!any(large)) return;
+    const Stencil by(at, m, is_moment ? s.known : s.looks);
+    if (!by.three) return;
+    const Lane before = s.row_of[by.left][i], after = s.row_of[by.right][i], y = s.row_of[m][i];
+    const Mask turns = large & runs_until(s, at[m + 1]) & ((y - before) * (after - y) <= Lane{}) &
+                       (middle >= magnitude(s.row_of[m - 1][i]));
+    if (!any(turns)) return;
+    Lane behind;
+    const Lane top = magnitude(turn(at, s.row_of, i, m, by, by.five, behind));
+    const Mask larger = turns & (top > s.peak[i]);
+    s.peak[i] = larger ? top : s.peak[i];
+    s.peak_time[i] = larger ? (at[m] + behind) / s.speed : s.peak_time[i];
   }
 
   /// Between the last two instants a moment that lags is start + p t + q t^2 + k b (exp(-t/b) - 1), with both values
   /// and both rates, as app::RelaxingCurve has it.
   static void look_at_lagging(State& s, int i, Mask counts) {
     const int rate = i + s.task.probes.count;
-    const Lane start = s.row_of[1][i], rising = s.row_of[1][rate], falling = s.row_of[2][rate];
+    const Lane *last = s.row_of[latest], *before_last = s.row_of[latest - 1];
+    const Lane start = before_last[i], rising = before_last[rate], falling = last[rate];
     const Mask turns = counts & (rising * falling < Lane{}) & (rising * start > Lane{}) &
-                       (Own::greater(magnitude(start), magnitude(s.row_of[2][i])) > near * s.peak[i]);
+                       (Own::greater(magnitude(start), magnitude(last[i])) > near * s.peak[i]);
     if (!any(turns)) return;
-    const Lane h = s.time[2] - s.time[1];
+    const Lane began = s.s_seen[latest - 1] / s.speed, h = s.distance / s.speed - began;
     for (int l = 0; l < W; ++l) {
       if (!holds(turns, l)) continue;
       const double step = numbers(h)[l], lag = s.task.left_out.lag < 100.0 * step ? s.task.left_out.lag : 100.0 * step;
       const double decay = __builtin_exp(-step / lag), decayed = 1.0 - decay;
       const double first = numbers(start)[l], before = numbers(rising)[l], after = numbers(falling)[l];
-      const double k = (numbers(s.row_of[2][i])[l] - first - 0.5 * step * (before + after)) /
-                       (0.5 * step * (1.0 + decay) - lag * decayed);
+      const double k =
+          (numbers(last[i])[l] - first - 0.5 * step * (before + after)) / (0.5 * step * (1.0 + decay) - lag * decayed);
       const double p = before + k, q = 0.5 * (after - before - k * decayed) / step;
       double from = 0.0, to = step;
       for (int bisection = 0; bisection < bisections; ++bisection) {
@@ -131,75 +194,42 @@ struct CrossingLooks : CrossingAlgebra<W> {
       const double size = top < 0.0 ? -top : top;
       if (size <= numbers(s.peak[i])[l]) continue;
       numbers(s.peak[i])[l] = size;
-      numbers(s.peak_time[i])[l] = numbers(s.time[1])[l] + from;
+      numbers(s.peak_time[i])[l] = numbers(began)[l] + from;
     }
   }
 
   static void look_at_wheels(State& s, Mask counts) {
-    Lane* const oldest = s.F_seen[0];
-    for (int i = 0; i < 4; ++i) {
-      s.s_seen[i] = s.s_seen[i + 1];
-      s.F_seen[i] = s.F_seen[i + 1];
-    }
-    s.s_seen[4] = s.distance;
-    s.F_seen[4] = oldest;
+    Lane* now = take_turns(s.F_seen);
     ++s.seen;
     for (int j = 0; j < s.task.wheels; ++j) {
-      const Lane force = CrossingContacts<W>::normal(s, j);
-      s.F_seen[4][j] = force;
+      const Lane force = now[j] = CrossingContacts<W>::normal(s, j);
       s.least = counts & (force < s.least) ? force : s.least;
       s.greatest = counts & (force > s.greatest) ? force : s.greatest;
     }
-    if (s.seen >= 4) look_at_turns(s, 2);
+    look_at_turns(s, 2);
   }
 
-  /// What forces of wheels were between steps where they turn at the instant i of the last five, as app::WheelExtremes
-  /// has it. Distances take the place of times.
-  static void look_at_turns(State& s, int i) {
-    const double *at = s.s_seen, before = at[i] - at[i - 1], after = at[i + 1] - at[i];
-    if (before > alike * after || after > alike * before) return;
-    const bool five = i == 2 && s.seen >= 5 && alike_all(at);
-    const Mask counts = at[i + 1] / s.speed <= s.end_time * (1.0 + 1e-12);
+  /// What forces of wheels were between steps where they turn at the instant m, as app::WheelExtremes has it.
+  static void look_at_turns(State& s, int m) {
+    const double* at = s.s_seen;
+    const Stencil by(at, m, s.seen);
+    if (!by.three) return;
+    const Mask counts = runs_until(s, at[m + 1]);
     for (int j = 0; j < s.task.wheels; ++j) {
-      const Lane F = s.F_seen[i][j], rise = F - s.F_seen[i - 1][j], fall = s.F_seen[i + 1][j] - F;
-      const Mask turns = counts & (rise * fall <= Lane{}) & (fall != Lane{});
-      if (!any(turns) || !smooth(s, s.task.x[j], at[i - 1], at[i + 1])) continue;
-      const Lane up = rise / before, down = fall / after;
-      const Lane slope = (up * after + down * before) / (before + after), bend = (down - up) / (before + after);
-      Lane top = F - 0.25 * slope * slope / bend;
-      if (five && smooth(s, s.task.x[j], at[0], at[4])) top = turn_of_five(s, j, slope, bend, top);
+      const double x = s.task.x[j];
+      const Lane F = s.F_seen[m][j], before = F - s.F_seen[by.left][j], after = s.F_seen[by.right][j] - F;
+      const Mask turns = counts & (before * after <= Lane{}) &
+                         ((F - s.F_seen[m - 1][j]) * (s.F_seen[m + 1][j] - F) <= Lane{}) & (after != Lane{});
+      if (!any(turns) || !smooth(s, x, at[by.left], at[by.right])) continue;
+      Lane behind, top = turn(at, s.F_seen, j, m, by, false, behind);
+      if (by.five && smooth(s, x, at[0], at[latest])) {
+        Mask touched = s.F_seen[0][j] > Lane{};
+        for (int i = 1; i < most; ++i) touched &= s.F_seen[i][j] > Lane{};
+        top = touched ? turn(at, s.F_seen, j, m, by, true, behind) : top;
+      }
       s.least = turns & (top < s.least) & (top > Lane{}) ? top : s.least;
       s.greatest = turns & (top > s.greatest) ? top : s.greatest;
     }
-  }
-
-  static bool alike_all(const double* at) {
-    double shortest = at[1] - at[0], longest = shortest;
-    for (int i = 1; i < 4; ++i) {
-      const double gap = at[i + 1] - at[i];
-      shortest = gap < shortest ? gap : shortest;
-      longest = gap > longest ? gap : longest;
-    }
-    return longest <= alike * shortest;
-  }
-
-  /// app::turn_of_five of a wheel's force; otherwise: what counts where it was in flight.
-  static Lane turn_of_five(State& s, int j, Lane slope, Lane bend, Lane otherwise) {
-    constexpr int iterations = 3;
-    const double *at = s.s_seen, s0 = at[0] - at[2], s1 = at[1] - at[2], s3 = at[3] - at[2], s4 = at[4] - at[2];
-    const Lane y = s.F_seen[2][j];
-    const auto missed = [&](double d, Lane F) { return (F - y - d * (slope + bend * d)) / ((d - s1) * d * (d - s3)); };
-    const Lane c = missed(s0, s.F_seen[0][j]), fourth = (missed(s4, s.F_seen[4][j]) - c) / (s4 - s0);
-    const Lane e = c - fourth * s0;
-    const Lane first = slope + e * (s1 * s3), second = bend - e * (s1 + s3) + fourth * (s1 * s3),
-               third = e - fourth * (s1 + s3);
-    Lane d = -0.5 * slope / bend;
-    for (int k = 0; k < iterations; ++k)
-      d -= (first + d * (2.0 * second + d * (3.0 * third + d * 4.0 * fourth))) /
-           (2.0 * second + d * (6.0 * third + d * 12.0 * fourth));
-    Mask valid = (d >= s1) & (d <= s3);
-    for (int i = 0; i < 5; ++i) valid &= s.F_seen[i][j] > Lane{};
-    return valid ? y + d * (first + d * (second + d * (third + d * fourth))) : otherwise;
   }
 
   /// Whether a wheel has met no corner of the surface between two distances.
@@ -212,12 +242,13 @@ struct CrossingLooks : CrossingAlgebra<W> {
   /// Keeps the accelerations of the latest instant.
   static void keep(State& s) {
     const int n = s.task.probes.count;
-    for (int p = 0; p < n; ++p) lanes(s.task.kept)[s.kept * n + p] = s.row_of[2][n + p];
+    for (int p = 0; p < n; ++p) lanes(s.task.kept)[s.kept * n + p] = s.row_of[latest][n + p];
     ++s.kept;
   }
 
   static void give(State& s) {
-    if (s.seen >= 3) look_at_turns(s, 3);
+    look_at_last(s, 0);
+    look_at_turns(s, latest - 1);
     for (int i = 0; i < 3 * s.task.probes.count; ++i) {
       lanes(s.task.peak)[i] = s.peak[i];
       lanes(s.task.peak_time)[i] = s.peak_time[i];

@@ -64,14 +64,12 @@ struct CrossingState {
   Lane *yield = nullptr, *D = nullptr, *pivot = nullptr, *residual = nullptr, *reduced = nullptr;
   long* D_begin = nullptr;
 
-  // What is seen: instants since the last kink of moments, since the start, of wheels, kept; the last three instants,
-  // s, and their responses [deflections, accelerations, moments of the probes, rates of the latter]; the last five
-  // distances and the wheels' forces there.
+  // What is seen: instants since the last kink of moments, since the start, of wheels, kept; the distances
+  // of the last five instants, responses there [deflections, accelerations, moments of the probes, rates of the
+  // latter], and wheel forces.
   long known = 0, looks = 0, seen = 0, kept = 0;
-  Lane time[3] = {};
-  Lane* row_of[3] = {};
   double s_seen[5] = {};
-  Lane* F_seen[5] = {};
+  Lane *row_of[5] = {}, *F_seen[5] = {};
   // What modes left out do at the probes (CrossingLeftOut), [deflections, moments]: what forces bend them to at this
   // instant and the one before, how fast that rose, where they are and how fast they move; what a step makes of [both
   // at its start, what they follow at its start and end] of deflections and keeps of moments; the step before, s;

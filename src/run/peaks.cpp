@@ -40,7 +40,7 @@ template <class Note>
 void Curve::look(std::size_t i, const std::vector<double>& kinks, Note&& note) const {
   const auto& [t, y, count] = seen_;
   if (std::abs(y[i]) < std::abs(y[i - 1]) || std::abs(y[i]) <= std::abs(y[i + 1])) return;
-  const Turn turn = turn_about(seen_, i, most_, [&](std::size_t from, std::size_t to) {
+  const Turn turn = turn_about(seen_, i, [&](std::size_t from, std::size_t to) {
     return y[from] * y[to] > 0.0 && !between(kinks, t[from], t[to]);
   });
   note(turn.value, turn.time);
@@ -81,7 +81,6 @@ Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, doub
       moments_(lag > 0.0 ? passages_.size() : 0),
       probes_(passages_.size()),
       wheels_(wheels) {
-  for (auto& curves : probes_) curves[acceleration] = Curve(3);
   for (std::size_t q = 0; q < quantities; ++q) each_[q].resize(q == wheel_force ? wheels : passages_.size());
 }
 

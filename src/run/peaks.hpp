@@ -31,11 +31,6 @@ struct Peak {
 /// The extremes of one curve, as samples come.
 class Curve {
  public:
-  Curve() = default;
-  /// most: so many samples tell where it turns, three or five. Accelerations have parts of modes that steps do not
-  /// follow, which five make more of.
-  explicit Curve(std::size_t most) : most_(most) {}
-
   /// Calls note(value, time) for the extreme that is known with this sample, two after it. kinks: ascending times at
   /// which the curve may have one.
   template <class Note>
@@ -60,7 +55,6 @@ class Curve {
   void look(std::size_t i, const std::vector<double>& kinks, Note&& note) const;
 
   Samples seen_;
-  std::size_t most_ = Samples::most;
 };
 
 /// The extremes of a curve M that follows a smooth one by M + b dM/dt, but for its kinks, which have samples.

@@ -68,15 +68,15 @@ inline Turn turn_of_five(const Samples& samples) {
   return {y[2] + s * (first + s * (second + s * (third + s * d))), t[2] + s};
 }
 
-/// Where the curve turns about the sample i, which is extreme between its neighbours, as three or five samples tell at
-/// most; smooth(a, b): whether it has no kink from sample a to b. Of a wave of angular frequency w, sampled every h,
+/// Where the curve turns about the sample i, which is extreme between its neighbours; smooth(a, b): whether it has no
+/// kink from sample a to b. Of a wave of angular frequency w, sampled every h,
 /// five samples that are alike make an error of (w h)^6/200; three make (w h)^4/40. Nearer ones than these are left
 /// out, and where none are left it is the sample.
 template <class Smooth>
-Turn turn_about(const Samples& samples, std::size_t i, std::size_t most, Smooth&& smooth) {
+Turn turn_about(const Samples& samples, std::size_t i, Smooth&& smooth) {
   const auto& [t, y, count] = samples;
   const auto apart = [&](std::size_t a, std::size_t b) { return t[b] - t[a]; };
-  if (i == 2 && most == Samples::most && count >= most && smooth(0, 4) && are_alike(apart(0, 1), apart(1, 2)) &&
+  if (i == 2 && count >= Samples::most && smooth(0, 4) && are_alike(apart(0, 1), apart(1, 2)) &&
       are_alike(apart(1, 2), apart(2, 3)) && are_alike(apart(2, 3), apart(3, 4)))
     return turn_of_five(samples);
   const std::size_t oldest = Samples::most - std::min(count, Samples::most);

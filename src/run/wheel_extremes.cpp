@@ -42,8 +42,7 @@ bool WheelExtremes::smooth(const Seen& seen, std::size_t i, std::size_t j) const
 void WheelExtremes::look(const Seen& seen, std::size_t i, std::size_t wheel) {
   const auto& f = seen.force.value;
   if ((f[i] - f[i - 1]) * (f[i + 1] - f[i]) > 0.0 || f[i] == f[i + 1]) return;
-  const Turn turn = turn_about(seen.force, i, Samples::most,
-                               [&](std::size_t from, std::size_t to) { return smooth(seen, from, to); });
+  const Turn turn = turn_about(seen.force, i, [&](std::size_t from, std::size_t to) { return smooth(seen, from, to); });
   note(std::max(turn.value, 0.0), turn.time, wheel);
 }
 

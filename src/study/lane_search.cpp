@@ -49,8 +49,8 @@ LaneErrors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to
 }
 
 /// The error that half the step leaves, by what halving it has changed now and the time before, which tell the order.
-double left_of(double change, double before) {
-  const double order = std::clamp(before > change ? std::log2(before / change) : 0.0, lowest_order, highest_order);
+double left_of(double change, double before, double most) {
+  const double order = std::clamp(before > change ? std::log2(before / change) : 0.0, lowest_order, most);
   return change / (std::exp2(order) - 1.0);
 }
 
@@ -105,10 +105,13 @@ void LaneSearch::foresee(const LaneModel& model) {
 
 bool LaneSearch::halve_step(LaneModel& model) {
   for (int i = 0; i < most_halvings; ++i) {
+    trials_.run_at_once(std::array{with_step(model, 0.5), model, with_step(model, 2.0)});
     const LaneErrors before = change(trials_, with_step(model, 2.0), model);
     const LaneErrors now = change(trials_, model, with_step(model, 0.5));
     for (std::size_t q = 0; q < quantities; ++q) {
-      halved_[q] = left_of(now[q], before[q]);
+      // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
+      const bool follows = q != moment || damps_high_modes(trials_.scene());
+      halved_[q] = left_of(now[q], before[q], follows ? highest_order : 1.0);
       steps_[q] = now[q] + halved_[q];
     }
     if (greatest(steps_) <= part_of_steps * accuracy_) return true;

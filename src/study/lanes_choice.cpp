@@ -38,7 +38,7 @@ constexpr double shorter = 0.7;            // a quarter of an error of fourth or
 constexpr double longer = 1.4;
 constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
 // Of the swing of a wheel's force that passes a corner too late: what peaks have of it, as measured.
-constexpr std::array<double, quantities> part_of_swing = {0.1, 1.0, 0.1, 0.4, 0.1};
+constexpr std::array<double, quantities> part_of_swing = {0.1, 2.0, 0.1, 0.4, 0.1};
 
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open &&
@@ -310,11 +310,14 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
     choice.scene.sweep.reset();
     choice.scene.accuracy_of = given.accuracy_of;
     choice.scene.integrator = chooser.model().method->name;
+    const double speed = given.train.speed;
+    choice.scene.time_step =
+        chooser.model().step * lanes::speed_of_class(lanes::speed_class(speed)) / speed;  // as tried
     notes.push_back(fmt::format(
         "accuracy {:g}: {} elements a span, of these {} modes, linear vehicles, {} with steps of {:g} s; {} trial runs "
         "of {:.3g} s took {:.2g} s",
         given.accuracy, mesh_of(choice.scene), chooser.model().modes, chooser.model().method->name,
-        chooser.model().step, chooser.trials(), chooser.horizon(),
+        *choice.scene.time_step, chooser.trials(), chooser.horizon(),
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     notes.push_back("expected errors of the peaks: " + words_of(scene, choice.promises));
     if (asks_for(given, acceleration) && !choice.promises[acceleration].kept) {
