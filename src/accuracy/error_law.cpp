@@ -7,7 +7,7 @@ namespace traverse::app {
 namespace {
 
 constexpr double refining_order = 3.0;
-constexpr double unsettled = 0.5, supposed_order = 2.0;  // after the one, not more than the other is believed
+constexpr double unsettled = 0.5, supposed_order = 1.0;  // after the one, not more than the other is believed
 constexpr double no_limit = 1e3;
 
 }  // namespace

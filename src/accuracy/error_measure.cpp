@@ -13,6 +13,7 @@ constexpr double supposed = 1.5;  // times a measured size that an error is extr
 constexpr double trials_of_run = 0.7, whole_trials_of_run = 8.0;  // for trial runs
 constexpr double farthest_guess = 8.0;                            // of the run's mesh and step, for that
 constexpr double by_nodes_below = 2e-4;                           // wanted accuracy
+constexpr double of_a_sum = 2.0;                                  // times its change
 constexpr double share_between = 0.5;  // of the wanted error, where it is only known for shorter and longer steps
 
 /// Whether there are supports whose dampers act only while they are touched: then accelerations jump.
@@ -55,10 +56,12 @@ void ErrorSearch::count_alike() {
 
 ErrorLaw ErrorSearch::error_in_time(Quantity q) {
   const double change = difference(trials_.run(mesh_, 2.0 * step_), trials_.run(mesh_, step_), q, 6.0 * step_);
-  // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
-  double most = q != moment || !undamped_ ? full_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
+  // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency: two
+  // may agree on what they both leave.
+  const bool sums = q == moment && undamped_;
+  double most = !sums ? full_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
   if ((q == acceleration || q == low_passed) && dampers_let_go(scene_.beam->foundation)) most = 1.0;
-  return error_from(growth_ * change, step_, time_[q], most);
+  return error_from((sums ? of_a_sum : 1.0) * growth_ * change, step_, time_[q], most);
 }
 
 // With twice the step, at half the cost: runs that the error in time asks for too. Steps over more than an element
