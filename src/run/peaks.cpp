@@ -38,7 +38,7 @@ void Curve::add(double t, double value, const std::vector<double>& kinks, Note&&
 
 template <class Note>
 void Curve::look(std::size_t i, const std::vector<double>& kinks, Note&& note) const {
-  const auto& [t, y, count] = seen_;
+  const auto &t = seen_.time, &y = seen_.value;
   if (std::abs(y[i]) < std::abs(y[i - 1]) || std::abs(y[i]) <= std::abs(y[i + 1])) return;
   const Turn turn = turn_about(seen_, i, [&](std::size_t from, std::size_t to) {
     return y[from] * y[to] > 0.0 && !between(kinks, t[from], t[to]);
@@ -47,9 +47,9 @@ void Curve::look(std::size_t i, const std::vector<double>& kinks, Note&& note) c
 }
 
 double Curve::bend() const {
-  const auto& [t, y, count] = seen_;
+  const auto &t = seen_.time, &y = seen_.value;
   const double before = t[3] - t[2], after = t[4] - t[3];
-  if (count < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
+  if (seen_.count < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
   return std::abs((y[4] - y[3]) / after - (y[3] - y[2]) / before) * std::min(before, after);
 }
 

@@ -38,7 +38,7 @@ struct Parabola {
   double slope, bend;
 
   Parabola(const Samples& samples, std::size_t left, std::size_t i, std::size_t right) {
-    const auto& [t, y, count] = samples;
+    const auto &t = samples.time, &y = samples.value;
     const double before = t[i] - t[left], after = t[right] - t[i];
     const double rise = (y[i] - y[left]) / before, fall = (y[right] - y[i]) / after;
     slope = (rise * after + fall * before) / (before + after);
@@ -50,7 +50,7 @@ struct Parabola {
 /// The turn of the curve of fourth degree through five samples.
 inline Turn turn_of_five(const Samples& samples) {
   constexpr int iterations = 3;
-  const auto& [t, y, count] = samples;
+  const auto &t = samples.time, &y = samples.value;
   const Parabola inner(samples, 1, 2, 3);
   // Above the parabola by (s - s1) s (s - s3) (c + d (s - s0)), so that it meets the outer two as well.
   const double s0 = t[0] - t[2], s1 = t[1] - t[2], s3 = t[3] - t[2], s4 = t[4] - t[2];
@@ -74,12 +74,12 @@ inline Turn turn_of_five(const Samples& samples) {
 /// out, and where none are left it is the sample.
 template <class Smooth>
 Turn turn_about(const Samples& samples, std::size_t i, Smooth&& smooth) {
-  const auto& [t, y, count] = samples;
+  const auto &t = samples.time, &y = samples.value;
   const auto apart = [&](std::size_t a, std::size_t b) { return t[b] - t[a]; };
-  if (i == 2 && count >= Samples::most && smooth(0, 4) && are_alike(apart(0, 1), apart(1, 2)) &&
+  if (i == 2 && samples.count >= Samples::most && smooth(0, 4) && are_alike(apart(0, 1), apart(1, 2)) &&
       are_alike(apart(1, 2), apart(2, 3)) && are_alike(apart(2, 3), apart(3, 4)))
     return turn_of_five(samples);
-  const std::size_t oldest = Samples::most - std::min(count, Samples::most);
+  const std::size_t oldest = Samples::most - std::min(samples.count, Samples::most);
   std::size_t left = i - 1, right = i + 1;
   while (left > oldest && most_uneven * apart(left, i) < apart(i, i + 1)) --left;
   while (right + 1 < Samples::most && most_uneven * apart(i, right) < apart(i - 1, i)) ++right;
