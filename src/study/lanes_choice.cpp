@@ -33,6 +33,7 @@ constexpr std::array beside = {1.0, 1.01, 1.02, 1.03};
 constexpr double part_of_all = 0.95;  // of the wanted error
 constexpr int most_tries = 6;
 constexpr double modes_over_wholes = 0.5;  // of the wanted error
+constexpr int most_modes_alone = 84;       // elements take less
 constexpr int modes_of_a_check = 30;       // at least: few modes may agree on what they all leave out
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
 constexpr double longer = 1.4;
@@ -199,18 +200,22 @@ class Chooser {
   }
 
   /// Whole passages: errors add up while the train crosses, and what stirs higher modes may come late. Against more
-  /// modes, and half the step; a single passage, which should not cost several, against a longer one, whose change is
-  /// more than the error where that falls with the second power or faster. By esdirk4: genalpha takes all vibration out
-  /// of wheels in time, and two of its steps may agree on that.
+  /// modes, by esdirk4: genalpha takes all vibration out of wheels in time, and two of its steps may agree on that. Of
+  /// a sweep with half the step; of a single passage, which should not cost several, a longer step tells the rest,
+  /// whose change is more than the error where that falls with the second power or faster.
   Errors check_wholes(LaneSearch& search) {
     Errors errors{};
     for (int i = 0; i <= most_tries; ++i) {
       LaneModel other = search.with_more_modes(model_);
       while (alone_ && other.modes < modes_of_a_check) other = search.with_more_modes(other);
       other.method = structure::find_method("esdirk4");
-      other.step *= alone_ ? longer : 0.5;
-      wholes_->run_at_once(std::array{other, model_});
+      if (!alone_) other.step *= 0.5;
+      std::vector<LaneModel> runs = {other, model_};
+      if (alone_ && model_.method == other.method) (runs.emplace_back(model_)).step *= longer;
+      wholes_->run_at_once(runs);
       errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
+      const Errors by_steps = difference(scene_, wholes_->run(model_), wholes_->run(runs.back()));  // 0: none is longer
+      for (std::size_t q = 0; q < quantities; ++q) errors[q] += by_steps[q];
       if (asks_for_forces_alone(scene_)) errors[wheel_force] *= of_the_change;
       for (std::size_t q = 0; q < quantities; ++q)
         errors[q] = std::max(errors[q], search.error_of_model(q) + search.error_of_steps(q));
@@ -233,6 +238,7 @@ class Chooser {
       model_.step *= shorter;
       return;
     }
+    if (alone_ && other.modes > most_modes_alone) throw NotChosen{"whole passages ask for too many modes"};
     model_.modes = other.modes;
     model_.elements = other.elements;
     model_.method = structure::find_method("esdirk4");
