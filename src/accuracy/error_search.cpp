@@ -238,8 +238,8 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
   if (open_mesh_ && scene.beam->track) mesh = base::whole(std::ceil(mesh_ / fewer));
   if (open_mesh_ && !scene.beam->track) {
     int needed = std::max(4, 2 * base::whole(std::ceil(0.5 * mesh_ / fewer)));
-    // Peaks depend on where nodes are: where nearly twice as many are needed, meshes go on as they were compared.
-    if (needed > 1.5 * mesh_) needed = std::max(needed, 2 * mesh_);
+    // Peaks depend on where nodes are: where about twice as many are needed, meshes go on as they were compared.
+    if (needed > 1.5 * mesh_ && needed < 2.5 * mesh_) needed = 2 * mesh_;
     mesh = aligned_mesh(scene_, needed);
     // What was measured with nodes at the springs does not hold beside them.
     if (aligned(scene_, mesh_) && !aligned(scene_, mesh)) mesh = needed <= mesh_ ? mesh_ : 2 * mesh_;
