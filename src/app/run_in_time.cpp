@@ -10,6 +10,15 @@ namespace {
 
 constexpr int most_halvings = 4;  // of a step that was chosen
 
+/// In place of linear vehicles; by elements where `accuracy` has chosen modes: what these leave out has its own motion
+/// in the kernel of linear vehicles alone.
+void take_mechanisms(Scene& scene) {
+  scene.vehicle_model = VehicleModel::full;
+  if (!scene.modes_open || scene.model_modes == 0) return;
+  scene.model_modes = 0;
+  scene.integrator.clear();
+}
+
 }  // namespace
 
 int run_in_time(Job job) {
@@ -17,20 +26,21 @@ int run_in_time(Job job) {
   Scene scene = job.scene;
   Accuracy accuracy = job.accuracy;
   bool with_mechanisms = goes_on && job.earlier->repeated;
-  if (with_mechanisms) scene.vehicle_model = VehicleModel::full;
+  std::optional<SharedBeam> own;
+  if (with_mechanisms) {
+    std::vector<std::string> ignored;
+    take_mechanisms(scene);
+    own.emplace(job.comm, scene, ignored);
+  }
   int halvings = goes_on || !scene.step_open ? 0 : most_halvings;
-  Job first{job.comm, scene, std::move(job.place), accuracy, job.beam, std::move(job.notes), job.earlier};
+  SharedBeam& beam_of_first = own ? *own : job.beam;
+  Job first{job.comm, scene, std::move(job.place), accuracy, beam_of_first, std::move(job.notes), job.earlier};
   RunEnd end = run_once(first, with_mechanisms, halvings > 0);
   while (end.again != Retry::none) {
     std::vector<std::string> notes;
     if (end.again == Retry::mechanisms) {
-      scene.vehicle_model = VehicleModel::full;
+      take_mechanisms(scene);
       with_mechanisms = true;
-      // What modes leave out has its own motion in the kernel of linear vehicles alone.
-      if (scene.modes_open && scene.model_modes > 0) {
-        scene.model_modes = 0;
-        scene.integrator.clear();
-      }
       notes.push_back(fmt::format(
           "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
           "the mechanisms",

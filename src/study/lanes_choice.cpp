@@ -210,11 +210,12 @@ class Chooser {
       while (alone_ && other.modes < modes_of_a_check) other = search.with_more_modes(other);
       other.method = structure::find_method("esdirk4");
       if (!alone_) other.step *= 0.5;
-      std::vector<LaneModel> runs = {other, model_};
-      if (alone_ && model_.method == other.method) (runs.emplace_back(model_)).step *= longer;
-      wholes_->run_at_once(runs);
+      const LaneModel& same_method = model_.method == other.method ? model_ : other;
+      LaneModel slower = same_method;
+      if (alone_) slower.step *= longer;  // else the same, which is known
+      wholes_->run_at_once(std::array{other, model_, slower});
       errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
-      const Errors by_steps = difference(scene_, wholes_->run(model_), wholes_->run(runs.back()));  // 0: none is longer
+      const Errors by_steps = difference(scene_, wholes_->run(same_method), wholes_->run(slower));
       for (std::size_t q = 0; q < quantities; ++q) errors[q] += by_steps[q];
       if (asks_for_forces_alone(scene_)) errors[wheel_force] *= of_the_change;
       for (std::size_t q = 0; q < quantities; ++q)
