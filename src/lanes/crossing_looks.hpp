@@ -108,21 +108,18 @@ struct CrossingLooks : CrossingAlgebra<W> {
     Stencil(const double* at, int m, long seen) : left(m - 1), right(m + 1) {
       const int oldest = seen < most ? most - static_cast<int>(seen) : 0;
       if (left < oldest) return;
-      double shortest = at[1] - at[0], longest = shortest;
-      for (int i = 1; i < latest; ++i) {
-        const double gap = at[i + 1] - at[i];
-        shortest = gap < shortest ? gap : shortest;
-        longest = gap > longest ? gap : longest;
-      }
-      five = m == 2 && oldest == 0 && longest <= most_uneven * shortest;
-      while (left > oldest && most_uneven * (at[m] - at[left]) < at[m + 1] - at[m]) --left;
-      while (right < latest && most_uneven * (at[right] - at[m]) < at[m] - at[m - 1]) ++right;
-      const double before = at[m] - at[left], after = at[right] - at[m];
-      three = before <= most_uneven * after && after <= most_uneven * before;
+      const auto apart = [=](int a, int b) { return at[b] - at[a]; };
+      five = m == 2 && oldest == 0 && alike(apart(0, 1), apart(1, 2)) && alike(apart(1, 2), apart(2, 3)) &&
+             alike(apart(2, 3), apart(3, 4));
+      while (left > oldest && most_uneven * apart(left, m) < apart(m, m + 1)) --left;
+      while (right < latest && most_uneven * apart(m, right) < apart(m - 1, m)) ++right;
+      three = alike(apart(left, m), apart(m, right));
     }
+    static bool alike(double a, double b) { return a <= most_uneven * b && b <= most_uneven * a; }
   };
 
-  /// The value where the curve of rows turns about the instant m, by three instants or five, and how far behind m.
+  /// The value where the curve of rows turns about the instant m, by three instants or five, and how far behind m that
+  /// is: app::turn_of_five, lane by lane.
   static Lane turn(const double* at, Lane* const* rows, int i, int m, const Stencil& by, bool five, Lane& behind) {
     constexpr int iterations = 3;
     const int l = five ? m - 1 : by.left, r = five ? m + 1 : by.right;

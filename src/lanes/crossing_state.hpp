@@ -80,7 +80,7 @@ struct CrossingState {
   bool behind_kink = false;
   // W, at the start of a step and at its stages, and their integrals, J: CrossingPowers.
   Lane lost[most_kept] = {}, given[most_kept] = {}, all_lost{}, all_given{};
-  Lane *peak = nullptr, *peak_time = nullptr, least{}, greatest{}, edge{};  // CrossingResult
+  Lane *peak = nullptr, *peak_time = nullptr, least{}, greatest{}, edge{};  // the last one: CrossingResult::edge
 };
 
 template <int W>

@@ -216,7 +216,7 @@ std::string Sweep::Model::not_promised(const std::vector<double>& unseen) const 
   return fmt::format(
       "nothing is promised of {} of the runs: they met what no trial run has seen, as wheels that lose contact or "
       "stops "
-      "that are touched; -accuracy_whole makes trial runs as long as these",
+      "that are touched, or left the runs beside them; -accuracy_whole makes trial runs as long as these",
       count);
 }
 

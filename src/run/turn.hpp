@@ -8,7 +8,7 @@
 
 namespace traverse::app {
 
-/// The latest samples of a curve, the last one at the end.
+/// The latest samples of a curve, the last one at the end; times in s.
 struct Samples {
   static constexpr std::size_t most = 5;
   std::array<double, most> time{}, value{};
@@ -24,7 +24,7 @@ struct Samples {
 };
 
 struct Turn {
-  double value = 0.0, time = 0.0;
+  double value = 0.0, time = 0.0;  // s
 };
 
 /// Steps that end at events may be of any length. Beyond this ratio of intervals the shorter one says more of a jump or
@@ -33,7 +33,7 @@ inline constexpr double most_uneven = 4.0;
 
 inline bool are_alike(double a, double b) { return std::max(a, b) <= most_uneven * std::min(a, b); }
 
-/// The curve about a sample i and two others around it is slope s + bend s^2 above it, s after it.
+/// The parabola through a sample i and one on either side of it is slope s + bend s^2 above that sample, s after it.
 struct Parabola {
   double slope, bend;
 
@@ -47,7 +47,7 @@ struct Parabola {
   double vertex() const { return -0.5 * slope / bend; }
 };
 
-/// The turn of the curve of fourth degree through five samples.
+/// The turn of the curve of fourth degree through five samples, of which the middle one is extreme.
 inline Turn turn_of_five(const Samples& samples) {
   constexpr int iterations = 3;
   const auto &t = samples.time, &y = samples.value;
@@ -64,14 +64,14 @@ inline Turn turn_of_five(const Samples& samples) {
   for (int k = 0; k < iterations; ++k)
     s -= (first + s * (2.0 * second + s * (3.0 * third + s * 4.0 * d))) /
          (2.0 * second + s * (6.0 * third + s * 12.0 * d));
-  if (!(s >= s1 && s <= s3)) s = 0.0;
+  if (!(s >= s1 && s <= s3)) return {y[2] + 0.5 * inner.slope * inner.vertex(), t[2] + inner.vertex()};
   return {y[2] + s * (first + s * (second + s * (third + s * d))), t[2] + s};
 }
 
 /// Where the curve turns about the sample i, which is extreme between its neighbours; smooth(a, b): whether it has no
-/// kink from sample a to b. Of a wave of angular frequency w, sampled every h,
-/// five samples that are alike make an error of (w h)^6/200; three make (w h)^4/40. Nearer ones than these are left
-/// out, and where none are left it is the sample.
+/// kink from sample a to b. Of a wave of angular frequency w, sampled every h, five samples whose intervals are alike
+/// make an error of (w h)^6/200, three of (w h)^4/40. Of three, neighbours much nearer than the other one are passed
+/// over for those behind them; where there are none the curve turns at the sample itself.
 template <class Smooth>
 Turn turn_about(const Samples& samples, std::size_t i, Smooth&& smooth) {
   const auto &t = samples.time, &y = samples.value;

@@ -25,7 +25,7 @@ struct CaseResult {
   std::vector<double> static_deflection;                       // m, of each probe; 0: unknown
   double least_wheel_force = 0.0, greatest_wheel_force = 0.0;  // N
   double contact_losses = 0.0, longest_loss = 0.0;             // of all wheels; s
-  bool unseen = false;                                         // it has met what no trial run has seen
+  bool unseen = false;                     // it has met what no trial run has seen, or was not taken as these were
   std::vector<results::Finding> findings;  // of each limit of the scene; none where no run is judged
   bool ended = false;                      // false: a signal came first
 };

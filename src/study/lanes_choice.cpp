@@ -187,7 +187,7 @@ class Chooser {
     const bool plain = beam.hinges.empty() && beam.cracks.empty() &&
                        std::ranges::all_of(beam.joints, [](auto j) { return j == beam::Joint::continuous; });
     const double angles = plain ? 1.0 : 2.0;  // of the slopes on both sides
-    const double swing = swing_after_a_push(scene_) * 0.5 * angles * edge / fastest_.train.speed;
+    const double swing = swing_after_a_push(scene_) * 0.5 * angles * edge / scene_.sweep->speeds.front();
     for (std::size_t q = 0; q < quantities; ++q)
       if (asks_for(scene_, q)) errors[q] += part_of_swing[q] * swing;
     if (greatest(errors) > scene_.accuracy) throw NotChosen{"wheels pass the corners of the surface at other times"};
