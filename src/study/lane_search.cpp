@@ -24,7 +24,7 @@ constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 // Each is compared with half as many more. Without damping that grows with the frequency errors of moments fall with
 // the first power.
 constexpr double more_modes = 1.5, of_an_undamped_moment = 3.0;
-constexpr double order_of_modes = 6.0;  // that errors of the modes fall with at most: what is farther off is not tried
+constexpr double order_of_modes = 4.5;  // that errors of the modes fall with at most: what is farther off is not tried
 // The modes that are compared reach over the frequency at which wheels vibrate on their contacts, which stirs modes
 // near it: comparisons below it agree whatever these do. Accelerations show modes farther from it.
 constexpr double above_contacts = 1.1, above_them_in_accelerations = 2.0;
@@ -73,6 +73,7 @@ LaneModel LaneSearch::first(double duration, double longest) {
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
   longest_ = std::min(steps.longest, longest);
   model.step = std::min(first_step_factor * steps.first, longest_);
+  trials_.run_at_once(std::array{with_step(model, 0.25), with_step(model, 0.5), model, with_step(model, 2.0)});
   return model;
 }
 
