@@ -14,7 +14,7 @@ constexpr double trials_of_run = 0.7, whole_trials_of_run = 8.0;  // for trial r
 constexpr double farthest_guess = 8.0;                            // of the run's mesh and step, for that
 constexpr double by_nodes_below = 2e-4;                           // wanted accuracy
 constexpr double square = 2.0;
-constexpr double of_a_sum = 2.0;                                  // times its change
+constexpr double of_a_sum = 2.0;       // times its change
 constexpr double share_between = 0.5;  // of the wanted error, where it is only known for shorter and longer steps
 
 /// Whether there are supports whose dampers act only while they are touched: then accelerations jump.

@@ -25,7 +25,7 @@ using hdf5::Series;
 
 // Rows between two writes: many where rows are short, since each write asks HDF5 for every dataset.
 constexpr std::size_t kBlockRows = 256, kMostRows = 1024;
-constexpr std::size_t kShortBlock = std::size_t{16} << 20, kBlockBytes = std::size_t{64} << 20;
+constexpr std::size_t kShortBlock = std::size_t{1} << 20, kBlockBytes = std::size_t{64} << 20;
 // A slow run writes before its block is full, as long as writing takes less than a twentieth of the time.
 constexpr double kLongestWait = 5.0;  // s
 constexpr double kCostFactor = 20.0;

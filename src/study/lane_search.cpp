@@ -31,6 +31,7 @@ constexpr double above_contacts = 1.1, above_them_in_accelerations = 2.0;
 constexpr double surely = 0.7;           // of a number of modes that is foreseen: fewer are not looked at
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a finer mesh has to agree
 constexpr double order_of_mesh = 4.0;
+constexpr double clearly_over = 1.3;                       // times what steps may leave
 constexpr double lowest_order = 0.5, highest_order = 4.0;  // of the steps
 
 int mesh_for(const Scene& scene, int modes) {
@@ -61,9 +62,13 @@ LaneModel with_step(const LaneModel& model, double factor, const char* method = 
   return other;
 }
 
-double solves(const LaneModel& model) {
-  return static_cast<double>(model.method->make(model.method->parameter.value).stages.size()) / model.step;
+/// Whether not even the shortest step of a method will do, where this one leaves so many times what it may.
+bool hopeless(double over, const structure::MethodRow& method, double factor) {
+  return over > std::pow(factor / step_factors.back(), method.order);
 }
+
+/// In a second.
+double solves(const LaneModel& model) { return model.method->solves() / model.step; }
 
 }  // namespace
 
@@ -80,6 +85,10 @@ LaneModel LaneSearch::first(double duration, double longest) {
 std::optional<LaneModel> LaneSearch::run(LaneModel model) {
   // Steps first, as modes are told apart by what the contacts do to them; and modes again where they want shorter ones.
   if (!halve_step(model)) return std::nullopt;
+  // With one solve a step wheel forces are off where steps change their length.
+  const LaneModel one_solve = with_step(model, step_factors.front(), methods.front());
+  one_solve_ = !asks_for_forces_alone(trials_.scene()) &&
+               !hopeless(over(left_by(one_solve, model)), *one_solve.method, step_factors.front());
   for (double step = 0.0; step != model.step;) {
     step = model.step;
     if (!add_modes(model)) return std::nullopt;
@@ -97,9 +106,8 @@ std::optional<LaneModel> LaneSearch::with_steps(LaneModel model) {
 
 /// What is compared in any case goes at once, the longest run first.
 void LaneSearch::foresee(const LaneModel& model) {
-  std::vector<LaneModel> steps = {with_step(model, 0.5), with_step(model, step_factors.front(), methods.front())};
-  for (const double factor : step_factors)
-    if (factor >= 1.0) steps.push_back(with_step(model, factor));
+  std::vector<LaneModel> steps = {with_step(model, 0.5), model, with_step(model, 2.0)};
+  if (one_solve_) steps.push_back(with_step(model, step_factors.front(), methods.front()));
   if (trials_.scene().mesh_open && &mixed_ == &trials_) steps.push_back(on_coarser_mesh(model));
   trials_.run_at_once(steps);
 }
@@ -115,7 +123,7 @@ bool LaneSearch::halve_step(LaneModel& model) {
       halved_[q] = left_of(now[q], before[q], follows ? highest_order : 1.0);
       steps_[q] = now[q] + halved_[q];
     }
-    if (greatest(steps_) <= part_of_steps * accuracy_) return true;
+    if (over(steps_) <= 1.0) return true;
     model.step *= 0.5;
   }
   return false;
@@ -174,23 +182,35 @@ bool LaneSearch::refine_mesh(LaneModel& model) {
 /// A longer step, or the method of one solve a step, where that costs less.
 LaneModel LaneSearch::cheaper(const LaneModel& model) {
   LaneModel best = model;
-  // With one solve a step wheel forces are off where steps change their length.
-  const bool unseen = asks_for_forces_alone(trials_.scene());
-  for (const char* method : std::span(methods).subspan(unseen ? 1 : 0))
+  const double of_model = over(steps_);
+  for (const char* method : std::span(methods).subspan(one_solve_ ? 0 : 1)) {
+    double of_longer = 0.0;
     for (const double factor : step_factors) {
       const LaneModel tried = with_step(model, factor, method);
       if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
-      LaneErrors own = change(trials_, tried, with_step(model, 0.5));
-      const double times = tried.method->solves() > 1.0 ? 1.0 : of_one_solve;
-      if (times > 1.0) own[wheel_force] *= of_its_forces;
-      for (std::size_t q = 0; q < quantities; ++q) own[q] = times * own[q] + halved_[q];
-      const double over = greatest(own) / (part_of_steps * accuracy_);
-      if (over > std::pow(factor / step_factors.back(), tried.method->order)) break;  // nor will the shortest do
-      if (over > 1.0) continue;
+      // Between two steps of one method that are known: about the root of both.
+      if (tried.method == model.method && std::sqrt(of_model * of_longer) > clearly_over) continue;
+      const LaneErrors own = left_by(tried, model);
+      of_longer = over(own);
+      if (hopeless(of_longer, *tried.method, factor)) break;
+      if (of_longer > 1.0) continue;
       steps_ = own;
       best = tried;
     }
+  }
   return best;
 }
+
+/// The errors of such steps, told by half those of the model.
+LaneErrors LaneSearch::left_by(const LaneModel& tried, const LaneModel& model) {
+  LaneErrors own = change(trials_, tried, with_step(model, 0.5));
+  const double times = tried.method->solves() > 1.0 ? 1.0 : of_one_solve;
+  if (times > 1.0) own[wheel_force] *= of_its_forces;
+  for (std::size_t q = 0; q < quantities; ++q) own[q] = times * own[q] + halved_[q];
+  return own;
+}
+
+/// Times what steps may leave.
+double LaneSearch::over(const LaneErrors& errors) const { return greatest(errors) / (part_of_steps * accuracy_); }
 
 }  // namespace traverse::app

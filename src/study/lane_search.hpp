@@ -36,10 +36,13 @@ class LaneSearch {
   LaneModel on_coarser_mesh(LaneModel model) const;
   bool refine_mesh(LaneModel& model);
   LaneModel cheaper(const LaneModel& model);
+  LaneErrors left_by(const LaneModel& tried, const LaneModel& model);
+  double over(const LaneErrors& errors) const;
 
   LaneTrials &trials_, &mixed_;
   double accuracy_;
-  double longest_ = 0.0;  // s: no step is longer
+  double longest_ = 0.0;    // s: no step is longer
+  bool one_solve_ = false;  // methods of one solve a step are tried
   LaneErrors modes_{}, steps_{}, mesh_{};
   LaneErrors halved_{};  // what half the step leaves
 };

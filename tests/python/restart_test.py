@@ -46,6 +46,14 @@ KINDS = [
      ["-beam_elements_per_span", "4", "-ts_dt", "2e-3", "-ts_type", "cn", "-ts_max_time", "0.4"], 70),
 ]
 
+OUT_OF_BALANCE = f"""
+beam: {{spans: 24.0, EI: 2.07006e+10, mass: 2969.06, damping_ratios: 0.0251}}
+support: {{types: [clamped, roller]}}
+vehicle: {{coach: {{file: {SOURCE}/options/vehicles/s300.yml}}}}
+train: {{vehicles: coach*3, speed: 74.0}}
+scene: {{tail: 1.0}}
+"""
+
 
 def content(file):
     """All that a file holds but where it came from and what tells of the work done, notes among that."""
@@ -79,7 +87,7 @@ class Folder(unittest.TestCase):
 
     def command(self, scene, options, file, ranks=1):
         ahead = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
-        return [*ahead, str(BINARY), "-options_file", str(SCENES / f"{scene}.yml"), "-output_quiet", *options,
+        return [*ahead, str(BINARY), "-options_file", str((SCENES / scene).with_suffix(".yml")), "-output_quiet", *options,
                 "-output_file", file]
 
     def run_it(self, command, status=0, **how):
@@ -113,6 +121,15 @@ class Stopped(Folder):
         for name, scene, options, steps in KINDS:
             with self.subTest(name):
                 self.stop_and_go_on(scene, options, steps)
+
+    def test_repeated_with_mechanisms(self):
+        """Linear vehicles that prove out of balance, where the run has stopped before and after that."""
+        scene = self.folder / "out_of_balance.yml"
+        scene.write_text(OUT_OF_BALANCE)
+        for steps in (200, 2500):
+            self.stop_and_go_on(scene, ["-accuracy", "3e-4"], steps)
+            with h5py.File(self.folder / "whole.h5") as whole:
+                self.assertIn("repeated with the mechanisms", str(whole["model/notes"][()]))
 
     def test_on_two_ranks(self):
         for _, scene, options, steps in (KINDS[0], KINDS[4]):

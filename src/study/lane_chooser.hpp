@@ -1,0 +1,63 @@
+// The choice of what passages in lanes are computed with (lanes_choice.hpp): a search on their beginnings, checked on
+// whole ones.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/lane_search.hpp"
+#include "study/lane_trials.hpp"
+#include "study/lanes_choice.hpp"
+
+namespace traverse::app {
+
+/// Where trains have their trials: groups of speeds, m/s.
+struct TrialSpeeds {
+  std::vector<std::vector<double>> beginnings, mixed, wholes;  // mixed: none where the beginnings serve for them
+};
+
+class LaneChooser {
+ public:
+  /// Of a scene with a sweep, which must outlive it; alone: of a single passage, whose speeds are those beside its own.
+  LaneChooser(const Scene& scene, const TrialSpeeds& speeds, bool alone);
+
+  /// Why nothing is chosen.
+  struct NotChosen {
+    std::string why;
+  };
+  /// Throws NotChosen, and LaneTrials::Refused where passages cannot go in lanes.
+  LanesChoice choose();
+  /// How far the model is from the elements and the mechanisms themselves in the last trial, at its speed.
+  LaneErrors off_the_elements(double speed);
+  const LaneModel& model() const { return model_; }
+  std::size_t trials() const { return beginnings_->trials() + wholes_->trials(); }
+  double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
+
+ private:
+  /// Errors with those of corners of the surface, at the bridge's ends, joints and hinges: the kernel has wheels pass
+  /// them when they would if they had not moved along the track by d, and in a time of d/v they are pressed down by the
+  /// corner's angle times d/2. Throws NotChosen where that is too much.
+  LaneErrors check_corners(const std::vector<lanes::CrossingResult>& runs, LaneErrors errors) const;
+  void take(const std::optional<LaneModel>& found);
+  /// Whole passages: errors add up while the train crosses, and what stirs higher modes may come late. Against more
+  /// modes, by esdirk4: genalpha takes all vibration out of wheels in time, and two of its steps may agree on that. Of
+  /// a sweep with half the step; of a single passage, which should not cost several, a longer step tells the rest,
+  /// whose change is more than the error where that falls with the second power or faster.
+  LaneErrors check_wholes(LaneSearch& search);
+  /// By more modes where it is these that the other one differs by, else by shorter steps.
+  void refine(LaneSearch& search, const LaneModel& other);
+
+  const Scene& scene_;
+  Scene fastest_;
+  bool alone_;
+  double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
+  std::optional<LaneTrials> beginnings_, mixed_, wholes_;
+  LaneModel model_;
+};
+
+/// The errors that a scene asks for, by their names.
+std::string words_of(const Scene& scene, const LaneErrors& errors);
+
+}  // namespace traverse::app
