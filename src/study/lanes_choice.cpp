@@ -8,6 +8,7 @@
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
+#include "accuracy/trials.hpp"
 #include "lanes/speed_class.hpp"
 #include "results/stage.hpp"
 #include "study/lane_chooser.hpp"
