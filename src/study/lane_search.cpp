@@ -31,7 +31,7 @@ constexpr double above_contacts = 1.1, above_them_in_accelerations = 2.0;
 constexpr double surely = 0.7;           // of a number of modes that is foreseen: fewer are not looked at
 constexpr double elements_a_wave = 4.0;  // of the highest mode; a finer mesh has to agree
 constexpr double order_of_mesh = 4.0;
-constexpr double clearly_over = 1.3;                       // times what steps may leave
+constexpr double surely_within = 0.8, clearly_over = 1.3;  // times what steps or modes may leave
 constexpr double lowest_order = 0.5, highest_order = 4.0;  // of the steps
 
 int mesh_for(const Scene& scene, int modes) {
@@ -84,11 +84,7 @@ LaneModel LaneSearch::first(double duration, double longest) {
 
 std::optional<LaneModel> LaneSearch::run(LaneModel model) {
   // Steps first, as modes are told apart by what the contacts do to them; and modes again where they want shorter ones.
-  if (!halve_step(model)) return std::nullopt;
-  // With one solve a step wheel forces are off where steps change their length.
-  const LaneModel one_solve = with_step(model, step_factors.front(), methods.front());
-  one_solve_ = !asks_for_forces_alone(trials_.scene()) &&
-               !hopeless(over(left_by(one_solve, model)), *one_solve.method, step_factors.front());
+  if (!foresee_step(model)) return std::nullopt;
   for (double step = 0.0; step != model.step;) {
     step = model.step;
     if (!add_modes(model)) return std::nullopt;
@@ -112,21 +108,43 @@ void LaneSearch::foresee(const LaneModel& model) {
   trials_.run_at_once(steps);
 }
 
+/// The step that few modes ask for, which all that are needed are to confirm, and whether methods of one solve a step
+/// are worth a trial.
+bool LaneSearch::foresee_step(LaneModel& model) {
+  for (int i = 0; i < most_halvings; ++i, model.step *= 0.5) {
+    measure_steps(model);
+    const bool does = over(steps_) <= 1.0;
+    if (!does && over(halved_) > surely_within) continue;
+    // With one solve a step wheel forces are off where steps change their length.
+    const LaneModel one_solve =
+        with_step(model, does ? step_factors.front() : 0.5 * step_factors.front(), methods.front());
+    one_solve_ = !asks_for_forces_alone(trials_.scene()) &&
+                 !hopeless(over(left_by(one_solve, model)), *one_solve.method, step_factors.front());
+    if (!does) model.step *= 0.5;
+    return true;
+  }
+  return false;
+}
+
 bool LaneSearch::halve_step(LaneModel& model) {
   for (int i = 0; i < most_halvings; ++i) {
-    trials_.run_at_once(std::array{with_step(model, 0.5), model, with_step(model, 2.0)});
-    const LaneErrors before = change(trials_, with_step(model, 2.0), model);
-    const LaneErrors now = change(trials_, model, with_step(model, 0.5));
-    for (std::size_t q = 0; q < quantities; ++q) {
-      // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
-      const bool follows = q != moment || damps_high_modes(trials_.scene());
-      halved_[q] = left_of(now[q], before[q], follows ? highest_order : 1.0);
-      steps_[q] = now[q] + halved_[q];
-    }
+    measure_steps(model);
     if (over(steps_) <= 1.0) return true;
     model.step *= 0.5;
   }
   return false;
+}
+
+void LaneSearch::measure_steps(const LaneModel& model) {
+  trials_.run_at_once(std::array{with_step(model, 0.5), model, with_step(model, 2.0)});
+  const LaneErrors before = change(trials_, with_step(model, 2.0), model);
+  const LaneErrors now = change(trials_, model, with_step(model, 0.5));
+  for (std::size_t q = 0; q < quantities; ++q) {
+    // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
+    const bool follows = q != moment || damps_high_modes(trials_.scene());
+    halved_[q] = left_of(now[q], before[q], follows ? highest_order : 1.0);
+    steps_[q] = now[q] + halved_[q];
+  }
 }
 
 /// Half as many modes more, equal spans having each as often as they are.
@@ -142,22 +160,33 @@ LaneModel LaneSearch::with_more_modes(const LaneModel& model) {
 
 bool LaneSearch::add_modes(LaneModel& model) {
   const double above = asks_for(trials_.scene(), acceleration) ? above_them_in_accelerations : above_contacts;
-  const double stirred = above * contact_frequency(trials_.scene(), true);
+  const double stirred = above * contact_frequency(trials_.scene(), true), allowed = part_of_modes * accuracy_;
   // Frequencies of bending grow about with the square of their number.
   double fewest = surely * model.modes * std::sqrt(stirred / mixed_.last_omega(model)) / more_modes;
+  bool glances = 2.0 * model.step <= longest_;  // at what is likely to be too few, with steps twice as long
   for (const int modes : numbers_of_modes) {
     if (modes < model.modes || modes < fewest) continue;
     model.modes = modes;
     const LaneModel more = with_more_modes(model);
     model.elements = more.elements;
     if (mixed_.last_omega(more) < stirred) continue;
-    modes_ = change(mixed_, model, more, of_the_change);
-    if (!damps_high_modes(trials_.scene())) modes_[moment] *= of_an_undamped_moment / of_the_change;
-    const double over = greatest(modes_) / (part_of_modes * accuracy_);
-    if (over <= 1.0) return true;
-    fewest = modes * std::pow(over, 1.0 / order_of_modes);
+    double times = glances ? greatest(left_out(with_step(model, 2.0), with_step(more, 2.0))) / allowed : 0.0;
+    glances = false;
+    if (times <= clearly_over) {
+      modes_ = left_out(model, more);
+      times = greatest(modes_) / allowed;
+      if (times <= 1.0) return true;
+    }
+    fewest = modes * std::pow(times, 1.0 / order_of_modes);
   }
   return false;
+}
+
+/// What a number of modes leaves of errors, as more of them tell.
+LaneErrors LaneSearch::left_out(const LaneModel& model, const LaneModel& more) {
+  LaneErrors errors = change(mixed_, model, more, of_the_change);
+  if (!damps_high_modes(trials_.scene())) errors[moment] *= of_an_undamped_moment / of_the_change;
+  return errors;
 }
 
 LaneModel LaneSearch::on_coarser_mesh(LaneModel model) const {

@@ -30,8 +30,11 @@ class LaneSearch {
   LaneModel with_more_modes(const LaneModel& model);
 
  private:
+  bool foresee_step(LaneModel& model);
   bool halve_step(LaneModel& model);
+  void measure_steps(const LaneModel& model);
   bool add_modes(LaneModel& model);
+  LaneErrors left_out(const LaneModel& model, const LaneModel& more);
   void foresee(const LaneModel& model);
   LaneModel on_coarser_mesh(LaneModel model) const;
   bool refine_mesh(LaneModel& model);
