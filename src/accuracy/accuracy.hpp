@@ -23,9 +23,10 @@ struct Promise {
   bool present = false;   // in this scene
   bool kept = false;      // promised: the expected error is not above the wanted one
   double expected = 0.0;  // relative to the peak
+  double peak = 0.0;      // as large as a better trial of the whole run has it, to compare with; 0: there is none
   std::string why_not;    // where it is not promised
 
-  void keep(base::Bytes& bytes) { bytes(present, kept, expected, why_not); }
+  void keep(base::Bytes& bytes) { bytes(present, kept, expected, peak, why_not); }
 };
 
 /// A row of -accuracy_report, printed or not. wanted, error: relative. Whether the promise is not broken.
@@ -68,6 +69,9 @@ struct Accuracy {
   /// After the run, in which curves bend within steps so many times as much as trial runs have seen: errors are larger,
   /// by the square of that, and what is above `wanted` then is not promised any more. Says so, or "".
   std::string withdrawn_by_bends(double times, double wanted);
+  /// After a run to its end, whose peaks are not those of the better trial: what is off by more than `wanted` is not
+  /// promised any more.
+  std::string withdrawn_by_peaks(const Peaks& peaks, double wanted);
   /// The same of low-passed accelerations, where their peak is within the unsettled end of the run.
   std::string withdrawn_at_end(bool unsettled);
   void promise_nothing();

@@ -189,10 +189,13 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   if (system_.structure() != nullptr && system_.structure()->energy_left())
     summary.energy_left = total(ready_.job.comm, *system_.structure()->energy_left());
   summary.static_error = system_.static_error();
-  const std::array withdrawn = {ready_.accuracy.withdrawn(watch_.losses()),
-                                ready_.accuracy.withdrawn_by_surprise(watch_.beyond_trials().surprise()),
-                                ready_.accuracy.withdrawn_by_bends(watch_.bends_beyond_trials(), scene_.accuracy),
-                                ready_.accuracy.withdrawn_at_end(watch_.ends_unsettled())};
+  const bool whole = reaches_end_ && !passage_.stopped_at_limit();
+  const std::array withdrawn = {
+      ready_.accuracy.withdrawn(watch_.losses()),
+      ready_.accuracy.withdrawn_by_surprise(watch_.beyond_trials().surprise()),
+      ready_.accuracy.withdrawn_by_bends(watch_.bends_beyond_trials(), scene_.accuracy),
+      ready_.accuracy.withdrawn_at_end(watch_.ends_unsettled()),
+      whole ? ready_.accuracy.withdrawn_by_peaks(watch_.finished_peaks(), scene_.accuracy) : std::string()};
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
   const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.most_defect);

@@ -31,6 +31,17 @@ constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: f
 // Of the swing of a wheel's force that passes a corner too late: what peaks have of it, as measured.
 constexpr std::array<double, quantities> part_of_swing = {0.1, 2.0, 0.1, 0.4, 0.1};
 
+/// The largest ones of a run.
+void note_peaks(const CrossingResult& run, std::array<Promise, quantities>& promises) {
+  const auto note = [&](const std::vector<lanes::CrossingPeak>& of_probes, Quantity q) {
+    for (const lanes::CrossingPeak& peak : of_probes) promises[q].peak = std::max(promises[q].peak, peak.value);
+  };
+  note(run.deflection, deflection);
+  note(run.acceleration, acceleration);
+  note(run.moment, moment);
+  promises[wheel_force].peak = run.greatest_force;
+}
+
 }  // namespace
 
 std::string words_of(const Scene& scene, const Errors& errors) {
@@ -79,8 +90,9 @@ LanesChoice LaneChooser::choose() {
   choice.scene = with(scene_, model_);
   for (std::size_t q = 0; q < quantities; ++q) {
     const bool kept = asks_for(scene_, q);
-    choice.promises[q] = {true, kept, errors[q], kept ? "" : not_asked_for};
+    choice.promises[q] = {true, kept, errors[q], 0.0, kept ? "" : not_asked_for};
   }
+  if (alone_) note_peaks(wholes_->run(better_).back(), choice.promises);
   if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
   choice.scene.step_probes = true;
   return choice;
@@ -115,6 +127,7 @@ LaneErrors LaneChooser::check_wholes(LaneSearch& search) {
     const LaneModel& same_method = model_.method == other.method ? model_ : other;
     LaneModel slower = same_method;
     if (alone_) slower.step *= longer;  // else the same, which is known
+    better_ = other;
     wholes_->run_at_once(std::array{other, model_, slower});
     errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
     const Errors by_steps = difference(scene_, wholes_->run(same_method), wholes_->run(slower));

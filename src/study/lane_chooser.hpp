@@ -54,7 +54,7 @@ class LaneChooser {
   bool alone_;
   double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
   std::optional<LaneTrials> beginnings_, mixed_, wholes_;
-  LaneModel model_;
+  LaneModel model_, better_;  // what was chosen, and what its whole passages were compared with
 };
 
 /// The errors that a scene asks for, by their names.

@@ -58,6 +58,14 @@ void expect_kept(const Results& chosen, const Results& finer, const std::vector<
   }
 }
 
+/// That peaks which are promised are; some of them have to be.
+void expect_kept_if_promised(const Results& chosen, const Results& finer, std::vector<std::string> peaks,
+                             double accuracy) {
+  std::erase_if(peaks, [&](const std::string& quantity) { return !expected(chosen, quantity); });
+  EXPECT_FALSE(peaks.empty());
+  expect_kept(chosen, finer, peaks, accuracy);
+}
+
 Values finer(const std::string& elements, const std::string& step) {
   return {{"beam_elements_per_span", elements}, {"ts_dt", step}, {"step_probes", "true"}};
 }
@@ -169,6 +177,34 @@ TEST(MendedPromise, AccelerationsSettleWithTheSquareOfTheMesh) {
   expect_kept(run_yaml(scene, {{"accuracy", "1e-4"}}), run_yaml(scene, finer("400", "1e-4")), {"acceleration"}, 1e-4);
 }
 
+// Nodes pass this wheel as fast as it vibrates on its contact: 64 elements and 128 are 2e-4 and 3e-4 off to either
+// side, and by what halving them changed 5e-5 was expected.
+TEST(MendedPromise, MeshesBetweenTell) {
+  const std::string scene =
+      "beam: {spans: 32.9, EI: 4.49202e+10, mass: 3560.25, damping_ratios: 0.0032}\n"
+      "support: {types: [pinned, roller]}\n" +
+      one_wheel("18149.8", "4784.76", "1.04317e+07", "57478.7", "1.26602e+11") +
+      "train: {vehicles: car, positions: 0, speed: 29.6}\nscene: {tail: 0.0}\n";
+  expect_kept_if_promised(run_yaml(scene, {{"accuracy", "1e-4"}}), run_yaml(scene, finer("320", "1e-4")),
+                          {"deflection", "acceleration", "moment", "wheel_force"}, 1e-4);
+}
+
+// Steps of 7 ms leave 0.03 to 1.3 % of an acceleration, by where they end: no trial tells, but the run itself has
+// another peak than the better trial.
+TEST(MendedPromise, RunsAreComparedWithTheBetterTrial) {
+  std::string soft = one_wheel("11331.4", "3580.75", "709425", "33433.8", "4.42511e+06");
+  soft.replace(soft.find("hertz"), 5, "linear");
+  for (const char* speed : {"105.0", "105.8", "106.4"}) {
+    const std::string scene =
+        "beam: {spans: 42.0*3, EI: 3.98389e+11, mass: 23579.2, damping_ratios: 0.0334, continuity: simply_supported}\n"
+        "support: {types: [pinned, roller, roller, roller]}\n" +
+        soft + "train: {vehicles: car, positions: -6, speed: " + speed + "}\nscene: {tail: 1.0}\n";
+    SCOPED_TRACE(speed);
+    expect_kept_if_promised(run_yaml(scene, {{"accuracy", "1e-2"}}), run_yaml(scene, finer("28", "5e-4")),
+                            {"deflection", "acceleration", "moment", "wheel_force"}, 1e-2);
+  }
+}
+
 // A body that swings on undamped springs presses its wheel most behind the bridge, when genalpha has taken all
 // vibration out of it: trial runs ended before, and by two steps of genalpha they would have agreed. The force
 // was 2.2e-2 off.
@@ -198,7 +234,8 @@ TEST(MendedPromise, MechanismsInPlaceOfLinearVehicles) {
   std::string scene = coaches("beam: {spans: 24.0, EI: 2.07006e+10, mass: 2969.06, damping_ratios: 0.0251}\n", "s300",
                               "vehicles: coach*3, speed: 74.0");
   scene.replace(scene.find("pinned"), 6, "clamped");
-  expect_kept(run_yaml(scene, {{"accuracy", "3e-4"}}), run_yaml(scene, finer("128", "1e-4")), {"moment"}, 3e-5);
+  const Results chosen = run_yaml(scene, {{"accuracy", "3e-4"}});
+  expect_kept(chosen, run_yaml(scene, finer("128", "1e-4")), {"moment"}, expected(chosen, "moment").value());
 }
 
 // Wheels that go on striking on a rough track lose what is known of them: trial runs of the first span expected 7e-4 of
