@@ -46,6 +46,8 @@ class ErrorSearch {
   void coarsen();
   void coarsen_mesh();
   void take_fewer_solves();
+  int foreseen_mesh() const;
+  void check_foreseen_mesh();
   void measure();
   void count_alike();
   double effort() const { return std::max(best_effort * wanted_, least_effort); }
@@ -86,7 +88,8 @@ class ErrorSearch {
   std::array<int, quantities> crawls_{};  // halvings of the step in a row that have changed little
   int strikes_alike_ = 0;  // halvings in a row over which forces and accelerations agree, where wheels strike
   Errors time_{}, space_{};
-  double finest_step_ = 0.0;  // s, tried, with its errors
+  std::array<double, quantities> foreseen_{};  // errors of a mesh that was foreseen, measured
+  double finest_step_ = 0.0;                   // s, tried, with its errors
   Errors finest_{};
   std::optional<std::pair<double, int>> measured_;  // step and mesh that the errors belong to
   std::string shortest_;                            // what asks for the shortest steps, in words
