@@ -23,10 +23,10 @@ struct Promise {
   bool present = false;   // in this scene
   bool kept = false;      // promised: the expected error is not above the wanted one
   double expected = 0.0;  // relative to the peak
-  double peak = 0.0;      // as large as a better trial of the whole run has it, to compare with; 0: there is none
   std::string why_not;    // where it is not promised
+  double peak = 0.0;      // as large as a better trial of the whole run has it, to compare with; 0: there is none
 
-  void keep(base::Bytes& bytes) { bytes(present, kept, expected, peak, why_not); }
+  void keep(base::Bytes& bytes) { bytes(present, kept, expected, why_not, peak); }
 };
 
 /// A row of -accuracy_report, printed or not. wanted, error: relative. Whether the promise is not broken.

@@ -82,7 +82,7 @@ Scene judged(const Scene& given, std::vector<std::string>& notes) {
   for (std::size_t q = 0; q < low_passed; ++q)
     if (asks_for(scene, q)) others.emplace_back(stored_names[q]);
   const Promise promise{
-      true, false, 0.0, 0.0,
+      true, false, 0.0,
       fmt::format("in sweeps and studies it takes a bridge with damping and scene_tail {:.3g} or more, "
                   "until the filter has settled behind the train",
                   end)};
