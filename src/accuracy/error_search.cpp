@@ -260,7 +260,6 @@ void ErrorSearch::check_foreseen_mesh() {
     } else {
       for (std::size_t q = 0; q < quantities; ++q)
         if (misses(q)) refuse(q, fmt::format("{} and {} elements a span differ by {:.1g}", mesh_, mesh, foreseen_[q]));
-      return;
     }
   }
 }
