@@ -76,6 +76,11 @@ ErrorLaw ErrorSearch::error_in_time(Quantity q) {
   return error_from((sums ? of_a_sum : 1.0) * growth_ * change, step_, time_[q], most);
 }
 
+double ErrorSearch::changed_by_mesh(int other, double step, Quantity q, const std::string& integrator) {
+  const Peaks& rough = trials_.run(other, step, integrator);
+  return std::pow(growth_, 0.75) * difference(rough, trials_.run(mesh_, step, integrator), q, 3.0 * step);
+}
+
 // With twice the step, at half the cost: runs that the error in time asks for too. Steps over more than an element
 // would hide what elements do. Along a track, where more elements cost more than a trial run, the step itself is tried
 // before these are: long ones see more in the mesh than there is.
@@ -88,11 +93,9 @@ ErrorLaw ErrorSearch::error_in_space(Quantity q) {
   const double by_nodes = comes_and_goes ? square : full_order;
   const int between = comes_and_goes && promised(q) ? mesh_between(scene_, mesh_) : mesh_ / 2;
   const auto change = [&](double step) {
-    const auto from = [&](int mesh) {
-      return std::pow(growth_, 0.75) * difference(trials_.run(mesh, step), trials_.run(mesh_, step), q, 3.0 * step);
-    };
-    const double halved = from(mesh_ / 2);
-    return between == mesh_ / 2 ? halved : std::max(halved, as_if_halved(mesh_, between) * from(between));
+    const double halved = changed_by_mesh(mesh_ / 2, step, q);
+    if (between == mesh_ / 2) return halved;
+    return std::max(halved, as_if_halved(mesh_, between) * changed_by_mesh(between, step, q));
   };
   const double most = q == low_passed && undamped_ ? 1.0 : by_nodes;
   const auto error = [&](double step) { return error_from(change(step), 1.0 / mesh_, space_[q], most); };

@@ -119,7 +119,10 @@ void ErrorSearch::search() {
   } catch (const TooMuchWork&) {
     if (!measured_) refuse_scene();
     std::tie(step_, mesh_) = *measured_;
+    most_coarsening_ = 1.0;
     refuse_what_is_far();
+    for (std::size_t q = 0; q < quantities; ++q)
+      if (misses_when_foreseen(q)) refuse(q, "trial runs of the mesh that it asks for would become too many");
   }
 }
 
@@ -241,28 +244,31 @@ int ErrorSearch::foreseen_mesh() const {
 void ErrorSearch::check_foreseen_mesh() {
   if (scene_.beam->track || scene_.vehicles.empty()) return;
   for (int mesh = foreseen_mesh(); mesh != mesh_; mesh = foreseen_mesh()) {
-    const auto misses = [&](std::size_t q) { return foreseen_[q] + time_[q].value > scene_.accuracy; };
     bool holds = true;
     for (std::size_t q = 0; q < quantities; ++q) {
       if (!promised(q)) continue;
-      const double off = std::pow(growth_, 0.75) * difference(trials_.run(mesh, step_, integrator_),
-                                                              trials_.run(mesh_, step_, integrator_),
-                                                              static_cast<Quantity>(q), 3.0 * step_);
+      const double off = changed_by_mesh(mesh, step_, static_cast<Quantity>(q), integrator_);
       foreseen_[q] = mesh < mesh_ ? off : std::max(0.0, off - space_[q].value);
-      holds = holds && !misses(q);
+      holds = holds && !misses_when_foreseen(q);
     }
     if (holds) return;
     if (mesh < mesh_) {
       most_coarsening_ = 1.0;
     } else if (mesh == 2 * mesh_ || (2 * mesh_ <= most_elements_ && worth_it(step_, 2 * mesh_))) {
       mesh_ *= 2;
-      for (std::size_t q = 0; q < quantities; ++q) space_[q] = error_in_space(static_cast<Quantity>(q));
+      Errors space;
+      for (std::size_t q = 0; q < quantities; ++q) space[q] = error_in_space(static_cast<Quantity>(q));
+      space_ = space;
+      measured_ = {step_, mesh_};
     } else {
       for (std::size_t q = 0; q < quantities; ++q)
-        if (misses(q)) refuse(q, fmt::format("{} and {} elements a span differ by {:.1g}", mesh_, mesh, foreseen_[q]));
+        if (misses_when_foreseen(q))
+          refuse(q, fmt::format("{} and {} elements a span differ by {:.1g}", mesh_, mesh, foreseen_[q]));
     }
   }
 }
+
+bool ErrorSearch::misses_when_foreseen(std::size_t q) const { return foreseen_[q] + time_[q].value > scene_.accuracy; }
 
 /// What the errors are of those wanted, at most; finest: of the finest run, which nothing that is refused can better.
 double ErrorSearch::excess(const Errors& errors, const Errors& finest) const {

@@ -67,7 +67,7 @@ bool hopeless(double over, const structure::MethodRow& method, double factor) {
   return over > std::pow(factor / step_factors.back(), method.order);
 }
 
-/// In a second.
+/// Solves that a second of motion takes.
 double solves(const LaneModel& model) { return model.method->solves() / model.step; }
 
 }  // namespace
