@@ -83,6 +83,14 @@ SCENES = [
 SMALLEST = Scene("R3, a sprung mass", "r3_sprung_mass", 0.04, 3, [4, 8], wanted=[1e-2])
 
 
+def speed_of(file):
+    """The option that names a scene's speed, and its value there, m/s."""
+    with open(file) as scene:
+        text = scene.read()
+    speed = float(re.search(r"\bspeed: *([0-9.]+)", text)[1])
+    return ("load_speed" if re.search(r"^load:", text, flags=re.M) else "train_speed"), speed
+
+
 def opened(name, folder):
     """A copy of the scene's file that leaves mesh, step, samples and accuracy open."""
     if name in WRITTEN:

@@ -175,15 +175,11 @@ std::string Accuracy::withdrawn_by_peaks(const Peaks& peaks, double wanted) {
     Promise& promise = promises[q];
     if (!measured || !promise.present || !promise.kept || promise.peak == 0.0) continue;
     const double off = std::abs(std::abs(peaks.largest(static_cast<Quantity>(q)).value) / promise.peak - 1.0);
-    promise.expected = std::max(promise.expected, off);
+    promise.expected = std::max(promise.expected, off_a_better_trial * off);
     promise.kept = promise.expected <= wanted;
     if (!promise.kept) names += fmt::format("{}{} ({:.1g})", names.empty() ? "" : ", ", quantity_names[q], off);
   }
-  if (names.empty()) return {};
-  return fmt::format(
-      "not promised after all: {}: a trial run with more modes has other peaks; a smaller -accuracy takes shorter "
-      "steps",
-      names);
+  return names.empty() ? names : names + ": a trial run with more modes has other peaks";
 }
 
 std::string Accuracy::withdrawn_at_end(bool unsettled) {

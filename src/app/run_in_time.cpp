@@ -35,7 +35,8 @@ int run_in_time(Job job) {
   int halvings = goes_on || !scene.step_open ? 0 : most_halvings;
   SharedBeam& beam_of_first = own ? *own : job.beam;
   Job first{job.comm, scene, std::move(job.place), accuracy, beam_of_first, std::move(job.notes), job.earlier};
-  RunEnd end = run_once(first, with_mechanisms, halvings > 0);
+  MayRetry may = {halvings > 0, halvings > 0};
+  RunEnd end = run_once(first, with_mechanisms, may);
   while (end.again != Retry::none) {
     std::vector<std::string> notes;
     if (end.again == Retry::mechanisms) {
@@ -45,8 +46,12 @@ int run_in_time(Job job) {
           "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
           scene.most_defect));
+    } else if (end.again == Retry::other_peaks) {
+      may.other_peaks = false;
+      scene.time_step = 0.5 * end.step;
+      notes.push_back(fmt::format("the run is repeated with steps of {:g} s: {}", *scene.time_step, end.why));
     } else {
-      --halvings;
+      may.shorter_steps = --halvings > 0;
       scene.time_step = 0.5 * end.step;
       accuracy.promise_nothing();
       notes.push_back(fmt::format("the run is repeated with steps of {:g} s, and nothing is promised: {}",
@@ -54,7 +59,7 @@ int run_in_time(Job job) {
     }
     SharedBeam beam(job.comm, scene, notes);
     Job again{job.comm, scene, results::claim_place(job.comm, scene.output.file), accuracy, beam, std::move(notes)};
-    end = run_once(again, with_mechanisms, halvings > 0);
+    end = run_once(again, with_mechanisms, may);
   }
   return end.status;
 }

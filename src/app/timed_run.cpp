@@ -101,14 +101,15 @@ results::Checkpoint so_far(const Job& job, bool repeated) {
 /// A passage with everything that watches it.
 class WatchedRun {
  public:
-  WatchedRun(ReadyRun& ready, bool with_mechanisms);
-  RunEnd take(bool may_shorten);
+  WatchedRun(ReadyRun& ready, bool with_mechanisms, MayRetry may);
+  RunEnd take();
 
  private:
   using Clock = std::chrono::steady_clock;
 
   void step_through();
   results::Summary summarise(const std::string& ended);
+  std::vector<std::string> withdraw(bool whole);
   std::optional<norm::NormCheck> judge_by_norm(std::vector<results::Verdict>& verdicts);
   void say_what_happened(bool by_signal) const;
   double wall_seconds() const { return before_ + std::chrono::duration<double>(Clock::now() - begin_).count(); }
@@ -116,6 +117,7 @@ class WatchedRun {
 
   ReadyRun& ready_;
   const Scene& scene_;
+  MayRetry may_;
   Passage& passage_;
   coupling::System& system_;
   std::optional<SignalsNoted> noted_{std::in_place};  // from here on what is stored is to stay readable
@@ -128,12 +130,14 @@ class WatchedRun {
   Clock::time_point begin_ = Clock::now();
   Asked asked_;
   bool reaches_end_ = false;
-  bool repeated_ = false;  // or will be
+  std::string other_peaks_;  // which, where the run will be repeated for them
+  bool repeated_ = false;    // or will be
 };
 
-WatchedRun::WatchedRun(ReadyRun& ready, bool with_mechanisms)
+WatchedRun::WatchedRun(ReadyRun& ready, bool with_mechanisms, MayRetry may)
     : ready_(ready),
       scene_(ready.scene),
+      may_(may),
       passage_(ready.passage),
       system_(passage_.system()),
       outputs_(outputs_of({scene_, system_.fleet(), ready.job.beam.bridge()})),
@@ -190,12 +194,7 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
     summary.energy_left = total(ready_.job.comm, *system_.structure()->energy_left());
   summary.static_error = system_.static_error();
   const bool whole = reaches_end_ && !passage_.stopped_at_limit();
-  const std::array withdrawn = {
-      ready_.accuracy.withdrawn(watch_.losses()),
-      ready_.accuracy.withdrawn_by_surprise(watch_.beyond_trials().surprise()),
-      ready_.accuracy.withdrawn_by_bends(watch_.bends_beyond_trials(), scene_.accuracy),
-      ready_.accuracy.withdrawn_at_end(watch_.ends_unsettled()),
-      whole ? ready_.accuracy.withdrawn_by_peaks(watch_.finished_peaks(), scene_.accuracy) : std::string()};
+  const std::vector<std::string> withdrawn = withdraw(whole);
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
   const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.most_defect);
@@ -214,6 +213,22 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   if (prints() && check) check->print();
   if (prints()) results::print_verdicts(verdicts);
   return summary;
+}
+
+/// The promises that do not hold, in words. whole: the run, to its end.
+std::vector<std::string> WatchedRun::withdraw(bool whole) {
+  Accuracy& accuracy = ready_.accuracy;
+  std::vector<std::string> words = {accuracy.withdrawn(watch_.losses()),
+                                    accuracy.withdrawn_by_surprise(watch_.beyond_trials().surprise()),
+                                    accuracy.withdrawn_by_bends(watch_.bends_beyond_trials(), scene_.accuracy),
+                                    accuracy.withdrawn_at_end(watch_.ends_unsettled())};
+  if (!whole) return words;
+  const std::string other = accuracy.withdrawn_by_peaks(watch_.finished_peaks(), scene_.accuracy);
+  if (may_.other_peaks) other_peaks_ = other;
+  repeated_ = repeated_ || !other_peaks_.empty();
+  if (!other.empty())
+    words.push_back(fmt::format("not promised after all: {}; a smaller -accuracy takes shorter steps", other));
+  return words;
 }
 
 /// Where the scene asks for it; with its own verdicts.
@@ -242,7 +257,7 @@ void WatchedRun::say_what_happened(bool by_signal) const {
     fmt::print("  checkpoint at t = {:g} s: -restart {} goes on from there\n", reached_, checkpoints_.path());
 }
 
-RunEnd WatchedRun::take(bool may_shorten) {
+RunEnd WatchedRun::take() {
   const MPI_Comm comm = ready_.job.comm;
   bool by_signal = false;
   try {
@@ -255,7 +270,7 @@ RunEnd WatchedRun::take(bool may_shorten) {
   } catch (const FileError& error) {
     leave_together(comm, error);
   } catch (const StepTooLong& error) {
-    repeated_ = may_shorten;
+    repeated_ = may_.shorter_steps;
     summarise(error.what());
     if (!repeated_) throw;
     return {0, Retry::shorter_steps, error.what(), passage_.plan().time_step};
@@ -277,6 +292,7 @@ RunEnd WatchedRun::take(bool may_shorten) {
   if (reaches_end_ && !passage_.stopped_at_limit()) checkpoints_.forget();
   noted_.reset();
   if (reaches_end_ && summary.linear_defect > scene_.most_defect) return {0, Retry::mechanisms, {}, 0.0};
+  if (!other_peaks_.empty()) return {0, Retry::other_peaks, other_peaks_, passage_.plan().time_step};
   check_deflection(comm, scene_, summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, watch_.finished_peaks()))
@@ -288,10 +304,10 @@ RunEnd WatchedRun::take(bool may_shorten) {
 
 }  // namespace
 
-RunEnd run_once(Job& job, bool with_mechanisms, bool may_shorten) {
+RunEnd run_once(Job& job, bool with_mechanisms, MayRetry may) {
   ReadyRun ready(job);
-  WatchedRun run(ready, with_mechanisms);
-  return run.take(may_shorten);
+  WatchedRun run(ready, with_mechanisms, may);
+  return run.take();
 }
 
 }  // namespace traverse::app

@@ -8,19 +8,24 @@
 namespace traverse::app {
 
 /// Whether a run has to be taken again, and how. mechanisms: linear vehicles were out of balance by more than
-/// Scene::most_defect; shorter_steps: StepTooLong.
-enum class Retry { none, mechanisms, shorter_steps };
+/// Scene::most_defect; shorter_steps: StepTooLong; other_peaks: than a better trial run has.
+enum class Retry { none, mechanisms, shorter_steps, other_peaks };
+
+/// What a run may be taken again for, besides mechanisms; it ends with an error, or without a promise, otherwise.
+struct MayRetry {
+  bool shorter_steps = false, other_peaks = false;
+};
 
 struct RunEnd {
   int status = 0;  // of the program, where the run is not taken again
   Retry again = Retry::none;
-  std::string why;    // of shorter_steps: the message of StepTooLong
-  double step = 0.0;  // s, of shorter_steps: the longest step that was taken
+  std::string why;    // of shorter_steps: the message of StepTooLong; of other_peaks: which
+  double step = 0.0;  // s, of both: the longest step that was taken
 };
 
 /// Collective. Computes the motion in time, or rest where the loads stand, and writes results and summary. InputError,
 /// SolverError and FileError as the program ends with. with_mechanisms: checkpoints note that the mechanisms have taken
-/// the place of linear vehicles; may_shorten: StepTooLong is not thrown but returned as shorter_steps.
-RunEnd run_once(Job& job, bool with_mechanisms, bool may_shorten);
+/// the place of linear vehicles. Where it may, StepTooLong is not thrown but returned as shorter_steps.
+RunEnd run_once(Job& job, bool with_mechanisms, MayRetry may);
 
 }  // namespace traverse::app

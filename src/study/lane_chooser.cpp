@@ -26,7 +26,6 @@ constexpr double modes_over_wholes = 0.5;  // of the wanted error
 constexpr int most_modes_alone = 84;       // elements take less
 constexpr int modes_of_a_check = 30;       // at least: few modes may agree on what they all leave out
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
-constexpr double longer = 1.4;
 constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
 // Of the swing of a wheel's force that passes a corner too late: what peaks have of it, as measured.
 constexpr std::array<double, quantities> part_of_swing = {0.1, 2.0, 0.1, 0.4, 0.1};
@@ -123,15 +122,11 @@ LaneErrors LaneChooser::check_wholes(LaneSearch& search) {
     LaneModel other = search.with_more_modes(model_);
     while (alone_ && other.modes < modes_of_a_check) other = search.with_more_modes(other);
     other.method = structure::find_method("esdirk4");
-    if (!alone_) other.step *= 0.5;
-    const LaneModel& same_method = model_.method == other.method ? model_ : other;
-    LaneModel slower = same_method;
-    if (alone_) slower.step *= longer;  // else the same, which is known
+    other.step *= alone_ ? shorter : 0.5;
     better_ = other;
-    wholes_->run_at_once(std::array{other, model_, slower});
+    wholes_->run_at_once(std::array{other, model_});
     errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
-    const Errors by_steps = difference(scene_, wholes_->run(same_method), wholes_->run(slower));
-    for (std::size_t q = 0; q < quantities; ++q) errors[q] += by_steps[q];
+    for (double& error : errors) error *= alone_ ? off_a_better_trial : 1.0;
     if (asks_for_forces_alone(scene_)) errors[wheel_force] *= of_the_change;
     for (std::size_t q = 0; q < quantities; ++q)
       errors[q] = std::max(errors[q], search.error_of_model(q) + search.error_of_steps(q));

@@ -43,8 +43,7 @@ class LaneChooser {
   void take(const std::optional<LaneModel>& found);
   /// Whole passages: errors add up while the train crosses, and what stirs higher modes may come late. Against more
   /// modes, by esdirk4: genalpha takes all vibration out of wheels in time, and two of its steps may agree on that. Of
-  /// a sweep with half the step; of a single passage, which should not cost several, a longer step tells the rest,
-  /// whose change is more than the error where that falls with the second power or faster.
+  /// a sweep with half the step, of a single passage, which should not cost several, with 0.7 of it.
   LaneErrors check_wholes(LaneSearch& search);
   /// By more modes where it is these that the other one differs by, else by shorter steps.
   void refine(LaneSearch& search, const LaneModel& other);
