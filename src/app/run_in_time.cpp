@@ -11,9 +11,10 @@ namespace {
 constexpr int most_halvings = 4;  // of a step that was chosen
 
 /// In place of linear vehicles; by elements where `accuracy` has chosen modes: what these leave out has its own motion
-/// in the kernel of linear vehicles alone.
-void take_mechanisms(Scene& scene) {
+/// in the kernel of linear vehicles alone. Trial runs with these have other peaks then.
+void take_mechanisms(Scene& scene, Accuracy& accuracy) {
   scene.vehicle_model = VehicleModel::full;
+  for (Promise& promise : accuracy.promises) promise.peak = 0.0;
   if (!scene.modes_open || scene.model_modes == 0) return;
   scene.model_modes = 0;
   scene.integrator.clear();
@@ -25,33 +26,32 @@ int run_in_time(Job job) {
   const bool goes_on = job.earlier != nullptr;
   Scene scene = job.scene;
   Accuracy accuracy = job.accuracy;
-  bool with_mechanisms = goes_on && job.earlier->repeated;
+  results::Repeated repeated = goes_on ? job.earlier->repeated : results::Repeated();
   std::optional<SharedBeam> own;
-  if (with_mechanisms) {
+  if (repeated.with_mechanisms) {
     std::vector<std::string> ignored;
-    take_mechanisms(scene);
+    take_mechanisms(scene, accuracy);
     own.emplace(job.comm, scene, ignored);
   }
   int halvings = goes_on || !scene.step_open ? 0 : most_halvings;
   SharedBeam& beam_of_first = own ? *own : job.beam;
   Job first{job.comm, scene, std::move(job.place), accuracy, beam_of_first, std::move(job.notes), job.earlier};
-  MayRetry may = {halvings > 0, halvings > 0};
-  RunEnd end = run_once(first, with_mechanisms, may);
+  RunEnd end = run_once(first, repeated, halvings > 0);
   while (end.again != Retry::none) {
     std::vector<std::string> notes;
     if (end.again == Retry::mechanisms) {
-      take_mechanisms(scene);
-      with_mechanisms = true;
+      take_mechanisms(scene, accuracy);
+      repeated.with_mechanisms = true;
       notes.push_back(fmt::format(
           "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
           scene.most_defect));
     } else if (end.again == Retry::other_peaks) {
-      may.other_peaks = false;
+      repeated.with_half_steps = true;
       scene.time_step = 0.5 * end.step;
       notes.push_back(fmt::format("the run is repeated with steps of {:g} s: {}", *scene.time_step, end.why));
     } else {
-      may.shorter_steps = --halvings > 0;
+      --halvings;
       scene.time_step = 0.5 * end.step;
       accuracy.promise_nothing();
       notes.push_back(fmt::format("the run is repeated with steps of {:g} s, and nothing is promised: {}",
@@ -59,7 +59,7 @@ int run_in_time(Job job) {
     }
     SharedBeam beam(job.comm, scene, notes);
     Job again{job.comm, scene, results::claim_place(job.comm, scene.output.file), accuracy, beam, std::move(notes)};
-    end = run_once(again, with_mechanisms, may);
+    end = run_once(again, repeated, halvings > 0);
   }
   return end.status;
 }

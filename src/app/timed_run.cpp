@@ -89,8 +89,8 @@ results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
   return recorder;
 }
 
-/// Where the run stands that this one goes on from, or that it is at its start. repeated: with the mechanisms.
-results::Checkpoint so_far(const Job& job, bool repeated) {
+/// Where the run stands that this one goes on from, or that it is at its start.
+results::Checkpoint so_far(const Job& job, results::Repeated repeated) {
   results::Checkpoint checkpoint;
   if (job.earlier != nullptr) checkpoint = *job.earlier;
   MPI_Comm_size(PETSC_COMM_WORLD, &checkpoint.given_ranks);
@@ -101,7 +101,7 @@ results::Checkpoint so_far(const Job& job, bool repeated) {
 /// A passage with everything that watches it.
 class WatchedRun {
  public:
-  WatchedRun(ReadyRun& ready, bool with_mechanisms, MayRetry may);
+  WatchedRun(ReadyRun& ready, results::Repeated repeated, bool may_shorten);
   RunEnd take();
 
  private:
@@ -117,7 +117,7 @@ class WatchedRun {
 
   ReadyRun& ready_;
   const Scene& scene_;
-  MayRetry may_;
+  bool may_shorten_, may_halve_;  // steps: after StepTooLong, and where peaks are others
   Passage& passage_;
   coupling::System& system_;
   std::optional<SignalsNoted> noted_{std::in_place};  // from here on what is stored is to stay readable
@@ -134,16 +134,17 @@ class WatchedRun {
   bool repeated_ = false;    // or will be
 };
 
-WatchedRun::WatchedRun(ReadyRun& ready, bool with_mechanisms, MayRetry may)
+WatchedRun::WatchedRun(ReadyRun& ready, results::Repeated repeated, bool may_shorten)
     : ready_(ready),
       scene_(ready.scene),
-      may_(may),
+      may_shorten_(may_shorten),
+      may_halve_(scene_.step_open && !repeated.with_half_steps),
       passage_(ready.passage),
       system_(passage_.system()),
       outputs_(outputs_of({scene_, system_.fleet(), ready.job.beam.bridge()})),
       recorder_(recorder_of(ready, outputs_)),
       watch_(scene_, system_, ready.job.beam.bridge(), recorder_, &outputs_),
-      checkpoints_(ready.job.comm, scene_, passage_, watch_, recorder_, so_far(ready.job, with_mechanisms)),
+      checkpoints_(ready.job.comm, scene_, passage_, watch_, recorder_, so_far(ready.job, repeated)),
       before_(ready.goes_on() ? ready.job.earlier->wall_seconds : 0.0),
       reached_(ready.goes_on() ? ready.job.earlier->time : 0.0),
       progress_(reached_, passage_.plan().end_time, scene_.quiet || !prints()) {
@@ -224,8 +225,10 @@ std::vector<std::string> WatchedRun::withdraw(bool whole) {
                                     accuracy.withdrawn_at_end(watch_.ends_unsettled())};
   if (!whole) return words;
   const std::string other = accuracy.withdrawn_by_peaks(watch_.finished_peaks(), scene_.accuracy);
-  if (may_.other_peaks) other_peaks_ = other;
-  repeated_ = repeated_ || !other_peaks_.empty();
+  int differs = other.empty() ? 0 : 1;
+  MPI_Bcast(&differs, 1, MPI_INT, 0, ready_.job.comm);
+  repeated_ = may_halve_ && differs != 0;
+  if (repeated_) other_peaks_ = other;
   if (!other.empty())
     words.push_back(fmt::format("not promised after all: {}; a smaller -accuracy takes shorter steps", other));
   return words;
@@ -270,7 +273,7 @@ RunEnd WatchedRun::take() {
   } catch (const FileError& error) {
     leave_together(comm, error);
   } catch (const StepTooLong& error) {
-    repeated_ = may_.shorter_steps;
+    repeated_ = may_shorten_;
     summarise(error.what());
     if (!repeated_) throw;
     return {0, Retry::shorter_steps, error.what(), passage_.plan().time_step};
@@ -292,7 +295,7 @@ RunEnd WatchedRun::take() {
   if (reaches_end_ && !passage_.stopped_at_limit()) checkpoints_.forget();
   noted_.reset();
   if (reaches_end_ && summary.linear_defect > scene_.most_defect) return {0, Retry::mechanisms, {}, 0.0};
-  if (!other_peaks_.empty()) return {0, Retry::other_peaks, other_peaks_, passage_.plan().time_step};
+  if (repeated_) return {0, Retry::other_peaks, other_peaks_, passage_.plan().time_step};
   check_deflection(comm, scene_, summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, watch_.finished_peaks()))
@@ -304,9 +307,9 @@ RunEnd WatchedRun::take() {
 
 }  // namespace
 
-RunEnd run_once(Job& job, bool with_mechanisms, MayRetry may) {
+RunEnd run_once(Job& job, results::Repeated repeated, bool may_shorten) {
   ReadyRun ready(job);
-  WatchedRun run(ready, with_mechanisms, may);
+  WatchedRun run(ready, repeated, may_shorten);
   return run.take();
 }
 

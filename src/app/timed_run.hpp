@@ -11,11 +11,6 @@ namespace traverse::app {
 /// Scene::most_defect; shorter_steps: StepTooLong; other_peaks: than a better trial run has.
 enum class Retry { none, mechanisms, shorter_steps, other_peaks };
 
-/// What a run may be taken again for, besides mechanisms; it ends with an error, or without a promise, otherwise.
-struct MayRetry {
-  bool shorter_steps = false, other_peaks = false;
-};
-
 struct RunEnd {
   int status = 0;  // of the program, where the run is not taken again
   Retry again = Retry::none;
@@ -24,8 +19,8 @@ struct RunEnd {
 };
 
 /// Collective. Computes the motion in time, or rest where the loads stand, and writes results and summary. InputError,
-/// SolverError and FileError as the program ends with. with_mechanisms: checkpoints note that the mechanisms have taken
-/// the place of linear vehicles. Where it may, StepTooLong is not thrown but returned as shorter_steps.
-RunEnd run_once(Job& job, bool with_mechanisms, MayRetry may);
+/// SolverError and FileError as the program ends with. repeated: which checkpoints note; may_shorten: StepTooLong is
+/// not thrown but returned as shorter_steps.
+RunEnd run_once(Job& job, results::Repeated repeated, bool may_shorten);
 
 }  // namespace traverse::app

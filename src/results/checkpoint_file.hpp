@@ -12,6 +12,12 @@
 
 namespace traverse::results {
 
+/// What a run is repeated with.
+struct Repeated {
+  bool with_mechanisms = false;  // after linear vehicles would not do
+  bool with_half_steps = false;  // after its peaks were not those of a better trial run
+};
+
 struct Checkpoint {
   std::string version;                                     // of the program
   std::string digest;                                      // of the scene
@@ -20,14 +26,14 @@ struct Checkpoint {
   long stored = 1;                                         // the same
   double wall_seconds = 0.0;                               // of the time loop so far
   int given_ranks = 1;                                     // of which those that wrote took the steps
-  bool repeated = false;                                   // with the mechanisms, after linear vehicles would not do
+  Repeated repeated;
   Recorder::Earlier results;
   std::vector<std::string> of_ranks;  // state, base::Archive's
 
   template <class Bytes>
   void keep(Bytes& bytes) {
-    bytes(version, digest, time, end_time, time_step, interval, stored, wall_seconds, given_ranks, repeated,
-          results.file, results.rows, results.objects);
+    bytes(version, digest, time, end_time, time_step, interval, stored, wall_seconds, given_ranks,
+          repeated.with_mechanisms, repeated.with_half_steps, results.file, results.rows, results.objects);
   }
 };
 
