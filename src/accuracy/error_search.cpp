@@ -141,8 +141,10 @@ void ErrorSearch::refine() {
   for (int round = 0; round < most_rounds; ++round) {
     measure();
     refuse_what_does_not_settle();
-    const bool finer = open_step_ && (!within_reach(time_) || strikes_alike_ < enough_alike),
-               denser = open_mesh_ && !within_reach(space_);
+    const auto settles = [&] { return within_reach(time_) && strikes_alike_ >= enough_alike; };
+    const bool denser = open_mesh_ && !within_reach(space_);
+    if (!denser && settles()) measure_elsewhere();
+    const bool finer = open_step_ && !settles();
     if (!finer && !denser) return;
     if (!worth_it(finer ? 0.5 * step_ : step_, denser ? 2 * mesh_ : mesh_)) return refuse_what_is_far();
     if (finer) step_ *= 0.5;
@@ -161,8 +163,7 @@ void ErrorSearch::coarsen() {
     if (trials_.run(mesh_, step).failed()) return;  // and nothing is known of steps between
     Errors longer = finest_;
     for (std::size_t q = 0; q < quantities; ++q)
-      longer[q].value += growth_ * difference(trials_.run(mesh_, step), trials_.run(mesh_, finest_step_),
-                                              static_cast<Quantity>(q), 3.0 * step);
+      longer[q].value += changed_by_step(step, finest_step_, static_cast<Quantity>(q));
     if (excess(longer, finest_) <= 1.0) {
       step_ = step;
       time_ = longer;

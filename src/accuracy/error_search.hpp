@@ -51,6 +51,9 @@ class ErrorSearch {
   bool misses_when_foreseen(std::size_t q) const;
   /// Between the mesh that is tried and another one, as large as it may have grown by the end of the run.
   double changed_by_mesh(int other, double step, Quantity q, const std::string& integrator = {});
+  bool costs_next_to_nothing() const;
+  double changed_by_step(double step, double finest, Quantity q);
+  void measure_elsewhere();
   void measure();
   void count_alike();
   double effort() const { return std::max(best_effort * wanted_, least_effort); }

@@ -22,6 +22,26 @@ bool between(const std::vector<double>& times, double from, double to) {
   return next != times.end() && *next <= to;
 }
 
+bool earlier(const Peak& a, const Peak& b) { return a.place != b.place ? a.place < b.place : a.time < b.time; }
+
+std::vector<Peak> in_order(std::vector<Peak> peaks) {
+  std::sort(peaks.begin(), peaks.end(), earlier);
+  return peaks;
+}
+
+/// The one of the same place and sign, of those in order, that is nearest in time; null: none is within reach, s.
+const Peak* nearest(const std::vector<Peak>& peaks, const Peak& to, double reach) {
+  const Peak* found = nullptr;
+  double apart = reach;
+  for (auto peak = std::lower_bound(peaks.begin(), peaks.end(), Peak{0.0, to.time - reach, to.place}, earlier);
+       peak != peaks.end() && peak->place == to.place && peak->time <= to.time + reach; ++peak) {
+    if (std::abs(peak->time - to.time) > apart || peak->value * to.value < 0.0) continue;
+    apart = std::abs(peak->time - to.time);
+    found = &*peak;
+  }
+  return found;
+}
+
 }  // namespace
 
 template <class Note>
@@ -190,25 +210,14 @@ double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reac
   // Wheel forces vary about the weight: what is near the largest one is seen by that.
   const double rest = q == wheel_force && !fine.of(q).empty() ? std::abs(fine.of(q).front().value) : 0.0;
   const double least = rest < largest ? rest + compared * (largest - rest) : compared * largest;
+  const std::vector<Peak> others = in_order(rough.of(q)), all = in_order(fine.of(q));
   double squares = 0.0;
   int count = 0;
-  const auto earlier = [](const Peak& a, const Peak& b) {
-    return a.place != b.place ? a.place < b.place : a.time < b.time;
-  };
-  std::vector<Peak> others = rough.of(q);
-  std::sort(others.begin(), others.end(), earlier);
-  for (const Peak& peak : fine.of(q)) {
+  for (const Peak& peak : all) {
     if (std::abs(peak.value) < least) continue;
-    double nearest = reach, off = -1.0;
-    for (auto other = std::lower_bound(others.begin(), others.end(), Peak{0.0, peak.time - reach, peak.place}, earlier);
-         other != others.end() && other->place == peak.place && other->time <= peak.time + reach; ++other) {
-      const double apart = std::abs(other->time - peak.time);
-      if (apart > nearest || other->value * peak.value < 0.0) continue;
-      nearest = apart;
-      off = std::abs(other->value - peak.value);
-    }
-    if (off < 0.0) continue;
-    squares += off * off;
+    const Peak* other = nearest(others, peak, reach);
+    if (other == nullptr || nearest(all, *other, reach) != &peak) continue;
+    squares += (other->value - peak.value) * (other->value - peak.value);
     ++count;
   }
   const double spread = count > 0 ? std::sqrt(squares / count) / largest : 0.0;

@@ -126,9 +126,9 @@ class Peaks {
 Peak largest_peak(std::span<const double> rows, std::size_t series, double interval);
 
 /// The relative difference of the largest extremes of two runs, or, where that is larger, twice the root mean square of
-/// the differences of all extremes above 0.6 of the largest one that both runs have within `reach` s of each other: the
-/// largest two may agree by chance. Wheel forces are compared by how they vary about the weight. 0 where there are no
-/// extremes, 1 where a run failed.
+/// the differences of all extremes above 0.6 of the largest one that are each other's nearest in both runs, within
+/// `reach` s: the largest two may agree by chance. Wheel forces are compared by how they vary about the weight. 0 where
+/// there are no extremes, 1 where a run failed.
 double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reach);
 
 /// The relative difference of the largest extremes alone.

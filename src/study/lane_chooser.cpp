@@ -26,7 +26,7 @@ constexpr double modes_over_wholes = 0.5;  // of the wanted error
 constexpr int most_modes_alone = 84;       // elements take less
 constexpr int modes_of_a_check = 30;       // at least: few modes may agree on what they all leave out
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
-constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
+constexpr double part_for_forces = 0.5;    // of steps that follow the contacts: forces of longer ones agree by chance
 // Of the swing of a wheel's force that passes a corner too late: what peaks have of it, as measured.
 constexpr std::array<double, quantities> part_of_swing = {0.1, 2.0, 0.1, 0.4, 0.1};
 
