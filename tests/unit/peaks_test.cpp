@@ -149,5 +149,16 @@ TEST(Peaks, DifferenceSeesNeighbours) {
   EXPECT_EQ(difference(a, a, deflection, 0.01), 0.0);
 }
 
+// A ripple that longer steps have not seen, 0.02 s before the extreme that both have, is no difference of that.
+TEST(Peaks, DifferenceComparesExtremesThatAreEachOthersNearest) {
+  const auto curve = [](double ripple) {
+    return [=](double t) {
+      return std::exp(-std::pow((t - 0.5) / 0.01, 2)) + ripple * std::exp(-std::pow((t - 0.48) / 0.005, 2));
+    };
+  };
+  const Peaks rough = peaks_of_curve(curve(0.0), 1e-3), fine = peaks_of_curve(curve(0.8), 1e-3);
+  EXPECT_LT(difference(rough, fine, deflection, 0.03), 1e-5);
+}
+
 }  // namespace
 }  // namespace traverse::app
