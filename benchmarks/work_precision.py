@@ -142,6 +142,7 @@ class Case:
             self.points = [p for some in pool.map(lambda job: self.sequence(*job), jobs) for p in some]
         self.chosen = {wanted: Point(self.build, self.folder, self.options | {"accuracy": wanted})
                        for wanted in self.scene.wanted}
+        self.sure = {wanted: self.find_sure(wanted) for wanted in self.scene.wanted}
 
     def refused(self, wanted):
         return re.findall(r"not promised: (.*?): (.*)", self.chosen[wanted].text)
@@ -183,7 +184,6 @@ class Case:
         return None
 
     def time_again(self, least_rounds=LEAST_ROUNDS, seconds=SECONDS):
-        self.sure = {wanted: self.find_sure(wanted) for wanted in self.scene.wanted}
         begin = time.monotonic()
         again = {id(p[3]): p[3] for wanted in self.scene.wanted
                  for p in [*self.candidates(wanted)[:3], self.sure[wanted]] if p}

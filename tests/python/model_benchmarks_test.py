@@ -43,6 +43,12 @@ class WorkPrecision(InAFolder):
         self.assertIn("acceleration", row["not promised"])  # no damping
         self.assertLessEqual(row["error over accuracy"], 1.0)
         self.assertGreater(row["ms over its"], 0.0)
+        way, mesh, step, run = case.sure[1e-2]
+        self.assertIn((way, mesh, step, run), case.candidates(1e-2))
+        for speed, reference in zip(case.beside, case.references_beside):
+            peaks = case.at(speed, mesh, step, way).peaks
+            for quantity in case.promised(1e-2):
+                self.assertLess(abs(peaks[quantity] / reference[quantity] - 1.0), 1e-2)
         seconds, errors = zip(*work_precision.front(case.points, ["deflection"], case.shown))
         self.assertEqual(list(seconds), sorted(seconds))
         self.assertEqual(list(errors), sorted(errors, reverse=True))
