@@ -133,7 +133,8 @@ bool ErrorSearch::costs_next_to_nothing() const {
   return trials_.seconds() + 2.0 * trials_.seconds(2 * mesh_, 0.5 * step_) < next_to_nothing;
 }
 
-/// From the finest run, or from this one; where it costs next to nothing that of steps which end elsewhere, too.
+/// How far the peaks of a step are from those of the finest one. Where it costs next to nothing, the larger one of this
+/// and of a slightly shorter step, which ends at other places.
 double ErrorSearch::changed_by_step(double step, double finest, Quantity q) {
   const Peaks& fine = trials_.run(mesh_, finest);
   double change = step == finest ? 0.0 : difference(trials_.run(mesh_, step), fine, q, 3.0 * step);
@@ -142,7 +143,7 @@ double ErrorSearch::changed_by_step(double step, double finest, Quantity q) {
   return growth_ * change;
 }
 
-// Peaks that steps leave by where they end: nothing tells how they fall.
+// What peaks depend on where steps end is an error of the step, and nothing tells how fast it falls.
 void ErrorSearch::measure_elsewhere() {
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!open_step_ || !promised(q)) continue;

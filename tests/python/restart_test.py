@@ -17,6 +17,9 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from small_runs import BINARY, SOURCE  # noqa: E402
 
+sys.path.insert(0, str(SOURCE / "benchmarks"))
+from scene_texts import beam, car  # noqa: E402
+
 SCENES = SOURCE / "options/scenes"
 WORK = {"wall_seconds", "factorisations", "solves"}  # of the summary: what tells of the work done
 # Name, scene, options, steps before the stop.
@@ -54,25 +57,9 @@ train: {{vehicles: coach*3, speed: 74.0}}
 scene: {{tail: 1.0}}
 """
 
-OTHER_PEAKS = """
-beam: {spans: 42.0*3, EI: 3.98389e+11, mass: 23579.2, damping_ratios: 0.0334, continuity: simply_supported}
-support: {types: [pinned, roller, roller, roller]}
-vehicle:
-  car:
-    bodies: [body, axle]
-    joints: [guide]
-    springs: [suspension]
-    wheels: [wheel]
-    drivers: [level]
-    body:   {mass: 11331.4, inertia: 1.0, position: [0.0, 2.0]}
-    axle:   {mass: 3580.75, inertia: 1.0, position: [0.0, 0.46]}
-    guide:  {type: prismatic, bodies: [body, axle], point: [0.0, 0.46], axis: [0.0, 1.0]}
-    suspension: {bodies: [body, axle], from: [0.0, 2.0], to: [0.0, 0.46], stiffness: 709425, damping: 33433.8}
-    wheel:  {body: axle, radius: 0.46, law: linear, stiffness: 4.42511e+06}
-    level:  {body: body, coordinate: phi}
-train: {vehicles: car, positions: -6, speed: 105.8}
-scene: {tail: 1.0}
-"""
+OTHER_PEAKS = beam("42.0*3", 3.98389e11, 23579.2, "[pinned, roller, roller, roller]", 0.0334,
+                   "  continuity: simply_supported\n") + car(
+    "linear", 4.42511e6, 11331.4, 3580.75, 709425.0, 33433.8, 105.8, -6.0) + "scene: {tail: 1.0}\n"
 
 
 def content(file):

@@ -111,7 +111,8 @@ TEST(Accuracy, IsWithdrawnWhereABetterTrialHasOtherPeaks) {
   accuracy.promises[wheel_force].peak = peaks.largest(wheel_force).value / 1.005;
   EXPECT_EQ(accuracy.withdrawn_by_peaks(peaks, 1e-2), "");
   EXPECT_NEAR(accuracy.promises[wheel_force].expected, 7.5e-3, 1e-12);
-  EXPECT_EQ(accuracy.withdrawn_by_peaks(peaks, 7e-3), "wheel force (0.005): a trial run with more modes has other peaks");
+  EXPECT_EQ(accuracy.withdrawn_by_peaks(peaks, 7e-3),
+            "wheel force (0.005): a trial run with more modes has other peaks");
   EXPECT_EQ(accuracy.expected().size(), quantities - 1U);
 }
 
