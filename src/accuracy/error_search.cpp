@@ -21,7 +21,6 @@ namespace {
 // Of the wanted error, for the step and for the mesh each; less where errors fall too slowly to be told well.
 constexpr double usual_share = 0.4, small_share = 0.25, small_error = 1e-4;
 constexpr int most_rounds = 14;
-constexpr double passed_over = 2.0;  // times the wanted error, on the way to longer steps
 constexpr double most_growth = 4.0;
 constexpr std::array fewer_solves_steps = {1.0, 0.7, 0.5};  // times the step of the usual method
 constexpr double trials_that_save = 0.5;                    // of the run, for trying them
@@ -153,8 +152,7 @@ void ErrorSearch::refine() {
   refuse_what_is_far();
 }
 
-// Longer steps against the finest one. What is only a little too large between may be passed over: where the contacts'
-// vibration is half resolved errors are larger than where it is not at all.
+// Longer steps against the finest one.
 void ErrorSearch::coarsen() {
   finest_step_ = step_;
   finest_ = time_;
@@ -164,14 +162,12 @@ void ErrorSearch::coarsen() {
     Errors longer = finest_;
     for (std::size_t q = 0; q < quantities; ++q)
       longer[q].value += changed_by_step(step, finest_step_, static_cast<Quantity>(q));
-    if (excess(longer, finest_) <= 1.0) {
-      step_ = step;
-      time_ = longer;
-      coarser_.reset();
-    } else if (step == 2.0 * step_) {
+    if (excess(longer, finest_) > 1.0) {
       coarser_ = longer;
+      return;
     }
-    if (excess(longer, finest_) > passed_over) return;
+    step_ = step;
+    time_ = longer;
   }
 }
 
@@ -246,6 +242,7 @@ void ErrorSearch::check_foreseen_mesh() {
   if (scene_.beam->track || scene_.vehicles.empty()) return;
   for (int mesh = foreseen_mesh(); mesh != mesh_; mesh = foreseen_mesh()) {
     bool holds = true;
+    if (mesh > mesh_ && promised(low_passed)) check_step_on(mesh);
     for (std::size_t q = 0; q < quantities; ++q) {
       if (!promised(q)) continue;
       const double off = changed_by_mesh(mesh, step_, static_cast<Quantity>(q), integrator_);
@@ -267,6 +264,26 @@ void ErrorSearch::check_foreseen_mesh() {
           refuse(q, fmt::format("{} and {} elements a span differ by {:.1g}", mesh_, mesh, foreseen_[q]));
     }
   }
+}
+
+// A filter takes instants a step apart, which a wheel passes in one place of an element or another: what steps leave of
+// a low-passed acceleration changes with the mesh, by chance to next to nothing on the one that was tried.
+void ErrorSearch::check_step_on(int mesh) {
+  if (step_ == finest_step_ && integrator_.empty()) return;
+  const Peaks& fine = trials_.run(mesh, finest_step_);
+  Errors time = time_;
+  for (std::size_t q = 0; q < quantities; ++q) {
+    const double off = difference(trials_.run(mesh, step_, integrator_), fine, static_cast<Quantity>(q), 3.0 * step_);
+    time[q].value = std::max(time[q].value, finest_[q].value + growth_ * off);
+  }
+  if (excess(time, finest_) <= 1.0) {
+    time_ = time;
+    return;
+  }
+  step_ = finest_step_;
+  time_ = finest_;
+  integrator_.clear();
+  coarser_.reset();
 }
 
 bool ErrorSearch::misses_when_foreseen(std::size_t q) const { return foreseen_[q] + time_[q].value > scene_.accuracy; }

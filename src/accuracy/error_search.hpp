@@ -48,6 +48,7 @@ class ErrorSearch {
   void take_fewer_solves();
   int foreseen_mesh() const;
   void check_foreseen_mesh();
+  void check_step_on(int mesh);
   bool misses_when_foreseen(std::size_t q) const;
   /// Between the mesh that is tried and another one, as large as it may have grown by the end of the run.
   double changed_by_mesh(int other, double step, Quantity q, const std::string& integrator = {});
