@@ -89,9 +89,9 @@ double ErrorSearch::changed_by_mesh(int other, double step, Quantity q, const st
 ErrorLaw ErrorSearch::error_in_space(Quantity q) {
   const double element = *std::max_element(scene_.beam->spans.begin(), scene_.beam->spans.end()) / mesh_;
   // Without damping the contact's vibration meets one mode of the elements or another: nothing falls regularly.
-  // At fine accuracies what a mesh leaves of an acceleration comes and goes with where its nodes are: the square is
-  // believed at most, and a mesh between tells whether the two agree by chance.
-  const bool comes_and_goes = q == acceleration && scene_.accuracy < by_nodes_below;
+  // At fine accuracies what a mesh leaves of an acceleration and of a wheel's force comes and goes with where its nodes
+  // are: the square is believed at most, and a mesh between tells whether the two agree by chance.
+  const bool comes_and_goes = (q == acceleration || q == wheel_force) && scene_.accuracy < by_nodes_below;
   const double by_nodes = comes_and_goes ? square : full_order;
   const int between = comes_and_goes && promised(q) ? mesh_between(scene_, mesh_) : mesh_ / 2;
   const auto change = [&](double step) {

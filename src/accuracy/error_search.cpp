@@ -28,6 +28,7 @@ constexpr int most_elements_a_bay = 8, most_elements_in_all = 1200;
 constexpr double track_order = 3.0;       // of a track's mesh, supposed
 constexpr double most_beginnings = 10.0;  // that trial runs may last, to see what comes later
 constexpr double usual_trials = 4.0;
+constexpr double most_of_the_run = 0.8;  // from there trial runs go on to see what a vehicle does behind the bridge
 
 /// The largest number of two digits that does not exceed x.
 double two_digits(double x) {
@@ -97,7 +98,8 @@ double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
     }
   }
   if (asks_for(scene_, low_passed)) until += unsettled_end(*scene_.output.low_pass);
-  return std::min(until, end_ - moved_by());
+  const double whole = end_ - moved_by();
+  return until < most_of_the_run * whole ? until : whole;
 }
 
 void ErrorSearch::run() {
@@ -162,7 +164,7 @@ void ErrorSearch::coarsen() {
     Errors longer = finest_;
     for (std::size_t q = 0; q < quantities; ++q)
       longer[q].value += changed_by_step(step, finest_step_, static_cast<Quantity>(q));
-    if (excess(longer, finest_) > 1.0) {
+    if (excess(longer, finest_, space_) > 1.0) {
       coarser_ = longer;
       return;
     }
@@ -182,7 +184,7 @@ void ErrorSearch::coarsen_mesh() {
     for (std::size_t q = 0; q < quantities; ++q)
       coarser[q].value += growth_ * difference(trials_.run(mesh, step_), trials_.run(finest_mesh, step_),
                                                static_cast<Quantity>(q), 3.0 * step_);
-    if (excess(coarser, finest) > 1.0) return;
+    if (excess(coarser, finest, time_) > 1.0) return;
     mesh_ = mesh;
     space_ = coarser;
     finest_step_ = step_;  // on this mesh
@@ -211,7 +213,7 @@ void ErrorSearch::take_fewer_solves() {
         if (promised(q)) most = std::max(most, errors[q].value / (2.0 * wanted_ - std::min(space_[q].value, wanted_)));
       if (most * std::pow(fewer_solves_steps.back() / factor, method.order) > 1.0)
         break;  // not with the shortest either
-      if (most > 1.0 || excess(errors, finest_) > 2.0) continue;
+      if (most > 1.0 || excess(errors, finest_, space_) > 2.0) continue;
       integrator_ = method.name;
       step_ = step;
       time_ = errors;
@@ -276,7 +278,7 @@ void ErrorSearch::check_step_on(int mesh) {
     const double off = difference(trials_.run(mesh, step_, integrator_), fine, static_cast<Quantity>(q), 3.0 * step_);
     time[q].value = std::max(time[q].value, finest_[q].value + growth_ * off);
   }
-  if (excess(time, finest_) <= 1.0) {
+  if (excess(time, finest_, space_) <= 1.0) {
     time_ = time;
     return;
   }
@@ -288,12 +290,14 @@ void ErrorSearch::check_step_on(int mesh) {
 
 bool ErrorSearch::misses_when_foreseen(std::size_t q) const { return foreseen_[q] + time_[q].value > scene_.accuracy; }
 
-/// What the errors are of those wanted, at most; finest: of the finest run, which nothing that is refused can better.
-double ErrorSearch::excess(const Errors& errors, const Errors& finest) const {
+/// What the errors are of those wanted, at most. finest: of the finest run, other: of the mesh where errors are of the
+/// step; nothing that is refused can better these.
+double ErrorSearch::excess(const Errors& errors, const Errors& finest, const Errors& other) const {
   double most = 0.0;
   for (std::size_t q = 0; q < quantities; ++q) {
     if (promised(q)) most = std::max(most, errors[q].value / wanted_);
-    if (promises_[q].present && tried_[q]) most = std::max(most, errors[q].value / std::max(effort(), finest[q].value));
+    if (promises_[q].present && tried_[q])
+      most = std::max(most, errors[q].value / std::max({effort(), finest[q].value, other[q].value}));
   }
   return most;
 }

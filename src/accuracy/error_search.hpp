@@ -58,7 +58,7 @@ class ErrorSearch {
   void measure();
   void count_alike();
   double effort() const { return std::max(best_effort * wanted_, least_effort); }
-  double excess(const Errors& errors, const Errors& finest) const;
+  double excess(const Errors& errors, const Errors& finest, const Errors& other) const;
   ErrorLaw error_in_time(Quantity q);
   ErrorLaw error_in_space(Quantity q);
   void refuse(std::size_t q, std::string why);
