@@ -288,7 +288,10 @@ void ErrorSearch::check_step_on(int mesh) {
   coarser_.reset();
 }
 
-bool ErrorSearch::misses_when_foreseen(std::size_t q) const { return foreseen_[q] + time_[q].value > scene_.accuracy; }
+/// With the step that is foreseen.
+bool ErrorSearch::misses_when_foreseen(std::size_t q) const {
+  return foreseen_[q] + time_[q].at(std::min(1.0, factor_of_step())) > scene_.accuracy;
+}
 
 /// What the errors are of those wanted, at most. finest: of the finest run, other: of the mesh where errors are of the
 /// step; nothing that is refused can better these.
