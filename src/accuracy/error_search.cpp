@@ -314,6 +314,7 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
   scene.time_step = step;
   scene.integrator = integrator_;
   scene.step_probes = true;
+  scene.contact_seats = true;
   for (std::size_t q = 0; q < quantities; ++q) {
     const double ratio = step / step_;
     double in_time = time_[q].at(ratio);

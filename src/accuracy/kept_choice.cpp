@@ -53,8 +53,8 @@ void ChosenOf::keep(base::Bytes& bytes) {
   std::vector<int> elements = scene.beam ? scene.beam->elements : std::vector<int>();
   Sweep sweep = scene.sweep.value_or(Sweep());
   bytes(elements, bays, sweep.method, sweep.trials_reach, sweep.trials_lost_contact, scene.time_step, scene.integrator,
-        scene.model_modes, scene.step_probes, scene.rest_tolerance, scene.vehicle_model, scene.most_defect,
-        scene.output.low_pass);
+        scene.model_modes, scene.step_probes, scene.contact_seats, scene.rest_tolerance, scene.vehicle_model,
+        scene.most_defect, scene.output.low_pass);
   if (scene.beam) scene.beam->elements = elements;
   if (scene.beam && scene.beam->track) scene.beam->track->elements_per_bay = bays;
   if (scene.sweep) scene.sweep = sweep;

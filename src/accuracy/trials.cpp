@@ -141,6 +141,7 @@ Scene shortened(const Scene& scene, double end) {
   part.end_time = end;
   part.quiet = true;
   part.step_probes = true;
+  part.contact_seats = true;
   leave_out_vehicles(part, end);
   leave_out_spans(part, end);
   return part;

@@ -71,7 +71,7 @@ double System::surface_height() const {
   return structure_ && beam()->rail() == nullptr ? beam()->model().surface_height : 0.0;
 }
 
-bool System::yields_inside() const { return structure_ && structure_->yields_inside(); }
+bool System::yields_inside() const { return structure_ && structure_->yields_inside(input_.seats); }
 
 int System::local_size() const { return 2 * n_ + (rank_ == 0 ? 2 * fleet_.freedom() + 2 : 0); }
 

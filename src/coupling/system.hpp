@@ -56,6 +56,7 @@ struct SystemInput {
   double gravity = 9.81;
   bool self_weight = false;  // gravity acts on the beam too
   int impact_steps = 20;     // of an impact, at least; 0: as the step is
+  bool seats = false;        // a bridge's elements bend between their nodes under wheels
 };
 
 /// Which terms of G are meant: all; or, for implicit-explicit integrators, the beam with the moving forces

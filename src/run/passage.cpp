@@ -32,8 +32,8 @@ std::vector<double> passages(const Scene& scene, const Plan& plan) {
 }  // namespace
 
 coupling::SystemInput system_input(const Scene& scene, bool still) {
-  coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,        scene.profile,
-                                 scene.gravity,  scene.self_weight, scene.impact_steps};
+  coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,         scene.profile,
+                                 scene.gravity,  scene.self_weight, scene.impact_steps, scene.contact_seats};
   if (!still) return input;
   input.train.speed = input.load.speed = 0.0;
   for (std::vector<train::Course>* courses : {&input.train.courses, &input.load.courses})

@@ -41,6 +41,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.mode_count = o.integer("modes_count");
   scene.contact_tolerance = o.optional_number("contact_tolerance");
   scene.impact_steps = o.integer("contact_impact_steps");
+  scene.contact_seats = o.flag("contact_seats");
   scene.step_kinks = o.flag("step_kinks");
   scene.step_probes = o.flag("step_probes");
   scene.step_lanes = o.flag("step_lanes");

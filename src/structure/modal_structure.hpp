@@ -24,7 +24,7 @@ class ModalStructure final : public Structure {
   /// The bridge must outlive the structure.
   ModalStructure(const ModalBridge& bridge, double gravity, std::shared_ptr<BeamOperator> statics);
 
-  bool yields_inside() const override { return false; }
+  bool yields_inside(bool /*asked*/) const override { return false; }
   void load(const std::vector<beam::ElementLoad>& forces) override;
   void accelerations(const double* v, const double* w, bool own, const ElementLoads* contacts, double* a) override;
   std::array<double, 2> powers(const double* w) override;

@@ -74,10 +74,11 @@ class Structure {
   BeamOperator& statics() const { return *statics_; }
   /// Nodal forces of the beam's own weight and of its strains, this rank's unknowns of the beam.
   const std::vector<double>& dead_load() const { return dead_load_; }
-  /// Whether what an element yields between its nodes counts under a wheel. A rail bends there; a bridge's elements,
-  /// which are as many as its modes ask for, hardly do, but one that shears has a kink under a wheel, and none at its
-  /// nodes.
-  virtual bool yields_inside() const { return beam_.rail() != nullptr || beam_.model().GA.has_value(); }
+  /// Whether what an element yields between its nodes counts under a wheel. A rail bends there, and an element that
+  /// shears has a kink under a wheel, and none at its nodes; others where that is asked for.
+  virtual bool yields_inside(bool asked) const {
+    return asked || beam_.rail() != nullptr || beam_.model().GA.has_value();
+  }
   /// Whether it is bent or stretched without vehicles and moving forces.
   bool bent_at_rest() const { return gravity_ != 0.0 || beam_.model().strained(); }
   /// Collective. Its displacements then, without foundations that are not linear: this rank's unknowns of the beam.

@@ -94,6 +94,7 @@ LanesChoice LaneChooser::choose() {
   if (alone_) note_peaks(wholes_->run(better_).back(), choice.promises);
   if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
   choice.scene.step_probes = true;
+  choice.scene.contact_seats = true;
   return choice;
 }
 

@@ -125,6 +125,7 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
   scene.sweep->method = chosen_.sweep->method;
   scene.rest_tolerance = chosen_.rest_tolerance;
   scene.step_probes = chosen_.step_probes;
+  scene.contact_seats = chosen_.contact_seats;
   scene.vehicle_model = chosen_.vehicle_model;
   scene.most_defect = chosen_.most_defect;
   if (runners_.size() == most_runners) {

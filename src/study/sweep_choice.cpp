@@ -58,6 +58,7 @@ std::optional<Accuracy> choose_at_speeds(const Scene& given, Scene& scene, std::
     set_mesh(scene, mesh);
     scene.rest_tolerance = one.rest_tolerance;
     scene.step_probes = one.step_probes;
+    scene.contact_seats = one.contact_seats;
     if (!all || one.vehicle_model == VehicleModel::full) scene.vehicle_model = one.vehicle_model;
     scene.most_defect = one.most_defect;
     if (accuracy.seen_until != Accuracy::the_end)

@@ -19,9 +19,10 @@ void visit_seen(C& c, Visit visit) {
   for (auto* direction : {&c.touch.normal_on_beam, &c.touch.tangent_on_beam})
     for (auto& value : *direction) visit(value);
   for (auto* value : {&c.touch.xi, &c.touch.station, &c.touch.ahead}) visit(*value);
+  visit(c.law.seat);
   visit(c.active);
 }
-constexpr int seen_numbers = 14 + 2 * most_element_unknowns + 3 + 1;
+constexpr int seen_numbers = 14 + 2 * most_element_unknowns + 3 + 2;
 
 }  // namespace
 

@@ -114,6 +114,7 @@ struct Scene {
   std::optional<Study> study;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
+  bool contact_seats = false;                              // a bridge's elements bend between their nodes under wheels
   bool step_kinks = true;                                  // steps end where wheels pass kinks
   double looks = std::numeric_limits<double>::infinity();  // s: longest between instants at which responses are seen
   bool step_lanes = true;        // linear vehicles over modes are stepped by the kernel of runs side by side
