@@ -122,6 +122,9 @@ WAYS = [
             Check("EXPECT_LT(of_two, {}) << quantity;", "acceleration", "bridge's acceleration")]),
         Row("energy that is missing, of what the rail stores in a bay", "0", "RailBetweenNodes.ItsEnergyComesBack",
             [Check("EXPECT_LT(residual, {} * stored);", "residual_over_stored")]),
+        Row("a mass on a stiff wheel, sixteen elements a span", "256 elements", "BridgeBetweenNodes.SixteenElementsCarryAStiffWheel", [
+            Check("EXPECT_LT(error(with), {}) << quantity;", "wheel_force", "wheel force"),
+            Check("EXPECT_LT(error(with), {}) << quantity;", "acceleration", "acceleration")]),
     ]),
     ("Modes that dampers couple", [
         Row("elastic bearings with Rayleigh damping, a damped bearing; all modes", "the elements",
