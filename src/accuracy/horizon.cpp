@@ -4,16 +4,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace traverse::app {
 namespace {
 
 constexpr std::size_t crossed_in_full = 3;  // spans
 constexpr double behind = 1.1;              // spans, until what the last wheel does as it leaves is seen
+constexpr double part_of_swing = 0.75;      // of a vehicle, until it presses its wheels most behind the bridge
 constexpr double same_number = 1e-9;        // relative
 constexpr int places_a_span = 8;
 constexpr double bays_behind = 10.0;      // of a layered track, until what stirs wheels there is seen
 constexpr double most_places = 200000.0;  // of a profile's table
+
+/// s, of the vehicles that are there, each on all its springs at once.
+double longest_swing(const Scene& scene) {
+  double longest = 0.0;
+  for (const int type : scene.train.vehicles) {
+    const multibody::MechanismModel& mechanism = scene.vehicles[static_cast<std::size_t>(type)].mechanism;
+    double mass = 0.0, stiffness = 0.0;
+    for (const multibody::Body& body : mechanism.bodies) mass += body.mass;
+    for (const multibody::Spring& spring : mechanism.springs) stiffness += spring.stiffness;
+    if (stiffness > 0.0) longest = std::max(longest, 2.0 * std::numbers::pi * std::sqrt(mass / stiffness));
+  }
+  return longest;
+}
 
 /// x of what has to be crossed for a vehicle to have been seen.
 double reach(const Scene& scene) {
@@ -175,6 +190,12 @@ double beginning(const Scene& scene, double end) {
                                 ? (reach(scene) - last_force_to_watch(scene)) / scene.load.speed
                                 : end);
   return until > 0.0 && until < end ? until : end;
+}
+
+double with_swing_behind(const Scene& scene, double until) {
+  if (scene.train.vehicles.empty() || !scene.train.steady()) return until;
+  const double leaves = passed(scene, scene.beam->end());
+  return until < leaves ? until : std::max(until, leaves + part_of_swing * longest_swing(scene));
 }
 
 std::vector<Meeting> met_later(const Scene& scene, double seen, double end) {

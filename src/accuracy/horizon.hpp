@@ -12,6 +12,10 @@ namespace traverse::app {
 /// at most `end`.
 double beginning(const Scene& scene, double end);
 
+/// `until`, s; where the first vehicle is seen to leave the bridge, so much longer as its swing there takes until it
+/// presses its wheels most.
+double with_swing_behind(const Scene& scene, double until);
+
 /// Something of a kind that was not there before.
 struct Meeting {
   double until = 0.0;  // s, when the first vehicle, or the one that it is about, has it behind it
