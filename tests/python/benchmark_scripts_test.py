@@ -99,6 +99,14 @@ class Scripts(InAFolder):
             for quantity in ("deflection", "moment", "wheel force", accelerations):
                 self.assert_errors([row], quantity, 1e-2)
 
+    def test_sweep_promises(self):
+        text = self.run_smallest("sweep_promises")
+        self.assertRegex(text, "([1-9][0-9]*) of \\1 peaks of single runs")
+        row, = self.table("sweep_promises.csv", [
+            "scene", "accuracy", "worst", "of", "speed", "judged", "broken", "not promised", "chosen"])
+        self.assert_positive([row], "worst", "speed", "judged")
+        self.assertEqual(row["broken"], "0")
+
     def test_fidelity(self):
         text = self.run_smallest("fidelity")
         self.assertIn("ms of the time loop a passage", text)
