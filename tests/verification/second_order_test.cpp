@@ -38,6 +38,7 @@ INSTANTIATE_TEST_SUITE_P(
              "three_span_train",
              {{"train_vehicles", "coach*2"},
               {"beam_continuity", "simply_supported"},
+              {"beam_elements_per_span", "8"},
               {"model_window", "0"},
               {"model_vehicles", "full"},
               {"step_lanes", "false"},
