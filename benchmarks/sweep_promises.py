@@ -73,9 +73,7 @@ def judge(build, name, text, accuracies):
             run = runs.Run(build, options | {"accuracy": accuracy}, file)
             found, (keeps, named) = peaks(file), promised(file)
             of, worst, where, judged, broken = "", 0.0, 0.0, 0, 0
-            for q in named:
-                if q not in truth:
-                    continue
+            for q in truth.keys() & named:
                 errors = np.abs(found[q] / truth[q] - 1.0) / accuracy
                 counts = keeps & (doubt[q] <= JUDGED * accuracy)
                 judged += counts.sum()

@@ -279,14 +279,13 @@ void ErrorSearch::check_step_on(int mesh) {
     const double off = difference(trials_.run(mesh, step_, integrator_), fine, static_cast<Quantity>(q), 3.0 * step_);
     time[q].value = std::max(time[q].value, finest_[q].value + growth_ * off);
   }
-  if (excess(time, finest_, space_) <= 1.0) {
-    time_ = time;
-    return;
+  if (excess(time, finest_, space_) > 1.0) {
+    step_ = finest_step_;
+    time = finest_;
+    integrator_.clear();
+    coarser_.reset();
   }
-  step_ = finest_step_;
-  time_ = finest_;
-  integrator_.clear();
-  coarser_.reset();
+  time_ = time;
 }
 
 /// With the step that is foreseen.
