@@ -20,7 +20,7 @@
 // processor could be taken for another: no functions of the library, everything in an unnamed namespace.
 #pragma once
 
-#include "lanes/crossing_contacts.hpp"
+#include "lanes/crossing_corners.hpp"
 #include "lanes/crossing_looks.hpp"
 #include "lanes/crossing_motion.hpp"
 #include "lanes/crossing_places.hpp"
@@ -66,7 +66,8 @@ class Group : CrossingAlgebra<W> {
       s.behind_kink = kink;
       for (long k = 0; k < stretch.steps; ++k) {
         Places::place_vehicles(s, from + static_cast<double>(k) * ds);
-        for (int stage = 0; stage < s.task.method.stages; ++stage) solve_stage(s, stage);
+        const bool to_kink = stretch.kink && k + 1 == stretch.steps;
+        for (int stage = 0; stage < s.task.method.stages; ++stage) solve_stage(s, stage, to_kink);
         finish_step(s);
         s.distance = k + 1 < stretch.steps ? from + static_cast<double>(k + 1) * ds : stretch.to;
         Looks::look(s, true);
@@ -75,6 +76,7 @@ class Group : CrossingAlgebra<W> {
       if (kink) Looks::look_before_kink(s);  // moments may have one there
       if (stretch.keeps) Looks::keep(s);
       if (!any(s.failed == fill(0.0))) break;
+      if (kink) CrossingCorners<W>::pass(s);
       from = stretch.to;
     }
     Looks::give(s);
@@ -94,7 +96,7 @@ class Group : CrossingAlgebra<W> {
     s.behind_kink = from_kink;
     if (from_kink) Powers::begin_behind_kink(s);
     for (int stage = 0; stage < s.task.method.stages; ++stage) {
-      solve_stage(s, stage);
+      solve_stage(s, stage, to_kink);
       if (!any(s.failed == fill(0.0))) return;
       Powers::note(s, stage + 1, to_kink && stage + 1 == s.task.method.stages);
     }
@@ -103,6 +105,7 @@ class Group : CrossingAlgebra<W> {
     s.distance = to;
     Looks::see(s);
     for (int j = 0; j < s.task.wheels; ++j) s.F_seen[4][j] = Contacts::normal(s, j);
+    if (to_kink) CrossingCorners<W>::pass(s);
   }
   /// Goes on from where another crossing of the same task was, whose numbers have been copied behind this one.
   void go_on_from(const Group& other) {
@@ -182,6 +185,11 @@ class Group : CrossingAlgebra<W> {
     s.least = fill(1e300);
     s.greatest = fill(-1e300);
     s.edge = Lane{};
+    for (int k = 0; k < s.task.kinds; ++k) {
+      const TaskKind& kind = s.task.kind[k];
+      for (int i = 0; i < kind.freedom * kind.freedom; ++i) s.kinds[k].M_inverse[i] = lanes(kind.M)[i];
+      invert(s.kinds[k].M_inverse, kind.freedom);
+    }
     for (int i = 0; i < 3 * s.task.probes.count; ++i) s.peak[i] = s.peak_time[i] = Lane{};
     s.distance = s.start = 0.0;
     s.ds = s.ds_before = 0.0;
@@ -254,10 +262,12 @@ class Group : CrossingAlgebra<W> {
     return rule;
   }
 
-  static void solve_stage(State& s, int stage) {
+  /// to_kink: the surface may have a kink where the step ends, and the wheels are still on this side.
+  static void solve_stage(State& s, int stage, bool to_kink) {
     const TaskMethod& method = s.task.method;
     const bool last = stage + 1 == method.stages;
-    Places::place(s, s.start + method.time[stage] * s.ds, last ? s.task.influence.channels : s.modes);
+    const double gone = s.start + method.time[stage] * s.ds - (last && to_kink ? Places::beside : 0.0);
+    Places::place(s, gone, last ? s.task.influence.channels : s.modes);
     const Rule rule = rule_for(s, method.w_in_v[stage], method.a_in_v[stage], method.a_in_w[stage], stage + 1);
     if (s.task.exact_modes) {
       Motion::free_exact_modes(s);

@@ -84,6 +84,8 @@ struct CrossingMotion : CrossingAlgebra<W> {
       }
   }
 
+  static bool leans(const State& s, int v) { return s.task.heights.stations > 0 || s.touching[v] != 0; }
+
   /// Without contact forces.
   static void free_vehicle(State& s, int v, int known, const Rule& rule) {
     const TaskVehicle& vehicle = s.task.vehicle[v];
@@ -94,23 +96,31 @@ struct CrossingMotion : CrossingAlgebra<W> {
     predict(known, f, rule, s.x + first, s.w + first, s.a, first, x, w);
     for (int i = 0; i < f; ++i) a[i] = own.alone[i];
     multiply(-1.0, own.by_state, f, 2 * f, x, a);
-    const bool leans = s.task.heights.stations > 0 || s.touching[v] != 0;
-    if (leans)
+    if (leans(s, v))
       for (int j = 0; j < kind.wheels; ++j) {
         // The contact's force stands square on the surface: it pushes along it by its slope, as it was last found.
         const Lane push = s.lean[vehicle.first_wheel + j] * s.F[vehicle.first_wheel + j];
         for (int i = 0; i < f; ++i) a[i] -= own.Y_along[i * kind.wheels + j] * push;
       }
+    lift_wheels(s, v, [=, d = s.d](int k) { return x[k] + d * a[k]; });
+  }
+
+  /// By coordinates of their vehicle: what that takes from their penetrations, and how far they move along the track.
+  template <class Coordinate>
+  static void lift_wheels(State& s, int v, Coordinate coordinate) {
+    const TaskVehicle& vehicle = s.task.vehicle[v];
+    const TaskKind& kind = s.task.kind[vehicle.kind];
+    const int f = kind.freedom;
     for (int j = 0; j < kind.wheels; ++j) {
       Lane up{};
       for (int e = kind.G_row[j]; e < kind.G_row[j + 1]; ++e) {
         const int k = kind.G_column[e];
-        up += lanes(kind.G)[j * f + k] * (x[k] + s.d * a[k]);
+        up += lanes(kind.G)[j * f + k] * coordinate(k);
       }
       s.free[vehicle.first_wheel + j] -= up;
-      if (!leans) continue;
+      if (!leans(s, v)) continue;
       Lane along{};
-      for (int k = 0; k < f; ++k) along += lanes(kind.G_along)[j * f + k] * (x[k] + s.d * a[k]);
+      for (int k = 0; k < f; ++k) along += lanes(kind.G_along)[j * f + k] * coordinate(k);
       const int wheel = vehicle.first_wheel + j;
       s.along[wheel] = along;
       s.free[wheel] += (s.lean[wheel] - s.lean_of_bridge[wheel]) * along;

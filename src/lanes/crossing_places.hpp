@@ -11,12 +11,12 @@ struct CrossingPlaces : CrossingAlgebra<W> {
   using Own = CrossingAlgebra<W>;
   using State = CrossingState<W>;
   using Own::dot;
-  using Own::greater;
   using Own::influence_at;
   using Own::lanes;
-  using Own::magnitude;
   using Own::track_at;
   using typename Own::Lane;
+
+  static constexpr double beside = 1e-9;  // m, of a kink: on the side that the step is on
 
   /// Wheels and forces when all have gone so far (m), with so many channels of the influence. Fills `free` with the
   /// penetration over a bridge at rest.
@@ -82,7 +82,6 @@ struct CrossingPlaces : CrossingAlgebra<W> {
       const Lane ahead = s.task.arm[j] * s.lean[j] + s.along[j];
       for (int i = 0; i < s.modes; ++i) there[i] = g[i] + ahead * slope[i];
       s.free[j] -= 0.5 * s.task.radius * s.lean_of_bridge[j] * s.lean_of_bridge[j];
-      s.edge = greater(s.edge, magnitude(s.lean_of_bridge[j]) * s.along[j] * s.along[j]);
     }
   }
 };

@@ -4,7 +4,7 @@
 //   P = driven x'' + speed * sum F d(surface)/dx
 #pragma once
 
-#include "lanes/crossing_state.hpp"
+#include "lanes/crossing_places.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -20,8 +20,6 @@ struct CrossingPowers : CrossingAlgebra<W> {
   using Own::track_at;
   using typename Own::Lane;
 
-  static constexpr double beside = 1e-9;  // m, of a kink: on the side that the step is on
-
   static void begin(State& s) {
     s.all_lost = s.all_given = Lane{};
     s.lost[0] = Lane{};
@@ -30,7 +28,7 @@ struct CrossingPowers : CrossingAlgebra<W> {
 
   /// At the start of a step where the surface may have a kink: its slopes are those in front of the wheels.
   static void begin_behind_kink(State& s) {
-    lean_beside(s, s.distance + beside, s.q);
+    lean_beside(s, s.distance + CrossingPlaces<W>::beside, s.q);
     s.given[0] = given(s, 0);
   }
 
@@ -44,7 +42,8 @@ struct CrossingPowers : CrossingAlgebra<W> {
       s.rhs[i] = s.task.exact_modes ? s.r[i] : s.r_still[i] + s.rate * s.b[stage][i];
     }
     s.lost[stage] = lost + lost_in_modes(s, s.rhs);
-    if (before_kink) lean_beside(s, s.start + s.task.method.time[stage - 1] * s.ds - beside, s.scaled);
+    if (before_kink)
+      lean_beside(s, s.start + s.task.method.time[stage - 1] * s.ds - CrossingPlaces<W>::beside, s.scaled);
     s.given[stage] = given(s, stage);
   }
 

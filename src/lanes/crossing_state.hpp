@@ -15,6 +15,7 @@ struct CrossingState {
     Lane *inverse, *by_state;  // J^-1; J^-1 [K C], freedom x 2 freedom
     Lane* alone;               // -J^-1 r0
     Lane *Y, *Y_along, *H;     // J^-1 G^T (freedom x wheels), the same for forces along the track, d G J^-1 G^T
+    Lane* M_inverse;           // of all steps
   };
 
   explicit CrossingState(const Task& of) : task(of), modes(of.modes) {}
@@ -97,7 +98,8 @@ struct CrossingMemory {
       const long f = s.task.kind[k].freedom, w = s.task.kind[k].wheels;
       const Kind own = {take_from<Lane>(work, s.used, W, f * f), take_from<Lane>(work, s.used, W, 2 * f * f),
                         take_from<Lane>(work, s.used, W, f),     take_from<Lane>(work, s.used, W, f * w),
-                        take_from<Lane>(work, s.used, W, f * w), take_from<Lane>(work, s.used, W, w * w)};
+                        take_from<Lane>(work, s.used, W, f * w), take_from<Lane>(work, s.used, W, w * w),
+                        take_from<Lane>(work, s.used, W, f * f)};
       if (work != nullptr) s.kinds[k] = own;
     }
     Lane** const of_coordinates[] = {&s.x, &s.w, &s.a_free, &s.bent};

@@ -35,6 +35,8 @@ SpanCrossing::SpanCrossing(SpanPlan plan, TrainNumbers train, std::vector<double
       scaled_(phi_.size()),
       residual_(wheels_.size()),
       yield_(wheels_.size()),
+      near_(wheels_.size()),
+      near_phi_(phi_.size()),
       q_(std::move(q)),
       left_(plan_.spans.size()),
       seen_(3 * static_cast<std::size_t>(stride_)) {
@@ -87,19 +89,21 @@ Trouble SpanCrossing::step(double t, bool from_kink, bool to_kink) {
   const std::size_t stages = method_.stages.size();
   for (std::size_t stage = 0; stage < stages; ++stage) {
     const structure::StageRule& rule = method_.stages[stage];
-    place(speed_ * (time_ + rule.time));
+    const bool last = stage + 1 == stages;
+    place(speed_ * (time_ + rule.time) - (last && to_kink ? beside : 0.0));
     free_modes(rule);
     guess_forces(stage);
     for (Group& group : groups_) free_vehicles(group, rule);
-    touch_ahead();
+    touch_ahead(z_);
     const Trouble trouble = solve_contacts();
     if (trouble != none) return trouble;
     take_forces(stage);
-    note_powers(stage + 1, to_kink && stage + 1 == stages);
+    note_powers(stage + 1);
   }
   finish_step();
   if (plan_.all) step_free_spans();
   time_ = t;
+  if (to_kink) pass_corners();
   rest();
   return none;
 }
@@ -150,8 +154,8 @@ double SpanCrossing::given_now(std::size_t stage) const {
   return given;
 }
 
-// At a stage that is solved. before_kink: a wheel may be at the end of a span there, and is still on this side.
-void SpanCrossing::note_powers(std::size_t stage, bool before_kink) {
+// At a stage that is solved.
+void SpanCrossing::note_powers(std::size_t stage) {
   double lost = 0.0;
   for (Group& group : groups_) {
     const int n = group.count, f = group.numbers->freedom;
@@ -173,7 +177,6 @@ void SpanCrossing::note_powers(std::size_t stage, bool before_kink) {
     }
   }
   lost_[stage] = lost;
-  if (before_kink) place(speed_ * (time_ + method_.stages[stage - 1].time) - beside);
   lean_at(z_);
   given_[stage] = given_now(stage);
 }

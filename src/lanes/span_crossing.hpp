@@ -11,6 +11,7 @@
 // vehicle or on a span.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <utility>
 #include <vector>
@@ -43,7 +44,8 @@ struct SpanPlan {
 };
 
 /// In files of their own: the vehicles (span_crossing_train.cpp), the spans (span_crossing_spans.cpp), the contacts
-/// (span_crossing_contacts.cpp).
+/// (span_crossing_contacts.cpp), and what happens where wheels pass from one span to the next
+/// (span_crossing_corners.cpp).
 class SpanCrossing {
  public:
   /// q: of the spans' modes at t = 0, [span][stride()]; speed: m/s, above 0.
@@ -96,6 +98,7 @@ class SpanCrossing {
     std::array<std::vector<double>, most_kept> a;
     // At this step length, by rows: J^-1; J^-1 [K C]; -J^-1 r0; J^-1 G^T; the same of forces along the track; H.
     std::vector<double> inverse, by_state, alone, Y, Y_along, H;
+    std::vector<double> M_inverse;  // of all steps
     void keep(base::Bytes& bytes) { bytes(x, w, x_still, w_still, a_free, rate, bent, bend, most_bent, a); }
   };
   struct Place {
@@ -132,7 +135,8 @@ class SpanCrossing {
   void free_modes(const structure::StageRule& rule);
   void guess_forces(std::size_t stage);
   void free_vehicles(Group& group, const structure::StageRule& rule);
-  void touch_ahead();
+  void lift_wheels(const Group& group, int v, const double* x, const double* a, double d);
+  void touch_ahead(const std::vector<double>& modes_at);
   void law(std::size_t wheel, double delta);
   bool take_force(std::size_t wheel, double force);
   void fill_forces();
@@ -140,9 +144,13 @@ class SpanCrossing {
   Trouble solve_contacts();
   void take_forces(std::size_t stage);
   double given_now(std::size_t stage) const;
-  void note_powers(std::size_t stage, bool before_kink);
+  void note_powers(std::size_t stage);
   void finish_step();
   static void note_bent(Group& group);
+  void pass_corners();
+  void stand(double gone);
+  void push_vehicle(Group& group, int v);
+  void push_modes(const Wheel& wheel, const std::vector<double>& phi, std::size_t j, double force, double late);
   const SpanKind& kind(int span) const { return plan_.kinds[plan_.spans[static_cast<std::size_t>(span)].kind]; }
   double* at(std::vector<double>& numbers, int span) const {
     return numbers.data() + static_cast<std::ptrdiff_t>(span) * stride_;
@@ -164,6 +172,11 @@ class SpanCrossing {
   std::vector<double> phi_, phi_slope_, scaled_;
   std::vector<double> residual_, yield_;  // of the contacts' iteration, [wheel]
   SpanForces forces_;
+  // Wheels and shapes on the near side of corners; what far sides push a vehicle by, what has been missed, and what
+  // that makes of its rates.
+  std::vector<Wheel> near_;
+  std::vector<double> near_phi_;
+  Eigen::VectorXd push_, missed_, kick_;
 
   // Spans: [first_, past_) are under the train, [ringing_, first_) ring; the state of those is that of `left_`, but
   // where all are stepped.

@@ -107,7 +107,7 @@ void SpanCrossing::guess_forces(std::size_t stage) {
 
 // The shapes where wheels touch: they have moved along the track, and on a slope they touch ahead of their centres,
 // where that is higher (CrossingPlaces::place_ahead).
-void SpanCrossing::touch_ahead() {
+void SpanCrossing::touch_ahead(const std::vector<double>& modes_at) {
   for (std::size_t j = 0; j < wheels_.size(); ++j) {
     Wheel& wheel = wheels_[j];
     if (wheel.span < 0) continue;
@@ -119,7 +119,7 @@ void SpanCrossing::touch_ahead() {
       phi_[at] += ahead * phi_slope_[at];
       scaled_[at] = yields[m] * phi_[at];
     }
-    wheel.free += surface(j, z_) - 0.5 * train_.radius * wheel.lean * wheel.lean;
+    wheel.free += surface(j, modes_at) - 0.5 * train_.radius * wheel.lean * wheel.lean;
   }
 }
 

@@ -6,6 +6,11 @@
 #include "lanes/span_crossing.hpp"
 
 namespace traverse::lanes {
+namespace {
+
+using ByRows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace
 
 void SpanCrossing::add_groups() {
   place_.resize(static_cast<std::size_t>(train_.coordinates));
@@ -30,6 +35,9 @@ void SpanCrossing::add_groups() {
     group.Y.resize(f * w);
     group.Y_along.resize(f * w);
     group.H.resize(w * w);
+    const auto size = static_cast<Eigen::Index>(f);
+    const ByRows M_inverse = Eigen::Map<const ByRows>(group.numbers->M.data(), size, size).inverse();
+    group.M_inverse.assign(M_inverse.data(), M_inverse.data() + M_inverse.size());
     for (std::size_t v = 0; v < n; ++v)
       for (std::size_t i = 0; i < f; ++i) {
         const auto first = train_.vehicles[static_cast<std::size_t>(group.vehicle[v])].first_coordinate;
@@ -43,8 +51,7 @@ void SpanCrossing::renew(Group& group) {
   const auto f = static_cast<std::size_t>(of.freedom), w = static_cast<std::size_t>(of.wheels);
   for (std::size_t i = 0; i < f * f; ++i) group.inverse[i] = of.M[i] + rate_of_a_ * of.C[i] + d_ * of.K[i];
   const auto size = static_cast<Eigen::Index>(f);
-  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> J(group.inverse.data(), size,
-                                                                                       size);
+  Eigen::Map<ByRows> J(group.inverse.data(), size, size);
   J = J.inverse().eval();
   for (std::size_t i = 0; i < f; ++i) {
     const double* row = &group.inverse[i * f];
@@ -111,17 +118,27 @@ void SpanCrossing::free_vehicles(Group& group, const structure::StageRule& rule)
       if (push == 0.0) continue;
       for (int i = 0; i < f; ++i) a[i * n + v] -= group.Y_along[static_cast<std::size_t>(i * w + j)] * push;
     }
-    for (int j = 0; j < w; ++j) {
-      Wheel& wheel = wheels_[first + static_cast<std::size_t>(j)];
-      double up = 0.0, along = 0.0;
-      for (int k = 0; k < f; ++k) {
-        const double there = x[k * n + v] + d_ * a[k * n + v];
-        up += of.G[static_cast<std::size_t>(j * f + k)] * there;
-        along += of.G_along[static_cast<std::size_t>(j * f + k)] * there;
-      }
-      wheel.free = wheel.offset - up;
-      wheel.along = along;
+    lift_wheels(group, v, x, a, d_);
+  }
+}
+
+// With the coordinates at x + d a: how deep the wheels of a vehicle would be without the bridge, and how far they move
+// along the track.
+void SpanCrossing::lift_wheels(const Group& group, int v, const double* x, const double* a, double d) {
+  const VehicleNumbers& of = *group.numbers;
+  const int n = group.count, f = of.freedom;
+  const auto first = static_cast<std::size_t>(
+      train_.vehicles[static_cast<std::size_t>(group.vehicle[static_cast<std::size_t>(v)])].first_wheel);
+  for (int j = 0; j < of.wheels; ++j) {
+    Wheel& wheel = wheels_[first + static_cast<std::size_t>(j)];
+    double up = 0.0, along = 0.0;
+    for (int k = 0; k < f; ++k) {
+      const double there = x[k * n + v] + d * a[k * n + v];
+      up += of.G[static_cast<std::size_t>(j * f + k)] * there;
+      along += of.G_along[static_cast<std::size_t>(j * f + k)] * there;
     }
+    wheel.free = wheel.offset - up;
+    wheel.along = along;
   }
 }
 
