@@ -84,7 +84,7 @@ struct CrossingResult {
   std::vector<CrossingPeak> low_passed;                        // of each probe, where somebody has filtered these
   double least_force = 0.0, greatest_force = 0.0;              // N, of all wheels
   std::vector<double> bent;  // coordinates of every vehicle where it was farthest from linear
-  // m2: the slope of the bridge under a wheel by the square of how far it had moved along the track, at most.
+  // m2: the angle of a corner by the square of how far ahead of it a wheel passed it, at most.
   double edge = 0.0;
 };
 

@@ -3,7 +3,8 @@
 // Steps end where a wheel would meet the corner that had not moved along its vehicle. With slopes that differ by k on
 // both sides, one that has moved along, and touches ahead of its centre, by u meets it u/v earlier: from then until the
 // step's end its penetration had to grow by k v more. Its force on the far side differs by D from that on the near side
-// at the step's end, where accelerations change by what D makes of them, and velocities by what was missed, D u/(2 v).
+// at the step's end, where accelerations change by what D makes of them, and the vehicle's velocities by what was
+// missed, D u/(2 v).
 #pragma once
 
 #include "lanes/crossing_contacts.hpp"
@@ -39,15 +40,13 @@ struct CrossingCorners : CrossingAlgebra<W> {
       s.residual[j] = s.free[j];
       s.yield[j] = s.F[j];
       s.pivot[j] = s.lean[j];
-      Lane* row = s.reduced + static_cast<long>(j) * s.modes;
-      for (int i = 0; i < s.modes; ++i) row[i] = Lane{};
-      if (s.on[j] != 0) Influence::copy(s, j, row);
+      Lane* near = s.reduced + static_cast<long>(j) * s.modes;
+      for (int i = 0; i < s.modes; ++i) near[i] = Lane{};
+      if (s.on[j] != 0) Influence::copy(s, j, near);
     }
     stand(s, s.distance + Places::beside);
-    for (int i = 0; i < s.modes; ++i) s.rhs[i] = s.scaled[i] = Lane{};
     for (int v = 0; v < s.task.vehicles; ++v)
-      if (s.awake[v] != 0) push_vehicle(s, v);
-    push_modes(s);
+      if (s.awake[v] != 0) change_forces(s, v);
   }
 
  private:
@@ -69,8 +68,8 @@ struct CrossingCorners : CrossingAlgebra<W> {
     }
   }
 
-  /// Of its wheels at a corner: on the vehicle, and into s.scaled and s.rhs, on the modes at once and so far.
-  static void push_vehicle(State& s, int v) {
+  /// Those of a vehicle's wheels at a corner, from the near side's to the far side's.
+  static void change_forces(State& s, int v) {
     const TaskVehicle& vehicle = s.task.vehicle[v];
     const TaskKind& kind = s.task.kind[vehicle.kind];
     const int f = kind.freedom, first = vehicle.first_coordinate;
@@ -92,16 +91,9 @@ struct CrossingCorners : CrossingAlgebra<W> {
       const Lane *G = lanes(kind.G) + k * f, *G_along = lanes(kind.G_along) + k * f;
       for (int i = 0; i < f; ++i) {
         push[i] += G[i] * up + G_along[i] * along;
-        missed[i] += late * (G[i] * up + 2.0 * G_along[i] * along);
+        missed[i] += late * G[i] * up;
       }
-      const Lane* before = s.reduced + static_cast<long>(j) * s.modes;
-      const Lane* after = s.g_ahead + static_cast<long>(j) * s.modes;
-      for (int i = 0; i < s.modes; ++i) {
-        const Lane share = s.on[j] != 0 ? after[i] : Lane{};
-        const Lane more = turns ? share * s.F[j] - before[i] * s.yield[j] : Lane{};
-        s.scaled[i] += more;
-        s.rhs[i] += late * more;
-      }
+      push_modes(s, j, turns);
     }
     if (!at_corner) return;
     const Lane* M_inverse = s.kinds[vehicle.kind].M_inverse;
@@ -111,16 +103,12 @@ struct CrossingCorners : CrossingAlgebra<W> {
     for (int i = 0; i < f; ++i) s.w[first + i] += kick[i];
   }
 
-  static void push_modes(State& s) {
-    const Lane* c = lanes(s.task.damping);
-    if (s.task.coupled) {
-      multiply(-1.0, c, s.modes, s.modes, s.rhs, s.scaled);
-    } else {
-      for (int i = 0; i < s.modes; ++i) s.scaled[i] -= c[i] * s.rhs[i];
-    }
+  static void push_modes(State& s, int j, Mask turns) {
+    const Lane* near = s.reduced + static_cast<long>(j) * s.modes;
+    const Lane* far = s.g_ahead + static_cast<long>(j) * s.modes;
     for (int i = 0; i < s.modes; ++i) {
-      s.r[i] += s.rhs[i];
-      s.b[0][i] += s.scaled[i];
+      const Lane share = s.on[j] != 0 ? far[i] * s.F[j] : Lane{};
+      s.b[0][i] += turns ? share - near[i] * s.yield[j] : Lane{};
     }
   }
 };

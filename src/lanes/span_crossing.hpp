@@ -149,8 +149,8 @@ class SpanCrossing {
   static void note_bent(Group& group);
   void pass_corners();
   void stand(double gone);
-  void push_vehicle(Group& group, int v);
-  void push_modes(const Wheel& wheel, const std::vector<double>& phi, std::size_t j, double force, double late);
+  void change_forces(Group& group, int v);
+  void push_modes(const Wheel& wheel, const std::vector<double>& phi, std::size_t j, double force);
   const SpanKind& kind(int span) const { return plan_.kinds[plan_.spans[static_cast<std::size_t>(span)].kind]; }
   double* at(std::vector<double>& numbers, int span) const {
     return numbers.data() + static_cast<std::ptrdiff_t>(span) * stride_;
@@ -172,8 +172,8 @@ class SpanCrossing {
   std::vector<double> phi_, phi_slope_, scaled_;
   std::vector<double> residual_, yield_;  // of the contacts' iteration, [wheel]
   SpanForces forces_;
-  // Wheels and shapes on the near side of corners; what far sides push a vehicle by, what has been missed, and what
-  // that makes of its rates.
+  // Wheels and shapes on the near side of corners; what far sides change of the forces on a vehicle, what has been
+  // missed of that, and what it makes of the rates.
   std::vector<Wheel> near_;
   std::vector<double> near_phi_;
   Eigen::VectorXd push_, missed_, kick_;

@@ -22,7 +22,7 @@ void SpanCrossing::pass_corners() {
   std::copy(phi_.begin(), phi_.end(), near_phi_.begin());
   stand(speed_ * time_ + beside);
   for (Group& group : groups_)
-    for (int v = 0; v < group.count; ++v) push_vehicle(group, v);
+    for (int v = 0; v < group.count; ++v) change_forces(group, v);
 }
 
 // The contacts' forces as vehicles and bridge are, with the wheels at this distance.
@@ -38,7 +38,8 @@ void SpanCrossing::stand(double gone) {
   }
 }
 
-void SpanCrossing::push_vehicle(Group& group, int v) {
+// Those of a vehicle's wheels at a corner, from the near side's to the far side's.
+void SpanCrossing::change_forces(Group& group, int v) {
   const VehicleNumbers& of = *group.numbers;
   const Eigen::Index f = of.freedom;
   const auto first = static_cast<std::size_t>(
@@ -56,9 +57,9 @@ void SpanCrossing::push_vehicle(Group& group, int v) {
     const double up = far.force - near.force, along = near.lean * near.force - far.lean * far.force;
     const Eigen::Map<const Eigen::VectorXd> G(of.G.data() + k * f, f), G_along(of.G_along.data() + k * f, f);
     push_ += up * G + along * G_along;
-    missed_ += late * (up * G + 2.0 * along * G_along);
-    push_modes(near, near_phi_, j, -near.force, late);
-    push_modes(far, phi_, j, far.force, late);
+    missed_ += late * up * G;
+    push_modes(near, near_phi_, j, -near.force);
+    push_modes(far, phi_, j, far.force);
   }
   if (!at_corner) return;
   const Eigen::Map<const ByRows> M_inverse(group.M_inverse.data(), f, f), C(of.C.data(), f, f);
@@ -71,17 +72,12 @@ void SpanCrossing::push_vehicle(Group& group, int v) {
   own(group.a[0]).noalias() += M_inverse * push_;
 }
 
-// A force of a wheel on its span: at once, and by what was missed of it.
-void SpanCrossing::push_modes(const Wheel& wheel, const std::vector<double>& phi, std::size_t j, double force,
-                              double late) {
+// A force of a wheel on its span.
+void SpanCrossing::push_modes(const Wheel& wheel, const std::vector<double>& phi, std::size_t j, double force) {
   if (wheel.span < 0) return;
-  const SpanKind& of = kind(wheel.span);
-  double *rate = at(rate_, wheel.span), *b = at(b_[0], wheel.span);
-  for (std::size_t i = 0; i < of.omega2.size(); ++i) {
-    const double share = -force * phi[j * static_cast<std::size_t>(stride_) + i];
-    rate[i] += late * share;
-    b[i] += share * (1.0 - late * of.damping[i]);
-  }
+  const double* shape = &phi[j * static_cast<std::size_t>(stride_)];
+  double* b = at(b_[0], wheel.span);
+  for (int i = 0; i < kind(wheel.span).modes(); ++i) b[i] -= force * shape[i];
 }
 
 }  // namespace traverse::lanes

@@ -20,15 +20,16 @@ using Errors = LaneErrors;
 
 namespace {
 
-constexpr double part_of_all = 0.95;  // of the wanted error
+constexpr double part_of_all = 0.95, part_of_corners = 0.5;  // of the wanted error
 constexpr int most_tries = 6;
 constexpr double modes_over_wholes = 0.5;  // of the wanted error
 constexpr int most_modes_alone = 84;       // elements take less
 constexpr int modes_of_a_check = 30;       // at least: few modes may agree on what they all leave out
 constexpr double shorter = 0.7;            // a quarter of an error of fourth order
 constexpr double part_for_forces = 0.5;    // of steps that follow the contacts: forces of longer ones agree by chance
-// Of the swing of a wheel's force that passes a corner too late: what peaks have of it, as measured.
-constexpr std::array<double, quantities> part_of_swing = {0.1, 2.0, 0.1, 0.4, 0.1};
+// Of the swing of a wheel's force after a corner that it passes at another time, which is made up for at once: what
+// peaks still have of it, as measured.
+constexpr std::array<double, quantities> part_of_swing = {0.02, 0.4, 0.02, 0.1, 0.02};
 
 /// The largest ones of a run.
 void note_peaks(const CrossingResult& run, std::array<Promise, quantities>& promises) {
@@ -75,7 +76,8 @@ LanesChoice LaneChooser::choose() {
   const double part = forces_alone ? part_for_forces : 1.0;
   const double longest = follows ? part * longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
   const LaneModel first = search.first(whole_ / fastest_.train.speed, longest);
-  check_corners(beginnings_->run(first), {});
+  if (greatest(left_by_corners(beginnings_->run(first))) > part_of_corners * scene_.accuracy)
+    throw NotChosen{"wheels pass the corners of the surface at other times"};
   take(search.run(first));
   if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
   const double defect = beginnings_->defect(model_);
@@ -84,7 +86,6 @@ LanesChoice LaneChooser::choose() {
   Errors errors = check_wholes(search);
   for (std::size_t q = 0; q < quantities; ++q)
     if (asks_for(scene_, q)) errors[q] += defect;
-  errors = check_corners(wholes_->run(model_), errors);
   LanesChoice choice;
   choice.scene = with(scene_, model_);
   for (std::size_t q = 0; q < quantities; ++q) {
@@ -98,17 +99,13 @@ LanesChoice LaneChooser::choose() {
   return choice;
 }
 
-LaneErrors LaneChooser::check_corners(const std::vector<CrossingResult>& runs, LaneErrors errors) const {
+LaneErrors LaneChooser::left_by_corners(const std::vector<CrossingResult>& runs) const {
   double edge = 0.0;
   for (const CrossingResult& run : runs) edge = std::max(edge, run.edge);
-  const beam::BeamModel& beam = *scene_.beam;
-  const bool plain = beam.hinges.empty() && beam.cracks.empty() &&
-                     std::ranges::all_of(beam.joints, [](auto j) { return j == beam::Joint::continuous; });
-  const double angles = plain ? 1.0 : 2.0;  // of the slopes on both sides
-  const double swing = swing_after_a_push(scene_) * 0.5 * angles * edge / scene_.sweep->speeds.front();
+  const double swing = swing_after_a_push(scene_) * 0.5 * edge / scene_.sweep->speeds.front();
+  Errors errors{};
   for (std::size_t q = 0; q < quantities; ++q)
-    if (asks_for(scene_, q)) errors[q] += part_of_swing[q] * swing;
-  if (greatest(errors) > scene_.accuracy) throw NotChosen{"wheels pass the corners of the surface at other times"};
+    if (asks_for(scene_, q)) errors[q] = part_of_swing[q] * swing;
   return errors;
 }
 
@@ -129,8 +126,9 @@ LaneErrors LaneChooser::check_wholes(LaneSearch& search) {
     errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
     for (double& error : errors) error *= alone_ ? off_a_better_trial : 1.0;
     if (asks_for_forces_alone(scene_)) errors[wheel_force] *= of_the_change;
+    const Errors corners = left_by_corners(wholes_->run(model_));
     for (std::size_t q = 0; q < quantities; ++q)
-      errors[q] = std::max(errors[q], search.error_of_model(q) + search.error_of_steps(q));
+      errors[q] = std::max(errors[q], search.error_of_model(q) + search.error_of_steps(q)) + corners[q];
     if (greatest(errors) <= part_of_all * scene_.accuracy) {
       if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
       return errors;

@@ -36,10 +36,10 @@ class LaneChooser {
   double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
 
  private:
-  /// Errors with those of corners of the surface, at the bridge's ends, joints and hinges: the kernel has wheels pass
-  /// them when they would if they had not moved along the track by d, and in a time of d/v they are pressed down by the
-  /// corner's angle times d/2. Throws NotChosen where that is too much.
-  LaneErrors check_corners(const std::vector<lanes::CrossingResult>& runs, LaneErrors errors) const;
+  /// What corners of the surface, at the bridge's ends, joints and hinges, leave of errors: a wheel that has moved
+  /// along the track by d passes one d/v before its steps end there, and is pressed down by the corner's angle times
+  /// d/2 until then, which the kernel makes up for all at once.
+  LaneErrors left_by_corners(const std::vector<lanes::CrossingResult>& runs) const;
   void take(const std::optional<LaneModel>& found);
   /// Whole passages: errors add up while the train crosses, and what stirs higher modes may come late. Against more
   /// modes, by esdirk4: genalpha takes all vibration out of wheels in time, and two of its steps may agree on that. Of
