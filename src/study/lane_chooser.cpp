@@ -39,6 +39,7 @@ void note_peaks(const CrossingResult& run, std::array<Promise, quantities>& prom
   note(run.deflection, deflection);
   note(run.acceleration, acceleration);
   note(run.moment, moment);
+  note(run.low_passed, low_passed);
   promises[wheel_force].peak = run.greatest_force;
 }
 
