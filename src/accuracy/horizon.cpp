@@ -192,6 +192,16 @@ double beginning(const Scene& scene, double end) {
   return until > 0.0 && until < end ? until : end;
 }
 
+bool vibrates_on(const Scene& scene) {
+  const auto damps = [](const auto& spring) { return spring.damping > 0.0 || spring.law.has_value(); };
+  return std::ranges::any_of(scene.train.vehicles, [&](int type) {
+    const Vehicle& vehicle = scene.vehicles[static_cast<std::size_t>(type)];
+    return std::ranges::none_of(vehicle.mechanism.springs, damps) &&
+           std::ranges::none_of(vehicle.mechanism.torsion_springs, damps) &&
+           std::ranges::none_of(vehicle.wheels, [](const Wheel& wheel) { return wheel.law.damping > 0.0; });
+  });
+}
+
 double with_swing_behind(const Scene& scene, double until) {
   if (scene.train.vehicles.empty() || !scene.train.steady()) return until;
   const double leaves = passed(scene, scene.beam->end());

@@ -16,6 +16,9 @@ double beginning(const Scene& scene, double end);
 /// presses its wheels most.
 double with_swing_behind(const Scene& scene, double until);
 
+/// Whether nothing damps one of the vehicles: what its vibration is off by adds up until the end.
+bool vibrates_on(const Scene& scene);
+
 /// Something of a kind that was not there before.
 struct Meeting {
   double until = 0.0;  // s, when the first vehicle, or the one that it is about, has it behind it
