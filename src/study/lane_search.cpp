@@ -166,6 +166,7 @@ bool LaneSearch::add_modes(LaneModel& model) {
   bool glances = 2.0 * model.step <= longest_;  // at what is likely to be too few, with steps twice as long
   for (const int modes : numbers_of_modes) {
     if (modes < model.modes || modes < fewest) continue;
+    if (modes > most_) return false;
     model.modes = modes;
     const LaneModel more = with_more_modes(model);
     model.elements = more.elements;

@@ -13,9 +13,9 @@ inline constexpr double of_the_change = 1.8;
 class LaneSearch {
  public:
   /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes
-  /// and mesh change is seen there as well. accuracy: the error that all of it may leave.
-  LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy)
-      : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
+  /// and mesh change is seen there as well. accuracy: the error that all of it may leave; most: modes.
+  LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy, int most)
+      : trials_(trials), mixed_(mixed), accuracy_(accuracy), most_(most) {}
 
   /// The model that the search begins with, for passages that last so long, of steps up to the longest, s.
   LaneModel first(double duration, double longest);
@@ -44,6 +44,7 @@ class LaneSearch {
 
   LaneTrials &trials_, &mixed_;
   double accuracy_;
+  int most_;
   double longest_ = 0.0;    // s: no step is longer
   bool one_solve_ = false;  // methods of one solve a step are tried
   LaneErrors modes_{}, steps_{}, mesh_{};

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
 constexpr std::size_t most_spans_alone = 8;  // each wants some sixteen modes
-constexpr double finest_alone = 3e-4;        // accuracy: errors of the kernel itself have been 3e-4 of a moment
+constexpr double finest_alone = 1e-4;        // accuracy: where errors of linear vehicles begin to count
 // Times its speed: the trials of a single run, whose peaks may agree by chance; as many as go side by side.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03, 0.99, 0.98, 0.97};
 
