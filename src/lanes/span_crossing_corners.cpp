@@ -50,9 +50,10 @@ void SpanCrossing::change_forces(Group& group, int v) {
   for (int k = 0; k < of.wheels; ++k) {
     const std::size_t j = first + static_cast<std::size_t>(k);
     const Wheel &near = near_[j], &far = wheels_[j];
-    const double corner = far.lean - near.lean, ahead = (far.free - near.free) / corner;
+    const double corner = far.lean - near.lean;
     if (std::abs(corner) <= least_corner) continue;
     at_corner = true;
+    const double ahead = (far.free - near.free) / corner;
     const double late = std::abs(ahead) < train_.radius ? 0.5 * ahead / speed_ : 0.0;
     const double up = far.force - near.force, along = near.lean * near.force - far.lean * far.force;
     const Eigen::Map<const Eigen::VectorXd> G(of.G.data() + k * f, f), G_along(of.G_along.data() + k * f, f);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
 
 #include "accuracy/accuracy.hpp"
@@ -24,6 +25,7 @@ constexpr std::array numbers_of_modes = {4, 6, 8, 12, 16, 24, 32, 48, 64, 84};
 // Each is compared with half as many more. Without damping that grows with the frequency errors of moments fall with
 // the first power.
 constexpr double more_modes = 1.5, of_an_undamped_moment = 3.0;
+constexpr double supposed_order = 2.0, slowest_order = 1.0;  // of their errors
 constexpr double order_of_modes = 4.5;  // that errors of the modes fall with at most: what is farther off is not tried
 // The modes that are compared reach over the frequency at which wheels vibrate on their contacts, which stirs modes
 // near it: comparisons below it agree whatever these do. Accelerations show modes farther from it.
@@ -175,6 +177,7 @@ bool LaneSearch::add_modes(LaneModel& model) {
     glances = false;
     if (times <= clearly_over) {
       modes_ = left_out(model, more);
+      mind_slow_orders(model.modes);
       times = greatest(modes_) / allowed;
       if (times <= 1.0) return true;
     }
@@ -188,6 +191,20 @@ LaneErrors LaneSearch::left_out(const LaneModel& model, const LaneModel& more) {
   LaneErrors errors = change(mixed_, model, more, of_the_change);
   if (!damps_high_modes(trials_.scene())) errors[moment] *= of_an_undamped_moment / of_the_change;
   return errors;
+}
+
+/// Changes that have fallen with less than the square from fewer modes leave more than that supposes.
+void LaneSearch::mind_slow_orders(int modes) {
+  const auto left_of_a_change = [](double order) { return 1.0 / (1.0 - std::pow(more_modes, -order)); };
+  const LaneErrors now = changes_[modes] = modes_;
+  const auto own = changes_.find(modes);
+  if (own == changes_.begin()) return;
+  const auto& [fewer, before] = *std::prev(own);
+  for (std::size_t q = 0; q < quantities; ++q) {
+    if (now[q] == 0.0 || (q == moment && !damps_high_modes(trials_.scene()))) continue;
+    const double order = std::log(before[q] / now[q]) / std::log(static_cast<double>(modes) / fewer);
+    modes_[q] *= left_of_a_change(std::clamp(order, slowest_order, supposed_order)) / left_of_a_change(supposed_order);
+  }
 }
 
 LaneModel LaneSearch::on_coarser_mesh(LaneModel model) const {

@@ -1,6 +1,7 @@
 // The search for modes, mesh, method and step of runs by the lanes' kernel.
 #pragma once
 
+#include <map>
 #include <optional>
 
 #include "study/lane_trials.hpp"
@@ -35,6 +36,7 @@ class LaneSearch {
   void measure_steps(const LaneModel& model);
   bool add_modes(LaneModel& model);
   LaneErrors left_out(const LaneModel& model, const LaneModel& more);
+  void mind_slow_orders(int modes);
   void foresee(const LaneModel& model);
   LaneModel on_coarser_mesh(LaneModel model) const;
   bool refine_mesh(LaneModel& model);
@@ -48,7 +50,8 @@ class LaneSearch {
   double longest_ = 0.0;    // s: no step is longer
   bool one_solve_ = false;  // methods of one solve a step are tried
   LaneErrors modes_{}, steps_{}, mesh_{};
-  LaneErrors halved_{};  // what half the step leaves
+  LaneErrors halved_{};                // what half the step leaves
+  std::map<int, LaneErrors> changes_;  // by the number of modes: what was supposed that these leave
 };
 
 }  // namespace traverse::app
