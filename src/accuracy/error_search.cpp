@@ -97,8 +97,8 @@ double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
       unseen_ = meeting.what;
     }
   }
-  if (scene_.accuracy <= small_error && asks_for(scene_, wheel_force)) until = with_swing_behind(scene, until);
-  if (scene_.accuracy < small_error && asks_for(scene_, wheel_force) && vibrates_on(scene)) until = end_;
+  if (scene_.accuracy <= small_error && asks_for(scene_, wheel_force))
+    until = scene_.accuracy < small_error && vibrates_on(scene) ? end_ : with_swing_behind(scene, until);
   if (asks_for(scene_, low_passed)) until += unsettled_end(*scene_.output.low_pass);
   const double whole = end_ - moved_by();
   return until < most_of_the_run * whole ? until : whole;

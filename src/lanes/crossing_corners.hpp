@@ -1,10 +1,10 @@
 // Wheels that pass a corner of the surface: an end of the bridge, a hinge, a kink of the track (crossing_kernel.hpp).
 //
-// Steps end where a wheel would meet the corner that had not moved along its vehicle. With slopes that differ by k on
-// both sides, one that has moved along, and touches ahead of its centre, by u meets it u/v earlier: from then until the
-// step's end its penetration had to grow by k v more. Its force on the far side differs by D from that on the near side
-// at the step's end, where accelerations change by what D makes of them, and the vehicle's velocities by what was
-// missed, D u/(2 v).
+// A step ends where a wheel would meet the corner if the vehicle did not move it along the track. A wheel that touches
+// the track a distance u ahead of that place has met the corner u/v before the step ends, and since then its
+// penetration has grown by the corner's angle times v. At the end of the step the force by the far side's surface
+// therefore differs by D from the force by the near side's. There the accelerations change by what D makes of them, and
+// the vehicle's velocities by the impulse that the step has missed, D u/(2 v).
 #pragma once
 
 #include "lanes/crossing_contacts.hpp"
@@ -68,7 +68,7 @@ struct CrossingCorners : CrossingAlgebra<W> {
     }
   }
 
-  /// Those of a vehicle's wheels at a corner, from the near side's to the far side's.
+  /// The forces of a vehicle's wheels at a corner become those of the far side.
   static void change_forces(State& s, int v) {
     const TaskVehicle& vehicle = s.task.vehicle[v];
     const TaskKind& kind = s.task.kind[vehicle.kind];

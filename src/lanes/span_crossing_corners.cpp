@@ -1,4 +1,5 @@
-// Wheels that pass the end of a span: where a step ends (crossing_corners.hpp has the same).
+// What changes where wheels pass the end of a span, as a step ends (crossing_corners.hpp says why, and does the same by
+// modes of the whole bridge).
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,7 @@ void SpanCrossing::stand(double gone) {
   }
 }
 
-// Those of a vehicle's wheels at a corner, from the near side's to the far side's.
+// The forces of a vehicle's wheels at a corner become those of the far side.
 void SpanCrossing::change_forces(Group& group, int v) {
   const VehicleNumbers& of = *group.numbers;
   const Eigen::Index f = of.freedom;

@@ -22,14 +22,15 @@ namespace {
 
 constexpr double part_of_all = 0.95, part_of_corners = 0.5;  // of the wanted error
 constexpr int most_tries = 6;
-constexpr double modes_over_wholes = 0.5;       // of the wanted error
-constexpr int most_modes = 84, few_modes = 48;  // of single runs: elements take less; below an accuracy of
+constexpr double modes_over_wholes = 0.5;  // of the wanted error
+// Of a single run, and of one to less than the usual accuracy: with more modes, elements take less.
+constexpr int most_modes = 84, few_modes = 48;
 constexpr double usual_accuracy = 3e-4;
 constexpr int modes_of_a_check = 30;     // at least: few modes may agree on what they all leave out
 constexpr double shorter = 0.7;          // a quarter of an error of fourth order
 constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
-// Of the swing of a wheel's force after a corner that it passes at another time, which is made up for at once: what
-// peaks still have of it, as measured.
+// What is left in the peaks, as measured, of the swing that a wheel's force would have after a corner if the kernel did
+// not make up for when the wheel passes it.
 constexpr std::array<double, quantities> part_of_swing = {0.02, 0.4, 0.02, 0.1, 0.02};
 
 /// The largest ones of a run.
@@ -70,8 +71,8 @@ LaneChooser::LaneChooser(const Scene& scene, const TrialSpeeds& speeds, bool alo
 }
 
 LanesChoice LaneChooser::choose() {
-  most_modes_ = alone_ && scene_.accuracy < usual_accuracy ? few_modes : most_modes;
-  LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy, most_modes_);
+  const int most = alone_ && scene_.accuracy < usual_accuracy ? few_modes : most_modes;
+  LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy, most);
   // The peaks of one passage may agree by chance where steps do not follow the contacts. Elements, which serve then,
   // take shorter steps for accelerations.
   const bool forces_alone = asks_for_forces_alone(scene_),
@@ -150,7 +151,7 @@ void LaneChooser::refine(LaneSearch& search, const LaneModel& other) {
     model_.step *= shorter;
     return;
   }
-  if (alone_ && other.modes > most_modes_) throw NotChosen{"whole passages ask for too many modes"};
+  if (alone_ && other.modes > search.most_modes()) throw NotChosen{"whole passages ask for too many modes"};
   model_.modes = other.modes;
   model_.elements = other.elements;
   model_.method = structure::find_method("esdirk4");

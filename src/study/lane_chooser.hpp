@@ -51,7 +51,6 @@ class LaneChooser {
   const Scene& scene_;
   Scene fastest_;
   bool alone_;
-  int most_modes_ = 0;
   double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
   std::optional<LaneTrials> beginnings_, mixed_, wholes_;
   LaneModel model_, better_;  // what was chosen, and what its whole passages were compared with

@@ -168,7 +168,7 @@ bool LaneSearch::add_modes(LaneModel& model) {
   bool glances = 2.0 * model.step <= longest_;  // at what is likely to be too few, with steps twice as long
   for (const int modes : numbers_of_modes) {
     if (modes < model.modes || modes < fewest) continue;
-    if (modes > most_) return false;
+    if (modes > most_modes_) return false;
     model.modes = modes;
     const LaneModel more = with_more_modes(model);
     model.elements = more.elements;
@@ -193,7 +193,7 @@ LaneErrors LaneSearch::left_out(const LaneModel& model, const LaneModel& more) {
   return errors;
 }
 
-/// Changes that have fallen with less than the square from fewer modes leave more than that supposes.
+/// Where the changes of fewer modes and of these show an order below the one that left_out supposes, more is left.
 void LaneSearch::mind_slow_orders(int modes) {
   const auto left_of_a_change = [](double order) { return 1.0 / (1.0 - std::pow(more_modes, -order)); };
   const LaneErrors now = changes_[modes] = modes_;

@@ -14,9 +14,10 @@ inline constexpr double of_the_change = 1.8;
 class LaneSearch {
  public:
   /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what modes
-  /// and mesh change is seen there as well. accuracy: the error that all of it may leave; most: modes.
-  LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy, int most)
-      : trials_(trials), mixed_(mixed), accuracy_(accuracy), most_(most) {}
+  /// and mesh change is seen there as well. accuracy: the error that all of it may leave.
+  LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy, int most_modes)
+      : trials_(trials), mixed_(mixed), accuracy_(accuracy), most_modes_(most_modes) {}
+  int most_modes() const { return most_modes_; }
 
   /// The model that the search begins with, for passages that last so long, of steps up to the longest, s.
   LaneModel first(double duration, double longest);
@@ -46,12 +47,12 @@ class LaneSearch {
 
   LaneTrials &trials_, &mixed_;
   double accuracy_;
-  int most_;
+  int most_modes_;
   double longest_ = 0.0;    // s: no step is longer
   bool one_solve_ = false;  // methods of one solve a step are tried
   LaneErrors modes_{}, steps_{}, mesh_{};
   LaneErrors halved_{};                // what half the step leaves
-  std::map<int, LaneErrors> changes_;  // by the number of modes: what was supposed that these leave
+  std::map<int, LaneErrors> changes_;  // by the number of modes: what these leave if errors fall with supposed_order
 };
 
 }  // namespace traverse::app

@@ -18,8 +18,9 @@ namespace traverse::app {
 namespace {
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
-constexpr std::size_t most_spans_alone = 8;                     // each wants some sixteen modes
-constexpr double finest_alone = 1e-4, finest_on_slopes = 3e-4;  // accuracies: errors of the kernel begin to count there
+constexpr std::size_t most_spans_alone = 8;  // each wants some sixteen modes
+// Accuracies below which a single run goes by elements, as the kernel's own errors count: on level tracks, on others.
+constexpr double finest_alone = 1e-4, finest_on_slopes = 3e-4;
 // Times its speed: the trials of a single run, whose peaks may agree by chance; as many as go side by side.
 constexpr std::array beside = {1.0, 1.01, 1.02, 1.03, 0.99, 0.98, 0.97};
 

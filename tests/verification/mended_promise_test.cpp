@@ -321,7 +321,7 @@ TEST(MendedPromise, FewModesMayAgree) {
 }
 
 // An acceleration that falls hardly faster than with the first power of the number of modes, as these yield less under
-// a wheel than the bridge does: 48 modes left 1.1e-3 of it, of which their order supposed 7e-4.
+// a wheel than the bridge does: 48 modes left 1.1e-3 of it, where 7e-4 was expected.
 TEST(MendedPromise, ModesMayConvergeSlowly) {
   const std::string scene =
       "beam: {spans: [66.3, 59.2, 41.1], EI: 6.16718e+10, mass: 2466.56, damping_ratios: 0.0185}\n"
