@@ -21,7 +21,7 @@ from matplotlib.animation import FFMpegWriter, PillowWriter  # noqa: E402
 from matplotlib.patches import Circle, Polygon  # noqa: E402
 from picture_axes import COLOURS, GREY, PALE  # noqa: E402
 from picture_data import Results, opened  # noqa: E402
-from picture_model import BODY, DARK, body_boxes, draw_forces, draw_foundation, draw_supports  # noqa: E402
+from picture_model import BODY, DARK, body_boxes, draw_forces, draw_foundation, draw_supports, vertical_reach  # noqa: E402
 from picture_motion import Motion, outline, wheel_places  # noqa: E402
 from picture_words import millimetres  # noqa: E402
 
@@ -31,6 +31,7 @@ DRAWN, SWAY = 0.03, 0.08  # the greatest deflection and motion of a vehicle as p
 FRAMES, RATE = 120, 20  # left out: so many; frames a second
 MOST_INSTANTS, MOST_PLACES = 1500, 1000  # of a space-time picture
 SIZE, DPI = (11.0, 4.2), 100
+AXES = (10.12, 2.604)  # inches; higher where something hangs far below the bridge or stands high above it
 
 
 def rounded(value):
@@ -58,9 +59,15 @@ class Stage:
         self.width = min((1.0 + 2.0 * MARGIN) * length, WIDEST)
         self.factor = exaggeration or rounded(self.width * min(DRAWN / max(np.abs(motion.at_stations).max(), 1e-12),
                                                                SWAY / max(motion.sway(), 1e-12)))
-        self.figure = plt.figure(figsize=SIZE, dpi=DPI)
-        self.ax = self.figure.add_axes([0.05, 0.16, 0.92, 0.62])
-        self.height = self.width * 0.62 * SIZE[1] / (0.92 * SIZE[0])
+        self.height = self.width * AXES[1] / AXES[0]
+        reach = [vertical_reach(motion.model, kind) for kind, _ in motion.model.train]
+        self.low = min([-0.42 * self.height] + [1.1 * low - 0.03 * self.width for low, _ in reach])
+        self.high = max([0.58 * self.height] + [1.1 * high for _, high in reach])
+        tall = AXES[0] * (self.high - self.low) / self.width  # inches
+        self.figure = plt.figure(figsize=(SIZE[0], SIZE[1] - AXES[1] + tall), dpi=DPI)
+        inches = self.figure.get_figheight()
+        self.ax = self.figure.add_axes([0.05, 0.672 / inches, AXES[0] / SIZE[0], tall / inches])
+        self.tall = tall
         results = motion.results
         speed = results.speed()
         self.heading = results.scene() + (f", {3.6 * speed:.4g} km/h" if speed else "")
@@ -81,7 +88,7 @@ class Stage:
         left = self.left(row)
         right = left + self.width
         ax.set_xlim(left, right)
-        ax.set_ylim(-0.42 * self.height, 0.58 * self.height)
+        ax.set_ylim(self.low, self.high)
         ax.set_yticks([])
         ax.grid(False)
         ax.spines["left"].set_visible(False)
@@ -107,7 +114,9 @@ class Stage:
         for shape in outline(self.motion, row, self.factor):
             if shape.points[:, 0].max() < left or shape.points[:, 0].min() > right:
                 continue
-            if shape.radius:
+            if len(shape.points) == 2:
+                self.ax.plot(*shape.points.T, color=DARK, lw=1.2, zorder=4)
+            elif shape.radius:
                 self.ax.add_patch(Circle(shape.points[0], shape.radius, fc="white", ec=DARK, lw=0.8, zorder=6))
             else:
                 self.ax.add_patch(Polygon(shape.points, fc=BODY, ec=DARK, lw=0.7, zorder=5, joinstyle="round"))
@@ -120,13 +129,13 @@ class Stage:
         moved = " of bridge and vehicles" if motion.bodies else ""
         times = f"{self.factor:,.6g} times too large" if self.factor != 1.0 else "to scale"
         for x, y, side, words, looks in (
-                (0.0, 1.20, "left", self.heading, {"fontsize": 15, "weight": "bold"}),
-                (1.0, 1.20, "right", f"{motion.time[row]:.3f} s", {"fontsize": 15}),
-                (0.0, 1.12, "left", f"Vertical displacements{moved} are drawn {times}, all else is to scale.", {}),
-                (0.0, 1.05, "left", f"Drawn {motion.in_words()}.", {}),
-                (1.0, 1.12, "right", where, {"color": COLOURS[0]})):
-            ax.text(x, y, words, transform=ax.transAxes, ha=side, va="bottom",
-                    **{"fontsize": 9, "color": GREY if y < 1.2 else "black", **looks})
+                (0.0, 0.52, "left", self.heading, {"fontsize": 15, "weight": "bold", "color": "black"}),
+                (1.0, 0.52, "right", f"{motion.time[row]:.3f} s", {"fontsize": 15, "color": "black"}),
+                (0.0, 0.31, "left", f"Vertical displacements{moved} are drawn {times}, all else is to scale.", {}),
+                (0.0, 0.13, "left", f"Drawn {motion.in_words()}.", {}),
+                (1.0, 0.31, "right", where, {"color": COLOURS[0]})):  # y: inches above the axes
+            ax.text(x, 1.0 + y / self.tall, words, transform=ax.transAxes, ha=side, va="bottom",
+                    **{"fontsize": 9, "color": GREY, **looks})
 
 
 def writer_of(path, rate):

@@ -10,7 +10,8 @@ install(TARGETS traverse traverse_shared RUNTIME LIBRARY)
 install(PROGRAMS scripts/traverse-report DESTINATION ${CMAKE_INSTALL_BINDIR})
 install(DIRECTORY scripts/traverse_report DESTINATION ${share}/python FILES_MATCHING PATTERN *.py)
 install(FILES scripts/animate.py scripts/comfort.py scripts/export.py scripts/export_tables.py scripts/export_xdmf.py
-        scripts/fatigue.py scripts/picture.py scripts/picture_axes.py scripts/picture_data.py scripts/picture_model.py
+        scripts/fatigue.py scripts/picture.py scripts/picture_axes.py scripts/picture_data.py scripts/picture_hanging.py
+        scripts/picture_layout.py scripts/picture_model.py
         scripts/picture_motion.py scripts/picture_rail.py scripts/picture_vehicles.py scripts/picture_words.py
         DESTINATION ${share}/python)
 install(DIRECTORY options DESTINATION ${share})

@@ -15,16 +15,21 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.transforms import blended_transform_factory  # noqa: E402
-import picture_rail
+import picture_hanging  # noqa: E402
+import picture_rail  # noqa: E402
 from picture_axes import (  # noqa: E402
     COLOURS, GREY, LABEL_SIZE, PALE, STYLES, End, label_at_ends, time_panel)
 from picture_data import (  # noqa: E402
     MOST_CURVES, MOST_TRAINS, Results, choose, choose_probes, ordinal, place_in_words)
+from picture_layout import fit, stack, wrapped  # noqa: E402
 from picture_model import Model, draw_forces, draw_foundation, draw_supports, symbols_in_words  # noqa: E402
 from picture_vehicles import (  # noqa: E402
-    SIGNALS, cars_of, draw_accelerations, draw_sensors, draw_static_wheels, draw_wheels, sensors_of, wheels_of)
+    SIGNALS, cars_of, draw_accelerations, draw_positions, draw_sensors, draw_static_wheels, draw_wheels, sensors_of,
+    wheels_of)
 from picture_words import (  # noqa: E402
     method_in_words, modes_in_words, summary_in_words, sweep_in_words, worst_in_words)
+
+WIDTH, LEFT = 11.5, 0.98  # inches: of the picture, and left of its axes
 
 
 def draw_deflection(ax, results, worst):
@@ -234,7 +239,14 @@ def draw_modes(figure, results):
             ax.set_xlabel("place along the track (m)" if "modes/x" in results.file else "node")
 
 
-def heading(figure, results, modes_only):
+def heading_height(results):
+    """Inches above the first panel."""
+    title, said = heading_in_words(results, False)
+    return 1.45 + 0.36 * (len(title) - 1) + 0.22 * max(len(said) - 1, 0)
+
+
+def heading_in_words(results, modes_only):
+    """Lines of the title, and of what is said below it."""
     speed, summary = results.speed(), results.summary
     title = results.scene()
     if modes_only:
@@ -251,13 +263,19 @@ def heading(figure, results, modes_only):
         title += f", a study of {len(results.file['study/finished']):,} runs"
     elif speed:
         title += f", {3.6 * speed:.4g} km/h"
-    figure.text(0.06, 1.0 - 0.30 / figure.get_figheight(), title, fontsize=18, weight="bold", va="top")
     said = summary_in_words(results)
     if not summary and results.rows:
         said.append(f"the run did not reach its end; drawn as far as {results.time[-1]:.4g} s")
     if modes_only and "modes/shape" in results.file:
         said = ["each drawn to the same greatest height; circles, triangles and squares are supports, zigzags springs"]
-    figure.text(0.06, 1.0 - 0.68 / figure.get_figheight(), "; ".join(said), fontsize=11.5, color=GREY, va="top")
+    return wrapped(title, 0.9 * WIDTH, 18, "bold"), wrapped("; ".join(said), 0.9 * WIDTH, 11.5)
+
+
+def heading(figure, results, modes_only):
+    title, said = heading_in_words(results, modes_only)
+    height = figure.get_figheight()
+    figure.text(0.06, 1.0 - 0.30 / height, "\n".join(title), fontsize=18, weight="bold", va="top")
+    figure.text(0.06, 1.0 - (0.32 + 0.36 * len(title)) / height, "\n".join(said), fontsize=11.5, color=GREY, va="top")
     attrs = results.file.attrs
     foot = f"{attrs.get('program', 'traverse')} {attrs.get('version', '')}"
     for what in ("steps", "runs"):
@@ -290,13 +308,18 @@ def panels(results, asked=()):
     if "shape/deflection" in file and len(file["shape/x"]) > 1:
         found.append(lambda ax, worst: draw_shape(ax, results))
     wheels, cars, sensors = wheels_of(results), cars_of(results), sensors_of(results)
+    hanging = picture_hanging.hanging_of(results) if results.rows > 1 else []
     if results.rows > 1 and "probes/deflection" in file and len(results.probes):
         found.append(lambda ax, worst: draw_deflection(ax, results, worst))
     found += asked_panels(results, asked)
     if results.rows > 0 and wheels:
         drawing = draw_wheels if results.rows > 1 else draw_static_wheels
         found.append(lambda ax, worst: drawing(ax, results, wheels))
-    if results.rows > 1 and cars:
+    if hanging:
+        found += [lambda ax, worst, what=what: picture_hanging.draw(ax, results, hanging, what) for what in ("swing", "force")]
+    if results.rows > 1 and cars and not wheels and results.probes is None:
+        found += [lambda ax, worst, direction=direction: draw_positions(ax, results, direction) for direction in (0, 1)]
+    elif results.rows > 1 and cars:
         found.append(lambda ax, worst: draw_accelerations(ax, results, cars))
     if results.rows > 1 and sensors:
         found.append(lambda ax, worst: draw_sensors(ax, results, sensors, next(iter(SIGNALS))))
@@ -317,22 +340,31 @@ def draw(results, out, asked=()):
     if not found and not modes_only:
         raise ValueError("holds nothing that could be drawn")
     sweep_only = len(found) == 1 and ("sweep/peak_deflection" in results.file or "study/finished" in results.file)
-    taller = 1.75 if sweep_only else 0.0  # ten names beside the curves
-    height = 7.5 if modes_only else 1.45 + 2.75 * len(found) + taller
-    figure = plt.figure(figsize=(11.5, height))
-    heading(figure, results, modes_only)
+    figure = plt.figure(figsize=(WIDTH, 7.5))
     if modes_only:
         draw_modes(figure, results)
-    worst = None
+        heading(figure, results, modes_only)
+    else:
+        draw_panels(figure, results, found, 3.5 if sweep_only else 1.75)  # ten names beside the curves
+    figure.savefig(out, dpi=130)
+    plt.close(figure)
+
+
+def draw_panels(figure, results, found, height):
+    """One under another, each with the room that its names ask for."""
+    worst, axes, gaps = None, [], [heading_height(results)]
     for i, panel in enumerate(found):
-        bottom = height - 1.2 - 2.75 * (i + 1) - taller + 0.75
+        ax = figure.add_axes([LEFT / WIDTH, 0.1, 0.625, height / figure.get_figheight()], label=str(i))
         shape_on_top = i == 0 and "shape/deflection" in results.file
-        ax = figure.add_axes([0.085, bottom / height, 0.625, (1.75 + taller) / height])
         worst = panel(ax, worst) if shape_on_top else (panel(ax, worst), worst)[1]
         if results.rows > 1 and panel is found[-1] and not ax.get_xlabel():
             ax.set_xlabel("time (s)")
-    figure.savefig(out, dpi=130)
-    plt.close(figure)
+        axes.append(ax)
+        above, below = fit(ax, 1.0, 0.62)
+        gaps[-1] += above
+        gaps.append(1.0 + below)
+    stack(figure, axes, height, gaps)
+    heading(figure, results, False)
 
 
 def main():

@@ -5,12 +5,13 @@ from typing import NamedTuple
 import matplotlib.pyplot as plt
 import numpy as np
 from picture_data import spread, thin
+from picture_layout import NAME, NOTE
 
 # Okabe and Ito's colours, told apart by colour-blind readers; the darker ones first, they carry text.
 COLOURS = ["#0072B2", "#D55E00", "#007A59", "#A8578A", "#8A6A00", "#3A3A3A"]
 STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2))]  # where there are more curves than colours
 GREY, PALE = "#666666", "#B8B8B8"
-LABEL_SIZE = 10
+LABEL_SIZE, SMALLEST_LABEL = 10, 5
 
 plt.rcParams.update({
     "font.family": "DejaVu Sans", "font.size": 11, "axes.titlesize": 13, "axes.titleweight": "bold",
@@ -31,10 +32,11 @@ class End(NamedTuple):
 
 
 def label_at_ends(ax, ends):
-    """Names right of the axes, each joined to the end of its curve."""
+    """Names right of the axes, each joined to the end of its curve; smaller ones where there are many."""
     low, high = ax.get_ylim()
     height = ax.get_position().height * ax.figure.get_figheight() * 72  # points
-    gap = 1.5 * LABEL_SIZE / height
+    size = min(max(0.94 * height / (1.35 * max(len(ends) - 1, 1)), SMALLEST_LABEL), LABEL_SIZE)
+    gap = min(1.5 * size / height, 0.94 / max(len(ends) - 1, 1))
     places = spread([(end.value - low) / (high - low) for end in ends], gap, 0.03, 0.97)
     for end, place in zip(ends, places):
         early = end.x < 1.0  # the line to the name must not look like the curve
@@ -43,7 +45,12 @@ def label_at_ends(ax, ends):
                 "relpos": (0.0, 0.5)}
         ax.annotate(end.name, xy=(end.x, (end.value - low) / (high - low)), xytext=(1.035, place),
                     xycoords="axes fraction", textcoords="axes fraction", va="center", color=end.colour,
-                    fontsize=LABEL_SIZE, annotation_clip=False, arrowprops=line)
+                    fontsize=size, annotation_clip=False, arrowprops=line, gid=NAME)
+
+
+def note_beside(ax, words, size=9):
+    """Beside the title, above the names of the curves."""
+    ax.text(1.035, 1.03, words, transform=ax.transAxes, va="bottom", fontsize=size, color=GREY, gid=NOTE)
 
 
 def time_panel(ax, results, title, unit, curves, band=None, worst=None):
@@ -63,8 +70,7 @@ def time_panel(ax, results, title, unit, curves, band=None, worst=None):
         ends.append(End(values[-1], name, colour))
     if worst is not None and time[0] <= worst <= time[-1]:
         ax.axvline(worst, color=GREY, lw=0.9, ls=(0, (4, 3)))
-        ax.text(1.0, 1.03, "dashed: worst instant", transform=ax.transAxes, ha="right", va="bottom", fontsize=9,
-                color=GREY)
+        note_beside(ax, "dashed: worst instant")
     if len(time) > 1:
         ax.set_xlim(time[0], time[-1])
     low, high = ax.get_ylim()

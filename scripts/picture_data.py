@@ -143,8 +143,15 @@ def envelope(results, series):
     return least, greatest
 
 
+CAR = re.compile("car|body|coach|box")
+
+
+def bodies_of(vehicle):
+    return [name for name in vehicle if "acceleration" in vehicle[name] and len(vehicle[name]["position"])]
+
+
 def car_body(vehicle):
-    """The body named so, else the highest one; None in a vehicle without bodies."""
-    bodies = [name for name in vehicle if "acceleration" in vehicle[name] and len(vehicle[name]["position"])]
-    named = [name for name in bodies if re.search("car|body|coach|box", name)]
+    """The body named so, else the highest one, which need not be a car; None in a vehicle without bodies."""
+    bodies = bodies_of(vehicle)
+    named = [name for name in bodies if CAR.search(name)]
     return max(named or bodies, key=lambda name: vehicle[name]["position"][0, 1], default=None)

@@ -6,6 +6,7 @@ from matplotlib.patches import Circle, FancyBboxPatch
 from matplotlib.transforms import ScaledTranslation
 
 DARK, GREY, BODY, FORCE = "#333333", "#666666", "#C9D8E3", "#B03A00"
+CONCRETE = 2400.0  # kg/m3
 MOST_SYMBOLS = 80  # of one kind that are drawn one by one
 MARKERS = {"pinned": "^", "roller": "o", "clamped": "s", "guided": "D"}
 WORDS = {"pinned": "pinned", "roller": "roller", "clamped": "clamped", "guided": "guided: slides up and down",
@@ -52,6 +53,17 @@ class Model:
         """Of the vehicle type with that index."""
         group = self.group[f"vehicles/{int(index)}"]
         return group[name][:] if name in group else np.zeros((0, columns))
+
+    def joint_ends(self, index):
+        """[j, 6]: x, y of each joint on its first and its second body, and the two bodies (-1: the ground)."""
+        at = self.rows(index, "joints", 4)
+        ends = self.rows(index, "joint_ends", 4)
+        return np.column_stack([ends if len(ends) else at[:, [0, 1, 0, 1]], at[:, 2:]])
+
+    def joint_names(self, index):
+        """(name, type) of each joint, where the file holds them."""
+        group = self.group[f"vehicles/{int(index)}"]
+        return [tuple(row) for row in group["joint_names"].asstr()[:]] if "joint_names" in group else []
 
     def type_name(self, index):
         return str(self.group[f"vehicles/{int(index)}/names"].asstr()[0, 0])
@@ -152,17 +164,14 @@ def symbols_in_words(kinds):
 
 def body_boxes(model, index):
     """{body: (x, y, width, height)} of every body that something but a wheel is fixed to, as it is drawn: the hull of
-    its centre, its springs and joints. Bodies without a height are 0.5 m high."""
+    its centre and of its own ends of springs and joints. Bodies without a height are 0.5 m high; of one without any extent
+    a cube of its mass is drawn, as dense as concrete."""
     bodies, wheels = model.rows(index, "bodies", 3), model.rows(index, "wheels", 3)
     points = [[(x, y)] for x, y, _ in bodies]
-    for x1, y1, x2, y2, first, second in model.rows(index, "springs", 6):
+    for x1, y1, x2, y2, first, second in [*model.rows(index, "springs", 6), *model.joint_ends(index)]:
         for body, at in ((first, (x1, y1)), (second, (x2, y2))):
             if body >= 0:
                 points[int(body)].append(at)
-    for x, y, first, second in model.rows(index, "joints", 4):
-        for body in (first, second):
-            if body >= 0:
-                points[int(body)].append((x, y))
     hulls = {}
     for body, (centre, hull) in enumerate(zip(bodies, points)):
         if len(wheels) and np.any(np.hypot(*(wheels[:, :2] - centre[:2]).T) < 1e-6):
@@ -173,14 +182,33 @@ def body_boxes(model, index):
     boxes = {}
     for body, (low, high) in hulls.items():
         width, height = high - low
+        if max(width, height) < 1e-6:
+            side = max((bodies[body, 2] / CONCRETE) ** (1.0 / 3.0), 0.5)
+            boxes[body] = (low[0] - 0.5 * side, low[1] - 0.5 * side, side, side)
+            continue
         car = high[1] >= highest - 1e-9 and width > 3.0
         spare = 0.10 * width if car else 0.25
         boxes[body] = (low[0] - spare, low[1], width + 2.0 * spare, max(height, 0.5) + (1.6 if car else 0.0))
     return boxes
 
 
+def rods(model, index):
+    """[r, 6]: joints whose ends are apart: rods and ropes."""
+    ends = model.joint_ends(index)
+    return ends[np.hypot(ends[:, 2] - ends[:, 0], ends[:, 3] - ends[:, 1]) > 1e-6]
+
+
+def vertical_reach(model, index):
+    """(lowest, highest) of what is drawn of a vehicle, m."""
+    boxes, wheels = body_boxes(model, index).values(), model.rows(index, "wheels", 3)
+    return (min([low for _, low, _, _ in boxes] + list(wheels[:, 1] - wheels[:, 2]), default=0.0),
+            max([low + height for _, low, _, height in boxes] + list(wheels[:, 1] + wheels[:, 2]), default=0.0))
+
+
 def draw_vehicle(ax, model, index, x, springs=False):
     """To scale where the axes are, with its origin at x."""
+    for x1, y1, x2, y2, _, _ in rods(model, index):
+        ax.plot([x + x1, x + x2], [y1, y2], color=DARK, lw=1.0, zorder=2.5)
     for left, low, width, height in body_boxes(model, index).values():
         ax.add_patch(FancyBboxPatch((x + left, low), width, height, fc=BODY, ec=DARK, lw=0.6,
                                     boxstyle="round,pad=0,rounding_size=0.12", zorder=3))

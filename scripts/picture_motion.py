@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from picture_model import Model, body_boxes
+from picture_model import Model, body_boxes, rods
 
 HOLDS_HEIGHT = ("pinned", "roller", "clamped")
 HOLDS_SLOPE = ("clamped", "guided")
@@ -123,7 +123,7 @@ class Motion:
 
 
 class Shape(NamedTuple):
-    """A wheel about its centre, or the corners of a body."""
+    """A wheel about its centre, the corners of a body, or the ends of a rod or rope."""
     points: np.ndarray  # [k, 2], m
     radius: float = 0.0
 
@@ -145,6 +145,9 @@ def outline(motion, row, factor):
         for body, (left, low, width, height) in body_boxes(model, kind).items():
             corners = [(left, low), (left + width, low), (left + width, low + height), (left, low + height)]
             shapes.append(Shape(moved(body, corners)))
+        for *ends, first, second in rods(model, kind):
+            shapes.append(Shape(np.vstack([moved(int(body), [at]) if body >= 0 else [at] for body, at in
+                                           ((first, ends[:2]), (second, ends[2:]))])))
         for x, y, radius in model.rows(kind, "wheels", 3):
             shapes.append(Shape(moved(nearest(centres, (x, y)), [(x, y)]), radius))
     return shapes

@@ -2,7 +2,7 @@
 
 import numpy as np
 from picture_axes import COLOURS, time_panel
-from picture_data import MOST_CURVES, MOST_WHEELS, car_body, choose, envelope, natural, ordinal
+from picture_data import CAR, MOST_CURVES, MOST_WHEELS, bodies_of, car_body, choose, envelope, natural, ordinal
 
 # What sensors feel: the dataset, its title and unit. The first is drawn of itself, the others when asked for.
 SIGNALS = {"acceleration_y": ("Vertical acceleration at the sensors", "m/s²"),
@@ -17,8 +17,8 @@ def wheels_of(results):
 
 
 def cars_of(results):
-    """The car bodies of the vehicles that have one."""
-    return [vehicle[name] for vehicle in results.vehicles if (name := car_body(vehicle)) is not None]
+    """(name, its group) of the car body, else of the highest body, of the vehicles that have one."""
+    return [(name, vehicle[name]) for vehicle in results.vehicles if (name := car_body(vehicle)) is not None]
 
 
 def sensors_of(results):
@@ -57,14 +57,31 @@ def draw_static_wheels(ax, results, wheels):
 
 
 def draw_accelerations(ax, results, cars):
+    """What is no car by its name is called by that name."""
     count = len(cars)
-    series = [results.over_time(car["acceleration"])[:, 1] for car in cars]
-    title = "Vertical acceleration of the car " + ("body" if count == 1 else "bodies")
+    series = [results.over_time(car["acceleration"])[:, 1] for _, car in cars]
+    names = {name.replace("_", " ") for name, _ in cars}
+    if all(CAR.search(name) for name in names):
+        noun, what = "car", "car body" if count == 1 else "car bodies"
+    else:
+        noun, what = (names.pop() if len(names) == 1 else "body"), "highest bodies"
+        what = noun if noun != "body" and count == 1 else what
+    title = f"Vertical acceleration of the {what}"
     if count <= MOST_WHEELS:
-        time_panel(ax, results, title, "m/s²", [(ordinal(k, count, "car"), a) for k, a in enumerate(series)])
+        time_panel(ax, results, title, "m/s²", [(ordinal(k, count, noun), a) for k, a in enumerate(series)])
         return
-    band = (f"all {count} cars, least to greatest", *envelope(results, series))
-    time_panel(ax, results, title, "m/s²", [("first car", series[0]), ("last car", series[-1])], band)
+    band = (f"all {count}, least to greatest", *envelope(results, series))
+    time_panel(ax, results, title, "m/s²", [(f"first {noun}", series[0]), (f"last {noun}", series[-1])], band)
+
+
+def draw_positions(ax, results, direction):
+    """Of the bodies of a mechanism, those that move most; direction 0: along x, 1: along y."""
+    bodies = [(name, results.over_time(vehicle[name]["position"])[:, direction])
+              for vehicle in results.vehicles for name in bodies_of(vehicle)]
+    chosen = choose(len(bodies), MOST_CURVES, np.array([np.ptp(values) for _, values in bodies]))
+    note = "" if len(chosen) == len(bodies) else f" ({len(chosen)} of {len(bodies)})"
+    time_panel(ax, results, f"Centres of the bodies: {'xy'[direction]}{note}", "m",
+               [(bodies[i][0].replace("_", " "), bodies[i][1]) for i in chosen])
 
 
 def draw_sensors(ax, results, sensors, signal):

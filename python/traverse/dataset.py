@@ -48,7 +48,13 @@ def _variable(path, item, samples):
 
 
 def with_coordinates(variables):
-    """The Dataset of variables by their names: those named as a dimension are its coordinate."""
+    """The Dataset of variables by their names: those named as a dimension are its coordinate.
+
+    Of a table of words that is named as its rows are, the first column is the coordinate, and NAME_words has them all.
+    """
+    tables = {name: table for name, table in variables.items() if table.ndim > 1 and table.dims[0] == name}
+    for name, table in tables.items():
+        variables = variables | {name: table[:, 0], f"{name}_words": table}
     coordinates = {name for variable in variables.values() for name in variable.dims if name in variables}
     results = xarray.Dataset({name: v for name, v in variables.items() if name not in coordinates},
                              {name: variables[name] for name in sorted(coordinates)})

@@ -1,8 +1,9 @@
 """Curves over the speed, one a train, with limit lines; envelopes; time histories."""
 
 import numpy as np
-from picture_axes import COLOURS, GREY, PALE, End, label_at_ends
+from picture_axes import COLOURS, GREY, LABEL_SIZE, PALE, End, label_at_ends, note_beside
 from picture_data import choose, thin
+from picture_layout import width_of, wrapped
 
 from .limits import STORED
 from .source import QUANTITIES
@@ -13,6 +14,9 @@ STYLES = ["-", (0, (5, 1.5)), (0, (1.2, 1.2)), (0, (7, 1.5, 1.2, 1.5))]
 MARKS = ["o", "s", "^", "D", "v", "P"]
 MOST_LINES = len(COLOURS) * len(STYLES)
 ENOUGH_A_SPAN = 4  # probes, from which on a line joins them
+MOST_LISTED = 14  # lines of a list beside the axes
+WIDEST_NAMES = 2.4  # inches beside the axes
+
 
 def look(i):
     """Colour, style and mark of line i: neighbours differ in all of them."""
@@ -84,13 +88,13 @@ def draw_resonances(ax, source, lines):
     return True
 
 
-def chosen_lines(ax, runs, values):
-    """All of them as long as they can be told apart; else an even choice with the greatest, and a word on it."""
-    lines = runs.lines()
-    chosen = choose(len(lines), MOST_LINES, np.array([np.nan_to_num(values[indices]).max() for _, indices in lines]))
+def chosen_lines(ax, runs, values, most=MOST_LINES):
+    """(short name, runs): all of them as long as they can be told apart; else an even choice with the greatest, and a
+    word on it."""
+    lines = [(runs.curve_name(indices[0]), indices) for _, indices in runs.lines()]
+    chosen = choose(len(lines), most, np.array([np.nan_to_num(values[indices]).max() for _, indices in lines]))
     if len(chosen) < len(lines):
-        ax.text(1.0, 1.02, f"{len(chosen)} of {len(lines)} lines, the greatest among them; the workbook has all",
-                transform=ax.transAxes, ha="right", va="bottom", fontsize=7.5)
+        note_beside(ax, f"{len(chosen)} of {len(lines)} lines, the greatest among them", 7.5)
     return [lines[i] for i in chosen]
 
 
@@ -134,10 +138,20 @@ def over_x(ax, source, name, values, unit, limits, band=True):
     return len(ends)
 
 
-def name_room(source):
-    """Inches right of the axes for the names of the lines."""
-    names = [name for name, _ in source.runs.lines()]
-    return 0.3 + 0.075 * max(map(len, names)) if len(names) > 1 else 0.1
+def room_for(names):
+    """Inches right of the axes for the names of curves; longer ones go into a key."""
+    return min(0.45 + max(width_of(name, LABEL_SIZE) for name in names), WIDEST_NAMES) if len(names) > 1 else 0.1
+
+
+def key_room(names):
+    """Inches below the axes for such a key."""
+    long = len(names) > 1 and max(width_of(name, LABEL_SIZE) for name in names) > WIDEST_NAMES - 0.45
+    return 0.16 * (min(len(names), MOST_LINES) + 1) if long else 0.0
+
+
+def names_of(runs):
+    """Of the lines of a sweep or study."""
+    return [runs.curve_name(indices[0]) for _, indices in runs.lines()]
 
 
 def draw_static(ax, x, static):
@@ -164,8 +178,10 @@ def along_bridge(ax, supports, x, series, unit, marks=True, static=None):
         ax.plot(x[order], static[order], color="#000000", lw=2.0, ls=(0, (3, 1.5)) if joined else "none", zorder=6,
                 marker=None if joined else "_", ms=12, mew=2.0, label="static")
     if len([line for line in ax.get_lines() if not line.get_label().startswith("_")]) > 1:
-        ax.legend(loc="upper left", bbox_to_anchor=(1.01, 1.04), frameon=False, fontsize=8, handlelength=3.2,
-                  labelspacing=0.35, borderpad=0.0)
+        handles, names = ax.get_legend_handles_labels()
+        ax.legend(handles, ["\n".join(wrapped(name, WIDEST_NAMES - 0.5, 8)) for name in names], loc="upper left",
+                  bbox_to_anchor=(1.01, 1.04), frameon=False, fontsize=8, handlelength=3.2, labelspacing=0.35,
+                  borderpad=0.0)
     for support in supports:
         ax.axvline(support, color=PALE, lw=0.8)
 

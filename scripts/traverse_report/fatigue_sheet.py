@@ -78,7 +78,7 @@ def sheet(report, source, heading, asked):
                         "passages a day, each by itself, without partial factors.", size=8, colour=GREY)
     else:
         page.text(LEFT, "--factor and --line of traverse-report give stress, damage and life.", size=8, colour=GREY)
-    ax = page.axes(2.2, right=0.1)
+    ax = page.axes(2.2, right=0.1, below=0.6)
     draw_spectrum(ax, rows, source.results.supports)
     columns = [("probe (m)", 0.8, "right"), ("cycles", 0.7, "right"), ("largest range kN m", 1.25, "right")]
     columns += [(f"equivalent, slope {slope:g}", 1.25, "right") for slope in SLOPES]

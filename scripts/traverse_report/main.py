@@ -11,7 +11,7 @@ from typing import NamedTuple, Optional
 import fatigue
 import h5py
 
-from . import comfort_sheet, fatigue_sheet, norm_sheet, rail_sheet, sheets, statistics, workbook
+from . import comfort_sheet, fatigue_sheet, norm_sheet, rail_sheet, sheets, statistics, summary_sheet, workbook
 from . import governing as again
 from . import limits as judging
 from .model_sheet import sheet as model_page
@@ -126,7 +126,7 @@ def run(words):
     today = datetime.date.today().isoformat()
     report = Report(", ".join(source.title() for source in sources)[:60], f"traverse {version}, report of {today}")
     with tempfile.TemporaryDirectory() as scratch:
-        entries = []
+        entries, first_pages = [], []
         for number, source in enumerate(sources):
             folder = pathlib.Path(scratch) / str(number)
             folder.mkdir()
@@ -138,8 +138,12 @@ def run(words):
                 verdicts = judging.with_governing(verdicts, [v._replace(run=f"{governing.words}, alone") for v in alone])
             if governing is not None and governing.trouble:
                 print(f"the governing run, {governing.words}, could not be repeated: {governing.trouble}")
+            first_pages.append(len(report.pages) + 1)
             add_pages(report, source, limits, verdicts, governing, asked)
             entries.append((source, limits, verdicts, governing))
+        if len(sources) > 1:
+            summary_sheet.sheet(report, [(source, verdicts, first) for (source, _, verdicts, _), first in
+                                         zip(entries, first_pages)])
         paths = [f"{stem}.pdf", f"{stem}.xlsx"]
         try:
             report.save(paths[0])

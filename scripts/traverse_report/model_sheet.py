@@ -2,12 +2,13 @@
 
 import numpy as np
 from picture_model import (
-    WORDS, draw_forces, draw_foundation, draw_supports, draw_vehicle, symbols_in_words)
+    WORDS, draw_forces, draw_foundation, draw_supports, draw_vehicle, symbols_in_words, vertical_reach)
 
 from .page import GREY, INK, LEFT, RIGHT, table
 from .source import digits
 
 MOST_TRAIN_ROWS = 10
+TALLEST = 3.0  # inches, of a vehicle
 
 
 def draw_bridge(page, source, height=0.42):
@@ -55,30 +56,32 @@ def draw_vehicles(page, source):
         return
     low, high = min(x for x, _ in places) - 6.0, max(x for x, _ in places) + 6.0
     width = RIGHT - LEFT - 0.4
-    tall = 5.0  # m
+    reaches = [vertical_reach(model, index) for index in {int(index) for index, _ in model.train}]
+    bottom, top = min(0.0, *(1.05 * low for low, _ in reaches)), max(5.0, *(1.05 * high for _, high in reaches))  # m
+    tall = top - bottom
     if len(model.train) > 1:
         page.text(LEFT, f"The train to scale, front on the right: {source.train_in_words()}", size=8)
         ax = page.axes(max(tall * width / (high - low), 0.12), left=0.2, right=0.2, above=0.05, below=0.3)
-        ax.set(xlim=(low, high), ylim=(0.0, tall))
+        ax.set(xlim=(low, high), ylim=(bottom, top))
         ax.axis("off")
         ax.set_aspect("equal", adjustable="datalim")
         ax.plot([low, high], [0, 0], color=GREY, lw=0.7)
         for index, x in model.train:
             draw_vehicle(ax, model, index, x)
-        scale_bar(ax, high - low, -0.5 * tall)
+        scale_bar(ax, high - low, bottom - 0.5 * tall)
     for index in list(dict.fromkeys(int(i) for i, _ in model.train))[:2]:
         wheels = model.rows(index, "wheels", 3)
         reach = max(wheels[:, 0].max(), -wheels[:, 0].min()) + 4.0
         page.text(LEFT, f"{model.type_name(index)}, to scale; masses {masses_in_words(model, index)}", size=8)
-        inches = min(width, 2.0 * reach / tall * 1.1)
+        inches = min(width, 2.0 * reach / 5.0 * 1.1, 2.0 * reach / tall * TALLEST)
         ax = page.axes(tall * inches / (2.0 * reach), left=0.2 + 0.5 * (width - inches),
                        right=0.2 + 0.5 * (width - inches), above=0.05, below=0.3)
-        ax.set(xlim=(-reach, reach), ylim=(0.0, tall))
+        ax.set(xlim=(-reach, reach), ylim=(bottom, top))
         ax.set_aspect("equal", adjustable="datalim")
         ax.axis("off")
         ax.plot([-reach, reach], [0, 0], color=GREY, lw=0.8)
         draw_vehicle(ax, model, index, 0.0, springs=True)
-        scale_bar(ax, 2.0 * reach, -0.35)
+        scale_bar(ax, 2.0 * reach, bottom - 0.07 * tall)
 
 
 def masses_in_words(model, index):

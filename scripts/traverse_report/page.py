@@ -1,26 +1,21 @@
 """A4 pages: headings, text and tables laid out in inches, and axes for curves."""
 
-import textwrap
-
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import picture_axes  # noqa: E402, F401: its style first
+import picture_layout  # noqa: E402
 from matplotlib.backends.backend_pdf import PdfPages  # noqa: E402
+from picture_layout import wrapped  # noqa: E402
 
-plt.rcParams.update({"font.size": 8.5, "axes.titlesize": 10, "axes.titlepad": 6, "lines.linewidth": 1.2})
+plt.rcParams.update({"font.size": 8.5, "axes.titlesize": 10, "axes.titlepad": 6, "lines.linewidth": 1.2,
+                     "figure.max_open_warning": 0})  # a page is a figure
 
 WIDTH, HEIGHT = 8.27, 11.69
 LEFT, RIGHT, TOP, BOTTOM = 0.8, 7.6, 11.0, 0.75
 INK, GREY, PALE, RED, GREEN, AMBER = "#222222", "#666666", "#C8C8C8", "#B00020", "#00693E", "#8A5A00"
 SIZE = 8.5
-CHARACTER = 0.53 / 72.0  # inches of an average one, times its size
-
-
-def wrap(text, width, size=SIZE):
-    """Lines of at most so many inches."""
-    return textwrap.wrap(str(text), max(int(width / (CHARACTER * size)), 4)) or [""]
 
 
 class Page:
@@ -38,13 +33,20 @@ class Page:
 
     def text(self, x, text, size=SIZE, colour=INK, width=None, **words):
         """Lines from y downward."""
-        room = ((RIGHT - x) if width is None else width) * (0.85 if words.get("weight") == "bold" else 1.0)
-        for line in wrap(text, room, size):
+        room = (RIGHT - x) if width is None else width
+        for line in wrapped(text, room, size, words.get("weight", "normal")):
             self.paper.text(x, self.y, line, fontsize=size, color=colour, va="top", **words)
             self.y -= 1.45 * size / 72.0
 
     def room(self):
         return self.y - BOTTOM
+
+    def fit(self, ax, below=0.45):
+        """Once the axes are drawn: makes room for long titles above them and for a key of long names below."""
+        above, key = picture_layout.fit(ax, RIGHT / WIDTH, below, size=7.5)
+        box = ax.get_position()
+        ax.set_position([box.x0, box.y0 - above / HEIGHT, box.width, box.height])
+        self.y -= above + key
 
     def axes(self, height, left=0.55, right=0.0, above=0.3, below=0.45):
         """Axes of that height within the margins, with room for a title, labels and names."""
@@ -87,7 +89,7 @@ def table(report, page, columns, rows, size=7.5, heading=None):
         x, lines = LEFT, []
         for cell, (_, width, _) in zip(cells, columns):
             text = cell[0] if isinstance(cell, tuple) else cell
-            lines.append(wrap(text, width - 0.08, size))
+            lines.append(wrapped(text, width - 0.08, size, weight))
         for cell, words, (_, width, align) in zip(cells, lines, columns):
             colour = cell[1] if isinstance(cell, tuple) else INK
             for i, line in enumerate(words):
@@ -99,7 +101,7 @@ def table(report, page, columns, rows, size=7.5, heading=None):
 
     def height_of(cells):
         texts = [cell[0] if isinstance(cell, tuple) else cell for cell in cells]
-        return max(len(wrap(text, width - 0.08, size)) for text, (_, width, _) in zip(texts, columns)) * step + 0.05
+        return max(len(wrapped(text, width - 0.08, size)) for text, (_, width, _) in zip(texts, columns)) * step + 0.05
 
     draw_head()
     for row in rows:

@@ -133,10 +133,10 @@ def line_sheet(report, source, limits):
     _, label = source.runs.x()
     unit = label.split("(")[-1].rstrip(")") if "(" in label else ""
     page = report.page("Which train at which speed" if "hslm_a" in source.runs.line_names else "Every case and its limits")
-    cells = []
+    cells, short = [], dict(zip((name for name, _ in source.runs.lines()), curves.names_of(source.runs)))
     for row in rows:
         broken = "; ".join(number(a) if a == b else f"{number(a)} to {number(b)}" for a, b in row.broken)
-        cells.append([row.line, f"{row.limit.quantity.replace('_', ' ')} ({row.limit.clause})",
+        cells.append([short[row.line], f"{row.limit.quantity.replace('_', ' ')} ({row.limit.clause})",
                       shown(row.limit.value, row.limit), shown(row.value, row.limit), number(row.x),
                       f"{100.0 * row.margin:.1f} %", (row.word, COLOURS[row.word]), broken])
     if any(row.word in ("above", "below") for row in rows):
@@ -145,7 +145,7 @@ def line_sheet(report, source, limits):
                   colour=GREY)
         page.y -= 0.08
     case = source.runs.lines_in_words() or "case"
-    table(report, page, [(case, 1.15, "left"), ("limit", 1.7, "left"), ("allowed", 0.65, "right"),
+    table(report, page, [(case, 1.45, "left"), ("limit", 1.4, "left"), ("allowed", 0.65, "right"),
                          ("greatest", 0.7, "right"), (f"at ({unit})" if unit else "at", 0.7, "right"),
                          ("margin", 0.6, "right"), ("verdict", 0.55, "left"),
                          (f"broken at ({unit})" if unit else "broken at", 0.75, "left")], cells, size=7)
@@ -156,24 +156,28 @@ def curve_sheets(report, source, limits):
     runs, drawn = source.runs, {}
     if runs is None or runs.x_name is None:
         return drawn
-    page = None
+    page, names = None, curves.names_of(runs)
     for name, (words, unit, factor) in QUANTITIES.items():
         if not is_known(runs, name):
             continue
         values = factor * runs.of_run(name)
-        if page is None or page.room() < 4.6:
+        if page is None or page.room() < 4.6 + curves.key_room(names):
             page = report.page(f"{'Curves over the speed' if runs.x_name.endswith('speed') else 'Curves'}: "
                                f"{source.title()}")
             if runs.line_names and runs.line_names != ["hslm_a"]:
-                page.text(LEFT, f"One line for each value of {runs.lines_in_words()}.", size=8, colour=GREY)
+                page.text(LEFT, f"One line for each {runs.lines_in_words()}.", size=8, colour=GREY)
+            if len(runs.lines()) > curves.MOST_LINES:
+                page.text(LEFT, "Of more lines than can be told apart some are drawn; the workbook has all.", size=8,
+                          colour=GREY)
             if runs.over:
                 page.text(LEFT, f"Of all {' and '.join(runs.over)}: thick the greatest (of least values the least), "
                                 "dotted the median, shaded all of them.", size=8, colour=GREY)
             if "resonances" in source.file or "cancellations" in source.file:
                 page.text(LEFT, resonances_in_words(source), size=8, colour=GREY)
-        ax = page.axes(3.7, right=curves.name_room(source))
+        ax = page.axes(3.7, right=curves.room_for(names))
         ax.set_title(words[0].upper() + words[1:])
         drawn[name] = curves.over_x(ax, source, name, values, unit, curves.limit_lines(source, limits, name))
+        page.fit(ax)
     return drawn
 
 
@@ -197,20 +201,22 @@ def envelope_sheet(report, source):
     page = None
     for name in ("peak_deflection", "peak_acceleration", "peak_moment"):
         words, unit, factor = QUANTITIES[name]
-        series = []
-        for line, indices in runs.lines():
-            known = np.abs(runs.values[name][indices])
-            if not np.isnan(known).all():
-                series.append((line, factor * np.nanmax(known, axis=0), None))
-        if not series:
+        known = np.abs(runs.values[name])
+        if np.isnan(known).all():
             continue
         if page is None or page.room() < 3.1:
             page = report.page(f"Envelopes along the bridge: {source.title()}")
-        ax = page.axes(2.3, right=max(0.35 + curves.name_room(source), 1.0))
+            if runs.line_names and runs.line_names != ["hslm_a"]:
+                page.text(LEFT, f"One line for each {runs.lines_in_words()}.", size=8, colour=GREY)
+        ax = page.axes(2.3, right=max(0.5 + curves.room_for(curves.names_of(runs)), 1.0))
         ax.set_title(f"{words[0].upper()}{words[1:]}, of all speeds; marks: probes")
+        series = [(line, factor * np.nanmax(known[indices], axis=0), None)
+                  for line, indices in curves.chosen_lines(ax, runs, known.max(axis=1), curves.MOST_LISTED)
+                  if not np.isnan(known[indices]).all()]
         static = factor * np.nan_to_num(runs.static).max(axis=0) if name == "peak_deflection" else None
         curves.along_bridge(ax, source.model.span_ends, stations, series, unit, static=static)
         ax.set_ylim(0.0, ax.get_ylim()[1] * 1.1)
+        page.fit(ax)
 
 
 def run_envelope_sheet(report, source, heading):
@@ -264,11 +270,12 @@ def history_sheets(report, source, heading, limits):
     panels += bearing_panels(source) + wheel_panels(source)
     page = None
     for title, unit, series, lines in panels:
-        if page is None or page.room() < 1.9:
+        names = [name for name, _ in series]
+        if page is None or page.room() < 1.9 + curves.key_room(names):
             page = report.page(f"Time histories: {heading}")
-        longest = max(len(name) for name, _ in series)
-        ax = page.axes(1.2, right=0.35 + 0.075 * longest if len(series) > 1 else 0.1)
+        ax = page.axes(1.2, right=curves.room_for(names))
         curves.history(ax, time, series, title, unit, lines)
+        page.fit(ax)
 
 
 def bearing_panels(source):

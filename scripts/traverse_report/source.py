@@ -76,6 +76,7 @@ class Runs:
     def x(self):
         name, unit, factor = parameter_words(self.x_name)
         label = "speed" if self.x_name.endswith("speed") else name
+        unit = unit or self.unit(self.x_name)
         return factor * self.parameters[self.x_name], f"{label} ({unit})" if unit else label
 
     def unit(self, name):
@@ -83,8 +84,10 @@ class Runs:
         return self.units.get(name, "").replace("2", "²").replace("3", "³") if self.units.get(name) != "1" else ""
 
     def lines_in_words(self):
-        """What tells the lines apart."""
-        return "train" if self.line_names == ["hslm_a"] else ", ".join(self.line_names)
+        """What tells the lines apart, in the order of the numbers in their names."""
+        units = {name: parameter_words(name)[1] or self.unit(name) for name in self.line_names}
+        return ", ".join("train" if name == "hslm_a" else f"{name} ({units[name]})" if units[name] else name
+                         for name in self.line_names)
 
     def line_name(self, run):
         parts = []
@@ -95,6 +98,13 @@ class Runs:
             said = "" if len(self.line_names) == 1 and unit else f"{said} "
             parts.append(f"A{value:.0f}" if name.endswith("hslm_a") else f"{said}{number(factor * value)} {unit}".strip())
         return ", ".join(parts) or "all runs"
+
+    def curve_name(self, run):
+        """Short, for a picture that has lines_in_words in its heading: of several options the values alone."""
+        if len(self.line_names) < 2:
+            return self.line_name(run)
+        return ", ".join(f"A{self.parameters[name][run]:.0f}" if name.endswith("hslm_a") else
+                         number(parameter_words(name)[2] * self.parameters[name][run]) for name in self.line_names)
 
     def lines(self):
         """(name, indices of its runs in the order of x): what is drawn as one line, all values of `over` together."""

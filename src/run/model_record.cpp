@@ -78,8 +78,8 @@ void record_bridge(const beam::BeamModel& beam, Recorder& recorder) {
 }
 
 void record_type(const Vehicle& vehicle, const std::string& group, Recorder& recorder) {
-  Pairs names;
-  std::vector<double> bodies, wheels, springs, joints;
+  Pairs names, joint_names;
+  std::vector<double> bodies, wheels, springs, joints, joint_ends;
   for (const multibody::Body& b : vehicle.mechanism.bodies) {
     names.emplace_back(vehicle.name, b.name);
     bodies.insert(bodies.end(), {b.position.x(), b.position.y(), b.mass});
@@ -91,14 +91,19 @@ void record_type(const Vehicle& vehicle, const std::string& group, Recorder& rec
   for (const multibody::Spring& s : vehicle.mechanism.springs)
     springs.insert(springs.end(), {s.from.x(), s.from.y(), s.to.x(), s.to.y(), static_cast<double>(s.bodies[0]),
                                    static_cast<double>(s.bodies[1])});
-  for (const multibody::Joint& j : vehicle.mechanism.joints)
-    joints.insert(joints.end(),
-                  {j.point.x(), j.point.y(), static_cast<double>(j.bodies[0]), static_cast<double>(j.bodies[1])});
+  for (const multibody::Joint& j : vehicle.mechanism.joints) {
+    const Eigen::Vector2d from = j.type->needs.ends ? j.from : j.point, to = j.type->needs.ends ? j.to : j.point;
+    joint_names.emplace_back(j.name, j.type->name);
+    joints.insert(joints.end(), {from.x(), from.y(), static_cast<double>(j.bodies[0]), static_cast<double>(j.bodies[1])});
+    joint_ends.insert(joint_ends.end(), {from.x(), from.y(), to.x(), to.y()});
+  }
   if (!names.empty()) recorder.tables({{"/model/" + group + "/names", names}});
+  if (!joint_names.empty()) recorder.tables({{"/model/" + group + "/joint_names", joint_names}});
   add_rows(recorder, group + "/bodies", 3, std::move(bodies), "m, m, kg");
   add_rows(recorder, group + "/wheels", 3, std::move(wheels), "m, m, m");
   add_rows(recorder, group + "/springs", 6, std::move(springs), "m, m, m, m, 1, 1");
   add_rows(recorder, group + "/joints", 4, std::move(joints), "m, m, 1, 1");
+  add_rows(recorder, group + "/joint_ends", 4, std::move(joint_ends), "m, m, m, m");
 }
 
 void record_load(const MovingLoad& load, const std::string& name, Recorder& recorder) {

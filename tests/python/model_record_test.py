@@ -49,6 +49,26 @@ class Model(Computed):
             x = file["model/train"][0, 1] + file[f"model/vehicles/{index}/bodies"][0, 0]
             self.assertAlmostEqual(file[f"vehicles/0/{bodies[0]}/position"][0, 0], x, 6)
 
+    def test_joints_have_their_ends_and_names(self):
+        """A rope has an end on each of its bodies; a revolute has one place."""
+        self.compute("hanging", """
+vehicle:
+  crane:
+    bodies: [frame, load]
+    joints: [pin, rope]
+    frame: {mass: 1.0e3, inertia: 1.0e3, position: [0.0, 2.0]}
+    load: {mass: 1.0e3, inertia: 1.0e3, position: [0.0, -3.0]}
+    pin: {type: revolute, bodies: [ground, frame], point: [0.0, 3.0]}
+    rope: {type: distance, bodies: [frame, load], from: [0.0, 1.5], to: [0.0, -3.0]}
+train: {vehicles: crane, positions: 0.0}
+ts: {dt: 1.0e-3, max_time: 5.0e-3}
+""")
+        with h5py.File(self.folder / "hanging.h5") as file:
+            group = file["model/vehicles/0"]
+            self.assertEqual(group["joint_names"].asstr()[:].tolist(), [["pin", "revolute"], ["rope", "distance"]])
+            self.assertEqual(group["joint_ends"][:].tolist(), [[0.0, 3.0, 0.0, 3.0], [0.0, 1.5, 0.0, -3.0]])
+            self.assertEqual(group["joints"][:].tolist(), [[0.0, 3.0, -1.0, 0.0], [0.0, 1.5, 0.0, 1.0]])
+
 
 class Amplification(Computed):
     def test_it_is_over_all_that_stands_on_the_bridge(self):

@@ -7,16 +7,23 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import h5py
 import numpy as np
+from matplotlib.text import Text
 
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2]))
 SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 import matplotlib.pyplot as plt  # noqa: E402
+import animate  # noqa: E402
 import picture  # noqa: E402
 import picture_data  # noqa: E402
+import picture_hanging  # noqa: E402
+import picture_model  # noqa: E402
+import picture_motion  # noqa: E402
+import picture_vehicles  # noqa: E402
 import picture_words  # noqa: E402
 
 
@@ -126,6 +133,120 @@ class PictureTest(unittest.TestCase):
             self.assertIn("(6 of 9)", ax.get_title(loc="left"))
             self.assertIn("last vehicle, box 8", [text.get_text() for text in ax.texts])  # the greatest
             plt.close(figure)
+
+    def assert_within(self, *names):
+        """Everything that is written lies within the picture, and no two words beside the same axes overlap."""
+        drawn = {}
+
+        def keep(figure, *words, **more):
+            drawn["figure"] = figure
+
+        with mock.patch.object(plt.Figure, "savefig", keep), mock.patch.object(plt, "close"):
+            with h5py.File(self.file) as file:
+                picture.draw(picture_data.Results(file), "out.png")
+        figure = drawn["figure"]
+        self.addCleanup(plt.close, figure)
+        figure.draw_without_rendering()
+        found = []
+        for ax in figure.axes:
+            beside = [text for text in [ax._left_title, *ax.texts] if text.get_text()]
+            boxes = [(text.get_text(), Text.get_window_extent(text)) for text in beside]  # without the line to the curve
+            for i, (words, box) in enumerate(boxes):
+                self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width, words)
+                self.assertTrue(0 <= box.y0 and box.y1 <= figure.bbox.height, words)
+                for other, second in boxes[:i]:
+                    shared = box.intersection(box, second)
+                    self.assertFalse(shared is not None and shared.width > 2 and shared.height > 2, (words, other))
+            found += [words for words, _ in boxes]
+        for text in figure.texts:
+            box = text.get_window_extent()
+            self.assertTrue(0 <= box.x0 and box.x1 <= figure.bbox.width, text.get_text())
+        for name in names:
+            self.assertTrue(any(name in words for words in found), (name, found))
+
+    def test_long_names_become_numbers_with_a_key(self):
+        long = "the_wheel_of_the_second_axle_of_the_leading_bogie_of_the_heavy_locomotive"
+        write_run(self.file, wheels=(f"{long}_1", f"{long}_2"))
+        with h5py.File(self.file, "a") as file:
+            file.attrs["scene"] = "a scene whose name is so long that no heading of a picture ever holds it in one line of it"
+        self.assert_within("1", f"1   first vehicle, {long.replace('_', ' ')} 1", "4   last")
+
+    def test_title_and_note_keep_apart(self):
+        write_run(self.file)
+        with h5py.File(self.file, "a") as file:
+            del file["probes"]
+            file["probes/x"] = np.linspace(1.0, 39.0, 20)
+            file["probes/deflection"] = -1e-3 * np.ones((400, 20)) * np.linspace(0.0, 1.0, 400)[:, None]
+        self.assert_within("dashed: worst instant", "places)")
+
+    def test_what_is_no_car_is_called_by_its_name(self):
+        titles = []
+        for name in ("car", "frame"):
+            write_run(self.file, vehicles=1)
+            with h5py.File(self.file, "a") as file:
+                if name != "car":
+                    file.move("vehicles/0/car", f"vehicles/0/{name}")
+                results = picture_data.Results(file)
+                figure, ax = plt.subplots()
+                self.addCleanup(plt.close, figure)
+                picture_vehicles.draw_accelerations(ax, results, picture_vehicles.cars_of(results))
+                titles.append((ax.get_title(loc="left"), ax.texts[0].get_text()))
+        self.assertEqual(titles, [("Vertical acceleration of the car body", "the car"),
+                                  ("Vertical acceleration of the frame", "the frame")])
+
+    def write_crane(self, swing):
+        """A load that swings, by `swing` (degrees over time), on a rope of 5 m below the frame of a trolley that runs."""
+        write_run(self.file, vehicles=1)
+        with h5py.File(self.file, "a") as file:
+            t, angle = file["time"][:], np.radians(swing)
+            frame = file["vehicles/0/car/position"][:]
+            file["vehicles/0/load/position"] = np.column_stack([frame[:, 0] + 5 * np.sin(angle),
+                                                                frame[:, 1] - 5 * np.cos(angle), 0 * t])
+            file["vehicles/0/load/acceleration"] = np.zeros((len(t), 3))
+            file["vehicles/0/rope/reaction"] = np.column_stack([30e3 + 0 * t, 40e3 + 0 * t, 0 * t])
+            file["model/train"] = [[0.0, 0.0]]
+            kind = "model/vehicles/0"
+            for name, rows in (("names", [["crane", "car"], ["crane", "axle"], ["crane", "load"]]),
+                               ("joint_names", [["post", "weld"], ["rope", "distance"]])):
+                file.create_dataset(f"{kind}/{name}", data=np.array(rows, dtype=object), dtype=h5py.string_dtype())
+            file[f"{kind}/bodies"] = [[0.0, 1.5, 1e3], [0.0, 0.5, 1e2], [0.0, -3.5, 2e4]]
+            file[f"{kind}/wheels"] = [[0.0, 0.5, 0.5]]
+            file[f"{kind}/joints"] = [[0.0, 1.0, 0.0, 1.0], [0.0, 1.5, 0.0, 2.0]]
+            file[f"{kind}/joint_ends"] = [[0.0, 1.0, 0.0, 1.0], [0.0, 1.5, 0.0, -3.5]]
+
+    def test_swing_and_rope_force_of_a_crane(self):
+        swing = 6.0 * np.sin(np.linspace(0.0, 7.0, 400))
+        self.write_crane(swing)
+        with h5py.File(self.file) as file:
+            hanging, = picture_hanging.hanging_of(picture_data.Results(file))
+            self.assertEqual((hanging.body, hanging.joint), ("load", "rope"))
+            np.testing.assert_allclose(hanging.swing, swing, atol=1e-9)
+            np.testing.assert_allclose(hanging.force, 50e3)
+            model = picture_model.Model(picture_data.Results(file))
+            left, low, width, height = picture_model.body_boxes(model, 0)[2]
+            self.assertLess(low + height, -2.0)  # below the track: the rope is no part of the load
+            self.assertAlmostEqual(left + 0.5 * width, 0.0)
+            self.assertEqual(picture_model.rods(model, 0)[:, :4].tolist(), [[0.0, 1.5, 0.0, -3.5]])
+        self.assert_within("Swing of what hangs", "Force of the joint", "the vehicle, load", "the vehicle, rope")
+
+    def test_the_load_is_drawn_below_the_bridge(self):
+        self.write_crane(0.0 * np.zeros(400))
+        with h5py.File(self.file) as file:
+            motion = picture_motion.Motion(picture_data.Results(file))
+            stage = animate.Stage(motion, 1.0)
+            self.addCleanup(plt.close, stage.figure)
+            stage.draw(100)
+            low, high = stage.ax.get_ylim()
+            shapes = picture_motion.outline(motion, 100, 1.0)
+        self.assertLess(low, -4.0)
+        self.assertAlmostEqual((high - low) / stage.width, stage.tall / animate.AXES[0])  # to scale
+        self.assertEqual(sum(len(shape.points) == 2 for shape in shapes), 1)
+        lowest = min(shape.points[:, 1].min() for shape in shapes)
+        self.assertGreater(lowest, low)
+
+    def test_a_mechanism_shows_where_its_bodies_are(self):
+        write_run(self.file, beam=False, wheels=())
+        self.assert_within("Centres of the bodies: x", "Centres of the bodies: y", "car")
 
     def test_no_beam(self):
         write_run(self.file, beam=False)

@@ -63,6 +63,15 @@ class Runs(InFolder):
         swept = results["peak_deflection"].sel(speed=45.0, x=10.0).item()
         self.assertAlmostEqual(swept / abs(alone.attrs["summary_deflection"]), 1.0, delta=1e-3)
 
+    def test_load_models(self):
+        scene = {"beam": BRIDGE, "scene": {"analysis": "envelope"}, "norm": {"load_models": ["lm71", "sw2"]}}
+        results = traverse.run(scene)
+        self.assertEqual(results["static_load"].values.tolist(), ["LM71", "SW/2"])
+        self.assertEqual(results["static_moment"].dims, ("static_load", "static_x", "extreme"))
+        self.assertIn("6.3.2", results["static_load_words"].sel(static_load="LM71").values[1])
+        middle = results["static_moment"].sel(static_load="LM71", extreme="greatest").interp(static_x=10.0).item()
+        self.assertAlmostEqual(middle / 6240e3, 1.0, delta=0.1)  # of a simple span of 20 m
+
     def test_a_study(self):
         results = traverse.study(FORCES, {"beam_EI": [2.0e10, 3.0e10], "load_speed": {"from": 30, "to": 50, "step": 10}})
         self.assertEqual(results["peak_moment"].dims, ("beam_EI", "load_speed", "x"))

@@ -17,7 +17,7 @@ SCRIPTS = SOURCE / "scripts"
 sys.path.insert(0, str(SCRIPTS))
 import comfort  # noqa: E402
 import fatigue  # noqa: E402
-from traverse_report import curves, limits, norm_sheet, page, sheets, source  # noqa: E402
+from traverse_report import curves, limits, norm_sheet, page, sheets, source, summary_sheet  # noqa: E402
 
 SWEEP = BRIDGE + """
 sweep: {speed: [60.0, 110.0, 5.0], hslm_a: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]}
@@ -288,6 +288,75 @@ class Pages(Reported):
         run = self.report("--if-limits", "study.h5")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertTrue((self.folder / "study.pdf").is_file())
+
+    def first_page(self, names, limits_text):
+        """Of a report of several files: its words and their colours."""
+        (self.folder / "own.yml").write_text(limits_text, encoding="utf-8")
+        entries = []
+        for number, name in enumerate(names):
+            one = source.Source(self.folder / f"{name}.h5")
+            entries.append((one, limits.judge(one, limits.read_limits(self.folder / "own.yml")), 3 * number + 1))
+        report = page.Report("", "")
+        report.page("the first file's")
+        summary_sheet.sheet(report, entries)
+        self.assertEqual(len(report.pages), 2)
+        self.assertEqual(report.pages[1].heading, "the first file's")
+        return {text.get_text(): text.get_color() for text in report.pages[0].paper.texts}
+
+    def test_of_two_files_the_broken_one_decides(self):
+        for names in (("sweep", "crossing"), ("crossing", "sweep")):
+            texts = self.first_page(names, LIMITS[:LIMITS.index("- {clause: \"rule 2\"")])
+            said = next(text for text in texts if text.startswith("Of 2 results files"))
+            self.assertIn("1 of 2 judged limits is BROKEN", said)
+            self.assertEqual(texts[said], page.RED)
+            self.assertTrue(any(text.startswith("Least margin of all: -") and "sweep.h5" in text for text in texts), texts)
+            self.assertTrue({"2", "5"} <= set(texts), texts)  # pages of the files
+
+    def test_green_only_where_all_were_judged_and_kept(self):
+        kept = "- {clause: a, quantity: amplification, value: 50.0}\n"
+        texts = self.first_page(("crossing", "sweep"), kept)
+        self.assertEqual(texts[next(text for text in texts if text.startswith("Of 2"))], page.GREEN)
+        none = "- {clause: a, quantity: car_acceleration, value: 50.0}\n"
+        texts = self.first_page(("crossing", "sweep"), none)
+        self.assertEqual(texts[next(text for text in texts if text.startswith("Of 2"))], page.GREY)
+
+
+class LongNames(Reported):
+    @classmethod
+    def prepare(cls):
+        (cls.folder / "limits.yml").write_text(LIMITS, encoding="utf-8")
+        cls.compute("three", BRIDGE + """
+load: {forces: [2.0e5, 1.0e5], positions: [0.0, -3.0], speed: 40.0}
+study: {vary: {load_speed: [30.0, 50.0], beam_mass: [1.6e4, 1.8e4, 2.0e4], beam_EI: [2.0e10, 3.0e10],
+               model_damping_ratios: [0.01, 0.02]}}
+""")
+
+    def test_a_study_of_four_options_is_drawn(self):
+        run = self.report("three.h5", "--no-governing-run", "--limits", "limits.yml")
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+
+    def test_names_of_curves_stay_on_the_page(self):
+        one = source.Source(self.folder / "three.h5")
+        long_unit = {"beam_EI": "N m2 " * 20}
+        for units in ({}, long_unit):
+            one.runs.units = one.runs.units | units
+            report = page.Report("", "")
+            sheets.curve_sheets(report, one, [])
+            sheets.envelope_sheet(report, one)
+            for sheet in report.pages:
+                renderer = sheet.figure.canvas.get_renderer()
+                for ax in sheet.figure.axes[1:]:
+                    legend = ax.get_legend()
+                    for text in [*ax.texts, ax._left_title, *(legend.get_texts() if legend else ())]:
+                        right = text.get_window_extent(renderer).x1 / sheet.figure.dpi
+                        self.assertLess(right, page.RIGHT + 0.05, text.get_text())
+
+    def test_of_several_options_the_name_of_a_curve_has_the_values(self):
+        runs = source.Source(self.folder / "three.h5").runs
+        self.assertEqual(runs.line_names, ["beam_mass", "beam_EI", "model_damping_ratios"])
+        self.assertEqual(curves.names_of(runs)[0], "16000, 2e10, 0.01")
+        self.assertEqual(runs.lines_in_words(), "beam_mass (kg/m), beam_EI (N m²), model_damping_ratios")
+        self.assertEqual(runs.lines()[0][0], "beam_mass 16000 kg/m, beam_EI 2e10 N m², model_damping_ratios 0.01")
 
 
 class BadInput(Reported):

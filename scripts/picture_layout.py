@@ -1,0 +1,87 @@
+"""What keeps words of a picture apart and within it: everything is measured, in inches, once it is drawn."""
+
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
+
+NAME, NOTE = "name of a curve", "note"  # which artists are looked for
+MARGIN = 0.12  # inches that stay free at the right edge
+LEADING = 1.4 / 72.0  # inches from line to line, times the size of the letters
+
+
+def width_of(text, size, weight="normal"):
+    """Inches."""
+    return text_to_path.get_text_width_height_descent(text or " ", FontProperties(size=size, weight=weight), False)[0] / 72.0
+
+
+def wrapped(text, inches, size, weight="normal"):
+    """Lines of at most so many inches; a word that is longer than a line is cut."""
+    lines = [""]
+    for word in str(text).replace("\n", " ").split(" "):
+        together = f"{lines[-1]} {word}" if lines[-1] else word
+        if width_of(together, size, weight) <= inches:
+            lines[-1] = together
+            continue
+        lines += [word] if lines[-1] else []
+        lines[-1] = word
+        while width_of(lines[-1], size, weight) > inches and len(lines[-1]) > 1:
+            fits = max(int(len(lines[-1]) * inches / width_of(lines[-1], size, weight)) - 1, 1)
+            lines[-1:] = [lines[-1][:fits], lines[-1][fits:]]
+    return lines
+
+
+def key_lines(entries, inches, size):
+    """(columns, lines of each entry) of a key; entries: (number, name)."""
+    widest = max(width_of(f"{number}   {name}", size) for number, name in entries) + 0.25
+    columns = max(int(inches / widest), 1)
+    return columns, [wrapped(f"{number}   {name}", inches / columns - 0.1, size) for number, name in entries]
+
+
+def draw_key(ax, entries, inches, below, size):
+    """Under the axes, entries: (number, name, colour). The inches that it takes."""
+    columns, lines = key_lines([entry[:2] for entry in entries], inches, size)
+    rows = -(-len(lines) // columns)
+    box, figure = ax.get_position(), ax.figure
+    width, height = box.width * figure.get_figwidth(), box.height * figure.get_figheight()
+    y = -below
+    for row in range(rows):
+        for column, i in enumerate(range(row, len(lines), rows)):
+            ax.text(column * inches / columns / width, y / height, "\n".join(lines[i]), transform=ax.transAxes, va="top",
+                    fontsize=size, color=entries[i][2], linespacing=1.2)
+        y -= max(map(len, lines[row::rows])) * LEADING * size
+    return -y - below + 0.5 * LEADING * size
+
+
+def fit(ax, right, below, size=9.0):
+    """Lets the axes' title run over as many lines as it needs, notes beside it too, and replaces names that reach beyond
+    `right` (a part of the figure's width) by numbers, which a key explains `below` (inches under the axes). The inches
+    that the title and the key take further, above and below."""
+    box, figure = ax.get_position(), ax.figure
+    width = box.width * figure.get_figwidth()
+    title = ax._left_title
+    lines = wrapped(title.get_text(), width, title.get_fontsize(), title.get_weight())
+    title.set_text("\n".join(lines))
+    above = (len(lines) - 1) * LEADING * title.get_fontsize()
+    room = (right - box.x0) * figure.get_figwidth() - MARGIN  # from the axes' left edge
+    beside = room - 1.035 * width
+    for note in (text for text in ax.texts if text.get_gid() == NOTE):
+        note.set_text("\n".join(wrapped(note.get_text(), beside, note.get_fontsize())))
+    names = [text for text in ax.texts if text.get_gid() == NAME]
+    if not names or max(width_of(name.get_text(), name.get_fontsize()) for name in names) <= beside:
+        return above, 0.0
+    names.sort(key=lambda name: -name.get_position()[1])
+    entries = [(str(i), name.get_text(), name.get_color()) for i, name in enumerate(names, 1)]
+    for name, (number, _, _) in zip(names, entries):
+        name.set_text(number)
+    return above, draw_key(ax, entries, room, below, size)
+
+
+def stack(figure, axes, height, gaps):
+    """Axes of that height one under another, gaps above, between and below them in inches; the figure becomes as high as
+    that asks for."""
+    total = sum(gaps) + height * len(axes)
+    figure.set_figheight(total)
+    y = total
+    for ax, gap in zip(axes, gaps):
+        y -= gap + height
+        box = ax.get_position()
+        ax.set_position([box.x0, y / total, box.width, height / total])
