@@ -3,6 +3,7 @@
 import contextlib
 import ctypes
 import functools
+import operator
 import os
 
 import numpy as np
@@ -11,6 +12,8 @@ import xarray
 from . import places, words
 from .dataset import with_coordinates
 from .dimensions import dimensions_of, name_of
+
+_MOST_C_INT = 2**31 - 1
 
 
 class _Quantity(ctypes.Structure):
@@ -132,6 +135,9 @@ class Passage:
         if (body is None) == (x is None):
             raise places.Error("set_force: wanted: a body or a station x", 2)
         if body is not None:
+            vehicle = operator.index(vehicle)
+            if not 0 <= vehicle <= _MOST_C_INT:  # ctypes cuts what is longer
+                raise places.Error(f"set_force: there is no vehicle {vehicle}: they count from 0", 2)
             _checked(self._library.traverse_set_body_force(self._open(), vehicle, body.encode(), fx, fy, moment))
             return
         if fx != 0.0 or moment != 0.0:

@@ -30,6 +30,16 @@ def plain(value):
     return re.sub(r"[\x00-\x08\x0b\x0c\x0e-\x1f]", " ", value) if isinstance(value, str) else value
 
 
+def write_as_text(book):
+    """No cell is a formula or an error: what a file of limits or a scene says is text, also where it begins with =."""
+    for sheet in book:
+        for row in sheet.iter_rows():
+            for cell in row:
+                if isinstance(cell.value, str):
+                    cell.data_type = "s"
+                    cell.quotePrefix = cell.value[:1] in "=+-@"  # it stays text when somebody edits it
+
+
 def add_sheet(book, name, head, rows):
     unique, i = name[:31], 2
     while unique in book.sheetnames:
@@ -187,4 +197,5 @@ def write(path, entries, asked):
             add_run(book, f"{prefix}governing ", governing.source)
             add_comfort(book, f"{prefix}governing ", governing.source)
             add_cycles(book, f"{prefix}governing ", governing.source, asked)
+    write_as_text(book)
     book.save(path)

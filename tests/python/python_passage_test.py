@@ -153,6 +153,7 @@ class Forces(InFolder):
         with traverse.Passage(HOPPING) as passage:
             self.refused(2, "no body wing", passage.set_force, body="wing", fy=1.0)
             self.refused(2, "no vehicle 1", passage.set_force, vehicle=1, body="body", fy=1.0)
+            self.refused(2, "no vehicle 1099511627776", passage.set_force, vehicle=2**40, body="body", fy=1.0)
             self.refused(2, "21.*not on the beam.*20", passage.set_force, x=21.0, fy=1.0)
             self.refused(2, "finite", passage.set_force, body="body", fy=np.nan)
             self.refused(2, "a body or a station", passage.set_force, fy=1.0)

@@ -38,7 +38,7 @@ track: {{profile: german_low, wavelengths: [2.0, 80.0]}}
 """
 LIMITS = """
 - {clause: "rule 1", quantity: deflection_over_span, value: 1/2500, text: "stiff"}
-- {clause: "rule 2", quantity: amplification, value: 50.0}
+- {clause: "rule 2", quantity: amplification, value: 50.0, text: "=1+1"}
 - {clause: "rule 3", quantity: deck_acceleration, value: 1.0e-3}
 - {clause: "rule 4", quantity: car_acceleration, value: 1.0}
 """
@@ -265,6 +265,11 @@ class Pages(Reported):
         places = [line.get_ydata()[0] for p in report.pages for ax in p.figure.axes for line in ax.get_lines()
                   if line.get_color() == curves.RED]
         self.assertEqual(sorted(places), [1.5, 2.5])
+
+    def test_no_cell_is_a_formula(self):
+        cells = [cell for sheet in self.book_of("judged", "--no-governing-run") for row in sheet.iter_rows() for cell in row]
+        self.assertEqual([cell.value for cell in cells if cell.data_type in ("f", "e")], [])
+        self.assertIn("=1+1", [cell.value for cell in cells])
 
     def test_pages_are_a4_and_all_there(self):
         run = self.report("sweep.h5", "crossing.h5", "-o", "both", "--limits", "limits.yml")
