@@ -285,6 +285,7 @@ class System {
   base::SpeedLaw law_of_wheel(int wheel) const;
   bool is_driven(int wheel) const;
   double surface_height() const;
+  double moment_about_axis(const train::WheelContact& c) const;
   bool yields_inside() const;
   void note_weights();
   void share_coordinates(const double* y);

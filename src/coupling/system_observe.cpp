@@ -16,13 +16,25 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
       if (c.slot() < 0 || c.force.normal == 0.0) continue;
       const Eigen::Vector3d f = c.force.normal * c.touch.normal_on_body + c.force.tangential * c.touch.tangent_on_body;
       out.loads.push_back(
-          {c.patches[c.active].element, c.touch.xi, f.x(), f.y(), -surface_height() * f.x(), fleet_.velocities(c).x()});
+          {c.patches[c.active].element, c.touch.xi, f.x(), f.y(), moment_about_axis(c), fleet_.velocities(c).x()});
     }
     structure_->observe(y, y + n_, ydot + n_, contact_loads(), out.beam);
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
     out.bridge_loads.insert(out.bridge_loads.end(), out.beam.foundation_loads.begin(), out.beam.foundation_loads.end());
   }
   out.energy = energy(y);
+}
+
+/// Of a wheel's force on the beam: what it does as the element turns about the point of the axis at its station.
+double System::moment_about_axis(const train::WheelContact& c) const {
+  if (surface_height() == 0.0) return 0.0;
+  const double length = line_->mesh.element(c.patches[c.active].element).length;
+  const auto turned = [&](const std::array<double, train::most_element_unknowns>& direction) {
+    const auto block = static_cast<std::size_t>(per_node());
+    const double *left = &direction[block - 2], *right = left + block;
+    return left[1] + right[1] + length * ((1.0 - c.touch.xi) * right[0] - c.touch.xi * left[0]);
+  };
+  return -c.force.normal * turned(c.touch.normal_on_beam) - c.force.tangential * turned(c.touch.tangent_on_beam);
 }
 
 Energy System::energy(const double* y) {

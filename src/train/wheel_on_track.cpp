@@ -11,9 +11,11 @@ namespace traverse::train {
 namespace {
 
 // The surface point that belongs to the material station x, and how it changes along x. At a height e above the
-// neutral axis it moves by -e theta along x, as the plane sections turn; theta = v' without shear.
+// neutral axis it moves by (-e theta, -e theta^2/2), as the plane sections turn; theta = v' without shear. The second
+// order along y counts: the force is along the normal, which turns with the section, and has no moment about the axis.
 struct SurfacePoint {
   Eigen::Vector2d P, P_x, P_xx;
+  double turn = 0.0;  // theta
 };
 
 struct Surface {
@@ -42,16 +44,18 @@ struct Surface {
 
   SurfacePoint at(double x) const {
     const track::Height h = profile.at(x);
-    SurfacePoint s{{x, h.value}, {1.0, h.slope}, {0.0, h.curvature}};
+    SurfacePoint s{{x, h.value}, {1.0, h.slope}, {0.0, h.curvature}, 0.0};
     if (patch.element < 0) return s;
     const double xi = (x - patch.x) * per_length;
     const auto [c0, c1, c2, c3] = deflection;
     const double slope = (c1 + xi * (2.0 * c2 + xi * 3.0 * c3)) * per_length;
     const double curvature = (2.0 * c2 + xi * 6.0 * c3) * per_length * per_length;
     const double third = 6.0 * c3 * per_length * per_length * per_length;
-    s.P += Eigen::Vector2d(-patch.height * (slope - strain), c0 + xi * (c1 + xi * (c2 + xi * c3)));
-    s.P_x += Eigen::Vector2d(-patch.height * curvature, slope);
-    s.P_xx += Eigen::Vector2d(-patch.height * third, curvature);
+    const double turn = slope - strain, e = patch.height;
+    s.turn = turn;
+    s.P += Eigen::Vector2d(-e * turn, c0 + xi * (c1 + xi * (c2 + xi * c3)) - 0.5 * e * turn * turn);
+    s.P_x += Eigen::Vector2d(-e * curvature, slope - e * turn * curvature);
+    s.P_xx += Eigen::Vector2d(-e * third, curvature - e * (curvature * curvature + turn * third));
     if (block == 3) {
       s.P.x() += (1.0 - xi) * v[0] + xi * v[3];
       s.P_x.x() += (v[3] - v[0]) * per_length;
@@ -138,10 +142,10 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
     const int o = block - 2;
     const std::array<int, 4> place = {o, o + 1, block + o, block + o + 1};
     for (int i = 0; i < 4; ++i) {
-      const double along = -patch.height * turn[i];
-      out.normal_on_beam[place[i]] = n.y() * psi.value[i] + n.x() * along;
-      out.tangent_on_beam[place[i]] = -tau.y() * psi.value[i] - tau.x() * along;
-      relative.y() -= psi.value[i] * w[place[i]];
+      const double along = -patch.height * turn[i], up = psi.value[i] + along * s.turn;
+      out.normal_on_beam[place[i]] = n.y() * up + n.x() * along;
+      out.tangent_on_beam[place[i]] = -tau.y() * up - tau.x() * along;
+      relative.y() -= up * w[place[i]];
       relative.x() -= along * w[place[i]];
     }
     if (block == 3) {
