@@ -7,6 +7,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
@@ -27,19 +28,31 @@ void start_mpi(int* argc, char*** argv) {
   unsetenv(no_folder);  // an mpirun that a test starts cannot do without
 }
 
-// A test that computes without end is stopped by the processor time it has used: other than time by the clock, that
-// does not depend on what else the machine has to do.
-class ProcessorLimit : public testing::EmptyTestEventListener {
+double seconds_of(int who) {
+  rusage used{};
+  getrusage(who, &used);
+  return static_cast<double>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) +
+         1e-6 * static_cast<double>(used.ru_utime.tv_usec + used.ru_stime.tv_usec);
+}
+
+// A test that computes without end is stopped by the processor time it has used, and each says at its end how much that
+// was, with the programs that it has run: other than time by the clock, that does not depend on what else the machine
+// has to do.
+class ProcessorTime : public testing::EmptyTestEventListener {
   void OnTestStart(const testing::TestInfo&) override {
     constexpr rlim_t longest = 900;  // s
-    rusage used{};
     rlimit limit{};
-    getrusage(RUSAGE_SELF, &used);
     getrlimit(RLIMIT_CPU, &limit);
-    const auto seconds = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
-    limit.rlim_cur = std::min(limit.rlim_max, seconds + longest);
+    limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(seconds_of(RUSAGE_SELF)) + longest);
     setrlimit(RLIMIT_CPU, &limit);
+    start_ = seconds_of(RUSAGE_SELF) + seconds_of(RUSAGE_CHILDREN);
   }
+  void OnTestEnd(const testing::TestInfo& test) override {
+    if (GTEST_FLAG_GET(brief)) return;
+    std::printf("[ SECONDS  ] %s.%s %.2f\n", test.test_suite_name(), test.name(),
+                seconds_of(RUSAGE_SELF) + seconds_of(RUSAGE_CHILDREN) - start_);
+  }
+  double start_ = 0.0;
 };
 
 }  // namespace
@@ -57,7 +70,7 @@ int main(int argc, char** argv) {
   if (rank != 0) GTEST_FLAG_SET(brief, true);  // the other ranks print failures only
   testing::InitGoogleTest(&argc, argv);        // takes its own arguments out, before PETSc sees them
 
-  testing::UnitTest::GetInstance()->listeners().Append(new ProcessorLimit);
+  testing::UnitTest::GetInstance()->listeners().Append(new ProcessorTime);
 
   if (SlepcInitialize(&argc, &argv, nullptr, nullptr) != 0) return EXIT_FAILURE;
   (void)PetscPopSignalHandler();

@@ -1,0 +1,65 @@
+"""Sums up what CTest has run: test_summary.py LOG, such as build/Testing/Temporary/LastTest.log
+
+A case of GoogleTest counts by itself, also where several share a process; a case that such a process was to run and did
+not end is a failed one. Prints the twenty slowest, the names of the failed, and as its last line `N passed, N failed`.
+"""
+import pathlib
+import re
+import sys
+
+SHOWN = 20
+TEST = re.compile(r"^\d+/\d+ Testing: (.+)$", re.MULTILINE)
+END = re.compile(r"^Test (Passed|Failed)\.$", re.MULTILINE)
+CASES = re.compile(r'^Command: .*"--gtest_filter=([^"]*)"', re.MULTILINE)
+STARTED = re.compile(r"\[ RUN      \] (\S+)")
+ENDED = re.compile(r"\[(       OK |  SKIPPED |  FAILED  )\] ([^\s,]+).*\((\d+) ms\)")
+USED = re.compile(r"\[ SECONDS  \] (\S+) ([\d.]+)")
+SECONDS = re.compile(r"^Test time =\s+([\d.]+) sec$", re.MULTILINE)
+PASSED, SKIPPED, FAILED = "passed", "skipped", "failed"
+RESULTS = {"OK": PASSED, "SKIPPED": SKIPPED, "FAILED": FAILED}
+
+
+def cases_of_program(name, text, wanted):
+    """(name, result, seconds, remark) of every case that a GoogleTest program was to run."""
+    kind = name.split(".")[0]
+    ended = {case: (RESULTS[word.strip()], int(milliseconds) / 1000) for word, case, milliseconds in ENDED.findall(text)}
+    started, used = STARTED.findall(text), dict(USED.findall(text))
+    for case in wanted:
+        result, seconds = ended.get(case, (FAILED, 0.0))
+        seconds = float(used.get(case, seconds))
+        remark = "" if case in ended else "did not end" if case in started else "did not start"
+        yield f"{kind}.{case}", result, seconds, remark
+
+
+def cases_in(log):
+    """(name, result, seconds, remark) of every case in a log of CTest."""
+    starts = list(TEST.finditer(log))
+    for test, after in zip(starts, starts[1:] + [None]):
+        name, text = test[1], log[test.end():after.start() if after else len(log)]
+        wanted = CASES.search(text)
+        if wanted:
+            yield from cases_of_program(name, text, wanted[1].split(":"))
+            continue
+        end, seconds = END.search(text), SECONDS.search(text)
+        yield name, PASSED if end and end[1] == "Passed" else FAILED, float(seconds[1]) if seconds else 0.0, ""
+
+
+def main():
+    log = pathlib.Path(sys.argv[1])  # CTest writes none where it finds no tests
+    cases = list(cases_in(log.read_text(encoding="utf-8", errors="replace"))) if log.exists() else []
+    slowest = sorted(cases, key=lambda case: -case[2])[:SHOWN]
+    if len(cases) > 1:
+        print("The slowest, in seconds of processor time, those of Python, of several ranks and of benchmarks by the clock:")
+        for name, _, seconds, _ in slowest:
+            print(f"{seconds:8.1f} {name}")
+    count = {result: sum(case[1] == result for case in cases) for result in (PASSED, SKIPPED, FAILED)}
+    for name, result, _, remark in cases:
+        if result == FAILED:
+            print(f"Failed: {name}{', which ' + remark if remark else ''}")
+    if count[SKIPPED]:
+        print(f"{count[SKIPPED]} skipped")
+    print(f"{count[PASSED]} passed, {count[FAILED]} failed")
+
+
+if __name__ == "__main__":
+    main()
