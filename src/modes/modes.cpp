@@ -1,7 +1,10 @@
 #include "modes/modes.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <tuple>
 
@@ -13,6 +16,10 @@ namespace traverse::modes {
 namespace {
 
 constexpr double distinct = 1e-6;  // relative difference of two frequencies
+// The same between spans that nothing couples: frequencies go with the inverse square of a span, and two spans of one
+// drawing may be built by 20 mm longer and shorter (EN 13670, 10.4), which is this for 8 m.
+constexpr double distinct_spans = 0.01;
+constexpr double as_printed = 1e-5;  // of a damping ratio: one copied from a message is within its limit
 
 struct Mode {
   double omega = 0.0;
@@ -190,16 +197,22 @@ Modes natural_modes(const beam::Beam& beam, int count, const beam::ShapePoints& 
 }
 
 std::vector<double> distinct_frequencies(const beam::Beam& beam, std::size_t count) {
-  std::vector<double> all;
-  for (const Segment& s : transverse_segments(beam)) {
-    const auto some = distinct_of(s, count);
-    all.insert(all.end(), some.begin(), some.end());
-  }
+  using OfSegment = std::pair<double, std::size_t>;
+  const std::vector<Segment> segments = transverse_segments(beam);
+  std::vector<OfSegment> all, found;
+  for (std::size_t i = 0; i < segments.size(); ++i)
+    for (const double omega : distinct_of(segments[i], count)) all.emplace_back(omega, i);
   std::sort(all.begin(), all.end());
-  std::vector<double> found;
-  for (const double omega : all)
-    if (found.size() < count && (found.empty() || omega > found.back() * (1.0 + distinct))) found.push_back(omega);
-  return found;
+  for (const OfSegment& one : all) {
+    const auto is_copy = [&](const OfSegment& other) {
+      const double apart = one.second == other.second ? distinct : distinct_spans;
+      return one.first <= other.first * (1.0 + apart);
+    };
+    if (found.size() < count && std::none_of(found.begin(), found.end(), is_copy)) found.push_back(one);
+  }
+  std::vector<double> omegas;
+  for (const OfSegment& one : found) omegas.push_back(one.first);
+  return omegas;
 }
 
 std::pair<double, double> distinct_pair(const beam::Beam& beam) {
@@ -214,9 +227,18 @@ std::pair<double, double> distinct_pair(const beam::Beam& beam) {
 }
 
 beam::Rayleigh rayleigh(double omega1, double omega2, double zeta1, double zeta2) {
+  const auto [least, most] = std::minmax({zeta1 * omega1 / omega2, zeta1 * omega2 / omega1});
+  if (zeta2 < least * (1.0 - as_printed) || zeta2 > most * (1.0 + as_printed))
+    throw InputError(
+        fmt::format("beam_damping_ratios = {:g},{:g}: Rayleigh damping that has these at {:.6g} and {:.6g} Hz has a "
+                    "negative {}, which feeds energy into the beam; allowed beside {:g}: from {:.6g} to {:.6g}; "
+                    "beam_damping_frequencies names other frequencies",
+                    zeta1, zeta2, omega1 / (2.0 * std::numbers::pi), omega2 / (2.0 * std::numbers::pi),
+                    (zeta2 < least) == (omega1 < omega2) ? "b" : "a", zeta1, least, most));
+  zeta2 = std::clamp(zeta2, least, most);
   // Eq. 20 divided by omega2 - omega1, so that nothing cancels: equal ratios give their limit exactly.
   const double sum = omega1 + omega2, slope = omega1 * (zeta1 - zeta2) / (omega2 - omega1);
-  return {2.0 * omega1 * omega2 / sum * (zeta1 + slope), 2.0 / sum * (zeta2 - slope)};
+  return {std::max(2.0 * omega1 * omega2 / sum * (zeta1 + slope), 0.0), std::max(2.0 / sum * (zeta2 - slope), 0.0)};
 }
 
 }  // namespace traverse::modes

@@ -90,6 +90,26 @@ TEST(BadNumbers, NoNumbersAtAll) {
                              });
 }
 
+// f2 is four times f1, but for the mesh: elements, modes, sweeps and checks alike name the second ratios that are
+// possible.
+TEST(BadNumbers, DampingThatFeedsEnergy) {
+  const Workplace workplace("beam: {spans: 20.0, EI: 2.0e10, mass: 1.5e4}\nload: {forces: 2.0e5, speed: 50.0}\n");
+  const std::vector<std::string> falls = {"beam_damping_ratios = 0.05,0.01", "negative b", "from 0.0124", "to 0.2000"};
+  expect_refusals(
+      workplace, {
+                     {{"-beam_damping_ratios", "0.05,0.01"}, falls},
+                     {{"-beam_damping_ratios", "0.05,0.01", "-model_modes", "4"}, falls},
+                     {{"-beam_damping_ratios", "0.05,0.01", "-sweep_speed", "40,50,5"}, falls},
+                     {{"-beam_damping_ratios", "0.05,0.01", "-check"}, falls},
+                     {{"-beam_damping_ratios", "0.05,0"}, {"beam_damping_ratios = 0.05,0", "from 0.0124", "to 0.2000"}},
+                     {{"-beam_damping_ratios", "0.01,0.05"}, {"beam_damping_ratios = 0.01,0.05", "negative a"}},
+                     {{"-beam_damping_ratios", "0.01,0.02", "-beam_damping_frequencies", "5,6"}, {"0.01,0.02"}},
+                     {{"-beam_rayleigh", "0.1,-1e-4"}, {"beam_rayleigh = 0.1,-1e-4", "not below 0"}},
+                     {{"-beam_rayleigh", "-0.1,1e-4"}, {"beam_rayleigh = -0.1,1e-4", "not below 0"}},
+                     {{"-model_modes", "2", "-model_damping_ratios", "-0.1"}, {"model_damping_ratios = -0.1"}},
+                 });
+}
+
 TEST(BadNames, MisspeltOnesGetAProposal) {
   const Workplace workplace(small_scene());
   expect_refusals(workplace,

@@ -65,6 +65,18 @@ TEST(Modes, DistinctPairSkipsRigidModesAndCopies) {
   EXPECT_NEAR(pair.second / simple_span(20), 1.0, 1e-3);
 }
 
+// Spans of one drawing are one kind of span, however they are measured: their frequencies are no pair of eq. 20.
+TEST(Modes, DistinctPairTakesSpansAlikeUpToTheirToleranceForOne) {
+  const auto alike = modes::distinct_pair(Beam(PETSC_COMM_WORLD, model_of({20, 20.002}, 8, true)));
+  EXPECT_NEAR(alike.first / simple_span(20.002), 1.0, 1e-4);
+  EXPECT_NEAR(alike.second / simple_span(20.002, 2), 1.0, 1e-3);
+  const auto others = modes::distinct_pair(Beam(PETSC_COMM_WORLD, model_of({20, 20.4}, 8, true)));
+  EXPECT_NEAR(others.second / simple_span(20), 1.0, 1e-4);
+  // The neighbouring modes of one continuous beam are two, however close.
+  const auto chain = modes::distinct_pair(Beam(PETSC_COMM_WORLD, model_of(std::vector<double>(100, 32.0), 4, false)));
+  EXPECT_LT(chain.second, 1.001 * chain.first);
+}
+
 TEST(Modes, DistinctPairDoesNotDependOnAxialUnknowns) {
   const auto with = modes::distinct_pair(Beam(PETSC_COMM_WORLD, model_of({200, 200, 200}, 10, false, true)));
   const auto without = modes::distinct_pair(Beam(PETSC_COMM_WORLD, model_of({200, 200, 200}, 10, false, false)));
@@ -165,6 +177,20 @@ TEST(Rayleigh, GivesTheRatiosBack) {
   // As the paper prints it.
   EXPECT_NEAR(a, 2 * w1 * w2 * (0.02 * w2 - 0.05 * w1) / (w2 * w2 - w1 * w1), 1e-14);
   EXPECT_NEAR(b, 2 * (0.05 * w2 - 0.02 * w1) / (w2 * w2 - w1 * w1), 1e-16);
+}
+
+// a and b are not negative where zeta2/zeta1 is between omega1/omega2 and omega2/omega1, and zero at these.
+TEST(Rayleigh, NeverFeedsEnergy) {
+  const double w1 = 20.0, w2 = 80.0;
+  EXPECT_EQ(modes::rayleigh(w1, w2, 0.05, 0.0125).b, 0.0);
+  EXPECT_DOUBLE_EQ(modes::rayleigh(w1, w2, 0.05, 0.0125).a, 2 * 0.05 * w1);
+  EXPECT_EQ(modes::rayleigh(w1, w2, 0.01, 0.04).a, 0.0);
+  EXPECT_DOUBLE_EQ(modes::rayleigh(w2, w1, 0.04, 0.01).b, 2 * 0.01 / w1);
+  for (const auto& [zeta1, zeta2] : {std::pair(0.05, 0.012), {0.05, 0.21}, {0.05, 0.0}, {0.0, 0.05}}) {
+    EXPECT_THROW(modes::rayleigh(w1, w2, zeta1, zeta2), InputError) << zeta1 << " " << zeta2;
+    EXPECT_THROW(modes::rayleigh(w2, w1, zeta2, zeta1), InputError) << zeta1 << " " << zeta2;
+  }
+  EXPECT_EQ(modes::rayleigh(w1, w2, 0.0, 0.0).b, 0.0);
 }
 
 TEST(Rayleigh, EqualRatiosAtNeighbouringFrequencies) {
