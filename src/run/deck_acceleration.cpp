@@ -38,8 +38,8 @@ std::vector<double> distinct_of_modes(const std::vector<double>& omega) {
 
 std::vector<double> first_frequencies(const SharedBeam& shared) {
   std::vector<double> found;
-  if (shared.modal)
-    found = distinct_of_modes(shared.modal->omega());
+  if (shared.beam->model().given)
+    found = distinct_of_modes(shared.beam->model().given->omega);
   else if (const beam::Beam& beam = *shared.beam; beam.rail() == nullptr && !beam.model().nonlinear())
     found = modes::distinct_frequencies(beam, counted);
   else

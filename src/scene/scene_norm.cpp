@@ -42,16 +42,15 @@ void read_damping_bound(const Options& o, Scene& scene) {
   for (const char* name : {"model_damping_ratios", "beam_damping_ratios", "beam_rayleigh"})
     if (o.has(name)) o.refuse("model_damping_bound", fmt::format("give either this or {}", name));
   const double span = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end());
-  double ratio = norm::least_damping(material_of(o.choice("model_damping_bound")), span);
+  const double least = norm::least_damping(material_of(o.choice("model_damping_bound")), span);
   const double more = o.flag("model_additional_damping") ? norm::additional_damping(span) : 0.0;
-  scene.notes.push_back(fmt::format("damping {:.4g} %: EN 1991-2 table 6.6, {}, span {:g} m{}", 100.0 * (ratio + more),
-                                    o.choice("model_damping_bound"), span,
-                                    more > 0.0 ? fmt::format(", with {:.3g} % by 6.4.6.4", 100.0 * more) : ""));
-  ratio += more;
-  if (scene.model_modes > 0)
-    scene.damping_of_modes = {ratio};
-  else
-    scene.damping.ratios = {ratio, ratio};
+  const double ratio = least + more;
+  scene.notes.push_back(
+      fmt::format("damping {:.4g} %: EN 1991-2 table 6.6, {}, span {:g} m{}; of the first two frequencies, Rayleigh's "
+                  "of all others",
+                  100.0 * ratio, o.choice("model_damping_bound"), span,
+                  more > 0.0 ? fmt::format(", with {:.3g} % by 6.4.6.4", 100.0 * more) : ""));
+  scene.damping.ratios = {ratio, ratio};  // one law, which elements and modes have alike
 }
 
 void read_norm(const Options& o, Scene& scene) {
