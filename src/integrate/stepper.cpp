@@ -21,7 +21,7 @@ using coupling::Terms;
 constexpr PetscInt no_limit = std::numeric_limits<PetscInt>::max() - 1;  // of steps; TS wants some bound
 constexpr int most_rejections = 12;                                      // of one step, each a quarter as long
 constexpr double near_event = 1e-3;     // of a step: events closer than this share the end of a step
-constexpr double restart_growth = 2.0;  // steps of a multistep method may not grow faster
+constexpr double restart_growth = 2.0;  // steps of a method that carries accelerations on may not grow faster
 constexpr long steps_unseen = 16;       // between two looks at the bounds of the motion, which cost a pass over it
 constexpr double kept_step = 1e-7;      // of a step: lengths that need no other factorisation
 
@@ -242,7 +242,9 @@ double Stepper::take_step(double from, double left) {
     Array y(y_);
     if (!system_.try_apart(from, h, y.data)) check(TSRestartStep(ts_));
   }
-  if (multistep_ && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
+  // generalised-alpha carries on an acceleration of a part of a step elsewhere, as multistep methods do
+  const bool carries = multistep_ || (second_order_ && !high_order_);
+  if (carries && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
   if (system_.begin_step(from, from + h)) {  // a jump: what is known of the rate belongs to its other side
     known_ = false;
     check(TSRestartStep(ts_));

@@ -6,6 +6,7 @@
 
 #include "by_lanes.hpp"
 #include "by_spans.hpp"
+#include "integrate/integrator_choice.hpp"
 #include "results/stage.hpp"
 #include "run/axle_passages.hpp"
 #include "run/peaks.hpp"
@@ -17,6 +18,8 @@ namespace traverse::app {
 namespace {
 
 constexpr double rare = 5.0;  // steps for each
+
+constexpr double usual_solves = 5.0;  // a step of the default method, whose impacts take contact_impact_steps
 
 /// When something passes a probe, as long as that is rare among the steps.
 std::vector<double> passages(const Scene& scene, const Plan& plan) {
@@ -34,7 +37,12 @@ std::vector<double> passages(const Scene& scene, const Plan& plan) {
 coupling::SystemInput system_input(const Scene& scene, bool still) {
   coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,         scene.profile,
                                  scene.gravity,  scene.self_weight, scene.impact_steps, scene.contact_seats};
-  if (!still) return input;
+  if (!still) {
+    const auto own = integrate::own_method(scene.integrator);
+    const double solves = own ? static_cast<double>(own->stages.size()) : usual_solves;
+    input.impact_steps *= static_cast<int>(std::max(1.0, usual_solves / solves));
+    return input;
+  }
   input.train.speed = input.load.speed = 0.0;
   for (std::vector<train::Course>* courses : {&input.train.courses, &input.load.courses})
     for (train::Course& course : *courses) course.speed = base::SpeedLaw();

@@ -22,10 +22,11 @@ constexpr double most_static_work = 2e5;  // probes times nodes, up to which sta
 void check_balance(const Scene& scene, const results::Summary& summary) {
   const double allowed = scene.beam ? unbalanced : unbalanced_mechanism;
   if (summary.energy_residual > allowed * summary.energy_scale + rounding * summary.largest_energy)
-    throw StepTooLong(
-        fmt::format("the energy does not balance: {:g} J are missing where the energies change by {:g} J; the step is "
-                    "too long for this integrator, take a smaller -ts_dt or an implicit -ts_type",
-                    summary.energy_residual, summary.energy_scale));
+    throw StepTooLong(fmt::format(
+        "the energy does not balance: {:g} J are missing where the energies change by {:g} J; the step is "
+        "too long for this integrator, take a smaller -ts_dt or an implicit -ts_type, and where contacts are lost "
+        "and gained a greater -contact_impact_steps",
+        summary.energy_residual, summary.energy_scale));
 }
 
 Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* beam, results::Recorder& recorder,
