@@ -84,6 +84,9 @@ const options::Entry* own_measure() {
 
 namespace {
 
+/// Whether the whole acceleration, for which far more modes and shorter steps are needed, is judged by nothing.
+bool judged_low_passed(const Scene& scene) { return scene.limits_deck_acceleration() && filters_deck(scene); }
+
 std::string with_underscores(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
@@ -109,7 +112,14 @@ bool report_row(const std::string& name, const Promise& promise, double wanted, 
 bool asks_for(const Scene& scene, std::size_t quantity) {
   if (quantity == low_passed && !filters_deck(scene)) return false;
   const std::vector<std::string>& asked = scene.accuracy_of;
-  return asked.empty() || std::find(asked.begin(), asked.end(), stored_names[quantity]) != asked.end();
+  if (asked.empty()) return quantity != acceleration || !judged_low_passed(scene);
+  return std::find(asked.begin(), asked.end(), stored_names[quantity]) != asked.end();
+}
+
+std::string why_not_asked(const Scene& scene, std::size_t quantity) {
+  return quantity == acceleration && scene.accuracy_of.empty()
+             ? "limits judge the low-passed one; accuracy_of asks for both"
+             : "accuracy_of does not ask for it";
 }
 
 bool asks_for_forces_alone(const Scene& scene) {
@@ -123,6 +133,16 @@ std::string not_promised(Quantity quantity, const Promise& promise) {
 bool damps_high_modes(const Scene& scene) {
   const Damping& damping = scene.damping;
   return (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
+}
+
+bool damps_all_modes(const Scene& scene) {
+  const Damping& damping = scene.damping;
+  if (scene.by_given_modes()) {
+    const std::vector<double>& ratio = scene.beam->given->ratio;
+    return std::all_of(ratio.begin(), ratio.end(), [](double one) { return one > 0.0; });
+  }
+  return (damping.ratios && damping.ratios->first > 0.0) ||
+         (damping.rayleigh && std::max(damping.rayleigh->first, damping.rayleigh->second) > 0.0);
 }
 
 void Accuracy::promise_nothing() {

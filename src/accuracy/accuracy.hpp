@@ -46,11 +46,14 @@ bool asks_for_forces_alone(const Scene& scene);
 /// The note that a quantity's peak is not promised, and why.
 std::string not_promised(Quantity quantity, const Promise& promise);
 /// Why quantities are not promised.
-inline constexpr const char* not_asked_for = "accuracy_of does not ask for it";
+/// Of one that is not asked for.
+std::string why_not_asked(const Scene& scene, std::size_t quantity);
 inline constexpr const char* no_sum =
     "without damping that grows with the frequency the accelerations of all modes have no sum";
 /// Whether the scene asks for damping that grows with the frequency.
 bool damps_high_modes(const Scene& scene);
+/// Whether every mode of the bridge is damped, however it is described.
+bool damps_all_modes(const Scene& scene);
 
 /// What is promised where there is no bridge: largest errors at any instant, over the largest way from the start or the
 /// largest force.

@@ -28,7 +28,10 @@ constexpr int most_elements_a_bay = 8, most_elements_in_all = 1200;
 constexpr double track_order = 3.0;       // of a track's mesh, supposed
 constexpr double most_beginnings = 10.0;  // that trial runs may last, to see what comes later
 constexpr double usual_trials = 4.0;
-constexpr double most_of_the_run = 0.8;  // from there trial runs go on to see what a vehicle does behind the bridge
+constexpr double surely_taken = 1.5;         // trials of the first mesh and step, or as long as these
+constexpr double part_for_vibration = 0.25;  // of the wanted error
+constexpr double less_of_the_energy = 0.25;  // times a step that loses too much of it
+constexpr double most_of_the_run = 0.8;      // from there trial runs go on to see what a vehicle does behind the bridge
 
 /// The largest number of two digits that does not exceed x.
 double two_digits(double x) {
@@ -63,6 +66,7 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
   const double omega = first_omega(shared);
   const FirstSteps steps = first_steps(scene, omega, horizon_);
   longest_step_ = steps.longest;
+  step_of_period_ = open_step_ ? steps.of_period : 0.0;
   shortest_ = open_step_ ? steps.why : "the step is given";
   first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.time_step;
   const double decay = scene.by_given_modes() ? scene.beam->given->ratio.front() * omega
@@ -70,7 +74,7 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
   const double left = end - moved_by();
   growth_ = std::clamp(std::min(left, decay > 0.0 ? 1.0 / decay : left) / horizon_, 1.0, most_growth);
   for (std::size_t q = 0; q < quantities; ++q)
-    if (!asks_for(scene, q)) refuse(q, not_asked_for);
+    if (!asks_for(scene, q)) refuse(q, why_not_asked(scene, q));
   if (!follows_contacts(scene, step_))
     refuse(wheel_force, fmt::format("the contact vibrates at {:.3g} Hz, which steps of {:.2g} s do not follow",
                                     contact_frequency(scene) / (2.0 * std::numbers::pi), step_));
@@ -114,6 +118,8 @@ void ErrorSearch::run() {
 // Where trial runs become too many, what was measured has to do.
 void ErrorSearch::search() {
   try {
+    if (surely_taken * trials_.seconds(mesh_, step_) > Trials::most_seconds) throw TooMuchWork();
+    leave_out_vibration();
     refine();
     coarsen();
     coarsen_mesh();
@@ -127,6 +133,20 @@ void ErrorSearch::search() {
     for (std::size_t q = 0; q < quantities; ++q)
       if (misses_when_foreseen(q)) refuse(q, "trial runs of the mesh that it asks for would become too many");
   }
+}
+
+// Steps that are long against the beam's first period give the static response to forces, whose vibration the method
+// damps out at once. The energy that goes so tells its amplitude: its square, of that of the static response.
+void ErrorSearch::leave_out_vibration() {
+  if (step_of_period_ == 0.0) return;
+  const double amplitude = part_for_vibration * wanted_;
+  while (step_ > step_of_period_ && trials_.energy_missing(mesh_, step_) > amplitude * amplitude)
+    step_ = two_digits(std::max(less_of_the_energy * step_, step_of_period_));
+  first_step_ = step_;
+  if (step_ > step_of_period_)
+    refuse(acceleration, fmt::format("the beam vibrates with the first period of {:.3g} s, which steps of {:.2g} s do "
+                                     "not follow",
+                                     trial_steps_a_period * step_of_period_, step_));
 }
 
 void ErrorSearch::refuse_scene() const {

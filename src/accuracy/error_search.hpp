@@ -42,6 +42,7 @@ class ErrorSearch {
   double until_all_is_met(const SharedBeam& shared);
   void refine();
   void search();
+  void leave_out_vibration();
   [[noreturn]] void refuse_scene() const;
   void coarsen();
   void coarsen_mesh();
@@ -88,6 +89,7 @@ class ErrorSearch {
   std::string integrator_;  // chosen; empty: the default
   int mesh_, most_elements_;
   double most_coarsening_ = 2.0;  // times the measured elements; 1 where coarser ones have been measured
+  double step_of_period_ = 0.0;   // s, that follows the beam's first period; 0: the first step does
   double first_step_ = 0.0, longest_step_ = 0.0, step_ = 0.0;  // s
   double growth_ = 1.0;  // of errors in free oscillations until these have died away, for runs longer than the trials
   std::array<Promise, quantities> promises_{};

@@ -19,7 +19,7 @@ namespace {
 constexpr int first_bay = 2;
 constexpr int most_in_a_span = 100000;   // a span, as beam_elements_per_span allows
 constexpr double elements_a_wave = 2.0;  // of a bed's characteristic length (4 EI/k)^(1/4)
-constexpr double trial_steps_a_period = 12.0, steps_a_crossing = 24.0, trial_steps_a_wave = 20.0;
+constexpr double steps_a_crossing = 24.0, trial_steps_a_wave = 20.0;
 constexpr double part_of_run = 1e-2;
 // Step times frequency of the contacts, rad, at an accuracy of 1e-2 and at the finest; it falls as accuracy^0.22, which
 // is what coaches on Hertz wheels were found to need.
@@ -28,6 +28,9 @@ constexpr double coarse = 5e-3;  // from which on the vibration on a track hardl
 // Steps a sleeper that is passed at that accuracy; they grow as accuracy^-0.4.
 constexpr double steps_a_sleeper = 8.0, sleeper_power = 0.4;
 constexpr double finest = 64.0;  // times what all the rest needs
+// Steps that follow the first period of the beam through a trial run: where it takes more, forces move so slowly that
+// they may well do without.
+constexpr double most_for_the_period = 5e4;
 
 double contact_angle_of(double accuracy) {
   return contact_angle * std::clamp(std::pow(accuracy / 1e-2, contact_power), least_contact_angle, 1.0);
@@ -128,10 +131,9 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
     step = most;
     why = fmt::format("{} {:.3g} s", text, what);
   };
-  if (omega > 0.0) {
-    const double period = 2.0 * std::numbers::pi / omega;
-    no_longer_than(period / trial_steps_a_period, period, "the first period of the beam is");
-  }
+  const double period = omega > 0.0 ? 2.0 * std::numbers::pi / omega : 0.0, of_period = period / trial_steps_a_period;
+  const bool follows = !scene.train.vehicles.empty() || duration <= most_for_the_period * of_period;
+  if (omega > 0.0 && follows) no_longer_than(of_period, period, "the first period of the beam is");
   if (const double speed = greatest_speed(scene); speed > 0.0) {
     const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
     const double wave = shortest_wave(scene);
@@ -142,6 +144,8 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
   if (const double frequency = scene.output.low_pass.value_or(0.0); frequency > 0.0 && filters_deck(scene))
     no_longer_than(longest_spacing_for(frequency), 1.0 / frequency, "accelerations are filtered at the period of");
   if (scene.output.interval) no_longer_than(*scene.output.interval, *scene.output.interval, "output_interval is");
+  if (omega > 0.0 && !follows && of_period < step / finest)
+    return {step / finest, step, "forces move slowly over the beam", of_period};
   const double contact = contact_frequency(scene);
   if (scene.beam->track && greatest_speed(scene) > 0.0 && (contact == 0.0 || unstirred(scene))) {
     const double steps = steps_a_sleeper * std::pow(std::min(scene.accuracy / coarse, 1.0), -sleeper_power);

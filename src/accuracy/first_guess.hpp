@@ -18,11 +18,14 @@ double contact_frequency(const Scene& scene, bool with_springs = false);
 /// of that; the most of all wheels.
 double swing_after_a_push(const Scene& scene);
 
+inline constexpr double trial_steps_a_period = 12.0;  // of the beam's first period
+
 /// s.
 struct FirstSteps {
-  double first = 0.0;    // where the contacts' vibration is resolved as far as the accuracy wants
-  double longest = 0.0;  // where all the rest is, and no stored sample is stepped over
-  std::string why;       // what asks for the first one, in words
+  double first = 0.0;      // where the contacts' vibration is resolved as far as the accuracy wants
+  double longest = 0.0;    // where all the rest is, and no stored sample is stepped over
+  std::string why;         // what asks for the first one, in words
+  double of_period = 0.0;  // that follows the first period of the beam, where the first one does not; else 0
 };
 /// omega: the first frequency of the beam, rad/s; 0: not known. duration: of a trial run, s.
 FirstSteps first_steps(const Scene& scene, double omega, double duration);

@@ -183,6 +183,8 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
   for (const train::Separation& s : passage.system().contacts().separations().list())
     result.lost_contact = result.lost_contact || !s.from_start;
   result.peaks = watch.finished_peaks();
+  const results::Summary& energies = watch.extremes();
+  if (energies.energy_scale > 0.0) result.energy_missing = energies.energy_residual / energies.energy_scale;
   return result;
 }
 
@@ -215,6 +217,12 @@ double Trials::seconds() const {
 }
 
 const Peaks& Trials::run(int elements, double step, const std::string& integrator) {
+  return kept_run(elements, step, integrator).peaks;
+}
+
+double Trials::energy_missing(int elements, double step) { return kept_run(elements, step, {}).energy_missing; }
+
+const Trials::Kept& Trials::kept_run(int elements, double step, const std::string& integrator) {
   if (const auto known = kept_.find({elements, step, integrator}); known != kept_.end()) return known->second;
   Scene scene = scene_;
   set_mesh(scene, elements);
@@ -238,7 +246,8 @@ const Peaks& Trials::run(int elements, double step, const std::string& integrato
   if (scene_.vehicle_model == VehicleModel::automatic && result.defect > most_defect(scene_))
     throw OutOfBalance{result.defect};
   if (!result.complete) throw TooMuchWork();
-  return kept_.emplace(std::tuple{elements, step, integrator}, std::move(result.peaks)).first->second;
+  Kept kept{std::move(result.peaks), result.energy_missing};
+  return kept_.emplace(std::tuple{elements, step, integrator}, std::move(kept)).first->second;
 }
 
 }  // namespace traverse::app

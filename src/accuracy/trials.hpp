@@ -36,7 +36,8 @@ struct RunPeaks {
   double steps = 0.0;    // taken, those that were taken again for a contact's change too
   bool complete = true;  // false: ended at the limit of its steps
   bool lost_contact = false;
-  double defect = 0.0;  // of linear vehicles, coupling::System::defect
+  double defect = 0.0;          // of linear vehicles, coupling::System::defect
+  double energy_missing = 0.0;  // of what the energies change by
 };
 
 /// Collective. A run of the scene, whose step is given, sampled at every step. Its accelerations are low-passed where
@@ -64,6 +65,8 @@ class Trials {
   /// all runs may take. Vehicles that the scene leaves open are taken as linear: OutOfBalance where that leaves out too
   /// much.
   const Peaks& run(int elements, double step, const std::string& integrator = {});
+  /// Collective. What energy is missing after the run, of what the energies change by.
+  double energy_missing(int elements, double step);
   std::size_t count() const { return kept_.size(); }
   bool lost_contact() const { return lost_contact_; }  // wheels did in one of them
   /// An estimate of what a run takes, or of what all took so far, s: by counting, since decisions must not depend on
@@ -73,10 +76,15 @@ class Trials {
 
  private:
   double seconds_a_step(int elements) const;
+  struct Kept {
+    Peaks peaks;
+    double energy_missing = 0.0;
+  };
+  const Kept& kept_run(int elements, double step, const std::string& integrator);
 
   MPI_Comm comm_;
   Scene scene_;
-  std::map<std::tuple<int, double, std::string>, Peaks> kept_;  // by elements, step and integrator
+  std::map<std::tuple<int, double, std::string>, Kept> kept_;  // by elements, step and integrator
   bool lost_contact_ = false;
   double spent_ = 0.0;  // s, estimated from the steps that were taken
 };

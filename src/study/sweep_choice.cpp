@@ -73,15 +73,15 @@ std::optional<Accuracy> choose_at_speeds(const Scene& given, Scene& scene, std::
 /// it goes on until the last wheel has left and the filter has settled behind it, and the bridge does not ring on.
 Scene judged(const Scene& given, std::vector<std::string>& notes) {
   Scene scene = given;
-  std::vector<std::string> ignored;  // the runs say so themselves
+  if (!chooses(at_speed(given, 1.0))) return scene;  // nothing is tried, whatever the speed
+  std::vector<std::string> ignored;                  // the runs say so themselves
   settle_low_pass(PETSC_COMM_SELF, scene, ignored);
   if (!asks_for(scene, low_passed)) return scene;
   const double end = unsettled_end(*scene.output.low_pass);
-  const bool fades = damps_high_modes(scene) || scene.by_given_modes();
-  if (fades && !scene.end_time && scene.tail.value_or(0.0) >= end) return scene;
+  if (damps_all_modes(scene) && !scene.end_time && scene.tail.value_or(0.0) >= end) return scene;
   std::vector<std::string> others;
   for (std::size_t q = 0; q < low_passed; ++q)
-    if (asks_for(scene, q)) others.emplace_back(stored_names[q]);
+    if (asks_for(scene, q) || (q == acceleration && scene.accuracy_of.empty())) others.emplace_back(stored_names[q]);
   const Promise promise{
       true, false, 0.0,
       fmt::format("in sweeps and studies it takes a bridge with damping and scene_tail {:.3g} or more, "
@@ -138,6 +138,10 @@ SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& note
   const Scene by = judged(given, notes);
   SweepChoice choice{given, {}};
   const std::optional<Accuracy> all = choose_at_speeds(by, choice.scene, notes);
+  if (!all && given.model_modes > 0 && !given.by_given_modes())
+    notes.push_back(fmt::format(
+        "no errors of the peaks are promised: model_modes = {} is given, and no trial runs show what it leaves out",
+        given.model_modes));
   if (!all) return {given, model_of(given)};
   say(choice.scene, *all, notes);
   Scene tried = choice.scene;

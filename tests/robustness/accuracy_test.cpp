@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/curve.hpp"
+#include "support/paths.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 
@@ -73,6 +74,44 @@ TEST(AccuracyOption, OfLowPassedAccelerations) {
   EXPECT_TRUE(says(run({"-scene_tail", "0.5", "-accuracy_report"}), "chosen as before")) << reported.out;
   const Outcome sweep = run({"-sweep_speed", "20,60,10"});
   EXPECT_TRUE(says(sweep, "accuracy_of acceleration_lowpass is not promised: the runs of sweeps")) << sweep.out;
+}
+
+// Sweeps promise low-passed accelerations where the bridge is damped and the filter settles behind the train; with a
+// number of modes given nothing is tried, and that is the reason.
+TEST(AccuracyOption, OfLowPassedAccelerationsInSweeps) {
+  const Workplace workplace(damped_span);
+  const auto run = [&](std::vector<std::string> words) {
+    for (const char* word : {"-limits", TRAVERSE_SOURCE_DIR "/options/limits/en1990.yml", "-sweep_speed", "30,50,10",
+                             "-scene_tail", "0.2", "-accuracy", "1e-2"})
+      words.emplace_back(word);
+    return workplace.run(words);
+  };
+  const std::string refused = "not promised: low-passed acceleration", given = "model_modes = 6 is given";
+  const Outcome chosen = run({}), modes = run({"-model_modes", "6"}), undamped = run({"-beam_damping_ratios", "0"});
+  EXPECT_TRUE(says(chosen, "low-passed acceleration 0.0") || says(chosen, "acceleration lowpass ")) << chosen.out;
+  EXPECT_FALSE(says(chosen, refused)) << chosen.out;
+  EXPECT_FALSE(says(modes, refused)) << modes.out;
+  EXPECT_TRUE(says(modes, given)) << modes.out;
+  EXPECT_TRUE(says(undamped, refused)) << undamped.out;
+}
+
+// A first period of a 50,000th of the crossing is not followed where nothing vibrates: the response is the static one.
+TEST(AccuracyOption, SlowForcesTakeFewSteps) {
+  Results run = run_yaml(
+      "beam: {spans: 25.0, EI: 8.0e9, mass: 1.0e-6}\nsupport: {types: [pinned, roller]}\n"
+      "load: {forces: 1.0e5, speed: 120.0}\n",
+      {{"accuracy", "1e-3"}});
+  EXPECT_NEAR(run.attribute("/summary", "deflection") / (-1.0e5 * 25.0 * 25.0 * 25.0 / (48.0 * 8.0e9)), 1.0, 1e-4);
+  EXPECT_LT(run.attribute("/", "steps"), 1e4);
+}
+
+// Limits judge the low-passed acceleration: the whole one, which takes far more modes, is not promised unasked.
+TEST(AccuracyOption, WholeAccelerationsWhereTheyAreJudged) {
+  const Workplace workplace(damped_span);
+  const Outcome judged = workplace.run({"-limits", TRAVERSE_SOURCE_DIR "/options/limits/en1990.yml", "-scene_tail",
+                                        "0.2", "-accuracy", "1e-2", "-model_modes", "0"});
+  EXPECT_TRUE(says(judged, "not promised: acceleration: limits judge the low-passed one")) << judged.out;
+  EXPECT_TRUE(says(judged, ", low-passed acceleration ")) << judged.out;
 }
 
 // What was chosen is kept beside the results: the same scene is not tried again, another one is, and a file that is not
