@@ -112,8 +112,13 @@ bool report_row(const std::string& name, const Promise& promise, double wanted, 
 bool asks_for(const Scene& scene, std::size_t quantity) {
   if (quantity == low_passed && !filters_deck(scene)) return false;
   const std::vector<std::string>& asked = scene.accuracy_of;
-  if (asked.empty()) return quantity != acceleration || !judged_low_passed(scene);
-  return std::find(asked.begin(), asked.end(), stored_names[quantity]) != asked.end();
+  if (!asked.empty()) return std::find(asked.begin(), asked.end(), stored_names[quantity]) != asked.end();
+  if (quantity == acceleration) return !judged_low_passed(scene);
+  return !by_elements_alone(quantity) || (quantity != shear_force && pushes_along(scene));
+}
+
+bool is_welcome(const Scene& scene, std::size_t quantity) {
+  return scene.accuracy_of.empty() && quantity == shear_force;
 }
 
 std::string why_not_asked(const Scene& scene, std::size_t quantity) {
@@ -219,6 +224,7 @@ std::vector<std::pair<std::string, double>> Accuracy::expected() const {
   for (std::size_t q = 0; q < alone_quantities; ++q)
     if (measured && alone[q].present && alone[q].kept)
       list.emplace_back(with_underscores(alone_names[q]), alone[q].expected);
+  if (measured && frequencies.present && frequencies.kept) list.emplace_back("frequency", frequencies.expected);
   return list;
 }
 

@@ -38,8 +38,11 @@ bool report_row(const std::string& name, const Promise& promise, double wanted, 
 /// Its head. against: what the run is compared with; of: what the rows are.
 void report_head(const std::string& against, const std::string& of);
 
-/// Whether the scene's accuracy_of holds it, or is left out. Low-passed accelerations only where its runs have them.
+/// Whether the scene's accuracy_of holds it, or is left out: then not the shear, and what is axial only where trains
+/// push the beam along. Low-passed accelerations only where its runs have them.
 bool asks_for(const Scene& scene, std::size_t quantity);
+/// Whether it is promised where its error turns out to be small enough, but does not ask for mesh and step.
+bool is_welcome(const Scene& scene, std::size_t quantity);
 /// Whether wheel forces are asked for without the accelerations that show what too long steps do to both.
 bool asks_for_forces_alone(const Scene& scene);
 
@@ -48,6 +51,8 @@ std::string not_promised(Quantity quantity, const Promise& promise);
 /// Why quantities are not promised.
 /// Of one that is not asked for.
 std::string why_not_asked(const Scene& scene, std::size_t quantity);
+inline constexpr const char* not_by_modes =
+    "the run goes by modes, which do not look for it; accuracy_of shear asks for it";
 inline constexpr const char* no_sum =
     "without damping that grows with the frequency the accelerations of all modes have no sum";
 /// Whether the scene asks for damping that grows with the frequency.
@@ -64,6 +69,7 @@ struct Accuracy {
   bool measured = false;  // false: nothing was open, or there is nothing to measure
   std::array<Promise, quantities> promises;
   std::array<Promise, alone_quantities> alone;  // where there is no bridge
+  Promise frequencies;                          // of natural modes
   bool lost_contact = false;                    // wheels did in trial runs
   static constexpr double the_end = std::numeric_limits<double>::infinity();
   double seen_until = the_end;  // s of the run, until which trial runs went
@@ -87,7 +93,7 @@ struct Accuracy {
   std::vector<std::pair<std::string, double>> expected() const;
   double seconds = 0.0;  // wall time that choosing took
 
-  void keep(base::Bytes& bytes) { bytes(measured, promises, alone, lost_contact, seen_until, seconds); }
+  void keep(base::Bytes& bytes) { bytes(measured, promises, alone, frequencies, lost_contact, seen_until, seconds); }
 };
 
 /// Whether there is something to choose, and something moves that it can be chosen by.

@@ -344,7 +344,13 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
     result.promises[q] = promises_[q];
     const double in_space =
         std::max(space_[q].at(static_cast<double>(mesh_) / mesh), mesh != mesh_ ? foreseen_[q] : 0.0);
-    result.promises[q].expected = in_time + in_space;
+    Promise& promise = result.promises[q];
+    promise.expected = in_time + in_space;
+    const bool told = unseen_.empty() && time_[q].size > 0.0 && space_[q].size > 0.0;
+    if (!promise.present || !is_welcome(scene, q) || !told) continue;
+    promise.kept = promise.expected <= scene.accuracy;
+    promise.why_not =
+        fmt::format("{}, and what does for the rest leaves {:.1g}", why_not_asked(scene, q), promise.expected);
   }
 }
 

@@ -114,6 +114,13 @@ double contact_frequency(const Scene& scene, bool with_springs) {
   return std::sqrt(highest);
 }
 
+bool pushes_along(const Scene& scene) {
+  if (!scene.beam || !scene.beam->axial) return false;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    if (drive_of(scene.train, i) != train::Drive::constant || !law_of(scene.train, i).constant()) return true;
+  return false;
+}
+
 double swing_after_a_push(const Scene& scene) {
   double most = 0.0;
   for_all_wheels(scene, [&](const Vehicle& vehicle, const Wheel& wheel, double weight) {

@@ -14,6 +14,9 @@ int first_mesh(const Scene& scene);
 /// without wheels. with_springs: between that and its linear springs.
 double contact_frequency(const Scene& scene, bool with_springs = false);
 
+/// Whether trains push the beam along as they brake or are driven.
+bool pushes_along(const Scene& scene);
+
 /// By how much, over what it carries, the force of a wheel swings after it has been pressed down for a moment: 1/(m s)
 /// of that; the most of all wheels.
 double swing_after_a_push(const Scene& scene);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "accuracy/kept_choice.hpp"
+#include "accuracy/mode_mesh.hpp"
 #include "accuracy/trials.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/wheel_unloading.hpp"
@@ -13,6 +14,7 @@ namespace traverse::app {
 namespace {
 
 Accuracy try_models(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+  if (chooses_mode_mesh(scene)) return choose_mode_mesh(comm, scene, notes);
   if (chooses(scene)) settle_low_pass(comm, scene, notes);
   const std::optional<LanesChoice> lanes = lanes_for_one(scene, notes);
   if (!lanes) return choose(comm, scene, notes);

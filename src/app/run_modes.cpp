@@ -90,7 +90,10 @@ int run_modes(Job job) {
   record_model(scene, notes, recorder);
   recorder.modes(found, ab.a, ab.b, omega1, omega2);
   if (damping) recorder.damped_modes(damped);
-  recorder.finish_with({{"ended", "reached its end"}});
+  std::vector<results::Attribute> summary = {{"ended", "reached its end"}};
+  for (const auto& [quantity, error] : job.accuracy.expected())
+    summary.push_back({"expected_error_" + quantity, error});
+  recorder.finish_with(summary);
   if (rank == 0) fmt::print("results  {}\n", scene.output.file);
   return 0;
 }

@@ -142,7 +142,7 @@ constexpr Row later_rows[] = {
   {"contact_seats", flag, "", "false", any, "", 0, "under wheels a bridge's elements bend between their nodes too, as those of rails and of beams that shear do; so it is where accuracy chooses mesh or step"},
   {"contact_impact_steps", integer, "", "20", {0, 100000}, "", 0, "steps that an impact after a separation takes at least; 0: as the step is"},
   {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where left open"},
-  {"accuracy_of", choice_list, "", "(all)", any, "deflection acceleration moment wheel_force acceleration_lowpass", 0, "peaks that the accuracy is wanted of; of others nothing is promised; acceleration_lowpass: of the acceleration low-passed as output_lowpass says"},
+  {"accuracy_of", choice_list, "", "(all)", any, "deflection acceleration moment wheel_force acceleration_lowpass shear axial_displacement axial_force", 0, "peaks that the accuracy is wanted of; of others nothing is promised; acceleration_lowpass: of the acceleration low-passed as output_lowpass says; left out: all but shear, which is promised where the rest asks for as much, and of axial ones only where trains brake or are driven"},
   {"accuracy_whole", flag, "", "false", any, "", 0, "trial runs that find mesh and step for the accuracy are as long as the run, so that nothing comes that they have not seen"},
   {"accuracy_cache", flag, "", "true", any, "", 0, "mesh, step and modes that were chosen for the same scene before, kept beside its results in .traverse_choices, are taken again"},
   {"accuracy_report", flag, "", "false", any, "", 0, "runs the scene again, refined, and shows promised and true errors"},

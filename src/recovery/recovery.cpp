@@ -7,6 +7,11 @@
 #include "recovery/recovery_section.hpp"
 
 namespace traverse::beam {
+namespace {
+
+constexpr double on_station = 1e-7;  // of an element: so near a load and a station are taken as one place
+
+}  // namespace
 
 Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stations, double self_weight)
     : beam_(beam), line_(line), stations_(std::move(stations)), gravity_(self_weight) {
@@ -46,6 +51,26 @@ Forces Recovery::inside(std::size_t station, double x, ElementLoad load) const {
   Response added;
   s.add_load(load, added);
   return {added.moment, added.shear, added.axial_force};
+}
+
+Forces Recovery::inside(std::size_t station, double x, const ElementLoad& load, bool as_left) const {
+  const RecoverySection& s = sections_[station];
+  Forces added = inside(station, x, load);
+  const double xi = (x - s.element.x) / s.element.length;
+  const bool left = xi < 0.0 || (xi <= 1.0 && is_left(xi, s.at.xi));
+  if (left == as_left) return added;
+  const Forces by = jump(station, load);
+  for (std::size_t f = 0; f < added.size(); ++f) added[f] += as_left ? by[f] : -by[f];
+  return added;
+}
+
+bool Recovery::is_left_of(std::size_t station, const ElementLoad& load) const {
+  const Station& at = sections_[station].at;
+  return load.element == at.element ? is_left(load.xi, at.xi) : load.element < at.element;
+}
+
+Forces Recovery::jump(std::size_t station, const ElementLoad& load) const {
+  return {-load.moment, load.fy, sections_[station].EA > 0.0 ? -load.fx : 0.0};
 }
 
 Response Recovery::inside_response(std::size_t station, const ElementLoad& load) const {
@@ -169,11 +194,32 @@ void Recovery::evaluate(const double* v, const double* w, const double* a, const
     at += 4 * s.riders.size();
   }
   for (const ElementLoad& load : loads) {
-    const auto [first, past] =
-        std::equal_range(by_element_.begin(), by_element_.end(), Place{load.element, 0},
-                         [](const Place& one, const Place& other) { return one.element < other.element; });
-    for (auto place = first; place != past; ++place) sections_[place->section].add_load(load, out[place->section]);
+    for (const Place& place : sections_of(load.element)) sections_[place.section].add_load(load, out[place.section]);
+    if (load.speed != 0.0) add_beside(load, out);
   }
+}
+
+std::span<const Recovery::Place> Recovery::sections_of(int element) const {
+  const auto [first, past] =
+      std::equal_range(by_element_.begin(), by_element_.end(), Place{element, 0},
+                       [](const Place& one, const Place& other) { return one.element < other.element; });
+  return {first, past};
+}
+
+// A station at a node is in the element to its right, from the left of which a load comes or goes.
+void Recovery::add_beside(const ElementLoad& load, std::vector<Response>& out) const {
+  const auto look = [&](int element, double xi) {
+    for (const Place& place : sections_of(element)) {
+      if (std::abs(xi - sections_[place.section].at.xi) > on_station) continue;
+      const Forces by = jump(place.section, load);
+      const bool left = is_left_of(place.section, load), from_left = load.speed > 0.0;
+      const std::size_t side = left == from_left ? 1 : 0;
+      out[place.section].shear_beside[side] += left ? -by[1] : by[1];
+      out[place.section].axial_force_beside[side] += left ? -by[2] : by[2];
+    }
+  };
+  look(load.element, load.xi);
+  if (load.xi > 1.0 - on_station) look(load.element + 1, load.xi - 1.0);
 }
 
 }  // namespace traverse::beam

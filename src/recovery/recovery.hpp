@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,10 @@ struct Response {
   /// foundation inside the element add.
   double nodal_moment = 0.0, nodal_shear = 0.0, nodal_axial_force = 0.0, nodal_moment_rate = 0.0;
   double moment_rate = 0.0;  // d moment/dt, N m/s; NaN where nobody knows it
+  /// N: what of the forces is left of their jumps behind passing loads, which damping b K lets them follow within b.
+  double unrelaxed_shear = 0.0, unrelaxed_axial_force = 0.0;
+  /// Where a moving load stands on the station: what the forces differ by just before it is there, and just after, N.
+  std::array<double, 2> shear_beside{}, axial_force_beside{};
 };
 
 /// Moment (N m), shear and axial force (N).
@@ -65,8 +70,15 @@ class Recovery {
     const Element& e = line_.mesh.element(load.element);
     return e.x + load.xi * e.length;
   }
+  bool is_beyond(double x) const { return x < line_.mesh.start() || x > line_.mesh.end(); }
   /// What a load adds to the forces by acting inside the station's element, if it stood at x: none elsewhere.
   Forces inside(std::size_t station, double x, ElementLoad load) const;
+  /// The same, with the load counted to a side of the station on which it may not be.
+  Forces inside(std::size_t station, double x, const ElementLoad& load, bool as_left) const;
+  /// Whether evaluate() counts the load to what is left of the station.
+  bool is_left_of(std::size_t station, const ElementLoad& load) const;
+  /// By how much the forces differ where the load counts as left, from where it does not.
+  Forces jump(std::size_t station, const ElementLoad& load) const;
   /// What a load adds to the response of a station by acting inside its element: nothing elsewhere.
   Response inside_response(std::size_t station, const ElementLoad& load) const;
   /// The same of the deflection, m.
@@ -81,6 +93,7 @@ class Recovery {
 
   void gather(const double* v, const double* w, const double* a);
   Response respond(const RecoverySection& s, const Values& v, const Values& w, const Values& a) const;
+  void add_beside(const ElementLoad& load, std::vector<Response>& out) const;
   void add_riders(const RecoverySection& s, const Values* values, const double* riders, Response& r) const;
 
   const Beam& beam_;
@@ -91,6 +104,7 @@ class Recovery {
     int element;
     std::size_t section;
   };
+  std::span<const Place> sections_of(int element) const;
   std::vector<Place> by_element_;  // ascending: many loads of a bed find their few sections
   double gravity_;
   std::vector<double> gathered_;  // of every station: v, w, a, and v, w of what stands above each riding sleeper

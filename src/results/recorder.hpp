@@ -92,7 +92,8 @@ struct Summary {
   bool probes = false;  // whether there are any: without them there are no peaks
   bool moments = true;  // are known
   Extreme deflection, acceleration, moment;
-  std::optional<LowPassed> low_passed;  // acceleration
+  std::optional<Extreme> shear, axial_displacement, axial_force;  // where they are known
+  std::optional<LowPassed> low_passed;                            // acceleration
   double static_deflection = 0.0;  // largest |static deflection| at the same station with the same loads; 0: unknown
   double amplification = 0.0;      // |deflection| over static; 0: unknown
   double least_wheel_force = 0.0, greatest_wheel_force = 0.0;

@@ -26,6 +26,9 @@ std::vector<Attribute> attributes_of(const Summary& summary) {
       add("acceleration_lowpass_filter", summary.low_passed->filter);
     }
     if (summary.moments) extreme("moment", summary.moment);
+    if (summary.shear) extreme("shear", *summary.shear);
+    if (summary.axial_displacement) extreme("axial_displacement", *summary.axial_displacement);
+    if (summary.axial_force) extreme("axial_force", *summary.axial_force);
     if (summary.static_deflection > 0.0) add("static_deflection", summary.static_deflection);
     if (summary.amplification > 0.0) add("amplification", summary.amplification);
   }

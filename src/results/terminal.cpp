@@ -62,6 +62,7 @@ void print_beam(const Summary& summary) {
     line(fmt::format("  up to {:.4g} Hz", summary.low_passed->frequency),
          extreme_text(summary.low_passed->extreme, 1.0, "m/s2"));
   if (summary.moments) line("peak moment", extreme_text(summary.moment, 1e-3, "kN m"));
+  if (summary.shear) line("peak shear", extreme_text(*summary.shear, 1e-3, "kN"));
   if (summary.static_deflection > 0.0) {
     line("static deflection", fmt::format("{:.4g} mm", 1e3 * summary.static_deflection));
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "integrate/integrator_choice.hpp"
 #include "lanes/processor.hpp"
@@ -90,6 +91,7 @@ class ByLanes final : public coupling::SteppedApart {
       probes[i].acceleration = crossing_.at(&Now::response, probes.size() + i);
       probes[i].moment = crossing_.at(&Now::response, 2 * probes.size() + i);
       probes[i].moment_rate = crossing_.at(&Now::response, 3 * probes.size() + i);
+      probes[i].shear = std::numeric_limits<double>::quiet_NaN();
     }
   }
   double moment_lag() const override { return lag_; }

@@ -7,20 +7,11 @@
 namespace traverse::app {
 namespace {
 
-constexpr double kept = 0.5;      // of the largest extreme so far
-constexpr double compared = 0.6;  // of the largest one
-// Of the step before: the slope between instants that are nearer than that is made by rounding, and a parabola through
-// them overshoots.
-constexpr double too_near = 1e-2;
-constexpr double likely = 2.0;  // times the root mean square: what an extreme's error hardly exceeds
-constexpr int bisections = 40;
+constexpr double kept = 0.5;           // of the largest extreme so far
+constexpr double compared = 0.6;       // of the largest one
+constexpr double likely = 2.0;         // times the root mean square: what an extreme's error hardly exceeds
 const std::vector<double> smooth;      // without kinks
 constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
-
-bool between(const std::vector<double>& times, double from, double to) {
-  const auto next = std::lower_bound(times.begin(), times.end(), from);
-  return next != times.end() && *next <= to;
-}
 
 bool earlier(const Peak& a, const Peak& b) { return a.place != b.place ? a.place < b.place : a.time < b.time; }
 
@@ -44,63 +35,14 @@ const Peak* nearest(const std::vector<Peak>& peaks, const Peak& to, double reach
 
 }  // namespace
 
-template <class Note>
-void Curve::add(double t, double value, const std::vector<double>& kinks, Note&& note) {
-  const double latest = seen_.time[4];
-  if (seen_.count > 1 && t - latest < too_near * (latest - seen_.time[3])) {
-    if (std::abs(value) > std::abs(seen_.value[4])) std::tie(seen_.time[4], seen_.value[4]) = std::tie(t, value);
-    return;
-  }
-  seen_.push(t, value);
-  if (seen_.count == 1) return note(value, t);
-  if (seen_.count >= 4) look(2, kinks, note);
-}
-
-template <class Note>
-void Curve::look(std::size_t i, const std::vector<double>& kinks, Note&& note) const {
-  const auto &t = seen_.time, &y = seen_.value;
-  if (std::abs(y[i]) < std::abs(y[i - 1]) || std::abs(y[i]) <= std::abs(y[i + 1])) return;
-  const Turn turn = turn_about(seen_, i, [&](std::size_t from, std::size_t to) {
-    return y[from] * y[to] > 0.0 && !between(kinks, t[from], t[to]);
-  });
-  note(turn.value, turn.time);
-}
-
-double Curve::bend() const {
-  const auto &t = seen_.time, &y = seen_.value;
-  const double before = t[3] - t[2], after = t[4] - t[3];
-  if (seen_.count < 3 || !(before > 0.0 && after > 0.0)) return 0.0;
-  return std::abs((y[4] - y[3]) / after - (y[3] - y[2]) / before) * std::min(before, after);
-}
-
-template <class Note>
-void RelaxingCurve::add(double t, double value, double rate, double b, Note&& note) {
-  const double h = t - time_, before = rate_, start = value_;
-  if (!known_) note(value, t);
-  if (known_ && h > 0.0 && before * rate < 0.0 && before * start > 0.0) {
-    // start + p s + q s^2 + k b (exp(-s/b) - 1) with both values and both rates
-    const double lag = std::min(b, 100.0 * h), decay = std::exp(-h / lag), decayed = 1.0 - decay;
-    const double k = (value - start - 0.5 * h * (before + rate)) / (0.5 * h * (1.0 + decay) - lag * decayed);
-    const double p = before + k, q = 0.5 * (rate - before - k * decayed) / h;
-    double from = 0.0, to = h;
-    for (int i = 0; i < bisections; ++i) {
-      const double s = 0.5 * (from + to);
-      ((p + 2.0 * q * s - k * std::exp(-s / lag)) * before > 0.0 ? from : to) = s;
-    }
-    note(start + from * (p + q * from) - k * lag * (1.0 - std::exp(-from / lag)), time_ + from);
-  }
-  time_ = t;
-  value_ = value;
-  rate_ = rate;
-  known_ = true;
-}
-
-Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag)
+Peaks::Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag, bool axial, bool passages_known)
     : passages_(std::move(passages)),
       lag_(lag),
-      moments_(lag > 0.0 ? passages_.size() : 0),
-      probes_(passages_.size()),
-      wheels_(wheels) {
+      axial_(axial),
+      forces_(passages_.size(), ProbeForces(axial, passages_known)),
+      motions_(passages_.size()),
+      wheels_(wheels),
+      ranges_(passages_.size()) {
   for (std::size_t q = 0; q < quantities; ++q) each_[q].resize(q == wheel_force ? wheels : passages_.size());
 }
 
@@ -122,23 +64,45 @@ void Peaks::note(Quantity q, std::size_t place, double value, double time) {
   if (found.size() > most / 2) found.erase(found.begin(), found.end() - most / 2);
 }
 
+void Peaks::note_range(Quantity q, std::size_t probe, double value, double time, double other) {
+  auto& [least, greatest] = ranges_[probe][q];
+  if (std::isnan(least.time) || value < least.value) least = {value, time, other};
+  if (std::isnan(greatest.time) || value > greatest.value) greatest = {value, time, other};
+}
+
+auto Peaks::note_of(Quantity q, std::size_t probe) {
+  return [this, q, probe](double value, double at, bool outward) {
+    note_range(q, probe, value, at, 0.0);
+    if (outward) note(q, probe, value, at);
+  };
+}
+
+auto Peaks::note_of_forces(std::size_t probe) {
+  return [this, probe](Quantity q, double value, double at, bool outward, double other) {
+    note_range(q, probe, value, at, other);
+    if (outward) note(q, probe, value, at);
+  };
+}
+
 void Peaks::add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces) {
   for (std::size_t i = 0; i < probes.size(); ++i) {
-    const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].moment};
-    const auto note_of = [&](std::size_t q) {
-      return [this, q, i](double value, double at) { note(static_cast<Quantity>(q), i, value, at); };
-    };
-    for (std::size_t q = 0; q < values.size(); ++q)
-      if (q == moment && lag_ > 0.0 && !std::isnan(probes[i].moment_rate))
-        moments_[i].add(t, values[q], probes[i].moment_rate, lag_, note_of(q));
-      else
-        probes_[i][q].add(t, values[q], q == moment ? passages_[i] : smooth, note_of(q));
-    bend_.acceleration = std::max(bend_.acceleration, probes_[i][acceleration].bend());
+    const std::array values = {probes[i].deflection, probes[i].acceleration, probes[i].axial_displacement};
+    const std::size_t known = values.size() - (axial_ ? 0 : 1);
+    for (std::size_t m = 0; m < known; ++m) motions_[i][m].add(t, values[m], smooth, note_of(motions[m], i));
+    forces_[i].add(t, probes[i], passages_[i], lag_, note_of_forces(i));
+    bend_.acceleration = std::max(bend_.acceleration, motions_[i][acceleration].bend());
   }
   for (std::size_t i = 0; i < wheel_forces.size(); ++i) {
-    wheels_[i].add(t, wheel_forces[i], smooth, [&](double value, double at) { note(wheel_force, i, value, at); });
+    wheels_[i].add(t, wheel_forces[i], smooth, [&](double value, double at, bool outward) {
+      if (outward) note(wheel_force, i, value, at);
+    });
     bend_.wheel_force = std::max(bend_.wheel_force, wheels_[i].bend());
   }
+}
+
+void Peaks::add_shear(double t, std::span<const beam::Response> probes) {
+  for (std::size_t i = 0; i < probes.size(); ++i)
+    forces_[i].add_shear(t, probes[i], passages_[i], lag_, note_of_forces(i));
 }
 
 Bends Peaks::bends() const {
@@ -155,19 +119,19 @@ double Bends::times(const Bends& others) const {
 }
 
 void Peaks::finish() {
-  for (std::size_t i = 0; i < probes_.size(); ++i)
-    for (std::size_t q = 0; q < wheel_force; ++q)
-      probes_[i][q].finish(q == moment ? passages_[i] : smooth,
-                           [&](double value, double at) { note(static_cast<Quantity>(q), i, value, at); });
-  for (std::size_t i = 0; i < moments_.size(); ++i)
-    moments_[i].finish([&](double value, double at) { note(moment, i, value, at); });
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    for (std::size_t m = 0; m < motions.size(); ++m) motions_[i][m].finish(smooth, note_of(motions[m], i));
+    forces_[i].finish(passages_[i], lag_, note_of_forces(i));
+  }
   for (std::size_t i = 0; i < wheels_.size(); ++i)
-    wheels_[i].finish(smooth, [&](double value, double at) { note(wheel_force, i, value, at); });
+    wheels_[i].finish(smooth, [&](double value, double at, bool outward) {
+      if (outward) note(wheel_force, i, value, at);
+    });
 }
 
 namespace {
 
-/// Calls note(value, time) for the extremes of one of the series. Returns its curve.
+/// Calls note(value, time) for the outward extremes of one of the series. Returns its curve.
 template <class Note>
 Curve follow(std::span<const double> rows, std::size_t series, std::size_t which, double interval, Note&& note) {
   Curve curve;
@@ -181,16 +145,18 @@ Curve follow(std::span<const double> rows, std::size_t series, std::size_t which
 
 // The last instant is no end of the run: where a curve still rises there, its extreme is not known.
 void Peaks::add_low_passed(std::span<const double> rows, double interval) {
-  for (std::size_t i = 0; i < probes_.size(); ++i) {
-    const auto note_it = [&](double value, double at) { note(low_passed, i, value, at); };
-    follow(rows, probes_.size(), i, interval, note_it).rest(smooth, note_it);
+  for (std::size_t i = 0; i < motions_.size(); ++i) {
+    const auto note_it = [&](double value, double at, bool outward) {
+      if (outward) note(low_passed, i, value, at);
+    };
+    follow(rows, motions_.size(), i, interval, note_it).rest(smooth, note_it);
   }
 }
 
 Peak largest_peak(std::span<const double> rows, std::size_t series, double interval) {
   Peak largest;
   for (std::size_t i = 0; i < series; ++i) {
-    const auto note = [&](double value, double time) {
+    const auto note = [&](double value, double time, bool) {
       if (std::abs(value) > std::abs(largest.value)) largest = {value, time, static_cast<int>(i)};
     };
     follow(rows, series, i, interval, note).finish(smooth, note);
@@ -243,6 +209,17 @@ std::vector<std::vector<double>> passages_of(const Scene& scene) {
     std::sort(passages[p].begin(), passages[p].end());
   }
   return passages;
+}
+
+bool knows_passages(const Scene& scene) {
+  if (!scene.beam || scene.beam->track || scene.analysis != Analysis::transient) return true;
+  for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i)
+    if (drive_of(scene.train, i) != train::Drive::constant) return false;
+  return true;
+}
+
+Peaks peaks_for(const Scene& scene, std::size_t wheels, double lag) {
+  return {passages_of(scene), wheels, lag, scene.beam && scene.beam->axial, knows_passages(scene)};
 }
 
 }  // namespace traverse::app

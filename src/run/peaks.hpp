@@ -1,26 +1,23 @@
-// Extremes (peaks) of sampled curves; `accuracy` promises their errors. Between samples a curve is of fourth degree
-// (turn.hpp). Where a wheel passes a probe the moment has a kink, which gets a sample of its own (option step_probes).
-// With damping b K the moment relaxes behind the kink within a time of b, which may be much shorter than a step.
+// Extremes (peaks) of a run; `accuracy` promises their errors. Between samples a curve is of fourth degree (turn.hpp).
+// The least and the greatest of every probe are the envelopes along the bridge. Where a wheel passes a probe the moment
+// has a kink, which gets a sample of its own (option step_probes), and the shear jumps (probe_forces.hpp). With damping
+// b K they relax behind that within a time of b, which may be much shorter than a step.
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "base/bytes.hpp"
 #include "recovery/recovery.hpp"
-#include "run/turn.hpp"
+#include "run/curve.hpp"
+#include "run/probe_forces.hpp"
+#include "run/quantity.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
-
-enum Quantity : std::size_t { deflection, acceleration, moment, wheel_force, low_passed, quantities };
-inline constexpr std::array<const char*, quantities> quantity_names = {"deflection", "acceleration", "moment",
-                                                                       "wheel force", "low-passed acceleration"};
-/// The same in options and in the results file.
-inline constexpr std::array<const char*, quantities> stored_names = {"deflection", "acceleration", "moment",
-                                                                     "wheel_force", "acceleration_lowpass"};
 
 struct Peak {
   double value = 0.0;  // signed
@@ -28,49 +25,13 @@ struct Peak {
   int place = 0;       // probe or wheel
 };
 
-/// The extremes of one curve, as samples come.
-class Curve {
- public:
-  /// Calls note(value, time) for the extreme that is known with this sample, two after it. kinks: ascending times at
-  /// which the curve may have one.
-  template <class Note>
-  void add(double t, double value, const std::vector<double>& kinks, Note&& note);
-  /// After the last sample: the extreme just before it.
-  template <class Note>
-  void rest(const std::vector<double>& kinks, Note&& note) const {
-    if (seen_.count >= 3) look(3, kinks, note);
-  }
-  /// That, and its value counts too.
-  template <class Note>
-  void finish(const std::vector<double>& kinks, Note&& note) const {
-    rest(kinks, note);
-    if (seen_.count > 0) note(seen_.value.back(), seen_.time.back());
-  }
-  /// How far the latest three samples are from a straight line: their second difference, 0 where they are fewer.
-  double bend() const;
-
- private:
-  /// If the sample at i is extreme.
-  template <class Note>
-  void look(std::size_t i, const std::vector<double>& kinks, Note&& note) const;
-
-  Samples seen_;
-};
-
-/// The extremes of a curve M that follows a smooth one by M + b dM/dt, but for its kinks, which have samples.
-class RelaxingCurve {
- public:
-  /// b in s. Between samples of values and rates M is a second power and exp(-t/b).
-  template <class Note>
-  void add(double t, double value, double rate, double b, Note&& note);
-  template <class Note>
-  void finish(Note&& note) const {
-    if (known_) note(value_, time_);
-  }
-
- private:
-  double time_ = 0.0, value_ = 0.0, rate_ = 0.0;  // the latest sample
-  bool known_ = false;
+/// The least and the greatest of one quantity at one probe, and when.
+struct Range {
+  struct Extreme {
+    double value = 0.0, time = std::numeric_limits<double>::quiet_NaN();
+    double other = 0.0;  // of a moment the shear that belongs to it, of a shear the moment
+  };
+  Extreme least, greatest;
 };
 
 /// Of curves from sample to sample, over their largest value.
@@ -85,10 +46,14 @@ class Peaks {
  public:
   Peaks() = default;
   /// passages: of each probe, the times at which something passes it; lag: of the moments, b of Rayleigh damping in s,
-  /// where responses have rates.
-  Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag = 0.0);
+  /// where responses have rates; axial: the beam has axial displacements; passages_known: passages are all there are.
+  Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag = 0.0, bool axial = false,
+        bool passages_known = true);
 
+  /// A shear that is no number is not known at this instant.
   void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
+  /// Shear and axial forces alone, of instants at which add() did not know them.
+  void add_shear(double t, std::span<const beam::Response> probes);
   void finish();
   /// The extremes of low-passed accelerations, rows of all probes at instants `interval` s apart from 0 on.
   void add_low_passed(std::span<const double> rows, double interval);
@@ -104,16 +69,26 @@ class Peaks {
   void forget_bends() { bend_ = {}; }
   /// The largest extreme of each probe or wheel.
   const std::vector<Peak>& largest_of_each(Quantity q) const { return each_[q]; }
-  void keep(base::Bytes& bytes) { bytes(moments_, probes_, wheels_, found_, largest_, each_, bend_); }
+  /// Of a probe's deflection, acceleration, moment or shear.
+  const Range& range(Quantity q, std::size_t probe) const { return ranges_[probe][q]; }
+  std::size_t probes() const { return ranges_.size(); }
+  void keep(base::Bytes& bytes) { bytes(forces_, motions_, wheels_, found_, largest_, each_, ranges_, bend_); }
 
  private:
+  /// Of a probe: deflection, acceleration, axial displacement.
+  static constexpr std::array motions = {deflection, acceleration, axial_displacement};
   void note(Quantity q, std::size_t place, double value, double time);
+  auto note_of(Quantity q, std::size_t probe);
+  auto note_of_forces(std::size_t probe);
+  void note_range(Quantity q, std::size_t probe, double value, double time, double other);
 
   std::vector<std::vector<double>> passages_;
   double lag_ = 0.0;
-  std::vector<RelaxingCurve> moments_;  // of the probes' moments where these lag; otherwise they are in probes_
-  std::vector<std::array<Curve, wheel_force>> probes_;
+  bool axial_ = false;
+  std::vector<ProbeForces> forces_;
+  std::vector<std::array<Curve, motions.size()>> motions_;
   std::vector<Curve> wheels_;
+  std::vector<std::array<Range, quantities>> ranges_;
   std::array<std::vector<Peak>, quantities> found_;
   std::array<Peak, quantities> largest_{};
   Bends bend_;  // in m/s2 and N
@@ -137,5 +112,9 @@ double peak_difference(const Peaks& rough, const Peaks& fine, Quantity q);
 /// For each probe of the scene the times at which wheels and forces pass it, s. Empty where x of the wheels is not
 /// known beforehand, or where they run on the rail of a layered track.
 std::vector<std::vector<double>> passages_of(const Scene& scene);
+/// Whether nothing else passes them.
+bool knows_passages(const Scene& scene);
+/// The peaks of a run of the scene, as yet none. lag: b of Rayleigh damping where responses have rates, s.
+Peaks peaks_for(const Scene& scene, std::size_t wheels, double lag);
 
 }  // namespace traverse::app

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "run/envelope.hpp"
+
 namespace traverse::app {
 namespace {
 
@@ -49,9 +51,11 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
   double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
-  if (system.apart() != nullptr) lag = system.apart()->moment_lag();
-  peaks_ = Peaks(passages_of(scene), wheel_count_, lag);
-  envelope_ = Envelope(passages_of(scene));
+  if (system.apart() != nullptr) {
+    lag = system.apart()->moment_lag();
+    seen_apart_.resize(scene.output.probes.size());
+  }
+  peaks_ = peaks_for(scene, wheel_count_, lag);
   wheels_ = WheelExtremes(wheel_count_, system.corners());
 }
 
@@ -72,7 +76,7 @@ void Watch::sample(const integrate::Instant& instant) {
   }
   step(instant.time);  // the first instant is no step's end
   if (system_.apart() == nullptr)
-    note_peaks();
+    note_peaks(now_.probes);
   else
     take_from_apart();
   note_worst();
@@ -113,7 +117,7 @@ void Watch::drag(const double* drag) {
 }
 
 // Of an instant that is the end of a step apart, or is observed.
-void Watch::note_peaks() {
+void Watch::note_peaks(const std::vector<beam::Response>& probes) {
   wheel_forces_.clear();
   const train::Fleet& fleet = system_.fleet();
   for (const train::Member& member : fleet.members) {
@@ -122,9 +126,8 @@ void Watch::note_peaks() {
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
   beyond_trials_.add(sample_.time, fleet, now_.motion.beam.foundation, peaks_);
-  peaks_.add(sample_.time, now_.probes, wheel_forces_);
-  envelope_.add(sample_.time, now_.probes);
-  if (deck_) deck_->add(sample_.time, now_.probes);
+  peaks_.add(sample_.time, probes, wheel_forces_);
+  if (deck_) deck_->add(sample_.time, probes);
 }
 
 void Watch::note_worst() {
@@ -172,9 +175,8 @@ void Watch::step(double t) {
     }
   if (system_.apart() == nullptr || t <= last_apart_) return;
   last_apart_ = sample_.time = t;
-  system_.apart()->see(now_.probes);
-  seen_apart_ = now_.probes;
-  note_peaks();
+  system_.apart()->see(seen_apart_);
+  note_peaks(seen_apart_);
 }
 
 // What was seen of a step apart stands for what the system makes of the same instant.
@@ -183,7 +185,9 @@ void Watch::take_from_apart() {
     now_.probes[i].deflection = seen_apart_[i].deflection;
     now_.probes[i].acceleration = seen_apart_[i].acceleration;
     now_.probes[i].moment = seen_apart_[i].moment;
+    if (!std::isnan(seen_apart_[i].shear)) now_.probes[i].shear = seen_apart_[i].shear;
   }
+  peaks_.add_shear(sample_.time, now_.probes);
 }
 
 void Watch::note_wheels() {
@@ -249,8 +253,8 @@ const results::Summary& Watch::finished_extremes() {
 }
 
 void Watch::keep(base::Archive& archive) {
-  archive.same(peaks_, beyond_trials_, envelope_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time,
-               now_.probes, most_deflected_);
+  archive.same(peaks_, beyond_trials_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time,
+               now_.probes, seen_apart_, most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);
   archive.same(axle_passages_);
@@ -280,6 +284,12 @@ results::Summary Watch::finish() {
     summary_.acceleration = extreme(acceleration);
     summary_.moments = !scene_.by_given_modes();
     summary_.moment = extreme(moment);
+    const auto if_known = [&](Quantity q) {
+      return peaks.largest(q).value != 0.0 ? std::optional(extreme(q)) : std::nullopt;
+    };
+    summary_.shear = if_known(shear_force);
+    summary_.axial_displacement = if_known(axial_displacement);
+    summary_.axial_force = if_known(axial_force);
   }
   if (!axle_passages_.empty()) {
     recorder_.datasets(axle_passages_.datasets());
@@ -300,12 +310,7 @@ results::Summary Watch::finish() {
   if (summary_.static_deflection > 0.0)
     summary_.amplification = std::abs(summary_.deflection.value) / summary_.static_deflection;
   recorder_.shape(shape_of(*beam_, scene_, worst_));
-  std::vector<results::Recorder::Dataset> envelope = envelope_.datasets();
-  if (scene_.by_given_modes())
-    std::erase_if(envelope, [](const auto& set) {
-      return set.name.find("moment") != std::string::npos || set.name.find("shear") != std::string::npos;
-    });
-  recorder_.datasets(envelope);
+  recorder_.datasets(envelopes(peaks, !scene_.by_given_modes()));
   note_static_deflections();
   return summary_;
 }

@@ -14,7 +14,6 @@
 #include "run/axle_passages.hpp"
 #include "run/beyond_trials.hpp"
 #include "run/deck_acceleration.hpp"
-#include "run/envelope.hpp"
 #include "run/outputs.hpp"
 #include "run/peaks.hpp"
 #include "run/plan.hpp"
@@ -84,7 +83,7 @@ class Watch {
   void note_separations();
   void note_wheels();
   void store(bool end);
-  void note_peaks();
+  void note_peaks(const std::vector<beam::Response>& probes);
   void note_worst();
   void note_energy();
   void note_static_deflections();
@@ -101,7 +100,6 @@ class Watch {
   std::vector<beam::Response> dragged_, seen_apart_;
   Peaks peaks_;
   BeyondTrials beyond_trials_;
-  Envelope envelope_;
   std::optional<DeckAcceleration> deck_;
   std::optional<Judge> judge_;
   WheelExtremes wheels_;

@@ -95,7 +95,7 @@ void read_filter(const Options& o, Scene& scene) {
       scene.notes.push_back(std::string(name) + " has no effect: it is for transient runs over a bridge");
   if (scene.output.low_passed_series && scene.sweep)
     scene.notes.emplace_back("output_lowpass_series has no effect: sweeps store no series");
-  if (scene.sweep) low_pass_by_limits_alone(scene);
+  if (scene.sweep) promise_what_many_runs_find(scene);
 }
 
 void read_wheel_filter(const Options& o, Scene& scene) {
@@ -158,13 +158,16 @@ void check_name(const Options& o, const std::string& name) {
 
 }  // namespace
 
-void low_pass_by_limits_alone(Scene& scene) {
+void promise_what_many_runs_find(Scene& scene) {
   scene.output.low_pass_asked = false;
-  if (scene.limits_deck_acceleration() || std::erase(scene.accuracy_of, low_passed_peak) == 0) return;
-  scene.notes.push_back(
-      fmt::format("accuracy_of {} is not promised: the runs of sweeps and studies low-pass deck "
-                  "accelerations only where limits ask for deck_acceleration{}",
-                  low_passed_peak, scene.accuracy_of.empty() ? "; all other peaks are promised instead" : ""));
+  const auto leave_out = [&](const char* name, const char* why) {
+    if (std::erase(scene.accuracy_of, name) == 0) return;
+    scene.notes.push_back(fmt::format("accuracy_of {} is not promised: the runs of sweeps and studies {}{}", name, why,
+                                      scene.accuracy_of.empty() ? "; all other peaks are promised instead" : ""));
+  };
+  if (!scene.limits_deck_acceleration())
+    leave_out(low_passed_peak, "low-pass deck accelerations only where limits ask for deck_acceleration");
+  for (const char* name : {"shear", "axial_displacement", "axial_force"}) leave_out(name, "do not look for its peaks");
 }
 
 void read_output(const Options& o, Scene& scene) {

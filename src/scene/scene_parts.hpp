@@ -90,8 +90,9 @@ ReadProfile read_profile(const options::Options& options, const std::string& pre
                          Scene& scene);
 void read_layers(const options::Options& options, Scene& scene);  // after train and load: the track is as long
 void read_output(const options::Options& options, Scene& scene);  // after layers and limits
-/// In sweeps and studies, whose runs filter deck accelerations where limits ask for it alone.
-void low_pass_by_limits_alone(Scene& scene);
+/// In sweeps and studies, whose runs filter deck accelerations where limits ask for it alone, and have no peaks of
+/// shear and axial forces.
+void promise_what_many_runs_find(Scene& scene);
 void decide_axial(const options::Options& options, Scene& scene);        // after beam and train
 void read_damping_bound(const options::Options& options, Scene& scene);  // after modal
 void read_norm(const options::Options& options, Scene& scene);           // after beam and output, whose limits it reads

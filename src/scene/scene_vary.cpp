@@ -345,7 +345,7 @@ Scene read_scene_of_study(const options::Options& given,
   for (const auto& [name, value] : values) entries.set({name, value, "a value of the study", 0});
   Options o(std::move(entries));
   Scene scene = read_scene(o);
-  low_pass_by_limits_alone(scene);
+  promise_what_many_runs_find(scene);
   scene.sweep.emplace();
   scene.sweep->lanes = static_cast<std::size_t>(std::stoul(o.choice("sweep_lanes")));
   scene.sweep->instants = o.number("sweep_instants");

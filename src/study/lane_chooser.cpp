@@ -94,7 +94,8 @@ LanesChoice LaneChooser::choose() {
   choice.scene = with(scene_, model_);
   for (std::size_t q = 0; q < quantities; ++q) {
     const bool kept = asks_for(scene_, q);
-    choice.promises[q] = {true, kept, errors[q], kept ? "" : why_not_asked(scene_, q)};
+    const bool present = !by_elements_alone(q) || q == shear_force;
+    choice.promises[q] = {present, kept, errors[q], kept ? "" : why_not_asked(scene_, q)};
   }
   if (alone_) note_peaks(wholes_->run(better_).back(), choice.promises);
   if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);

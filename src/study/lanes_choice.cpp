@@ -115,6 +115,8 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
   Scene scene = given;
   scene.accuracy_of = judged_alone(given);
   if (scene.accuracy_of.empty()) return std::nullopt;
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (by_elements_alone(q) && asks_for(given, q)) return std::nullopt;
   scene.sweep.emplace();
   std::vector<double>& speeds = scene.sweep->speeds;
   for (const double part : beside)
@@ -139,6 +141,8 @@ std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::st
         *choice.scene.time_step, chooser.trials(), chooser.horizon(),
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
     notes.push_back("expected errors of the peaks: " + words_of(scene, choice.promises));
+    choice.promises[shear_force].why_not = not_by_modes;
+    if (is_welcome(given, shear_force)) notes.push_back(not_promised(shear_force, choice.promises[shear_force]));
     if (asks_for(given, acceleration) && !choice.promises[acceleration].kept) {
       choice.promises[acceleration].why_not = no_sum;
       notes.push_back(not_promised(acceleration, choice.promises[acceleration]));

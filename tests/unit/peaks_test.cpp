@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace traverse::app {
 namespace {
@@ -129,6 +130,51 @@ TEST(Peaks, BehindAKinkThatRelaxes) {
       EXPECT_NEAR(peaks.largest(moment).value, 1.0 - b * std::log(2.0), 1e-12) << b << " " << dt;
       EXPECT_NEAR(peaks.largest(moment).time, kink + b * std::log(2.0), 1e-9) << b << " " << dt;
     }
+  }
+}
+
+/// A shear that falls by 1 a second, jumps by 3 at 0.4321 s and, with b, relaxes behind that.
+beam::Response jumping(double t, double jump, double b) {
+  beam::Response r;
+  const double s = t - jump;
+  r.moment_rate = b > 0.0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  if (b > 0.0 && s >= 0.0) r.unrelaxed_shear = -3.0 * std::exp(-s / b);
+  r.shear = -1.0 - t + (s >= 0.0 ? 3.0 : 0.0) + r.unrelaxed_shear;
+  if (t == jump) r.shear_beside = {-3.0, 0.0};
+  return r;
+}
+
+// Both sides of a jump count, whether an instant is there or between two, and what relaxes is greatest where it falls
+// as fast as it rises.
+TEST(Peaks, BesideAJump) {
+  const double jump = 0.4321;
+  for (const double b : {0.0, 1e-4, 2e-3})
+    for (const bool ends_there : {true, false}) {
+      Peaks peaks({{jump}}, 0, b);
+      std::vector<double> times;
+      for (int i = 0; i <= 30; ++i) times.push_back(i / 30.0);
+      if (ends_there) times.push_back(jump);
+      std::sort(times.begin(), times.end());
+      for (const double t : times) {
+        const beam::Response response = jumping(t, jump, b);
+        peaks.add(t, {&response, 1}, {});
+      }
+      peaks.finish();
+      const double way = b > 0.0 ? b * std::log(3.0 / b) : 0.0;
+      EXPECT_NEAR(peaks.range(shear_force, 0).greatest.value, 2.0 - jump - way - b, 1e-12) << b << ends_there;
+      EXPECT_NEAR(peaks.range(shear_force, 0).greatest.time, jump + way, 1e-12) << b << ends_there;
+      EXPECT_NEAR(peaks.range(shear_force, 0).least.value, -1.0 - jump, 1e-12) << b << ends_there;
+      EXPECT_NEAR(peaks.largest(shear_force).value, 2.0 - jump - way - b, 1e-12) << b << ends_there;
+    }
+}
+
+// The least and the greatest of a probe are those between samples, as peaks are, on either side of zero.
+TEST(Peaks, RangesLieBetweenSamplesToo) {
+  const Peaks peaks = peaks_of_curve([](double t) { return 5.0 + std::sin(7.0 * t + 0.3); }, 0.04);
+  for (const Quantity q : {deflection, acceleration, moment}) {
+    EXPECT_NEAR(peaks.range(q, 0).greatest.value, 6.0, 3e-6);
+    EXPECT_NEAR(peaks.range(q, 0).least.value, 4.0, 3e-6);
+    EXPECT_EQ(peaks.largest(q).value, peaks.range(q, 0).greatest.value);
   }
 }
 

@@ -119,5 +119,33 @@ TEST(ViscousLag, FollowsAForceWithinAnInterval) {
   EXPECT_NEAR(moment_at(4), exact, 1e-3 * std::abs(exact));
 }
 
+// The shear behind a force that stood exactly on a station at a node when a step ended there: rounding gives the force
+// to the element on one side or the other, and nothing depends on it. c jumps from 0 to about F; m relaxes within b.
+TEST(ViscousLag, AForceThatStoodOnTheStation) {
+  constexpr double lag_b = 1e-4, h = 3e-4;
+  const beam::Beam beam = simple_span(4);
+  const beam::Recovery recovery = middle_of(beam);
+  for (const double speed : {60.0, -60.0})
+    for (const bool left : {true, false}) {
+      beam::ViscousLag lag(recovery, lag_b);
+      std::vector<beam::Response> response(1);
+      const auto shear_with = [&](double t, const beam::ElementLoad& load) {
+        response[0] = recovery.inside_response(0, load);
+        lag.apply(t, {load}, response);
+        return response[0].shear;
+      };
+      const auto at = [&](double x) {
+        const beam::Station s = beam.mesh().locate(x);
+        return beam::ElementLoad{s.element, s.xi, 0.0, -F, 0.0, speed};
+      };
+      shear_with(0.0, at(0.5 * L - speed * h));
+      const double before = shear_with(h, {left ? 1 : 2, left ? 1.0 : 0.0, 0.0, -F, 0.0, speed});
+      const double behind = shear_with(2.0 * h, at(0.5 * L + speed * h));
+      EXPECT_NEAR(before, speed > 0.0 ? 0.0 : F, 1e-3 * F) << speed << left;
+      EXPECT_NEAR(behind, before + (speed > 0.0 ? F : -F) * (1.0 - std::exp(-h / lag_b)), 1e-3 * F) << speed << left;
+      EXPECT_NEAR(response[0].unrelaxed_shear, (speed > 0.0 ? -F : F) * std::exp(-h / lag_b), 1e-9 * F);
+    }
+}
+
 }  // namespace
 }  // namespace traverse::test

@@ -1,0 +1,31 @@
+// The quantities whose peaks are looked for; `accuracy` promises their errors.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace traverse::app {
+
+enum Quantity : std::size_t {
+  deflection,
+  acceleration,
+  moment,
+  wheel_force,
+  low_passed,
+  shear_force,
+  axial_displacement,
+  axial_force,
+  quantities
+};
+inline constexpr std::array<const char*, quantities> quantity_names = {
+    "deflection", "acceleration",       "moment",     "wheel force", "low-passed acceleration",
+    "shear",      "axial displacement", "axial force"};
+/// The same in options and in the results file.
+inline constexpr std::array<const char*, quantities> stored_names = {
+    "deflection", "acceleration",       "moment",     "wheel_force", "acceleration_lowpass",
+    "shear",      "axial_displacement", "axial_force"};
+
+/// Whether only runs by elements look for its peaks: those by modes and side by side do not.
+inline constexpr bool by_elements_alone(std::size_t q) { return q >= shear_force; }
+
+}  // namespace traverse::app
