@@ -99,7 +99,8 @@ std::string bash_completion(const std::vector<std::string>& ts_types) {
     if (!words.empty() && pattern.find('*') != std::string::npos)
       values += fmt::format("    {}) words='{}' ;;\n", pattern, fmt::join(words, " "));
   values += fmt::format(
-      "    {})\n      compopt -o filenames 2>/dev/null\n      mapfile -t COMPREPLY < <(compgen -f -- \"$cur\")\n"
+      "    {})\n      compopt -o filenames 2>/dev/null\n      mapfile -t COMPREPLY <<<\"$(compgen -f -- \"$cur\")\"\n"
+      "      [ -n \"${{COMPREPLY[0]}}\" ] || COMPREPLY=()\n"
       "      return ;;\n",
       fmt::join(files, "|"));
   std::string after;

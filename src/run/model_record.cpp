@@ -94,7 +94,8 @@ void record_type(const Vehicle& vehicle, const std::string& group, Recorder& rec
   for (const multibody::Joint& j : vehicle.mechanism.joints) {
     const Eigen::Vector2d from = j.type->needs.ends ? j.from : j.point, to = j.type->needs.ends ? j.to : j.point;
     joint_names.emplace_back(j.name, j.type->name);
-    joints.insert(joints.end(), {from.x(), from.y(), static_cast<double>(j.bodies[0]), static_cast<double>(j.bodies[1])});
+    joints.insert(joints.end(),
+                  {from.x(), from.y(), static_cast<double>(j.bodies[0]), static_cast<double>(j.bodies[1])});
     joint_ends.insert(joint_ends.end(), {from.x(), from.y(), to.x(), to.y()});
   }
   if (!names.empty()) recorder.tables({{"/model/" + group + "/names", names}});

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import unittest
 
@@ -14,10 +15,11 @@ FOLDERS = "include|src|tests|scripts|benchmarks|options|doc"
 
 def documents():
     """All Markdown files of the repository; without git those outside of builds."""
-    listed = subprocess.run(["git", "-C", str(SOURCE), "ls-files", "-co", "--exclude-standard", "*.md"],
-                            capture_output=True, text=True)
-    if listed.returncode == 0 and listed.stdout:
-        return [SOURCE / name for name in listed.stdout.splitlines() if (SOURCE / name).exists()]
+    if shutil.which("git"):
+        listed = subprocess.run(["git", "-C", str(SOURCE), "ls-files", "-co", "--exclude-standard", "*.md"],
+                                capture_output=True, text=True)
+        if listed.returncode == 0 and listed.stdout:
+            return [SOURCE / name for name in listed.stdout.splitlines() if (SOURCE / name).exists()]
     return [path for path in SOURCE.rglob("*.md")
             if not any(part in SKIPPED or part.startswith("build") for part in path.relative_to(SOURCE).parts)]
 

@@ -99,6 +99,8 @@ class Help(unittest.TestCase):
         self.assertIn("esdirk4", completed("traverse -ts_type "))
         self.assertEqual(completed("traverse -vehicle_coach_wheel_law h"), ["hertz"])
         self.assertEqual(completed("traverse -options_file sce"), ["scene.yml"])
+        self.assertEqual(completed("traverse -options_file other"), [])
+        self.assertNotIn("<(", asked("bash"))  # that takes /dev/fd, which a container may lack
         self.assertIn("beam", completed("traverse -help be"))
         self.assertIn("-vehicle_a_b_flat_length", completed("traverse -vehicle_a_b_flat_l"))
 

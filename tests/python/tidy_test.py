@@ -14,8 +14,12 @@ tidy = importlib.util.module_from_spec(specification)
 specification.loader.exec_module(tidy)
 
 
-@unittest.skipUnless(shutil.which("git"), "git is not installed")
 class Changed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        if not shutil.which("git"):
+            raise unittest.SkipTest("git is not installed")
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
