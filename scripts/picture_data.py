@@ -41,7 +41,7 @@ class Results:
     def speed(self):
         for key in ("train_speed", "load_speed"):
             try:
-                return float(self.options[key])
+                return speed_of(self.options[key])
             except (KeyError, ValueError):
                 continue
         return None
@@ -50,6 +50,14 @@ class Results:
         types = self.options.get("support_types", "").replace(" ", "").split(",")
         count = 0 if self.supports is None else len(self.supports)
         return types if len(types) == count else types[:1] * count
+
+
+def speed_of(text):
+    """m/s of an option, which may be in km/h; ValueError where it is neither."""
+    text = str(text).strip()
+    if text.endswith("km/h"):
+        return float(text[:-4]) / 3.6
+    return float(text.removesuffix("m/s"))
 
 
 def opened(path):

@@ -5,6 +5,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle, FancyBboxPatch
 from matplotlib.transforms import ScaledTranslation
 
+from picture_data import speed_of
+
 DARK, GREY, BODY, FORCE = "#333333", "#666666", "#C9D8E3", "#B03A00"
 CONCRETE = 2400.0  # kg/m3
 MOST_SYMBOLS = 80  # of one kind that are drawn one by one
@@ -74,7 +76,7 @@ class Model:
     def forces_at(self, time, options):
         """[f, 2]: of the moving forces their places at that time, m, and their size, N."""
         forces = self.forces.get("load", np.zeros((0, 2)))
-        speed = float(options.get("load_speed", 0.0)) if len(forces) and not len(self.loads) else 0.0
+        speed = speed_of(options.get("load_speed", 0.0)) if len(forces) and not len(self.loads) else 0.0
         way = np.full(len(forces), time * speed)
         for number in np.unique(self.loads[:, 0]):
             rows = self.loads[self.loads[:, 0] == number]

@@ -14,8 +14,7 @@ constexpr double behind = 1.1;              // spans, until what the last wheel 
 constexpr double part_of_swing = 0.75;      // of a vehicle, until it presses its wheels most behind the bridge
 constexpr double same_number = 1e-9;        // relative
 constexpr int places_a_span = 8;
-constexpr double bays_behind = 10.0;      // of a layered track, until what stirs wheels there is seen
-constexpr double most_places = 200000.0;  // of a profile's table
+constexpr double bays_behind = 10.0;  // of a layered track, until what stirs wheels there is seen
 
 /// s, of the vehicles that are there, each on all its springs at once.
 double longest_swing(const Scene& scene) {
@@ -127,23 +126,13 @@ void add_vehicles(const Scene& scene, std::vector<Meeting>& list) {
   }
 }
 
-/// Where a table of the profile is most sharply bent; that is where it stirs wheels most.
-double sharpest_place(const track::Profile& profile, double length) {
-  const double distance = std::max(profile.resolution(), length / most_places);
-  const auto count = static_cast<std::size_t>(length / distance) + 1;
-  const std::vector<track::Height> heights = profile.along(0.0, distance, count);
-  const auto sharper = [](const track::Height& a, const track::Height& b) {
-    return std::abs(a.curvature) < std::abs(b.curvature);
-  };
-  return distance * static_cast<double>(std::max_element(heights.begin(), heights.end(), sharper) - heights.begin());
-}
-
 void add_profile(const Scene& scene, std::vector<Meeting>& list) {
   const track::Profile& profile = scene.profile;
   if (profile.level() || (profile.is_rough() && profile.kinks().empty())) return;  // no dips on top
   const double length = scene.beam->length();
   const bool bump = std::isfinite(profile.shortest_wave());
-  const double x = bump ? profile.kinks().back() : sharpest_place(profile, length);
+  // a table stirs wheels most where it is most sharply bent
+  const double x = bump ? profile.kinks().back() : profile.sharpest_place(0.0, length);
   if (x <= length)
     list.push_back({passed(scene, x + behind * scene.beam->spans[0]), fmt::format("the track's profile at {:g} m", x)});
 }

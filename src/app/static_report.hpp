@@ -29,7 +29,7 @@ int report_at_rest(Job& job, const Found& found) {
   MPI_Comm_rank(job.comm, &rank);
   if (rank == 0) {
     found.print();
-    results::print_verdicts(verdicts);
+    results::print_verdicts(verdicts, scene.unusual);
   }
   if (scene.output.file.empty()) return 0;
   const SignalsNoted noted;  // a moment, and the file is complete

@@ -212,7 +212,7 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   for (const std::string& note : withdrawn)
     if (prints() && counts && !note.empty()) fmt::print("  note: {}\n", note);
   if (prints() && check) check->print();
-  if (prints()) results::print_verdicts(verdicts);
+  if (prints()) results::print_verdicts(verdicts, scene_.unusual);
   return summary;
 }
 

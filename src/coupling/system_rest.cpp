@@ -138,6 +138,16 @@ void System::refuse_start(Solution found) const {
   const std::string advice =
       "is every body held by joints, springs or wheels, also against actuators, and every wheel stiff enough to carry "
       "its load within its radius? scene_start: given starts from the positions as written";
+  for (const train::WheelContact& c : fleet_.wheels) {
+    const Eigen::Vector3d q = fleet_.coordinates(c);
+    const double below = fleet_.profile(c).at(q.x()).value - q.y();
+    if (newton_.last_change() == 0.0 && below >= 0.0)
+      throw SolverError(
+          fmt::format("no static equilibrium found to start from: the centre of wheel '{}' of vehicle "
+                      "'{}' stands {:g} m below the track's surface, on which it rolls at the height of "
+                      "its radius, {:g} m (position of its body)",
+                      fleet_.wheel(c).name, fleet_.vehicles[c.vehicle].name(), below, fleet_.wheel(c).radius));
+  }
   if (!nothing_holds_.empty())
     throw SolverError("no static equilibrium found to start from: " + nothing_holds_ + "; " + advice);
   throw SolverError(

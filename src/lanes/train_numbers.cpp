@@ -119,10 +119,12 @@ double off_at(const track::Profile& profile, double radius, const TrackNumbers& 
   return off;
 }
 
-/// The largest of these at the profile's kinks and at some places between.
+/// The largest of these at the profile's kinks and sharpest place and at some places between.
 double off_between_stations(const track::Profile& profile, double radius, const TrackNumbers& track, double to) {
   double off = 0.0;
-  for (const double kink : profile.kinks())
+  std::vector<double> kinks = profile.kinks();
+  kinks.push_back(profile.sharpest_place(track.start, to));
+  for (const double kink : kinks)
     for (const double beside : {-0.5, 0.0, 0.5})
       if (kink > track.start && kink < to)
         off = std::max(off, off_at(profile, radius, track, kink + beside * track.distance));

@@ -40,6 +40,22 @@ std::vector<std::string> split(const std::string& value) {
   return words;
 }
 
+/// What most likely stands in the way of a number: a comma, or a unit behind it.
+std::string why_no_number(const std::string& word, const Row& row) {
+  double number = 0.0;
+  const bool one = row.kind == Kind::number || row.kind == Kind::integer || row.kind == Kind::number_or_file;
+  if (one && word.find(',') != std::string::npos) {
+    std::string with_point = word;
+    with_point.replace(with_point.find(','), 1, ".");
+    if (parse_number(with_point, number))
+      return fmt::format(" (one number is wanted; decimals follow a point: {})", with_point);
+    return " (one number is wanted, not a list)";
+  }
+  const std::size_t end = word.find_first_not_of("+-.0123456789eE");
+  if (end == std::string::npos || row.unit.empty() || !parse_number(word.substr(0, end), number)) return "";
+  return fmt::format(" (a number stands without its unit, in {})", row.unit);
+}
+
 /// Entries whose value has no type of its own: text as it stands.
 bool is_remark(std::string_view fallback) { return fallback.empty() || fallback.front() == '('; }
 
@@ -104,10 +120,11 @@ const Row& Options::row(std::string_view name) const {
 std::string Options::nearest_known(const std::string& name) const {
   std::vector<std::string> candidates;
   for (const Row& fixed : fixed_rows()) candidates.emplace_back(fixed.name);
+  const auto fixed = static_cast<std::ptrdiff_t>(candidates.size());
   for (const auto& declared : declared_) candidates.push_back(declared.first);
+  std::sort(candidates.begin() + fixed, candidates.end());
   for (const std::string_view common : common_petsc_names()) candidates.emplace_back(common);
-  std::sort(candidates.begin(), candidates.end());
-  return nearest(name, candidates);
+  return nearest(name, candidates);  // of equal ones the first of the table
 }
 
 void Options::check_names() const {
@@ -217,11 +234,16 @@ std::vector<std::string> Options::list(std::string_view name) const {
 double Options::to_number(std::string_view name, const std::string& word) const {
   double value = 0.0;
   const Row& known = row(name);
-  const bool speeds = known.kind == Kind::numbers && known.unit == "m/s";
-  if (!(speeds ? parse_speed(word, value) : parse_number(word, value))) {
-    refuse(name, fmt::format("'{}' is no finite number; allowed: {}", word, allowed(known)));
+  if (!(known.unit == "m/s" ? parse_speed(word, value) : parse_number(word, value))) {
+    refuse(name,
+           fmt::format("'{}' is no finite number{}; allowed: {}", word, why_no_number(word, known), allowed(known)));
   }
-  if (!known.range.holds(value)) refuse(name, "allowed: " + allowed(known));
+  if (!known.range.holds(value))
+    refuse(name, known.kind == Kind::numbers
+                     ? fmt::format("'{}' is none of what is allowed: {}; a comma parts the numbers of a list, decimals "
+                                   "follow a point",
+                                   word, allowed(known))
+                     : "allowed: " + allowed(known));
   if (!is_quantity(value))
     refuse(name, fmt::format("'{}' is beyond any quantity in SI units; allowed: 0, or {:g} to {:g} in magnitude", word,
                              least_quantity, greatest_quantity));
@@ -336,7 +358,8 @@ std::string Options::path(std::string_view name) const {
   std::string found = find_file(value, entry != nullptr && entry->from_file() ? entry->source : "");
   if (found.empty()) {
     const bool number = row(name).kind == Kind::number_or_file;
-    refuse(name, number ? "neither a number nor a file that is there; allowed: " + allowed(row(name))
+    refuse(name, number ? fmt::format("neither a number nor a file that is there{}; allowed: {}",
+                                      why_no_number(value, row(name)), allowed(row(name)))
                         : "there is no such file, neither here nor beside the file that names it");
   }
   if (std::filesystem::is_directory(found)) refuse(name, "is a folder, not a file");

@@ -43,6 +43,10 @@ class Flattener {
       check_key(key, line);
       const auto [first, is_new] = lines.try_emplace(key, line);
       if (!is_new) refuse_second(prefix + key, line, first->second);
+      if (item.second.IsNull() && std::all_of(key.begin(), key.end(), [](unsigned char c) { return std::isdigit(c); }))
+        throw InputError(at(file_, line) + "'" + key +
+                         "' stands where a name should: in braces a comma ends a value; decimals follow a point, and a "
+                         "list stands in brackets");
       value(item.second, prefix + key, line, merged);
     }
     for (const YAML::Node& merge : merges) add_merged(merge, prefix);

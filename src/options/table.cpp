@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 
 namespace traverse::options {
 namespace {
@@ -47,21 +48,43 @@ std::string kind_words(const Row& row) {
   return "";
 }
 
-/// Fewest edits between two words; swapped neighbours count as one.
+constexpr int an_edit = 4;         // a letter more, less or other, or neighbours that are swapped
+constexpr int other_case = 1;      // a letter that is small for a capital one, or the other way
+constexpr int words_left_out = 2;  // in front or behind, and 1 for each
+
+/// Least cost of the edits that make one word of another.
 int distance(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
   std::vector<std::vector<int>> d(a.size() + 1, std::vector<int>(b.size() + 1));
-  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = static_cast<int>(i);
-  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = static_cast<int>(j);
+  for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = an_edit * static_cast<int>(i);
+  for (std::size_t j = 0; j <= b.size(); ++j) d[0][j] = an_edit * static_cast<int>(j);
   for (std::size_t i = 1; i <= a.size(); ++i) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      const int change = a[i - 1] == b[j - 1] ? 0 : 1;
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1]) {
-        d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-      }
+      const char x = a[i - 1], y = b[j - 1];
+      const int change = x == y ? 0 : lower(x) == lower(y) ? other_case : an_edit;
+      d[i][j] = std::min({d[i - 1][j] + an_edit, d[i][j - 1] + an_edit, d[i - 1][j - 1] + change});
+      if (i > 1 && j > 1 && x == b[j - 2] && a[i - 2] == y) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + an_edit);
     }
   }
   return d[a.size()][b.size()];
+}
+
+/// The same where `name` may be some of the candidate's words only: beam_damping of beam_damping_ratios, ei of beam_EI.
+int distance_to_words(std::string_view name, std::string_view candidate) {
+  std::vector<std::size_t> begins = {0};
+  for (std::size_t i = 0; i < candidate.size(); ++i)
+    if (candidate[i] == '_') begins.push_back(i + 1);
+  int least = distance(name, candidate);
+  const std::size_t words = begins.size();
+  for (std::size_t first = 0; first < words; ++first)
+    for (std::size_t behind = first + 1; behind <= words; ++behind) {
+      const std::size_t end = behind == words ? candidate.size() : begins[behind] - 1;
+      const int left_out = static_cast<int>(words - (behind - first));
+      if (left_out == 0) continue;
+      const int rest = distance(name, candidate.substr(begins[first], end - begins[first]));
+      least = std::min(least, rest + words_left_out + left_out);
+    }
+  return least;
 }
 
 std::string replace_blanks(std::string_view words) {
@@ -102,9 +125,9 @@ std::string allowed_in_short(const Row& row) {
 
 std::string nearest(std::string_view name, const std::vector<std::string>& candidates) {
   std::string best;
-  int least = std::max<int>(2, static_cast<int>(name.size()) / 2) + 1;
+  int least = an_edit * (std::max<int>(2, static_cast<int>(name.size()) / 2) + 1);
   for (const std::string& candidate : candidates) {
-    const int d = distance(name, candidate);
+    const int d = distance_to_words(name, candidate);
     if (d < least) {
       least = d;
       best = candidate;

@@ -11,7 +11,7 @@ namespace traverse::options {
 namespace {
 
 using enum Kind;
-constexpr Range tolerance = {1e-10, 0.1};
+constexpr Range tolerance = {1e-10, 0.1}, tolerance_or_none = {0.0, 0.1};
 constexpr double unbounded = std::numeric_limits<double>::infinity();
 // Below these no beam is meant: a steel wire of 0.1 mm has EI = 1e-6 N m2, EA = 1.6e3 N and 6e-5 kg/m.
 constexpr Range beam_length = {1e-3, 1e6, true}, beam_stiffness = {1e-7, unbounded, true},
@@ -87,10 +87,11 @@ constexpr Row run_rows[] = {
   {"train_positions", numbers, "m", "(front wheel at 0)", any, "", 0, "x of each vehicle's origin at t = 0, or of the first one"},
   {"train_spacing", numbers, "m", "(from vehicle lengths)", positive, "", 0, "distance from origin to origin, one number or one per gap"},
   {"trains", texts, "", "(train alone)", any, "", 0, "names of several trains, each a block of its own with the options of train: NAME_vehicles, NAME_speed, ..."},
-  {"train_speed", number, "m/s", "", {-1e4, 1e4}, "", 0, "speed towards the right at t = 0; below 0: to the left, vehicles mirrored"},
+  {"train_speed", number, "m/s", "", {-1e4, 1e4}, "", 0, "speed towards the right at t = 0, or 100 km/h; below 0: to the left, vehicles mirrored"},
   {"train_speed_file", file, "", "", any, "", 0, "instead of a speed: a table t,v (s, m/s), straight lines between its rows"},
   {"train_speed_over", choice, "", "time", any, "time position", 0, "position: the table is x,v over the place of the front wheel, the acceleration constant between its rows"},
   {"train_profile", text, "", "(the track's)", any, "", 0, "running surface of this train's wheels alone, as track_profile"},
+  {"train_profile_shape", choice, "", "linear", any, "linear spline", 0, "as track_profile_shape, of the train's own profile"},
   {"train_bump_start", number, "m", "", any, "", 0, "as track_bump_start, of the train's own profile"},
   {"train_bump_length", number, "m", "", positive, "", 0, "its length"},
   {"train_bump_height", number, "m", "", any, "", 0, "its height in the middle"},
@@ -102,7 +103,7 @@ constexpr Row run_rows[] = {
   {"load_forces", numbers, "N", "", any, "", 0, "moving constant forces, downward"},
   {"load_positions", numbers, "m", "(first at 0)", any, "", 0, "x of each force at t = 0; with hslm_a of the first axle"},
   {"loads", texts, "", "(load alone)", any, "", 0, "names of several groups of forces, each a block of its own with the options of load: NAME_forces, NAME_speed, ..."},
-  {"load_speed", number, "m/s", "(train_speed)", {-1e4, 1e4}, "", 0, "speed of the forces towards the right; below 0: to the left"},
+  {"load_speed", number, "m/s", "(train_speed)", {-1e4, 1e4}, "", 0, "speed of the forces towards the right, or 100 km/h; below 0: to the left"},
   {"load_speed_file", file, "", "", any, "", 0, "instead of a speed: a table t,v (s, m/s), straight lines between its rows"},
   {"load_speed_over", choice, "", "time", any, "time position", 0, "position: the table is x,v over the place of the first force, the acceleration constant between its rows"},
   {"load_hslm_a", integer, "", "", {1, 10}, "", 0, "instead of forces: train A1 to A10 of EN 1991-2"},
@@ -111,8 +112,10 @@ constexpr Row run_rows[] = {
   {"load_wagons", integer, "", "1", {1, 1000}, "", 0, "how many of these"},
   {"load_spread", number, "m", "(not spread)", positive, "", 0, "sleeper spacing: every force acts over three sleepers, by a quarter, a half and a quarter"},
   {"load_file", file, "", "", any, "", 0, "instead of forces: a file of two columns, x in m and force in N"},
+  {"load_file_x", choice, "", "forward", any, "forward backward", 0, "where the x of load_file grow: towards where the load runs, or backward, as distances behind the first axle do"},
 
   {"track_profile", text, "", "none", any, "", 0, "none, bump, iso8608_A to iso8608_E (roads), german_low, german_high, fra_1 to fra_6 (rails), or a file x,height"},
+  {"track_profile_shape", choice, "", "linear", any, "linear spline", 0, "of a profile from a file, between its rows: straight lines whose corners are rounded within 0.25 m of a row, or as far as the nearer row; spline: a natural cubic spline"},
   {"track_bump_start", number, "m", "", any, "", 0, "where the bump begins"},
   {"track_bump_length", number, "m", "", positive, "", 0, "its length"},
   {"track_bump_height", number, "m", "", any, "", 0, "its height in the middle"},
@@ -190,7 +193,7 @@ constexpr Row later_rows[] = {
 
   {"sweep_speed", numbers, "m/s", "", positive, "", 3, "runs the scene at each of these speeds: from, to, step; each may be in km/h"},
   {"sweep_hslm_a", integers, "", "", {1, 10}, "", 0, "runs the scene with each of these trains of EN 1991-2"},
-  {"sweep_refine", number, "1", "(only the speeds given)", tolerance, "", 0, "adds speeds near the peaks until every train's peaks over the speed are known to this part of their value"},
+  {"sweep_refine", number, "1", "(with limits: where one may be broken between two speeds)", tolerance_or_none, "", 0, "adds speeds near the peaks until every train's peaks over the speed are known to this part of their value; 0: only the speeds given"},
   {"sweep_lanes", choice, "", "8", any, "0 1 4 8", 0, "so many runs go side by side in the lanes of the processor's vectors, where they may; 0: each by itself, driven by TS"},
   {"sweep_instants", number, "", "20", {4.0, 1e4}, "", 0, "a period of the fastest mode is looked at so often where the bridge's modes move exactly in time; parabolas find the peaks between"},
 
@@ -200,7 +203,7 @@ constexpr Row later_rows[] = {
   {"study_statistics_over", texts, "", "(track_seed and what is drawn)", any, "", 0, "options that mean, deviation and quantiles go over"},
   {"study_statistics_quantiles", numbers, "1", "0.5,0.98", {0.0, 1.0, true}, "", 0, "which quantiles"},
   {"study_statistics_confidence", number, "1", "0.95", {0.5, 0.9999}, "", 0, "of the intervals that hold the quantiles"},
-  {"study_refine", number, "1", "(only the speeds given)", tolerance, "", 0, "as sweep_refine: of every combination of the other options, and the greatest of what statistics go over; wants train_speed or load_speed among the lists of study_vary"},
+  {"study_refine", number, "1", "(only the speeds given)", tolerance_or_none, "", 0, "as sweep_refine: of every combination of the other options, and the greatest of what statistics go over; wants train_speed or load_speed among the lists of study_vary"},
   {"study_resume", flag, "", "false", any, "", 0, "takes finished runs of the same study from the results file that is there"},
 
   {"check", flag, "", "false", any, "", 0, "reads everything, shows the model, its loads at rest, what is chosen, what it costs and what looks unusual, and stops without a run"},

@@ -50,16 +50,20 @@ std::vector<Verdict> worst_of(const Judged& judged, const std::function<std::str
       verdict.found = {judged.value[i], Finding::unknown, judged.x[i], run_text(i / count), ""};
     }
     if (std::isnan(verdict.found.value))
-      verdict.found.why = judged.why[l].empty() ? "no run knows it; a single run says why" : judged.why[l];
+      verdict.found.why =
+          judged.why[l].empty()
+              ? "none of the runs can tell; a single one, with the options of one of them, gives the reason"
+              : judged.why[l];
     verdicts.push_back(verdict);
   }
   return verdicts;
 }
 
-void print_verdicts(const std::vector<Verdict>& verdicts) {
+void print_verdicts(const std::vector<Verdict>& verdicts, const std::vector<std::string>& unusual) {
   if (verdicts.empty()) return;
   fmt::print("verdicts\n");
   for (const Verdict& v : verdicts) fmt::print("  {}\n", printable(verdict_line(v)));
+  for (const std::string& word : unusual) fmt::print("  note: {}\n", printable(word));
   std::fflush(stdout);
 }
 

@@ -38,8 +38,8 @@ struct Verdict {
   std::string word() const;
 };
 
-/// One line each.
-void print_verdicts(const std::vector<Verdict>& verdicts);
+/// One line each, and behind them what is unusual in their scene.
+void print_verdicts(const std::vector<Verdict>& verdicts, const std::vector<std::string>& unusual);
 
 /// What many runs have found of each limit.
 struct Judged {

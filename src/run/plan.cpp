@@ -37,6 +37,15 @@ double end_of(const Scene& scene, const coupling::System& system) {
 
 // A step that the scene cannot be resolved with gives a wrong answer without any other sign.
 void check_step(const Scene& scene, const Plan& plan) {
+  if (!(plan.end_time / plan.time_step < most_steps) && scene.step_open)
+    throw InputError(fmt::format(
+        "{}: the run ends at {:g} s only, which takes too many of the steps of {:g} s that the scene needs; allowed: "
+        "{}, "
+        "or a longer step (ts_dt)",
+        scene.end_time ? fmt::format("ts_max_time = {:g}", *scene.end_time)
+                       : fmt::format("at {:g} m/s", greatest_speed(scene)),
+        plan.end_time, plan.time_step,
+        scene.end_time ? "an earlier end" : "a higher train_speed or load_speed, an earlier end (ts_max_time)"));
   if (!(plan.end_time / plan.time_step < most_steps))
     throw InputError(fmt::format("ts_dt = {:g}: too many steps to the end at {:g} s; allowed: above {:g} s",
                                  plan.time_step, plan.end_time, plan.end_time / most_steps));

@@ -80,9 +80,11 @@ AxleList en15528(std::string_view line, int wagons) {
   return axles;
 }
 
-AxleList read_axles(const std::string& path) {
+AxleList read_axles(const std::string& path, bool backward) {
   const std::vector<std::vector<double>> columns = options::read_columns(path, 2, 2);
   AxleList axles{columns[1], columns[0]};
+  if (backward)
+    for (double& offset : axles.offsets) offset = -offset;
   const double first = *std::max_element(axles.offsets.begin(), axles.offsets.end());
   for (double& offset : axles.offsets) offset -= first;
   return axles;

@@ -21,7 +21,7 @@ AxleList hslm_b(int forces, double distance);
 /// So many of the reference wagons of one of load_en15528's lines, annex A: four axles, 9.81 m/s2.
 AxleList en15528(std::string_view line, int wagons);
 
-/// A file of two columns, x in m from the first axle on and force in N. InputError.
-AxleList read_axles(const std::string& path);
+/// A file of two columns, x in m, which grows towards where the load runs or `backward`, and force in N. InputError.
+AxleList read_axles(const std::string& path, bool backward);
 
 }  // namespace traverse::app

@@ -61,7 +61,11 @@ void read_run(const Options& o, Scene& scene) {
 void read_limits(const Options& o, Scene& scene) {
   if (!o.has("limits")) return;
   scene.limits = options::read_verdict_limits(o.path("limits"));
-  if (scene.analysis == Analysis::transient) return;
+  if (scene.analysis == Analysis::transient) {
+    if (scene.sweep && !o.has("sweep_refine") && scene.judges_runs() && scene.sweep->speeds.size() >= fewest_to_refine)
+      scene.sweep->refine = -1.0;
+    return;
+  }
   if (scene.analysis == Analysis::static_envelope || scene.analysis == Analysis::rail_forces) {
     const auto finder =
         scene.analysis == Analysis::rail_forces ? options::LimitFinder::rail : options::LimitFinder::norm;
@@ -82,6 +86,10 @@ void check_end(const Options& o, const Scene& scene) {
   const bool leaves =
       scene.beam && (!wheels || scene.train.speed > 0.0) && (!forces || scene.load.speed > 0.0) && (wheels || forces);
   if (leaves || (scene.beam && scene.tail)) return;
+  if (!wheels && !forces && scene.beam && scene.vehicles.empty())
+    throw InputError(
+        "nothing moves over the bridge: neither vehicles (train_vehicles) nor moving forces (load_forces, load_hslm_a, "
+        "load_file, ...) are given; a run without them needs its end (ts_max_time)");
   std::string why = "nothing leaves a bridge in this scene, so its end has to be given (s)";
   if (wheels && scene.train.speed == 0.0) why = "train_speed is 0: the train never leaves; give the end of the run (s)";
   if (forces && scene.load.speed == 0.0) why = "load_speed is 0: the forces never leave; give the end of the run (s)";

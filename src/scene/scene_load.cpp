@@ -51,7 +51,7 @@ void spread(double spacing, bool from_zero, double direction, MovingLoad& load) 
 AxleList named_train(const Options& o, const Block& block, const std::string& option) {
   if (option == block.option("hslm_a")) return hslm_a(o.integer(option));
   if (option == block.option("en15528")) return en15528(o.text(option), o.integer(block.option("wagons")));
-  if (option == block.option("file")) return read_axles(o.path(option));
+  if (option == block.option("file")) return read_axles(o.path(option), o.text(block.option("file_x")) == "backward");
   const std::vector<double> given = o.numbers(option);  // load_hslm_b
   if (given[0] != std::floor(given[0]) || given[0] > most_forces)
     o.refuse(option, fmt::format("allowed: a whole number of forces up to {:g}, and their distance in m", most_forces));
@@ -95,6 +95,8 @@ MovingLoad read_one_load(const Options& o, const ReadLoad& from, const std::stri
   if (swept) scene.sweep->loads = std::move(others);
   if (option != from.block.option("en15528") && o.has(from.block.option("wagons")))
     scene.notes.push_back(from.block.option("wagons") + " has no effect: it is for " + from.block.option("en15528"));
+  if (option != from.block.option("file") && o.has(from.block.option("file_x")))
+    scene.notes.push_back(from.block.option("file_x") + " has no effect: it is for " + from.block.option("file"));
   return load;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <optional>
@@ -14,6 +15,7 @@ namespace {
 using options::Options;
 
 constexpr std::size_t most_default_probes = 200;
+constexpr int parts_of_a_span = 10;
 constexpr double most_even_probes = 1e5;
 constexpr double one_station = 1e-9;        // m: stations nearer than that are one
 constexpr double nearly_one = 1.0 - 1e-12;  // of the parts of a span
@@ -31,6 +33,32 @@ void add_even_probes(const Options& o, const std::vector<double>& spans, std::ve
     left += span;
   }
   probes.back() = left;
+}
+
+/// Whether a limit is on the deck wherever it moves most.
+bool judges_deck(const Scene& scene) {
+  static constexpr std::array quantities = {"deck_acceleration", "unfiltered_deck_acceleration",
+                                            "deflection_over_span"};
+  return std::any_of(scene.limits.begin(), scene.limits.end(), [](const options::VerdictLimit& limit) {
+    return std::find(quantities.begin(), quantities.end(), limit.quantity) != quantities.end();
+  });
+}
+
+/// Behind the stations given, evenly in every span: where a limit asks for the most that the deck does, wherever.
+void add_judged_probes(bool middles, Scene& scene) {
+  const std::vector<double>& spans = scene.beam->spans;
+  const int parts = std::min(static_cast<int>(most_default_probes / spans.size()), parts_of_a_span);
+  if (parts < 2 || !judges_deck(scene)) return;
+  double left = 0.0;
+  for (const double span : spans) {
+    for (int i = 1; i < parts; ++i)
+      if (!middles || 2 * i != parts) scene.output.probes.push_back(left + span * i / parts);
+    left += span;
+  }
+  scene.notes.push_back(
+      fmt::format("probes: limits are on the deck wherever it moves most, so there are further ones at every 1/{} of a "
+                  "span; output_probes_spacing sets others",
+                  parts));
 }
 
 void read_probes(const Options& o, Scene& scene) {
@@ -56,7 +84,7 @@ void read_probes(const Options& o, Scene& scene) {
       o.refuse("output_probes", fmt::format("{:g} lies beyond the beam; allowed: from 0 to {:g} m", x, length));
     x = std::min(x, length);
   }
-  if (!even) return;
+  if (!even) return add_judged_probes(!named, scene);
   add_even_probes(o, spans, probes);
   std::sort(probes.begin(), probes.end());
   const auto same = [](double a, double b) { return b - a < one_station; };

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "options/data_file.hpp"
 #include "scene_parts.hpp"
 
 namespace traverse::app {
@@ -13,9 +14,10 @@ namespace {
 
 using options::Options;
 
-constexpr double fastest_train = 160.0;  // m/s: the record of a train on rails is 574.8 km/h
-constexpr double far_away = 1000.0;      // m
-constexpr double rounding = 1e-6;        // of a length
+constexpr double fastest_train = 160.0;   // m/s: the record of a train on rails is 574.8 km/h
+constexpr double far_away = 1000.0;       // m
+constexpr double rounding = 1e-6;         // of a length
+constexpr double least_approach = 100.0;  // m: a few waves of the slowest motion of a car
 
 /// What moves over the bridge: wheels or forces. Counted from where it comes from: to the left, from the right end on.
 struct Moving {
@@ -167,6 +169,56 @@ void note_tables(Scene& scene) {
   });
 }
 
+/// Neither the bridge nor what it stands on takes energy out of its motion.
+void note_damping(Scene& scene) {
+  const beam::BeamModel& beam = *scene.beam;
+  if (scene.analysis != Analysis::transient || scene.damping.rayleigh || scene.damping.ratios || beam.given ||
+      beam.track || !scene.damping_of_modes.empty() || beam.foundation.nonlinear())
+    return;
+  bool dampers = false;
+  for_beds(beam.foundation,
+           [&](const beam::FoundationKind&, const beam::Bed& bed) { dampers = dampers || bed.c.maximum() > 0.0; });
+  for_points(beam.foundation, [&](const beam::FoundationKind&, const auto& points) {
+    for (const beam::PointFoundation& point : points) dampers = dampers || point.c > 0.0;
+  });
+  if (dampers) return;
+  scene.notes.emplace_back(
+      "damping: none is given (beam_damping_ratios, model_damping_bound), so the bridge swings on for ever and its "
+      "resonances are higher and narrower than real ones; EN 1991-2 table 6.6 has ratios from 0.5 % on");
+}
+
+/// Roughness begins at the first wheel and grows to its height over some way: wheels that start at the bridge meet
+/// little of it in the first span.
+void note_rough_start(Scene& scene) {
+  if (scene.analysis != Analysis::transient || !scene.roughness || scene.train.vehicles.empty() ||
+      scene.train.courses.size() > 1)
+    return;
+  const double from = scene.roughness->start;
+  const bool left = scene.roughness->to_the_left;
+  const double ahead = left ? from - scene.beam->length() : -from, grown = scene.profile.fade();
+  if (ahead >= grown) return;
+  const double approach = std::max(least_approach, 2.0 * grown), x = scene.train.positions.front();
+  scene.notes.push_back(
+      fmt::format("train_positions: the track is rough from the first wheel on and its waves grow to their height over "
+                  "{:g} m, but that wheel starts {:g} m before the bridge: the first span sees little of them; "
+                  "-train_positions {:g} starts {:g} m before it",
+                  grown, ahead > 0.0 ? ahead : 0.0, left ? x - ahead + approach : x + ahead - approach, approach));
+}
+
+/// Rows of a file of axles whose x grows lie ahead of each other.
+void note_axles(const Options& o, Scene& scene) {
+  for (const Block& block : blocks_of(o, "loads")) {
+    const std::string file = block.option("file");
+    if (!o.has(file) || o.has(block.option("file_x")) || load_option(o, block.name) != file) continue;
+    const std::vector<std::vector<double>> rows = options::read_columns(o.path(file), 2, 2);
+    if (!(rows[0].front() >= 0.0 && rows[0].back() > rows[0].front())) continue;
+    scene.notes.push_back(
+        fmt::format("{}: x grows from row to row, so the last row's force of {:g} kN leads; where these are distances "
+                    "behind the first axle, take -{} backward",
+                    file, 1e-3 * rows[1].back(), block.option("file_x")));
+  }
+}
+
 void note_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   if (!vehicles.unused.empty())
     scene.notes.push_back(
@@ -175,6 +227,9 @@ void note_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   note_speeds(o, scene);
   if (!scene.beam) return;
   note_tables(scene);
+  note_damping(scene);
+  note_rough_start(scene);
+  note_axles(o, scene);
   if (scene.analysis == Analysis::modes) return;
   for (const Moving& moving : moving_things(scene)) check_start(o, moving, scene);
 }

@@ -47,7 +47,7 @@ void read_sweep(const Options& o, Scene& scene) {
   if (o.has("sweep_speed")) scene.sweep->speeds = read_speeds(o);
   if (o.has("sweep_refine")) {
     scene.sweep->refine = o.number("sweep_refine");
-    if (scene.sweep->speeds.size() < fewest_to_refine)
+    if (scene.sweep->refine > 0.0 && scene.sweep->speeds.size() < fewest_to_refine)
       o.refuse("sweep_refine",
                fmt::format("sweep_speed gives {} speeds; wanted: at least {}, between which it adds others",
                            scene.sweep->speeds.size(), fewest_to_refine));

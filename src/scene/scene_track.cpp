@@ -74,6 +74,9 @@ void read_dips(const Options& o, Scene& scene) {
 ReadProfile read_profile(const Options& o, const std::string& prefix, double start, bool to_the_left, Scene& scene) {
   const auto key = [&](const char* word) { return prefix + "_" + word; };
   const std::string option = key("profile"), profile = o.text(option);
+  const bool is_file = profile.find_first_of("./") != std::string::npos;
+  if (!is_file && o.has(key("profile_shape")))
+    scene.notes.push_back(key("profile_shape") + " has no effect: " + option + " is " + profile);
   const options::Entry* bump = o.first_with_prefix(key("bump"));
   if (profile == "bump")
     return {
@@ -88,14 +91,15 @@ ReadProfile read_profile(const Options& o, const std::string& prefix, double sta
     const Roughness roughness = rough(o, prefix, *spectrum, start, to_the_left);
     return {roughness.profile(static_cast<std::uint64_t>(o.integer(key("seed")))), roughness};
   }
-  if (profile.find_first_of("./") == std::string::npos) {
+  if (!is_file) {
     o.refuse(option,
              "allowed: none, bump, iso8608_A to iso8608_E, german_low, german_high, fra_1 to fra_6, or "
              "a file x,height");
   }
   const std::string path = o.path(option);
   auto columns = options::read_columns(path, 2, 2);
-  return {track::Profile::table(std::move(columns[0]), std::move(columns[1]), option + " (" + path + ")"), {}};
+  const auto profile_of = o.text(key("profile_shape")) == "spline" ? track::Profile::spline : track::Profile::lines;
+  return {profile_of(std::move(columns[0]), std::move(columns[1]), option + " (" + path + ")"), {}};
 }
 
 void read_track(const Options& o, Scene& scene) {

@@ -261,11 +261,13 @@ void read_statistics(const Options& o, Study& study) {
   std::sort(study.over.begin(), study.over.end());
 }
 
+bool is_speed(const StudyDimension& d) { return d.name() == "train_speed" || d.name() == "load_speed"; }
+
 void read_refinement(const Options& o, Study& study) {
   const char* option = o.has("study_refine") ? "study_refine" : "sweep_refine";
   if (!o.has(option)) return;
   study.refine = o.number(option);
-  const auto is_speed = [](const StudyDimension& d) { return d.name() == "train_speed" || d.name() == "load_speed"; };
+  if (study.refine == 0.0) return;
   const auto speeds = std::find_if(study.dimensions.begin(), study.dimensions.end(), is_speed);
   if (speeds == study.dimensions.end() || speeds->law != "list")
     o.refuse(option, "no list of speeds is varied; wanted: train_speed, load_speed or sweep_speed");
@@ -282,7 +284,33 @@ void read_refinement(const Options& o, Study& study) {
     o.refuse(option, "statistics go over the speed (study_statistics_over)");
 }
 
-void check_study(const Options& o, const Scene& scene) {
+/// The least damping ratio of the bridge that the scene names; 0 where it names none.
+double named_damping(const Scene& scene) {
+  if (scene.damping.ratios) return std::min(scene.damping.ratios->first, scene.damping.ratios->second);
+  const std::vector<double>& ratios = scene.by_given_modes() ? scene.beam->given->ratio : scene.damping_of_modes;
+  return ratios.empty() ? 0.0 : *std::min_element(ratios.begin(), ratios.end());
+}
+
+/// Limits that are judged at a list of speeds farther apart than a resonance is wide at half its power, 2 zeta v.
+void note_coarse_speeds(Scene& scene) {
+  const Study& study = *scene.study;
+  const auto speeds = std::find_if(study.dimensions.begin(), study.dimensions.end(), is_speed);
+  if (speeds == study.dimensions.end() || speeds->law != "list" || study.refine > 0.0 || !scene.judges_runs()) return;
+  std::vector<double> v = speeds->values;
+  std::sort(v.begin(), v.end());
+  const double width = 2.0 * named_damping(scene);
+  for (std::size_t i = v.size(); i-- > 1;) {
+    if (!(width > 0.0) || v[i] - v[i - 1] <= width * v[i - 1]) continue;
+    scene.unusual.push_back(fmt::format(
+        "{}: {:g} to {:g} km/h is farther than a resonance there is wide at half its power, 2 zeta v = {:.3g} km/h: a "
+        "limit that is kept may be broken between the speeds; steps of {:.2g} km/h would do, or study_refine 1e-2",
+        speeds->name(), 3.6 * v[i - 1], 3.6 * v[i], 3.6 * width * v[i - 1], 3.6 * 0.25 * width * v[i - 1]));
+    scene.notes.push_back(scene.unusual.back());
+    return;
+  }
+}
+
+void check_study(const Options& o, Scene& scene) {
   const Study& study = *scene.study;
   const std::string first = o.first_with_prefix(study_prefix)->name;
   if (scene.analysis != Analysis::transient) o.refuse(first, "a study is of transient runs (scene_analysis)");
@@ -290,6 +318,7 @@ void check_study(const Options& o, const Scene& scene) {
   for (const StudyDimension& d : study.dimensions)
     if (d.name() == "track_seed" && !scene.roughness)
       o.refuse(first, fmt::format("track_seed has no effect: track_profile is {}", o.text("track_profile")));
+  note_coarse_speeds(scene);
   const double peaks = static_cast<double>(study.runs()) * static_cast<double>(scene.output.probes.size());
   if (peaks > most_study_peaks)
     o.refuse(first, fmt::format("{} runs with {} probes each; allowed: at most {:g} of both multiplied", study.runs(),

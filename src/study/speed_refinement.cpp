@@ -9,6 +9,8 @@ namespace {
 
 constexpr double shortest_interval = 1e-7;  // of the speed
 constexpr double sharper = 4.0;             // times the bend that is seen: a peak between two speeds may have
+constexpr double fine_enough = 1e-2;        // of a resonance, which its neighbours lack at most
+
 /// -y'' of the parabola through a sample and its neighbours; 0 where it is bent the other way, or at either end.
 double bend_at(const std::vector<double>& v, const std::vector<double>& y, std::size_t i) {
   if (i == 0 || i + 1 >= v.size()) return 0.0;
@@ -41,6 +43,24 @@ Refinement refine(const std::vector<double>& speed, const std::vector<SpeedCurve
       if (above > tolerance && h > shortest_interval * v[i]) added.insert(v[i] + 0.5 * h);
     }
   }
+  refinement.speeds.assign(added.begin(), added.end());
+  return refinement;
+}
+
+Refinement refine_for_limits(const std::vector<double>& speed, const std::vector<LimitedCurve>& curves, double width) {
+  Refinement refinement;
+  std::set<double> added;
+  for (const auto& [curve, limit] : curves)
+    for (std::size_t i = 0; i + 1 < speed.size(); ++i) {
+      const double h = speed[i + 1] - speed[i], middle = speed[i] + 0.5 * h;
+      const double above = std::hypot(1.0, h / (width * middle)) - 1.0;
+      const double highest = std::fmax(curve.value[i], curve.value[i + 1]);  // passes over runs that do not know it
+      if (above <= fine_enough || !((1.0 + above) * highest > limit)) continue;
+      added.insert(middle);
+      if (above <= refinement.uncertainty) continue;
+      refinement.uncertainty = above;
+      refinement.curve = curve.name;
+    }
   refinement.speeds.assign(added.begin(), added.end());
   return refinement;
 }

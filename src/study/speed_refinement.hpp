@@ -25,7 +25,19 @@ struct Refinement {
 /// speed are not halved.
 Refinement refine(const std::vector<double>& speed, const std::vector<SpeedCurve>& curves, double tolerance);
 
-/// How many speeds there may be where so many were given.
+/// A quantity of one train that is limited, below its limit at all speeds so far.
+struct LimitedCurve {
+  SpeedCurve curve;
+  double limit = 0.0;
+};
+
+/// The middles of those intervals between speeds (ascending) in which a resonance may break a limit. Its width at half
+/// power is `width` of the speed, 2 zeta: in the middle of an interval h its peak is hypot(1, h/(width v)) times what
+/// either end has. Where that is within a hundredth the interval is short enough.
+Refinement refine_for_limits(const std::vector<double>& speed, const std::vector<LimitedCurve>& curves, double width);
+
+/// How many speeds there may be where so many were given, and where no more were asked for.
 inline std::size_t most_speeds(std::size_t given) { return 10 * given + 200; }
+inline std::size_t most_speeds_unasked(std::size_t given) { return 3 * given + 50; }
 
 }  // namespace traverse::app

@@ -298,7 +298,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
     leave_together(comm, error);
   }
   const results::StudyTable& table = round->table;
-  if (rank == 0) print_study_course(table, choice.model, course, given.output.file);
+  if (rank == 0) print_study_course(table, choice.model, course, given);
   if (failure.failed()) throw Error(failure.message, failure.status);
   double deflection = 0.0;
   if (results::StudyPlace largest; find_extreme(table, "peak_deflection", true, largest)) deflection = largest.value;

@@ -230,11 +230,11 @@ void StudyFile::finish(const StudyCourse& course) {
 }
 
 void print_study_course(const results::StudyTable& table, const results::Sweep::Model& model, const StudyCourse& course,
-                        const std::string& file) {
+                        const Scene& scene) {
   if (table.finished_runs() > 0) results::print_study(table);
   if (course.refined) results::print(*course.refined);
   results::StudyStatistics(table).print();
-  if (table.finished_runs() > 0) results::print_verdicts(table.verdicts());
+  if (table.finished_runs() > 0) results::print_verdicts(table.verdicts(), scene.unusual);
   if (const std::string said = model.not_promised(table.find("unseen")->values); !said.empty())
     fmt::print("  note: {}\n", said);
   if (course.left_group > 0)
@@ -245,7 +245,7 @@ void print_study_course(const results::StudyTable& table, const results::Sweep::
              static_cast<long>(table.runs()) - course.known, results::method_of(model), course.wall_seconds,
              1e3 * course.wall_seconds / static_cast<double>(std::max(done, 1L)),
              course.known > 0 ? fmt::format(", and {} known before", course.known) : "", "the study", course.ended,
-             file.empty() ? "none" : file);
+             scene.output.file.empty() ? "none" : scene.output.file);
 }
 
 }  // namespace traverse::app

@@ -58,6 +58,6 @@ class StudyFile {
 
 /// What the terminal shows at the end.
 void print_study_course(const results::StudyTable& table, const results::Sweep::Model& model, const StudyCourse& course,
-                        const std::string& file);
+                        const Scene& scene);
 
 }  // namespace traverse::app

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "accuracy/kept_choice.hpp"
@@ -30,6 +31,7 @@ namespace {
 
 constexpr double worth_a_word = 10.0;  // s, from which on quicker ways are looked for
 constexpr double quicker_by = 0.2;     // of the time: what modes must do with
+constexpr double least_width = 0.01;   // of the speed: no train is so long that a resonance of it is narrower
 
 std::vector<double> span_ends(const beam::BeamModel& beam) {
   std::vector<double> ends = {beam.start};
@@ -66,6 +68,10 @@ void announce(const Scene& scene, const CaseRunner& runner, const results::Sweep
   if (scene.sweep->refine > 0.0)
     notes.push_back(
         fmt::format("speeds are added until the peaks over the speed are known to {:g}", scene.sweep->refine));
+  if (scene.sweep->refine < 0.0)
+    notes.emplace_back(
+        "speeds are added where a limit may be broken between two of them; -sweep_refine 1e-2 finds every peak, 0 adds "
+        "none");
   if (runner.has_lanes())
     notes.push_back(fmt::format("up to {} runs go side by side, in the lanes of {} vectors", scene.sweep->lanes,
                                 lanes::instructions()));
@@ -96,17 +102,29 @@ std::vector<double> first_speeds(const CaseRunner& runner, bool refined,
   return speeds;
 }
 
-/// Collective. Further rounds of runs until the peaks are known well enough; each round's speeds follow from the
-/// results of those before, which all ranks know.
-void add_speeds(MPI_Comm comm, const Scene& scene, CaseRunner& runner, SweepRuns& runs) {
+/// The damping ratio of the bridge's first mode, by which resonances are as wide as they are.
+double first_damping(const SharedBeam& shared, const std::vector<double>& frequencies) {
+  if (shared.modal) return shared.modal->sigma().front() / shared.modal->omega().front();
+  if (frequencies.empty()) return 0.0;
+  const double omega = 2.0 * std::numbers::pi * frequencies.front();
+  return 0.5 * (shared.rayleigh.a / omega + shared.rayleigh.b * omega);
+}
+
+/// Collective. Further rounds of runs until the peaks are known well enough or, where only limits ask, none of these
+/// may be broken between two speeds; each round's speeds follow from the results of those before, which all ranks know.
+void add_speeds(MPI_Comm comm, const Scene& scene, CaseRunner& runner, double damping, SweepRuns& runs) {
   const std::vector<double>& given = runner.speeds();
+  const bool for_limits = scene.sweep->refine < 0.0;
+  const std::size_t most = for_limits ? most_speeds_unasked(given.size()) : most_speeds(given.size());
   results::Refined refined;
-  refined.wanted = scene.sweep->refine;
+  refined.wanted = for_limits ? 0.0 : scene.sweep->refine;
   while (!runs.failure.failed() && signal_on_any(comm) == 0) {
-    const Refinement next = refine(runs.sweep.speed, curves_of(runs.sweep), refined.wanted);
+    const Refinement next = for_limits ? refine_for_limits(runs.sweep.speed, curves_in_doubt(runs.sweep),
+                                                           std::max(2.0 * damping, least_width))
+                                       : refine(runs.sweep.speed, curves_of(runs.sweep), refined.wanted);
     refined.uncertainty = next.uncertainty;
     refined.curve = next.curve;
-    if (next.speeds.empty() || runs.sweep.speed.size() + next.speeds.size() > most_speeds(given.size())) break;
+    if (next.speeds.empty() || runs.sweep.speed.size() + next.speeds.size() > most) break;
     SweepRuns more = run_all_trains(comm, scene, runner, next.speeds);
     runs.sweep = results::joined(runs.sweep, more.sweep);
     runs.ended += more.ended;
@@ -151,7 +169,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   {
     const results::Stage stage("runs of the sweep");
     runs = run_all_trains(comm, scene, runner, first_speeds(runner, scene.sweep->refine > 0.0, resonances));
-    if (scene.sweep->refine > 0.0) add_speeds(comm, scene, runner, runs);
+    if (scene.sweep->refine != 0.0) add_speeds(comm, scene, runner, first_damping(*runner.beam(), frequencies), runs);
   }
   results::Sweep& sweep = runs.sweep;
   sweep.model = choice.model;
@@ -183,7 +201,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
     if (runs.ended > 0) results::print_sweep(sweep);
     if (runs.ended > 0) results::print(sweep, resonances, cancellations);
     if (check) check->print();
-    if (runs.ended > 0) results::print_verdicts(verdicts);
+    if (runs.ended > 0) results::print_verdicts(verdicts, scene.unusual);
     if (const std::string said = sweep.model.not_promised(sweep.unseen); !said.empty())
       fmt::print("  note: {}\n", said);
     if (alone > 0)

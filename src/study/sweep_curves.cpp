@@ -21,6 +21,19 @@ std::vector<double> largest_of(const std::vector<double>& values, std::size_t fr
   return largest;
 }
 
+std::string of_train(const results::Sweep& sweep, std::size_t train) {
+  return sweep.trains.empty() ? "" : fmt::format(" of A{}", sweep.trains[train]);
+}
+
+/// What limit number `l` is on.
+SpeedCurve judged_curve(const results::Sweep& sweep, std::size_t train, std::size_t l) {
+  const std::size_t speeds = sweep.speed.size(), limits = sweep.judged.limits.size();
+  SpeedCurve curve{sweep.judged.limits[l].quantity + of_train(sweep, train), {}};
+  for (std::size_t i = 0; i < speeds; ++i) curve.value.push_back(sweep.judged.value[(train * speeds + i) * limits + l]);
+  std::replace(curve.name.begin(), curve.name.end(), '_', ' ');
+  return curve;
+}
+
 }  // namespace
 
 std::vector<double> worst_of_probes(const results::Sweep& sweep, const std::vector<double>& values, std::size_t train) {
@@ -32,10 +45,10 @@ std::vector<SpeedCurve> curves_of(const results::Sweep& sweep) {
   std::vector<SpeedCurve> curves;
   const std::size_t speeds = sweep.speed.size(), probes = sweep.probes.size(), limits = sweep.judged.limits.size();
   for (std::size_t train = 0; train < sweep.rows(); ++train) {
-    const std::string of_train = sweep.trains.empty() ? "" : fmt::format(" of A{}", sweep.trains[train]);
     const std::size_t first = train * speeds;
     const auto add = [&](const char* name, const std::vector<double>& values, std::size_t width) {
-      if (!values.empty()) curves.push_back({name + of_train, largest_of(values, first * width, speeds, width)});
+      if (!values.empty())
+        curves.push_back({name + of_train(sweep, train), largest_of(values, first * width, speeds, width)});
     };
     if (probes > 0) {
       add("deflection", sweep.deflection.value, probes);
@@ -46,12 +59,23 @@ std::vector<SpeedCurve> curves_of(const results::Sweep& sweep) {
     std::set<std::string> known;
     for (std::size_t l = 0; l < limits; ++l) {
       const std::string& quantity = sweep.judged.limits[l].quantity;
-      if (quantity == "contact_loss" || !known.insert(quantity).second) continue;
-      SpeedCurve curve{quantity + of_train, {}};
-      for (std::size_t i = 0; i < speeds; ++i) curve.value.push_back(sweep.judged.value[(first + i) * limits + l]);
-      std::replace(curve.name.begin(), curve.name.end(), '_', ' ');
-      curves.push_back(std::move(curve));
+      if (quantity != "contact_loss" && known.insert(quantity).second) curves.push_back(judged_curve(sweep, train, l));
     }
+  }
+  return curves;
+}
+
+std::vector<LimitedCurve> curves_in_doubt(const results::Sweep& sweep) {
+  std::vector<LimitedCurve> curves;
+  const std::size_t limits = sweep.judged.limits.size();
+  for (std::size_t l = 0; l < limits; ++l) {
+    const options::VerdictLimit& limit = sweep.judged.limits[l];
+    double largest = 0.0;
+    for (std::size_t i = l; i < sweep.judged.value.size(); i += limits)
+      largest = std::fmax(largest, sweep.judged.value[i]);
+    if (limit.quantity == "contact_loss" || largest > limit.value) continue;
+    for (std::size_t train = 0; train < sweep.rows(); ++train)
+      curves.push_back({judged_curve(sweep, train, l), limit.value});
   }
   return curves;
 }

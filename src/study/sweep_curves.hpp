@@ -12,6 +12,9 @@ namespace traverse::app {
 /// contact, which are no smooth curve.
 std::vector<SpeedCurve> curves_of(const results::Sweep& sweep);
 
+/// Of every train the quantities whose limits no run has broken so far.
+std::vector<LimitedCurve> curves_in_doubt(const results::Sweep& sweep);
+
 /// values [trains][speeds][probes]: at every speed the largest of one train.
 std::vector<double> worst_of_probes(const results::Sweep& sweep, const std::vector<double>& values, std::size_t train);
 

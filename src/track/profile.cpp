@@ -17,11 +17,13 @@ constexpr double least_fade = 20.0;    // m
 constexpr double least_corner = 5e-3;  // of slope: below it a wheel of 0.5 m bridges the corner by a micrometre
 constexpr double stations_a_wave = 16.0;
 constexpr int stations_between_lines = 8;
+constexpr double rounded = 0.25;        // m on either side of a corner: what a tyre or a rail bridges
+constexpr double apart = 1e-9;          // of the distance of two rows: stations closer than that are one
 constexpr double most_overshoot = 0.3;  // of a table's range of heights: three lines a wave make a tenth
 constexpr int waves_in_all = 240;
 static_assert(waves_in_all % Waves::lanes == 0);
 
-/// Second derivatives of the natural cubic spline at its knots (Thomas algorithm).
+/// Slopes of the natural cubic spline at its knots, from its second derivatives (Thomas algorithm).
 std::vector<double> natural_spline(const std::vector<double>& x, const std::vector<double>& h) {
   const std::size_t n = x.size();
   std::vector<double> second(n, 0.0), upper(n, 0.0);
@@ -33,7 +35,35 @@ std::vector<double> natural_spline(const std::vector<double>& x, const std::vect
     second[i] = (right - a * second[i - 1]) / pivot;
   }
   for (std::size_t i = n - 1; i-- > 1;) second[i] -= upper[i] * second[i + 1];
-  return second;
+  std::vector<double> slope(n);
+  for (std::size_t i = 0; i + 1 < n; ++i)
+    slope[i] = (h[i + 1] - h[i]) / (x[i + 1] - x[i]) - (x[i + 1] - x[i]) * (2.0 * second[i] + second[i + 1]) / 6.0;
+  const double d = x[n - 1] - x[n - 2];
+  slope[n - 1] = (h[n - 1] - h[n - 2]) / d + d * (second[n - 2] + 2.0 * second[n - 1]) / 6.0;
+  return slope;
+}
+
+/// The corners of straight lines through a table's rows. At a distance s from its row, within `reach`, a corner's curve
+/// lies beside the lines by -turn/2 s (1 - s/reach)^2: it passes through the row with the mean of both slopes and joins
+/// the lines smoothly. Neighbours that overlap add up: of equal distances they make the cubic Hermite spline whose
+/// slopes are central differences.
+struct Corner {
+  double turn, reach;  // of the slope, m
+  double value(double s) const { return s < reach ? -0.5 * turn * s * std::pow(1.0 - s / reach, 2) : 0.0; }
+  double slope(double s) const { return s < reach ? -0.5 * turn * (1.0 - s / reach) * (1.0 - 3.0 * s / reach) : 0.0; }
+};
+
+std::vector<Corner> corners_of(const std::vector<double>& x, const std::vector<double>& h) {
+  std::vector<Corner> corners;
+  double before = 0.0, left = rounded;  // level ground
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const bool last = i + 1 == x.size();
+    const double gap = last ? rounded : x[i + 1] - x[i], after = last ? 0.0 : (h[i + 1] - h[i]) / gap;
+    corners.push_back({after - before, std::min({rounded, left, gap})});
+    before = after;
+    left = gap;
+  }
+  return corners;
 }
 
 void check_table(const std::vector<double>& x, const std::vector<double>& h, const std::string& name) {
@@ -74,11 +104,43 @@ Profile Profile::bump(double start, double length, double height) {
   return p;
 }
 
-Profile Profile::table(std::vector<double> x, std::vector<double> h, const std::string& name) {
+Profile Profile::lines(std::vector<double> x, std::vector<double> h, const std::string& name) {
   check_table(x, h, name);
   Profile p;
   p.kind_ = Kind::table;
-  p.h2_ = natural_spline(x, h);
+  const std::vector<Corner> corners = corners_of(x, h);
+  const auto add = [&](double station, double height, double slope) {
+    p.x_.push_back(station);
+    p.h_.push_back(height);
+    p.slope_.push_back(slope);
+  };
+  double nearest = rounded;
+  add(x.front() - corners.front().reach, h.front(), 0.0);
+  for (std::size_t i = 0; i + 1 < x.size(); ++i) {
+    const Corner &a = corners[i], &b = corners[i + 1];
+    const double d = x[i + 1] - x[i], mean = (h[i + 1] - h[i]) / d;
+    const auto add_between = [&](double s) {  // behind row i
+      add(x[i] + s, h[i] + mean * s + a.value(s) + b.value(d - s), mean + a.slope(s) - b.slope(d - s));
+    };
+    add_between(0.0);
+    const auto [first, second] = std::minmax({a.reach, d - b.reach});
+    if (first > apart * d && first < (1.0 - apart) * d) add_between(first);
+    if (second > first + apart * d && second < (1.0 - apart) * d) add_between(second);
+    nearest = std::min(nearest, d);
+  }
+  add(x.back(), h.back(), -0.5 * corners.back().turn);
+  add(x.back() + corners.back().reach, h.back(), 0.0);
+  p.kinks_ = {p.x_.front(), p.x_.back()};
+  p.bound_table();
+  p.resolution_ = 4.0 * nearest / stations_a_wave;
+  return p;
+}
+
+Profile Profile::spline(std::vector<double> x, std::vector<double> h, const std::string& name) {
+  check_table(x, h, name);
+  Profile p;
+  p.kind_ = Kind::table;
+  p.slope_ = natural_spline(x, h);
   p.kinks_ = {x.front(), x.back()};
   p.x_ = std::move(x);
   p.h_ = std::move(h);
@@ -102,12 +164,12 @@ void Profile::check_swing(const std::string& name) const {
   }
 }
 
-// Slopes are parabolas between the lines of a table: greatest at an end or where the curvature vanishes.
+// Slopes are parabolas between the stations of a table: greatest at an end or where the curvature vanishes.
 void Profile::bound_table() {
   resolution_ = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
-    const double d = x_[i + 1] - x_[i], mean = (h_[i + 1] - h_[i]) / d, a = h2_[i], b = h2_[i + 1];
-    const double left = mean - d * (2.0 * a + b) / 6.0, right = mean + d * (a + 2.0 * b) / 6.0;
+    const double d = x_[i + 1] - x_[i], left = slope_[i], right = slope_[i + 1];
+    const auto [a, b] = curvatures(i);
     double low = std::min(left, right), high = std::max(left, right);
     if (a * b < 0.0) {
       const double turn = left + 0.5 * d * a * a / (a - b);
@@ -162,18 +224,19 @@ Height bump_at(double s, double length, double height) {
   return {half * (1.0 - c), half * k * std::sin(k * s), half * k * k * c};
 }
 
-Height spline_at(const std::vector<double>& x, const std::vector<double>& h, const std::vector<double>& h2, double at) {
+/// Of the cubics with these values and slopes at the stations x.
+Height cubics_at(const std::vector<double>& x, const std::vector<double>& h, const std::vector<double>& slope,
+                 double at) {
   if (at < x.front()) return {h.front(), 0.0, 0.0};
   if (at > x.back()) return {h.back(), 0.0, 0.0};
   const auto above = std::upper_bound(x.begin(), x.end(), at);
   const std::size_t i = std::min<std::size_t>(above - x.begin(), x.size() - 1) - 1;
-  const double d = x[i + 1] - x[i];
+  const double d = x[i + 1] - x[i], mean = (h[i + 1] - h[i]) / d;
+  const double left = slope[i] - mean, right = slope[i + 1] - mean;
   const double b = (at - x[i]) / d, a = 1.0 - b;
-  Height r;
-  r.value = a * h[i] + b * h[i + 1] + ((a * a * a - a) * h2[i] + (b * b * b - b) * h2[i + 1]) * d * d / 6.0;
-  r.slope = (h[i + 1] - h[i]) / d + ((1.0 - 3.0 * a * a) * h2[i] + (3.0 * b * b - 1.0) * h2[i + 1]) * d / 6.0;
-  r.curvature = a * h2[i] + b * h2[i + 1];
-  return r;
+  return {a * h[i] + b * h[i + 1] + d * a * b * (a * left - b * right),
+          mean + a * (a - 2.0 * b) * left + b * (b - 2.0 * a) * right,
+          ((6.0 * b - 4.0) * left + (6.0 * b - 2.0) * right) / d};
 }
 
 /// The waves at s, which is counted in m from the start.
@@ -187,6 +250,26 @@ Height faded(const Height& w, double s, double fade) {
 }
 
 }  // namespace
+
+std::pair<double, double> Profile::curvatures(std::size_t i) const {
+  const double d = x_[i + 1] - x_[i], mean = (h_[i + 1] - h_[i]) / d;
+  const double left = slope_[i] - mean, right = slope_[i + 1] - mean;
+  return {(-4.0 * left - 2.0 * right) / d, (2.0 * left + 4.0 * right) / d};
+}
+
+double Profile::sharpest_place(double from, double to) const {
+  if (reversed_) return -reversed().sharpest_place(-to, -from);
+  double place = from, sharpest = 0.0;
+  for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
+    const auto [left, right] = curvatures(i);
+    for (const auto& [x, bend] : {std::pair(x_[i], left), std::pair(x_[i + 1], right)}) {
+      if (x < from || x > to || std::abs(bend) <= sharpest) continue;
+      place = x;
+      sharpest = std::abs(bend);
+    }
+  }
+  return place;
+}
 
 double Profile::shortest_wave() const {
   double wave = std::numeric_limits<double>::infinity();
@@ -271,7 +354,7 @@ Height Profile::base_at(double x) const {
     case Kind::bump:
       return bump_at(x - start_, length_, height_);
     case Kind::table:
-      return spline_at(x_, h_, h2_, x);
+      return cubics_at(x_, h_, slope_, x);
     case Kind::waves:
       return x > start_ ? faded(waves_.at(x - start_), x - start_, length_) : Height{};
   }

@@ -157,15 +157,15 @@ std::string step_file(const TemporaryFolder& folder) {
   return folder.write("step.csv", lines);
 }
 
-// A step of two lines and nothing beside it is none that a smooth curve goes through: it would swing by metres.
-TEST(TrackStep, OfFourLinesIsRefused) {
+// A step of two lines and nothing beside it is none that a spline goes through: it would swing by metres.
+TEST(TrackStep, OfFourLinesIsRefusedAsASpline) {
   const TemporaryFolder folder;
   for (const char* lines :
        {"-100, 0\n10, 0\n10.001, 0.001\n100, 0.001\n", "-100, 0\n10, 0\n10.001, -0.001\n100, -0.001\n"}) {
     const std::string file = folder.write("step.csv", lines);
     expect_refused(
         [&] {
-          run_yaml(small_scene(), {{"track_profile", file}});
+          run_yaml(small_scene(), {{"track_profile", file}, {"track_profile_shape", "spline"}});
         },
         {"step.csv", "beside a jump", "give lines as close together"});
   }

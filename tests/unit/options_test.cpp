@@ -218,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(
     Values, BadValue,
     testing::Values(
         Bad{"train_speed", "fast", "'fast' is no finite number"}, Bad{"train_speed", "nan", "no finite number"},
-        Bad{"train_speed", "1e999", "no finite number"}, Bad{"train_speed", "3 m/s", "no finite number"},
+        Bad{"train_speed", "1e999", "no finite number"}, Bad{"train_speed", "3 mph", "no finite number"},
         Bad{"train_speed", "-20000", "from -10000 to 10000 (m/s)"}, Bad{"scene_tail", "-1", "not below 0 (s)"},
         Bad{"beam_EI", "0", "above 1e-07 (N m2)"}, Bad{"beam_EI", "inf", "no finite number"},
         Bad{"beam_EI", "nowhere.csv", "neither a number nor a file"},
@@ -230,6 +230,25 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"scene_analysis", "dynamic", "transient, modes, static"}, Bad{"beam_rayleigh", "0.1", "2 numbers"},
         Bad{"load_hslm_a", "11", "from 1 to 10"}, Bad{"accuracy", "2", "from 1e-10 to 0.1"}));
 
+// What stands in the way of a number: a unit, a comma for a point, a list. Every speed may be in km/h.
+TEST(Numbers, SayWhatStandsInTheWay) {
+  const auto refused = [](const std::string& name, const std::string& value) {
+    return message_of([&] { Options({{name, value}}).check_values(); });
+  };
+  EXPECT_PRED2(contains, refused("beam_spans", "28 m"), "a number stands without its unit, in m");
+  EXPECT_PRED2(contains, refused("beam_EI", "260 GN.m2"), "a number stands without its unit, in N m2");
+  EXPECT_PRED2(contains, refused("train_speed", "30 mph"), "without its unit, in m/s");
+  EXPECT_PRED2(contains, refused("ts_dt", "1,5e-3"), "decimals follow a point: 1.5e-3");
+  EXPECT_PRED2(contains, refused("beam_EI", "1e10,2e10"), "one number is wanted, not a list");
+  EXPECT_PRED2(contains, refused("beam_spans", "28,0"), "'0' is none of what is allowed");
+  for (const char* name : {"train_speed", "load_speed"}) {
+    EXPECT_DOUBLE_EQ(Options({{name, "90 km/h"}}).number(name), 25.0);
+    EXPECT_DOUBLE_EQ(Options({{name, "-90km/h"}}).number(name), -25.0);
+  }
+  EXPECT_PRED2(contains, message_of([] { Options::from_yaml("beam: {spans: 28,0, EI: 1e10}\n", "a.yml"); }),
+               "a.yml:1: '0' stands where a name should");
+}
+
 TEST(Names, MisspeltOnesGetAProposal) {
   const auto refused = [](const std::string& name) {
     return message_of([&] { Options({{name, "1"}}).check_names(); });
@@ -239,6 +258,12 @@ TEST(Names, MisspeltOnesGetAProposal) {
   EXPECT_PRED2(contains, refused("gravty"), "did you mean gravity?");
   EXPECT_PRED2(contains, refused("accuarcy"), "did you mean accuracy?");
   EXPECT_FALSE(contains(refused("zzzzzzzzzzzzzzz"), "did you mean"));
+  // some of its words, or letters of the other size
+  EXPECT_PRED2(contains, refused("ei"), "did you mean beam_EI?");
+  EXPECT_PRED2(contains, refused("beam_ei"), "did you mean beam_EI?");
+  EXPECT_PRED2(contains, refused("beam_damping"), "did you mean beam_damping_ratios?");
+  EXPECT_PRED2(contains, refused("spans"), "did you mean beam_spans?");
+  EXPECT_PRED2(contains, refused("passages"), "did you mean output_passages?");
   EXPECT_NO_THROW((Options{{"ts_type", "bdf"}, {"eps_tol", "1e-9"}, {"log_view", ""}}.check_names()));
 }
 

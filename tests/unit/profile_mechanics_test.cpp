@@ -52,7 +52,7 @@ TEST(Profile, TableIsANaturalSpline) {
     x.push_back(0.5 * i);
     h.push_back(0.002 * std::sin(0.6 * x.back()));
   }
-  const Profile p = Profile::table(x, h, "t.csv");
+  const Profile p = Profile::spline(x, h, "t.csv");
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(p.at(x[i]).value, h[i], 1e-16);
   // away from the ends the spline's error is of order (0.6*0.5)^4/384
   EXPECT_NEAR(p.at(9.7).value, 0.002 * std::sin(0.6 * 9.7), 0.002 * 3e-5);
@@ -61,20 +61,72 @@ TEST(Profile, TableIsANaturalSpline) {
   EXPECT_EQ(p.at(50.0).value, h.back());
   EXPECT_EQ(p.at(50.0).slope, 0.0);
   EXPECT_EQ(p.kinks(), (std::vector<double>{0.0, 20.0}));
-  EXPECT_EQ(p.at(0.0).curvature, 0.0);
+  EXPECT_NEAR(p.at(0.0).curvature, 0.0, 1e-15);
+}
+
+// Rows far apart are joined by straight lines; a corner is rounded within 0.25 m of its row, without a jump of the
+// slope.
+TEST(Profile, FewRowsAreStraightLines) {
+  const Profile p = Profile::lines({-400.0, 0.0, 100.0}, {20.0, 0.0, 0.0}, "ramp.csv");
+  EXPECT_DOUBLE_EQ(p.at(-200.0).value, 10.0);
+  EXPECT_DOUBLE_EQ(p.at(-200.0).slope, -0.05);
+  EXPECT_NEAR(p.at(-0.2501).value, 0.05 * 0.2501, 1e-12);
+  EXPECT_EQ(p.at(0.2501).value, 0.0);
+  EXPECT_EQ(p.at(0.0).value, 0.0);
+  EXPECT_NEAR(p.at(0.0).slope, -0.025, 1e-15);
+  EXPECT_EQ(p.at(-401.0).value, 20.0);
+  EXPECT_EQ(p.kinks(), (std::vector<double>{-400.25, 100.0 + 0.25}));
+  EXPECT_DOUBLE_EQ(p.greatest_valley(), 0.05 / 0.25 * 2.0);  // the corner's curvature, which falls to both sides
+  EXPECT_DOUBLE_EQ(p.sharpest_place(-100.0, 50.0), 0.0);
+  EXPECT_DOUBLE_EQ(p.reversed().sharpest_place(-50.0, 100.0), 0.0);
+  expect_derivatives(p, {-400.1, -400.0 + 1e-3, -300.0, -0.2, -0.1, 0.1, 0.2, 50.0});
+  for (const double x : {-400.25, -400.0, -399.75, -0.25, 0.0, 0.25})
+    EXPECT_NEAR(p.at(x - 1e-9).slope, p.at(x + 1e-9).slope, 1e-8) << x;
+}
+
+// A measured profile passes through its rows as a smooth curve: of equal distances a cubic Hermite spline whose slopes
+// are central differences. Its error is of order (0.6*0.25)^3. Events of a run are its ends only.
+TEST(Profile, DenseRowsAreASmoothCurve) {
+  std::vector<double> x, h;
+  for (int i = 0; i <= 80; ++i) {
+    x.push_back(0.25 * i);
+    h.push_back(0.002 * std::sin(0.6 * x.back()));
+  }
+  const Profile p = Profile::lines(x, h, "t.csv");
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) {
+    EXPECT_NEAR(p.at(x[i]).value, h[i], 1e-16);
+    EXPECT_NEAR(p.at(x[i]).slope, (h[i + 1] - h[i - 1]) / 0.5, 1e-15);
+  }
+  for (const double at : {0.8, 7.1, 9.7}) EXPECT_NEAR(p.at(at).value, 0.002 * std::sin(0.6 * at), 0.002 * 1e-4);
+  expect_derivatives(p, {0.3, 1.2, 5.1, 10.4, 19.9});
+  EXPECT_EQ(p.kinks().size(), 2U);
+  EXPECT_DOUBLE_EQ(p.resolution(), 0.0625);
+}
+
+// A step of height within a millimetre stays a step: what is beside it stays within a fifteenth of it.
+TEST(Profile, AStepStaysAStep) {
+  const Profile p = Profile::lines({0.0, 1.0, 1.001, 2.0}, {0.0, 0.0, 0.01, 0.01}, "kerb.csv");
+  EXPECT_EQ(p.at(0.998).value, 0.0);
+  EXPECT_DOUBLE_EQ(p.at(1.0025).value, 0.01);
+  for (int i = 0; i <= 400; ++i) {
+    const double value = p.at(0.998 + 1e-5 * i).value;
+    EXPECT_GT(value, -0.01 / 13.0);
+    EXPECT_LT(value, 0.01 + 0.01 / 13.0);
+  }
+  expect_derivatives(p, {0.5, 0.9996, 1.0003, 1.0007, 1.0013}, 1e-8);
 }
 
 // Crests do not count, and a steep valley is less sharp than its second derivative: a parabola's h'' over
 // (1 + h'^2)^1.5, where a natural spline through it keeps away from its ends.
 TEST(Profile, BoundsOfTables) {
-  const Profile crest = Profile::table({0.0, 1.0, 2.0}, {0.0, 1.0, 0.0}, "t.csv");
-  EXPECT_EQ(crest.greatest_valley(), std::numeric_limits<double>::infinity());                    // corners at its feet
-  EXPECT_EQ(Profile::table({0.0, 1.0, 2.0}, {0.0, 0.001, 0.0}, "t.csv").greatest_valley(), 0.0);  // hardly any
+  const Profile crest = Profile::spline({0.0, 1.0, 2.0}, {0.0, 1.0, 0.0}, "t.csv");
+  EXPECT_EQ(crest.greatest_valley(), std::numeric_limits<double>::infinity());  // corners at its feet
+  EXPECT_EQ(Profile::spline({0.0, 1.0, 2.0}, {0.0, 0.001, 0.0}, "t.csv").greatest_valley(), 0.0);  // hardly any
   EXPECT_DOUBLE_EQ(crest.greatest_slope(), 1.5);  // h'' = -3 at the top, straight at the ends
-  const Profile valley = Profile::table({0.0, 1.0, 2.0}, {0.0, -1.0, 0.0}, "t.csv");
+  const Profile valley = Profile::spline({0.0, 1.0, 2.0}, {0.0, -1.0, 0.0}, "t.csv");
   EXPECT_DOUBLE_EQ(valley.greatest_valley(), 3.0);
   for (const Profile& p :
-       {Profile::table({0.0, 0.3, 1.0, 1.2, 2.0}, {0.0, 0.3, 0.2, -0.1, 0.4}, "t.csv"), crest, valley}) {
+       {Profile::spline({0.0, 0.3, 1.0, 1.2, 2.0}, {0.0, 0.3, 0.2, -0.1, 0.4}, "t.csv"), crest, valley}) {
     double slope = 0.0, sharpest = 0.0;
     for (int i = 0; i <= 20000; ++i) {
       const Height h = p.at(1e-4 * i);
@@ -143,16 +195,16 @@ TEST(Profile, DipsOnARoughTrack) {
 }
 
 TEST(Profile, TwoPointsAreALine) {
-  const Profile p = Profile::table({0.0, 2.0}, {0.0, 0.1}, "t.csv");
+  const Profile p = Profile::spline({0.0, 2.0}, {0.0, 0.1}, "t.csv");
   EXPECT_DOUBLE_EQ(p.at(1.0).value, 0.05);
   EXPECT_DOUBLE_EQ(p.at(1.0).slope, 0.05);
 }
 
 TEST(Profile, BadTablesAreRefusedByName) {
-  EXPECT_THROW(Profile::table({0.0}, {0.0}, "t.csv"), InputError);
-  EXPECT_THROW(Profile::table({0.0, 0.0}, {0.0, 1.0}, "t.csv"), InputError);
+  EXPECT_THROW(Profile::spline({0.0}, {0.0}, "t.csv"), InputError);
+  EXPECT_THROW(Profile::spline({0.0, 0.0}, {0.0, 1.0}, "t.csv"), InputError);
   try {
-    Profile::table({0.0, 1.0, 0.5}, {0.0, 0.0, 0.0}, "level.csv");
+    Profile::spline({0.0, 1.0, 0.5}, {0.0, 0.0, 0.0}, "level.csv");
     FAIL();
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("level.csv"), std::string::npos);

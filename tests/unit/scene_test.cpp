@@ -173,6 +173,46 @@ TEST(SceneLoad, ForcesAndRefusals) {
   EXPECT_PRED2(contains, refused(beam_yaml + "load: {forces: 1, speed: 0}\n"), "load_speed is 0");
 }
 
+// x of a file of axles grows forward, or backward as distances behind the first axle do.
+TEST(SceneLoad, AxlesOfAFileEitherWay) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write("axles.csv", "0, 220e3\n2.1, 210e3\n4.5, 90e3\n"),
+                    load = beam_yaml + "load: {speed: 30, file: " + file;
+  const Scene forward = scene_of(load + "}\n"), backward = scene_of(load + ", file_x: backward}\n");
+  EXPECT_EQ(forward.load.positions, (std::vector<double>{-4.5, -2.4, 0.0}));
+  EXPECT_PRED2(any_contains, forward.unusual, "the last row's force of 90 kN leads");
+  EXPECT_EQ(backward.load.positions, (std::vector<double>{-0.0, -2.1, -4.5}));
+  EXPECT_FALSE(any_contains(backward.unusual, "leads"));
+  const std::string behind = folder.write("behind.csv", "0, 220e3\n-2.1, 210e3\n");
+  EXPECT_FALSE(any_contains(scene_of(beam_yaml + "load: {speed: 30, file: " + behind + "}\n").unusual, "leads"));
+}
+
+// What is no error and seldom meant has a word: a bridge without damping, a rough track that begins at the bridge.
+TEST(SceneSense, WordsOnWhatIsLeftOut) {
+  const std::string load = "load: {forces: 1e5, speed: 30}\n";
+  EXPECT_PRED2(any_contains, scene_of(beam_yaml + load).unusual, "damping: none is given");
+  EXPECT_FALSE(any_contains(scene_of(beam_yaml + load + "beam_damping_ratios: 0.01\n").unusual, "damping"));
+  const Scene rough = scene_with({{"track_profile", "iso8608_B"}});
+  EXPECT_PRED2(any_contains, rough.unusual, "the track is rough from the first wheel on");
+  EXPECT_PRED2(any_contains, rough.unusual, "-train_positions -10");
+  EXPECT_FALSE(
+      any_contains(scene_with({{"track_profile", "iso8608_B"}, {"train_positions", "-100"}}).unusual, "rough"));
+  EXPECT_PRED2(contains, refused(beam_yaml), "nothing moves over the bridge");
+}
+
+// Limits on the deck are judged along all of it, behind the stations that the scene names.
+TEST(SceneOutput, LimitsOnTheDeckAddProbes) {
+  const test::TemporaryFolder folder;
+  const std::string deck = folder.write("deck.yml", "- {clause: A, quantity: deck_acceleration, value: 3.5}\n"),
+                    ends = folder.write("ends.yml", "- {clause: A, quantity: end_rotation, value: 3.5}\n");
+  const std::string scene = beam_yaml + "load: {forces: 1e5, speed: 30}\noutput: {probes: [40.0, 1.0]}\n";
+  const std::vector<double> probes = scene_of(scene + "limits: " + deck + "\n").output.probes;
+  ASSERT_EQ(probes.size(), 2U + 3U * 9U);
+  EXPECT_EQ(std::vector<double>(probes.begin(), probes.begin() + 3), (std::vector<double>{40.0, 1.0, 2.5}));
+  EXPECT_EQ(scene_of(scene + "limits: " + ends + "\n").output.probes.size(), 2U);
+  EXPECT_EQ(scene_of(scene + "limits: " + deck + "\noutput_probes_spacing: 100\n").output.probes.size(), 6U);
+}
+
 TEST(SceneTrack, Profiles) {
   EXPECT_TRUE(scene_with({}).profile.level());
   const Scene bump = scene_with({{"track_profile", "bump"},
@@ -191,6 +231,13 @@ TEST(SceneTrack, Profiles) {
     EXPECT_LT(std::abs(short_waves.profile.at(55.0).value), 0.01);
     EXPECT_NE(short_waves.profile.at(55.0).value, scene_with({{"track_profile", name}}).profile.at(55.0).value);
   }
+  const test::TemporaryFolder folder;
+  const std::string ramp = folder.write("ramp.csv", "-400, 20\n0, 0\n100, 0\n");
+  EXPECT_DOUBLE_EQ(scene_with({{"track_profile", ramp}}).profile.at(-200.0).value, 10.0);
+  EXPECT_NEAR(scene_with({{"track_profile", ramp}, {"track_profile_shape", "spline"}}).profile.at(-200.0).value, 7.0,
+              1e-12);
+  EXPECT_PRED2(any_contains, scene_with({{"track_profile_shape", "spline"}}).notes,
+               "track_profile_shape has no effect");
   EXPECT_PRED2(contains, refused_with("track_profile", "fra_7"), "fra_1 to fra_6");
   EXPECT_PRED2(contains, refused_with("track_profile", "german_medium"), "german_low, german_high");
   EXPECT_PRED2(any_contains, scene_with({{"track_wavelengths", "1, 3"}}).notes, "track_wavelengths has no effect");

@@ -56,6 +56,33 @@ TEST(SpeedRefinement, FindsAPeakBetweenSpeeds) {
   }
 }
 
+// A resonance 0.04 v wide at half its power: where it may break the limit between two speeds others are added, until it
+// is broken, or the neighbours of the highest lack a hundredth at most.
+TEST(SpeedRefinement, LeavesNoLimitInDoubt) {
+  std::vector<double> speed = {30.0, 40.0, 50.0, 60.0, 70.0, 80.0, 90.0};
+  const double exact = 25.0;
+  const auto highest_at = [&](double limit) {
+    std::vector<double> at = speed;
+    for (int round = 0; round < 60; ++round) {
+      SpeedCurve curve{"curve", {}};
+      for (const double v : at) curve.value.push_back(resonance(v));
+      const double highest = *std::max_element(curve.value.begin(), curve.value.end());
+      if (highest > limit) return highest;
+      const Refinement next = refine_for_limits(at, {{curve, limit}}, 0.04);
+      if (next.speeds.empty()) return highest;
+      at.insert(at.end(), next.speeds.begin(), next.speeds.end());
+      std::sort(at.begin(), at.end());
+      EXPECT_LT(at.size(), 60U);
+    }
+    ADD_FAILURE() << "it does not end";
+    return 0.0;
+  };
+  EXPECT_GT(highest_at(0.97 * exact), 0.97 * exact) << "broken between 60 and 70 m/s only";
+  EXPECT_GT(highest_at(1.005 * exact), 0.98 * exact) << "kept, by speeds close to the peak";
+  SpeedCurve low{"low", {1.0, 1.0, 1.0}};
+  EXPECT_TRUE(refine_for_limits({50.0, 51.0, 52.0}, {{low, 2.0}}, 0.04).speeds.empty()) << "far from its limit";
+}
+
 // The higher of two peaks is the lower one of the coarse speeds.
 TEST(SpeedRefinement, LooksAtEveryPeakThatMayBeTheHighest) {
   const auto curve = [](double v) {

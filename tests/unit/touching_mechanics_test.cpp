@@ -74,7 +74,7 @@ TEST(Touching, SharpBump) {
 
 // A crest may be as sharp as it likes; at its feet, corners, a wheel touches ground and slope.
 TEST(Touching, CrestsTouchOnce) {
-  const Profile crest = Profile::table({0.0, 0.05, 0.1}, {0.0, 0.01, 0.0}, "t.csv");
+  const Profile crest = Profile::spline({0.0, 0.05, 0.1}, {0.0, 0.01, 0.0}, "t.csv");
   EXPECT_GT(-crest.at(0.05).curvature * R, 5.0);
   for (double x = 0.02; x < 0.081; x += 0.01) EXPECT_EQ(touching_points(crest, R, x).count, 1) << "x = " << x;
   bool twice = false;
@@ -84,7 +84,7 @@ TEST(Touching, CrestsTouchOnce) {
   }
   EXPECT_TRUE(twice);
   EXPECT_TRUE(is_sharp(crest, R));
-  const Profile valley = Profile::table({0.0, 0.5, 1.0}, {0.0, -0.2, 0.0}, "t.csv");
+  const Profile valley = Profile::spline({0.0, 0.5, 1.0}, {0.0, -0.2, 0.0}, "t.csv");
   EXPECT_TRUE(is_sharp(valley, R));
 }
 
@@ -94,7 +94,7 @@ TEST(Touching, MorePointsThanAreKept) {
     x.push_back(0.005 * i);
     h.push_back(0.002 * std::cos(2.0 * 3.14159265358979 * x.back() / 0.05));
   }
-  const Profile waves = Profile::table(x, h, "t.csv");
+  const Profile waves = Profile::spline(x, h, "t.csv");
   const TouchingPoints points = touching_points(waves, R, 0.5);
   const std::vector<Found> minima = by_search(waves, 0.5);
   ASSERT_GT(minima.size(), 3u);

@@ -165,7 +165,7 @@ TEST(WheelContacts, GradientOfThePotentialOverALowBump) {
 // Corners at the feet of a table's ramp, where the level ground ends.
 TEST(WheelContacts, GradientOfThePotentialAtACorner) {
   Placed placed(wheelset(1e7, contact::LawKind::linear),
-                track::Profile::table({2.0, 2.25, 2.5}, {0.0, 0.01, 0.0}, "ramp"));
+                track::Profile::spline({2.0, 2.25, 2.5}, {0.0, 0.01, 0.0}, "ramp"));
   ASSERT_EQ(placed.fleet.wheels.size(), 5u);
   for (double x = 1.9; x < 2.15; x += 0.00173) {
     const double highest = track::touching_points(placed.profile, R, x).height;
@@ -181,7 +181,7 @@ track::Profile valley() {
     x.push_back(0.002 * i);
     h.push_back(std::hypot(bottom, slope * x.back()));
   }
-  return track::Profile::table(x, h, "valley");
+  return track::Profile::spline(x, h, "valley");
 }
 
 // Where h' = tan(angle) and x = R sin(angle).

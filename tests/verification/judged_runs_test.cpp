@@ -45,7 +45,8 @@ void expect_verdicts(Results& all, const std::string& name) {
 }
 
 void expect_runs_alone(const Values& options, double of_peaks) {
-  Results sweep = run_yaml(decks, options + Values{{"limits", limits}, {"sweep_speed", "20,60,20"}});
+  Results sweep =
+      run_yaml(decks, options + Values{{"limits", limits}, {"sweep_speed", "20,60,20"}, {"sweep_refine", "0"}});
   for (std::size_t run = 0; run < 3; ++run) {
     Results alone = run_yaml(
         decks, options + Values{{"limits", limits}, {"load_speed", std::to_string(20 + 20 * static_cast<int>(run))}});

@@ -7,6 +7,7 @@
 
 #include "support/curve.hpp"
 #include "support/paths.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace traverse::test {
 namespace {
@@ -61,7 +62,7 @@ TEST(RefinedSweep, FindsTheResonanceThatTheGridMisses) {
 TEST(RefinedSweep, KnowsThePeaksOfJudgedQuantities) {
   const Values options = {{"limits", TRAVERSE_SOURCE_DIR "/tests/data/limits_of_forces.yml"}, {"sweep_hslm_a", "1,9"}};
   Results fine = run_yaml(bridge, options + Values{{"sweep_speed", "60,72,3"}, {"sweep_refine", "2e-3"}});
-  Results dense = run_yaml(bridge, options + Values{{"sweep_speed", "60,72,0.02"}});
+  Results dense = run_yaml(bridge, options + Values{{"sweep_speed", "60,72,0.02"}, {"sweep_refine", "0"}});
   const auto greatest = [](Results& run, std::size_t train, std::size_t limit) {
     const std::size_t speeds = run("/sweep/speed").size(), limits = run("/verdicts/limit").size();
     double found = 0.0;
@@ -75,6 +76,20 @@ TEST(RefinedSweep, KnowsThePeaksOfJudgedQuantities) {
       EXPECT_LE(wanted, (1.0 + 2e-3) * greatest(fine, train, limit)) << train << " " << limit;
     }
   for (const double value : fine("/sweep/peak_deflection")) EXPECT_TRUE(std::isfinite(value));
+}
+
+// Limits are judged between the speeds too: one that the speeds given keep is broken at the resonance beside them.
+TEST(RefinedSweep, NoVerdictTurnsWithTheStep) {
+  const TemporaryFolder folder;
+  const Values train = {{"load_hslm_a", "1"}, {"beam_elements_per_span", "8"}};
+  const std::string scene = std::string(bridge) + "limits: " +
+                            folder.write("limits.yml", "- {clause: A, quantity: amplification, value: 2.3}\n") + "\n";
+  const auto found = [&](const Values& more) { return run_yaml(scene, train + more)("/verdicts/value")[0]; };
+  const double dense = found({{"sweep_speed", "62,66,0.05"}, {"sweep_refine", "0"}});
+  const Values coarse = {{"sweep_speed", "32,92,10"}};
+  EXPECT_GT(dense, 2.3);
+  EXPECT_LT(found(coarse + Values{{"sweep_refine", "0"}}), 2.3);
+  EXPECT_GT(found(coarse), 2.3);
 }
 
 // Two masses of the bridge, each with a resonance of its own.

@@ -110,6 +110,7 @@ TEST(SweepLowPassed, IsPromisedOfEveryRun) {
   const Values limited = {
       {"limits", folder.write("limits.yml", "- {clause: A, quantity: deck_acceleration, value: 3.5}\n")},
       {"accuracy_of", "deflection,acceleration_lowpass"},
+      {"sweep_refine", "0"},
       {"scene_tail", "0.3"}};
   const std::string bridge =
       "beam: {spans: 25.0, EI: 3.0e10, mass: 1.5e4, damping_ratios: 0.01}\n"

@@ -61,7 +61,7 @@ TEST(WheelUnloadingOfARun, IsJudgedInSweeps) {
                           {"model_modes", "8"},
                           {"output_unloading_level", "0.1"},
                           {"limits", TRAVERSE_SOURCE_DIR "/tests/data/limits_of_wheels.yml"}};
-  Results sweep = run_yaml(coach, options + Values{{"sweep_speed", "60,80,10"}});
+  Results sweep = run_yaml(coach, options + Values{{"sweep_speed", "60,80,10"}, {"sweep_refine", "0"}});
   const std::vector<double> judged = sweep("/sweep/judged");
   ASSERT_EQ(judged.size(), 9u);
   for (std::size_t run = 0; run < 3; ++run) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "traverse/track/spectrum.hpp"
@@ -26,9 +27,13 @@ class Profile {
   Profile() = default;  // level
   /// height/2*(1 - cos(2 pi (x - start)/length)) inside [start, start + length].
   static Profile bump(double start, double length, double height);
+  /// Straight lines through a table, level with its end values outside. Each corner is rounded within 0.25 m of its
+  /// row, or as far as the nearer row where that is closer: rows of a measured profile then give a smooth curve through
+  /// all of them (a cubic Hermite spline), rows far apart straight lines.
+  static Profile lines(std::vector<double> x, std::vector<double> h, const std::string& name);
   /// Natural cubic spline through a table, level with its end values outside. InputError where it swings far out beside
   /// a jump of the table.
-  static Profile table(std::vector<double> x, std::vector<double> h, const std::string& name);
+  static Profile spline(std::vector<double> x, std::vector<double> h, const std::string& name);
   /// Roughness of a spectrum: a sum of 240 cosines with random phases from a seed, wavelengths from `shortest` to
   /// `longest` (m) in log spacing, each with the power of its band; faded in from `start` over 20 m, or a fifth of the
   /// longest wave where that is more, so that a train starts on level track.
@@ -56,12 +61,16 @@ class Profile {
   const std::vector<double>& kinks() const { return kinks_; }
   /// Upper bound of the curvature of valleys, h''/(1 + h'^2)^1.5 (1/m; for roughness six standard deviations of h''): a
   /// wheel of radius R with 1/R above it touches at one point only. Crests may be as sharp as they like. Infinite for a
-  /// table that meets the level ground before or behind it at a corner.
+  /// spline that meets the level ground before or behind it at a corner.
   double greatest_valley() const { return greatest_valley_; }
   /// Upper bound of |h'|, for roughness six standard deviations.
   double greatest_slope() const { return greatest_slope_; }
   /// Stations this far apart (m) show every crest and valley.
   double resolution() const { return resolution_; }
+  /// The station in [from, to] where a table's curve is most sharply bent, m; `from` where there is no table.
+  double sharpest_place(double from, double to) const;
+  /// Of roughness the way over which it grows to its height from where it starts, m; else 0.
+  double fade() const { return is_rough() ? length_ : 0.0; }
   /// Length of the bump, of the shortest dip or of the shortest wave of roughness, m; infinite for level tracks and
   /// tables.
   double shortest_wave() const;
@@ -72,13 +81,15 @@ class Profile {
   Height with_dips(double x, Height height) const;
   void check_swing(const std::string& name) const;
   void bound_table();
+  /// h'' at both ends of a table's cubic between stations i and i + 1.
+  std::pair<double, double> curvatures(std::size_t i) const;
 
   Height ahead(double x) const;
 
   Kind kind_ = Kind::level;
   bool reversed_ = false;
   double start_ = 0.0, length_ = 0.0, height_ = 0.0;  // length: of the bump, or of the fade
-  std::vector<double> x_, h_, h2_;                    // table
+  std::vector<double> x_, h_, slope_;                 // table: between these stations the curve is a cubic
   Waves waves_;
   std::vector<Dip> dips_;  // by ascending middle
   double longest_dip_ = 0.0;
