@@ -14,7 +14,8 @@
 namespace traverse::options {
 namespace {
 
-constexpr int longest_line = 4096, most_lines = 5'000'000;
+constexpr std::size_t longest_line = 4096, most_table_characters = std::size_t{1} << 30;
+constexpr int most_lines = 5'000'000;
 
 std::vector<double> numbers_of(std::string line, const std::string& where) {
   line.resize(std::min(line.find('#'), line.size()));
@@ -22,23 +23,26 @@ std::vector<double> numbers_of(std::string line, const std::string& where) {
     if (c == ',' || c == ';') c = ' ';
   }
   std::vector<double> numbers;
+  const bool names = line.find_first_of("0123456789") == std::string::npos;
+  const char* hint = names ? "; a line of names begins with #" : "";
   std::istringstream words(line);
   for (std::string word; words >> word;) {
     double number = 0.0;
-    if (!parse_number(word, number)) throw InputError(fmt::format("{}'{}' is no finite number", where, word));
+    if (!parse_number(word, number)) throw InputError(fmt::format("{}'{}' is no finite number{}", where, word, hint));
     if (!is_quantity(number)) throw InputError(fmt::format("{}'{}' is beyond any quantity in SI units", where, word));
     numbers.push_back(number);
   }
   return numbers;
 }
 
-/// False at the end. A line without end, as of /dev/zero, is no text.
-bool read_line(std::istream& file, std::string& line, const std::string& path) {
-  char text[longest_line];
-  if (!file.getline(text, longest_line) && file.gcount() == longest_line - 1)
+/// Takes a line off the text. A line without end is no table's.
+std::string next_line(std::string_view& text, const std::string& path) {
+  const std::size_t size = text.find('\n');
+  std::string line(text.substr(0, size));
+  text.remove_prefix(size == std::string_view::npos ? text.size() : size + 1);
+  if (line.size() >= longest_line)
     throw InputError(fmt::format("{}: a line is longer than {} characters: this is no table", path, longest_line));
-  line.assign(text);
-  return static_cast<bool>(file);
+  return line;
 }
 
 }  // namespace
@@ -70,11 +74,11 @@ bool parse_speed(std::string word, double& number) {
 
 std::vector<std::vector<double>> read_columns(const std::string& path, std::size_t least, std::size_t most,
                                               Order order) {
-  const std::unique_ptr<std::istream> file = open_input(path);
-  if (file == nullptr) throw InputError(path + ": the file cannot be read");
+  const std::string text = read_text(path, {"", "table", most_table_characters, true});
   std::vector<std::vector<double>> columns;
   int number = 0;
-  for (std::string line; read_line(*file, line, path);) {
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::string line = next_line(rest, path);
     const std::string where = fmt::format("{}:{}: ", path, ++number);
     if (number > most_lines)
       throw InputError(fmt::format("{}: has too many lines; allowed: at most {}", path, most_lines));
@@ -95,7 +99,6 @@ std::vector<std::vector<double>> read_columns(const std::string& path, std::size
     for (std::size_t i = 0; i < row.size(); ++i) columns[i].push_back(row[i]);
   }
   if (columns.empty()) throw InputError(path + ": holds no numbers");
-  note_input(path, true);
   return columns;
 }
 

@@ -1,10 +1,12 @@
 #include "options/input_texts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <sstream>
+
+#include "base/regular_file.hpp"
+#include "base/utf8.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::options {
 namespace {
@@ -13,6 +15,8 @@ struct Mounted {
   std::string prefix;  // empty: nothing is
   std::vector<InputText> files;
 };
+
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 Mounted mounted_inputs;  // one for the process, as PETSc's options are
 std::vector<InputText> noted;
@@ -26,29 +30,50 @@ const InputText* find_mounted(const std::string& path) {
   return found == mounted_inputs.files.end() ? nullptr : &*found;
 }
 
-}  // namespace
-
-std::unique_ptr<std::istream> open_input(const std::string& path) {
-  if (const InputText* file = find_mounted(path)) return std::make_unique<std::istringstream>(file->text);
-  auto file = std::make_unique<std::ifstream>(path, std::ios::binary);
-  if (!*file || std::filesystem::is_directory(path)) return nullptr;
-  return file;
-}
-
-void note_input(const std::string& path, bool table) {
+void note(const std::string& path, const std::string& text, bool table) {
   const std::string name = path.substr(mounted(path).size());
   if (std::any_of(noted.begin(), noted.end(), [&](const InputText& file) { return file.name == name; })) return;
-  const std::unique_ptr<std::istream> file = open_input(path);
-  if (file == nullptr) return;
-  noted.push_back({name, {std::istreambuf_iterator<char>(*file), {}}});
+  noted.push_back({name, text});
   noted_tables.push_back(table ? 1 : 0);
 }
 
-void note_text(const std::string& path, const std::string& text) {
-  if (std::any_of(noted.begin(), noted.end(), [&](const InputText& file) { return file.name == path; })) return;
-  noted.push_back({path, text});
-  noted_tables.push_back(1);
+std::string text_on_disk(const std::string& path, const TextKind& kind) {
+  std::string text, why = base::read_regular_file(path, kind.most_characters, text);
+  if (why.empty()) return text;
+  if (why == base::too_long)
+    why = fmt::format("longer than {} characters: this is no {}", kind.most_characters, kind.what);
+  throw InputError(fmt::format("{}{}{}: {}", kind.option, kind.option.empty() ? "" : " = ", path, why));
 }
+
+}  // namespace
+
+void check_characters(std::string_view text, const std::string& name) {
+  int line = 1;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const std::size_t length = base::length_of_character(text, i);
+    if (length == 0)
+      throw InputError(
+          fmt::format("{}:{}: byte 0x{:02x} is no text in UTF-8; save the file as UTF-8", name, line, byte));
+    const bool blank = byte == '\n' || byte == '\t' || byte == '\r';
+    if ((byte < 0x20 && !blank) || byte == 0x7f)
+      throw InputError(fmt::format("{}:{}: holds the control character 0x{:02x}{}: this is no text", name, line, byte,
+                                   byte == 0 ? " (NUL)" : ""));
+    if (byte == '\n') ++line;
+    i += length;
+  }
+}
+
+std::string read_text(const std::string& path, const TextKind& kind) {
+  const InputText* stored = find_mounted(path);
+  std::string text = stored != nullptr ? stored->text : text_on_disk(path, kind);
+  if (text.starts_with(byte_order_mark)) text.erase(0, byte_order_mark.size());
+  check_characters(text, path);
+  note(path, text, kind.table);
+  return text;
+}
+
+void note_text(const std::string& path, const std::string& text) { note(path, text, true); }
 
 const std::vector<InputText>& inputs_read() { return noted; }
 

@@ -2,9 +2,9 @@
 // come out of a results file instead of the disk (rerun.hpp).
 #pragma once
 
-#include <istream>
-#include <memory>
+#include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace traverse::options {
@@ -14,12 +14,23 @@ struct InputText {
   std::string text;
 };
 
-/// A file to be read, from the disk or out of a results file; null where it cannot be read.
-std::unique_ptr<std::istream> open_input(const std::string& path);
-/// Keeps the text of a file that was read; once is enough.
-void note_input(const std::string& path, bool table);
+/// What a reader says of a file that it refuses.
+struct TextKind {
+  std::string_view option;  // that names it: "limits"; empty: none, as of tables
+  std::string_view what;    // "a table"
+  std::size_t most_characters = 0;
+  bool table = false;  // its entries are not known as options
+};
 
-/// The same of a table whose text is not the file's own.
+/// The text of a file, from the disk or out of a results file, without a byte-order mark; it is kept as read.
+/// InputError where it is no regular file (a pipe, a device, a folder), cannot be read, is longer than allowed, or
+/// holds what no text holds: a NUL or another control character, bytes that are no UTF-8.
+std::string read_text(const std::string& path, const TextKind& kind);
+
+/// The characters of a text, for those that are in memory already: the same refusals, with the line.
+void check_characters(std::string_view text, const std::string& name);
+
+/// Keeps the text of a table that is not its file's own; once is enough.
 void note_text(const std::string& path, const std::string& text);
 
 /// All that were noted, in their order.

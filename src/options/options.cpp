@@ -362,7 +362,8 @@ std::string Options::path(std::string_view name) const {
                                       why_no_number(value, row(name)), allowed(row(name)))
                         : "there is no such file, neither here nor beside the file that names it");
   }
-  if (std::filesystem::is_directory(found)) refuse(name, "is a folder, not a file");
+  std::error_code ignored;
+  if (std::filesystem::is_directory(found, ignored)) refuse(name, "is a folder, not a file");
   return found;
 }
 

@@ -12,12 +12,14 @@
 #include <sstream>
 
 #include "options/input_texts.hpp"
+#include "options/one_document.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::options {
 namespace {
 
-constexpr int deepest_include = 8;
+constexpr std::size_t deepest_include = 64, most_includes = 1000;
+constexpr int deepest_block = 64;
 constexpr std::size_t most_characters = 16 << 20;  // of a file, and of what its anchors make of it
 
 std::string at(const std::string& file, int line) { return fmt::format("{}:{}: ", file, line); }
@@ -29,12 +31,14 @@ class Flattener {
   Flattener(const std::string& file, std::vector<Entry>& entries) : file_(file), entries_(entries) {}
 
   void map(const YAML::Node& node, const std::string& prefix, bool merged = false) {
+    const Nested nested(*this, node);
     std::unordered_map<std::string, int> lines;
     std::vector<YAML::Node> merges;
     for (const auto& item : node) {
       const int line = line_of(item.first);
       if (!item.first.IsScalar()) throw InputError(at(file_, line) + "a key has to be a word");
       const std::string& key = item.first.Scalar();
+      count(prefix.size() + key.size() + 1, line);
       if (key == "<<") {  // YAML's merge key; an anchor's block may be kept under a key that starts with $$
         merges.push_back(item.second);
         continue;
@@ -53,6 +57,22 @@ class Flattener {
   }
 
  private:
+  /// One block in another. One that holds itself, by an alias in it of its own anchor, has no end.
+  class Nested {
+   public:
+    Nested(Flattener& flattener, const YAML::Node& node) : depth_(flattener.depth_) {
+      if (++depth_ > deepest_block)
+        throw InputError(fmt::format("{}blocks more than {} deep, or a block that an alias (*) puts into itself",
+                                     at(flattener.file_, line_of(node)), deepest_block));
+    }
+    Nested(const Nested&) = delete;
+    Nested& operator=(const Nested&) = delete;
+    ~Nested() { --depth_; }
+
+   private:
+    int& depth_;
+  };
+
   static int line_of(const YAML::Node& node) { return node.Mark().line + 1; }
 
   void check_key(const std::string& key, int line) const {
@@ -66,6 +86,8 @@ class Flattener {
 
   void add_merged(const YAML::Node& node, const std::string& prefix) {
     if (node.IsMap()) return map(node, prefix, true);
+    const Nested nested(*this, node);
+    count(node.size(), line_of(node));
     if (!node.IsSequence()) throw InputError(at(file_, line_of(node)) + "<< takes a block, or a list of blocks");
     for (const auto& item : node) add_merged(item, prefix);
   }
@@ -76,17 +98,21 @@ class Flattener {
     } else if (node.IsSequence()) {
       add(name, list(node, name), line, merged);
     } else {
+      if (node.IsScalar()) count(node.Scalar().size(), line);
       add(name, node.IsNull() ? "" : node.Scalar(), line, merged);
     }
   }
 
-  /// One file gives an option once: `beam: {mass: 1}` and `beam_mass: 2` are the same one. An anchor that stands for a
-  /// block of anchors, and so on, may stand for more than any memory holds.
-  void add(const std::string& name, std::string text, int line, bool merged) {
-    characters_ += name.size() + text.size();
+  /// An anchor that stands for a block of anchors, and so on, may stand for more than any memory holds.
+  void count(std::size_t characters, int line) {
+    characters_ += characters;
     if (characters_ > most_characters)
       throw InputError(
           fmt::format("{}its anchors make more than {} characters of it", at(file_, line), most_characters));
+  }
+
+  /// One file gives an option once: `beam: {mass: 1}` and `beam_mass: 2` are the same one.
+  void add(const std::string& name, std::string text, int line, bool merged) {
     const auto [first, is_new] = given_.try_emplace(name, line);
     if (!is_new && merged) return;
     if (!is_new) refuse_second(name, line, first->second);
@@ -98,7 +124,7 @@ class Flattener {
         fmt::format("{}{} is given twice, first in line {}; keep one of them", at(file_, line), name, first));
   }
 
-  std::string list(const YAML::Node& node, const std::string& name) const {
+  std::string list(const YAML::Node& node, const std::string& name) {
     if (node.size() == 0) return "[]";  // meant so, unlike a key without a value
     std::string joined;
     for (const auto& item : node) {
@@ -106,6 +132,7 @@ class Flattener {
         throw InputError(at(file_, line_of(item)) + name + ": a list holds numbers or words, not lists or blocks");
       }
       if (!joined.empty()) joined += ',';
+      count(item.Scalar().size() + 1, line_of(item));
       joined += item.Scalar();
     }
     return joined;
@@ -115,6 +142,7 @@ class Flattener {
   std::vector<Entry>& entries_;
   std::unordered_map<std::string, int> given_;  // option: its line
   std::size_t characters_ = 0;
+  int depth_ = 0;
 };
 
 /// Splits a line into words; "..." and '...' hold blanks together, # starts a comment.
@@ -160,22 +188,6 @@ void check_name(const std::string& word, const std::string& source, int line) {
       word);
 }
 
-std::string text_of(const std::string& path) {
-  if (std::filesystem::is_directory(path)) throw InputError("options_file = " + path + ": is a folder, not a file");
-  const std::unique_ptr<std::istream> file = open_input(path);
-  if (file == nullptr) throw InputError("options_file = " + path + ": there is no such file, or it cannot be read");
-  std::string text;
-  for (std::array<char, 65536> part; *file && text.size() <= most_characters;) {
-    file->read(part.data(), part.size());
-    text.append(part.data(), static_cast<std::size_t>(file->gcount()));
-  }
-  if (text.size() > most_characters)
-    throw InputError(
-        fmt::format("options_file = {}: longer than {} characters: this is no options file", path, most_characters));
-  note_input(path, false);
-  return text;
-}
-
 bool is_yaml(const std::string& path) { return path.ends_with(".yml") || path.ends_with(".yaml"); }
 
 /// The files that an option `options_file` of a file names; none where it says so.
@@ -193,25 +205,33 @@ std::vector<std::string> names_in(const Entry& entry) {
   return names;
 }
 
-std::vector<Entry> read_nested(const std::string& path, int depth) {
-  const std::string text = text_of(path);
+bool is_same(const std::string& file, const std::string& other) {
+  std::error_code ignored;
+  return file == other || std::filesystem::equivalent(file, other, ignored);
+}
+
+/// above: the files that name each other down to this one. read: how many have been read.
+std::vector<Entry> read_nested(const std::string& path, std::vector<std::string> above, std::size_t& read) {
+  const std::string text = read_text(path, {"options_file", "options file", most_characters, false});
+  above.push_back(path);
   std::vector<Entry> all;
   for (Entry& entry : is_yaml(path) ? parse_yaml(text, path) : parse_classic(text, path)) {
     if (entry.name != "options_file") {
       all.push_back(std::move(entry));
       continue;
     }
-    if (depth >= deepest_include) {
-      throw InputError("options_file = " + entry.value + " (" + entry.where() + "): files name each other in a circle");
-    }
     for (const std::string& name : names_in(entry)) {
-      const std::string found = find_file(name, path);
+      const std::string found = find_file(name, path), said = "options_file = " + name + " (" + entry.where() + "): ";
       if (found.empty()) {
-        throw InputError(
-            "options_file = " + name + " (" + entry.where() +
-            "): there is no such file, neither beside the file that names it nor in the working directory");
+        throw InputError(said +
+                         "there is no such file, neither beside the file that names it nor in the working directory");
       }
-      for (Entry& inner : read_nested(found, depth + 1)) all.push_back(std::move(inner));
+      if (std::any_of(above.begin(), above.end(), [&](const std::string& file) { return is_same(file, found); }))
+        throw InputError(said + "files name each other in a circle");
+      if (above.size() > deepest_include)
+        throw InputError(fmt::format("{}files name each other more than {} deep", said, deepest_include));
+      if (++read > most_includes) throw InputError(fmt::format("{}more than {} files in all", said, most_includes));
+      for (Entry& inner : read_nested(found, above, read)) all.push_back(std::move(inner));
     }
   }
   return all;
@@ -233,11 +253,10 @@ bool indented_by_tab(const std::string& text, int line) {
 std::vector<Entry> parse_yaml(const std::string& text, const std::string& name) {
   std::vector<Entry> entries;
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.empty() || documents.front().IsNull()) return entries;
-    if (documents.size() > 1) throw InputError(name + ": holds more than one YAML document (a line of ---)");
-    if (!documents.front().IsMap()) throw InputError(at(name, 1) + "expected `key: value`");
-    Flattener(name, entries).map(documents.front(), "");
+    const YAML::Node document = one_document(text, name);
+    if (document.IsNull()) return entries;
+    if (!document.IsMap()) throw InputError(at(name, 1) + "expected `key: value`");
+    Flattener(name, entries).map(document, "");
   } catch (const YAML::Exception& error) {
     throw InputError(at(name, error.mark.line + 1) + "not well-formed YAML: " + error.msg +
                      (indented_by_tab(text, error.mark.line) ? " (a tab; YAML wants blanks)" : ""));
@@ -302,6 +321,9 @@ std::string find_file(const std::string& path, const std::string& named_in) {
   return std::filesystem::exists(installed, ignored) ? installed.string() : "";
 }
 
-std::vector<Entry> read_options_file(const std::string& path) { return read_nested(path, 0); }
+std::vector<Entry> read_options_file(const std::string& path) {
+  std::size_t read = 0;
+  return read_nested(path, {}, read);
+}
 
 }  // namespace traverse::options

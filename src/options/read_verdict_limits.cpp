@@ -5,11 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <memory>
 
 #include "options/data_file.hpp"
 #include "options/input_texts.hpp"
+#include "options/one_document.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/table.hpp"
 
@@ -91,7 +90,7 @@ std::vector<VerdictLimit> parse_verdict_limits(const std::string& text, const st
   std::vector<VerdictLimit> limits;
   const LimitReader reader(name);
   try {
-    const YAML::Node list = YAML::Load(text);
+    const YAML::Node list = one_document(text, name, "limits: ");
     if (!list.IsSequence() || list.size() == 0)
       reader.refuse(list, "expected a list of entries {clause: ..., quantity: ..., value: ..., text: ...}");
     if (list.size() > most_limits) reader.refuse(list, fmt::format("more than {} entries", most_limits));
@@ -103,16 +102,7 @@ std::vector<VerdictLimit> parse_verdict_limits(const std::string& text, const st
 }
 
 std::vector<VerdictLimit> read_verdict_limits(const std::string& path) {
-  const std::unique_ptr<std::istream> file = open_input(path);
-  if (file == nullptr) throw InputError("limits = " + path + ": cannot be read");
-  std::string text(longest_file + 1, '\0');
-  file->read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file->gcount()));
-  if (text.size() > longest_file)
-    throw InputError(
-        fmt::format("limits = {}: longer than {} characters: this is no list of limits", path, longest_file));
-  note_input(path, true);
-  return parse_verdict_limits(text, path);
+  return parse_verdict_limits(read_text(path, {"limits", "list of limits", longest_file, true}), path);
 }
 
 }  // namespace traverse::options

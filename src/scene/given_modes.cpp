@@ -18,7 +18,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t most_given_modes = 10'000, most_shape_stations = 100'000;
+constexpr std::size_t most_given_modes = 10'000, most_shape_stations = 100'000, most_characters = std::size_t{1} << 30;
 
 std::string trimmed(const std::string& text) {
   const std::size_t from = text.find_first_not_of(" \t\r"), past = text.find_last_not_of(" \t\r");
@@ -232,11 +232,8 @@ beam::GivenModes read_given_modes(const std::string& path, int track) {
     std::istringstream stream(text);
     return ModesText(path, track).read(stream);
   }
-  const std::unique_ptr<std::istream> file = options::open_input(path);
-  if (file == nullptr) throw InputError(path + ": the file cannot be read");
-  beam::GivenModes modes = ModesText(path, track).read(*file);
-  options::note_input(path, true);
-  return modes;
+  std::istringstream stream(options::read_text(path, {"", "file of modes", most_characters, true}));
+  return ModesText(path, track).read(stream);
 }
 
 }  // namespace traverse::app
