@@ -1,11 +1,13 @@
-"""Sums up what CTest has run: test_summary.py LOG, such as build/Testing/Temporary/LastTest.log
+"""Sums up what CTest has run: test_summary.py [--slow SECONDS] LOG, such as build/Testing/Temporary/LastTest.log
 
 A case of GoogleTest counts by itself, also where several share a process; a case that such a process was to run and did
 not end is a failed one. Prints the twenty slowest, the names of the failed, and as its last line `N passed, N failed`.
+
+With --slow it prints lines of tests/slow.txt instead: the slowest, until what is left takes these seconds together.
 """
+import argparse
 import pathlib
 import re
-import sys
 
 SHOWN = 20
 TEST = re.compile(r"^\d+/\d+ Testing: (.+)$", re.MULTILINE)
@@ -44,13 +46,19 @@ def cases_in(log):
         yield name, PASSED if end and end[1] == "Passed" else FAILED, float(seconds[1]) if seconds else 0.0, ""
 
 
-def main():
-    log = pathlib.Path(sys.argv[1])  # CTest writes none where it finds no tests
-    cases = list(cases_in(log.read_text(encoding="utf-8", errors="replace"))) if log.exists() else []
-    slowest = sorted(cases, key=lambda case: -case[2])[:SHOWN]
+def slow_ones(cases, seconds):
+    """The slowest cases, without which the others take no longer than these seconds together."""
+    ordered = sorted(cases, key=lambda case: -case[2])
+    left = sum(case[2] for case in ordered)
+    while ordered and left > seconds:
+        left -= ordered[0][2]
+        yield ordered.pop(0)
+
+
+def print_summary(cases):
     if len(cases) > 1:
         print("The slowest, in seconds of processor time, those of Python, of several ranks and of benchmarks by the clock:")
-        for name, _, seconds, _ in slowest:
+        for name, _, seconds, _ in sorted(cases, key=lambda case: -case[2])[:SHOWN]:
             print(f"{seconds:8.1f} {name}")
     count = {result: sum(case[1] == result for case in cases) for result in (PASSED, SKIPPED, FAILED)}
     for name, result, _, remark in cases:
@@ -59,6 +67,20 @@ def main():
     if count[SKIPPED]:
         print(f"{count[SKIPPED]} skipped")
     print(f"{count[PASSED]} passed, {count[FAILED]} failed")
+
+
+def main():
+    arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    arguments.add_argument("--slow", type=float, metavar="SECONDS", help="print the slowest as tests/slow.txt has them")
+    arguments.add_argument("log", type=pathlib.Path)
+    chosen = arguments.parse_args()
+    # CTest writes no log where it finds no tests.
+    cases = list(cases_in(chosen.log.read_text(encoding="utf-8", errors="replace"))) if chosen.log.exists() else []
+    if chosen.slow is None:
+        print_summary(cases)
+    else:
+        for name, _, seconds, _ in slow_ones(cases, chosen.slow):
+            print(f"{seconds:.1f} {name}")
 
 
 if __name__ == "__main__":

@@ -95,13 +95,13 @@ Test Failed.
 
 
 class Summary(unittest.TestCase):
-    def summary(self, text):
+    def summary(self, text, *words):
         with tempfile.TemporaryDirectory() as folder:
             log = pathlib.Path(folder) / "LastTest.log"
             if text:
                 log.write_text(text, encoding="utf-8")
-            return subprocess.run([sys.executable, "-B", str(SOURCE / "scripts/test_summary.py"), str(log)], check=True,
-                                  capture_output=True, text=True).stdout.splitlines()
+            return subprocess.run([sys.executable, "-B", str(SOURCE / "scripts/test_summary.py"), *words, str(log)],
+                                  check=True, capture_output=True, text=True).stdout.splitlines()
 
     def test_cases_of_a_batch_count_by_themselves(self):
         lines = self.summary(BATCH + OTHERS)
@@ -116,6 +116,10 @@ class Summary(unittest.TestCase):
         lines = self.summary(BATCH + OTHERS)
         self.assertEqual([line.split() for line in lines[1:4]],
                          [["40.5", "python.rail_test"], ["1.0", "mpi.2_ranks.part_1"], ["0.2", "unit.Band.Solves"]])
+
+    def test_slow_are_those_without_which_the_others_take_so_long(self):
+        self.assertEqual(self.summary(BATCH + OTHERS, "--slow", "2"), ["40.5 python.rail_test"])
+        self.assertEqual(self.summary(BATCH + OTHERS, "--slow", "1"), ["40.5 python.rail_test", "1.0 mpi.2_ranks.part_1"])
 
     def test_nothing_was_run(self):
         self.assertEqual(self.summary(""), ["0 passed, 0 failed"])
