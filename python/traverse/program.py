@@ -16,7 +16,8 @@ def run(scene, *, folder=None, ranks=1, output=None, **options):
         directory where it is left out.
     ranks: of MPI.
     output: the results file to keep; None: none is kept.
-    options: options of the program, which win over the scene: train_speed=70.0, output_probes=[12.5, 40.0].
+    options: options of the program, which win over the scene: train_speed=70.0, output_probes=[12.5, 40.0]. Nothing is
+        taken from .petscrc and PETSC_OPTIONS.
     Raises Error with the line that the program ends with.
     """
     return _computed([scene], folder, ranks, output, options)
@@ -34,7 +35,8 @@ def study(scene, vary=None, *, folder=None, ranks=1, output=None, **options):
 def _computed(scenes, folder, ranks, output, options):
     with words.of_scenes(*scenes) as (files, scratch):
         kept = pathlib.Path(folder or ".", output) if output is not None else pathlib.Path(scratch, "results.h5")
-        asked = [places.program(), *files, *words.of_options(options), "-output_quiet", "true"]
+        asked = [places.program(), *files, *words.of_options(options), "-output_quiet", "true",
+                 "-skip_petscrc"]
         if ranks != 1:
             asked = ["mpirun", "-n", str(ranks), *asked]
         ended = subprocess.run([*asked, "-output_file", str(kept.resolve())], cwd=folder, capture_output=True,
@@ -45,11 +47,12 @@ def _computed(scenes, folder, ranks, output, options):
 
 
 def _environment():
-    """More ranks than processors are allowed, and mpirun as root, as run.sh does."""
+    """More ranks than processors are allowed, and mpirun as root, as run.sh does; without options of PETSc's."""
     defaults = {"OMPI_MCA_rmaps_base_oversubscribe": "1", "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe"}
     if os.geteuid() == 0:
         defaults |= {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
-    return defaults | dict(os.environ)
+    own = {name: value for name, value in os.environ.items() if not name.startswith("PETSC_OPTIONS")}
+    return defaults | own
 
 
 def _status(code):

@@ -1,5 +1,6 @@
 """The governing run of a sweep or a study, run again for its time histories, envelopes and all its verdicts."""
 
+import os
 import pathlib
 import re
 import subprocess
@@ -11,7 +12,8 @@ from .limits import values_of
 STATIONS_A_SPAN, MOST_STATIONS = 20, 161
 LONGEST = 120.0  # s that a run may take
 # What asks for many runs, or is the first run's own.
-LEFT_OUT = re.compile(r"^(sweep|study|output|limits|scene_name|options_file|restart)")
+LEFT_OUT = re.compile(r"^(sweep|study|output|limits|scene_name|options_file|restart|checkpoint|log_view|malloc_debug|"
+                      r"skip_petscrc)")
 
 
 def value_text(value):
@@ -101,11 +103,12 @@ def repeat(source, run, limits, program, folder, scratch):
                                (("clause", limit.clause), ("text", limit.text)) if text) + "}\n" for limit in limits)
         (scratch / "limits.yml").write_text(rows, encoding="utf-8")
         options["limits"] = str(scratch / "limits.yml")
-    words = [str(pathlib.Path(program).resolve()), "-output_quiet"]
+    words = [str(pathlib.Path(program).resolve()), "-output_quiet", "-skip_petscrc"]
     for name, value in options.items():
         words += [f"-{name}", value]
+    own = {name: value for name, value in os.environ.items() if not name.startswith("PETSC_OPTIONS")}
     try:
-        ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=LONGEST)
+        ended = subprocess.run(words, cwd=folder, capture_output=True, text=True, timeout=LONGEST, env=own)
     except (OSError, subprocess.TimeoutExpired) as error:
         return None, str(error).splitlines()[0]
     if ended.returncode != 0 or not out.is_file():

@@ -12,12 +12,13 @@
 
 #include "base/digest.hpp"
 #include "options/input_texts.hpp"
+#include "results/own_file.hpp"
 #include "run/scene_digest.hpp"
 
 namespace traverse::app {
 namespace {
 
-constexpr const char* folder = ".traverse_choices";
+constexpr const char* folder_name = ".traverse_choices";
 constexpr std::array<std::string_view, 10> free_options = {
     "scene_name",   "restart",      "checkpoint_interval", "checkpoint_file", "output_file",
     "output_quiet", "options_file", "ts_max_steps",        "study_resume",    "accuracy_report"};
@@ -39,7 +40,8 @@ std::string digest_of_bytes(std::string_view bytes) {
 
 /// A digest of what follows it, and that; empty where the file is not there or not whole.
 std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
+  const results::Descriptor found = results::open_ordinary(path, false);
+  std::ifstream file(found.path(), std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
   const std::size_t size = digest_of_bytes({}).size();
   if (text.size() <= size || digest_of_bytes(std::string_view(text).substr(size)) != text.substr(0, size)) return {};
@@ -68,8 +70,10 @@ KeptChoice::KeptChoice(MPI_Comm comm, const Scene& scene) {
   const std::string own_build = build();
   if (own_build.empty()) return;  // the same on all ranks
   const std::string key = digest_of(scene, free_options, options::inputs_read(), own_build);
-  path_ = (std::filesystem::path(scene.output.file).parent_path() / folder / key).string();
-  if (writes_) known_ = read_file(path_);
+  const std::filesystem::path folder = std::filesystem::path(scene.output.file).parent_path() / folder_name;
+  std::error_code ignored;
+  if (!std::filesystem::is_symlink(folder, ignored)) path_ = (folder / key).string();
+  if (writes_ && !path_.empty()) known_ = read_file(path_);
   auto size = static_cast<int>(known_.size());
   MPI_Bcast(&size, 1, MPI_INT, 0, comm);
   known_.resize(static_cast<std::size_t>(size));
@@ -82,13 +86,10 @@ void KeptChoice::write_file(const std::string& bytes) const {
   std::error_code ignored;
   std::filesystem::create_directories(std::filesystem::path(path_).parent_path(), ignored);
   const std::string aside = fmt::format("{}.{}", path_, getpid());
-  std::ofstream file(aside, std::ios::binary);
-  file << digest_of_bytes(bytes) << bytes;
-  file.close();
-  if (file)
-    std::filesystem::rename(aside, path_, ignored);
-  else
-    std::filesystem::remove(aside, ignored);
+  const results::Descriptor file = results::make_file(aside);
+  if (!file.open()) return;
+  const bool whole = results::write_all(file, digest_of_bytes(bytes)) && results::write_all(file, bytes);
+  if (!whole || !results::move_to_free_name(aside, path_)) (void)unlink(aside.c_str());
 }
 
 }  // namespace traverse::app

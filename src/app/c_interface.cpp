@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,16 +38,32 @@ int status_of(Body&& body) {
   }
 }
 
-/// PETSc, SLEPc and MPI, once in a process; then PETSc's options alone.
+/// While it lives PETSc does not see its variable of the environment, which is for the program that embeds this
+/// library.
+class WithoutVariable {
+ public:
+  explicit WithoutVariable(const char* name) : name_(name) {
+    if (const char* value = std::getenv(name)) value_ = value;
+    unsetenv(name_);
+  }
+  ~WithoutVariable() {
+    if (value_) setenv(name_, value_->c_str(), 1);
+  }
+  WithoutVariable(const WithoutVariable&) = delete;
+  WithoutVariable& operator=(const WithoutVariable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> value_;
+};
+
+/// PETSc, SLEPc and MPI, once in a process; none of PETSc's options of a passage before are left.
 void start_libraries(const std::vector<std::string>& petsc_words) {
-  traverse::options::Arguments words(petsc_words);
   PetscBool running = PETSC_FALSE;
   traverse::base::check(SlepcInitialized(&running));
-  if (running == PETSC_TRUE) {
-    traverse::base::check(PetscOptionsClear(nullptr));
-    traverse::base::check(PetscOptionsInsert(nullptr, words.argc(), words.argv(), nullptr));
-    return;
-  }
+  if (running == PETSC_TRUE) return traverse::base::check(PetscOptionsClear(nullptr));
+  traverse::options::Arguments words(petsc_words);
+  const WithoutVariable text("PETSC_OPTIONS"), yaml("PETSC_OPTIONS_YAML");
   traverse::app::start_lightly();
   traverse::base::check(SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr));
   traverse::app::started();
@@ -59,8 +76,8 @@ traverse::app::Scene scene_of(std::span<const char* const> words) {
   std::vector<std::string> all = {"traverse"};
   all.insert(all.end(), words.begin(), words.end());
   traverse::options::Arguments arguments(all);
-  traverse::options::Input input = traverse::options::read_input(*arguments.argc(), *arguments.argv(),
-                                                                 {{"model_vehicles", "full", "traverse_open", 0}});
+  traverse::options::Input input = traverse::options::read_input(
+      *arguments.argc(), *arguments.argv(), {{"model_vehicles", "full", "traverse_open", 0}}, false);
   if (input.help || input.version) throw InputError("step by step goes one motion in time: leave out -help, -version");
   start_libraries(input.petsc_words);
   traverse::options::put_into_petsc(input);

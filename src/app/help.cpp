@@ -19,7 +19,7 @@ std::string help_about(const std::string& what) {
     for (const integrate::PetscType& type : integrate::petsc_types()) types.emplace_back(type.name);
     return options::bash_completion(types);
   }
-  return options::help_text(what) + (what.empty() || what == "petsc" ? integrators : "");
+  return options::help_text(what) + (what.empty() ? integrators : "");
 }
 
 }  // namespace traverse::app

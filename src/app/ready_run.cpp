@@ -36,7 +36,7 @@ ReadyRun::ReadyRun(Job& given)
   if (goes_on() && !(passage.plan().end_time > job.earlier->time))
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  passage.plan().end_time));
-  for (const std::string& note : options::check_all_used(options::in_force())) job.notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(options::in_force())) job.notes.push_back(note);
   passage.start(job.notes);
   note_rounding();
   choose_filters();

@@ -52,7 +52,7 @@ int run(MPI_Comm comm, const Scene& given) {
   if (given.check) return run_check(comm, given);
   Scene asked = given;
   const std::optional<results::Checkpoint> earlier = earlier_of(comm, asked);
-  results::Place place = results::claim_place(comm, asked.output.file);
+  results::Place place = claim_outputs(comm, asked);
   if (given.study) return run_study(comm, given, std::move(place));
   if (given.sweep) return run_sweep(comm, given, std::move(place));
   // Chosen before trial runs, which are runs as well, and again when these have chosen the model.

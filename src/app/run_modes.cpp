@@ -16,7 +16,6 @@
 #include "run/outputs.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
-#include "traverse/options/input.hpp"
 
 namespace traverse::app {
 
@@ -61,7 +60,6 @@ int run_modes(Job job) {
   const beam::Beam& beam = *shared.beam;
   const auto [omega1, omega2] = *shared.omega;
   const beam::Rayleigh ab = shared.rayleigh;
-  options::check_all_used(options::in_force());
   print_notes(comm, notes);
   const beam::ShapePoints points(beam.mesh());
   const modes::Modes found = [&] {

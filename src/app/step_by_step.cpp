@@ -37,7 +37,6 @@ StepByStep::StepByStep(const Scene& scene)
       recorder_(PETSC_COMM_SELF, "", {}, {}, {}) {
   prepare(scene_, accuracy_, shared_, notes_);
   passage_.emplace(scene_, shared_, notes_);
-  options::check_all_used(options::in_force());
   passage_->start(notes_);
   outputs_.emplace(outputs_of({scene_, passage_->system().fleet(), shared_.bridge()}));
   if (shared_.beam) shared_.beam->release_matrices();

@@ -56,7 +56,7 @@ Look::Look(const Scene& given) : whole(first_scene(given)), scene(one_run(whole)
     passage = std::make_unique<Passage>(scene, *shared, notes);
     passage->start(notes);
   }
-  for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
   notes.insert(notes.end(), whole.notes.begin(), whole.notes.end());
   if (shared->beam) find_frequencies();
 }

@@ -85,10 +85,9 @@ std::string bash_completion(const std::vector<std::string>& ts_types) {
       }
       if (!named && name.find("NAME") == std::string::npos) names.insert("-" + name);
     }
-  for (const std::string_view name : common_petsc_names()) names.insert("-" + std::string(name));
   choices["-ts_type"] = {ts_types.begin(), ts_types.end()};
   for (const HelpGroup& group : help_groups()) choices["-help"].insert(group.name);
-  for (const char* more : {"integrators", "man", "bash", "petsc"}) choices["-help"].insert(more);
+  for (const char* more : {"integrators", "man", "bash"}) choices["-help"].insert(more);
   files.insert({"-options_file", "-output_file"});
 
   std::string values;

@@ -39,6 +39,9 @@ constexpr Heading headings[] = {
     {"output", "output", "Results"},
     {"sweep", "sweep", "Sweeps over speeds and trains"},
     {"study", "study", "Studies of varied options"},
+    {"log", "petsc", "Options of PETSc besides ts_..."},
+    {"malloc", "petsc", ""},
+    {"skip", "petsc", ""},
 };
 
 std::string_view group_of(std::string_view word) {
@@ -69,10 +72,7 @@ std::string everything() {
       "units;\n"
       "x along the track from the bridge's left end, y upward. In lists value*count repeats. Later ones win.\n";
   for (const HelpGroup& group : help_groups()) append(group, out);
-  return out +
-         "\nOptions of PETSc and SLEPc pass on to them, -ts_type, -ts_adapt_type, -snes_rtol, -eps_tol, -log_view and "
-         "so "
-         "on.\n";
+  return out + "\nOther options of PETSc and SLEPc do not pass on to them.\n";
 }
 
 /// Underscores and blanks alike: torsion_spring is what -help shows.
@@ -117,7 +117,7 @@ std::vector<HelpGroup> help_groups() {
 }
 
 std::string help_text(const std::string& about) {
-  if (about.empty() || about == "petsc") return everything();
+  if (about.empty()) return everything();
   const std::string wanted = own_name(as_name(about.substr(std::min(about.find_first_not_of('-'), about.size()))));
   const std::vector<HelpGroup> groups = help_groups();
   std::string names, out;
@@ -139,7 +139,7 @@ std::string help_text(const std::string& about) {
   if (!out.empty()) return out.substr(1);
   const std::string near = nearest(wanted, candidates);
   throw InputError(
-      fmt::format("help = {}: neither an option nor a group of them{}; allowed: {}integrators, man, bash, petsc, or an "
+      fmt::format("help = {}: neither an option nor a group of them{}; allowed: {}integrators, man, bash, or an "
                   "option",
                   about, near.empty() ? "" : fmt::format("; did you mean {}?", near), names));
 }

@@ -8,18 +8,23 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 
 #include "base/petsc.hpp"
 #include "options/data_file.hpp"
 #include "options/other_names.hpp"
+#include "options/petscrc.hpp"
 #include "options/read_file.hpp"
+#include "traverse/options/options.hpp"
 #include "traverse/options/table.hpp"
 
 namespace traverse::options {
 namespace {
 
-Entries last_put;  // as PETSc's own table: one for the process
+// As PETSc's own table: one for the process.
+Entries last_put;
+std::vector<std::string> last_notes;
 
 /// A word that stands alone on the command line is most likely an options file without -options_file.
 std::vector<Entry> command_line(int argc, char** argv) {
@@ -44,7 +49,6 @@ void add(Input& input, Entry entry) {
   if (entry.name == "h" || entry.name == "help") {
     input.help = true;
     input.help_about = entry.value;
-    if (entry.value == "petsc") input.petsc_words.emplace_back("-help");
   } else if (entry.name == "version" || entry.name == "v") {
     input.version = true;
   } else {
@@ -52,48 +56,57 @@ void add(Input& input, Entry entry) {
   }
 }
 
-void check_room(const Entries& entries) {
-  if (entries.size() <= most_options) return;
-  throw InputError(fmt::format(
-      "the options files and the command line hold {} options, PETSc's table at most {}: put each vehicle into a file "
-      "of its own and name it, vehicle: {{NAME: {{file: NAME.yml}}}} (the same keys without vehicle: {{NAME: ...}})",
-      entries.size(), most_options));
-}
-
-/// Options that PETSc took from its environment variable or .petscrc and that we read, too.
-void add_from_petsc(Input& input) {
-  char* all = nullptr;
-  base::check(PetscOptionsGetAll(nullptr, &all));
-  std::istringstream text(all);
-  (void)PetscFree(all);
-  std::vector<Entry> entries;
-  for (std::string word; text >> word;) {
-    if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0) {
-      entries.push_back({own_name(word.substr(1)), "", "PETSC_OPTIONS or .petscrc", 0});
-    } else if (!entries.empty()) {
-      entries.back().value += (entries.back().value.empty() ? "" : " ") + word;
+/// Values of options that pass to PETSc are numbers, plain words, true or false: no names of files, no viewers.
+void check_for_petsc(const Entries& entries) {
+  Entries passing;
+  for (const Entry& entry : entries) {
+    if (passes_to_petsc(entry.name)) {
+      passing.set(entry);
+    } else if (owned_by_petsc(entry.name)) {
+      std::vector<std::string> names;
+      for (const Row& row : fixed_rows())
+        if (passes_to_petsc(row.name)) names.emplace_back(row.name);
+      const std::string near = nearest(entry.name, names);
+      throw InputError(
+          fmt::format("option {}: no option of PETSc's that Traverse lets pass: -help step and -help petsc list them{}",
+                      entry.given(), near.empty() ? "" : fmt::format("; did you mean {}?", near)));
     }
   }
-  for (Entry& entry : entries) {
-    const bool ours = find_row(fixed_rows(), entry.name) != nullptr;
-    if (ours || !owned_by_petsc(entry.name)) input.entries.set_default(std::move(entry));
+  const Options options(passing);
+  options.check_values();
+  const auto plain = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  for (const Entry& entry : passing) {
+    const std::string value = find_row(fixed_rows(), entry.name)->kind == Kind::text ? options.text(entry.name) : "";
+    if (!std::all_of(value.begin(), value.end(), plain)) options.refuse(entry.name, "allowed: a word");
   }
 }
 
-template <std::size_t count>
-bool starts_with_one_of(const std::string& name, const std::array<const char*, count>& prefixes) {
-  return std::any_of(prefixes.begin(), prefixes.end(), [&](const char* p) { return name.starts_with(p); });
+struct PetscOption {
+  std::string name, value;  // value: empty for an option alone
+};
+
+bool flag_of(const Entry& entry) {
+  Entries alone;
+  alone.set(entry);
+  return Options(alone).flag(entry.name);
 }
 
-/// Kinds of options that a solver asks for, or nobody does.
-bool asked_by_solvers(const std::string& name) {
-  return starts_with_one_of(name, std::array{"ts_", "snes_", "ksp_", "pc_", "mat_", "vec_", "eps_", "st_", "svd_",
-                                             "pep_", "nep_", "bv_", "ds_", "rg_", "fn_", "beam_"});
+/// As PETSc reads it; nothing for one that is switched off.
+std::optional<PetscOption> for_petsc(const Entry& entry) {
+  constexpr std::array viewers = {"ts_monitor", "ts_view", "log_view"};  // any value would name a kind of output
+  PetscOption option{"-" + name_in_petsc(entry.name), entry.value};
+  if (std::find(viewers.begin(), viewers.end(), entry.name) == viewers.end()) return option;
+  if (!flag_of(entry)) return std::nullopt;
+  option.value.clear();
+  return option;
 }
 
-bool is_common(const std::string& name) {
-  const auto common = common_petsc_names();
-  return std::find(common.begin(), common.end(), name) != common.end();
+bool is_read_by_ts(const Entry& entry) { return entry.name.starts_with("ts_"); }
+
+void put(const Entry& entry) {
+  if (const std::optional<PetscOption> option = for_petsc(entry))
+    base::check(
+        PetscOptionsSetValue(nullptr, option->name.c_str(), option->value.empty() ? nullptr : option->value.c_str()));
 }
 
 /// The options in PETSc's table that nothing has asked for.
@@ -107,21 +120,14 @@ std::vector<std::string> left_over() {
   return left;
 }
 
-[[noreturn]] void refuse_left_over(const Entries& entries, const std::string& name) {
-  const Entry* entry = entries.find(name);
-  const auto common = common_petsc_names();
-  const std::string near = nearest(name, {common.begin(), common.end()});
-  throw InputError(fmt::format("option {}: {} asks for it{}", entry != nullptr ? entry->given() : name,
-                               asked_by_solvers(name) ? "no solver of this scene" : "nothing",
-                               near.empty() ? "" : fmt::format("; did you mean {}?", near)));
-}
-
-/// PETSc has asked for its own options when it started, or never will.
-void check_asked_at_start(const Entries& entries) {
-  for (const std::string& name : left_over()) {
-    const bool owned = entries.has(name) && owned_by_petsc(name);
-    if (owned && !asked_by_solvers(name) && !is_common(name)) refuse_left_over(entries, name);
-  }
+/// Whether it is one of the control of steps that PETSc asks for and does not use.
+bool is_without_control(const Entry& entry, const Entries& entries) {
+  constexpr std::array options = {"ts_rtol",         "ts_atol",       "ts_adapt_dt_max",
+                                  "ts_adapt_dt_min", "ts_adapt_clip", "ts_adapt_safety"};
+  const Entry* control = entries.find("ts_adapt_type");
+  const std::string type = control != nullptr ? control->value : "none";
+  return std::find(options.begin(), options.end(), entry.name) != options.end() &&
+         (type == "none" || (type == "ladder" && entry.name != "ts_rtol"));
 }
 
 /// Whether PETSc's message holds the value, as it was written or as a number written otherwise.
@@ -153,32 +159,46 @@ std::string specific_part(const std::string& message) {
   return begin < reason.size() ? reason.substr(begin) : reason;
 }
 
+void add_file(Input& input, const Entry& named) {
+  if (named.value.empty())
+    throw InputError(
+        "options_file (command line): wanted: the name of a file; one that starts with a dash is written ./-NAME");
+  const std::string found = find_file(named.value, "");
+  for (Entry& inner : read_options_file(found.empty() ? named.value : found)) {
+    if (inner.name == "skip_petscrc") throw InputError(inner.given() + ": belongs to the command line alone");
+    add(input, std::move(inner));
+  }
+}
+
 }  // namespace
 
-Input read_input(int argc, char** argv, const std::vector<Entry>& before) {
+Input read_input(int argc, char** argv, const std::vector<Entry>& before, bool petscrc) {
   Input input;
   for (const Entry& entry : before) add(input, entry);
   std::string scene_name;
+  bool files = true;
   for (Entry& entry : command_line(argc, argv)) {
-    if (entry.name != "options_file") {
+    if (entry.name == "skip_petscrc") {
+      files = !flag_of(entry);
+    } else if (entry.name != "options_file") {
       add(input, std::move(entry));
       continue;
+    } else {
+      add_file(input, entry);
+      if (scene_name.empty()) scene_name = name_of_scene(entry.value);
     }
-    if (entry.value.empty())
-      throw InputError(
-          "options_file (command line): wanted: the name of a file; one that starts with a dash is written ./-NAME");
-    if (scene_name.empty()) scene_name = name_of_scene(entry.value);
-    const std::string found = find_file(entry.value, "");
-    for (Entry& inner : read_options_file(found.empty() ? entry.value : found)) add(input, std::move(inner));
   }
   take_other_names(input.entries);
-  check_room(input.entries);
+  if (petscrc) input.notes = add_weakest(read_petscrc(files), input.entries);
   input.entries.set_default({"scene_name", scene_name.empty() ? "scene" : scene_name, "options_file", 0});
-  input.petsc_words.insert(input.petsc_words.begin(), argc > 0 ? argv[0] : "traverse");
+  check_for_petsc(input.entries);
+  input.petsc_words = {argc > 0 ? argv[0] : "traverse", "-skip_petscrc", "true", "-options_left", "false"};
   for (const Entry& entry : input.entries) {
-    if (!owned_by_petsc(entry.name)) continue;
-    input.petsc_words.push_back("-" + name_in_petsc(entry.name));
-    if (!entry.value.empty()) input.petsc_words.push_back(entry.value);
+    if (!passes_to_petsc(entry.name)) continue;
+    const std::optional<PetscOption> option = for_petsc(entry);
+    if (!option) continue;
+    input.petsc_words.push_back(option->name);
+    if (!option->value.empty()) input.petsc_words.push_back(option->value);
   }
   return input;
 }
@@ -190,52 +210,40 @@ Arguments::Arguments(std::vector<std::string> words) : words_(std::move(words)) 
   argv_ = pointers_.data();
 }
 
-void put_into_petsc(Input& input) {
-  rename_in_petsc();
-  add_from_petsc(input);
-  check_room(input.entries);
-  for (const Entry& entry : input.entries) {
-    if (owned_by_petsc(entry.name)) continue;  // PETSc has them from its arguments
-    const std::string name = "-" + entry.name;
-    base::check(PetscOptionsSetValue(nullptr, name.c_str(), entry.value.c_str()));
-    PetscBool found = PETSC_FALSE;  // asking marks it as used, for -options_left
-    base::check(PetscOptionsHasName(nullptr, nullptr, name.c_str(), &found));
-  }
-  PetscBool said = PETSC_FALSE;  // what is left is our own affair: check_all_used
-  base::check(PetscOptionsHasName(nullptr, nullptr, "-options_left", &said));
-  if (said == PETSC_FALSE) {
-    base::check(PetscOptionsSetValue(nullptr, "-options_left", "no"));
-    base::check(PetscOptionsHasName(nullptr, nullptr, "-options_left", &said));
-  }
+void put_into_petsc(const Input& input) {
+  for (const Entry& entry : input.entries)
+    if (is_read_by_ts(entry)) put(entry);
   last_put = input.entries;
-  check_asked_at_start(last_put);
+  last_notes = input.notes;
 }
 
 WithoutMonitors::WithoutMonitors() {
-  static constexpr std::array prefixes = {"ts_monitor",       "ts_view",   "ts_max_steps",
-                                          "ts_adapt_monitor", "ts_save",   "ts_trajectory",
-                                          "snes_monitor",     "snes_view", "snes_converged_reason"};
+  static constexpr std::array names = {"ts_monitor", "ts_view", "ts_max_steps", "ts_adapt_monitor"};
   for (const Entry& entry : last_put)
-    if (starts_with_one_of(entry.name, prefixes)) aside_.push_back(entry);
+    if (std::find(names.begin(), names.end(), entry.name) != names.end()) aside_.push_back(entry);
   for (const Entry& entry : aside_) base::check(PetscOptionsClearValue(nullptr, ("-" + entry.name).c_str()));
 }
 
 WithoutMonitors::~WithoutMonitors() {
   for (const Entry& entry : aside_)
-    (void)PetscOptionsSetValue(nullptr, ("-" + entry.name).c_str(),
-                               entry.value.empty() ? nullptr : entry.value.c_str());
+    if (const std::optional<PetscOption> option = for_petsc(entry))
+      (void)PetscOptionsSetValue(nullptr, option->name.c_str(),
+                                 option->value.empty() ? nullptr : option->value.c_str());
 }
+
+const std::vector<std::string>& notes_on_petscrc() { return last_notes; }
 
 const Entries& in_force() { return last_put; }
 
-std::vector<std::string> check_all_used(const Entries& entries) {
+std::vector<std::string> notes_on_unused(const Entries& entries) {
+  const std::vector<std::string> left = left_over();
   std::vector<std::string> notes;
-  for (const std::string& name : left_over()) {
-    const bool common = is_common(name);
-    if (!common && owned_by_petsc(name)) refuse_left_over(entries, name);
-    const Entry* entry = entries.find(name);
-    if (common && asked_by_solvers(name))
-      notes.push_back((entry != nullptr ? entry->given() : name) + " has no effect in this scene");
+  for (const Entry& entry : entries) {
+    if (!is_read_by_ts(entry)) continue;
+    if (std::find(left.begin(), left.end(), entry.name) != left.end())
+      notes.push_back(entry.given() + " has no effect in this scene");
+    else if (is_without_control(entry, entries))
+      notes.push_back(entry.given() + " has no effect with this ts_adapt_type");
   }
   return notes;
 }
@@ -245,7 +253,7 @@ void refuse_by_petsc(const std::string& message) {
   std::string blamed, all;
   const auto add = [](std::string& list, const Entry& entry) { list += (list.empty() ? "" : ", ") + entry.given(); };
   for (const Entry& entry : last_put) {
-    if (!asked_by_solvers(entry.name) || find_row(fixed_rows(), entry.name) != nullptr) continue;
+    if (!is_read_by_ts(entry)) continue;
     add(all, entry);
     const bool value = !entry.value.empty() && speaks_of(reason, entry.value);
     if (value || speaks_of(reason, "-" + name_in_petsc(entry.name))) add(blamed, entry);

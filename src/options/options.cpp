@@ -123,13 +123,12 @@ std::string Options::nearest_known(const std::string& name) const {
   const auto fixed = static_cast<std::ptrdiff_t>(candidates.size());
   for (const auto& declared : declared_) candidates.push_back(declared.first);
   std::sort(candidates.begin() + fixed, candidates.end());
-  for (const std::string_view common : common_petsc_names()) candidates.emplace_back(common);
   return nearest(name, candidates);  // of equal ones the first of the table
 }
 
 void Options::check_names() const {
   for (const Entry& entry : entries_) {
-    if (knows(entry.name) || owned_by_petsc(entry.name)) continue;
+    if (knows(entry.name)) continue;
     const std::string near = nearest_known(entry.name);
     const bool part = entry.name.starts_with("vehicle_");
     throw InputError(fmt::format("unknown option {}{}{}; -help lists them all", entry.given(),

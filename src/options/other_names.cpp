@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
-#include "base/petsc.hpp"
+#include "base/petsc_versions.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::options {
 
@@ -28,19 +27,6 @@ std::string own_name(const std::string& name) {
   for (const base::RenamedOption& option : base::renamed_options)
     if (name == option.newer) return option.name;
   return name;
-}
-
-void rename_in_petsc() {
-  for (const base::RenamedOption& option : base::renamed_options) {
-    const std::string unknown = std::string("-") + option.unknown(), known = std::string("-") + option.known();
-    std::array<char, 64> value{};
-    PetscBool given = PETSC_FALSE, twice = PETSC_FALSE;
-    base::check(PetscOptionsGetString(nullptr, nullptr, unknown.c_str(), value.data(), value.size(), &given));
-    if (given == PETSC_FALSE) continue;
-    base::check(PetscOptionsHasName(nullptr, nullptr, known.c_str(), &twice));
-    base::check(PetscOptionsClearValue(nullptr, unknown.c_str()));
-    if (twice == PETSC_FALSE) base::check(PetscOptionsSetValue(nullptr, known.c_str(), value.data()));
-  }
 }
 
 }  // namespace traverse::options

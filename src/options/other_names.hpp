@@ -15,8 +15,4 @@ std::string name_in_petsc(const std::string& name);
 /// The name that Traverse has for an option, by whichever it is called.
 std::string own_name(const std::string& name);
 
-/// After PetscInitialize: what PETSC_OPTIONS and .petscrc call by a name that the PETSc at hand does not know gets the
-/// one that it knows, unless that is given, too.
-void rename_in_petsc();
-
 }  // namespace traverse::options

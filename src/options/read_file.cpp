@@ -145,31 +145,6 @@ class Flattener {
   int depth_ = 0;
 };
 
-/// Splits a line into words; "..." and '...' hold blanks together, # starts a comment.
-std::vector<std::string> words_of(const std::string& line, const std::string& where) {
-  std::vector<std::string> words;
-  std::size_t i = 0;
-  while (i < line.size()) {
-    const char c = line[i];
-    if (std::isspace(static_cast<unsigned char>(c)) != 0) {
-      ++i;
-    } else if (c == '#') {
-      break;
-    } else if (c == '"' || c == '\'') {
-      const std::size_t end = line.find(c, i + 1);
-      if (end == std::string::npos) throw InputError(where + "a quotation mark is not closed");
-      words.push_back(line.substr(i + 1, end - i - 1));
-      i = end + 1;
-    } else {
-      std::size_t end = i;
-      while (end < line.size() && std::isspace(static_cast<unsigned char>(line[end])) == 0) ++end;
-      words.push_back(line.substr(i, end - i));
-      i = end;
-    }
-  }
-  return words;
-}
-
 /// Begins like a name of an option: a dash or two, then a letter.
 bool is_name(const std::string& word) {
   std::size_t dashes = 0;
@@ -264,13 +239,37 @@ std::vector<Entry> parse_yaml(const std::string& text, const std::string& name) 
   return entries;
 }
 
+std::vector<std::string> split_words(const std::string& line, const std::string& where) {
+  std::vector<std::string> words;
+  std::size_t i = 0;
+  while (i < line.size()) {
+    const char c = line[i];
+    if (std::isspace(static_cast<unsigned char>(c)) != 0) {
+      ++i;
+    } else if (c == '#') {
+      break;
+    } else if (c == '"' || c == '\'') {
+      const std::size_t end = line.find(c, i + 1);
+      if (end == std::string::npos) throw InputError(where + "a quotation mark is not closed");
+      words.push_back(line.substr(i + 1, end - i - 1));
+      i = end + 1;
+    } else {
+      std::size_t end = i;
+      while (end < line.size() && std::isspace(static_cast<unsigned char>(line[end])) == 0) ++end;
+      words.push_back(line.substr(i, end - i));
+      i = end;
+    }
+  }
+  return words;
+}
+
 std::vector<Entry> parse_classic(const std::string& text, const std::string& name) {
   std::vector<Entry> entries;
   std::istringstream lines(text);
   int number = 0;
   for (std::string line; std::getline(lines, line);) {
     ++number;
-    const std::vector<std::string> words = words_of(line, at(name, number));
+    const std::vector<std::string> words = split_words(line, at(name, number));
     if (words.empty() || words.front().starts_with("!") || words.front().starts_with("%")) continue;
     if (!is_name(words.front())) {
       throw InputError(at(name, number) + "expected `-name value`, found '" + words.front() + "'");
@@ -324,6 +323,10 @@ std::string find_file(const std::string& path, const std::string& named_in) {
 std::vector<Entry> read_options_file(const std::string& path) {
   std::size_t read = 0;
   return read_nested(path, {}, read);
+}
+
+std::vector<Entry> read_classic_file(const std::string& path) {
+  return parse_classic(read_text(path, {"", "a file of PETSc's options", most_characters, false}), path);
 }
 
 }  // namespace traverse::options

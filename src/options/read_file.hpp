@@ -16,6 +16,11 @@ std::vector<Entry> read_options_file(const std::string& path);
 /// The same from text in memory; `name` stands for the file in messages.
 std::vector<Entry> parse_yaml(const std::string& text, const std::string& name);
 std::vector<Entry> parse_classic(const std::string& text, const std::string& name);
+/// Those of a file of PETSc's classic text, whatever it is called; files that it names are not followed.
+std::vector<Entry> read_classic_file(const std::string& path);
+
+/// The words of a line; "..." and '...' hold blanks together, # starts a comment. where: begins messages.
+std::vector<std::string> split_words(const std::string& line, const std::string& where);
 
 /// Words as on a command line: `-name value` or `-name` alone; a word that starts with a dash and a letter is a name,
 /// `-5.0` is a value. Throws InputError for a value that belongs to no name.

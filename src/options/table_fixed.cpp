@@ -136,6 +136,25 @@ constexpr Row later_rows[] = {
   {"ts_max_time", number, "s", "(when the last wheel has left)", positive, "", 0, "the run's end"},
   {"ts_max_steps", integer, "", "(no limit)", {1, 2147483646.0}, "", 0, "the run ends after so many steps at the latest"},
   {"ts_dt", number, "s", "(from accuracy)", positive, "", 0, "the step, or the first one; ts_time_step is the same"},
+  {"ts_type", text, "", "(from accuracy)", any, "", 0, "the time integrator; -help integrators lists them"},
+  {"ts_adapt_type", choice, "", "none", any, "none ladder basic dsp", 0, "ladder: steps of esdirk4 by their errors; basic, dsp: PETSc's step control, with PETSc's integrators"},
+  {"ts_rtol", number, "1", "1e-4", not_negative, "", 0, "relative error that a step may make, where ts_adapt_type is not none"},
+  {"ts_atol", number, "", "1e-4", not_negative, "", 0, "absolute error that a step may make, with ts_adapt_type basic or dsp; so the next four"},
+  {"ts_adapt_dt_max", number, "s", "1e20", positive, "", 0, "the longest step"},
+  {"ts_adapt_dt_min", number, "s", "1e-20", positive, "", 0, "the shortest step"},
+  {"ts_adapt_clip", numbers, "1", "0.1,10", positive, "", 2, "least and greatest factor from a step to the next"},
+  {"ts_adapt_safety", number, "1", "0.9", {0.0, 1.0, true}, "", 0, "part of the step that the error allows"},
+  {"ts_adapt_monitor", flag, "", "false", any, "", 0, "prints what the step control decides"},
+  {"ts_max_reject", integer, "", "12", {-1, 2147483646.0}, "", 0, "how often one step may be shortened, -1: without limit; ts_max_step_rejections is the same"},
+  {"ts_monitor", flag, "", "false", any, "", 0, "prints each step"},
+  {"ts_view", flag, "", "false", any, "", 0, "prints PETSc's words on the integrator"},
+  {"ts_arkimex_type", text, "", "4", any, "", 0, "of ts_type arkimex: 3, 4 or 5"},
+  {"ts_arkimex_fully_implicit", flag, "", "true", any, "", 0, "of ts_type arkimex; false: the beam alone is implicit"},
+  {"ts_bdf_order", integer, "", "2", {1, 6}, "", 0, "of ts_type bdf: 1 or 2"},
+  {"ts_rk_type", text, "", "3bs", any, "", 0, "of ts_type rk: 1fe, 2a, 2b, 3, 3bs, 4, 5f, 5dp, 5bs, 6vr, 7vr, 8vr"},
+  {"ts_theta_theta", number, "1", "0.5", {0.0, 1.0, true}, "", 0, "of ts_type theta"},
+  {"ts_theta_endpoint", flag, "", "false", any, "", 0, "of ts_type theta: at the ends of the step, not between them"},
+  {"ts_genalpha_radius", number, "1", "0.9", any, "", 0, "of ts_type genalpha: what is left after a step of what oscillates fast within it"},
   {"modes_count", integer, "", "10", {1, 100000}, "", 0, "frequencies with scene_analysis modes"},
   {"contact_tolerance", number, "s", "(a thousandth of the step)", not_negative, "", 0, "steps end so close behind the loss or gain of a contact; 0: wherever they end"},
   {"step_kinks", flag, "", "true", any, "", 0, "steps end where wheels pass kinks of their way, such as span ends; needed for orders above 2"},
@@ -207,7 +226,11 @@ constexpr Row later_rows[] = {
   {"study_resume", flag, "", "false", any, "", 0, "takes finished runs of the same study from the results file that is there"},
 
   {"check", flag, "", "false", any, "", 0, "reads everything, shows the model, its loads at rest, what is chosen, what it costs and what looks unusual, and stops without a run"},
-  {"help", text, "", "", any, "", 0, "prints this list; -help beam, -help wheel, ...: a part of it; -help beam_EI: one option; -help petsc: PETSc's options too"},
+  {"help", text, "", "", any, "", 0, "prints this list; -help beam, -help wheel, ...: a part of it; -help beam_EI: one option"},
+
+  {"log_view", flag, "", "false", any, "", 0, "PETSc's account of time, calls and messages, printed at the end"},
+  {"malloc_debug", flag, "", "false", any, "", 0, "PETSc checks its memory"},
+  {"skip_petscrc", flag, "", "false", any, "", 0, "on the command line: the files .petscrc and petscrc are not read"},
 };
 
 constexpr Row vary[] = {
@@ -229,20 +252,6 @@ constexpr std::string_view petsc_prefixes[] = {
   "draw_", "x_", "memory_", "objects_dump", "citations", "python", "saws", "is_", "sf_", "dm_", "cuda_", "device",
   "use_gpu_aware_mpi", "skip_petscrc", "no_signal_handler", "check_pointer_intensity", "error_output_", "mpi",
   "shared_tmp", "not_shared_tmp", "tmp", "get_total_flops", "hdf5", "history", "nox", "prefix_p", "slepc",
-};
-
-constexpr std::string_view petsc_names[] = {
-  "ts_type", "ts_dt", "ts_time_step", "ts_max_time", "ts_max_steps", "ts_max_snes_failures", "ts_max_reject", "ts_max_step_rejections",
-  "ts_monitor", "ts_view", "ts_exact_final_time", "ts_rtol", "ts_atol", "ts_adapt_type", "ts_adapt_dt_max", "ts_adapt_dt_min",
-  "ts_adapt_clip", "ts_adapt_safety", "ts_adapt_monitor", "ts_arkimex_type", "ts_arkimex_fully_implicit",
-  "ts_bdf_order", "ts_rk_type", "ts_rosw_type", "ts_theta_theta", "ts_theta_endpoint", "ts_alpha_radius", "ts_genalpha_radius",
-  "snes_type", "snes_atol", "snes_rtol", "snes_stol", "snes_max_it", "snes_monitor", "snes_converged_reason",
-  "snes_view", "snes_lag_jacobian", "ksp_type", "ksp_rtol", "ksp_atol", "ksp_max_it", "ksp_monitor", "pc_type",
-  "pc_factor_mat_solver_type", "eps_type", "eps_tol", "eps_nev", "eps_ncv", "eps_max_it",
-  "eps_target", "eps_monitor", "eps_view", "st_type", "st_shift", "log_view", "log_view_memory", "log_trace",
-  "options_left", "options_view", "options_monitor", "malloc_debug", "malloc_dump", "malloc_view", "memory_view",
-  "malloc_view_threshold", "objects_dump", "mpidump", "citations", "get_total_flops", "tmp", "shared_tmp",
-  "not_shared_tmp", "draw_pause", "draw_save", "nox", "info", "version",
 };
 // clang-format on
 
@@ -269,6 +278,6 @@ bool owned_by_petsc(std::string_view name) {
   return false;
 }
 
-std::span<const std::string_view> common_petsc_names() { return petsc_names; }
+bool passes_to_petsc(std::string_view name) { return owned_by_petsc(name) && find_row(fixed_rows(), name) != nullptr; }
 
 }  // namespace traverse::options

@@ -1,6 +1,5 @@
 #include "results/checkpoint_file.hpp"
 
-#include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 
 #include "base/bytes.hpp"
 #include "base/digest.hpp"
+#include "results/own_file.hpp"
 #include "results/place.hpp"
 
 namespace traverse::results {
@@ -65,39 +65,49 @@ std::vector<std::string> gather(MPI_Comm comm, const std::string& own) {
   throw FileError("cannot write the checkpoint " + path + ": " + reason);
 }
 
+constexpr const char* another_checkpoint = "; name another file with -checkpoint_file";
+
+bool is_unfinished(const std::string& path) {
+  std::error_code none;
+  return is_checkpoint(path) || (open_ordinary(path, false).open() && std::filesystem::file_size(path, none) == 0);
+}
+
 /// A file that is removed where it is not finished.
 class Aside {
  public:
-  explicit Aside(const std::string& path) : path_(path), aside_(path + ".part") {
-    descriptor_ = ::open(aside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) fail_checkpoint(path_, std::strerror(errno));
+  explicit Aside(const std::string& path) : path_(path), aside_(aside_of_checkpoint(path)) {
+    file_ = make_file(aside_);
+    if (!file_.open() && errno == EEXIST && is_unfinished(aside_)) {  // of a run that was killed
+      (void)::unlink(aside_.c_str());
+      file_ = make_file(aside_);
+    }
+    if (!file_.open() && errno == EEXIST)
+      fail_checkpoint(path_, aside_ + " is there already and is no checkpoint of Traverse" + another_checkpoint);
+    if (!file_.open()) fail_checkpoint(path_, std::strerror(errno));
   }
   Aside(const Aside&) = delete;
   Aside& operator=(const Aside&) = delete;
   ~Aside() {
-    if (descriptor_ < 0) return;
-    ::close(descriptor_);
-    ::unlink(aside_.c_str());
+    if (!finished_ && id_at(aside_.c_str()) == id_of(file_)) ::unlink(aside_.c_str());
   }
   void write(std::string_view text) {
-    while (!text.empty()) {
-      const ssize_t done = ::write(descriptor_, text.data(), text.size());
-      if (done < 0 && errno == EINTR) continue;
-      if (done < 0) fail_checkpoint(path_, std::strerror(errno));
-      text.remove_prefix(static_cast<std::size_t>(done));
-    }
+    if (!write_all(file_, text)) fail_checkpoint(path_, std::strerror(errno));
   }
   void finish() {
-    if (::fsync(descriptor_) != 0 || ::rename(aside_.c_str(), path_.c_str()) != 0)
-      fail_checkpoint(path_, std::strerror(errno));
-    ::close(descriptor_);
-    descriptor_ = -1;
+    if (::fsync(file_.get()) != 0) fail_checkpoint(path_, std::strerror(errno));
+    if (id_at(aside_.c_str()) != id_of(file_)) fail_checkpoint(path_, aside_ + " was removed or replaced meanwhile");
+    finished_ = move_to_free_name(aside_, path_);
+    if (!finished_ && errno == EEXIST && !is_checkpoint(path_))
+      fail_checkpoint(path_, std::string("it is there already and is no checkpoint of Traverse") + another_checkpoint);
+    finished_ = finished_ || ::rename(aside_.c_str(), path_.c_str()) == 0;
+    if (!finished_) fail_checkpoint(path_, std::strerror(errno));
   }
 
  private:
   const std::string& path_;
   std::string aside_;
-  int descriptor_ = -1;
+  Descriptor file_;
+  bool finished_ = false;
 };
 
 std::string contents(const std::string& path) {
@@ -162,8 +172,23 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path) {
 void remove_checkpoint(MPI_Comm comm, const std::string& path) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
+  if (rank == 0 && is_checkpoint(path)) (void)::unlink(path.c_str());
+}
+
+bool is_checkpoint(const std::string& path) { return begins_with(path, mark); }
+
+std::string aside_of_checkpoint(const std::string& path) { return path + ".part"; }
+
+void check_checkpoint_place(const std::string& path) {
+  namespace fs = std::filesystem;
+  const fs::path parent = fs::path(path).parent_path(), folder = parent.empty() ? "." : parent;
   std::error_code ignored;
-  if (rank == 0) std::filesystem::remove(path, ignored);
+  if (!fs::is_directory(folder, ignored)) fail_checkpoint(path, "there is no folder " + folder.string());
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) fail_checkpoint(path, std::strerror(errno));
+  for (const std::string& name : {path, aside_of_checkpoint(path)})
+    if (id_at(name.c_str()).there && !is_checkpoint(name) && (name == path || !is_unfinished(name)))
+      fail_checkpoint(path, (name == path ? "it" : name) + " is there already and is no checkpoint of Traverse" +
+                                another_checkpoint);
 }
 
 }  // namespace traverse::results

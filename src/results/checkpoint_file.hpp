@@ -42,7 +42,14 @@ struct Checkpoint {
 void write_checkpoint(MPI_Comm comm, const std::string& path, Checkpoint checkpoint, const std::string& own);
 /// Collective. The same on all ranks. FileError where the file is none, damaged, or of another version of the program.
 Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path);
-/// Removes it, if it is there. Rank 0 alone does something.
+/// Removes it, if it is there and a checkpoint. Rank 0 alone does something.
 void remove_checkpoint(MPI_Comm comm, const std::string& path);
+
+/// Whether it is an ordinary file that begins as checkpoints do.
+bool is_checkpoint(const std::string& path);
+/// The name that a checkpoint has until it is complete.
+std::string aside_of_checkpoint(const std::string& path);
+/// FileError where a checkpoint could not be written: no folder, none that may be written to, something else there.
+void check_checkpoint_place(const std::string& path);
 
 }  // namespace traverse::results

@@ -50,13 +50,13 @@ herr_t visit(unsigned depth, const H5E_error2_t* entry, void* data) {
 }  // namespace
 
 File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
-  open(Id(check(H5Fcreate(path_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access().get()))));
+  open(Id(check(H5Fcreate(place_.file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access().get()))));
   place_.keep();
 }
 
 File::File(Place place, const std::string& source) : place_(std::move(place)), path_(place_.path()) {
   place_.copy_aside(source);
-  open(Id(check(H5Fopen(place_.aside().c_str(), H5F_ACC_RDWR, access().get()))));
+  open(Id(check(H5Fopen(place_.file_aside().c_str(), H5F_ACC_RDWR, access().get()))));
   hsize_t size = 0;
   check(H5Fget_filesize(file_.get(), &size));
   reserved_ = static_cast<off_t>(size);
@@ -154,6 +154,7 @@ void File::close() {
   flush();
   check(H5Fclose(file_.get()));
   file_.release();
+  place_.check_is_there();
   place_ = Place();
 }
 

@@ -20,7 +20,8 @@ constexpr const char *entries_table = "/input/options", *sources_table = "/input
                      *files_table = "/input/files";
 constexpr std::string_view new_name = "another name than ";
 // Of one run alone.
-constexpr std::array own = {"restart", "checkpoint_file", "options_file"};
+std::string opened;
+constexpr std::array own = {"restart", "checkpoint_file", "options_file", "log_view", "malloc_debug", "skip_petscrc"};
 
 bool of_one_run(const std::string& name) { return std::find(own.begin(), own.end(), name) != own.end(); }
 
@@ -78,6 +79,7 @@ std::vector<options::Entry> origin_of(const std::string& path) {
   if (stored.empty() || sources.size() != stored.size())
     throw InputError(path +
                      ": holds no texts of its scene, as files of older versions; run the scene's own options files");
+  opened = path;
   const std::string prefix = path + ":";
   std::vector<options::InputText> texts;
   for (auto& [name, text] : read_pairs(file.get(), files_table)) texts.push_back({name, std::move(text)});
@@ -96,6 +98,8 @@ std::vector<options::Entry> origin_of(const std::string& path) {
   entries.push_back({"output_file", again, std::string(new_name) + path, 0});
   return entries;
 }
+
+const std::string& opened_origin() { return opened; }
 
 bool is_new_name(const options::Entry& output_file) { return output_file.source.starts_with(new_name); }
 

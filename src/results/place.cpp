@@ -1,7 +1,5 @@
 #include "results/place.hpp"
 
-#include <fcntl.h>
-#include <hdf5.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -13,7 +11,7 @@
 #include <string_view>
 #include <utility>
 
-#include "hdf5.hpp"
+#include "results/own_file.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results {
@@ -23,6 +21,7 @@ namespace fs = std::filesystem;
 
 // What a signal that ends the program at once has to remove: the file, then its folders, the innermost first.
 std::vector<std::string> made_names;
+FileId made_file;
 std::atomic<bool> made_something{false};
 
 constexpr const char* hdf5_locks = "HDF5_USE_FILE_LOCKING";
@@ -64,27 +63,26 @@ bool locks_are_off() {
   return off;
 }
 
-/// Whether the file is HDF5 and says of itself that Traverse has written it.
-bool is_results_file(const std::string& path) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const hdf5::Id access(H5Pcreate(H5P_FILE_ACCESS));
-  H5Pset_file_locking(access.get(), false, true);
-  const hdf5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
-  if (file.get() < 0 || H5Aexists(file.get(), "program") <= 0) return false;
-  const hdf5::Id attribute(H5Aopen(file.get(), "program", H5P_DEFAULT)), type(H5Aget_type(attribute.get()));
-  if (type.get() < 0 || H5Tis_variable_str(type.get()) <= 0) return false;
-  char* text = nullptr;
-  if (H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return false;
-  const bool ours = std::string_view(text) == "traverse";
-  H5free_memory(text);
-  return ours;
+/// Copies what a file holds; false where that fails, errno says why.
+bool copy(const Descriptor& from, const Descriptor& to) {
+  std::vector<char> part(std::size_t{1} << 20);
+  for (;;) {
+    const ssize_t read = ::read(from.get(), part.data(), part.size());
+    if (read < 0 && errno == EINTR) continue;
+    if (read <= 0) return read == 0;
+    if (!write_all(to, {part.data(), static_cast<std::size_t>(read)})) return false;
+  }
 }
+
+constexpr const char* other_results = "; name another file with -output_file";
 
 }  // namespace
 
 Place::Place(std::string path) : path_(std::move(path)) {
   if (path_.empty()) return;
   std::error_code ignored;
+  if (fs::is_symlink(path_, ignored))
+    fail(path_, std::string("it is a link, and no results file of Traverse itself") + other_results);
   if (fs::exists(path_, ignored) && !fs::is_regular_file(path_, ignored))
     fail(path_, fs::is_directory(path_, ignored)
                     ? "it is a folder and no ordinary file; name a file in it with -output_file"
@@ -99,59 +97,66 @@ Place::Place(std::string path) : path_(std::move(path)) {
 }
 
 void Place::claim() {
+  file_ = make_file(path_);
+  made_ = file_.open();
+  if (!made_ && errno == EEXIST) file_ = open_ordinary(path_, true);
+  if (!file_.open()) fail(path_, std::strerror(errno));
+  if (!locks_are_off() && ::flock(file_.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    made_ = false;
+    fail(path_, std::string("another run or program has it open") + other_results);
+  }
   struct stat status {};
-  made_ = ::stat(path_.c_str(), &status) != 0;
-  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) {
-    made_ = false;
-    fail(path_, std::strerror(errno));
-  }
-  if (!locks_are_off() && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    made_ = false;
-    fail(path_, "another run or program has it open; name another file with -output_file");
-  }
-  if (::fstat(descriptor_, &status) != 0) fail(path_, std::strerror(errno));
-  if (status.st_size > 0 && !is_results_file(path_))
-    fail(path_, "it is there already and is no results file of Traverse; name another file with -output_file");
+  if (::fstat(file_.get(), &status) != 0) fail(path_, std::strerror(errno));
+  if (status.st_size > 0 && !is_results_file(file_))
+    fail(path_, std::string("it is there already and is no results file of Traverse") + other_results);
   if (!made_) return;
+  made_file = id_of(file_);
   made_names = {path_};
-  made_names.insert(made_names.end(), folders_.rbegin(), folders_.rend());
+  for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) made_names.push_back(folder->string());
   made_something = true;
 }
 
 void Place::copy_aside(const std::string& source) {
-  std::error_code error;
-  const std::string& found = fs::exists(source, error) ? source : path_;  // they may have been moved
-  if (!is_results_file(found))
+  const std::string& found = id_at(source.c_str()).there ? source : path_;  // they may have been moved
+  const Descriptor from = open_ordinary(found, false);
+  if (!from.open() || !is_results_file(from))
     fail(path_, "the results to take up, " + source + ", are not there; name them with -output_file");
-  copied_ = true;
-  fs::copy_file(found, aside(), fs::copy_options::overwrite_existing, error);
-  if (error) fail(path_, error.message());
+  aside_ = make_file(aside());
+  if (!aside_.open() && errno == EEXIST && is_results_file(aside())) {  // of a run that was killed
+    (void)::unlink(aside().c_str());
+    aside_ = make_file(aside());
+  }
+  if (!aside_.open() && errno == EEXIST)
+    fail(path_, aside() + " is there already and is no results file of Traverse; move it away");
+  if (!aside_.open() || !copy(from, aside_)) fail(path_, std::strerror(errno));
 }
 
 void Place::take_aside() {
-  const int taken = ::open(aside().c_str(), O_RDWR | O_CLOEXEC);
-  if (taken < 0) fail(path_, std::strerror(errno));
-  if (!locks_are_off()) (void)::flock(taken, LOCK_EX | LOCK_NB);
-  if (::rename(aside().c_str(), path_.c_str()) != 0) {
-    ::close(taken);
-    fail(path_, std::strerror(errno));
-  }
-  copied_ = false;
-  ::close(descriptor_);
-  descriptor_ = taken;
+  if (!locks_are_off()) (void)::flock(aside_.get(), LOCK_EX | LOCK_NB);
+  check_is_there();
+  if (id_at(aside().c_str()) != id_of(aside_)) fail(path_, aside() + " was removed or replaced meanwhile");
+  if (::rename(aside().c_str(), path_.c_str()) != 0) fail(path_, std::strerror(errno));
+  file_ = std::move(aside_);
+  aside_ = Descriptor();
   keep();
+}
+
+void Place::check_is_there() const {
+  if (file_.open() && id_at(path_.c_str()) != id_of(file_))
+    throw FileError("the results file " + path_ + " was removed, moved or replaced while the run went on");
 }
 
 void Place::give_up() noexcept {
   std::error_code ignored;
-  if (copied_) fs::remove(aside(), ignored);
-  copied_ = false;
+  const auto is_ours = [](const std::string& name, const Descriptor& file) {
+    return file.open() && id_at(name.c_str()) == id_of(file);
+  };
+  if (is_ours(aside(), aside_)) fs::remove(aside(), ignored);
   if (made_) made_something = false;
-  if (made_) fs::remove(path_, ignored);
+  if (made_ && is_ours(path_, file_)) fs::remove(path_, ignored);
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) fs::remove(*folder, ignored);
-  if (descriptor_ >= 0) ::close(descriptor_);
-  descriptor_ = -1;
+  file_ = Descriptor();
+  aside_ = Descriptor();
   made_ = false;
   folders_.clear();
 }
@@ -164,8 +169,14 @@ void Place::keep() {
 
 void remove_made_place() noexcept {
   if (!made_something) return;
-  for (const std::string& name : made_names)
-    if (::unlink(name.c_str()) != 0) (void)::rmdir(name.c_str());
+  bool file = true;  // the first name
+  for (const std::string& name : made_names) {
+    if (!file)
+      (void)::rmdir(name.c_str());
+    else if (id_at(name.c_str()) == made_file)
+      (void)::unlink(name.c_str());
+    file = false;
+  }
 }
 
 Place claim_place(MPI_Comm comm, const std::string& path) {
@@ -198,9 +209,9 @@ Place::Place(Place&& other) noexcept { *this = std::move(other); }
 
 Place& Place::operator=(Place&& other) noexcept {
   std::swap(path_, other.path_);
-  std::swap(descriptor_, other.descriptor_);
+  std::swap(file_, other.file_);
+  std::swap(aside_, other.aside_);
   std::swap(made_, other.made_);
-  std::swap(copied_, other.copied_);
   std::swap(folders_, other.folders_);
   return *this;
 }

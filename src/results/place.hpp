@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "results/own_file.hpp"
+
 namespace traverse::results {
 
 /// A path that this process may write, locked against other runs until the object goes. What it made (an empty file,
@@ -15,8 +17,8 @@ namespace traverse::results {
 class Place {
  public:
   Place() = default;
-  /// An empty path is no place. FileError when it is a folder or a special file, cannot be written, is open elsewhere,
-  /// or holds something that is no results file of Traverse.
+  /// An empty path is no place. FileError when it is a folder, a link or a special file, cannot be written, is open
+  /// elsewhere, or holds something that is no results file of Traverse.
   explicit Place(std::string path);
   Place(Place&& other) noexcept;
   Place& operator=(Place&& other) noexcept;
@@ -26,10 +28,17 @@ class Place {
   /// A results file has been begun: it stays.
   void keep();
 
-  /// Copies a file beside the place, under the name aside(). FileError where there is no results file to copy.
+  /// The file by a name that leads to it even where another one has been put at its path.
+  std::string file() const { return file_.path(); }
+  /// FileError where the file is not at its path any more.
+  void check_is_there() const;
+
+  /// Copies a file beside the place, under the name aside(). FileError where there is no results file to copy, or
+  /// something else has that name.
   void copy_aside(const std::string& source);
   std::string aside() const { return path_ + ".part"; }
-  /// What stands there takes the place, locked.
+  std::string file_aside() const { return aside_.path(); }
+  /// The copy takes the place, locked.
   void take_aside();
 
  private:
@@ -37,9 +46,8 @@ class Place {
   void give_up() noexcept;
 
   std::string path_;
-  int descriptor_ = -1;
-  bool made_ = false;    // the file, by this object
-  bool copied_ = false;  // a copy stands aside
+  Descriptor file_, aside_;  // aside: a copy, where there is one
+  bool made_ = false;        // the file, by this object
   std::vector<std::filesystem::path> folders_;
 };
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <string_view>
 
 #include "options/data_file.hpp"
+#include "options/input_texts.hpp"
 #include "results/origin.hpp"
 #include "results/stage.hpp"
 #include "run/scene_digest.hpp"
@@ -35,7 +37,50 @@ std::string path_for(const Scene& scene) {
   return scene.output.file.empty() ? "" : scene.output.file + ".checkpoint";
 }
 
+/// InputError where results and checkpoint, each with its name until it is complete, would be one file.
+void check_that_outputs_differ(const std::string& results, const std::string& checkpoint) {
+  if (checkpoint.empty() || results.empty()) return;
+  std::error_code ignored;
+  const auto place = [&](const std::string& name) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(name), ignored);
+  };
+  for (const std::string& name : {results, results + ".part"})
+    for (const std::string& other : {checkpoint, results::aside_of_checkpoint(checkpoint)})
+      if (place(name) == place(other))
+        throw InputError(fmt::format("checkpoint_file = {}: the results file {} would be written to the same place",
+                                     checkpoint, results));
+}
+
+/// InputError where the results of another run are to be read and written over; a study that goes on does so.
+void check_that_none_is_read(const Scene& scene) {
+  if (scene.output.file.empty() || (scene.study && scene.study->resume)) return;
+  std::vector<std::string> inputs = {results::opened_origin()};
+  for (const options::InputText& input : options::inputs_read()) inputs.push_back(input.name);
+  std::error_code ignored;
+  for (const std::string& input : inputs)
+    if (std::filesystem::equivalent(scene.output.file, input, ignored))
+      throw InputError(fmt::format("output_file = {}: the run reads this file; name another one", scene.output.file));
+}
+
 }  // namespace
+
+results::Place claim_outputs(MPI_Comm comm, const Scene& scene) {
+  const bool one_run = scene.analysis == Analysis::transient && !scene.study && !scene.sweep;
+  const std::string checkpoint = one_run ? path_for(scene) : "";
+  check_that_outputs_differ(scene.output.file, checkpoint);
+  results::Place place = results::claim_place(comm, scene.output.file);
+  check_that_none_is_read(scene);
+  int rank = 0;
+  MPI_Comm_rank(comm, &rank);
+  std::string failure;
+  try {
+    if (rank == 0 && !checkpoint.empty()) results::check_checkpoint_place(checkpoint);
+  } catch (const FileError& error) {
+    failure = error.what();
+  }
+  results::share_failure(comm, failure);
+  return place;
+}
 
 std::string digest_of(const Scene& scene) { return digest_of(scene, free_options, options::tables_read()); }
 

@@ -24,6 +24,10 @@ std::string digest_of(const Scene& scene);
 /// none.
 std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene);
 
+/// Collective. The place of the results, and a look at that of the checkpoints: InputError or FileError where a file
+/// would be written over that is no output of a run before, before anything is computed.
+results::Place claim_outputs(MPI_Comm comm, const Scene& scene);
+
 class Checkpoints {
  public:
   /// Those of a run whose parts must outlive it. `so_far`: all that follows from neither.

@@ -182,6 +182,11 @@ Scene read_scene(Options o) {
   return scene;
 }
 
-Scene read_scene() { return read_scene(Options(options::in_force())); }
+Scene read_scene() {
+  Scene scene = read_scene(Options(options::in_force()));
+  const std::vector<std::string>& notes = options::notes_on_petscrc();
+  scene.notes.insert(scene.notes.begin(), notes.begin(), notes.end());
+  return scene;
+}
 
 }  // namespace traverse::app

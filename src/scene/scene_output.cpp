@@ -184,6 +184,14 @@ void check_name(const Options& o, const std::string& name) {
     o.refuse("scene_name", "allowed: a name without / and line breaks; -output_file takes a path");
 }
 
+/// Only the user himself, by the command line, gives a file another kind of name: one that a file of options gives may
+/// be of somebody else's, and no shell or desktop starts what ends like this.
+void check_ending(const Options& o, const std::string& name, const std::string& ending) {
+  const options::Entry* entry = o.entries().find(name);
+  if (entry == nullptr || !entry->from_file() || entry->value == "none" || o.text(name).ends_with(ending)) return;
+  o.refuse(name, "allowed in a file: a name that ends in " + ending + "; the command line takes any");
+}
+
 }  // namespace
 
 void promise_what_many_runs_find(Scene& scene) {
@@ -202,6 +210,8 @@ void read_output(const Options& o, Scene& scene) {
   check_name(o, scene.name);
   if (o.has("output_file") && has_control_character(o.text("output_file")))
     o.refuse("output_file", "allowed: a path without line breaks and other control characters");
+  for (const auto& [name, ending] : {std::pair("output_file", ".h5"), std::pair("checkpoint_file", ".checkpoint")})
+    check_ending(o, name, ending);
   scene.output.file = o.has("output_file") ? o.text("output_file") : "results/" + scene.name + ".h5";
   if (scene.output.file == "none") scene.output.file.clear();
   scene.output.interval = o.optional_number("output_interval");

@@ -274,7 +274,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   scenes.choose(choice.scene);
   const CaseRunner& first = *scenes.runner(0, &notes).runs;
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
-  for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
   results::StoredStudy stored = stored_of(comm, given, choice.model);
   const std::vector<char> known = take_known(comm, stored, round->table);
   announce(scenes, first, choice.model, round->table.finished_runs(), ranks, notes);

@@ -151,7 +151,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   const Scene& scene = choice.scene;
   CaseRunner runner(scene, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
-  for (const std::string& note : options::check_all_used(options::in_force())) notes.push_back(note);
+  for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
   announce(scene, runner, choice.model, ranks, notes);
   print_notes(comm, notes);
 

@@ -262,14 +262,6 @@ TEST(BadFiles, TheirErrorsNameFileAndLine) {
                              });
 }
 
-TEST(BadFiles, MoreOptionsThanPetscHolds) {
-  std::string text;
-  for (int i = 0; i < 600; ++i) text += "option_" + std::to_string(i) + ": 1\n";
-  const Workplace workplace(small_scene());
-  workplace.write("many.yml", text);
-  expect_refusals(workplace, {{{"-options_file", "many.yml"}, {"options", "at most 500", "vehicle: {NAME: {file:"}}});
-}
-
 TEST(BadMechanisms, BodiesAndJoints) {
   const Workplace workplace(small_scene());
   expect_refusals(

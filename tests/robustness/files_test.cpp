@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <memory>
 
+#include "support/paths.hpp"
 #include "support/program.hpp"
 #include "support/scene_run.hpp"
 
@@ -231,6 +233,134 @@ TEST(ResultsPlace, StaysInItsFolder) {
     expect_refusal(workplace, workplace.run({"-scene_name", name}), {"scene_name", "without / and line breaks"});
   }
   expect_refusal(workplace, workplace.run({"-output_file", "a\nb.h5"}), {"output_file = a\\nb.h5", "line breaks"});
+}
+
+// Through a link a run would make or fill a file elsewhere, here one that is not there yet.
+TEST(ResultsPlace, IsNoLink) {
+  const Workplace workplace(small_scene());
+  std::filesystem::create_symlink("elsewhere", workplace.path("dangling.h5"));
+  expect_refusal(workplace, workplace.run({"-output_file", "dangling.h5"}), {"dangling.h5", "it is a link"});
+  EXPECT_FALSE(workplace.has("elsewhere"));
+}
+
+TEST(ResultsPlace, OfAFileThatTheRunReads) {
+  const Workplace workplace(small_scene());
+  expect_success(workplace.run({"-output_file", "r.h5", "-ts_max_time", "0.1"}));
+  const std::string before = text_of(workplace.path("r.h5"));
+  const Outcome outcome =
+      Child({TRAVERSE_BINARY, "r.h5", "-output_file", "./r.h5", "-ts_max_time", "0.1"}, workplace.folder()).wait();
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_NE(outcome.err.find("output_file = ./r.h5: the run reads this file"), std::string::npos) << outcome.err;
+  EXPECT_EQ(text_of(workplace.path("r.h5")), before);
+}
+
+TEST(ResultsPlace, ThatVanishesDuringTheRunEndsIt) {
+  for (const bool replaced : {false, true}) {
+    const Workplace workplace(small_scene() + "ts_max_time: 1.0e5\noutput: {file: r.h5, interval: 0.01}\n");
+    Child child(workplace.command({}), workplace.folder());
+    ASSERT_TRUE(child.wait_for("integrator"));
+    ASSERT_TRUE(child.wait_until([&] { return std::filesystem::file_size(workplace.path("r.h5")) > 0; }));
+    std::filesystem::remove(workplace.path("r.h5"));
+    if (replaced) workplace.write("r.h5", "mine");
+    child.kill(SIGTERM);
+    const Outcome outcome = child.wait();
+    EXPECT_EQ(outcome.status, 4);
+    EXPECT_NE(outcome.err.find("r.h5 was removed, moved or replaced"), std::string::npos) << outcome.err;
+    EXPECT_EQ(workplace.has("r.h5"), replaced);
+    if (replaced) EXPECT_EQ(text_of(workplace.path("r.h5")), "mine");
+  }
+}
+
+// --- checkpoints -----------------------------------------------------------------------------------------------------
+
+TEST(CheckpointPlace, IsNeverAnotherFile) {
+  const Workplace workplace(small_scene() + "ts_max_time: 0.1\n");
+  workplace.write("text", "mine\n");
+  workplace.write("empty", "");
+  std::filesystem::create_directory(workplace.path("folder"));
+  std::filesystem::create_symlink("elsewhere", workplace.path("link"));
+  workplace.write("new.part", "mine\n");
+  const std::string scene = text_of(workplace.path("scene.yml"));
+  for (const std::string file : {"text", "empty", "folder", "link", "scene.yml", "new"}) {
+    SCOPED_TRACE(file);
+    const Outcome outcome = workplace.run({"-checkpoint_file", file, "-output_file", "r.h5"});
+    expect_refusal(workplace, outcome, {"the checkpoint " + file, "no checkpoint of Traverse", "-checkpoint_file"});
+    EXPECT_EQ(outcome.out, "") << "refused before anything is computed";
+    EXPECT_FALSE(workplace.has("r.h5"));
+  }
+  EXPECT_EQ(text_of(workplace.path("text")) + text_of(workplace.path("new.part")), "mine\nmine\n");
+  EXPECT_TRUE(workplace.has("empty") && workplace.has("folder"));
+  EXPECT_EQ(text_of(workplace.path("scene.yml")), scene);
+}
+
+TEST(CheckpointPlace, IsNotThatOfTheResults) {
+  const Workplace workplace(small_scene() + "ts_max_time: 0.1\n");
+  for (const char* file : {"r.h5", "./r.h5", "r.h5.part"})
+    expect_refusal(workplace, workplace.run({"-output_file", "r.h5", "-checkpoint_file", file}),
+                   {"checkpoint_file = ", "results file r.h5"});
+  expect_refusal(workplace, workplace.run({"-output_file", "r.part", "-checkpoint_file", "r"}),
+                 {"checkpoint_file = r"});
+}
+
+TEST(CheckpointPlace, HasItsFolderBeforeTheRun) {
+  const Workplace workplace(small_scene() + "ts_max_time: 0.1\n");
+  const Outcome outcome = workplace.run({"-output_file", "r.h5", "-checkpoint_file", "missing/c"});
+  expect_refusal(workplace, outcome, {"the checkpoint missing/c", "there is no folder missing"});
+  EXPECT_EQ(outcome.out, "");
+}
+
+TEST(CheckpointPlace, OfARunBeforeIsTakenAndRemoved) {
+  const Workplace workplace(small_scene() + "ts_max_time: 0.1\noutput: {file: r.h5}\n");
+  expect_success(workplace.run({"-ts_max_steps", "3", "-checkpoint_file", "c"}));
+  ASSERT_TRUE(workplace.has("c"));
+  workplace.write("c.part", "");  // as by a kill before its first byte
+  expect_success(workplace.run({"-ts_max_steps", "3", "-checkpoint_file", "c"}));
+  EXPECT_FALSE(workplace.has("c.part"));
+  expect_success(workplace.run({"-restart", "c", "-checkpoint_file", "c"}));
+  EXPECT_FALSE(workplace.has("c"));
+}
+
+TEST(CheckpointPlace, ThatIsTakenDuringTheRunIsLeft) {
+  const Workplace workplace(small_scene() + "ts_max_time: 1.0e5\noutput: {file: r.h5, interval: 0.01}\n");
+  Child child(workplace.command({"-checkpoint_file", "c"}), workplace.folder());
+  ASSERT_TRUE(child.wait_for("integrator"));
+  workplace.write("c", "mine");
+  child.kill(SIGTERM);
+  EXPECT_EQ(child.wait().status, 4);
+  EXPECT_EQ(text_of(workplace.path("c")), "mine");
+}
+
+TEST(CopyAside, IsNeverAnotherFile) {
+  const Workplace workplace(small_scene() + "ts_max_time: 0.1\noutput: {file: r.h5}\n");
+  expect_success(workplace.run({"-ts_max_steps", "3"}));
+  workplace.write("r.h5.part", "mine");
+  const Outcome outcome = workplace.run({"-restart", "r.h5.checkpoint"});
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_NE(outcome.err.find("r.h5.part is there already"), std::string::npos) << outcome.err;
+  EXPECT_EQ(text_of(workplace.path("r.h5.part")), "mine");
+}
+
+// --- kept choices ----------------------------------------------------------------------------------------------------
+
+TEST(KeptChoices, AreWrittenOverNoOtherFile) {
+  const Workplace workplace(std::string(two_spans) + "load: {forces: 1.0e5, speed: 40.0}\nts_max_time: 0.1\n");
+  const auto kept = [&] {
+    std::vector<std::string> names;
+    for (const auto& file : std::filesystem::directory_iterator(workplace.path(".traverse_choices")))
+      names.push_back(file.path());
+    return names;
+  };
+  expect_success(workplace.run({"-output_file", "r.h5"}));
+  ASSERT_EQ(kept().size(), 1U);
+  std::ofstream(kept().front()) << "mine";
+  expect_success(workplace.run({"-output_file", "r.h5"}));
+  ASSERT_EQ(kept().size(), 1U);
+  EXPECT_EQ(text_of(kept().front()), "mine");
+  std::filesystem::remove_all(workplace.path(".traverse_choices"));
+  std::filesystem::create_directory(workplace.path("elsewhere"));
+  std::filesystem::create_directory_symlink("elsewhere", workplace.path(".traverse_choices"));
+  expect_success(workplace.run({"-output_file", "r.h5"}));
+  EXPECT_TRUE(std::filesystem::is_empty(workplace.path("elsewhere")));
 }
 
 }  // namespace

@@ -57,8 +57,6 @@ Results run_words(std::vector<std::string> words, MPI_Comm comm) {
   base::check(PetscOptionsClear(nullptr));
   options::Input input = options::read_input(static_cast<int>(argv.size()), argv.data());
   options::put_into_petsc(input);
-  for (std::size_t i = 1; i + 1 < input.petsc_words.size(); i += 2)
-    base::check(PetscOptionsSetValue(nullptr, input.petsc_words[i].c_str(), input.petsc_words[i + 1].c_str()));
   app::run(comm, app::read_scene());
   MPI_Barrier(comm);
   return Results(file);

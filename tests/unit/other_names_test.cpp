@@ -32,7 +32,7 @@ TEST(OtherNames, MeanTheSameWithEveryPetsc) {
   EXPECT_EQ(input.entries.find("ts_dt")->where(), scene + ":1");
   EXPECT_EQ(input.entries.find("ts_max_reject")->value, "7");
   EXPECT_FALSE(input.entries.has("ts_time_step"));
-  std::vector<std::string> words = {"traverse"};
+  std::vector<std::string> words = {"traverse", "-skip_petscrc", "true", "-options_left", "false"};
   for (const auto& [option, value] : {std::pair(base::renamed_options[0], "0.1"), {base::renamed_options[1], "7"}})
     words.insert(words.end(), {std::string("-") + option.known(), value});
   EXPECT_EQ(input.petsc_words, words);
@@ -49,7 +49,7 @@ TEST(OtherNames, AreRefusedBesideOneAnother) {
 TEST(OtherNames, OfTheEnvironmentAreThoseThatPetscKnows) {
   const base::RenamedOption& step = base::renamed_options[0];
   for (const char* name : {step.name, step.newer}) {
-    ASSERT_EQ(PetscOptionsSetValue(nullptr, (std::string("-") + name).c_str(), "0.25"), 0);  // as by PETSC_OPTIONS
+    ASSERT_EQ(setenv("PETSC_OPTIONS", (std::string("-") + name + " 0.25").c_str(), 1), 0);
     Input input = input_of({});
     put_into_petsc(input);
     ASSERT_TRUE(in_force().has("ts_dt")) << name;

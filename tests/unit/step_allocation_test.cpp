@@ -65,8 +65,6 @@ app::Scene scene_of(Words words) {
   base::check(PetscOptionsClear(nullptr));
   options::Input input = options::read_input(static_cast<int>(argv.size()), argv.data());
   options::put_into_petsc(input);
-  for (std::size_t i = 1; i + 1 < input.petsc_words.size(); i += 2)
-    base::check(PetscOptionsSetValue(nullptr, input.petsc_words[i].c_str(), input.petsc_words[i + 1].c_str()));
   return app::read_scene();
 }
 

@@ -72,11 +72,11 @@ const Row& vary_list_row();
 
 const Row* find_row(std::span<const Row> rows, std::string_view name);
 
-/// Whether PETSc or SLEPc own this name. Options that PETSc and this program both read, such as -ts_dt, count as
-/// theirs.
+/// Whether a name is of the kinds that PETSc and SLEPc own.
 bool owned_by_petsc(std::string_view name);
-/// The PETSc and SLEPc options that a user is likely to mean.
-std::span<const std::string_view> common_petsc_names();
+/// Whether an option goes on to PETSc: those of the kinds above that stand in the table, none that starts a program,
+/// loads code or writes a file. Nothing else reaches PETSc.
+bool passes_to_petsc(std::string_view name);
 
 /// What is allowed, in words: "above 0 (m)", "one of none, bump", "2 numbers".
 std::string allowed(const Row& row);

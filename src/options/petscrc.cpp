@@ -1,0 +1,83 @@
+#include "options/petscrc.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+#include "options/other_names.hpp"
+#include "options/read_file.hpp"
+#include "traverse/options/table.hpp"
+
+namespace traverse::options {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 5> of_command_line = {"options_file", "help", "check", "restart",
+                                                             "skip_petscrc"};
+
+std::string_view kind_of(std::string_view name) { return name.substr(0, name.find('_')); }
+
+/// Whether the name is one of Traverse's or a misspelt one: programs of PETSc's share these places.
+bool is_meant_for_us(std::string_view name) {
+  if (std::find(of_command_line.begin(), of_command_line.end(), name) != of_command_line.end()) return false;
+  if (owned_by_petsc(name)) return passes_to_petsc(name);
+  const auto rows = fixed_rows();
+  return kind_of(name) == "vehicle" ||
+         std::any_of(rows.begin(), rows.end(), [&](const Row& row) { return kind_of(row.name) == kind_of(name); });
+}
+
+std::vector<std::string> files_there() {
+  std::vector<std::string> files;
+  const char* home = std::getenv("HOME");
+  std::error_code ignored;
+  const bool at_home = home != nullptr && fs::equivalent(home, ".", ignored);
+  if (home != nullptr && !at_home) files.push_back((fs::path(home) / ".petscrc").string());
+  files.insert(files.end(), {".petscrc", "petscrc"});
+  std::erase_if(files, [&](const std::string& file) { return !fs::is_regular_file(file, ignored); });
+  return files;
+}
+
+/// A variable of the environment, taken out of it.
+std::string take_variable(const char* name) {
+  const char* value = std::getenv(name);
+  std::string text = value == nullptr ? "" : value;
+  unsetenv(name);
+  return text;
+}
+
+}  // namespace
+
+std::vector<Entry> read_petscrc(bool files) {
+  std::vector<Entry> all;
+  const auto add = [&all](std::vector<Entry> more) {
+    for (Entry& entry : more) all.push_back(std::move(entry));
+  };
+  if (files)
+    for (const std::string& file : files_there()) add(read_classic_file(file));
+  const std::string words = take_variable("PETSC_OPTIONS"), yaml = take_variable("PETSC_OPTIONS_YAML");
+  add(parse_words(split_words(words, "PETSC_OPTIONS: "), "PETSC_OPTIONS", 0));
+  add(parse_yaml(yaml, "PETSC_OPTIONS_YAML"));
+  return all;
+}
+
+std::vector<std::string> add_weakest(std::vector<Entry> given, Entries& in_force) {
+  std::vector<std::string> notes(given.size());
+  for (std::size_t i = given.size(); i-- > 0;) {
+    Entry& entry = given[i];
+    entry.name = own_name(entry.name);
+    if (!is_meant_for_us(entry.name)) {
+      notes[i] = entry.given() + " is left out: it is no option that Traverse takes from there";
+    } else if (const Entry* stronger = in_force.find(entry.name)) {
+      notes[i] = entry.given() + " has no effect: " + stronger->given() + " overrides it";
+    } else {
+      notes[i] = entry.given() + " is in force: nothing overrides it";
+      in_force.set(std::move(entry));
+    }
+  }
+  return notes;
+}
+
+}  // namespace traverse::options

@@ -1,0 +1,90 @@
+#include "results/own_file.hpp"
+
+#include <fcntl.h>
+#include <hdf5.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+
+#include "hdf5.hpp"
+
+namespace traverse::results {
+namespace {
+
+FileId id_of_status(const struct stat& status) { return {true, status.st_dev, status.st_ino}; }
+
+}  // namespace
+
+Descriptor::~Descriptor() {
+  if (number_ >= 0) ::close(number_);
+}
+
+FileId id_at(const char* path) noexcept {
+  struct stat status {};
+  return ::lstat(path, &status) == 0 ? id_of_status(status) : FileId();
+}
+
+FileId id_of(const Descriptor& file) noexcept {
+  struct stat status {};
+  return ::fstat(file.get(), &status) == 0 ? id_of_status(status) : FileId();
+}
+
+Descriptor make_file(const std::string& path) {
+  return Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+}
+
+Descriptor open_ordinary(const std::string& path, bool to_write) {
+  Descriptor file(::open(path.c_str(), (to_write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  struct stat status {};
+  if (!file.open() || (::fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode))) return file;
+  errno = EINVAL;
+  return {};
+}
+
+bool is_results_file(const Descriptor& file) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const hdf5::Id access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_file_locking(access.get(), false, true);
+  const hdf5::Id content(H5Fopen(file.path().c_str(), H5F_ACC_RDONLY, access.get()));
+  if (content.get() < 0 || H5Aexists(content.get(), "program") <= 0) return false;
+  const hdf5::Id attribute(H5Aopen(content.get(), "program", H5P_DEFAULT)), type(H5Aget_type(attribute.get()));
+  if (type.get() < 0 || H5Tis_variable_str(type.get()) <= 0) return false;
+  char* text = nullptr;
+  if (H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return false;
+  const bool ours = std::string_view(text) == "traverse";
+  H5free_memory(text);
+  return ours;
+}
+
+bool is_results_file(const std::string& path) {
+  const Descriptor file = open_ordinary(path, false);
+  return file.open() && is_results_file(file);
+}
+
+bool begins_with(const std::string& path, std::string_view mark) {
+  const Descriptor file = open_ordinary(path, false);
+  std::string begin(mark.size(), '\0');
+  return file.open() && ::pread(file.get(), begin.data(), begin.size(), 0) == static_cast<ssize_t>(mark.size()) &&
+         begin == mark;
+}
+
+bool write_all(const Descriptor& file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t done = ::write(file.get(), bytes.data(), bytes.size());
+    if (done < 0 && errno == EINTR) continue;
+    if (done < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(done));
+  }
+  return true;
+}
+
+// A file system that cannot do it at once has another name made, which fails where something is.
+bool move_to_free_name(const std::string& from, const std::string& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno != EINVAL && errno != ENOSYS) return false;
+  return ::link(from.c_str(), to.c_str()) == 0 && ::unlink(from.c_str()) == 0;
+}
+
+}  // namespace traverse::results
