@@ -15,11 +15,25 @@ Element element_of(const BeamModel& model, int left, int span, double x, double 
   return {left, span, x, h, EI, model.GA ? 12.0 * EI / (model.GA->at(middle, x) * h * h) : 0.0};
 }
 
+/// Whether the ground beside the beam's first (or last) end stays at its height.
+bool level_with_ground(const BeamModel& model, bool last) {
+  if (model.given) {
+    const auto rests = [last](const std::vector<double>& shape) {
+      return (last ? shape.back() : shape.front()) == 0.0;
+    };
+    return std::all_of(model.given->shape.begin(), model.given->shape.end(), rests);
+  }
+  const auto& of = model.settlement;
+  const double settled = of.empty() ? 0.0 : last ? of.back() : of.front();
+  return fixes_vertical(last ? model.supports.back() : model.supports.front()) && settled == 0.0;
+}
+
 }  // namespace
 
-Mesh::Mesh(const BeamModel& model) {
+Mesh::Mesh(const BeamModel& model) : ground_(model.ground) {
   const std::vector<Piece> pieces = pieces_of(model);
   kinks_.push_back(model.start);
+  if (ground_[0] && !level_with_ground(model, false)) steps_.push_back(model.start);
   span_ends_.push_back(model.start);
   nodes_at_.emplace_back(0, 0);
   x_.push_back(model.start);
@@ -36,12 +50,16 @@ Mesh::Mesh(const BeamModel& model) {
     const int left = nodes() - 1;
     joints_.back() = piece.next;
     if (piece.next != Joint::continuous && piece.next != Joint::expansion) kinks_.push_back(piece.right);
-    if (piece.next == Joint::separate && &piece != &pieces.back()) x_.push_back(piece.right);
+    if (piece.next == Joint::separate && &piece != &pieces.back()) {
+      x_.push_back(piece.right);
+      if (!fixes_vertical(model.supports[static_cast<std::size_t>(piece.span) + 1])) steps_.push_back(piece.right);
+    }
     joints_.resize(x_.size(), Joint::continuous);
     if (!piece.ends_span) continue;
     span_ends_.push_back(piece.right);
     nodes_at_.emplace_back(left, nodes() - 1);
   }
+  if (ground_[1] && !level_with_ground(model, true)) steps_.push_back(x_.back());
   piece_ends_.push_back(x_.back());
   first_element_.push_back(elements());
 }

@@ -1,6 +1,8 @@
 // Nodes and elements along x. Where two spans are separate there is a node for each of them.
 #pragma once
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "traverse/beam/model.hpp"
@@ -48,14 +50,20 @@ class Mesh {
 
   /// Stations where the beam's slope or deflection may jump: its ends, separate joints, hinges; ascending.
   const std::vector<double>& kinks() const { return kinks_; }
+  /// Those where the surface may be higher on one side than on the other, as nothing rigid holds both at one height.
+  const std::vector<double>& steps() const { return steps_; }
+  /// Whether the rigid surface goes on before its start and behind its end.
+  bool ground_before() const { return ground_[0]; }
+  bool ground_behind() const { return ground_[1]; }
   /// The kinks on either side of an element: the reach of the smooth surface that it belongs to.
   std::pair<double, double> smooth_reach(int element) const;
 
  private:
+  std::array<bool, 2> ground_;
   std::vector<double> x_;
   std::vector<Joint> joints_;  // at each node
   std::vector<Element> elements_;
-  std::vector<double> span_ends_, kinks_;
+  std::vector<double> span_ends_, kinks_, steps_;
   std::vector<std::pair<int, int>> nodes_at_;
   std::vector<double> piece_ends_;  // left end of each run of equal elements, and the beam's end
   std::vector<int> first_element_;  // of each of them, and one past the last

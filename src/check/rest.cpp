@@ -14,6 +14,7 @@ namespace traverse::app {
 namespace {
 
 constexpr double few_forces = 1000.0;
+constexpr double beside = 1e-9;       // m: of a joint, on its left side
 constexpr int points_of_a_piece = 4;  // for the integral of the bridge's own weight
 
 /// The trains that pass, each as it weighs at rest.
@@ -59,6 +60,24 @@ void find_deflection(norm::StaticBridge& bridge, const std::vector<norm::LoadMod
       rest.span = span;
     }
     left += span;
+  }
+}
+
+/// How far one side of a step sinks under the trains, or rises.
+double sinks_by(norm::StaticBridge& bridge, double x, const std::vector<norm::LoadModel>& trains) {
+  const norm::InfluenceLine line = bridge.lines_at(x)[0];
+  return std::max(greatest_of(line, trains), greatest_of(line.times(-1.0), trains));
+}
+
+void find_steps(norm::StaticBridge& bridge, const std::vector<norm::LoadModel>& trains, Rest& rest) {
+  const beam::BeamModel& model = bridge.model();
+  for (const double x : beam::Mesh(model).steps()) {
+    const bool left = x == model.start, right = x == model.end();
+    double height =
+        std::max(left ? 0.0 : sinks_by(bridge, x - beside, trains), right ? 0.0 : sinks_by(bridge, x, trains));
+    if (!model.settlement.empty() && (left || right))
+      height = std::max(height, std::abs(left ? model.settlement.front() : model.settlement.back()));
+    rest.steps.push_back({x, height});
   }
 }
 
@@ -111,6 +130,7 @@ Rest rest_of(const Look& look) {
                              -greatest_of(line.times(-1.0), trains), greatest_of(line, trains)});
   }
   find_deflection(bridge, trains, rest);
+  if (!beam.track) find_steps(bridge, trains, rest);
   return rest;
 }
 

@@ -26,8 +26,14 @@ struct Borne {
   double least = 0.0, greatest = 0.0;  // of the train or forces, wherever they stand
 };
 
+/// A step of the running surface: the greatest that settlements and the loads make, wherever these stand.
+struct SurfaceStep {
+  double x = 0.0, height = 0.0;  // m
+};
+
 struct Rest {
   std::vector<Borne> supports;
+  std::vector<SurfaceStep> steps;
   double deflection = 0.0, at = 0.0;  // m, the greatest in the middle of a span under the train; where
   double span = 0.0;                  // m, of that
   std::string why_not;                // where there is none of this, in words

@@ -20,6 +20,7 @@ constexpr double other_unit = 31.6227766;  // times a frequency, where EI or the
 constexpr double near_bounds = 2.0;        // times and parts of the bounds
 constexpr double much_damping = 0.1;
 constexpr double much_deflection = 1.0 / 300.0;    // of the span
+constexpr double noted_step = 1e-4;                // m: of the running surface
 constexpr double earth = 9.81, near_earth = 0.05;  // m/s2
 constexpr double nearly_all = 0.99;                // of the time until the train has left
 constexpr double one_share = 1e-3;                 // of the mean: a wheel that carries less carries nothing
@@ -78,6 +79,16 @@ void look_at_deflection(const Rest& rest, Lines& lines) {
         fmt::format("at rest the bridge deflects by {:.3g} m at x = {:g} m, 1/{:.0f} of its span: as if "
                     "beam_EI or the loads were in other units",
                     rest.deflection, rest.at, rest.span / rest.deflection));
+}
+
+void look_at_steps(const Look& look, const Rest& rest, Lines& lines) {
+  if (look.passage == nullptr || look.passage->system().fleet().wheels.empty()) return;
+  for (const SurfaceStep& step : rest.steps)
+    if (step.height > noted_step)
+      lines.push_back(
+          fmt::format("the running surface steps by up to {:.3g} mm at x = {:g} m, where nothing rigid holds "
+                      "both sides at one height: wheels strike its edge",
+                      1e3 * step.height, step.x));
 }
 
 void look_at_axles(const Look& look, const std::vector<Axle>& axles, Lines& lines) {
@@ -146,6 +157,7 @@ std::vector<std::string> unusual_in(const Look& look, const std::vector<Axle>& a
     look_at_weight(look, lines);
     look_at_damping(look, lines);
     look_at_deflection(rest, lines);
+    look_at_steps(look, rest, lines);
   }
   look_at_gravity(look, lines);
   look_at_axles(look, axles, lines);

@@ -43,11 +43,15 @@ void CondensedContacts::list(train::Fleet& fleet) {
   for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
     const train::MovingVehicle& vehicle = fleet.vehicles[k];
     first_.push_back(size());
+    yield_[k].list.begin();
     for (const int i : vehicle.touching) {
+      if (!fleet.may_touch(i)) continue;
+      yield_[k].list.add(i);
       train::Contact& c = fleet.contact(i);
       rows_.push_back({&c, vehicle.scale, static_cast<int>(k), true, c.slot()});
       if (c.law.friction > 0.0) rows_.push_back({&c, vehicle.scale, static_cast<int>(k), false, c.slot()});
     }
+    if (!yield_[k].list.end()) yield_[k].known = false;
   }
   first_.push_back(size());
   for (Eigen::VectorXd* v : {&held_, &delta_, &change_, &deviation_, &right_, &beam_}) v->resize(size());

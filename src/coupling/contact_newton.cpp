@@ -102,8 +102,9 @@ unsigned ContactNewton::condense_own(train::Fleet& fleet, const StageData& s, in
       return train::VehicleShare::failed;
     const bool poor = i >= kept_iterations || (i > 1 && !vehicle.rests && contraction_ > poor_ratio) ||
                       (i > 1 && yield.residual > poor_ratio * before && yield.residual > tolerance_);
-    if (poor || !vehicle.dynamics->serves(vehicle, s.shifts(), i > 0)) {
+    if (poor || !yield.known || !vehicle.dynamics->serves(vehicle, s.shifts(), i > 0)) {
       renew(vehicle, k, s, s.shifts().statics() || i > 0);
+      yield.known = true;
       signs |= train::VehicleShare::renewed;
     }
     vehicle.dynamics->go_by_itself(yield);
@@ -147,7 +148,7 @@ void ContactNewton::SecondChange::note(int contacts, double change, double next)
 int ContactNewton::carrying(const train::Fleet& fleet) {
   int count = 0;
   for (const train::WheelContact& c : fleet.wheels) {
-    if (c.candidates > 1 || c.further > 0 || c.law.friction > 0.0) return not_alike;
+    if (c.candidates > 1 || (c.candidates == 1 && fleet.has_points(c)) || c.law.friction > 0.0) return not_alike;
     if (c.force.normal != 0.0) ++count;
   }
   return count;

@@ -25,7 +25,7 @@ void CornerEvents::expect(const std::vector<base::SpeedLaw>& laws, double end, d
   if (structure_ == nullptr) return;
   for (std::size_t i = 0; i < fleet_.wheels.size(); ++i) {
     const train::WheelContact& c = fleet_.wheels[i];
-    if (c.is_further || c.further > 0) continue;  // located by its points
+    if (c.is_further || c.sharp) continue;  // located by its points
     if (laws[i].direction() == 0.0) continue;
     for (const double x : structure_->line().mesh.kinks()) {
       const double t = laws[i].time_of(x - fleet_.coordinates(c).x());
@@ -52,7 +52,8 @@ std::array<double, 2> CornerEvents::turning_times(const Corner& corner, double t
   if (share_.dealt() ? fleet_.owns(c) : rank == 0) {
     seen[x] = fleet_.coordinates(c).x();
     seen[speed] = fleet_.velocities(c).x();
-    seen[radius] = c.kinematics.penetration > 0.0 ? fleet_.wheel(c).radius - c.kinematics.penetration : 0.0;
+    const double penetration = fleet_.kinematics(corner.wheel).penetration;
+    seen[radius] = penetration > 0.0 ? fleet_.wheel(c).radius - penetration : 0.0;
   }
   MPI_Allreduce(MPI_IN_PLACE, seen.data(), numbers, MPI_DOUBLE, MPI_SUM, comm_);
   const double far = std::numeric_limits<double>::infinity();

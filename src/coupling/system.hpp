@@ -278,6 +278,7 @@ class System {
   bool weigh_at_rest();
   void stand_still(const train::Train& train);
   void go_with_the_train(double* w);
+  void follow_surface(const double* y);
   void go_on_from(std::vector<double> p);
   [[noreturn]] void refuse_start(Solution found) const;
   void add_flats(const train::WheelContact& c, const base::SpeedLaw& law, double end,

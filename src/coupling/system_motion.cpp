@@ -33,7 +33,7 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
   for (const train::WheelContact& c : fleet_.wheels) {
     if (c.is_further) continue;
     const double x = fleet_.coordinates(c).x(), way = fleet_.velocities(c).x() * h;
-    add(x, x + 2.0 * way, 0.1 * fleet_.wheel(c).radius);  // a wheel touches beside its centre
+    add(x, x + 2.0 * way, fleet_.reach(c));  // a wheel touches beside its centre
   }
   for (std::size_t i = 0; i < input_.load.positions.size(); ++i)
     add(train::place_of(input_.load, i, t), train::place_of(input_.load, i, t + h), 0.0);

@@ -40,8 +40,8 @@ void System::find_equilibrium(double* y) {
 
 // Wheels on a rail begin with its deflection under them, which goes along with them: rail, sleepers and ballast at its
 // velocity, by how they lie under the wheels a little before and behind at the same height. A rail that had to be set
-// going first would throw the wheels up, by 7 % of their weight at 300 km/h. Bridge and vehicles have no time to
-// follow that: they begin at rest.
+// going first would throw the wheels up, by 7 % of their weight at 300 km/h. The bridge has no time to follow that: it
+// begins at rest.
 void System::go_with_the_train(double* w) {
   const double speed = fleet_.wheels.empty() ? 0.0 : law_of_wheel(0).speed(0.0);
   if (!structure_ || beam()->rail() == nullptr || speed == 0.0) return;

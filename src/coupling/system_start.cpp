@@ -27,6 +27,7 @@ std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) 
     if (!stays) go_with_the_train(y + n_);
   }
   std::vector<std::string> notes = fleet_.partition(0.0);  // makes the velocities fit the constraints
+  if (equilibrium && !stays) follow_surface(y);
   fleet_.start_rolling();
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
   if (!weighed) note_weights();

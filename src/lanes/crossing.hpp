@@ -35,6 +35,7 @@ struct TrainNumbers {
   int coordinates = 0;
   std::vector<double> x, penetration;  // m: of every wheel
   std::vector<double> arm;             // m: its radius less that
+  std::vector<double> follow;          // of every coordinate: its rate at t = 0 over the speed
   std::vector<double> stiffness;       // of its contact, N/m^1.5 or N/m
   std::vector<char> hertz;             // whether it is the former
   double force_scale = 0.0;            // N, contact forces are judged by

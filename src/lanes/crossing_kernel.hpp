@@ -161,7 +161,8 @@ class Group : CrossingAlgebra<W> {
 
   static void begin(State& s) {
     for (int i = 0; i < s.task.coordinates; ++i) {
-      s.x[i] = s.w[i] = s.bent[i] = Lane{};
+      s.x[i] = s.bent[i] = Lane{};
+      s.w[i] = lanes(s.task.x_rate)[i];
       for (int j = 0; j < s.task.method.known; ++j) s.a[j][i] = Lane{};
     }
     for (int i = 0; i < s.modes; ++i) {

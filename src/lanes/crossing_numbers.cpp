@@ -139,6 +139,8 @@ void CrossingNumbers::add_train(const TrainNumbers& train) {
   task_.force_scale = train.force_scale;
   task_.radius = train.radius;
   task_.arm = train.arm.data();
+  task_.x_rate = side_by_side(train.follow.size(),
+                              [](const CrossingRun& run, std::size_t i) { return run.speed * run.train->follow[i]; });
 }
 
 void CrossingNumbers::add_forces(const ForceNumbers& forces) {

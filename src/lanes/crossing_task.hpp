@@ -92,6 +92,7 @@ struct Task {
   double force_scale = 0.0;             // N: what contact forces are judged by
   double radius = 0.0;                  // m: of all wheels
   const double* arm = nullptr;          // m: from each wheel's centre down to the track at rest
+  const double* x_rate = nullptr;       // lanes: of every coordinate at t = 0, m/s or rad/s
 
   int loads = 0;                                    // moving forces
   const double *load_x = nullptr, *load = nullptr;  // m; lanes: N, downward

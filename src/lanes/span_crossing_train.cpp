@@ -42,6 +42,7 @@ void SpanCrossing::add_groups() {
       for (std::size_t i = 0; i < f; ++i) {
         const auto first = train_.vehicles[static_cast<std::size_t>(group.vehicle[v])].first_coordinate;
         place_[static_cast<std::size_t>(first) + i] = {k, i * n + v};
+        group.w[i * n + v] = speed_ * train_.follow[static_cast<std::size_t>(first) + i];
       }
   }
 }

@@ -80,6 +80,18 @@ VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
   return v;
 }
 
+/// Of every coordinate its rate at the start, but for the steady motion, over the speed.
+std::vector<double> follow_of(const train::MovingVehicle& vehicle) {
+  const Eigen::VectorXd& qd = vehicle.state.qd;
+  const double speed = qd[3 * static_cast<Eigen::Index>(vehicle.wheels.front().body)];
+  std::vector<double> follow(static_cast<std::size_t>(vehicle.freedom()), 0.0);
+  for (std::size_t i = 0; i < follow.size() && speed != 0.0; ++i)
+    follow[i] = (qd[vehicle.mechanism.partition().independent[i]] -
+                 vehicle.dynamics->linear()->matrices().c[static_cast<Eigen::Index>(i)]) /
+                speed;
+  return follow;
+}
+
 /// The height of the lowest point of a wheel at x that rolls on the profile, whose height is h there, and its slope. It
 /// touches `ahead` of its centre, where the profile's slope is that of the circle.
 std::array<double, 2> rolled(const track::Profile& profile, double radius, double x, track::Height h) {
@@ -150,13 +162,15 @@ std::string obstacle(const train::Fleet& fleet) {
     }
   }
   for (const train::WheelContact& wheel : fleet.wheels)
-    if (wheel.further > 0) return "a wheel may touch the track at several points";
+    if (wheel.sharp) return "a wheel may touch the track at several points";
   return {};
 }
 
 TrainNumbers train_numbers(train::Fleet& fleet) {
   TrainNumbers train;
   for (train::MovingVehicle& vehicle : fleet.vehicles) {
+    const std::vector<double> follow = follow_of(vehicle);
+    train.follow.insert(train.follow.end(), follow.begin(), follow.end());
     VehicleNumbers own = numbers_of(vehicle);
     const auto kind = std::find_if(train.kinds.begin(), train.kinds.end(),
                                    [&](const VehicleNumbers& known) { return alike(known, own, vehicle.scale); });

@@ -30,6 +30,7 @@ constexpr Heading headings[] = {
     {"load", "load", "Moving forces"},
     {"loads", "load", ""},
     {"track", "track", "Running surface and layered track"},
+    {"surface", "track", ""},
     {"ts", "step", "Time and steps"},
     {"contact", "step", ""},
     {"accuracy", "accuracy", "Accuracy"},

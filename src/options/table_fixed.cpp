@@ -80,6 +80,9 @@ constexpr Row beam_rows[] = {
   {"support_stiffness", numbers, "N/m", "0", not_negative, "", 0, "vertical, of each support, one at every span end; 0: rigid"},
   {"support_scour", numbers, "1", "0", {0.0, 1.0}, "", 0, "part of this stiffness that is lost, one at every span end"},
   {"support_types", choice_list, "", "(pinned, then rollers; simply supported spans: all pinned)", any, "free roller pinned clamped guided", 0, "support at every span end, one word serves all"},
+
+  {"surface_left", choice, "", "rigid", any, "rigid none", 0, "what wheels run on beyond the beam's left end; none: nothing is there, they roll over the end and fall"},
+  {"surface_right", choice, "", "rigid", any, "rigid none", 0, "the same beyond its right end"},
 };
 
 constexpr Row run_rows[] = {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,10 +19,11 @@ namespace {
 constexpr double same_time = 1e-10;  // s
 constexpr double no_step = 1e-9;     // of the shapes' largest values: surfaces that meet without a step
 
-/// Whether wheels come onto the bridge, and leave it, without a step.
-bool level_ends(const structure::ModalBridge& bridge) {
+/// Whether wheels come onto the bridge, go on from span to span, and leave it without a step.
+bool level(const structure::ModalBridge& bridge) {
   const structure::PiecewiseCubic& influence = bridge.influence();
-  double largest = 0.0, at_ends = 0.0;
+  double largest = 0.0, step = 0.0;
+  std::vector<double> before(bridge.modes(), 0.0);  // at the end of the piece on the left
   for (std::size_t piece = 0; piece < influence.pieces(); ++piece) {
     const double length = influence.breaks[piece + 1] - influence.breaks[piece];
     for (std::size_t i = 0; i < bridge.modes(); ++i) {
@@ -29,11 +31,12 @@ bool level_ends(const structure::ModalBridge& bridge) {
       const std::size_t n = influence.channels;
       const double left = c[0], right = c[0] + length * (c[n] + length * (c[2 * n] + length * c[3 * n]));
       largest = std::max({largest, std::abs(left), std::abs(right)});
-      if (piece == 0) at_ends = std::max(at_ends, std::abs(left));
-      if (piece + 1 == influence.pieces()) at_ends = std::max(at_ends, std::abs(right));
+      step = std::max(step, std::abs(left - before[i]));
+      before[i] = right;
     }
   }
-  return at_ends <= no_step * largest;
+  for (const double right : before) step = std::max(step, std::abs(right));
+  return step <= no_step * largest;
 }
 
 /// Whether all ranks compute the same to the last bit.
@@ -129,7 +132,8 @@ std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (!integrate::own_method(scene.integrator)) return "ts_type is one of PETSc's own";
   if (!scene.time_step) return "the step is not known";
   if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";
-  return level_ends(*shared.modal) ? "" : "wheels meet a step at the bridge's ends, which yield";
+  if (scene.beam->ground != std::array{true, true}) return "the running surface ends with the bridge";
+  return level(*shared.modal) ? "" : "wheels meet steps of the surface, where the bridge's ends or joints yield";
 }
 
 lanes::CrossingPlan lanes_plan(const Scene& scene, const SharedBeam& shared, const coupling::System& system) {

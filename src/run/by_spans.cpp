@@ -4,6 +4,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 
 #include "integrate/integrator_choice.hpp"
 #include "lanes/train_numbers.hpp"
@@ -211,6 +212,7 @@ std::string spans_obstacle(const Scene& scene) {
   if (!scene.profile.level()) return "the track is not level";
   if (scene.start != Start::equilibrium) return "the run does not start in equilibrium";
   if (scene.self_weight) return "the bridge's own weight bends it";
+  if (scene.beam->ground != std::array{true, true}) return "the running surface ends with the bridge";
   if (scene.beam->strained()) return "temperature or settlements bend the bridge";
   if (scene.beam->GA) return "the bridge shears";
   if (scene.beam->surface_height != 0.0) return "wheels run above the beam's axis";

@@ -218,11 +218,19 @@ beam::Foundation read_foundation(const Options& o, const beam::BeamModel& beam) 
   return f;
 }
 
+namespace {
+
+void read_ground(const Options& o, beam::BeamModel& beam) {
+  beam.ground = {o.choice("surface_left") == "rigid", o.choice("surface_right") == "rigid"};
+}
+
+}  // namespace
+
 void read_beam(const Options& o, Scene& scene) {
-  if (read_given_bridge(o, scene)) return;
+  if (read_given_bridge(o, scene)) return read_ground(o, *scene.beam);
   if (!o.has("beam_spans")) {
     for (const char* prefix : {"beam_E", "beam_GA", "beam_mass", "beam_rotary", "beam_cracks", "beam_temperature",
-                               "beam_damping", "beam_rayleigh", "support_", "foundation_"}) {
+                               "beam_damping", "beam_rayleigh", "support_", "foundation_", "surface_"}) {
       const options::Entry* entry = o.first_with_prefix(prefix);
       if (entry != nullptr) o.refuse(entry->name, "there is no beam without beam_spans");
     }
@@ -245,6 +253,7 @@ void read_beam(const Options& o, Scene& scene) {
   read_damping(o, scene.damping);
   scene.self_weight = o.flag("beam_self_weight");
   beam.surface_height = o.number("beam_surface_height");
+  read_ground(o, beam);
 }
 
 }  // namespace traverse::app

@@ -124,6 +124,22 @@ void note_overlaps(const Options& o, Scene& scene) {
       order[first], order[first + 1], pairs > 1 ? fmt::format(" and {} more pairs", pairs - 1) : "", deepest));
 }
 
+/// Wheels that start in equilibrium stand on something.
+void check_ground(const Options& o, const Scene& scene) {
+  const beam::BeamModel& beam = *scene.beam;
+  for (const bool right : {false, true}) {
+    const char* option = right ? "surface_right" : "surface_left";
+    if (beam.ground[right ? 1 : 0]) continue;
+    if (beam.track) o.refuse(option, "a layered track goes on beyond the bridge, on the ground; allowed: rigid");
+    if (scene.start != Start::equilibrium) continue;
+    for (const double x : wheels_at_start(scene))
+      if (right ? x > beam.length() : x < 0.0)
+        o.refuse(option, fmt::format("a wheel starts at x = {:g} m, where there is no surface; allowed: rigid, "
+                                     "train_positions on the beam from 0 to {:g} m, or scene_start given",
+                                     x, beam.length()));
+  }
+}
+
 void note_speeds(const Options& o, Scene& scene) {
   const bool swept = scene.sweep && !scene.sweep->speeds.empty();
   const double speed = swept ? scene.sweep->speeds.back() : greatest_speed(scene);
@@ -226,6 +242,7 @@ void note_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   note_overlaps(o, scene);
   note_speeds(o, scene);
   if (!scene.beam) return;
+  check_ground(o, scene);
   note_tables(scene);
   note_damping(scene);
   note_rough_start(scene);

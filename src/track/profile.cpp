@@ -271,6 +271,17 @@ double Profile::sharpest_place(double from, double to) const {
   return place;
 }
 
+double Profile::next_station(double x, double curvature) const {
+  if (level()) return std::numeric_limits<double>::infinity();
+  if (kind_ != Kind::table || reversed_ || !dips_.empty()) return x + resolution_;
+  const auto after = std::upper_bound(x_.begin(), x_.end(), x);
+  if (after == x_.end()) return std::numeric_limits<double>::infinity();
+  if (after == x_.begin()) return *after;
+  const auto [a, b] = curvatures(static_cast<std::size_t>(after - x_.begin()) - 1);
+  const double part = 4.0 * (*after - *std::prev(after)) / stations_a_wave;
+  return std::max(std::abs(a), std::abs(b)) < curvature ? *after : std::min(*after, x + part);
+}
+
 double Profile::shortest_wave() const {
   double wave = std::numeric_limits<double>::infinity();
   for (const Dip& dip : dips_) wave = std::min(wave, dip.length);

@@ -4,14 +4,12 @@
 #include <cmath>
 #include <limits>
 
-#include "base/whole.hpp"
-
 namespace traverse::track {
 namespace {
 
-constexpr double slack = 1.01;        // of the reach
-constexpr double whole = 0.999;       // of the radius: the reach of a wheel on a wall
-constexpr int most_stations = 10000;  // of a scan
+constexpr double slack = 1.01;                               // of the reach
+constexpr double whole = 0.999;                              // of the radius: the reach of a wheel on a wall
+constexpr double least_stations = 4.0, most_stations = 1e4;  // of a scan
 
 // g and its slope.
 struct Sample {
@@ -39,24 +37,32 @@ void keep(TouchingPoints& all, const TouchingPoint& point) {
 // From left to right over the stations in reach.
 class Scan {
  public:
-  Scan(const Profile& profile, double radius, double x)
-      : profile_(profile), radius_(radius), x_(x), half_(reach(profile, radius)) {}
+  Scan(const Profile& profile, double radius, double x, std::span<const double> steps)
+      : profile_(profile),
+        radius_(radius),
+        x_(x),
+        half_(steps.empty() ? reach(profile, radius) : reach_of_steps(radius)),
+        steps_(steps) {}
 
   TouchingPoints run() {
     all_.left_out = -std::numeric_limits<double>::infinity();
     all_.height = height();
     point_.low = x_ - half_;
+    auto step = steps_.begin();
     bool first = true;
     over_stations([&](double s) {
+      for (; step != steps_.end() && *step <= s; ++step) {
+        advance(at(std::nextafter(*step, x_ - half_)));
+        end_side(*step);
+        begin(at(*step));
+      }
       if (first)
         begin(at(s));
       else
         advance(at(s));
       first = false;
     });
-    if (falling_) found(before_.station);
-    point_.high = x_ + half_;
-    keep(all_, point_);
+    end_side(x_ + half_);
     return all_;
   }
 
@@ -64,18 +70,21 @@ class Scan {
   template <class Visit>
   void over_stations(Visit&& visit) const {
     const double first = x_ - half_, last = x_ + half_;
-    const int steps = std::clamp(base::whole(std::ceil(2.0 * half_ / profile_.resolution())), 4, most_stations);
-    double before = first;
+    const double shortest = (last - first) / most_stations, longest = (last - first) / least_stations;
+    const double gentle = 0.5 / radius_;  // bent less, the surface has one point closest to the centre
+    const std::vector<double>& kinks = profile_.kinks();
+    auto kink = std::upper_bound(kinks.begin(), kinks.end(), first);
     visit(first);
-    for (int i = 1; i <= steps; ++i) {
-      const double to = i < steps ? first + (last - first) * i / steps : last;
-      for (double kink : profile_.kinks())
-        if (kink > before && kink < to) {  // from both sides
-          visit(std::nextafter(kink, first));
-          visit(std::nextafter(kink, last));
-        }
+    for (double from = first; from < last;) {
+      const double next = std::clamp(profile_.next_station(from, gentle), from + shortest, from + longest);
+      const double to = next < last - shortest ? next : last;
+      for (; kink != kinks.end() && *kink <= to; ++kink) {
+        if (*kink == to) continue;
+        visit(std::nextafter(*kink, first));  // from both sides
+        visit(std::nextafter(*kink, last));
+      }
       visit(to);
-      before = to;
+      from = to;
     }
   }
 
@@ -136,6 +145,16 @@ class Scan {
     before_ = here;
   }
 
+  // Of a step, or of the reach. What follows lies beyond it.
+  void end_side(double station) {
+    if (falling_) found(station);
+    point_.high = station;
+    keep(all_, point_);
+    point_.low = station;
+    ++point_.number;
+    falling_ = true;
+  }
+
   void found(double station) {
     point_.station = station;
     point_.depth = radius_ - std::hypot(station - x_, all_.height - profile_.at(station).value);
@@ -144,6 +163,7 @@ class Scan {
 
   const Profile& profile_;
   double radius_, x_, half_;
+  std::span<const double> steps_;
   TouchingPoints all_;
   TouchingPoint point_;
   Sample before_{};
@@ -157,13 +177,15 @@ double reach(const Profile& profile, double radius) {
   return std::min(whole, slack * slope / std::hypot(1.0, slope)) * radius;
 }
 
+double reach_of_steps(double radius) { return whole * radius; }
+
 bool too_rough(const Profile& profile, double radius) {
   return profile.is_rough() && is_sharp(profile, radius) &&
          2.0 * reach(profile, radius) > most_points * profile.shortest_wave();
 }
 
-TouchingPoints touching_points(const Profile& profile, double radius, double x) {
-  return Scan(profile, radius, x).run();
+TouchingPoints touching_points(const Profile& profile, double radius, double x, std::span<const double> steps) {
+  return Scan(profile, radius, x, steps).run();
 }
 
 }  // namespace traverse::track

@@ -12,9 +12,14 @@
 // law's potential, U(alpha_1) + U(alpha_2) - U(alpha_between). So a minimum and a maximum that meet and vanish (as a
 // wheel leaves a valley) do so without a jump of force or energy, a valley as wide as the wheel is one contact, and two
 // points apart are two.
+//
+// Where the surface steps, as at the end of a beam that nothing rigid holds, each side has its own minima: a wheel
+// touches the floor below the step and its edge. On the wall between the two sides the distance is greatest at one of
+// its ends, the one farther from the centre: that is what they share.
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "traverse/track/profile.hpp"
 
@@ -36,8 +41,10 @@ struct TouchingPoints {
   double height = 0.0;                            // Y, m
 };
 
-/// Half the length of track that a wheel can touch: where the profile is nowhere steeper than its greatest slope.
+/// Half the length of track that a wheel can touch: all that lies below it where there may be steps; else where the
+/// profile is nowhere steeper than its greatest slope.
 double reach(const Profile& profile, double radius);
+double reach_of_steps(double radius);
 
 /// Whether a wheel of this radius can touch at more than one point.
 inline bool is_sharp(const Profile& profile, double radius) { return radius * profile.greatest_valley() >= 1.0; }
@@ -46,7 +53,8 @@ inline bool is_sharp(const Profile& profile, double radius) { return radius * pr
 /// within the wheel's reach.
 bool too_rough(const Profile& profile, double radius);
 
-/// The local minima of the distance for a centre at x.
-TouchingPoints touching_points(const Profile& profile, double radius, double x);
+/// The local minima of the distance for a centre at x, where at these stations, ascending and within reach_of_steps of
+/// x, the surface may step by an unknown height.
+TouchingPoints touching_points(const Profile& profile, double radius, double x, std::span<const double> steps = {});
 
 }  // namespace traverse::track

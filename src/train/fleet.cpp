@@ -55,13 +55,16 @@ Fleet::Fleet(const std::vector<Vehicle>& types, const Train& train, double gravi
     for (std::size_t i = 0; i < vehicle.wheels.size(); ++i) {
       WheelContact c;
       c.vehicle = static_cast<int>(k);
-      if (!track::is_sharp(this->profile(c), vehicle.wheels[i].radius)) continue;
+      c.sharp = track::is_sharp(this->profile(c), vehicle.wheels[i].radius);
+      if (!c.sharp && (mesh_ == nullptr || mesh_->steps().empty())) continue;
       c.wheel = static_cast<int>(i);
       c.body = vehicle.wheels[i].body;
       c.law = vehicle.wheels[i].law;
       c.is_further = true;
       take_away(c);
-      wheels[static_cast<std::size_t>(vehicle.first_wheel) + i].further = static_cast<int>(wheels.size());
+      WheelContact& first = wheels[static_cast<std::size_t>(vehicle.first_wheel) + i];
+      first.further = static_cast<int>(wheels.size());
+      first.sharp = c.sharp;
       wheels.insert(wheels.end(), track::most_points - 1, c);
       c.sign = -1.0;
       wheels.insert(wheels.end(), track::most_points - 1, c);

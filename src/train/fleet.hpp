@@ -74,9 +74,10 @@ struct PairContact : Contact {
   contact::PairGeometry geometry;
 };
 
-/// A wheel on the track. A wheel sharper than the track's valleys may touch at several points (track::TouchingPoints):
-/// it has further entries for the other points, from left to right, and then for what neighbouring points share, with
-/// the sign -1. Where it touches at fewer, the others have no candidates, a negative penetration and no force.
+/// A wheel on the track. A wheel sharper than the track's valleys, or one at a step of the surface, may touch at
+/// several points (track::TouchingPoints): it has further entries for the other points, from left to right, and then
+/// for what neighbouring points share, with the sign -1. Where it touches at fewer, the others have no candidates, a
+/// negative penetration and no force. Nor has a wheel where there is no surface.
 struct WheelContact : Contact {
   int wheel = 0;                 // of its vehicle
   std::array<Patch, 2> patches;  // the surface under the wheel, and the neighbour across a near kink
@@ -85,11 +86,13 @@ struct WheelContact : Contact {
   double home = 0.0;   // angle (rad) or x (m) where it starts to roll
   int further = 0;     // index of the first further entry of this wheel; 0: none
   bool is_further = false;
-  double divide = 0.0;  // sign -1: station of the minimum between the points, as it was found, m
+  bool sharp = false;    // sharper than the track's valleys
+  double divide = 0.0;   // sign -1: station of the minimum between the points, as it was found, m
+  bool at_step = false;  // sign -1: there the surface steps; the patches are its two sides
 
   void keep(base::Bytes& bytes) {
     Contact::keep(bytes);
-    bytes(patches, candidates, home, divide);
+    bytes(patches, candidates, home, divide, at_step);
   }
 };
 
@@ -121,6 +124,11 @@ class Fleet {
     return k < wheels.size() ? static_cast<const Contact&>(wheels[k]) : pairs[k - wheels.size()];
   }
   const std::string& name(int contact) const;
+  /// Whether a wheel has surface under it; bodies always may touch.
+  bool may_touch(int contact) const {
+    const auto k = static_cast<std::size_t>(contact);
+    return k >= wheels.size() || wheels[k].candidates > 0;
+  }
   /// The number of its vehicle in the train.
   int member(int contact) const;
 
@@ -236,8 +244,11 @@ class Fleet {
   /// The further points of a wheel count with their first.
   bool touches(int contact) const;
   const contact::Kinematics& kinematics(int contact) const;
-  /// Whether it is one of several points at which a wheel may touch.
+  /// Whether it is one of several points at which a wheel may touch where it is.
   bool has_points(int contact) const;
+  bool has_points(const WheelContact& c) const;
+  /// How far from its centre a wheel may touch the beam, m.
+  double reach(const WheelContact& c) const;
   /// How long the impact lasts that a contact now begins, the bodies of its vehicle alone taking part, s.
   double impact_duration(int contact);
   /// Power lost in contact damping and friction at this rank's vehicles, W.
@@ -255,6 +266,9 @@ class Fleet {
  private:
   void add_patch(WheelContact& c, int element, double start, double low, double high);
   void find_patches(WheelContact& c, double x, double from, double to, double low, double high);
+  void find_sides(WheelContact& c, double step);
+  void add_ground(WheelContact& c, bool before, double x, double low, double high);
+  std::span<const double> steps_near(const WheelContact& c) const;
   void find_points(WheelContact& c);
   void take_away(WheelContact& c);
   bool touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find);

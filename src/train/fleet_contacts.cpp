@@ -13,20 +13,22 @@ constexpr double at_end = 1e-10;  // m: of a patch
 
 }  // namespace
 
-// The deepest of a contact's candidates.
+// The deepest of a contact's candidates; of the sides of a step the least deep one.
 bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const double* w, Find find) {
   const std::ptrdiff_t m = 2 * static_cast<std::ptrdiff_t>(per_node);
   const Eigen::Vector3d q = coordinates(c);
   const Eigen::Vector3d qd = velocities(c);
   Touch candidate;
   candidate.ahead = c.touch.ahead;
+  if (c.candidates == 0) return true;
   double deepest = -std::numeric_limits<double>::infinity();
+  const double sign = c.at_step ? -1.0 : 1.0;
   for (int i = 0; i < c.candidates; ++i) {
     const std::ptrdiff_t at = c.slots[i] < 0 ? 0 : m * c.slots[i];
     if (!train::touch(c.patches[i], profile(c), wheel(c).radius, q, qd, per_node, v + at, w + at, candidate, find))
       return false;
-    if (candidate.kinematics.penetration <= deepest) continue;
-    deepest = candidate.kinematics.penetration;
+    if (sign * candidate.kinematics.penetration <= deepest) continue;
+    deepest = sign * candidate.kinematics.penetration;
     c.active = i;
     c.touch = candidate;
   }
@@ -35,8 +37,8 @@ bool Fleet::touch_patches(WheelContact& c, int per_node, const double* v, const 
   return true;
 }
 
-// Points first, then what neighbours share. A point at the near end of its patch is none: it has met the minimum
-// between it and its neighbour, and both are lost.
+// Points first, then what neighbours share. Where the less deep one of two points has met the minimum between them,
+// both are lost.
 bool Fleet::touch_points(WheelContact& c, int per_node, const double* v, const double* w) {
   WheelContact* left = nullptr;
   for (int i = 0; i < track::most_points; ++i) {
@@ -45,12 +47,17 @@ bool Fleet::touch_points(WheelContact& c, int per_node, const double* v, const d
     if (!touch_patches(p, per_node, v, w, Find::closest_within)) return false;
     WheelContact* shared = i > 0 && between(c, i - 1).candidates > 0 ? &between(c, i - 1) : nullptr;
     if (shared != nullptr) {
-      if (left->touch.station > shared->divide - at_end || p.touch.station < shared->divide + at_end) {
-        const bool keep_left = left->touch.kinematics.penetration >= p.touch.kinematics.penetration;
+      const bool keep_left = left->touch.kinematics.penetration >= p.touch.kinematics.penetration;
+      bool met = left->touch.station > shared->divide - at_end || p.touch.station < shared->divide + at_end;
+      if (shared->at_step) {
+        if (!touch_patches(*shared, per_node, v, w, Find::closest)) return false;
+        met = shared->touch.kinematics.penetration >= (keep_left ? p : *left).touch.kinematics.penetration;
+      }
+      if (met) {
         lose(*shared);
         lose(keep_left ? p : *left);
         if (keep_left) continue;
-      } else {
+      } else if (!shared->at_step) {
         shared->patches[0].low = left->touch.station;
         shared->patches[0].high = p.touch.station;
         shared->candidates = 1;
@@ -77,7 +84,7 @@ bool Fleet::touch(PairContact& c) const {
 bool Fleet::touch(int per_node, const double* v, const double* w) {
   for (WheelContact& c : wheels) {
     if (c.is_further || !owns(c) || vehicles[c.vehicle].rests) continue;
-    if (!(c.further > 0 ? touch_points(c, per_node, v, w) : touch_patches(c, per_node, v, w, Find::closest)))
+    if (!(has_points(c) ? touch_points(c, per_node, v, w) : touch_patches(c, per_node, v, w, Find::closest)))
       return false;
   }
   return std::all_of(pairs.begin(), pairs.end(),
@@ -158,9 +165,16 @@ bool Fleet::touches(int i) const {
   return wheels[k].is_further || load(wheels[k]).normal > 0.0;
 }
 
+bool Fleet::has_points(const WheelContact& c) const {
+  if (c.is_further || c.sharp) return true;
+  const auto touches_too = [](const WheelContact& more) { return more.candidates > 0; };
+  return c.further > 0 &&
+         std::any_of(wheels.begin() + c.further, wheels.begin() + c.further + track::most_points - 1, touches_too);
+}
+
 bool Fleet::has_points(int i) const {
   const std::size_t k = static_cast<std::size_t>(i);
-  return k < wheels.size() && (wheels[k].is_further || wheels[k].further > 0);
+  return k < wheels.size() && has_points(wheels[k]);
 }
 
 const contact::Kinematics& Fleet::kinematics(int i) const {

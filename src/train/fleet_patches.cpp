@@ -30,8 +30,13 @@ void Fleet::add_patch(WheelContact& c, int element, double start, double low, do
   if (yields_inside_) patch.yield = e.length * e.length * e.length / (3.0 * e.EI);
 }
 
+void Fleet::add_ground(WheelContact& c, bool before, double x, double low, double high) {
+  if (before ? !mesh_->ground_before() : !mesh_->ground_behind()) return;
+  add_patch(c, -1, x, before ? low : std::max(low, mesh_->end()), before ? std::min(high, mesh_->start()) : high);
+}
+
 // The patches within [low, high] under a contact at x: the one there, and its neighbour across a kink between `from`
-// and `to`.
+// and `to`. Where low or high is a step, x may be there: the patch is the one between.
 void Fleet::find_patches(WheelContact& c, double x, double from, double to, double low, double high) {
   c.candidates = c.active = 0;
   if (mesh_ == nullptr) {
@@ -39,36 +44,54 @@ void Fleet::find_patches(WheelContact& c, double x, double from, double to, doub
     return;
   }
   const double start = mesh_->start(), end = mesh_->end();
-  auto add_ground = [&](bool before) {
-    add_patch(c, -1, x, before ? low : std::max(low, end), before ? std::min(high, start) : high);
-  };
-  auto add_beam = [&](double at, bool from_left) {
+  const auto add_beam = [&](double at, bool from_left) {
     const int element = mesh_->locate(at, from_left).element;
     const auto reach_of_element = mesh_->smooth_reach(element);
     add_patch(c, element, x, std::max(low, reach_of_element.first), std::min(high, reach_of_element.second));
     return reach_of_element;
   };
-  if (x < start) {
-    add_ground(true);
-    if (to > start) add_beam(start, false);
-  } else if (x > end) {
-    add_ground(false);
-    if (from < end) add_beam(end, true);
+  if (x < start || high <= start) {
+    add_ground(c, true, x, low, high);
+    if (to > start || (c.candidates == 0 && x > start - wheel(c).radius)) add_beam(start, false);
+  } else if (x > end || low >= end) {
+    add_ground(c, false, x, low, high);
+    if (from < end || (c.candidates == 0 && x < end + wheel(c).radius)) add_beam(end, true);
   } else {
-    const auto [left, right] = add_beam(x, false);
+    const auto [left, right] = add_beam(x, x == high);
     if (from < left) {
       if (left > start)
         add_beam(left, true);
       else
-        add_ground(true);
+        add_ground(c, true, x, low, high);
     } else if (to > right) {
       if (right < end)
         add_beam(right, false);
       else
-        add_ground(false);
+        add_ground(c, false, x, low, high);
     }
   }
 }
+
+// The surface's ends on both sides of a step.
+void Fleet::find_sides(WheelContact& c, double step) {
+  c.candidates = c.active = 0;
+  for (const bool from_left : {true, false}) {
+    if (step == (from_left ? mesh_->start() : mesh_->end()))
+      add_ground(c, from_left, step, step, step);
+    else
+      add_patch(c, mesh_->locate(step, from_left).element, step, step, step);
+  }
+}
+
+std::span<const double> Fleet::steps_near(const WheelContact& c) const {
+  if (mesh_ == nullptr) return {};
+  const double x = coordinates(c).x(), reach = track::reach_of_steps(wheel(c).radius);
+  const std::vector<double>& steps = mesh_->steps();
+  const auto from = std::upper_bound(steps.begin(), steps.end(), x - reach);
+  return {from, std::lower_bound(from, steps.end(), x + reach)};
+}
+
+double Fleet::reach(const WheelContact& c) const { return c.further > 0 ? wheel(c).radius : nearby * wheel(c).radius; }
 
 // Apart, and far from touching.
 void Fleet::take_away(WheelContact& c) {
@@ -86,7 +109,17 @@ void Fleet::lose(WheelContact& c) const {
 // The entries of a wheel that may touch at several points. A point that there was before keeps its kinematics, from
 // which the solution starts.
 void Fleet::find_points(WheelContact& c) {
-  const track::TouchingPoints found = track::touching_points(profile(c), wheel(c).radius, coordinates(c).x());
+  const double x = coordinates(c).x(), radius = wheel(c).radius;
+  const std::span<const double> steps = steps_near(c);
+  const bool single = !c.sharp && steps.empty();
+  track::TouchingPoints found;
+  if (single) {
+    found.count = 1;
+    found.points[0].station = x;
+    found.left_out = -unbounded;
+  } else {
+    found = track::touching_points(profile(c), radius, x, steps);
+  }
   std::array<contact::Kinematics, track::most_points> kinematics;
   kinematics.fill({-wheel(c).radius, 0.0, 0.0});
   double deepest = -unbounded;
@@ -96,8 +129,8 @@ void Fleet::find_points(WheelContact& c) {
     deepest = std::max(deepest, old.kinematics.penetration);
     int nearest = 0;
     for (int j = 1; j < found.count; ++j)
-      if (std::abs(found.points[j].station - old.touch.station) <
-          std::abs(found.points[nearest].station - old.touch.station))
+      if (std::abs(found.points[j].station - old.patches[0].start) <
+          std::abs(found.points[nearest].station - old.patches[0].start))
         nearest = j;
     if (old.kinematics.penetration > kinematics[nearest].penetration) kinematics[nearest] = old.kinematics;
   }
@@ -106,8 +139,11 @@ void Fleet::find_points(WheelContact& c) {
     take_away(p);
     if (i >= found.count) continue;
     const track::TouchingPoint& at = found.points[i];
-    find_patches(p, at.station, at.low, at.high, at.low, at.high);
-    p.kinematics = kinematics[i];
+    if (single)
+      find_patches(p, x, x - nearby * radius, x + nearby * radius, -unbounded, unbounded);
+    else
+      find_patches(p, at.station, at.low, at.high, at.low, at.high);
+    if (p.candidates > 0) p.kinematics = kinematics[i];
   }
   for (int i = 0; i + 1 < track::most_points; ++i) {
     WheelContact& b = between(c, i);
@@ -115,7 +151,11 @@ void Fleet::find_points(WheelContact& c) {
     take_away(b);
     if (i + 1 >= found.count || found.points[i + 1].number != found.points[i].number + 1) continue;
     const track::TouchingPoint &left = found.points[i], &right = found.points[i + 1];
-    find_patches(b, left.high, left.high, left.high, left.station, right.station);
+    b.at_step = std::find(steps.begin(), steps.end(), left.high) != steps.end();
+    if (b.at_step)
+      find_sides(b, left.high);
+    else
+      find_patches(b, left.high, left.high, left.high, left.station, right.station);
     b.divide = left.high;
     b.kinematics = old;
   }
@@ -131,6 +171,7 @@ void Fleet::place_wheels() {
       find_points(c);
     else if (!c.is_further)
       find_patches(c, x, x - near, x + near, -unbounded, unbounded);
+    if (c.candidates == 0) take_away(c);
   }
   for (const WheelContact& c : wheels)
     for (int i = 0; i < c.candidates; ++i)
@@ -148,12 +189,13 @@ void Fleet::place_wheels() {
 bool Fleet::wheels_in_place() const {
   if (mesh_ == nullptr) return true;
   return std::all_of(wheels.begin(), wheels.end(), [&](const WheelContact& c) {
-    if (c.further > 0 || c.is_further || !owns(c)) return true;
+    if (c.is_further || !owns(c) || c.candidates == 0 || has_points(c)) return true;
     const double x = coordinates(c).x();
     const Patch& p = c.patches[0];
     const double slack = 1e-3 * (p.element < 0 ? wheel(c).radius : p.length);
-    const double low = p.element < 0 ? p.low : p.x;
-    const double high = p.element < 0 ? p.high : p.x + p.length;
+    double low = p.element < 0 ? p.low : p.x, high = p.element < 0 ? p.high : p.x + p.length;
+    if (low == mesh_->start() && !mesh_->ground_before()) low = -unbounded;
+    if (high > mesh_->end() - slack && !mesh_->ground_behind()) high = unbounded;
     return x >= low - slack && x <= high + slack;
   });
 }

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "base/bytes.hpp"
 #include "multibody/mechanism.hpp"
@@ -43,6 +44,32 @@ using ContactRows = std::span<const ContactRow>;
 /// tangential row), and by that along its own, N/m.
 using RowTangent = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
+/// Numbers listed anew, to be compared with those listed before.
+class NumberList {
+ public:
+  void begin() {
+    count_ = 0;
+    same_ = true;
+  }
+  void add(int number) {
+    if (count_ == numbers_.size()) numbers_.push_back(number - 1);
+    same_ = same_ && numbers_[count_] == number;
+    numbers_[count_++] = number;
+  }
+  /// Whether they are the same as before.
+  bool end() {
+    same_ = same_ && count_ == numbers_.size();
+    numbers_.resize(count_);
+    return same_;
+  }
+  void keep(base::Bytes& bytes) { bytes(numbers_); }
+
+ private:
+  std::vector<int> numbers_;
+  std::size_t count_ = 0;
+  bool same_ = true;
+};
+
 /// What a vehicle makes of its contact rows, r of them: a unit force on row j moves row i by -H(i, j), by itself the
 /// vehicle moves row i by c(i).
 struct VehicleYield {
@@ -51,7 +78,9 @@ struct VehicleYield {
   RowTangent D;           // the tangent that H includes; of size 0 where it includes none, as in a step
   Eigen::VectorXd c;      // r
   double residual = 0.0;  // largest entry of the equations of motion's residual over the vehicle's scale
-  void keep(base::Bytes& bytes) { bytes(H, P, D, c, residual); }
+  NumberList list;        // of the contacts with rows
+  bool known = false;     // H, for these rows
+  void keep(base::Bytes& bytes) { bytes(H, P, D, c, residual, list, known); }
 };
 
 /// One vehicle's equations of motion. All forces at its contacts are in MovingVehicle::Q as generalized forces.

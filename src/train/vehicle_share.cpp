@@ -27,7 +27,7 @@ constexpr int seen_numbers = 14 + 2 * most_element_unknowns + 3 + 2;
 }  // namespace
 
 void VehicleShare::deal(MPI_Comm comm, Fleet& fleet) {
-  const auto sharp = [](const WheelContact& c) { return c.is_further; };
+  const auto sharp = [](const WheelContact& c) { return c.sharp; };
   const bool apart = fleet.pairs.empty() && std::none_of(fleet.wheels.begin(), fleet.wheels.end(), sharp);
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);

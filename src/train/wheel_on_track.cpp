@@ -125,7 +125,9 @@ bool touch(const Patch& patch, const track::Profile& profile, double radius, con
   }
   const Eigen::Vector2d from_surface = c - s.P;
   const double distance = from_surface.norm();
-  if (!(from_surface.y() > 0.0) || !std::isfinite(distance)) return false;
+  if (!std::isfinite(distance)) return false;
+  const bool corner = x == patch.low || x == patch.high;  // beside which a wheel may have fallen
+  if (!(from_surface.y() > 0.0) && !(corner && distance > radius)) return false;
   const Eigen::Vector2d n = from_surface / distance;
   const Eigen::Vector2d tau(n.y(), -n.x());
 

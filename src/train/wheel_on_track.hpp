@@ -60,7 +60,7 @@ enum class Find { closest, closest_within, farthest_within };
 
 /// q, qd: x, y, phi of the wheel's body and their rates. v, w: the element's unknowns and their rates (2*block
 /// values, where block is the number of unknowns of a node; not read on rigid ground). Returns false where no contact
-/// point exists (the centre lies below the surface).
+/// point exists (the centre lies below the surface, and not beside its end).
 bool touch(const Patch& patch, const track::Profile& profile, double radius, const Eigen::Vector3d& q,
            const Eigen::Vector3d& qd, int block, const double* v, const double* w, Touch& out,
            Find find = Find::closest);

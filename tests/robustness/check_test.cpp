@@ -123,6 +123,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"StandsBefore", {"-train_speed", "0", "-ts_max_time", "1"}, "the train never meets the bridge"},
         Case{"EndsBeforeItComes", {"-ts_max_time", "0.05"}, "before the first wheel comes onto the bridge"},
         Case{"EndsBeforeItLeaves", {"-ts_max_time", "0.5"}, "before the last wheel has left the bridge"},
+        Case{"SettledEnd", {"-support_settlement", "0,-0.005"}, "steps by up to 5 mm at x = 30 m"},
+        Case{"YieldingEnd", {"-support_stiffness", "0,1.0e8"}, "steps by up to 1.8"},
         Case{"OnTheMoon", {"-gravity", "1.62"}, "on earth it is 9.81"},
         Case{"WithoutEffect", {"-load_speed", "30"}, "load_speed has no effect"}),
     [](const testing::TestParamInfo<Case>& info) { return std::string(info.param.name); });

@@ -45,6 +45,17 @@ std::string forces_only(const std::string& more = "") {
   return std::string(two_spans) + "load: {forces: 1.0e5, speed: 40.0}\nts_dt: 0.01\noutput: {file: none}\n" + more;
 }
 
+// --- the surface's ends ----------------------------------------------------------------------------------------------
+
+TEST(SurfaceEnds, WheelsThatStartWhereThereIsNone) {
+  const Workplace workplace(small_scene());
+  expect_refusals(workplace, {{{"-surface_left", "none", "-train_positions", "-1"},
+                               {"surface_left", "x = -1 m, where there is no surface", "allowed: rigid"}},
+                              {{"-surface_right", "nothing"}, {"surface_right", "rigid none"}}});
+  const Workplace nothing("load: {forces: 1.0e5, speed: 40.0}\n");
+  expect_refusals(nothing, {{{"-surface_right", "none"}, {"surface_right", "no beam"}}});
+}
+
 // --- PETSc's options -------------------------------------------------------------------------------------------------
 
 TEST(PetscOptions, NamesThatNothingAsksFor) {

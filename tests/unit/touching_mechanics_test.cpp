@@ -117,5 +117,20 @@ TEST(Touching, RoughnessThatIsTooRough) {
   EXPECT_FALSE(is_sharp(Profile::rough(fra(1), 0.0, 1), R));
 }
 
+// Each side of a step has its own minimum: under the centre, and at the step.
+TEST(Touching, BothSidesOfASurfaceThatMayStep) {
+  const double steps[] = {0.05, 0.3};
+  const TouchingPoints points = touching_points(Profile(), R, 0.0, steps);
+  ASSERT_EQ(points.count, 3);
+  const double low[] = {-reach_of_steps(R), 0.05, 0.3}, high[] = {0.05, 0.3, reach_of_steps(R)},
+               at[] = {0.0, 0.05, 0.3};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(points.points[i].station, at[i], 1e-12);
+    EXPECT_EQ(points.points[i].low, low[i]);
+    EXPECT_EQ(points.points[i].high, high[i]);
+    EXPECT_EQ(points.points[i].number, static_cast<int>(i));
+  }
+}
+
 }  // namespace
 }  // namespace traverse::track

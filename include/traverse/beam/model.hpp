@@ -2,6 +2,7 @@
 // Units SI; x from the left end of the first span.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,6 +75,7 @@ struct BeamModel {
   double start = 0.0;               // x of the left end, m: 0, but for a rail that begins before the bridge
   double surface_height = 0.0;      // of the running surface above the neutral axis, m: forces along x act up there
   bool nodes_at_steps = true;       // of EI and mass
+  std::array<bool, 2> ground = {true, true};  // whether the rigid running surface goes on before and behind it
 
   double length() const;
   double end() const { return start + length(); }

@@ -71,6 +71,9 @@ class Profile {
   double sharpest_place(double from, double to) const;
   /// Of roughness the way over which it grows to its height from where it starts, m; else 0.
   double fade() const { return is_rough() ? length_ : 0.0; }
+  /// The next station behind x of those that show every crest and valley more sharply bent than `curvature` (1/m): of a
+  /// table the next row where it is bent less up to there.
+  double next_station(double x, double curvature) const;
   /// Length of the bump, of the shortest dip or of the shortest wave of roughness, m; infinite for level tracks and
   /// tables.
   double shortest_wave() const;

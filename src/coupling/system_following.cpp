@@ -1,0 +1,74 @@
+// How vehicles move where a run begins: with the surface under their wheels.
+#include "coupling/system.hpp"
+#include "train/following.hpp"
+
+namespace traverse::coupling {
+namespace {
+
+/// The wheels' contacts that carry the vehicle.
+std::vector<const train::WheelContact*> carrying(const train::Fleet& fleet, const train::MovingVehicle& vehicle) {
+  std::vector<const train::WheelContact*> contacts;
+  for (const int i : vehicle.touching)
+    if (i < static_cast<int>(fleet.wheels.size()) && fleet.wheels[static_cast<std::size_t>(i)].force.normal > 0.0)
+      contacts.push_back(&fleet.wheels[static_cast<std::size_t>(i)]);
+  return contacts;
+}
+
+/// By their places in p: all but those along the track, whose speed is given.
+std::vector<int> coordinates_that_follow(const train::MovingVehicle& vehicle) {
+  std::vector<int> follow;
+  const std::vector<int>& independent = vehicle.mechanism.partition().independent;
+  for (int i = 0; i < static_cast<int>(independent.size()); ++i)
+    if (independent[static_cast<std::size_t>(i)] % 3 != 0) follow.push_back(i);
+  return follow;
+}
+
+/// p' with which its contacts keep their penetrations, v and w of the surface as they are.
+void follow(const train::Fleet& fleet, train::MovingVehicle& vehicle) {
+  const std::vector<const train::WheelContact*> contacts = carrying(fleet, vehicle);
+  const std::vector<int> coordinates = coordinates_that_follow(vehicle);
+  if (contacts.empty() || coordinates.empty()) return;
+  multibody::MechanismState& state = vehicle.state;
+  const Eigen::MatrixXd B = state.B(Eigen::all, coordinates);
+  const auto r = static_cast<Eigen::Index>(contacts.size());
+  Eigen::MatrixXd G(r, B.cols());
+  Eigen::VectorXd rise(r), lasting(r);
+  vehicle.Q.setZero();
+  for (Eigen::Index j = 0; j < r; ++j) {
+    const train::WheelContact& c = *contacts[static_cast<std::size_t>(j)];
+    const Eigen::Index row = 3 * static_cast<Eigen::Index>(c.body);
+    const Eigen::Vector3d& n = c.touch.normal_on_body;
+    G.row(j) = -n.transpose() * B.middleRows(row, 3);
+    rise[j] = c.touch.kinematics.penetration_rate - n.y() * state.qd[row + 1];
+    const track::Profile& profile = fleet.profile(c);
+    const double slope = profile.at(c.touch.station).slope;
+    const double sudden = slope - train::lasting_slope(profile, c.touch.station, slope);
+    lasting[j] = rise[j] + n.y() * sudden * state.qd[row];
+    train::Fleet::add_load(c, c.force.normal, 0.0, vehicle.Q);
+  }
+  if (rise.isZero(0.0)) return;
+  const multibody::Mechanism& mechanism = vehicle.mechanism;
+  const Eigen::VectorXd at_rest = Eigen::VectorXd::Zero(vehicle.freedom());
+  mechanism.compute_forces(state);
+  mechanism.recover(state, vehicle.Q, at_rest.data());
+  Eigen::MatrixXd tangent;
+  mechanism.multiply_tangent(state, -1.0, 0.0, 1.0, tangent);
+  const Eigen::MatrixXd K = B.transpose() * tangent(Eigen::all, coordinates);
+  const Eigen::MatrixXd M = B.transpose() * mechanism.mass_diagonal().asDiagonal() * B;
+  const std::vector<int>& independent = mechanism.partition().independent;
+  Eigen::VectorXd pd = state.qd(independent);
+  pd(coordinates) += train::Following(M, K, G).rates(rise, lasting);
+  mechanism.set_velocities(state, state.time, pd.data());
+}
+
+}  // namespace
+
+void System::follow_surface(const double* y) {
+  fleet_.place_wheels();
+  if (structure_) structure_->gather(fleet_.elements(), y, y + n_, v_, w_);
+  fleet_.contact_forces();
+  if (!fleet_.touch(per_node(), v_.data(), w_.data())) return;
+  for (train::MovingVehicle& vehicle : fleet_.vehicles) follow(fleet_, vehicle);
+}
+
+}  // namespace traverse::coupling

@@ -1,0 +1,135 @@
+// Where the running surface steps: a wheel touches the floor below the step and its edge, from L - sqrt(2 R d) on.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/curve.hpp"
+#include "support/runge_kutta.hpp"
+#include "support/scene_run.hpp"
+
+namespace traverse::test {
+namespace {
+
+constexpr double R = 0.46, mass = 1000.0, g = 9.81, k = 3.64e10;  // m, kg, m/s2, N/m^1.5
+
+/// A wheelset without damping that rolls slowly to the right; the beams hardly bend.
+std::string wheel_on(const std::string& beam, double from, double speed, double end) {
+  return beam + fmt::format(R"(
+vehicle:
+  car:
+    bodies: [axle]
+    drivers: [level]
+    wheels: [wheel]
+    axle: {{mass: 1000.0, inertia: 100.0, position: [0.0, 0.46]}}
+    level: {{body: axle, coordinate: phi}}
+    wheel: {{body: axle, radius: 0.46, law: hertz, stiffness: 3.64e10}}
+train: {{vehicles: car, speed: {}, positions: {}}}
+ts: {{max_time: {}, dt: 2.0e-4}}
+output: {{interval: 0.002}}
+)",
+                            speed, from, end);
+}
+
+const std::string settled =
+    "beam: {spans: [4.0], EI: 1.0e12, mass: 1.0e4, elements_per_span: 4}\nsupport: {settlement: [0.0, 0.0]}\n";
+
+struct Extremes {
+  double force = 0.0, height = 0.0;  // N, m
+};
+
+/// The same wheel as a mass on two Hertz springs: the floor, and the edge of a step of d at x = 0, which it comes to
+/// from the left with the speed v.
+Extremes on_springs(double d, double v, double from, double end) {
+  const auto law = [](double depth) { return depth > 0.0 ? k * std::pow(depth, 1.5) : 0.0; };
+  const auto forces = [&](double x, double y) {
+    const double aside = std::max(-x, 0.0), away = std::hypot(aside, y - d);  // of the edge, then of the upper floor
+    const double floor = x < 0.0 ? law(R - y) : 0.0, edge = law(R - away);
+    return std::pair{floor, std::pair{edge, edge * (y - d) / away}};
+  };
+  State<2> y(R - std::pow(mass * g / k, 2.0 / 3.0), 0.0);
+  Extremes most;
+  double x = from;
+  const double h = 1e-5;
+  for (double t = 0.0; t < end; t += h) {
+    const auto rate = [&](const State<2>& s) {
+      const auto [floor, edge] = forces(x, s[0]);
+      return State<2>(s[1], (floor + edge.second) / mass - g);
+    };
+    runge_kutta<2>(rate, h, y);
+    x += v * h;
+    const auto [floor, edge] = forces(x, y[0]);
+    most.force = std::max(most.force, floor + edge.first);
+    most.height = std::max(most.height, y[0]);
+  }
+  return most;
+}
+
+// Seen before: 17.3, 67.3 and 5,322 kN, with energy from nowhere.
+TEST(SurfaceSteps, WheelRisesOntoTheGroundBesideASettledEnd) {
+  for (const double d : {0.001, 0.0024, 0.005}) {
+    Results run = run_yaml(wheel_on(settled, 3.8, 0.2, 1.2), {{"support_settlement", fmt::format("{0},{0}", -d)}});
+    const Extremes exact = on_springs(d, 0.2, -0.2, 1.2);
+    const std::vector<double>& force = run("/vehicles/0/wheel/normal_force");
+    const double greatest = run.attribute("/summary", "greatest_wheel_force");
+    EXPECT_NEAR(greatest, exact.force, 0.01 * exact.force) << d;
+    EXPECT_LE(*std::max_element(force.begin(), force.end()), greatest * (1.0 + 1e-9));
+    const std::vector<double> y = run.column("/vehicles/0/axle/position", 1),
+                              x = run.column("/vehicles/0/axle/position");
+    EXPECT_LT(energy_error(run), 1e-3) << d;
+    // Without damping it hops; while the edge alone carries it its centre is on a circle about the edge.
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const double aside = std::max(4.0 - x[i], 0.0);
+      const double least = aside * aside < 2.0 * R * d - d * d ? std::sqrt(R * R - aside * aside) : R - d;
+      EXPECT_GT(y[i], least - 3e-4) << "x = " << x[i];
+    }
+  }
+}
+
+// Two slabs side by side on springs of their own, which yield by 2 mm under the wheel: it sinks with the first one and
+// rolls up the edge of the second. Without damping all energy is there.
+TEST(SurfaceSteps, EnergyBalancesWhereSlabsMeetOnYieldingBearings) {
+  const std::string slabs = R"(
+beam: {spans: [3.0, 3.0], EI: 1.0e9, mass: 1.0e3, elements_per_span: 4, continuity: simply_supported}
+support: {types: [free, free, free]}
+foundation: {vertical: {x: [0.0, 3.0, 6.0], k: 5.0e6, side: [right, both, right]}}
+)";
+  Results run = run_yaml(wheel_on(slabs, 2.7, 0.5, 1.0));
+  EXPECT_LT(energy_error(run), 1e-4);
+  EXPECT_LT(run.attribute("/summary", "greatest_wheel_force"), 3.0 * mass * g);
+}
+
+const std::string cantilever =
+    "beam: {spans: [4.0], EI: 1.0e14, mass: 1.0e4, elements_per_span: 4}\nsupport: {types: [clamped, free]}\n"
+    "surface: {right: none}\n";
+
+// Faster than sqrt(g R) it flies from the tip.
+TEST(SurfaceSteps, WheelFliesWhereTheSurfaceEnds) {
+  Results run = run_yaml(wheel_on(cantilever, 3.0, 10.0, 0.5));
+  const std::vector<double> y = run.column("/vehicles/0/axle/position", 1), t = run.time();
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const double flight = std::max(0.0, t[i] - 0.1);
+    EXPECT_NEAR(y[i], R - 0.5 * g * flight * flight, 1e-3) << t[i];
+  }
+  EXPECT_EQ(run("/vehicles/0/wheel/normal_force").back(), 0.0);
+  EXPECT_EQ(run.attribute("/summary", "contact_losses"), 1.0);
+  EXPECT_LT(energy_error(run), 1e-6);
+}
+
+// Slower it turns about the tip, x^2 + y^2 = R^2 at constant x' = v, until y'' = -v^2 R^2/y^3 is -g.
+TEST(SurfaceSteps, WheelTurnsAboutTheCornerWhereTheSurfaceEnds) {
+  const double v = 0.5, y_off = std::cbrt(v * v * R * R / g), x_off = std::sqrt(R * R - y_off * y_off);
+  const double fall = v * x_off / y_off;  // m/s
+  Results run = run_yaml(wheel_on(cantilever, 3.9, v, 1.3));
+  const std::vector<double> y = run.column("/vehicles/0/axle/position", 1), x = run.column("/vehicles/0/axle/position");
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double beyond = std::max(0.0, x[i] - 4.0), flight = std::max(0.0, beyond - x_off) / v;
+    const double circle = std::sqrt(R * R - std::pow(std::min(beyond, x_off), 2));
+    EXPECT_NEAR(y[i], circle - flight * (fall + 0.5 * g * flight), 2e-3) << x[i];
+  }
+  EXPECT_LT(energy_error(run), 1e-4);
+}
+
+}  // namespace
+}  // namespace traverse::test
