@@ -14,7 +14,6 @@ namespace traverse::test {
 
 using rail::Loads;
 using rail::RailBridge;
-using rail::State;
 
 inline constexpr double area = 0.0153389, rail_EA = 3.2212e9, expansion = 1e-5;
 
@@ -86,7 +85,7 @@ inline HandLoads by_hand(const Loads& loads) {
 }
 
 /// Largest difference over the largest value: rail stress, displacement and force of sleepers, the bearing, the device.
-inline double difference(const State& state, const HandState& hand) {
+inline double difference(const rail::State& state, const HandState& hand) {
   double worst = 0.0;
   const auto compare = [&](const std::vector<double>& a, const std::vector<double>& b, double factor) {
     ASSERT_EQ(a.size(), b.size());

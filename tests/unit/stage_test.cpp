@@ -10,7 +10,7 @@ namespace traverse::results {
 namespace {
 
 TEST(HeartbeatTest, TellsTheOuterAndTheInnerStage) {
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   {
     const Heartbeat heartbeat(false, 0.01);
     const Stage outer("trial runs");
@@ -20,17 +20,17 @@ TEST(HeartbeatTest, TellsTheOuterAndTheInnerStage) {
     const long before = Heartbeat::lines();
     while (Heartbeat::lines() < before + 1) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  const std::string text = testing::internal::GetCapturedStdout();
+  const std::string text = ::testing::internal::GetCapturedStdout();
   EXPECT_NE(text.find("trial runs, time steps: 25 %, 0 s so far"), std::string::npos) << text;
 }
 
 TEST(HeartbeatTest, IsSilentOutsideOfStages) {
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   {
     const Heartbeat heartbeat(false, 0.01);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
 }
 
 }  // namespace

@@ -79,9 +79,9 @@ TEST(SweepResults, SummaryLeavesOutWhatIsNotKnown) {
 }
 
 TEST(SweepResults, TableHasTheAmplificationOfEachPeakBesideIt) {
-  testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStdout();
   print_sweep(small_sweep());
-  const std::string text = testing::internal::GetCapturedStdout();
+  const std::string text = ::testing::internal::GetCapturedStdout();
   EXPECT_NE(text.find("A2  2 mm @ 144, 10                  2  "), std::string::npos) << text;
   EXPECT_NE(text.find("10 @ 144, 5\n"), std::string::npos) << text;
   EXPECT_NE(text.find("A7  4 mm @ 180, 10                  2  "), std::string::npos) << text;
