@@ -79,11 +79,10 @@ class Scan {
       const double next = std::clamp(profile_.next_station(from, gentle), from + shortest, from + longest);
       const double to = next < last - shortest ? next : last;
       for (; kink != kinks.end() && *kink <= to; ++kink) {
-        if (*kink == to) continue;
         visit(std::nextafter(*kink, first));  // from both sides
         visit(std::nextafter(*kink, last));
       }
-      visit(to);
+      if (kink == kinks.begin() || *std::prev(kink) != to) visit(to);
       from = to;
     }
   }
