@@ -69,14 +69,15 @@ double sinks_by(norm::StaticBridge& bridge, double x, const std::vector<norm::Lo
   return std::max(greatest_of(line, trains), greatest_of(line.times(-1.0), trains));
 }
 
-void find_steps(norm::StaticBridge& bridge, const std::vector<norm::LoadModel>& trains, Rest& rest) {
-  const beam::BeamModel& model = bridge.model();
-  for (const double x : beam::Mesh(model).steps()) {
-    const bool left = x == model.start, right = x == model.end();
+void find_steps(norm::StaticBridge& bridge, const beam::BeamModel& beam, const std::vector<norm::LoadModel>& trains,
+                Rest& rest) {
+  const beam::Mesh mesh(beam);
+  for (const double x : mesh.steps()) {
+    const bool left = x == mesh.start(), right = x == mesh.end();
     double height =
         std::max(left ? 0.0 : sinks_by(bridge, x - beside, trains), right ? 0.0 : sinks_by(bridge, x, trains));
-    if (!model.settlement.empty() && (left || right))
-      height = std::max(height, std::abs(left ? model.settlement.front() : model.settlement.back()));
+    if (!beam.settlement.empty() && (left || right))
+      height = std::max(height, std::abs(left ? beam.settlement.front() : beam.settlement.back()));
     rest.steps.push_back({x, height});
   }
 }
@@ -130,7 +131,7 @@ Rest rest_of(const Look& look) {
                              -greatest_of(line.times(-1.0), trains), greatest_of(line, trains)});
   }
   find_deflection(bridge, trains, rest);
-  if (!beam.track) find_steps(bridge, trains, rest);
+  if (!beam.track) find_steps(bridge, beam, trains, rest);
   return rest;
 }
 
