@@ -165,9 +165,12 @@ void Fleet::find_points(WheelContact& c) {
 
 void Fleet::place_wheels() {
   elements_.clear();
+  const bool ends = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
   for (WheelContact& c : wheels) {
-    const double x = coordinates(c).x(), near = nearby * wheel(c).radius;
-    if (c.further > 0)
+    const double x = coordinates(c).x(), radius = wheel(c).radius, near = nearby * radius;
+    if (ends && coordinates(c).y() < profile(c).at(x).value - radius)  // fallen off, and beside or beneath the beam
+      c.candidates = 0;
+    else if (c.further > 0)
       find_points(c);
     else if (!c.is_further)
       find_patches(c, x, x - near, x + near, -unbounded, unbounded);

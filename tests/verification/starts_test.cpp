@@ -86,15 +86,15 @@ output: {interval: 0.0005}
 TEST(Starts, CoachTurnsWithTheSurface) {
   Results run = run_yaml(coach + R"(
 train: {vehicles: coach, speed: 40.0, positions: 0.0}
-track: {profile: bump, bump: {start: -150.0, length: 300.0, height: 1.0}}
+track: {profile: bump, bump: {start: -150.0, length: 300.0, height: 0.1}}
 ts: {max_time: 0.1, dt: 1.0e-3}
 output: {interval: 0.001}
 )");
-  const double pi = std::acos(-1.0), slope = -pi / 300.0 * std::sin(pi * 6.0 / 150.0);
+  const double pi = std::acos(-1.0), slope = -0.1 * pi / 300.0 * std::sin(pi * 6.0 / 150.0);
   for (const auto& [body, sign] : {std::pair("front", 1.0), std::pair("rear", -1.0)})
-    EXPECT_NEAR(run.column(fmt::format("/vehicles/0/{}/velocity", body), 1).front(), 40.0 * sign * slope, 1e-5);
+    EXPECT_NEAR(run.column(fmt::format("/vehicles/0/{}/velocity", body), 1).front(), 40.0 * sign * slope, 1e-6);
   EXPECT_NEAR(run.column("/vehicles/0/car/velocity", 1).front(), 0.0, 1e-6);
-  EXPECT_NEAR(run.column("/vehicles/0/car/velocity", 2).front(), 40.0 * slope / 6.0, 1e-5);
+  EXPECT_NEAR(run.column("/vehicles/0/car/velocity", 2).front(), 40.0 * slope / 6.0, 1e-6);
 }
 
 }  // namespace
