@@ -91,8 +91,9 @@ bool damped(const beam::Beam& beam);
 std::vector<double> distinct_frequencies(const beam::Beam& beam, std::size_t count);
 
 /// The first two distinct non-zero natural frequencies of bending (rad/s), however often each one occurs; distinct:
-/// by more than 1e-6 of their value, or 1 % where they belong to spans that nothing couples. Motion along x is left out, so that damping does not depend on whether it is
-/// modelled. Throws InputError where there are not two: with one or two free unknowns.
+/// by more than 1e-6 of their value, or 1 % where they belong to spans that nothing couples. Motion along x is left
+/// out, so that damping does not depend on whether it is modelled. Throws InputError where there are not two: with one
+/// or two free unknowns.
 std::pair<double, double> distinct_pair(const beam::Beam& beam);
 
 /// Eq. 20 (with its exact limit when zeta1 = zeta2). omega1 != omega2. Throws InputError where zeta2/zeta1 is not
