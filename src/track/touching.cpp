@@ -1,6 +1,7 @@
 #include "track/touching.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -87,28 +88,35 @@ class Scan {
     }
   }
 
-  // The greatest e: the station that shows it, and from there to its top by Newton.
+  // The greatest e = h + sqrt(R^2 - (s - x)^2): of the stations, and of the tops between them.
   double height() const {
-    double highest = -std::numeric_limits<double>::infinity(), top = x_, spacing = 0.0, before = x_ - half_;
-    const auto e = [&](double s) { return profile_.at(s).value + std::sqrt(radius_ * radius_ - (s - x_) * (s - x_)); };
-    over_stations([&](double s) {
-      const double here = e(s);
-      if (here > highest) {
-        highest = here;
-        top = s;
-      }
-      spacing = std::max(spacing, s - before);
-      before = s;
+    double highest = -std::numeric_limits<double>::infinity();
+    std::array<double, 3> s{}, e{};  // the latest stations
+    int count = 0;
+    over_stations([&](double next) {
+      std::rotate(s.begin(), s.begin() + 1, s.end());
+      std::rotate(e.begin(), e.begin() + 1, e.end());
+      s[2] = next;
+      e[2] = raised(next);
+      highest = std::max(highest, e[2]);
+      if (++count > 2 && e[1] >= e[0] && e[1] >= e[2]) highest = std::max(highest, top(s[1], s[0], s[2]));
     });
-    double s = top;
+    return highest;
+  }
+
+  double raised(double s) const { return profile_.at(s).value + std::sqrt(radius_ * radius_ - (s - x_) * (s - x_)); }
+
+  // The greatest e near a station, between those beside it, by Newton.
+  double top(double s, double left, double right) const {
+    double highest = -std::numeric_limits<double>::infinity();
     for (int i = 0; i < 4; ++i) {
       const Height h = profile_.at(s);
       const double below = std::sqrt(radius_ * radius_ - (s - x_) * (s - x_));
       const double slope = h.slope - (s - x_) / below;
       const double curvature = h.curvature - radius_ * radius_ / (below * below * below);
       if (curvature >= 0.0) break;
-      s = std::clamp(s - slope / curvature, std::max(top - spacing, x_ - half_), std::min(top + spacing, x_ + half_));
-      highest = std::max(highest, e(s));
+      s = std::clamp(s - slope / curvature, left, right);
+      highest = std::max(highest, raised(s));
     }
     return highest;
   }
