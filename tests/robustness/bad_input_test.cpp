@@ -69,7 +69,7 @@ TEST(BadNumbers, NoNumbersAtAll) {
   const Workplace workplace(small_scene());
   expect_refusals(workplace, {
                                  {{"-train_speed", "fast"}, {"train_speed = fast", "'fast'", "allowed: a number"}},
-                                 {{"-train_speed", "40m/s"}, {"train_speed = 40m/s", "allowed: a number"}},
+                                 {{"-train_speed", "40kn"}, {"train_speed = 40kn", "allowed: a number"}},
                                  {{"-ts_dt", "1,0e-3"}, {"ts_dt = 1,0e-3", "allowed: a number"}},
                                  {{"-gravity", "1e400"}, {"gravity = 1e400", "allowed: a number"}},
                                  {{"-gravity"}, {"gravity", "has no value", "a number"}},
