@@ -6,20 +6,24 @@ namespace traverse::train {
 namespace {
 
 constexpr double long_stretch = 20.0;  // m: over which a slope lasts; spectra fade in over as much
-constexpr double stiff = 1e9;          // contacts, over what they are beside
-constexpr double slow = 1e-3;          // rad/s: what no spring holds stays at rest, if the wheels let it
 
-/// p with the least p^T A p / 2 and G p = 1, by columns.
+/// p with the least p^T A p / 2 and G p = 1, by columns: A p + G^T lambda = 0. What neither A nor G holds stays at
+/// rest, and contacts that ask for the same are met as one.
 Eigen::MatrixXd least(const Eigen::MatrixXd& A, const Eigen::MatrixXd& G) {
-  const Eigen::MatrixXd GtG = G.transpose() * G;
-  const double s = stiff * A.diagonal().cwiseAbs().maxCoeff() / GtG.diagonal().maxCoeff();
-  return (A + s * GtG).partialPivLu().solve(s * G.transpose());
+  const Eigen::Index f = A.rows(), r = G.rows();
+  Eigen::MatrixXd system = Eigen::MatrixXd::Zero(f + r, f + r), right = Eigen::MatrixXd::Zero(f + r, r);
+  const double scale = A.diagonal().cwiseAbs().maxCoeff();
+  if (scale > 0.0) system.topLeftCorner(f, f) = A / scale;
+  system.topRightCorner(f, r) = G.transpose();
+  system.bottomLeftCorner(r, f) = G;
+  right.bottomRows(r).setIdentity();
+  return system.completeOrthogonalDecomposition().solve(right).topRows(f);
 }
 
 }  // namespace
 
 Following::Following(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K, const Eigen::MatrixXd& G)
-    : lasting_(least(K + slow * slow * M, G)), sudden_(least(M, G)) {}
+    : lasting_(least(K, G)), sudden_(least(M, G)) {}
 
 double lasting_slope(const track::Profile& profile, double x, double slope) {
   const double here = profile.at(x).value;
