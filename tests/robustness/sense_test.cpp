@@ -51,7 +51,7 @@ TEST(SurfaceEnds, WheelsThatStartWhereThereIsNone) {
   const Workplace workplace(small_scene());
   expect_refusals(workplace, {{{"-surface_left", "none", "-train_positions", "-1"},
                                {"surface_left", "x = -1 m, where there is no surface", "allowed: rigid"}},
-                              {{"-surface_right", "nothing"}, {"surface_right", "rigid none"}}});
+                              {{"-surface_right", "nothing"}, {"surface_right", "one of rigid, none"}}});
   const Workplace nothing("load: {forces: 1.0e5, speed: 40.0}\n");
   expect_refusals(nothing, {{{"-surface_right", "none"}, {"surface_right", "no beam"}}});
 }
