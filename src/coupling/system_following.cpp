@@ -66,10 +66,12 @@ void follow(const train::Fleet& fleet, train::MovingVehicle& vehicle) {
 void System::follow_surface(const double* y) {
   fleet_.place_wheels();
   if (structure_) structure_->gather(fleet_.elements(), y, y + n_, v_, w_);
-  if (!fleet_.touch(per_node(), v_.data(), w_.data())) return;
+  const bool touched = fleet_.touch(per_node(), v_.data(), w_.data());
+  if (share_.exchange(touched ? 0U : train::VehicleShare::failed) != 0) return;
   for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).kinematics = fleet_.contact(i).touch.kinematics;
   fleet_.contact_forces();
-  for (train::MovingVehicle& vehicle : fleet_.vehicles) follow(fleet_, vehicle);
+  for (train::MovingVehicle& vehicle : fleet_.own()) follow(fleet_, vehicle);
+  share_.states(fleet_);
 }
 
 }  // namespace traverse::coupling
