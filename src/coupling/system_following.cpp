@@ -71,7 +71,12 @@ void System::follow_surface(const double* y) {
   for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).kinematics = fleet_.contact(i).touch.kinematics;
   fleet_.contact_forces();
   for (train::MovingVehicle& vehicle : fleet_.own()) follow(fleet_, vehicle);
-  share_.states(fleet_);
+  if (!share_.dealt()) return;
+  std::vector<double> p(static_cast<std::size_t>(fleet_.freedom())), pd = p;
+  fleet_.coordinates_of_state(0.0, p.data(), pd.data());
+  share_.coordinates(fleet_, pd);
+  for (train::MovingVehicle& vehicle : fleet_.vehicles)
+    vehicle.mechanism.set_velocities(vehicle.state, vehicle.state.time, pd.data() + vehicle.offset);
 }
 
 }  // namespace traverse::coupling
