@@ -97,7 +97,7 @@ TEST(StudyInput, SpeedsToRefineAreAListOfTheirOwn) {
   const Workplace swept(forces);
   expect_refusal(swept, swept.run({"-sweep_speed", "30,40,10", "-sweep_refine", "1e-2"}),
                  {"sweep_refine", "2 speeds", "at least 3"});
-  expect_refusal(swept, swept.run({"-sweep_speed", "30,40,1", "-sweep_refine", "0"}), {"sweep_refine", "allowed"});
+  expect_refusal(swept, swept.run({"-sweep_speed", "30,40,1", "-sweep_refine", "-1"}), {"sweep_refine", "allowed"});
   EXPECT_NE(swept.run({"-sweep_refine", "1e-2"}).out.find("sweep_refine has no effect"), std::string::npos);
 }
 

@@ -169,11 +169,11 @@ TEST(SteppedApart, GivesBackInTheFirstStep) {
   const double first = expect_same_losses({{"ts_max_time", "0.03"},
                                            {"track_bump_start", "-2.72"},
                                            {"track_bump_length", "0.4"},
-                                           {"track_bump_height", "3e-3"},
-                                           {"ts_dt", "4e-4"}},
+                                           {"track_bump_height", "1e-2"},
+                                           {"ts_dt", "2e-4"}},
                                           1e-8, 1e-6);
   EXPECT_GT(first, 0.0);
-  EXPECT_LT(first, 4e-4);
+  EXPECT_LT(first, 2e-4);
 }
 
 // Everything is left open: modes and linear vehicles are chosen for a single run, and keep to the accuracy against the
