@@ -164,14 +164,15 @@ TEST(SteppedApart, GivesBackWhereContactIsLost) {
   EXPECT_GT(first, 0.1);
 }
 
-// A wheel starts at the top of the bump and flies before TS has set anything up.
+// A wheel starts at the top of the bump and flies before TS has set anything up. It begins with the velocity of the
+// surface, whose slope there is 0.024: linear vehicles leave out its square, 6e-4 of that velocity.
 TEST(SteppedApart, GivesBackInTheFirstStep) {
   const double first = expect_same_losses({{"ts_max_time", "0.03"},
                                            {"track_bump_start", "-2.72"},
                                            {"track_bump_length", "0.4"},
                                            {"track_bump_height", "1e-2"},
                                            {"ts_dt", "2e-4"}},
-                                          1e-8, 1e-6);
+                                          1e-7, 1e-4);
   EXPECT_GT(first, 0.0);
   EXPECT_LT(first, 2e-4);
 }
