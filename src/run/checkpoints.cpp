@@ -51,9 +51,10 @@ void check_that_outputs_differ(const std::string& results, const std::string& ch
                                      checkpoint, results));
 }
 
-/// InputError where the results of another run are to be read and written over; a study that goes on does so.
+/// InputError where the results of another run are to be read and written over; a study or a run that goes on does so.
 void check_that_none_is_read(const Scene& scene) {
-  if (scene.output.file.empty() || (scene.study && scene.study->resume)) return;
+  const bool goes_on = !given("restart").empty() || (scene.study && scene.study->resume);
+  if (scene.output.file.empty() || goes_on) return;
   std::vector<std::string> inputs = {results::opened_origin()};
   for (const options::InputText& input : options::inputs_read()) inputs.push_back(input.name);
   std::error_code ignored;

@@ -13,7 +13,6 @@
 namespace traverse::test {
 
 using rail::Loads;
-using rail::RailBridge;
 
 inline constexpr double area = 0.0153389, rail_EA = 3.2212e9, expansion = 1e-5;
 

@@ -20,7 +20,7 @@ TEST(RailDevices, FreeEndsBreathe) {
     beam::BeamModel model = deck_of(6.0, spacing, 480.0);
     model.temperature.reset();
     model.track->expansion_devices = {-240.0 + 0.5 * spacing};
-    RailBridge bridge(model, area, 1e7);
+    rail::RailBridge bridge(model, area, 1e7);
     Loads strains;
     strains.strains = true;
     const rail::State state = bridge.rest(strains);
@@ -43,7 +43,7 @@ TEST(RailDevices, FreeEndsBreathe) {
 TEST(RailDevices, AgainstAModelOfItsOwn) {
   beam::BeamModel model = deck_of(60.0, 0.6, 180.0);
   model.track->expansion_devices = {60.3};
-  RailBridge bridge(model, area, 1e7);
+  rail::RailBridge bridge(model, area, 1e7);
   const HandRailModel hand(by_hand(model));
   Loads strains;
   strains.strains = true;

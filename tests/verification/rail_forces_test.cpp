@@ -13,7 +13,7 @@ namespace traverse::test {
 
 TEST(RailForces, AgainstAModelOfItsOwn) {
   const beam::BeamModel model = deck_of(60.0, 0.6, 180.0);
-  RailBridge bridge(model, area, 1e7);
+  rail::RailBridge bridge(model, area, 1e7);
   const HandRailModel hand(by_hand(model));
   Loads strains;
   strains.strains = true;
@@ -42,7 +42,7 @@ TEST(RailForces, FreeEndBreathes) {
     beam::BeamModel model = deck_of(6.0, spacing, 240.0);
     model.temperature.reset();
     model.track->rail_ends_held = false;
-    RailBridge bridge(model, area, 1e7);
+    rail::RailBridge bridge(model, area, 1e7);
     Loads strains;
     strains.strains = true;
     const rail::State state = bridge.rest(strains);
@@ -63,7 +63,7 @@ TEST(RailForces, BrakingOnTheGround) {
     const double spacing = i == 0 ? 1.2 : 0.6, p = 5e3;
     beam::BeamModel model = deck_of(6.0, spacing, 480.0);
     model.temperature.reset();
-    RailBridge bridge(model, area, 1e7);
+    rail::RailBridge bridge(model, area, 1e7);
     Loads push;
     push.along_from = 150.0;
     push.along_to = 198.0;
@@ -82,7 +82,7 @@ TEST(RailForces, BrakingOnTheGround) {
 // What a train leaves behind: sleepers hold no more than without one, and a second passage changes nothing.
 TEST(RailForces, SleepersHoldLessWhenTheTrainHasGone) {
   const beam::BeamModel model = deck_of(60.0, 0.6, 180.0);
-  RailBridge bridge(model, area, 1e7);
+  rail::RailBridge bridge(model, area, 1e7);
   Loads strains;
   strains.strains = true;
   const rail::State warm = bridge.rest(strains);
