@@ -11,8 +11,9 @@
  *   traverse_close(passage);
  *
  * A passage goes from sample to sample: steps end exactly at the multiples of -output_interval, at which it is read and
- * at which forces change. The words alone count: neither .petscrc nor PETSC_OPTIONS is read. Vehicles are mechanisms (-model_vehicles full), unless another model is asked for. With no
- * force set, what is read is bit for bit what the program stores for the same words with -model_vehicles full.
+ * at which forces change. The words alone count: neither .petscrc nor PETSC_OPTIONS is read. Vehicles are mechanisms
+ * (-model_vehicles full), unless another model is asked for. With no force set, what is read is bit for bit what the
+ * program stores for the same words with -model_vehicles full.
  *
  * Several passages may be open at once. All calls come from one thread; each process has passages of its own, also
  * under mpirun. Units are SI; x runs along the track, y upward, angles are counter-clockwise. Functions that return int

@@ -16,7 +16,7 @@ namespace traverse::train {
 
 class Following {
  public:
-  /// f x f mass and stiffness, r x f directions.
+  /// M and K (f x f, kg and N/m) and G (r x f): what the coordinates that follow and the contacts have.
   Following(const Eigen::MatrixXd& M, const Eigen::MatrixXd& K, const Eigen::MatrixXd& G);
   /// From how fast the surface rises under each wheel, as it is and as it lasts, m/s.
   Eigen::VectorXd rates(const Eigen::VectorXd& rise, const Eigen::VectorXd& lasting) const {
