@@ -1,12 +1,15 @@
 #!/usr/bin/python3
-"""Spoils scene, bridge and vehicle files and tables at random: each has to end in a result or in one clear line.
+"""Spoils files that the program reads at random: each has to end in a result or in one clear line.
 /usr/bin/python3 benchmarks/mutations.py [BUILD_FOLDER] [OUT_FOLDER] [--smallest] [--mutants N] [--seed SEED]
+[--processes N]
 
-Every mutant is a copy of options/ in which one or two places of one file are changed: lines lost, doubled, exchanged or
-moved, numbers replaced, names misspelt, bytes garbled, the end cut off. Small scenes are computed for a moment, the
-others read and shown by -check. Wrong are signals, more than CPU_SECONDS of the processor, a failure without exactly one
-line that says why, and numbers that are none (nan, inf, words) where the run takes them without a word. Writes
-mutations.csv to OUT_FOLDER, a line for each wrong one, and keeps its files in OUT_FOLDER/mutants.
+One mutant in three is a copy of options/ in which one or two places of one file are changed: lines lost, doubled,
+exchanged or moved, numbers replaced, names misspelt, bytes garbled, the end cut off. Small scenes are computed for a
+moment, the others read and shown by -check. The others are small files of mutated_files.py (scenes that run to their
+end, studies, limits, modes, results, checkpoints), in whose binary ones bits are flipped. Wrong are signals, more than
+CPU_SECONDS of the processor, a failure without exactly one line that says why, numbers that are none (nan, inf, words)
+where the run takes them without a word, and other numbers at status 0 where a results file or a checkpoint was damaged.
+Writes mutations.csv to OUT_FOLDER, a line for each wrong one, and keeps its files in OUT_FOLDER/mutants.
 """
 
 import concurrent.futures
@@ -20,6 +23,7 @@ import subprocess
 import sys
 import tempfile
 
+import mutated_files
 import runs
 
 OPTIONS = pathlib.Path(runs.ROOT) / "options"
@@ -124,6 +128,22 @@ def wrong(run, no_number):
     return "" if len(said) == 1 and said[0].startswith("traverse: ") else f"{len(said)} lines: {' / '.join(said)[:300]}"
 
 
+def keep(kept, file, name):
+    kept.mkdir(parents=True, exist_ok=True)
+    shutil.copy(file, kept / name)
+
+
+def small_mutant(program, prepared, name, seed, kept):
+    """Of one of mutated_files.KINDS. What is wrong, or nothing."""
+    with tempfile.TemporaryDirectory() as folder:
+        how = {"env": runs.environment(), "preexec_fn": limit}
+        run, no_number, file, silence = mutated_files.mutant(program, prepared, name, random.Random(seed), spoil, folder, how)
+        found = wrong(run, no_number) or silence
+        if found:
+            keep(kept, file, f"{seed}_{name.replace(' ', '_')}_{file.name}")
+        return found
+
+
 def mutant(build, scene, file, seed, kept):
     """Makes it, runs it, and keeps it where it ends wrongly. What is wrong, or nothing."""
     generator = random.Random(seed)
@@ -138,33 +158,37 @@ def mutant(build, scene, file, seed, kept):
                               "none", *words], cwd=folder, env=runs.environment(), capture_output=True, preexec_fn=limit)
         found = wrong(run, no_number)
         if found:
-            kept.mkdir(parents=True, exist_ok=True)
-            shutil.copy(place, kept / f"{seed}_{scene.stem}_{place.name}")
+            keep(kept, place, f"{seed}_{scene.stem}_{place.name}")
         return found
 
 
 def main():
     arguments = runs.parser(__doc__)
-    arguments.add_argument("--mutants", type=int, default=10000, metavar="N", help="how many; left out: 10,000")
+    arguments.add_argument("--mutants", type=int, default=4000, metavar="N", help="how many; left out: 4,000")
     arguments.add_argument("--seed", type=int, default=1, metavar="SEED", help="of the first mutant; left out: 1")
+    arguments.add_argument("--processes", type=int, default=os.cpu_count(), metavar="N",
+                           help="at a time; left out: one for each processor")
     given = runs.given(arguments)
     count = 24 if given.smallest else given.mutants
     scenes = {scene: files_of(scene) for scene in sorted((OPTIONS / "scenes").glob("*.yml"))}
-    kept, rows = pathlib.Path(given.out) / "mutants", []
-    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        jobs = {}
+    kept, rows, program = pathlib.Path(given.out) / "mutants", [], os.path.abspath(runs.traverse(given.build))
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor(given.processes) as pool:
+        prepared, jobs = mutated_files.prepare(program, folder, {"env": runs.environment()}), {}
         for seed in range(given.seed, given.seed + count):
             generator = random.Random(-seed)
+            if seed % 3 != 0:
+                name = generator.choice(list(mutated_files.KINDS))
+                jobs[pool.submit(small_mutant, program, prepared, name, seed, kept)] = (seed, name, "")
+                continue
             scene = generator.choice(list(scenes))
             file = generator.choice(scenes[scene])
-            jobs[pool.submit(mutant, given.build, scene, file, seed, kept)] = (seed, scene, file)
+            jobs[pool.submit(mutant, given.build, scene, file, seed, kept)] = (seed, scene.stem, file.name)
         for done, job in enumerate(concurrent.futures.as_completed(jobs), 1):
             if done % 500 == 0:
                 print(f"{done} of {count}", flush=True)
             if job.result():
-                seed, scene, file = jobs[job]
-                rows.append([seed, scene.stem, file.name, job.result()])
-                print(f"{seed}: {scene.stem}, {file.name}: {job.result()}", flush=True)
+                rows.append([*jobs[job], job.result()])
+                print(": ".join(map(str, rows[-1])), flush=True)
     runs.write_table(os.path.join(given.out, "mutations.csv"), ["seed", "scene", "file", "what is wrong"], sorted(rows))
     print(f"{count - len(rows)} of {count} mutants ended in a result or in one clear line")
     sys.exit(1 if rows else 0)

@@ -46,12 +46,14 @@ typedef struct {
 /* The scene of these words of the command line, without the program's name, at t = 0. *passage is NULL where that
  * cannot be. */
 TRAVERSE_API int traverse_open(int argc, const char* const* argv, traverse_passage** passage);
-/* NULL is allowed. */
+/* Frees the scene. NULL and a passage that is closed already are allowed; the handle of a closed one (16 bytes) stays
+ * until the process ends, and every other call refuses it, and NULL, with status 2. */
 TRAVERSE_API void traverse_close(traverse_passage* passage);
 /* One line on the last call that failed; empty before that. Valid until the next one fails. */
 TRAVERSE_API const char* traverse_error(void);
 
-/* s: of the sample that was reached, of the end of the scene, between samples. */
+/* s: of the sample that was reached, of the end of the scene, between samples; not a number for what is no open
+ * passage. */
 TRAVERSE_API double traverse_time(const traverse_passage* passage);
 TRAVERSE_API double traverse_end(const traverse_passage* passage);
 TRAVERSE_API double traverse_interval(const traverse_passage* passage);

@@ -7,7 +7,7 @@ from . import places
 from .dimensions import MEANINGS, dimensions_of, name_of
 
 # The scene itself, and the state at the end where that lies between two samples: h5py reads these.
-_LEFT_OUT = ("options", "input/", "model/", "end/", "study/shape")
+_LEFT_OUT = ("options", "input/", "model/", "end/", "study/shape", "study/row_digest")
 
 
 def open_results(path):

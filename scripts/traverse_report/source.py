@@ -200,7 +200,7 @@ class Source:
         names = str(group.attrs["dimensions"]).split(",")
         parameters = {name.replace("sweep_hslm_a", "hslm_a").replace("load_hslm_a", "hslm_a"): group[name][:]
                       for name in names}
-        skipped = set(names) | {"shape", "finished", "probes_x", "static_deflection", "statistics"}
+        skipped = set(names) | {"shape", "finished", "row_digest", "probes_x", "static_deflection", "statistics"}
         values = {name: data[:] for name, data in group.items()
                   if name not in skipped and not name.endswith("_time") and hasattr(data, "shape")}
         kept = set(group["statistics"]) if "statistics" in group else set(names)

@@ -5,20 +5,30 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <limits>
+#include <numeric>
 
 #include "base/digest.hpp"
+#include "base/regular_file.hpp"
+#include "integrate/integrators.hpp"
+#include "methods/one_step_methods.hpp"
+#include "options/data_file.hpp"
 #include "options/input_texts.hpp"
 #include "results/own_file.hpp"
 #include "run/scene_digest.hpp"
+#include "scene/limits.hpp"
 
 namespace traverse::app {
 namespace {
 
 constexpr const char* folder_name = ".traverse_choices";
+constexpr std::string_view mark = "Traverse choice\n";  // then a digest, then what it is of
+constexpr std::size_t most_bytes = 1 << 20;
+constexpr int most_in_a_bay = 1600;  // sixteen times what track_elements_per_bay allows
 constexpr std::array<std::string_view, 10> free_options = {
     "scene_name",   "restart",      "checkpoint_interval", "checkpoint_file", "output_file",
     "output_quiet", "options_file", "ts_max_steps",        "study_resume",    "accuracy_report"};
@@ -32,20 +42,22 @@ std::string build() {
   return fmt::format("{} {}.{}", file.st_size, file.st_mtim.tv_sec, file.st_mtim.tv_nsec);
 }
 
-std::string digest_of_bytes(std::string_view bytes) {
-  base::Digest digest;
-  digest.add(bytes);
-  return fmt::format("{:016x}", digest.value());
+bool within(double value, double least, double most) { return value >= least && value <= most; }
+
+bool are_elements(const std::vector<int>& elements, std::size_t spans) {
+  return elements.size() == spans && std::all_of(elements.begin(), elements.end(), [](int n) { return n >= 1; }) &&
+         std::accumulate(elements.begin(), elements.end(), 0.0) <= most_elements;
 }
 
-/// A digest of what follows it, and that; empty where the file is not there or not whole.
-std::string read_file(const std::string& path) {
-  const results::Descriptor found = results::open_ordinary(path, false);
-  std::ifstream file(found.path(), std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const std::size_t size = digest_of_bytes({}).size();
-  if (text.size() <= size || digest_of_bytes(std::string_view(text).substr(size)) != text.substr(0, size)) return {};
-  return text.substr(size);
+bool is_integrator(const std::string& name) {
+  return name.empty() || structure::find_method(name) != nullptr || integrate::find_petsc_type(name) != nullptr;
+}
+
+/// Whether a file is one that was kept, or was to be when a kill or a full disk came before its first byte.
+bool is_ours(const std::string& path) {
+  std::error_code none;
+  return results::begins_with(path, mark) ||
+         (results::open_ordinary(path, false).open() && std::filesystem::file_size(path, none) == 0);
 }
 
 }  // namespace
@@ -62,6 +74,20 @@ void ChosenOf::keep(base::Bytes& bytes) {
   if (scene.sweep) scene.sweep = sweep;
 }
 
+bool is_possible(const Scene& chosen, const Scene& scene) {
+  constexpr double largest = std::numeric_limits<double>::max(), endless = std::numeric_limits<double>::infinity();
+  if (chosen.beam && !are_elements(chosen.beam->elements, scene.beam->elements.size())) return false;
+  if (chosen.beam && chosen.beam->track && !within(chosen.beam->track->elements_per_bay, 1, most_in_a_bay))
+    return false;
+  if (chosen.sweep && !(is_integrator(chosen.sweep->method) && within(chosen.sweep->trials_reach, 0.0, endless)))
+    return false;
+  const double longest = chosen.end_time.value_or(largest);
+  return (!chosen.time_step || within(*chosen.time_step, options::least_quantity, longest)) &&
+         is_integrator(chosen.integrator) && within(chosen.model_modes, 0, most_elements) &&
+         within(chosen.rest_tolerance, -1.0, largest) && chosen.vehicle_model <= VehicleModel::automatic &&
+         within(chosen.most_defect, 0.0, endless) && within(chosen.output.low_pass.value_or(0.0), 0.0, largest);
+}
+
 KeptChoice::KeptChoice(MPI_Comm comm, const Scene& scene) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
@@ -73,14 +99,31 @@ KeptChoice::KeptChoice(MPI_Comm comm, const Scene& scene) {
   const std::filesystem::path folder = std::filesystem::path(scene.output.file).parent_path() / folder_name;
   std::error_code ignored;
   if (!std::filesystem::is_symlink(folder, ignored)) path_ = (folder / key).string();
-  if (writes_ && !path_.empty()) known_ = read_file(path_);
+  bound_ = fmt::format("{} {:.17g} {} ", TRAVERSE_VERSION, scene.accuracy, key);
+  if (writes_ && !path_.empty()) known_ = read_file();
   auto size = static_cast<int>(known_.size());
   MPI_Bcast(&size, 1, MPI_INT, 0, comm);
   known_.resize(static_cast<std::size_t>(size));
   MPI_Bcast(known_.data(), size, MPI_CHAR, 0, comm);
 }
 
-// Aside and renamed: others may read or write the same.
+std::string KeptChoice::digest_of_choice(std::string_view bytes) const {
+  base::Digest digest;
+  digest.add(bound_);
+  digest.add(bytes);
+  return fmt::format("{:016x}", digest.value());
+}
+
+std::string KeptChoice::read_file() const {
+  const results::Descriptor found = results::open_ordinary(path_, false);
+  std::string text;
+  const std::size_t head = mark.size() + digest_of_choice({}).size();
+  if (!base::read_regular_file(found.path(), most_bytes, text).empty() || text.size() <= head) return {};
+  const std::string bytes = text.substr(head);
+  return text.substr(0, head) == std::string(mark) + digest_of_choice(bytes) ? bytes : "";
+}
+
+// Aside and renamed: others may read or write the same. One of ours that is there could not be read, and is replaced.
 void KeptChoice::write_file(const std::string& bytes) const {
   if (!writes_ || path_.empty()) return;
   std::error_code ignored;
@@ -88,8 +131,10 @@ void KeptChoice::write_file(const std::string& bytes) const {
   const std::string aside = fmt::format("{}.{}", path_, getpid());
   const results::Descriptor file = results::make_file(aside);
   if (!file.open()) return;
-  const bool whole = results::write_all(file, digest_of_bytes(bytes)) && results::write_all(file, bytes);
-  if (!whole || !results::move_to_free_name(aside, path_)) (void)unlink(aside.c_str());
+  const bool whole = results::write_all(file, std::string(mark) + digest_of_choice(bytes) + bytes);
+  const bool moved = whole && (is_ours(path_) ? std::rename(aside.c_str(), path_.c_str()) == 0
+                                              : results::move_to_free_name(aside, path_));
+  if (!moved) (void)unlink(aside.c_str());
 }
 
 }  // namespace traverse::app

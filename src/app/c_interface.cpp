@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <exception>
+#include <limits>
+#include <list>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,13 +18,16 @@
 #include "traverse/options/input.hpp"
 #include "traverse/traverse.h"
 
+// Closing frees the scene. The handle itself stays, so that one that is used again is known to be closed.
 struct traverse_passage {
-  traverse::app::StepByStep steps;
+  std::unique_ptr<traverse::app::StepByStep> steps;
 };
 
 namespace {
 
 using traverse::InputError;
+
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 
 std::string said;  // by the last call that failed
 
@@ -36,6 +42,32 @@ int status_of(Body&& body) {
     said = error.what();
     return error.status();
   }
+}
+
+/// A handle that traverse_open made is never a closed one by chance.
+std::list<traverse_passage>& handles() {
+  static std::list<traverse_passage> all;
+  return all;
+}
+
+traverse::app::StepByStep& open_one(const traverse_passage* passage) {
+  if (passage == nullptr) throw InputError("the passage is NULL");
+  if (passage->steps == nullptr) throw InputError("the passage is closed");
+  return *passage->steps;
+}
+
+/// An argument that must not be NULL.
+template <class T>
+T* there(T* pointer, const char* what) {
+  if (pointer == nullptr) throw InputError(std::string(what) + " is NULL");
+  return pointer;
+}
+
+/// What `get` has of an open passage, or `none`.
+template <class Value, class Get>
+Value value_of(const traverse_passage* passage, Value none, Get&& get) {
+  (void)status_of([&] { none = get(open_one(passage)); });
+  return none;
 }
 
 /// While it lives PETSc does not see its variable of the environment, which is for the program that embeds this
@@ -74,7 +106,7 @@ void start_libraries(const std::vector<std::string>& petsc_words) {
 
 traverse::app::Scene scene_of(std::span<const char* const> words) {
   std::vector<std::string> all = {"traverse"};
-  all.insert(all.end(), words.begin(), words.end());
+  for (const char* word : words) all.emplace_back(there(word, "a word"));
   traverse::options::Arguments arguments(all);
   traverse::options::Input input = traverse::options::read_input(
       *arguments.argc(), *arguments.argv(), {{"model_vehicles", "full", "traverse_open", 0}}, false);
@@ -99,33 +131,44 @@ std::span<const double> values_of(const traverse::app::StepByStep& steps, const 
 }  // namespace
 
 int traverse_open(int argc, const char* const* argv, traverse_passage** passage) {
-  *passage = nullptr;
   return status_of([&] {
-    *passage =
-        new traverse_passage{traverse::app::StepByStep(scene_of(std::span(argv, static_cast<std::size_t>(argc))))};
+    *there(passage, "passage") = nullptr;
+    if (argc < 0) throw InputError("argc is negative");
+    if (argc > 0) there(argv, "argv");
+    auto steps = std::make_unique<traverse::app::StepByStep>(scene_of(std::span(argv, static_cast<std::size_t>(argc))));
+    *passage = &handles().emplace_back(std::move(steps));
   });
 }
 
-void traverse_close(traverse_passage* passage) { delete passage; }
+void traverse_close(traverse_passage* passage) {
+  if (passage != nullptr) passage->steps.reset();
+}
 
 const char* traverse_error(void) { return said.c_str(); }
 
-double traverse_time(const traverse_passage* passage) { return passage->steps.time(); }
-double traverse_end(const traverse_passage* passage) { return passage->steps.end(); }
-double traverse_interval(const traverse_passage* passage) { return passage->steps.interval(); }
+double traverse_time(const traverse_passage* passage) {
+  return value_of(passage, no_number, [](const auto& steps) { return steps.time(); });
+}
+double traverse_end(const traverse_passage* passage) {
+  return value_of(passage, no_number, [](const auto& steps) { return steps.end(); });
+}
+double traverse_interval(const traverse_passage* passage) {
+  return value_of(passage, no_number, [](const auto& steps) { return steps.interval(); });
+}
 
 int traverse_advance(traverse_passage* passage, double t) {
-  return status_of([&] { passage->steps.advance(t); });
+  return status_of([&] { open_one(passage).advance(t); });
 }
 
 size_t traverse_quantities(const traverse_passage* passage) {
-  const auto& layout = passage->steps.layout();
-  return layout.fields.size() + layout.constants.size();
+  return value_of(passage, std::size_t{0},
+                  [](const auto& steps) { return steps.layout().fields.size() + steps.layout().constants.size(); });
 }
 
 int traverse_describe(const traverse_passage* passage, size_t i, traverse_quantity* quantity) {
   return status_of([&] {
-    const auto& layout = passage->steps.layout();
+    const auto& layout = open_one(passage).layout();
+    there(quantity, "quantity");
     const auto& fields = layout.fields;
     const auto& constants = layout.constants;
     if (i < fields.size()) {
@@ -142,19 +185,19 @@ int traverse_describe(const traverse_passage* passage, size_t i, traverse_quanti
 
 int traverse_read(const traverse_passage* passage, const char* name, double* values, size_t count) {
   return status_of([&] {
-    const std::span<const double> found = values_of(passage->steps, name);
+    const std::span<const double> found = values_of(open_one(passage), there(name, "name"));
     if (found.size() != count)
       throw InputError(std::string(name) + " has " + std::to_string(found.size()) + " numbers, not " +
                        std::to_string(count));
-    std::copy(found.begin(), found.end(), values);
+    if (count > 0) std::copy(found.begin(), found.end(), there(values, "values"));
   });
 }
 
 int traverse_set_body_force(traverse_passage* passage, int vehicle, const char* body, double fx, double fy,
                             double moment) {
-  return status_of([&] { passage->steps.apply_to_body(vehicle, body, {fx, fy, moment}); });
+  return status_of([&] { open_one(passage).apply_to_body(vehicle, there(body, "body"), {fx, fy, moment}); });
 }
 
 int traverse_set_beam_force(traverse_passage* passage, double x, double force) {
-  return status_of([&] { passage->steps.apply_to_beam(x, force); });
+  return status_of([&] { open_one(passage).apply_to_beam(x, force); });
 }

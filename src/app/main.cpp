@@ -1,5 +1,4 @@
 // traverse: vehicles crossing flexible beams. See README.md.
-#include <fmt/format.h>
 #include <slepceps.h>
 
 #include <cerrno>
@@ -42,7 +41,7 @@ bool first_rank() {
 }
 
 int complain(const traverse::Error& error) {
-  if (first_rank()) fmt::print(stderr, "traverse: {}\n", error.what());
+  if (first_rank()) traverse::app::complain(error);
   return error.status();
 }
 
@@ -80,6 +79,7 @@ int after_output(int status) {
 int main(int argc, char** argv) {
   traverse::app::guard_standard_output();
   traverse::app::take_signals();
+  traverse::app::heed_cpu_limit();
   traverse::app::speak_of_signals(first_rank());
   traverse::app::start_lightly();
   try {

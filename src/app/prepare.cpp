@@ -31,9 +31,9 @@ Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& not
   KeptChoice kept(comm, scene);
   Accuracy accuracy;
   std::vector<std::string> own;
-  if (!kept.read(own, accuracy, ChosenOf{scene})) {
+  if (!kept.read(own, accuracy, scene)) {
     accuracy = try_models(comm, scene, own);
-    if (accuracy.measured) kept.write(own, accuracy, ChosenOf{scene});
+    if (accuracy.measured) kept.write(own, accuracy, scene);
   }
   notes.insert(notes.end(), own.begin(), own.end());
   return accuracy;

@@ -26,6 +26,8 @@ class Bytes {
 
   bool reads() const { return reads_; }
   const std::string& written() const { return to_; }
+  /// Whether all has been read.
+  bool at_end() const { return from_.empty(); }
 
   /// FileError where there is less to read than asked for.
   template <class... Values>
@@ -42,6 +44,12 @@ class Bytes {
       static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>, "it needs a function keep(Bytes&)");
       raw(&value, sizeof(T));
     }
+  }
+  void one(bool& value) {
+    unsigned char byte = value ? 1 : 0;
+    raw(&byte, 1);
+    if (byte > 1) damaged();  // no bool holds that
+    value = byte == 1;
   }
   template <class T>
   void one(std::vector<T>& list) {
@@ -88,8 +96,8 @@ class Bytes {
     Eigen::Index m = matrix.rows(), n = matrix.cols();
     (*this)(m, n);
     if (reads_) {
-      if (m < 0 || n < 0) damaged();
-      check_left(static_cast<std::size_t>(m) * static_cast<std::size_t>(n));
+      const auto most = static_cast<Eigen::Index>(from_.size());
+      if (m < 0 || n < 0 || (n > 0 && m > most / n)) damaged();
       matrix.resize(m, n);
     }
     raw(matrix.data(), sizeof(T) * static_cast<std::size_t>(matrix.size()));

@@ -1,5 +1,7 @@
 #include "traverse/beam/model.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -11,6 +13,9 @@
 
 namespace traverse::beam {
 namespace {
+
+constexpr double least_distance = 1e-3;  // m, of nodes, as that of span ends
+constexpr double most_shear = 1e11;      // 12 EI/(GA h^2): rounding takes a hundred-thousandth then
 
 std::string number(double value) {
   char text[32];
@@ -90,6 +95,18 @@ void check_foundation(const Foundation& foundation, double length) {
   });
 }
 
+/// Bending of an element counts 1 + 12 EI/(GA h^2) times: where that is too much, rounding hides shear.
+void check_shear(const BeamModel& model) {
+  require_positive(*model.GA, "beam_GA", "N");
+  if (model.track || model.elements.size() != model.spans.size()) return;
+  for (std::size_t i = 0; i < model.spans.size(); ++i) {
+    const double h = model.spans[i] / std::max(1, model.elements[i]);
+    const double least = 12.0 * model.EI.maximum() / (most_shear * h * h);
+    require(model.GA->minimum() >= least, "beam_GA", number(model.GA->minimum()),
+            fmt::format("beside beam_EI, in elements of {:.3g} m, rounding hides bending below {:.2g} N", h, least));
+  }
+}
+
 void check_joints(const BeamModel& model) {
   const std::size_t inner = model.spans.size() - 1;
   require(model.joints.size() <= 1 || model.joints.size() == inner, "beam_continuity",
@@ -126,6 +143,27 @@ void check_cracks(const BeamModel& model) {
   for (const double x : model.cuts)
     require(std::isfinite(x) && x >= model.start && x <= model.end(), "beam_cracks_width", number(x),
             "a crack of a width lies within the beam");
+}
+
+/// Nodes stand wherever the beam is divided. Rounding takes what lies between those that are too close.
+void check_divisions(const BeamModel& model) {
+  if (model.track || (model.cracks.empty() && model.cuts.empty() && model.hinges.empty())) return;
+  std::vector<double> x = model.hinges;
+  for (const Crack& crack : model.cracks) x.push_back(crack.x);
+  x.insert(x.end(), model.cuts.begin(), model.cuts.end());
+  x.push_back(model.start);
+  double end = model.start;
+  for (const double span : model.spans) x.push_back(end += span);
+  std::sort(x.begin(), x.end());
+  const std::string option = model.cracks.empty() && model.cuts.empty() ? "beam_hinges"
+                             : model.cuts.empty()                       ? "beam_cracks_x"
+                                                                        : "beam_cracks_width";
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (x[i] - x[i - 1] > 0.0 && x[i] - x[i - 1] < least_distance)
+      throw InputError(
+          fmt::format("{}: what divides the beam (ends of spans and of cracks, hinges) at x = {:.9g} and "
+                      "{:.9g} m is {:.3g} m apart; allowed: 0, or at least {:g} m",
+                      option, x[i - 1], x[i], x[i] - x[i - 1], least_distance));
 }
 
 void check_strains(const BeamModel& model) {
@@ -189,12 +227,13 @@ void check(const BeamModel& model) {
   check_spans(model);
   require_positive(model.EI, "beam_EI", "N m2");
   if (model.axial) require_positive(model.EA, "beam_EA", "N");
-  if (model.GA) require_positive(*model.GA, "beam_GA", "N");
+  if (model.GA) check_shear(model);
   require_positive(model.mass, "beam_mass", "kg/m");
   for (const double value : {model.rotary_inertia.minimum(), model.rotary_inertia.maximum()})
     require_not_negative(value, "beam_rotary_inertia", "kg m");
   check_joints(model);
   check_cracks(model);
+  check_divisions(model);
   check_strains(model);
   if (model.track) check_track(model);  // check_track.cpp
   check_foundation(model.foundation, model.length());

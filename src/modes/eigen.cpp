@@ -1,5 +1,6 @@
 #include "eigen.hpp"
 
+#include <fmt/format.h>
 #include <slepceps.h>
 
 #include <algorithm>
@@ -42,6 +43,19 @@ base::Handle<Mat> matrix(const Band& band) {
 double shift_below_zero(const Segment& s) {
   const double elements = std::max(1.0, static_cast<double>(s.nodes.back() - s.nodes.front()));
   return -highest_quotient(s.K, s.M) / std::pow(elements, s.axial ? 2.0 : 4.0);
+}
+
+/// The eigenvalues of a beam spread with the fourth power of the number of its elements. The lowest one must not be
+/// below the rounding of the highest, but where next to nothing holds the beam.
+void check_rounding(const Segment& s, const Bracket& lowest) {
+  const double rounding = std::numeric_limits<double>::epsilon() * highest_quotient(s.K, s.M);
+  const double elements = s.nodes.back() - s.nodes.front();
+  const bool too_many = !s.axial && std::pow(elements, 4.0) * std::numeric_limits<double>::epsilon() > 1.0;
+  if (too_many && lowest.high < rounding)
+    throw InputError(fmt::format(
+        "beam_elements_per_span: in {:g} elements from joint to joint rounding hides the lowest frequencies; fewer "
+        "elements are as exact",
+        elements));
 }
 
 /// Next to the lowest eigenvalue of a bracket, from below, at a distance like that of the others in it.
@@ -186,7 +200,10 @@ class Hunt {
 
   void start(int count) {
     Bracket b;
-    if (s_.rigid.empty()) b = bracket_lowest(s_.K, s_.M);
+    if (s_.rigid.empty()) {
+      b = bracket_lowest(s_.K, s_.M);
+      check_rounding(s_, b);
+    }
     if (b.low > 0.0) {
       // Two at least: a free beam on a bed has one frequency twice, and no bracket is narrow enough to part them.
       b = narrow(b, std::clamp(count, 2, at_once), resolution, [this](double sigma) { return unknown(sigma); });

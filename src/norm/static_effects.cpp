@@ -25,7 +25,7 @@ std::vector<Place> sections_of(const beam::BeamModel& model, double spacing, con
   std::vector<double> x = also;
   double left = 0.0;
   for (const double span : model.spans) {
-    const double parts = spacing > 0.0 ? std::ceil(span / spacing - beside) : parts_of_span;
+    const double parts = spacing > 0.0 ? std::max(1.0, std::ceil(span / spacing - beside)) : parts_of_span;
     for (double i = 0.0; i <= parts; ++i) x.push_back(left + span * std::clamp(i / parts, beside, 1.0 - beside));
     left += span;
   }

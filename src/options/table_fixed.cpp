@@ -113,7 +113,7 @@ constexpr Row run_rows[] = {
   {"load_hslm_b", numbers, "1, m", "", positive, "", 2, "instead of forces: HSLM-B of EN 1991-2, the number of forces of 170 kN and their distance"},
   {"load_en15528", choice, "", "", any, "A1 B1 B2 C2 C3 C4 D2 D3 D4 D5 E4 E5", 0, "instead of forces: reference wagons of this line of EN 15528"},
   {"load_wagons", integer, "", "1", {1, 1000}, "", 0, "how many of these"},
-  {"load_spread", number, "m", "(not spread)", positive, "", 0, "sleeper spacing: every force acts over three sleepers, by a quarter, a half and a quarter"},
+  {"load_spread", number, "m", "(not spread)", {0.0, 10.0, true}, "", 0, "sleeper spacing: every force acts over three sleepers, by a quarter, a half and a quarter"},
   {"load_file", file, "", "", any, "", 0, "instead of forces: a file of two columns, x in m and force in N"},
   {"load_file_x", choice, "", "forward", any, "forward backward", 0, "where the x of load_file grow: towards where the load runs, or backward, as distances behind the first axle do"},
 

@@ -4,21 +4,22 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <limits>
 
 #include "base/bytes.hpp"
 #include "base/digest.hpp"
+#include "base/regular_file.hpp"
 #include "results/own_file.hpp"
 #include "results/place.hpp"
 
 namespace traverse::results {
 namespace {
 
-constexpr std::string_view mark = "Traverse checkpoint 1\n";
+constexpr std::string_view mark = "Traverse checkpoint 2\n";
 constexpr std::size_t at_once = std::size_t{1} << 30;  // bytes of one message
 
 void send(MPI_Comm comm, const std::string& text, int to) {
@@ -111,11 +112,9 @@ class Aside {
 };
 
 std::string contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file || std::filesystem::is_directory(path)) throw FileError("restart = " + path + ": the file cannot be read");
-  std::ostringstream all;
-  all << file.rdbuf();
-  std::string text = all.str();
+  std::string text;
+  const std::string why = base::read_regular_file(path, std::numeric_limits<std::size_t>::max() - 1, text);
+  if (!why.empty()) throw FileError("restart = " + path + ": " + why);
   const std::size_t before = mark.size() + sizeof(std::uint64_t);
   std::uint64_t digest = 0;
   if (text.size() < before || !text.starts_with(mark)) throw FileError("restart = " + path + ": is no checkpoint");
@@ -125,6 +124,14 @@ std::string contents(const std::string& path) {
   found.add(text);
   if (found.value() != digest) throw FileError("restart = " + path + ": the checkpoint is damaged");
   return text;
+}
+
+/// Whether a run can be at this instant with this plan.
+bool is_possible(const Checkpoint& checkpoint) {
+  const auto within = [](double value, double least) { return value >= least && std::isfinite(value); };
+  return within(checkpoint.time, 0.0) && checkpoint.end_time >= checkpoint.time && within(checkpoint.time_step, 0.0) &&
+         within(checkpoint.interval, 0.0) && checkpoint.stored >= 1 && within(checkpoint.wall_seconds, 0.0) &&
+         checkpoint.given_ranks >= 1 && !checkpoint.of_ranks.empty();
 }
 
 }  // namespace
@@ -166,6 +173,7 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path) {
                     " of the program, this is " + TRAVERSE_VERSION);
   bytes = base::Bytes{std::span<const char>(text)};
   bytes(checkpoint, checkpoint.of_ranks);
+  if (!is_possible(checkpoint)) throw FileError("restart = " + path + ": the checkpoint is damaged");
   return checkpoint;
 }
 

@@ -33,7 +33,8 @@ struct Checkpoint {
   template <class Bytes>
   void keep(Bytes& bytes) {
     bytes(version, digest, time, end_time, time_step, interval, stored, wall_seconds, given_ranks,
-          repeated.with_mechanisms, repeated.with_half_steps, results.file, results.rows, results.objects);
+          repeated.with_mechanisms, repeated.with_half_steps, results.file, results.rows, results.objects,
+          results.digests);
   }
 };
 

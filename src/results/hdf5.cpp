@@ -8,6 +8,7 @@
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <functional>
 #include <numeric>
 #include <unordered_set>
 
@@ -47,15 +48,43 @@ herr_t visit(unsigned depth, const H5E_error2_t* entry, void* data) {
   return 0;
 }
 
+/// 0 where a link, and what it leads to, stand in this file: not in another one, which HDF5 would open, read and write.
+herr_t stands_here(hid_t group, const char* name, const H5L_info_t* link, void*) {
+  if (link->type == H5L_TYPE_SOFT) return 0;
+  if (link->type != H5L_TYPE_HARD) return 1;
+  const Id object(H5Oopen(group, name, H5P_DEFAULT));
+  if (H5Iget_type(object.get()) != H5I_DATASET) return object.get() < 0 ? -1 : 0;
+  const Id creation(H5Dget_create_plist(object.get()));
+  return H5Pget_external_count(creation.get()) == 0 && H5Pget_layout(creation.get()) != H5D_VIRTUAL ? 0 : 1;
+}
+
 }  // namespace
+
+Id open_to_read(const std::string& path) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  const Id access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_file_locking(access.get(), false, true);  // the place is locked, by this program
+  return Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
+}
+
+Id open_whole(const std::string& path) {
+  Id file = open_to_read(path);
+  if (file.get() < 0) throw FileError(path + ": HDF5 cannot read it: the file is damaged");
+  const herr_t elsewhere = H5Lvisit(file.get(), H5_INDEX_NAME, H5_ITER_INC, stands_here, nullptr);
+  if (elsewhere < 0) throw FileError(path + ": HDF5 cannot read all of it: the file is damaged");
+  if (elsewhere > 0) throw FileError(path + ": parts of it stand in other files, which are not looked for");
+  return file;
+}
 
 File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
   open(Id(check(H5Fcreate(place_.file().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access().get()))));
   place_.keep();
 }
 
-File::File(Place place, const std::string& source) : place_(std::move(place)), path_(place_.path()) {
+File::File(Place place, const std::string& source, const std::function<void(const std::string&)>& check_copy)
+    : place_(std::move(place)), path_(place_.path()) {
   place_.copy_aside(source);
+  check_copy(place_.file_aside());
   open(Id(check(H5Fopen(place_.file_aside().c_str(), H5F_ACC_RDWR, access().get()))));
   hsize_t size = 0;
   check(H5Fget_filesize(file_.get(), &size));
@@ -262,6 +291,7 @@ Series::Series(File& file, std::string name, const std::vector<hsize_t>& row, co
     make(file, unit, rows.expected);
   else
     cut(file, rows.there);
+  digest_ = base::Digest(rows.digest);
   buffer_.reserve(width_ * rows.buffered);
 }
 
@@ -315,7 +345,37 @@ void Series::append(File& file, const Id& dataset) {
   file.check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
   file.check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, here.get(), there.get(), H5P_DEFAULT, buffer_.data()));
   file.secure_space();  // HDF5 may write structure when its cache is full
+  digest_.add(buffer_);
   buffer_.clear();
+}
+
+std::vector<std::uint64_t> digests_of(const std::string& path, const std::vector<std::string>& names, hsize_t rows) {
+  const auto check = [&](hid_t result) {
+    if (result < 0) throw FileError(path + ": HDF5 cannot read it: the file is damaged");
+    return result;
+  };
+  const Id file = open_whole(path);
+  std::vector<std::uint64_t> digests;
+  std::vector<double> block;
+  for (const std::string& name : names) {
+    const Id data(check(H5Dopen2(file.get(), name.c_str(), H5P_DEFAULT))), there(check(H5Dget_space(data.get())));
+    std::vector<hsize_t> shape(static_cast<std::size_t>(check(H5Sget_simple_extent_ndims(there.get()))));
+    check(H5Sget_simple_extent_dims(there.get(), shape.data(), nullptr));
+    if (shape.empty() || shape[0] < rows) check(H5I_INVALID_HID);
+    const hsize_t width = std::accumulate(shape.begin() + 1, shape.end(), hsize_t{1}, std::multiplies<>());
+    base::Digest digest;
+    std::vector<hsize_t> start(shape.size(), 0), count = shape;
+    for (; start[0] < rows; start[0] += count[0]) {
+      count[0] = std::min(std::max<hsize_t>(kChunkBytes / (sizeof(double) * width), 1), rows - start[0]);
+      block.resize(count[0] * width);
+      const Id here(check(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr)));
+      check(H5Sselect_hyperslab(there.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr));
+      check(H5Dread(data.get(), H5T_NATIVE_DOUBLE, here.get(), there.get(), H5P_DEFAULT, block.data()));
+      digest.add(block);
+    }
+    digests.push_back(digest.value());
+  }
+  return digests;
 }
 
 }  // namespace traverse::results::hdf5

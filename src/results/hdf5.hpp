@@ -4,10 +4,13 @@
 #include <hdf5.h>
 #include <sys/types.h>
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/digest.hpp"
 #include "results/place.hpp"
 
 namespace traverse::results::hdf5 {
@@ -33,6 +36,11 @@ class Id {
   hid_t id_ = H5I_INVALID_HID;
 };
 
+/// Opens a file to read it; not valid where HDF5 cannot. Called within isolated_read.
+Id open_to_read(const std::string& path);
+/// The same where all of it can be reached, and none of it stands in other files; otherwise FileError.
+Id open_whole(const std::string& path);
+
 /// A file being written, by one process, such that a kill at any time leaves the state of the last flush() readable:
 /// the oldest superblock has no mark of an unfinished writer, whoever appends to a Series flushes at once, and the
 /// file's new end is on disk before anything refers to what lies there (HDF5 itself writes it last).
@@ -41,9 +49,9 @@ class File {
   /// Creates the file at its place, replacing an older one. The place is held until the file is closed.
   explicit File(Place place);
 
-  /// Opens a copy of a results file beside its place, which it takes by take_place() and not before. FileError where
-  /// there is none to copy.
-  File(Place place, const std::string& source);
+  /// Opens a copy of a results file beside its place, which it takes by take_place() and not before. `check` is given
+  /// its path before it is opened, and may throw. FileError where there is none to copy.
+  File(Place place, const std::string& source, const std::function<void(const std::string&)>& check);
 
   const std::string& path() const { return path_; }
   /// A copy that has been changed becomes the file at its place, at once.
@@ -115,10 +123,13 @@ class Series {
     std::size_t buffered = 1;  // between two writes
     std::size_t expected = 0;  // in all; 0: not known
     std::size_t there = 0;     // of the dataset that is there, and keeps no more than these; 0: it is made
+    std::uint64_t digest = base::Digest().value();  // of those
   };
   /// `row`: the shape of one sample, empty for a number.
   Series(File& file, std::string name, const std::vector<hsize_t>& row, const std::string& unit, const Rows& rows);
   std::size_t rows() const { return static_cast<std::size_t>(shape_[0]); }  // written so far
+
+  std::uint64_t digest() const { return digest_.value(); }  // of their numbers
 
   void add(double value) { buffer_.push_back(value); }
   /// Adds a row from its first number; returns what follows it.
@@ -137,8 +148,12 @@ class Series {
   std::string name_;
   Id dataset_;                  // where it stays open
   std::vector<hsize_t> shape_;  // of what is written so far
+  base::Digest digest_;         // of the same
   std::size_t width_ = 1;       // numbers a row
   std::vector<double> buffer_;
 };
+
+/// Of the first `rows` of each dataset. FileError where there is no such one. Called within isolated_read.
+std::vector<std::uint64_t> digests_of(const std::string& path, const std::vector<std::string>& names, hsize_t rows);
 
 }  // namespace traverse::results::hdf5

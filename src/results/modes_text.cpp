@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "hdf5.hpp"
+#include "isolated_read.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results {
@@ -22,12 +23,7 @@ struct Values {
 
 class ModesFile {
  public:
-  explicit ModesFile(const std::string& path) : path_(path) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const Id access(H5Pcreate(H5P_FILE_ACCESS));
-    H5Pset_file_locking(access.get(), false, true);
-    file_ = Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
-    if (file_.get() < 0) throw InputError(path + ": HDF5 cannot read the file");
+  explicit ModesFile(const std::string& path) : path_(path), file_(hdf5::open_whole(path)) {
     if (!has("/modes")) refuse("/modes", "there is no such group");
   }
 
@@ -120,9 +116,7 @@ std::string stations(const Values& x, const double* shape, const double* slope, 
   return text;
 }
 
-}  // namespace
-
-std::string modes_as_text(const std::string& path) {
+std::string text_of(const std::string& path) {
   const ModesFile file(path);
   const std::string shapes = "/modes/shape", slopes = "/modes/slope";
   const Values frequency = file.values("/modes/frequency"), x = file.values("/modes/x"), shape = file.values(shapes);
@@ -148,6 +142,12 @@ std::string modes_as_text(const std::string& path) {
             stations(x, shape.numbers.data() + track * modes * points,
                      slope.numbers.empty() ? nullptr : slope.numbers.data() + track * modes * points, axial);
   return text;
+}
+
+}  // namespace
+
+std::string modes_as_text(const std::string& path) {
+  return isolated_read(path, [&] { return text_of(path); });
 }
 
 }  // namespace traverse::results

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <filesystem>
 #include <string_view>
 #include <utility>
 
+#include "base/digest.hpp"
 #include "hdf5.hpp"
+#include "isolated_read.hpp"
 #include "options/data_file.hpp"
 #include "traverse/base/error.hpp"
 #include "traverse/options/input.hpp"
@@ -18,6 +21,7 @@ using Pairs = std::vector<std::pair<std::string, std::string>>;
 
 constexpr const char *entries_table = "/input/options", *sources_table = "/input/sources",
                      *files_table = "/input/files";
+constexpr const char *group = "/input", *digest_name = "digest";
 constexpr std::string_view new_name = "another name than ";
 // Of one run alone.
 std::string opened;
@@ -26,6 +30,20 @@ constexpr std::array own = {"restart", "checkpoint_file", "options_file", "log_v
 bool of_one_run(const std::string& name) { return std::find(own.begin(), own.end(), name) != own.end(); }
 
 std::string without_mount(const std::string& name) { return name.substr(options::mounted(name).size()); }
+
+long digest_of_texts(const std::vector<Pairs>& tables) {
+  base::Digest digest;
+  for (const Pairs& table : tables) {
+    digest.add(std::to_string(table.size()) + ";");
+    for (const auto& [key, value] : table) {
+      for (const std::string* text : {&key, &value}) {
+        digest.add(std::to_string(text->size()) + ":");
+        digest.add(*text);
+      }
+    }
+  }
+  return std::bit_cast<long>(digest.value());
+}
 
 /// Of two columns; empty where there is none.
 Pairs read_pairs(hid_t file, const char* name) {
@@ -45,6 +63,28 @@ Pairs read_pairs(hid_t file, const char* name) {
   return pairs;
 }
 
+struct Texts {
+  Pairs entries, sources, files;
+  void keep(base::Bytes& bytes) { bytes(entries, sources, files); }
+};
+
+/// In a process of its own. FileError where they are not those that were written.
+Texts texts_of(const std::string& path) {
+  const hdf5::Id file = hdf5::open_whole(path);
+  Texts texts;
+  for (const auto& [name, pairs] :
+       {std::pair{entries_table, &texts.entries}, {sources_table, &texts.sources}, {files_table, &texts.files}})
+    *pairs = read_pairs(file.get(), name);
+  const htri_t has_digest = H5Aexists_by_name(file.get(), group, digest_name, H5P_DEFAULT);
+  if (has_digest == 0 || texts.entries.empty()) return texts;  // of older versions
+  long digest = 0;
+  const hdf5::Id attribute(H5Aopen_by_name(file.get(), group, digest_name, H5P_DEFAULT, H5P_DEFAULT));
+  H5Aread(attribute.get(), H5T_NATIVE_LONG, &digest);
+  if (digest != digest_of_texts({texts.entries, texts.sources, texts.files}))
+    throw FileError(path + ": the texts of its scene (/input) are not those that were written: the file is damaged");
+  return texts;
+}
+
 }  // namespace
 
 void record_origin(hdf5::File& file) {
@@ -59,6 +99,7 @@ void record_origin(hdf5::File& file) {
   file.texts(entries_table, entries);
   file.texts(sources_table, sources);
   file.texts(files_table, files);
+  file.attribute(group, digest_name, digest_of_texts({entries, sources, files}));
 }
 
 bool is_hdf5(const std::string& path) {
@@ -68,21 +109,14 @@ bool is_hdf5(const std::string& path) {
 }
 
 std::vector<options::Entry> origin_of(const std::string& path) {
-  const hdf5::Id access(H5Pcreate(H5P_FILE_ACCESS));
-  H5Pset_file_locking(access.get(), false, true);
-  const hdf5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
-  Pairs stored, sources;
-  if (file.get() >= 0) {
-    stored = read_pairs(file.get(), entries_table);
-    sources = read_pairs(file.get(), sources_table);
-  }
+  auto [stored, sources, files] = isolated_read(path, [&] { return texts_of(path); });
   if (stored.empty() || sources.size() != stored.size())
     throw InputError(path +
                      ": holds no texts of its scene, as files of older versions; run the scene's own options files");
   opened = path;
   const std::string prefix = path + ":";
   std::vector<options::InputText> texts;
-  for (auto& [name, text] : read_pairs(file.get(), files_table)) texts.push_back({name, std::move(text)});
+  for (auto& [name, text] : files) texts.push_back({name, std::move(text)});
   options::mount_inputs(prefix, std::move(texts));
   std::vector<options::Entry> entries;
   for (std::size_t i = 0; i < stored.size(); ++i) {

@@ -9,11 +9,26 @@
 #include <cstdio>
 
 #include "hdf5.hpp"
+#include "isolated_read.hpp"
+#include "traverse/base/error.hpp"
 
 namespace traverse::results {
 namespace {
 
 FileId id_of_status(const struct stat& status) { return {true, status.st_dev, status.st_ino}; }
+
+/// In a copy of the process: HDF5 may end by a signal in a file that is damaged.
+bool names_traverse(const std::string& path) {
+  const hdf5::Id content = hdf5::open_to_read(path);
+  if (content.get() < 0 || H5Aexists(content.get(), "program") <= 0) return false;
+  const hdf5::Id attribute(H5Aopen(content.get(), "program", H5P_DEFAULT)), type(H5Aget_type(attribute.get()));
+  if (type.get() < 0 || H5Tis_variable_str(type.get()) <= 0) return false;
+  char* text = nullptr;
+  if (H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return false;
+  const bool ours = std::string_view(text) == "traverse";
+  H5free_memory(text);
+  return ours;
+}
 
 }  // namespace
 
@@ -44,18 +59,11 @@ Descriptor open_ordinary(const std::string& path, bool to_write) {
 }
 
 bool is_results_file(const Descriptor& file) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  const hdf5::Id access(H5Pcreate(H5P_FILE_ACCESS));
-  H5Pset_file_locking(access.get(), false, true);
-  const hdf5::Id content(H5Fopen(file.path().c_str(), H5F_ACC_RDONLY, access.get()));
-  if (content.get() < 0 || H5Aexists(content.get(), "program") <= 0) return false;
-  const hdf5::Id attribute(H5Aopen(content.get(), "program", H5P_DEFAULT)), type(H5Aget_type(attribute.get()));
-  if (type.get() < 0 || H5Tis_variable_str(type.get()) <= 0) return false;
-  char* text = nullptr;
-  if (H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return false;
-  const bool ours = std::string_view(text) == "traverse";
-  H5free_memory(text);
-  return ours;
+  try {
+    return isolated_read(file.path(), [&] { return names_traverse(file.path()); });
+  } catch (const FileError&) {
+    return false;
+  }
 }
 
 bool is_results_file(const std::string& path) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "isolated_read.hpp"
 #include "recorder_file.hpp"
 #include "results/origin.hpp"
 #include "summary.hpp"
@@ -71,8 +72,26 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, 
   });
 }
 
+namespace {
+
+/// FileError where the rows of a copy are not those that were written.
+void check_rows(const std::string& copy, const Recorder::Earlier& earlier, const Layout& layout) {
+  std::vector<std::string> names = {"/time"};
+  for (const Layout::Field& field : layout.fields) names.push_back(field.name);
+  std::vector<std::uint64_t> now;
+  try {
+    now = isolated_read(copy, [&] { return hdf5::digests_of(copy, names, earlier.rows); });
+  } catch (const FileError&) {  // nothing of it can be read
+  }
+  if (now != earlier.digests)
+    throw FileError("the results to take up, " + earlier.file +
+                    ", do not hold the rows that the checkpoint was written with: the file is damaged, or another one");
+}
+
+}  // namespace
+
 Recorder::Impl::Impl(Place place, const Layout& given, const Recorder::Earlier& earlier)
-    : file(std::move(place), earlier.file),
+    : file(std::move(place), earlier.file, [&](const std::string& copy) { check_rows(copy, earlier, given); }),
       layout(given),
       width(given.width()),
       block_rows(rows_of_block(sizeof(double) * (1 + width))),
@@ -80,7 +99,7 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Recorder::Earlier& 
   attempt([&] {
     for (const char* name : summary_at_root) file.forget_attribute("/", name);
     file.keep_only(objects);
-    series = create_series(earlier.rows);
+    series = create_series(earlier.rows, earlier.digests);
     file.take_place();
   });
 }
@@ -97,12 +116,14 @@ Recorder::Impl::~Impl() {
   }
 }
 
-std::vector<Series> Recorder::Impl::create_series(std::size_t there) {
+std::vector<Series> Recorder::Impl::create_series(std::size_t there, const std::vector<std::uint64_t>& digests) {
   std::vector<Series> created;
-  const Series::Rows rows = {block_rows, layout.rows, there};
+  Series::Rows rows = {block_rows, layout.rows, there};
+  if (there > 0) rows.digest = digests.front();
   created.emplace_back(file, "/time", std::vector<hsize_t>(), "s", rows);
   for (const auto& field : layout.fields) {
     const std::vector<hsize_t> row(field.row.begin(), field.row.end());
+    if (there > 0) rows.digest = digests[created.size()];
     created.emplace_back(file, field.name, row, field.unit, rows);
   }
   return created;
@@ -111,7 +132,7 @@ std::vector<Series> Recorder::Impl::create_series(std::size_t there) {
 void Recorder::Impl::add(const Sample& sample) {
   check_fit(sample);
   if (series.empty()) {
-    series = create_series(0);
+    series = create_series(0, {});
     if (layout.interval > 0.0) file.attribute("/time", "interval", layout.interval);
     file.flush();  // from here on the file's structure stays, only lengths grow
   }
@@ -194,7 +215,9 @@ Recorder::Earlier Recorder::secure() {
     impl_->flush();
     if (impl_->objects.empty()) impl_->objects = impl_->file.objects();
   });
-  return {impl_->file.path(), impl_->series.front().rows(), impl_->objects};
+  std::vector<std::uint64_t> digests;
+  for (const Series& one : impl_->series) digests.push_back(one.digest());
+  return {impl_->file.path(), impl_->series.front().rows(), impl_->objects, digests};
 }
 
 Recorder::Recorder(Recorder&& other) noexcept = default;

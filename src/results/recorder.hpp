@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -142,12 +143,13 @@ class Recorder {
            const std::vector<std::pair<std::string, std::string>>& options);
   /// The results of a run that goes on.
   struct Earlier {
-    std::string file;                  // empty: none
-    std::size_t rows = 0;              // of its series
-    std::vector<std::string> objects;  // all that the file held by then
+    std::string file;                    // empty: none
+    std::size_t rows = 0;                // of its series
+    std::vector<std::string> objects;    // all that the file held by then
+    std::vector<std::uint64_t> digests;  // of the rows of /time and of each field
   };
   /// Takes up the results of an earlier run as they were then, under the same layout: a copy takes its place when it
-  /// is complete. FileError where they cannot be those.
+  /// is complete. FileError where they cannot be those, or have been changed since.
   Recorder(MPI_Comm comm, Place place, const Layout& layout, const Earlier& earlier);
   Recorder(Recorder&& other) noexcept;
   ~Recorder();  // flushes what is there; never throws

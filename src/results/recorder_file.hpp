@@ -38,8 +38,8 @@ struct Recorder::Impl {
   bool closed = false;
 
  private:
-  /// there: rows that they have already.
-  std::vector<hdf5::Series> create_series(std::size_t there);
+  /// there: rows that they have already, with the digests of these.
+  std::vector<hdf5::Series> create_series(std::size_t there, const std::vector<std::uint64_t>& digests);
   void check_fit(const Sample& sample) const;
 };
 

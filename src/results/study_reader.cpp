@@ -1,10 +1,15 @@
 #include "results/study_reader.hpp"
 
+#include <fmt/format.h>
 #include <hdf5.h>
 
 #include <filesystem>
+#include <span>
 
+#include "base/digest.hpp"
 #include "hdf5.hpp"
+#include "isolated_read.hpp"
+#include "results/study_table.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::results {
@@ -14,12 +19,7 @@ using hdf5::Id;
 
 class Reading {
  public:
-  explicit Reading(const std::string& path) : path_(path) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const Id access(check(H5Pcreate(H5P_FILE_ACCESS)));
-    check(H5Pset_file_locking(access.get(), false, true));  // the place is locked, by this program
-    file_ = Id(check(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get())));
-  }
+  explicit Reading(const std::string& path) : path_(path), file_(hdf5::open_whole(path)) {}
 
   bool has(const char* name) const { return H5Lexists(file_.get(), name, H5P_DEFAULT) > 0; }
 
@@ -88,19 +88,61 @@ class Reading {
   Id file_;
 };
 
-}  // namespace
+template <class Value>
+void keep_map(base::Bytes& bytes, std::map<std::string, Value>& map) {
+  std::vector<std::pair<std::string, Value>> rows(map.begin(), map.end());
+  bytes(rows);
+  map = {rows.begin(), rows.end()};
+}
 
-StoredStudy read_study(const std::string& path) {
+StoredStudy study_of(const std::string& path) {
   StoredStudy study;
-  std::error_code ignored;
-  if (path.empty() || !std::filesystem::exists(path, ignored) || std::filesystem::file_size(path, ignored) == 0)
-    return study;
   const Reading file(path);
   if (!file.has("/study") || !file.has("/options")) return study;
   study.options = file.pairs("/options");
   for (const std::string& name : file.datasets_of("/study")) study.datasets[name] = file.numbers("/study/" + name);
   file.attributes_of("/study", study);
+  const auto digests = study.datasets.find(row_digest);  // older versions have none
+  const auto finished = study.datasets.find("finished");
+  if (digests == study.datasets.end() || finished == study.datasets.end()) return study;
+  const std::vector<double> now = row_digests(study.datasets);
+  for (std::size_t run = 0; run < now.size(); ++run)
+    if (finished->second[run] == 1.0 && (run >= digests->second.size() || digests->second[run] != now[run]))
+      throw FileError(
+          fmt::format("the results of its run {} are not those that were written: the file is damaged", run));
   return study;
+}
+
+}  // namespace
+
+void StoredStudy::keep(base::Bytes& bytes) {
+  keep_map(bytes, options);
+  keep_map(bytes, datasets);
+  keep_map(bytes, texts);
+  keep_map(bytes, numbers);
+}
+
+std::vector<double> row_digests(const std::map<std::string, std::vector<double>>& datasets) {
+  const std::size_t runs = datasets.at("finished").size();
+  std::vector<double> digests;
+  for (std::size_t run = 0; run < runs; ++run) {
+    base::Digest digest;
+    for (const StudyColumn& column : study_columns) {
+      const auto found = datasets.find(column.name);
+      if (found == datasets.end()) continue;
+      const std::size_t width = found->second.size() / runs;
+      digest.add(std::span<const double>(found->second).subspan(run * width, width));
+    }
+    digests.push_back(static_cast<double>(digest.value() >> 11));
+  }
+  return digests;
+}
+
+StoredStudy read_study(const std::string& path) {
+  std::error_code ignored;
+  if (path.empty() || !std::filesystem::exists(path, ignored) || std::filesystem::file_size(path, ignored) == 0)
+    return {};
+  return isolated_read(path, [&] { return study_of(path); });
 }
 
 }  // namespace traverse::results

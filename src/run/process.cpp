@@ -28,10 +28,12 @@ void print_notes(MPI_Comm comm, const std::vector<std::string>& notes) {
   if (rank == 0) results::print_modelled(notes);
 }
 
+void complain(const Error& error) { (void)std::fputs(fmt::format("traverse: {}\n", error.what()).c_str(), stderr); }
+
 void leave_together(MPI_Comm comm, const Error& error) {
   int ranks = 1;
   MPI_Comm_size(comm, &ranks);
-  fmt::print(stderr, "traverse: {}\n", error.what());
+  complain(error);
   if (ranks > 1) MPI_Abort(comm, error.status());
   std::fflush(nullptr);
   std::_Exit(error.status());  // HDF5 may not survive closing what it could not write

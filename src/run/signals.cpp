@@ -1,10 +1,14 @@
 #include "run/signals.hpp"
 
 #include <signal.h>
+#include <sys/resource.h>
+#include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstring>
 
 #include "results/place.hpp"
@@ -19,11 +23,12 @@ struct Taken {
   bool ignored;  // when the program started
 };
 
-std::array<Taken, 6> signals = {{{SIGINT, "2", false},
+std::array<Taken, 7> signals = {{{SIGINT, "2", false},
                                  {SIGTERM, "15", false},
                                  {SIGHUP, "1", false},
                                  {SIGQUIT, "3", false},
                                  {SIGPIPE, "13", false},
+                                 {SIGXCPU, "24", false},
                                  {SIGUSR1, "10", false}}};
 
 std::atomic<int> caught{0}, noting{0};
@@ -49,7 +54,8 @@ void take(int number) {
     asked = true;
     return;
   }
-  if (noting == 0) end_at_once(number);
+  const bool again = number == SIGXCPU && caught == number;  // the next one kills
+  if (noting == 0 || again) end_at_once(number);
   caught = number;
 }
 
@@ -70,6 +76,24 @@ void take_signals() {
     sigemptyset(&action.sa_mask);
     sigaction(taken.number, &action, nullptr);
   }
+  struct sigaction nothing = {};
+  nothing.sa_handler = SIG_IGN;
+  sigaction(SIGXFSZ, &nothing, nullptr);
+}
+
+void heed_cpu_limit() {
+  struct rlimit limit = {};
+  if (getrlimit(RLIMIT_CPU, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return;
+  const auto seconds = static_cast<double>(limit.rlim_cur), before = seconds - std::min(1.0, 0.3 * seconds);
+  struct sigevent event = {};
+  event.sigev_notify = SIGEV_SIGNAL;
+  event.sigev_signo = SIGXCPU;
+  timer_t timer = {};
+  if (timer_create(CLOCK_PROCESS_CPUTIME_ID, &event, &timer) != 0) return;
+  struct itimerspec at = {};
+  at.it_value.tv_sec = static_cast<time_t>(before);
+  at.it_value.tv_nsec = 1 + static_cast<long>(1e9 * (before - std::floor(before)));
+  timer_settime(timer, TIMER_ABSTIME, &at, nullptr);
 }
 
 void speak_of_signals(bool speaks) { speaking = speaks; }

@@ -8,9 +8,11 @@ namespace traverse::app {
 
 /// Those that are ignored (nohup) stay so. Called before libraries are set up: UCX takes SIGHUP while it is loaded.
 void look_at_ignored_signals();
-/// Takes over SIGINT, SIGTERM, SIGHUP, SIGQUIT and SIGPIPE, and SIGUSR1, which ends nothing: at the start, and again
-/// after a library has set handlers of its own.
+/// Takes over SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE and SIGXCPU, and SIGUSR1, which ends nothing: at the start, and
+/// again after a library has set handlers of its own. SIGXFSZ is ignored: the file that may not grow says so.
 void take_signals();
+/// A limit of the processor's time may kill without a word (ulimit -t): SIGXCPU comes a little before it.
+void heed_cpu_limit();
 /// Only one rank of several tells the user of a signal.
 void speak_of_signals(bool speaks);
 

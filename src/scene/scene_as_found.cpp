@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "scene_parts.hpp"
 
@@ -10,6 +11,10 @@ namespace {
 
 using options::Options;
 
+constexpr double rounding = 1e-9;  // m, of stations
+
+bool is_nearly(double x, double other) { return std::abs(x - other) < rounding; }
+
 /// Cracks of a width: EI is less there, and nodes stand at both ends whatever the mesh.
 void read_weak_stretches(const Options& o, const std::vector<double>& x, beam::BeamModel& beam) {
   if (!o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_width", "needs beam_cracks_EI_factor");
@@ -17,7 +22,9 @@ void read_weak_stretches(const Options& o, const std::vector<double>& x, beam::B
   const std::vector<double> factor = o.numbers("beam_cracks_EI_factor", x.size(), "as many as stations");
   double before = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const double from = x[i] - 0.5 * width[i], to = x[i] + 0.5 * width[i];
+    double from = as_division(beam, x[i] - 0.5 * width[i]);
+    const double to = as_division(beam, x[i] + 0.5 * width[i]);
+    if (is_nearly(from, before)) from = before;
     if (from < before || to > beam.length())
       o.refuse("beam_cracks_width",
                fmt::format("the crack from {:g} to {:g} m is not within the beam, or meets the one "
@@ -63,6 +70,16 @@ void yield_vertically(const Options& o, const std::vector<double>& stiffness, co
 
 }  // namespace
 
+double as_division(const beam::BeamModel& beam, double x) {
+  double end = beam.start;
+  if (is_nearly(x, end)) return end;
+  for (const double span : beam.spans) {
+    end += span;
+    if (is_nearly(x, end)) return end;
+  }
+  return x;
+}
+
 void read_cracks(const Options& o, beam::BeamModel& beam) {
   if (!o.has("beam_cracks_x")) {
     if (const options::Entry* entry = o.first_with_prefix("beam_cracks"))
@@ -75,7 +92,7 @@ void read_cracks(const Options& o, beam::BeamModel& beam) {
   if (wide) return read_weak_stretches(o, x, beam);
   if (o.has("beam_cracks_EI_factor")) o.refuse("beam_cracks_EI_factor", "needs beam_cracks_width");
   const std::vector<double> k = o.numbers("beam_cracks_k", x.size(), "as many as stations");
-  for (std::size_t i = 0; i < x.size(); ++i) beam.cracks.push_back({x[i], k[i]});
+  for (std::size_t i = 0; i < x.size(); ++i) beam.cracks.push_back({as_division(beam, x[i]), k[i]});
 }
 
 void read_bearings(const Options& o, beam::BeamModel& beam) {

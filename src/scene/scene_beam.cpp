@@ -57,7 +57,7 @@ void read_joints(const Options& o, beam::BeamModel& beam) {
   const auto words = o.texts("beam_continuity", std::max<std::size_t>(inner, 1), "one for every inner span end");
   for (const std::string& word : words) beam.joints.push_back(joint_of(word));
   if (!o.has("beam_hinges")) return;
-  beam.hinges = o.numbers("beam_hinges");
+  for (const double x : o.numbers("beam_hinges")) beam.hinges.push_back(as_division(beam, x));
   std::sort(beam.hinges.begin(), beam.hinges.end());
 }
 

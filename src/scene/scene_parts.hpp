@@ -59,6 +59,8 @@ bool read_given_bridge(const options::Options& options, Scene& scene);
 void read_modes_of_given(const options::Options& options, Scene& scene);
 /// Of a beam whose spans and joints are known.
 beam::Foundation read_foundation(const options::Options& options, const beam::BeamModel& beam);
+/// x, or the end of a span that it is but for rounding; of a beam whose spans are known.
+double as_division(const beam::BeamModel& beam, double x);
 /// Cracks as springs, or as stretches of less EI; of a beam whose EI is known.
 void read_cracks(const options::Options& options, beam::BeamModel& beam);
 /// Supports that yield or have settled; of a beam whose supports and foundation are known.

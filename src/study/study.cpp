@@ -267,9 +267,9 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   std::vector<std::string> notes;
   SweepChoice choice{scenes.base(scenes.extreme_bases().front()), {}};
   KeptChoice kept(comm, given);
-  if (!kept.read(notes, choice.model, ChosenOf{choice.scene})) {
+  if (!kept.read(notes, choice.model, choice.scene)) {
     choice = choose_for_study(scenes, notes);
-    if (choice.model.accuracy > 0.0) kept.write(notes, choice.model, ChosenOf{choice.scene});
+    if (choice.model.accuracy > 0.0) kept.write(notes, choice.model, choice.scene);
   }
   scenes.choose(choice.scene);
   const CaseRunner& first = *scenes.runner(0, &notes).runs;

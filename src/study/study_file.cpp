@@ -148,6 +148,13 @@ results::Layout layout_of(const Scene& scene) {
   return layout;
 }
 
+results::Recorder::Dataset digests_of(const results::StudyTable& table) {
+  return {std::string("/study/") + results::row_digest,
+          {table.runs()},
+          results::row_digests(stored_of(table).datasets),
+          "1"};
+}
+
 /// A copy of an interrupted study, as long as the file that replaces it is not on the disk.
 class Copy {
  public:
@@ -178,6 +185,7 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
         record_model(scene, notes, made);
         made.datasets(table.coordinates());
         made.datasets(table.results());
+        made.datasets({digests_of(table)});
         made.datasets({table.finished()});
         copy.remove();
         return made;
@@ -196,6 +204,7 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
 void StudyFile::write() {
   const auto begin = std::chrono::steady_clock::now();
   recorder_.rewrite(table_.results());
+  recorder_.rewrite({digests_of(table_)});
   recorder_.rewrite({table_.finished()});  // once the rest is on the disk
   written_ = std::chrono::steady_clock::now();
   cost_ = std::chrono::duration<double>(written_ - begin).count();

@@ -144,9 +144,9 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   std::vector<std::string> notes;
   SweepChoice choice{given, {}};
   KeptChoice kept(comm, given);
-  if (!kept.read(notes, choice.model, ChosenOf{choice.scene})) {
+  if (!kept.read(notes, choice.model, choice.scene)) {
     choice = choose_for_sweep(given, notes);
-    if (choice.model.accuracy > 0.0) kept.write(notes, choice.model, ChosenOf{choice.scene});
+    if (choice.model.accuracy > 0.0) kept.write(notes, choice.model, choice.scene);
   }
   const Scene& scene = choice.scene;
   CaseRunner runner(scene, notes);

@@ -18,7 +18,7 @@ sys.path.insert(0, str(SOURCE / "benchmarks"))
 WITH_PROGRAMS = {"step_parts": "step_parts_benchmark", "ranks": "step_parts_benchmark",
                  "scaling": "step_parts_benchmark"}
 OF_OTHERS = {"peers_here"}  # runs no program of ours
-PARTS = {"runs", "scene_texts", "work_precision_scenes", "beam_solver_picture"}  # imported by the others, or draws a table that is given
+PARTS = {"runs", "scene_texts", "work_precision_scenes", "beam_solver_picture", "mutated_files"}  # imported by the others, or draws a table that is given
 
 
 class Scripts(InAFolder):

@@ -119,7 +119,7 @@ Outcome Child::wait(double seconds) {
   }
   if (WIFEXITED(state_)) outcome.status = WEXITSTATUS(state_);
   if (WIFSIGNALED(state_)) outcome.signal = WTERMSIG(state_);
-  outcome.timed_out |= outcome.signal == SIGXCPU;
+  outcome.timed_out |= outcome.signal == SIGXCPU || outcome.status == 128 + SIGXCPU;
   outcome.out = written("out");
   outcome.err = written("err");
   return outcome;
