@@ -178,14 +178,18 @@ bool System::stage_by_passes(const StageTime& at) {
   }
   const auto respond = [&] {
     passed_ = v_;
-    if (compliance != nullptr && !passed_.empty()) compliance->respond(train_->loads(), passed_);
+    if (compliance != nullptr && !passed_.empty()) compliance->respond(train_->find_loads(), passed_);
   };
   do {
     respond();
     if (!train_->pass(passed_)) return false;
   } while (!train_->settled());
-  respond();
-  for (std::size_t i = 0; i < passed_.size(); ++i) w_[i] += at.shift * (passed_[i] - v_[i]);
+  if (stage_ + 1 < motion_->method.stages.size()) {
+    (void)train_->find_loads();
+  } else {  // where the step ends rates are seen too
+    respond();
+    for (std::size_t i = 0; i < passed_.size(); ++i) w_[i] += at.shift * (passed_[i] - v_[i]);
+  }
   train_->take(w_);
   return true;
 }

@@ -478,7 +478,7 @@ void LinearTrain::set_compliance(const structure::ElementCompliance& compliance)
     }
 }
 
-const std::vector<double>& LinearTrain::loads() {
+const std::vector<double>& LinearTrain::find_loads() {
   TRAVERSE_LANES_CALL(load_by_train(task_));
   std::copy_n(load_.begin(), loads_.size(), loads_.begin());
   return loads_;

@@ -42,8 +42,9 @@ class LinearTrain {
   /// How these yield in the stage (displacement per force); before the first pass of a stage whose elements or matrices
   /// are others than before.
   void set_compliance(const structure::ElementCompliance& compliance);
-  /// The contacts' forces on the elements, 2 per_node each, N and N m.
-  const std::vector<double>& loads();
+  /// The contacts' forces on the elements, 2 per_node each, N and N m: as they are now, and as they were found last.
+  const std::vector<double>& find_loads();
+  const std::vector<double>& loads() const { return loads_; }
   /// The forces with the elements' unknowns at v (2 per_node an element). False where a wheel has fallen below the
   /// surface.
   bool pass(const std::vector<double>& v);

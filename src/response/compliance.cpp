@@ -1,5 +1,6 @@
 #include "response/compliance.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,18 +17,15 @@ constexpr int short_part = 100;                            // columns: statics l
 /// Elements with m unknowns.
 template <int m>
 void respond_by(const ElementCompliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
+  using Vector = Eigen::Matrix<double, m, 1>;
   const int elements = static_cast<int>(loads.size()) / m;
   for (int b = 0; b < elements; ++b) {
-    const double* f = &loads[static_cast<std::size_t>(b) * m];
-    if (std::all_of(f, f + m, [](double load) { return load == 0.0; })) continue;
+    const Eigen::Map<const Vector> f(&loads[static_cast<std::size_t>(b) * m]);
+    if (f.isZero(0.0)) continue;
     const ElementCompliance::Response& reach = compliance.response(b);
-    for (int a = reach.first; a < reach.last; ++a) {
-      const double* block = compliance.block(a, b);
-      std::array<double, m> sum{};
-      for (int j = 0; j < m; ++j)
-        for (int i = 0; i < m; ++i) sum[i] += block[i + j * m] * f[j];
-      for (int i = 0; i < m; ++i) v[static_cast<std::size_t>(a) * m + i] += sum[i];
-    }
+    for (int a = reach.first; a < reach.last; ++a)
+      Eigen::Map<Vector>(&v[static_cast<std::size_t>(a) * m]) +=
+          Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;
   }
 }
 
