@@ -178,19 +178,19 @@ bool System::stage_by_passes(const StageTime& at) {
   }
   const auto respond = [&] {
     passed_ = v_;
-    if (compliance != nullptr && !passed_.empty()) compliance->respond(train_->find_loads(), passed_);
+    if (compliance != nullptr && !passed_.empty()) compliance->respond(train_->compute_loads(), passed_);
   };
   do {
     respond();
-    if (!train_->pass(passed_)) return false;
-  } while (!train_->settled());
+    if (!train_->update_forces(passed_)) return false;
+  } while (!train_->converged());
   if (stage_ + 1 < motion_->method.stages.size()) {
-    (void)train_->find_loads();
+    (void)train_->compute_loads();
   } else {  // where the step ends rates are seen too
     respond();
     for (std::size_t i = 0; i < passed_.size(); ++i) w_[i] += at.shift * (passed_[i] - v_[i]);
   }
-  train_->take(w_);
+  train_->end_stage(w_);
   return true;
 }
 
@@ -233,7 +233,7 @@ void System::finish_step(double* y) {
 void System::finish_passes() {
   Motion& m = *motion_;
   train_->finish_step(m.p.data(), m.pd.data(), m.pdd[0].data());
-  train_->tell(fleet_);
+  train_->copy_contacts_to(fleet_);
   std::copy(m.p.begin(), m.p.end(), p_.begin());
   if (!train_->ends_with_stage()) signs_ |= train::VehicleShare::moved;
 }

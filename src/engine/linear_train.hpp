@@ -3,6 +3,7 @@
 // and what the contacts' iteration begins with; the fleet is told what is seen between steps.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,25 +43,25 @@ class LinearTrain {
   /// How these yield in the stage (displacement per force); before the first pass of a stage whose elements or matrices
   /// are others than before.
   void set_compliance(const structure::ElementCompliance& compliance);
-  /// The contacts' forces on the elements, 2 per_node each, N and N m: as they are now, and as they were found last.
-  const std::vector<double>& find_loads();
+  /// The contacts' forces on the elements, 2 per_node each, N and N m: as they are now, and as computed last.
+  const std::vector<double>& compute_loads();
   const std::vector<double>& loads() const { return loads_; }
-  /// The forces with the elements' unknowns at v (2 per_node an element). False where a wheel has fallen below the
-  /// surface.
-  bool pass(const std::vector<double>& v);
+  /// One pass: all forces anew with the elements' unknowns at v (2 per_node an element). False where a wheel has fallen
+  /// below the surface, or where the passes do not converge.
+  bool update_forces(const std::vector<double>& v);
   /// Whether forces will change by no more than the tolerance.
-  bool settled() const { return settled_; }
+  bool converged() const { return converged_; }
   /// Ends the stage; w: the elements' rates then.
-  void take(const std::vector<double>& w);
-  /// W lost in dampers and given by the drives in the stage that was taken last.
+  void end_stage(const std::vector<double>& w);
+  /// W lost in dampers and given by the drives in the stage that was ended last.
   double lost() const;
   double given() const;
-  /// p'' of the stage that was taken last.
+  /// p'' of the stage that was ended last.
   void accelerations(double* pdd) const { write(task_.a[stage_ + 1], pdd); }
   /// p, p' and p'' at the end of the step.
   void finish_step(double* p, double* pd, double* pdd);
   /// Wheels and contacts as they are at the end of the step.
-  void tell(train::Fleet& fleet) const;
+  void copy_contacts_to(train::Fleet& fleet) const;
   /// Whether the last stage is where the step ends.
   bool ends_with_stage() const { return ends_with_stage_; }
 
@@ -68,6 +69,9 @@ class LinearTrain {
   void keep(base::Bytes& bytes);
 
  private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  static constexpr double no_surface = -1e3;  // m: height of what is under a wheel with no surface
+
   struct Place {  // of a vehicle among the blocks
     std::size_t block = 0;
     int lane = 0;
@@ -79,7 +83,6 @@ class LinearTrain {
   void make_rows(const train::Fleet& fleet);
   void find_borders(const train::Fleet& fleet);
   void place_wheel(const train::WheelContact& c, std::size_t number);
-  void yield_of(const structure::ElementCompliance& compliance, SurfacePatch& patch, std::size_t number) const;
   bool look_up_profiles(double within);
   double* add(std::size_t rows);
   int* add_integers(std::size_t rows);
@@ -89,7 +92,6 @@ class LinearTrain {
   std::vector<VehicleBlock> blocks_;
   std::vector<Place> places_;                      // of every vehicle
   std::vector<std::size_t> coordinate_;            // of every entry of p: its number in arrays of coordinates
-  std::vector<double> shift_;                      // of every entry of p: x = p + shift
   std::vector<std::size_t> entry_, wheel_;         // of every wheel: in Fleet::wheels; its number in arrays of wheels
   std::vector<const track::Profile*> profile_;     // that it runs on; null: level
   std::vector<std::unique_ptr<Aligned>> numbers_;  // what the arrays of the task are
@@ -110,7 +112,7 @@ class LinearTrain {
   std::vector<double> nodal_, nodal_rate_, load_, loads_;
   double change_ = 0.0, contraction_ = 1.0;
   int passes_ = 0;
-  bool settled_ = false, placed_ = false;
+  bool converged_ = false, placed_ = false;
 };
 
 }  // namespace traverse::engine

@@ -16,12 +16,12 @@ bool train_in_place(const TrainTask& task) { return in_place(task); }
 void load_by_train(const TrainTask& task) {
   flat(task) ? load_structure<Surface::flat>(task) : load_structure<Surface::general>(task);
 }
-double renew_train_contacts(const TrainTask& task) {
-  return flat(task) ? renew_contacts<Surface::flat>(task) : renew_contacts<Surface::general>(task);
+double update_train_forces(const TrainTask& task) {
+  return flat(task) ? update_forces<Surface::flat>(task) : update_forces<Surface::general>(task);
 }
-void take_train_forces(const TrainTask& task, int stage, bool kinematics) {
-  flat(task) ? take_forces<Surface::flat>(task, stage, kinematics)
-             : take_forces<Surface::general>(task, stage, kinematics);
+void end_train_stage(const TrainTask& task, int stage, bool kinematics) {
+  flat(task) ? end_stage_of_train<Surface::flat>(task, stage, kinematics)
+             : end_stage_of_train<Surface::general>(task, stage, kinematics);
 }
 void finish_train_step(const TrainTask& task) { finish_step(task); }
 

@@ -59,7 +59,7 @@ struct alignas(8 * block_lanes) StageRows {
 
 struct TrainTask {
   int stages = 0, known = 0;
-  double onward = 0.0;  // of the time between the last two stages: from the last one to the coming one
+  double extrapolation = 0.0;  // of the time between the last two stages: from the last one to the coming one
   StageRows stage[most_stages], end;
   double a_next[most_kept] = {};
 

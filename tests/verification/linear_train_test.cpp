@@ -26,11 +26,9 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Case{"several_spans", {}}, Case{"one_solve_a_step", {{"ts_type", "genalpha"}}},
         Case{"to_the_left", {{"train_speed", "-83.333"}}},
-        Case{"separate_spans",
-             {{"beam_continuity",
-               "simply_supported"}}},  // at this speed no stage has a wheel just at a node, where the slope jumps
-        Case{"shear", {{"beam_GA", "1e9"}, {"train_speed", "81.7"}}},
-        Case{"raised_surface", {{"beam_surface_height", "1.5"}}},
+        Case{"separate_spans", {{"beam_continuity", "simply_supported"}}},  // where a wheel passes the end of a beam
+                                                                            // that shears its slope jumps within a step
+        Case{"shear", {{"beam_GA", "1e9"}}, 1e-7}, Case{"raised_surface", {{"beam_surface_height", "1.5"}}},
         Case{"along_the_beam", {{"beam_surface_height", "1.5"}, {"beam_EA", "1e10"}, {"model_axial", "true"}}},
         Case{"elements_that_bend_inside", {{"contact_seats", "true"}}},
         Case{"rough_track", {{"track_profile", "german_low"}, {"track_seed", "3"}, {"ts_dt", "2e-4"}}, 1e-6},
