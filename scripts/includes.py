@@ -15,7 +15,7 @@ import sys
 
 # From the top layer down: a room includes headers of rooms that stand behind it, never before it.
 # The options stand above what they describe: their tables take the names of joints and foundations from there.
-LAYERS = ["app", "check", "study", "accuracy", "run", "scene", "norm", "rail", "results", "lanes", "integrate", "coupling", "structure", "response",
+LAYERS = ["app", "check", "study", "accuracy", "run", "scene", "norm", "rail", "results", "lanes", "integrate", "coupling", "engine", "structure", "response",
           "train", "options", "contact", "multibody", "track", "modes", "recovery", "beam", "solve", "methods", "base"]
 WITHOUT_PETSC = {"multibody", "contact", "track"}
 GREATEST_SHARE = 0.10  # of all lines, in one room

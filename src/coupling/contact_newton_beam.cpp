@@ -2,29 +2,6 @@
 #include "coupling/contact_newton.hpp"
 
 namespace traverse::coupling {
-namespace {
-
-// v += the beam's response to loads on the elements.
-template <int m>
-void respond(const structure::ElementCompliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
-  using Vector = Eigen::Matrix<double, m, 1>;
-  const int elements = static_cast<int>(loads.size()) / m;
-  for (int b = 0; b < elements; ++b) {
-    const Eigen::Map<const Vector> f(&loads[static_cast<std::size_t>(b) * m]);
-    if (f.isZero(0.0)) continue;
-    const structure::ElementCompliance::Response& reach = compliance.response(b);
-    for (int a = reach.first; a < reach.last; ++a)
-      Eigen::Map<Vector>(&v[static_cast<std::size_t>(a) * m]) +=
-          Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;
-  }
-}
-
-void respond(const StageData& s, const std::vector<double>& loads, std::vector<double>& v) {
-  s.per_node == 2 ? respond<4>(*s.compliance, loads, v) : respond<6>(*s.compliance, loads, v);
-}
-
-}  // namespace
-
 void ContactNewton::beam_field(const StageData& s, const train::Fleet& fleet, Loads loads) {
   if (loads == Loads::none || s.compliance == nullptr || fleet.elements().empty()) {
     v_ = *s.v0;
@@ -37,7 +14,7 @@ void ContactNewton::beam_field(const StageData& s, const train::Fleet& fleet, Lo
     fleet.element_loads(s.per_node, loads_);
   v_.assign(s.v0->size(), 0.0);
   w_.resize(v_.size());
-  respond(s, loads_, v_);
+  s.compliance->respond(loads_, v_);
   for (std::size_t i = 0; i < v_.size(); ++i) {
     w_[i] = (*s.w0)[i] + s.shift * v_[i];
     v_[i] += (*s.v0)[i];
@@ -52,7 +29,7 @@ void ContactNewton::follow_loads(const StageData& s, train::Fleet& fleet) {
   fleet.element_loads(s.per_node, loads_);
   for (std::size_t i = 0; i < loads_.size(); ++i) before_[i] = loads_[i] - before_[i];
   v_.assign(v_.size(), 0.0);
-  respond(s, before_, v_);
+  s.compliance->respond(before_, v_);
   for (train::WheelContact& c : fleet.wheels) {
     if (c.slot() < 0 || fleet.vehicles[c.vehicle].rests) continue;
     const double* z = &v_[m * static_cast<std::size_t>(c.slot())];

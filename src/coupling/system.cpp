@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/linear_train.hpp"
 #include "structure/element_structure.hpp"
 
 namespace traverse::coupling {
@@ -52,6 +53,8 @@ System::System(MPI_Comm comm, std::unique_ptr<structure::Structure> structure, S
   begin_step(0.0, 0.0);
   if (structure_) expect_weights();
 }
+
+System::~System() = default;
 
 void System::expect_weights() {
   double load = 0.0, greatest = 0.0;
@@ -222,9 +225,11 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Ter
 System::Solution System::solve_coupled(const StageTime& at, Terms terms) {
   for (;;) {
     if (structure_) structure_->solve_free();
-    if (terms == Terms::all && !stage_of_fleet(at)) return Solution::fleet_unsettled;
+    if (terms == Terms::all && !(by_passes_ ? stage_by_passes(at) : stage_of_fleet(at)))
+      return Solution::fleet_unsettled;
     if (!structure_) return Solution::found;
-    if (terms == Terms::all && !fleet_.elements().empty()) structure_->take(newton_.element_loads());
+    if (terms == Terms::all && !fleet_.elements().empty())
+      structure_->take(by_passes_ ? train_->loads() : newton_.element_loads());
     const structure::Structure::Verdict verdict = structure_->judge();
     if (verdict == structure::Structure::Verdict::settled) return Solution::found;
     if (verdict == structure::Structure::Verdict::failed) return Solution::structure_unsettled;

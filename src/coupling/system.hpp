@@ -15,6 +15,7 @@
 //       solve_coupled      Structure::solve_free, stage_of_fleet, Structure::take; again until Structure::judge agrees
 //         stage_of_fleet   wheels placed on elements, Structure::gather_free and yield, ContactNewton::solve
 //       Structure::end_stage
+//     (stage_by_passes in place of stage_of_fleet where all vehicles are linear: engine/linear_train.hpp)
 //     finish_step          Structure::finish_step, p and p' of all vehicles on all ranks
 //   accept                 Structure::complete_step, contacts lost and gained, worn coordinates chosen anew
 //   observe                forces, accelerations, energies: of samples alone
@@ -44,6 +45,10 @@
 #include "train/separations.hpp"
 #include "train/vehicle_share.hpp"
 #include "train/wheel_paths.hpp"
+
+namespace traverse::engine {
+class LinearTrain;
+}
 
 namespace traverse::coupling {
 
@@ -100,6 +105,7 @@ class System {
   /// The same with a structure by_elements.
   System(MPI_Comm comm, const beam::Beam* beam, const SystemInput& input)
       : System(comm, by_elements(beam, input), input) {}
+  ~System();
 
   MPI_Comm comm() const { return comm_; }
   const structure::Structure* structure() const { return structure_.get(); }  // null: none
@@ -294,6 +300,10 @@ class System {
   Solution settle_slowly();
   Solution solve_coupled(const StageTime& at, Terms terms);
   bool stage_of_fleet(const StageTime& at);
+  bool stage_by_passes(const StageTime& at);
+  bool take_stages(double t, const double* v, const double* w);
+  void begin_passes();
+  void finish_passes();
   bool stage_of_motion(double t, std::size_t stage, const double* v, const double* w);
   const std::vector<structure::Reach>& loaded(double t, double h);
   void set_step(double h);
@@ -338,11 +348,15 @@ class System {
   std::vector<double> p_still_, pd_still_, x_;  // p and p' at zero acceleration, and the stage's change of p
   std::vector<double> evaluated_;               // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
-  unsigned signs_ = 0;         // VehicleShare's of that state or, after a step, of its end
-  std::vector<double> v_, w_;  // of elements, 2*per_node each
+  unsigned signs_ = 0;          // VehicleShare's of that state or, after a step, of its end
+  std::vector<double> v_, w_;   // of elements, 2*per_node each
+  std::vector<double> passed_;  // v_ under the contacts' forces
   std::vector<double> element_loads_;
   std::vector<structure::Reach> reaches_;
-  std::unique_ptr<Motion> motion_;  // null before begin_motion
+  std::unique_ptr<Motion> motion_;              // null before begin_motion
+  std::unique_ptr<engine::LinearTrain> train_;  // null: vehicles are not all linear, or their contacts not plain
+  bool by_passes_ = false;                      // the step under way is taken with it
+  std::size_t stage_ = 0;                       // of the step, that is under way
   std::unique_ptr<SteppedApart> apart_;
   double defect_apart_ = 0.0;
   bool keep_steps_ = false;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coupling/system.hpp"
+#include "engine/linear_train.hpp"
 
 namespace traverse::coupling {
 namespace {
@@ -85,6 +86,7 @@ void System::keep(base::Archive& archive, double* y) {
   archive.same(owners);
   fleet_.keep(archive, owners);
   archive.same(events_, newton_);
+  if (train_) archive.same(*train_);
   if (structure_) structure_->keep(archive);
 }
 

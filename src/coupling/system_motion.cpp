@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "coupling/system.hpp"
+#include "engine/linear_train.hpp"
 
 namespace traverse::coupling {
 namespace {
@@ -20,8 +21,20 @@ void System::begin_motion(const structure::Method& method) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
-  if (!apart_) share_.deal(comm_, fleet_);
+  if (!apart_) begin_passes();
+  if (!apart_ && !train_) share_.deal(comm_, fleet_);
   if (structure_) structure_->begin_motion(method);
+}
+
+// Where vehicles are linear with plain contacts, every rank takes all of them: there is less in that than in messages.
+void System::begin_passes() {
+  train_.reset();
+  const int own = static_cast<int>(engine::best_target());
+  int bounds[2] = {own, -own};  // all ranks have to compute the same to the last bit
+  MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm_);
+  if (bounds[0] != -bounds[1] || !engine::LinearTrain::obstacle(fleet_).empty()) return;
+  train_ = std::make_unique<engine::LinearTrain>(fleet_, line_ != nullptr ? &line_->mesh : nullptr, per_node(),
+                                                 surface_height());
 }
 
 // Where wheels and forces are during a step.
@@ -51,6 +64,7 @@ void System::restart_motion(double t, double* y) {
   m.pd.assign(p_.begin() + f, p_.end());
   m.pdd[0] = pdd_;
   m.powers[0] = fleet_powers();
+  if (train_) train_->restart(fleet_, m.p.data(), m.pd.data(), m.pdd[0].data());
   if (structure_) structure_->restart(loaded(t, 0.0), y, y + n_, m.rate.data() + n_);
 }
 
@@ -79,6 +93,7 @@ void System::set_step(double h) {
   m.method = m.unit;
   m.method.scale_to(h);
   m.length = h;
+  if (train_) train_->set_method(m.method, h);
   if (structure_) structure_->set_method(m.method, h);
 }
 
@@ -89,14 +104,30 @@ bool System::step_motion(double t, double h, double* y, const std::function<bool
   m.before.dissipated = m.dissipated;
   m.before.worked = m.worked;
   if (keep_steps_) m.before.p.assign(y + 2 * n_, y + local_size());
-  if (structure_) {
-    load_structure(t);
-    structure_->begin_step(loaded(t, h), y, y + n_, keep_steps_);
+  by_passes_ = train_ != nullptr;
+  bool solved = false;
+  if (by_passes_) {
+    train_->begin_step();
+    solved = take_stages(t, y, y + n_);
+    by_passes_ = solved;
+    if (!solved) evaluate_fleet(t, y);
   }
-  for (std::size_t i = 0; i < m.method.stages.size(); ++i)
-    if (!stage_of_motion(t + m.method.stages[i].time, i, y, y + n_)) return false;
+  if (!solved && !take_stages(t, y, y + n_)) return false;
   if (good_enough && !good_enough()) return false;
   finish_step(y);
+  if (by_passes_) evaluated_time_ = t + h;  // where the fleet was told to be
+  return true;
+}
+
+// All stages of a step from t.
+bool System::take_stages(double t, const double* v, const double* w) {
+  Motion& m = *motion_;
+  if (structure_) {
+    load_structure(t);
+    structure_->begin_step(loaded(t, m.length), v, w, keep_steps_);
+  }
+  for (std::size_t i = 0; i < m.method.stages.size(); ++i)
+    if (!stage_of_motion(t + m.method.stages[i].time, i, v, w)) return false;
   return true;
 }
 
@@ -104,16 +135,19 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   Motion& m = *motion_;
   const structure::StageRule& rule = m.method.stages[stage];
   const double shift = rule.rate / rule.displacement, shift2 = 1.0 / rule.displacement;
-  for (std::vector<double>* x : {&p_still_, &pd_still_, &x_}) x->resize(m.p.size());
+  stage_ = stage;
   const auto [first, past] = fleet_.own_coordinates();
-  for (int i = first; i < past; ++i) {
-    p_still_[i] = m.p[i] + rule.w_in_v * m.pd[i];
-    pd_still_[i] = m.pd[i];
-    for (int j = 0; j < rule.known; ++j) {
-      p_still_[i] += rule.a_in_v[j] * m.pdd[j][i];
-      pd_still_[i] += rule.a_in_w[j] * m.pdd[j][i];
+  if (!by_passes_) {
+    for (std::vector<double>* x : {&p_still_, &pd_still_, &x_}) x->resize(m.p.size());
+    for (int i = first; i < past; ++i) {
+      p_still_[i] = m.p[i] + rule.w_in_v * m.pd[i];
+      pd_still_[i] = m.pd[i];
+      for (int j = 0; j < rule.known; ++j) {
+        p_still_[i] += rule.a_in_v[j] * m.pdd[j][i];
+        pd_still_[i] += rule.a_in_w[j] * m.pdd[j][i];
+      }
+      x_[i] = rule.displacement * m.pdd[rule.known - 1][i];
     }
-    x_[i] = rule.displacement * m.pdd[rule.known - 1][i];
   }
   if (structure_) {
     load_structure(t);
@@ -121,8 +155,42 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   }
   if (solve_coupled({t, shift, shift2}, Terms::all) != Solution::found) return false;
   if (structure_) structure_->end_stage(stage, v, w);
+  if (by_passes_) {
+    train_->accelerations(m.pdd[rule.known].data());
+    m.powers[rule.known] = {train_->lost(), train_->given()};
+    return true;
+  }
   for (int i = first; i < past; ++i) m.pdd[rule.known][i] = shift2 * x_[i];
   m.powers[rule.known] = fleet_powers();
+  return true;
+}
+
+// As solve_coupled asks for it, by passes over all contacts until their forces no longer change.
+bool System::stage_by_passes(const StageTime& at) {
+  train_->predict(stage_, at.t);
+  const engine::LinearTrain::Placing placing = train_->place(fleet_);
+  if (placing == engine::LinearTrain::Placing::several_points) return false;
+  const structure::ElementCompliance* compliance = nullptr;
+  if (structure_) {
+    structure_->gather_free(train_->elements(), v_, w_);
+    compliance = &structure_->yield(train_->elements());
+    if (placing == engine::LinearTrain::Placing::anew) train_->set_compliance(*compliance);
+  }
+  const auto respond = [&] {
+    passed_ = v_;
+    if (compliance != nullptr && !passed_.empty()) compliance->respond(train_->compute_loads(), passed_);
+  };
+  do {
+    respond();
+    if (!train_->update_forces(passed_)) return false;
+  } while (!train_->converged());
+  if (stage_ + 1 < motion_->method.stages.size()) {
+    (void)train_->compute_loads();
+  } else {  // where the step ends rates are seen too
+    respond();
+    for (std::size_t i = 0; i < passed_.size(); ++i) w_[i] += at.shift * (passed_[i] - v_[i]);
+  }
+  train_->end_stage(w_);
   return true;
 }
 
@@ -130,8 +198,8 @@ void System::finish_step(double* y) {
   Motion& m = *motion_;
   const structure::StepRule& rule = m.method.step;
   const auto [first, past] = fleet_.own_coordinates();
-  signs_ = fleet_.worn() ? train::VehicleShare::worn : 0U;
-  for (int i = first; i < past; ++i) {
+  signs_ = by_passes_ || !fleet_.worn() ? 0U : train::VehicleShare::worn;
+  for (int i = first; !by_passes_ && i < past; ++i) {
     m.p[i] += rule.w_in_v * m.pd[i];
     for (int j = 0; j < rule.known; ++j) {
       m.p[i] += rule.a_in_v[j] * m.pdd[j][i];
@@ -150,11 +218,24 @@ void System::finish_step(double* y) {
   }
   m.powers[0] = m.powers[rule.known - 1];
   if (structure_) structure_->finish_step(y, y + n_);
-  share_step();
+  if (by_passes_)
+    finish_passes();
+  else
+    share_step();
+  if (train_ && !by_passes_) train_->restart(fleet_, m.p.data(), m.pd.data(), m.pdd[0].data());
   if (rank_ != 0) return;
   double* p = y + 2 * n_;
   std::copy(m.p.begin(), m.p.end(), p);
   std::copy(m.pd.begin(), m.pd.end(), p + m.p.size());
+}
+
+// Between steps the fleet knows of its contacts what events are found by.
+void System::finish_passes() {
+  Motion& m = *motion_;
+  train_->finish_step(m.p.data(), m.pd.data(), m.pdd[0].data());
+  train_->copy_contacts_to(fleet_);
+  std::copy(m.p.begin(), m.p.end(), p_.begin());
+  if (!train_->ends_with_stage()) signs_ |= train::VehicleShare::moved;
 }
 
 // p, p' and p'' at the end of the step, of all vehicles.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/processor.hpp"
 #include "lanes/crossing_numbers.hpp"
-#include "lanes/processor.hpp"
 
 namespace traverse::lanes {
 
@@ -26,11 +26,12 @@ std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const Cros
   const CrossingNumbers numbers(plan, runs, width);
   Task task = numbers.task();
   const std::size_t probes = static_cast<std::size_t>(task.probes.count);
-  Aligned peak(3 * probes * width), time(3 * probes * width), least(width), greatest(width), edge(width), failed(width);
+  engine::Aligned peak(3 * probes * width), time(3 * probes * width), least(width), greatest(width), edge(width),
+      failed(width);
   const std::size_t kept = places_kept(plan) * probes;
-  Aligned accelerations(kept * width);
+  engine::Aligned accelerations(kept * width);
   if (kept > 0) task.kept = accelerations.data();
-  Aligned bent(static_cast<std::size_t>(task.coordinates) * width);
+  engine::Aligned bent(static_cast<std::size_t>(task.coordinates) * width);
   task.peak = peak.data();
   task.peak_time = time.data();
   task.least_force = least.data();
@@ -38,7 +39,7 @@ std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const Cros
   task.bent = bent.data();
   task.edge = edge.data();
   task.failed = failed.data();
-  Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task))));
+  engine::Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task))));
   task.work = work.data();
   TRAVERSE_LANES_CALL(cross(task));
   std::vector<CrossingResult> results(runs.size());

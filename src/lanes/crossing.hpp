@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/processor.hpp"
 #include "lanes/crossing_task.hpp"
-#include "lanes/processor.hpp"
 #include "methods/one_step_methods.hpp"
 #include "structure/modal_bridge.hpp"
 
@@ -89,7 +89,7 @@ struct CrossingResult {
   double edge = 0.0;
 };
 
-/// At most `widest` runs.
+/// At most `engine::widest` runs.
 std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const CrossingRun> runs);
 
 }  // namespace traverse::lanes

@@ -2,11 +2,16 @@
 // oscillators, and lookups of what all lanes have in common. As all of a kernel it is seen by no linker.
 #pragma once
 
+#include "engine/lane.hpp"
 #include "lanes/crossing_task.hpp"
-#include "lanes/lane.hpp"
 
 namespace traverse::lanes {
 namespace {
+
+using engine::Lanes;
+using engine::run_as_wide;
+using engine::size_of_work;
+using engine::take_from;
 
 template <int W>
 struct CrossingAlgebra : Lanes<W> {

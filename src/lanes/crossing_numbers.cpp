@@ -69,7 +69,7 @@ CrossingNumbers::Pattern CrossingNumbers::pattern_of(int rows, int columns, Has 
 // value(run, i) of every run, for i up to count.
 template <class Value>
 const double* CrossingNumbers::side_by_side(std::size_t count, Value value) {
-  Aligned& numbers = *numbers_.emplace_back(std::make_unique<Aligned>(count * width_));
+  engine::Aligned& numbers = *numbers_.emplace_back(std::make_unique<engine::Aligned>(count * width_));
   for (std::size_t i = 0; i < count; ++i)
     for (std::size_t lane = 0; lane < width_; ++lane)
       numbers.data()[i * width_ + lane] = value(runs_[std::min(lane, runs_.size() - 1)], i);

@@ -36,7 +36,7 @@ class CrossingNumbers {
 
   std::span<const CrossingRun> runs_;
   std::size_t width_;
-  std::vector<std::unique_ptr<Aligned>> numbers_;
+  std::vector<std::unique_ptr<engine::Aligned>> numbers_;
   std::vector<std::unique_ptr<Pattern>> patterns_;
   std::vector<double> largest_;
   std::vector<TaskKind> kinds_;

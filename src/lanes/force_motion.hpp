@@ -13,11 +13,16 @@
 // Q_(k-2) = t^k/k! - 2 sigma Q_(k-1) - omega^2 Q_k.
 #pragma once
 
+#include "engine/lane.hpp"
 #include "lanes/force_task.hpp"
-#include "lanes/lane.hpp"
 
 namespace traverse::lanes {
 namespace {
+
+using engine::Lanes;
+using engine::run_as_wide;
+using engine::size_of_work;
+using engine::take_from;
 
 template <int W>
 class ForcedModes : Lanes<W> {

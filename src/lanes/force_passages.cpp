@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "lanes/processor.hpp"
+#include "engine/processor.hpp"
 #include "lanes/speed_class.hpp"
 
 namespace traverse::lanes {
@@ -101,7 +101,7 @@ std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<c
                                                                      std::span<const double> end_times, double instants,
                                                                      const std::function<bool()>& going) const {
   const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 2 ? 4 : 2, probes = bridge_.probes().count;
-  Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
+  engine::Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
   for (std::size_t lane = 0; lane < width; ++lane) {
     const std::size_t run = std::min(lane, speeds.size() - 1);
     speed.data()[lane] = speeds[run];
@@ -142,7 +142,7 @@ std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<c
   task.going = [](void* whom) { return (*static_cast<decltype(goes_on)*>(whom))(); };
   task.peak = peak.data();
   task.peak_time = time.data();
-  Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task))));
+  engine::Aligned work(static_cast<std::size_t>(TRAVERSE_LANES_CALL(work_size(task))));
   task.work = work.data();
   TRAVERSE_LANES_CALL(cross(task));
   if (stopped) return {};

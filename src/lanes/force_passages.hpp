@@ -20,10 +20,10 @@ class ForcePassages {
   /// bridge then, otherwise undeflected.
   ForcePassages(const structure::ModalBridge& bridge, const train::MovingLoad& load, bool equilibrium);
 
-  /// The peaks from t = 0 to `end_times` (s) at every probe of the bridge, of at most `widest` runs with speeds of one
-  /// class (speed_class.hpp): [run][probe]. Looked for at `instants` a period of the fastest mode or somewhat more,
-  /// wherever a response has a kink, and between them by parabolas. `going` is asked now and then; once it returns
-  /// false the search stops, and there are no peaks.
+  /// The peaks from t = 0 to `end_times` (s) at every probe of the bridge, of at most `engine::widest` runs with speeds
+  /// of one class (speed_class.hpp): [run][probe]. Looked for at `instants` a period of the fastest mode or somewhat
+  /// more, wherever a response has a kink, and between them by parabolas. `going` is asked now and then; once it
+  /// returns false the search stops, and there are no peaks.
   std::vector<std::vector<integrate::ProbePeaks>> peaks(std::span<const double> speeds,
                                                         std::span<const double> end_times, double instants,
                                                         const std::function<bool()>& going) const;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lanes/processor.hpp"
+#include "engine/processor.hpp"
 
 namespace traverse::lanes {
 
@@ -32,8 +32,8 @@ Trouble SteppedCrossing::step(double t, bool from_kink, bool to_kink) {
 }
 
 void SteppedCrossing::keep(base::Bytes& bytes) {
-  const Target own = best_target();
-  Target target = own;
+  const engine::Target own = engine::best_target();
+  engine::Target target = own;
   const auto size = static_cast<std::size_t>(TRAVERSE_LANES_CALL(stepped_size(task_)));
   std::vector<double> memory;
   if (!bytes.reads()) memory.assign(work_.data(), work_.data() + size);
@@ -42,7 +42,7 @@ void SteppedCrossing::keep(base::Bytes& bytes) {
   if (target != own || memory.size() != size)
     throw FileError(
         "the checkpoint was written on a processor with other vector instructions; restart it on one alike");
-  Aligned aligned(size);
+  engine::Aligned aligned(size);
   std::copy(memory.begin(), memory.end(), aligned.data());
   TRAVERSE_LANES_CALL(go_on_from(task_, aligned.data()));
   now_ = TRAVERSE_LANES_CALL(instant(task_));

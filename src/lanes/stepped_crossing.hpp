@@ -35,7 +35,7 @@ class SteppedCrossing {
   std::array<CrossingRun, 1> run_;
   CrossingNumbers numbers_;
   Task task_;
-  Aligned work_;
+  engine::Aligned work_;
   TaskInstant now_;
 };
 

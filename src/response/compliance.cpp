@@ -1,5 +1,6 @@
 #include "response/compliance.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +13,27 @@ constexpr std::size_t kept_values = std::size_t{8} << 20;  // doubles in columns
 constexpr double died_out = 1e-18;                         // of a column's peak
 constexpr std::ptrdiff_t least_margin = 32;                // nodes
 constexpr int short_part = 100;                            // columns: statics lose 0.02 eps n^4
+
+/// Elements with m unknowns.
+template <int m>
+void respond_by(const ElementCompliance& compliance, const std::vector<double>& loads, std::vector<double>& v) {
+  using Vector = Eigen::Matrix<double, m, 1>;
+  const int elements = static_cast<int>(loads.size()) / m;
+  for (int b = 0; b < elements; ++b) {
+    const Eigen::Map<const Vector> f(&loads[static_cast<std::size_t>(b) * m]);
+    if (f.isZero(0.0)) continue;
+    const ElementCompliance::Response& reach = compliance.response(b);
+    for (int a = reach.first; a < reach.last; ++a)
+      Eigen::Map<Vector>(&v[static_cast<std::size_t>(a) * m]) +=
+          Eigen::Map<const Eigen::Matrix<double, m, m>>(compliance.block(a, b)) * f;
+  }
+}
+
 }  // namespace
+
+void ElementCompliance::respond(const std::vector<double>& loads, std::vector<double>& v) const {
+  m_ == 4 ? respond_by<4>(*this, loads, v) : respond_by<6>(*this, loads, v);
+}
 
 Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
     : ElementCompliance(beam.running().per_node),

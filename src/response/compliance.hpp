@@ -25,6 +25,8 @@ class ElementCompliance {
     const Response& r = responses_[b];
     return &blocks_[r.begin + static_cast<std::size_t>(a - r.first) * m_ * m_];
   }
+  /// v += the elements' response to loads on them, 2*per_node values an element.
+  void respond(const std::vector<double>& loads, std::vector<double>& v) const;
 
  protected:
   explicit ElementCompliance(int per_node) : m_(2 * per_node) {}

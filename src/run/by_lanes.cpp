@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/processor.hpp"
 #include "integrate/integrator_choice.hpp"
-#include "lanes/processor.hpp"
 #include "lanes/stepped_crossing.hpp"
 #include "lanes/train_numbers.hpp"
 #include "run/peaks.hpp"
@@ -41,7 +41,7 @@ bool level(const structure::ModalBridge& bridge) {
 
 /// Whether all ranks compute the same to the last bit.
 bool same_processors(MPI_Comm comm) {
-  const int own = static_cast<int>(lanes::best_target());
+  const int own = static_cast<int>(engine::best_target());
   int bounds[2] = {own, -own};
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_INT, MPI_MAX, comm);
   return bounds[0] == -bounds[1];

@@ -8,8 +8,8 @@
 #include <set>
 #include <tuple>
 
+#include "engine/processor.hpp"
 #include "integrate/modal_peaks.hpp"
-#include "lanes/processor.hpp"
 #include "lanes/speed_class.hpp"
 #include "run/by_lanes.hpp"
 #include "run/signals.hpp"
@@ -99,7 +99,7 @@ std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& run
 
 std::size_t CaseRunner::width() const {
   if (by_modes_alone() && !beam_->modal->dampers_couple())
-    return std::clamp<std::size_t>(scene_.sweep->lanes, 1, lanes::best_width());
+    return std::clamp<std::size_t>(scene_.sweep->lanes, 1, engine::best_width());
   return lanes_ ? scene_.sweep->lanes : 1;
 }
 

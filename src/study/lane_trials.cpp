@@ -83,7 +83,7 @@ LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& spee
   for (const std::vector<double>& group : speeds) {
     std::vector<LaneRun>& runs = groups_.emplace_back();
     for (const std::uint64_t seed : scene_.sweep->seeds)
-      if (group.size() == 1 && runs.size() + 1 < lanes::widest)
+      if (group.size() == 1 && runs.size() + 1 < engine::widest)
         runs.push_back({group.front(), distance / group.front(), seed});
     for (const double speed : group) runs.push_back({speed, distance / speed, {}});
   }

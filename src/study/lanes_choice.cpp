@@ -83,7 +83,7 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     return std::nullopt;
   };
   const std::size_t n = speeds.size() - 1;
-  TrialSpeeds trials = {some_speeds(speeds, {0.0, 1.0}, trial_lanes), {}, some_speeds(speeds, {0.5}, lanes::widest)};
+  TrialSpeeds trials = {some_speeds(speeds, {0.0, 1.0}, trial_lanes), {}, some_speeds(speeds, {0.5}, engine::widest)};
   if (n > 0) trials.mixed = {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}};
   try {
     LaneChooser chooser(given, trials, false);
@@ -94,7 +94,7 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
     notes.push_back(
         fmt::format("{}: {} modes from {} elements a span, linear vehicles, {} with steps of {:g} s or less ({})",
                     given.limits.empty() ? "runs go side by side" : "by modes", chooser.model().modes,
-                    mesh_of(choice.scene), chooser.model().method->name, chooser.model().step, lanes::instructions()));
+                    mesh_of(choice.scene), chooser.model().method->name, chooser.model().step, engine::instructions()));
     notes.push_back("expected errors of the peaks: " + words_of(given, choice.promises));
     notes.push_back(fmt::format("a run by elements with the mechanisms differs by {}", words_of(given, off)));
     return choice;

@@ -59,7 +59,7 @@ class SideBySide {
     std::vector<std::shared_ptr<const lanes::TrackNumbers>> tracks_;
     std::vector<lanes::CrossingRun> crossings_;
   };
-  /// At most lanes::widest runs with speeds of a class (lanes/speed_class.hpp).
+  /// At most engine::widest runs with speeds of a class (lanes/speed_class.hpp).
   Ready ready(std::span<const LaneRun> runs, const Steps& steps);
   /// m: between the places where runs of the class of such a speed keep accelerations.
   static double spacing(const Steps& steps, double speed);

@@ -51,9 +51,10 @@ void announce(const StudyScenes& scenes, const CaseRunner& first, const results:
   for (const StudyDimension& d : scenes.study().dimensions) notes.push_back(words_of(d));
   if (known > 0) notes.push_back(fmt::format("{} of them are known from the results file that was there", known));
   if (first.has_lanes())
-    notes.push_back(fmt::format(
-        "up to {} runs that differ in {} alone go side by side, in the lanes of {} vectors", first.width(),
-        scenes.mixes(first.width()) ? "speed, track and vehicles' numbers" : "speed and track", lanes::instructions()));
+    notes.push_back(fmt::format("up to {} runs that differ in {} alone go side by side, in the lanes of {} vectors",
+                                first.width(),
+                                scenes.mixes(first.width()) ? "speed, track and vehicles' numbers" : "speed and track",
+                                engine::instructions()));
   else if (!first.why_no_lanes().empty())
     notes.push_back("runs go one by one: " + first.why_no_lanes());
   if (scenes.study().refine > 0.0)

@@ -249,6 +249,8 @@ class Fleet {
   bool has_points(const WheelContact& c) const;
   /// How far from its centre a wheel may touch the beam, m.
   double reach(const WheelContact& c) const;
+  /// Ascending stations, m: while a wheel is between two of them its patches are found in the same way.
+  std::vector<double> borders_of_patches(const WheelContact& c) const;
   /// How long the impact lasts that a contact now begins, the bodies of its vehicle alone taking part, s.
   double impact_duration(int contact);
   /// Power lost in contact damping and friction at this rank's vehicles, W.

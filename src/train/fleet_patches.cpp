@@ -93,6 +93,20 @@ std::span<const double> Fleet::steps_near(const WheelContact& c) const {
 
 double Fleet::reach(const WheelContact& c) const { return c.further > 0 ? wheel(c).radius : nearby * wheel(c).radius; }
 
+std::vector<double> Fleet::borders_of_patches(const WheelContact& c) const {
+  std::vector<double> borders;
+  if (mesh_ == nullptr) return borders;
+  const double radius = wheel(c).radius, beside = track::reach_of_steps(radius);
+  for (int e = 0; e < mesh_->elements(); ++e) borders.push_back(mesh_->element(e).x);
+  borders.push_back(mesh_->end());
+  for (const double kink : mesh_->kinks())
+    for (const double x : {kink - nearby * radius, kink + nearby * radius}) borders.push_back(x);
+  for (const double step : mesh_->steps())
+    for (const double x : {step - beside, step + beside}) borders.push_back(x);
+  std::sort(borders.begin(), borders.end());
+  return borders;
+}
+
 // Apart, and far from touching.
 void Fleet::take_away(WheelContact& c) {
   c.candidates = c.active = 0;

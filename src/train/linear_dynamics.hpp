@@ -16,10 +16,10 @@
 namespace traverse::train {
 
 /// About p0, moving on with c: M, C, K (f x f), r0 (f), B (n x f) as above; driven = B^T N u (f), which times x'' is
-/// the power that drives the masses on.
+/// the power that drives the masses on. q0, u (n): of all bodies' coordinates at the start, and their steady rates.
 struct LinearMatrices {
   const Eigen::MatrixXd &M, &C, &K, &B;
-  const Eigen::VectorXd &r0, &p0, &c, &driven;
+  const Eigen::VectorXd &r0, &p0, &c, &driven, &q0, &u;
 };
 
 class LinearDynamics : public VehicleDynamics {
@@ -30,7 +30,7 @@ class LinearDynamics : public VehicleDynamics {
   /// About the vehicle's state at t = 0, evaluated, with its contact forces in Q. cruise: c of its coordinates.
   LinearDynamics(MovingVehicle& vehicle, const double* cruise);
 
-  LinearMatrices matrices() const { return {M_, C_, K_, B_, r0_, p0_, c_, driven_}; }
+  LinearMatrices matrices() const { return {M_, C_, K_, B_, r0_, p0_, c_, driven_, q0_, u_}; }
   const LinearDynamics* linear() const override { return this; }
   std::unique_ptr<VehicleDynamics> clone() const override { return std::make_unique<LinearDynamics>(*this); }
 

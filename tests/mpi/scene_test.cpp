@@ -82,7 +82,7 @@ TEST(Ranks, ABridgeWhoseModesAreCoupled) {
                          {"output_interval", "0.02"}};
   expect_same_on_all_ranks("three_span_train",
                            damped + Values{{"train_vehicles", "coach*3"}, {"ts_dt", "2e-3"}, {"ts_max_time", "1.2"}},
-                           35);
+                           35, 1e-8);  // 1e-10 of a coach's weight may be left in a force: 3e-8 m/s2 of a wheelset
   expect_same_on_all_ranks(
       "r6_three_spans",
       damped + Values{{"load_forces", "1e4,2e4,-5e3"}, {"load_positions", "0,-7.3,-21"}, {"scene_tail", "0.3"}}, 12);

@@ -1,6 +1,6 @@
-#include "lanes/processor.hpp"
+#include "engine/processor.hpp"
 
-namespace traverse::lanes {
+namespace traverse::engine {
 
 Target best_target() {
 #ifdef __x86_64__
@@ -34,4 +34,4 @@ std::string instructions() {
   }
 }
 
-}  // namespace traverse::lanes
+}  // namespace traverse::engine

@@ -2,7 +2,7 @@
 // compiled once for each kind of processor and seen by no linker (crossing_kernel.hpp).
 #pragma once
 
-namespace traverse::lanes {
+namespace traverse::engine {
 namespace {
 
 // NOLINTBEGIN: vector types have no other spelling
@@ -119,4 +119,4 @@ void run_as_wide(const Task& task) {
 }
 
 }  // namespace
-}  // namespace traverse::lanes
+}  // namespace traverse::engine

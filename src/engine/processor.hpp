@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace traverse::lanes {
+namespace traverse::engine {
 
 /// What a kernel is compiled for, each in a namespace of that name.
 enum class Target { plain, avx2, avx512 };
@@ -27,8 +27,10 @@ std::size_t best_width();
   namespace avx512 {                \
   __VA_ARGS__                       \
   }
-#define TRAVERSE_LANES_CALL(call) \
-  (best_target() == Target::avx512 ? avx512::call : best_target() == Target::avx2 ? avx2::call : plain::call)
+#define TRAVERSE_LANES_CALL(call)                                 \
+  (engine::best_target() == engine::Target::avx512 ? avx512::call \
+   : engine::best_target() == engine::Target::avx2 ? avx2::call   \
+                                                   : plain::call)
 #else
 #define TRAVERSE_LANES_DECLARE(...) \
   namespace plain {                 \
@@ -54,4 +56,4 @@ class Aligned {
   std::vector<Chunk> chunks_;
 };
 
-}  // namespace traverse::lanes
+}  // namespace traverse::engine

@@ -1,0 +1,305 @@
+#include "engine/linear_train.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "traverse/base/error.hpp"
+
+namespace traverse::engine {
+
+// Compiled from train_kernel.cpp, once for each kind of processor.
+TRAVERSE_LANES_DECLARE(void set_train_step(const TrainTask& task);
+                       void predict_train(const TrainTask& task, int stage, double* work);
+                       bool train_in_place(const TrainTask& task); void load_by_train(const TrainTask& task);
+                       double update_train_forces(const TrainTask& task);
+                       void end_train_stage(const TrainTask& task, int stage, bool kinematics);
+                       void finish_train_step(const TrainTask& task);)
+
+namespace {
+
+constexpr double tolerance = 1e-12;  // of a vehicle's weight: changes of forces still to come
+constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
+constexpr int most_passes = 60;      // of a stage
+constexpr double best_contraction = 1e-3;
+constexpr double measurable = 1e-10;   // of the weight: changes above it tell a contraction
+constexpr double growth = 1.1;         // of a contraction that is trusted without having been measured again
+constexpr double near_look_up = 2e-5;  // m: as far the profile's parabola is exact
+
+void fill(double (&row)[block_lanes], double value) { std::fill_n(row, block_lanes, value); }
+
+void fill_rule(StageRows& to, double w_in_v, const structure::Weights& a_in_v, const structure::Weights& a_in_w) {
+  fill(to.w_in_v, w_in_v);
+  for (int j = 0; j < most_kept; ++j) {
+    fill(to.a_in_v[j], a_in_v[static_cast<std::size_t>(j)]);
+    fill(to.a_in_w[j], a_in_w[static_cast<std::size_t>(j)]);
+  }
+}
+
+/// Instants at which contact forces are known, and which of their histories has them.
+struct Instants {
+  std::array<double, most_stages + 2> time{};
+  std::array<int, most_stages + 2> history{};
+  std::size_t count = 0;
+  void add(double t, int of) {
+    time[count] = t;
+    history[count++] = of;
+  }
+  /// The weight of instant i in the polynomial through all of them, at t.
+  double weight(std::size_t i, double t) const {
+    double weight = 1.0;
+    for (std::size_t j = 0; j < count; ++j)
+      if (j != i) weight *= (t - time[j]) / (time[i] - time[j]);
+    return weight;
+  }
+};
+
+}  // namespace
+
+void LinearTrain::write(const double* rows, double* coordinates) const {
+  for (std::size_t i = 0; i < coordinate_.size(); ++i) coordinates[i] = rows[coordinate_[i]];
+}
+
+void LinearTrain::set_method(const structure::Method& method, double h) {
+  method_ = method;
+  length_ = h;
+  task_.stages = static_cast<int>(method.stages.size());
+  task_.known = method.step.known;
+  for (std::size_t s = 0; s < method.stages.size(); ++s) {
+    const structure::StageRule& rule = method.stages[s];
+    StageRows& to = task_.stage[s];
+    fill_rule(to, rule.w_in_v, rule.a_in_v, rule.a_in_w);
+    fill(to.rate, rule.rate);
+    fill(to.displacement, rule.displacement);
+  }
+  fill_rule(task_.end, method.step.w_in_v, method.step.a_in_v, method.step.a_in_w);
+  for (std::size_t j = 0; j < most_kept; ++j) task_.a_next[j] = method.step.a_next[j];
+  const structure::StageRule& last = method.stages.back();
+  ends_with_stage_ = std::abs(last.time - h) <= 1e-9 * h;
+  TRAVERSE_LANES_CALL(set_train_step(task_));
+  placed_ = false;  // the structure yields otherwise
+}
+
+void LinearTrain::begin_step() {
+  std::fill_n(task_.largest, static_cast<std::size_t>(task_.wheels) * block_lanes, 0.0);
+  for (std::size_t s = 0; s < method_.stages.size(); ++s) {
+    Instants known;
+    for (std::size_t j = 0; j < s; ++j) known.add(method_.stages[j].time, static_cast<int>(j));
+    known.add(0.0, most_stages);
+    if (s < 2 && length_before_ > 0.0) known.add(-length_before_, most_stages + 1);
+    for (auto& row : task_.stage[s].guess) fill(row, 0.0);
+    for (std::size_t i = 0; i < known.count; ++i)
+      fill(task_.stage[s].guess[known.history[i]], known.weight(i, method_.stages[s].time));
+  }
+}
+
+void LinearTrain::restart(const train::Fleet& fleet, const double* p, const double* pd, const double* pdd) {
+  for (std::size_t k = 0; k < coordinate_.size(); ++k) {
+    const std::size_t at = coordinate_[k];
+    task_.x[at] = p[k];
+    task_.w[at] = pd[k];
+    task_.a[0][at] = pdd[k];
+  }
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    const train::WheelContact& c = fleet.wheels[entry_[i]];
+    const std::size_t at = wheel_[i];
+    const double force = c.force.normal;
+    task_.normal[at] = force;
+    task_.normal_up[at] = -c.touch.normal_on_body.y();
+    task_.normal_along[at] = -c.touch.normal_on_body.x();
+    task_.force_up[at] = force * task_.normal_up[at];
+    task_.force_along[at] = force * task_.normal_along[at];
+    task_.ahead[at] = task_.ahead_before[at] = c.touch.ahead;
+    task_.root[at] = force > 0.0 ? std::cbrt(force / c.law.stiffness) : 1e-3;
+    for (const int j : {most_stages, most_stages + 1}) task_.history[j][at] = force;
+  }
+  length_before_ = last_time_ = time_before_ = 0.0;
+  placed_ = false;
+}
+
+void LinearTrain::predict(std::size_t stage, double t) {
+  stage_ = stage;
+  passes_ = 0;
+  task_.extrapolation =
+      last_time_ > time_before_ ? std::clamp((t - last_time_) / (last_time_ - time_before_), 0.0, 2.0) : 0.0;
+  time_before_ = std::exchange(last_time_, t);
+  converged_ = false;
+  for (std::size_t b = 0; b < blocks_.size(); ++b)
+    for (int l = 0; l < block_lanes; ++l) distance_[b][l] = blocks_[b].speed[l] * t;
+  TRAVERSE_LANES_CALL(predict_train(task_, static_cast<int>(stage), work_));
+}
+
+// Anew for wheels whose contacts have moved farther than `within` (m); whether there were any.
+bool LinearTrain::look_up_profiles(double within) {
+  bool moved = false;
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    if (profile_[i] == nullptr) continue;
+    const std::size_t at = wheel_[i];
+    if (task_.h[at] == no_surface || std::abs(task_.station[at] - task_.looked_up[at]) <= within) continue;
+    moved = true;
+    task_.looked_up[at] = task_.station[at];
+    const track::Height height = profile_[i]->at(task_.station[at]);
+    task_.h[at] = height.value;
+    task_.h_x[at] = height.slope;
+    task_.h_xx[at] = height.curvature;
+  }
+  return moved;
+}
+
+LinearTrain::Placing LinearTrain::place(train::Fleet& fleet) {
+  if (placed_ && !always_places_ && TRAVERSE_LANES_CALL(train_in_place(task_))) {
+    look_up_profiles(0.0);
+    return Placing::as_before;
+  }
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    train::WheelContact& c = fleet.wheels[entry_[i]];
+    fleet.x(c) = task_.along[wheel_[i]];
+    fleet.vehicles[static_cast<std::size_t>(c.vehicle)].state.q[3 * static_cast<Eigen::Index>(c.body) + 1] =
+        task_.up[wheel_[i]] + task_.radius[wheel_[i]];
+  }
+  placed_ = false;
+  fleet.place_wheels();
+  const auto points = [&](const train::WheelContact& c) { return c.further > 0 && fleet.has_points(c); };
+  if (std::any_of(fleet.wheels.begin(), fleet.wheels.end(), points)) return Placing::several_points;
+  elements_ = fleet.elements();
+  task_.slots = static_cast<int>(elements_.size()) + 1;
+  const std::size_t size = 2 * static_cast<std::size_t>(task_.per_node * task_.slots);
+  for (std::vector<double>* nodal : {&nodal_, &nodal_rate_, &load_}) nodal->assign(size, 0.0);
+  loads_.resize(size - 2 * static_cast<std::size_t>(task_.per_node));
+  task_.nodal = nodal_.data();
+  task_.nodal_rate = nodal_rate_.data();
+  task_.load = load_.data();
+  std::fill(second_.begin(), second_.end(), 0);
+  for (std::size_t i = 0; i < wheel_.size(); ++i) place_wheel(fleet.wheels[entry_[i]], wheel_[i]);
+  look_up_profiles(0.0);
+  placed_ = true;
+  return Placing::anew;
+}
+
+void LinearTrain::place_wheel(const train::WheelContact& c, std::size_t at) {
+  for (int k = 0; k < 2; ++k) {
+    SurfacePatch& p = task_.patch[k];
+    const bool there = k < c.candidates;
+    const train::Patch& patch = c.patches[static_cast<std::size_t>(k)];
+    const bool on_beam = there && patch.element >= 0;
+    p.slot[at] = on_beam ? c.slots[static_cast<std::size_t>(k)] : task_.slots - 1;
+    p.x[at] = on_beam ? patch.x : 0.0;
+    p.length[at] = on_beam ? patch.length : 1.0;
+    p.shear[at] = on_beam ? patch.shear : 0.0;
+    p.yield[at] = on_beam ? patch.yield : 0.0;
+    for (double* entry : p.compliance) entry[at] = 0.0;
+    p.low[at] = there ? patch.low : k == 0 ? -infinite : 1.0;
+    p.high[at] = there ? patch.high : k == 0 ? infinite : -1.0;
+  }
+  if (c.candidates > 1) second_[at / block_lanes] = 1;
+  if (task_.active[at] >= c.candidates) task_.active[at] = 0;
+  task_.h[at] = c.candidates > 0 ? 0.0 : no_surface;
+  task_.h_x[at] = task_.h_xx[at] = 0.0;
+  const double x = task_.along[at];
+  const auto next = std::upper_bound(borders_.begin(), borders_.end(), x);
+  task_.to[at] = next == borders_.end() ? infinite : *next;
+  task_.from[at] = next == borders_.begin() ? -infinite : next[-1];
+}
+
+void LinearTrain::set_compliance(const structure::ElementCompliance& compliance) {
+  const int m = 2 * task_.per_node, o = task_.per_node - 2;
+  for (const std::size_t at : wheel_)
+    for (SurfacePatch& p : task_.patch) {
+      const int slot = p.slot[at];
+      if (slot == task_.slots - 1) continue;
+      const double* block = compliance.block(slot, slot);
+      const int place[4] = {o, o + 1, task_.per_node + o, task_.per_node + o + 1};
+      for (int i = 0, k = 0; i < 4; ++i)
+        for (int j = i; j < 4; ++j, ++k) p.compliance[k][at] = (j > i ? 2.0 : 1.0) * block[place[i] + m * place[j]];
+    }
+}
+
+const std::vector<double>& LinearTrain::compute_loads() {
+  TRAVERSE_LANES_CALL(load_by_train(task_));
+  std::copy_n(load_.begin(), loads_.size(), loads_.begin());
+  return loads_;
+}
+
+bool LinearTrain::update_forces(const std::vector<double>& v) {
+  std::copy(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(loads_.size()), nodal_.begin());
+  const double before = change_;
+  change_ = TRAVERSE_LANES_CALL(update_train_forces(task_));
+  if (!(change_ >= 0.0) || !std::isfinite(change_) || ++passes_ > most_passes) return false;
+  if (passes_ > 1 && before > measurable) contraction_ = std::clamp(change_ / before, best_contraction, 1.0);
+  converged_ = !look_up_profiles(near_look_up) && change_ * contraction_ <= tolerance;
+  converged_ = converged_ || (passes_ > 1 && change_ <= rounding && change_ > 0.1 * before);
+  if (converged_ && passes_ == 1) contraction_ = std::min(growth * contraction_, 1.0);
+  return true;
+}
+
+void LinearTrain::end_stage(const std::vector<double>& w) {
+  std::copy(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(loads_.size()), nodal_rate_.begin());
+  const bool last = stage_ + 1 == method_.stages.size();
+  TRAVERSE_LANES_CALL(end_train_stage(task_, static_cast<int>(stage_), last));
+}
+
+namespace {
+
+double sum_of(const double* row) {
+  double sum = 0.0;
+  for (int l = 0; l < block_lanes; ++l) sum += row[l];
+  return sum;
+}
+
+}  // namespace
+
+double LinearTrain::lost() const { return sum_of(task_.lost + (stage_ + 1) * block_lanes); }
+double LinearTrain::given() const { return sum_of(task_.given + (stage_ + 1) * block_lanes); }
+
+void LinearTrain::finish_step(double* p, double* pd, double* pdd) {
+  TRAVERSE_LANES_CALL(finish_train_step(task_));
+  length_before_ = length_;
+  write(task_.x, p);
+  write(task_.w, pd);
+  write(task_.a[0], pdd);
+}
+
+void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    train::WheelContact& c = fleet.wheels[entry_[i]];
+    const std::size_t at = wheel_[i];
+    train::MovingVehicle& vehicle = fleet.vehicles[static_cast<std::size_t>(c.vehicle)];
+    const auto body = 3 * static_cast<Eigen::Index>(c.body);
+    vehicle.state.q[body] = task_.station[at] - task_.ahead[at];
+    vehicle.state.qd[body] = task_.along_rate[at];
+    c.kinematics = c.touch.kinematics = {task_.penetration[at], task_.penetration_rate[at], 0.0};
+    c.law.seat = c.touch.seat = task_.seat[at];
+    c.touch.ahead = task_.ahead[at];
+    c.touch.station = task_.station[at];
+    c.touch.normal_on_body = {-task_.normal_along[at], -task_.normal_up[at], 0.0};
+    c.active = task_.active[at];
+    c.force = {};
+    c.force.normal = task_.normal[at];
+    c.touched = c.touched || task_.largest[at] > 0.0;
+  }
+}
+
+void LinearTrain::keep(base::Bytes& bytes) {
+  const auto rows = [&](double* numbers, int count) {
+    std::vector<double> list(numbers, numbers + static_cast<std::ptrdiff_t>(count) * block_lanes);
+    const std::size_t size = list.size();
+    bytes(list);
+    if (list.size() != size) throw FileError("the checkpoint does not fit this scene");
+    std::copy(list.begin(), list.end(), numbers);
+  };
+  for (double* of : {task_.x, task_.w, task_.a[0]}) rows(of, task_.coordinates);
+  for (double* of :
+       {task_.normal, task_.root, task_.normal_up, task_.normal_along, task_.force_up, task_.force_along, task_.ahead,
+        task_.ahead_before, task_.turn, task_.history[most_stages], task_.history[most_stages + 1]})
+    rows(of, task_.wheels);
+  std::vector<int> active(task_.active, task_.active + static_cast<std::ptrdiff_t>(task_.wheels) * block_lanes);
+  bytes(active);
+  std::copy_n(active.begin(), static_cast<std::size_t>(task_.wheels) * block_lanes, task_.active);
+  bytes(length_before_, contraction_, last_time_, time_before_);
+  if (bytes.reads()) placed_ = false;
+}
+
+}  // namespace traverse::engine

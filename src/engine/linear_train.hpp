@@ -1,0 +1,118 @@
+// A train of linear vehicles in the stages of a one-step method: the vehicles' side of the coupling by passes
+// (train_kernel.hpp). Its state is x, x' and x'' of the vehicles' coordinates about the state they were linearised in,
+// and what the contacts' iteration begins with; the fleet is told what is seen between steps.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/bytes.hpp"
+#include "engine/processor.hpp"
+#include "engine/train_task.hpp"
+#include "methods/one_step_methods.hpp"
+#include "response/compliance.hpp"
+#include "train/fleet.hpp"
+
+namespace traverse::engine {
+
+class LinearTrain {
+ public:
+  /// Why a fleet cannot be taken so, in words; empty: it can.
+  static std::string obstacle(const train::Fleet& fleet);
+
+  /// mesh: that its wheels run on, null for rigid ground alone; per_node: unknowns of one of its nodes; surface_height:
+  /// m above its axis.
+  LinearTrain(const train::Fleet& fleet, const beam::Mesh* mesh, int per_node, double surface_height);
+
+  /// The method, scaled to steps of h seconds.
+  void set_method(const structure::Method& method, double h);
+  /// Goes on from p, p', p'' of the fleet's coordinates, and from its contact forces, which belong to them.
+  void restart(const train::Fleet& fleet, const double* p, const double* pd, const double* pdd);
+  void begin_step();
+
+  /// Where the wheels are in stage i, at t, without contact forces.
+  void predict(std::size_t i, double t);
+  /// Puts wheels on the elements where they are: the same as before, others, or a wheel is where it may touch at
+  /// several points, so that the stage cannot be taken so.
+  enum class Placing { as_before, anew, several_points };
+  Placing place(train::Fleet& fleet);
+  /// The elements under wheels, ascending.
+  const std::vector<int>& elements() const { return elements_; }
+  /// How these yield in the stage (displacement per force); before the first pass of a stage whose elements or matrices
+  /// are others than before.
+  void set_compliance(const structure::ElementCompliance& compliance);
+  /// The contacts' forces on the elements, 2 per_node each, N and N m: as they are now, and as computed last.
+  const std::vector<double>& compute_loads();
+  const std::vector<double>& loads() const { return loads_; }
+  /// One pass: all forces anew with the elements' unknowns at v (2 per_node an element). False where a wheel has fallen
+  /// below the surface, or where the passes do not converge.
+  bool update_forces(const std::vector<double>& v);
+  /// Whether forces will change by no more than the tolerance.
+  bool converged() const { return converged_; }
+  /// Ends the stage; w: the elements' rates then.
+  void end_stage(const std::vector<double>& w);
+  /// W lost in dampers and given by the drives in the stage that was ended last.
+  double lost() const;
+  double given() const;
+  /// p'' of the stage that was ended last.
+  void accelerations(double* pdd) const { write(task_.a[stage_ + 1], pdd); }
+  /// p, p' and p'' at the end of the step.
+  void finish_step(double* p, double* pd, double* pdd);
+  /// Wheels and contacts as they are at the end of the step.
+  void copy_contacts_to(train::Fleet& fleet) const;
+  /// Whether the last stage is where the step ends.
+  bool ends_with_stage() const { return ends_with_stage_; }
+
+  /// The state between two steps.
+  void keep(base::Bytes& bytes);
+
+ private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  static constexpr double no_surface = -1e3;  // m: height of what is under a wheel with no surface
+
+  struct Place {  // of a vehicle among the blocks
+    std::size_t block = 0;
+    int lane = 0;
+  };
+
+  void make_blocks(const train::Fleet& fleet);
+  void fill_block(const train::Fleet& fleet, std::size_t block, const std::vector<int>& vehicles);
+  SparseRows sparse(const std::vector<Eigen::MatrixXd>& of_lanes);
+  void make_rows(const train::Fleet& fleet);
+  void find_borders(const train::Fleet& fleet);
+  void place_wheel(const train::WheelContact& c, std::size_t number);
+  bool look_up_profiles(double within);
+  double* add(std::size_t rows);
+  int* add_integers(std::size_t rows);
+  void write(const double* rows, double* coordinates) const;
+
+  TrainTask task_;
+  std::vector<VehicleBlock> blocks_;
+  std::vector<Place> places_;                      // of every vehicle
+  std::vector<std::size_t> coordinate_;            // of every entry of p: its number in arrays of coordinates
+  std::vector<std::size_t> entry_, wheel_;         // of every wheel: in Fleet::wheels; its number in arrays of wheels
+  std::vector<const track::Profile*> profile_;     // that it runs on; null: level
+  std::vector<std::unique_ptr<Aligned>> numbers_;  // what the arrays of the task are
+  std::vector<std::unique_ptr<std::vector<int>>> integers_;
+  std::vector<char> hertz_, second_;
+  double* work_ = nullptr;         // of predictions
+  std::vector<double*> distance_;  // m, of every block's lanes: travelled
+
+  const beam::Mesh* mesh_;
+  std::vector<double> borders_;  // m, ascending: between two of them a wheel has the same patches
+  bool always_places_ = false;   // wheels may fall off the end of the surface
+  structure::Method method_;
+  double length_ = 0.0, length_before_ = 0.0;   // s, of this step and of the one before
+  double last_time_ = 0.0, time_before_ = 0.0;  // s, of the last two stages
+  std::size_t stage_ = 0;
+  bool ends_with_stage_ = true;
+  std::vector<int> elements_;
+  std::vector<double> nodal_, nodal_rate_, load_, loads_;
+  double change_ = 0.0, contraction_ = 1.0;
+  int passes_ = 0;
+  bool converged_ = false, placed_ = false;
+};
+
+}  // namespace traverse::engine

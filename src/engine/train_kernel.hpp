@@ -1,0 +1,261 @@
+// Linear vehicles and their contacts with the structure in a stage of a one-step method (one_step_methods.hpp), eight
+// vehicles at a time.
+//
+//   vehicles   J a = G^T f - r0 - C w~ - K v~,   J = M + rate C + displacement K
+//              so that wheels move by H f, H = displacement G J^-1 G^T, from where they are without contact forces
+//   contacts   each wheel's closest point on the surface by Newton's method; then its own force N from
+//
+//                delta(N) + seat N = radius - distance + q (N_before - N),   q = H n n + what the structure yields
+//
+//              with the contact law's penetration delta and the seat that the element itself makes
+//              (wheel_on_track.hpp), all other forces held. Contacts that part have N = 0: a mask.
+//   structure  moves under the new forces (the caller's affair), and so on until no force changes any more.
+//
+// Left out: contact damping, friction, wheels out of round, several points of one wheel (linear_train.hpp: obstacle).
+//
+// As all kernels it is compiled once for each kind of processor, and nothing in it may be seen by the linker: no
+// functions of the library, everything in an unnamed namespace.
+#pragma once
+
+#include "engine/train_surface.hpp"
+
+namespace traverse::engine {
+namespace {
+
+struct Touched {
+  Row depth, up, along;   // m: the penetration; direction from the surface to the centre
+  Row station, xi, turn;  // of the point: m, in the element, rotation of the section
+  RowMask fallen;         // the centre is below the surface, and not beside its end
+};
+
+constexpr int closest_steps = 2;  // of Newton's method a pass: the point hardly moves from one pass to the next
+
+/// The point of the patch that is closest to the centre, which is at `along` and a radius above `up`. With its height
+/// e above the surface, less a radius, all that the penetration is computed from is small, so that it keeps its digits.
+template <Surface kind>
+Touched closest(const TrainTask& task, const SurfacePatch& p, int i, Row along, Row up) {
+  const Row origin = rows(task.station)[i];
+  const SurfaceRows<kind> f = surface_under<kind>(task, p, i, origin);
+  const Row low = rows(p.low)[i] - origin, high = rows(p.high)[i] - origin, across = along - origin;
+  const auto within = [&](Row s) {
+    s = s < low ? low : s;
+    return s > high ? high : s;
+  };
+  const Row radius = rows(task.radius)[i];
+  Row s = within(Row{});
+  SurfacePoint at = point_at(f, s);
+  for (int step = 0; step < closest_steps; ++step) {
+    const Row dx = across - at.x, dy = radius + (up - at.y);
+    const Row slope = dx * at.x_x + dy * at.y_x;
+    const Row bend = at.x_x * at.x_x + at.y_x * at.y_x - dx * at.x_xx - dy * at.y_xx;
+    s = within(s + slope / bend);
+    at = point_at(f, s);
+  }
+  const Row dx = across - at.x, e = up - at.y, dy = radius + e;
+  const Row distance = Rows::root(dx * dx + dy * dy), inverse = 1.0 / distance;
+  const Row depth = -(e * (radius + dy) + dx * dx) / (radius + distance);
+  const RowMask beside = ((s == low) | (s == high)) & (depth < 0.0);
+  const RowMask fallen = ((dy <= 0.0) & ~beside) | (distance != distance);
+  return {depth, dy * inverse, dx * inverse, origin + s, at.xi, at.turn, fallen};
+}
+
+constexpr double least_root = 1e-6;  // m^0.5: from where the next contact is looked for after a loss
+constexpr int most_steps = 60;       // of a contact's own Newton iteration
+constexpr double root_tolerance = 1e-14;
+
+/// r with r^2 + yielding r^3 = target > 0, from a guess, by Newton's method, which does not pass the solution twice.
+inline Row hertz_root(Row guess, Row yielding, Row target) {
+  Row r = guess;
+  for (int step = 0; step < most_steps; ++step) {
+    const Row excess = r * r * (1.0 + yielding * r) - target, slope = r * (2.0 + 3.0 * yielding * r);
+    Row next = r - excess / slope;
+    next = next < 0.1 * r ? 0.1 * r : next;
+    const Row change = Rows::magnitude(next - r);
+    r = next;
+    if (!Rows::any(change > root_tolerance + 1e-7 * r)) break;
+  }
+  return r;
+}
+
+/// One wheel of eight vehicles: the patch that it touches, and the point.
+struct Contact8 {
+  Touched at;
+  Row length, shear, structure, seat, seat_by_x;
+};
+
+/// What the patch makes of a force at the point.
+template <Surface kind>
+Contact8 on_patch(const SurfacePatch& p, int i, const Touched& at) {
+  const Row length = rows(p.length)[i], shear = rows(p.shear)[i];
+  const Shapes s = shapes_at<kind>(at.xi, length, shear);
+  Row structure{};
+  for (int a = 0, k = 0; a < 4; ++a) {
+    Row sum{};
+    for (int b = a; b < 4; ++b, ++k) sum += rows(p.compliance[k])[i] * s.value[b];
+    structure += sum * s.value[a];
+  }
+  const Seat seat = seat_at<kind>(at.xi, length, shear, rows(p.yield)[i]);
+  return {at, length, shear, structure, seat.value, seat.by_x};
+}
+
+/// The patch that is touched: of two the one where the wheel is deeper.
+template <Surface kind>
+Contact8 touched_patch(const TrainTask& task, int i, Row along, Row up) {
+  Contact8 c = on_patch<kind>(task.patch[0], i, closest<kind>(task, task.patch[0], i, along, up));
+  int* active = task.active + static_cast<long>(i) * block_lanes;
+  for (int l = 0; l < block_lanes; ++l) active[l] = 0;
+  if (task.second[i] == 0) return c;
+  const SurfacePatch& p = task.patch[1];
+  const Contact8 other = on_patch<kind>(p, i, closest<kind>(task, p, i, along, up));
+  const RowMask two = rows(p.high)[i] >= rows(p.low)[i], there = two & (other.at.depth > c.at.depth);
+  const auto choose = [there](Row a, Row b) { return there ? a : b; };
+  for (int l = 0; l < block_lanes; ++l) active[l] = Rows::holds(there, l) ? 1 : 0;
+  return {{choose(other.at.depth, c.at.depth), choose(other.at.up, c.at.up), choose(other.at.along, c.at.along),
+           choose(other.at.station, c.at.station), choose(other.at.xi, c.at.xi), choose(other.at.turn, c.at.turn),
+           c.at.fallen | (two & other.at.fallen)},
+          choose(other.length, c.length),
+          choose(other.shear, c.shear),
+          choose(other.structure, c.structure),
+          choose(other.seat, c.seat),
+          choose(other.seat_by_x, c.seat_by_x)};
+}
+
+/// The normal force with all others held, by the law; `q`: what vehicle and structure yield to it.
+inline Row own_force(const TrainTask& task, int i, Row depth, Row q, Row seat) {
+  const Row stiffness = rows(task.stiffness)[i], yielding = (q + seat) * stiffness;
+  const Row target = depth + q * rows(task.normal)[i];
+  const RowMask touches = target > 0.0;
+  const Row one = Rows::fill(1.0), safe = touches ? target : one;
+  if (task.hertz[i] == 0) return touches ? stiffness * safe / (1.0 + yielding) : Row{};
+  Row& root = rows(task.root)[i];
+  const Row r = hertz_root(touches ? root : one, touches ? yielding : Row{}, safe), least = Rows::fill(least_root);
+  root = touches ? (r > least ? r : least) : root;
+  return touches ? stiffness * r * r * r : Row{};
+}
+
+/// The forces of all contacts with the structure as `nodal` has it. Returns the largest change of a force over its
+/// scale, or a number below 0 where a wheel has fallen below the surface.
+template <Surface kind>
+double update_forces(const TrainTask& task) {
+  Row most{};
+  RowMask fallen{};
+  for (int k = 0; k < task.blocks; ++k) {
+    const VehicleBlock& b = task.block[k];
+    const int m = b.wheels, first = b.first_wheel;
+    const Row* H = rows(b.H);
+    const Row *up_forces = rows(task.force_up) + first, *along_forces = rows(task.force_along) + first;
+    Row up[most_wheels], along[most_wheels];  // of all the block's wheels before the first force changes
+    for (int j = 0; j < m; ++j) {
+      Row y = rows(task.up)[first + j], x = rows(task.along)[first + j];
+      for (int l = 0; l < m; ++l) {
+        y += H[j * m + l] * up_forces[l] + H[(m + j) * m + l] * along_forces[l];
+        x += H[(2 * m + j) * m + l] * up_forces[l] + H[(3 * m + j) * m + l] * along_forces[l];
+      }
+      up[j] = y;
+      along[j] = x;
+    }
+    for (int j = 0; j < m; ++j) {
+      const int i = first + j;
+      const Contact8 c = touched_patch<kind>(task, i, along[j], up[j]);
+      const Row depth = c.at.depth, before = rows(task.normal)[i];
+      fallen |= c.at.fallen;
+      const Row force = own_force(task, i, depth, (H[j * m + j] + c.structure) * c.at.up * c.at.up, c.seat);
+      const Row change = Rows::magnitude(force - before) / rows(task.scale)[i];
+      most = change > most ? change : most;
+      rows(task.normal)[i] = force;
+      rows(task.normal_up)[i] = c.at.up;
+      rows(task.normal_along)[i] = c.at.along;
+      rows(task.force_up)[i] = force * c.at.up;
+      // The element's inner shape drives the wheel on: f^2/2 ds/dx (wheel_on_track.hpp).
+      rows(task.force_along)[i] = force * (c.at.along + 0.5 * c.seat_by_x * force);
+      rows(task.penetration)[i] = depth;
+      rows(task.turn)[i] = c.at.turn;
+      rows(task.seat)[i] = c.seat;
+      rows(task.ahead)[i] = c.at.station - along[j];
+      rows(task.station)[i] = c.at.station;
+    }
+  }
+  if (Rows::any(fallen)) return -1.0;
+  double largest = 0.0;
+  for (int l = 0; l < block_lanes; ++l)
+    if (!(Rows::numbers(most)[l] <= largest)) largest = Rows::numbers(most)[l];
+  return largest;
+}
+
+/// use(row of wheels, lane, slot, directions): of all wheels on elements.
+template <Surface kind, class Use>
+void for_wheels_on_elements(const TrainTask& task, Use use) {
+  for (int i = 0; i < task.wheels; ++i)
+    for (int patch = 0; patch < (task.second[i] != 0 ? 2 : 1); ++patch) {
+      const SurfacePatch& p = task.patch[patch];
+      const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) / length;
+      Row direction[most_nodal];
+      directions<kind>(task, xi, length, rows(p.shear)[i], task.turn + static_cast<long>(i) * block_lanes,
+                       rows(task.normal_up)[i], rows(task.normal_along)[i], direction);
+      const int *slot = p.slot + static_cast<long>(i) * block_lanes,
+                *active = task.active + static_cast<long>(i) * block_lanes;
+      for (int l = 0; l < block_lanes; ++l)
+        if (active[l] == patch && slot[l] != task.slots - 1) use(i, l, slot[l], direction);
+    }
+}
+
+/// The contacts' forces as loads on the elements, into `load`.
+template <Surface kind>
+void load_structure(const TrainTask& task) {
+  const int width = 2 * task.per_node;
+  for (int i = 0; i < task.slots * width; ++i) task.load[i] = 0.0;
+  for_wheels_on_elements<kind>(task, [&](int i, int l, int slot, const Row* direction) {
+    const double force = Rows::numbers(rows(task.normal)[i])[l];
+    for (int k = 0; k < width; ++k) task.load[slot * width + k] -= force * Rows::numbers(direction[k])[l];
+  });
+}
+
+/// The accelerations of a stage from its contact forces; with `kinematics` the rates of wheels and contacts too.
+template <Surface kind>
+void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
+  const Row rate = row(task.stage[stage].rate);
+  Row lost{}, given{};
+  for (int k = 0; k < task.blocks; ++k) {
+    const VehicleBlock& b = task.block[k];
+    const int f = b.freedom, m = b.wheels, first = b.first_coordinate;
+    const Row *up = rows(task.force_up) + b.first_wheel, *along = rows(task.force_along) + b.first_wheel;
+    Row *a = rows(task.a[stage + 1]) + first, *w = rows(task.w_predicted) + first;
+    for (int i = 0; i < f; ++i) {
+      Row sum = rows(task.a_free)[first + i];
+      for (int j = 0; j < m; ++j) sum += rows(b.Y)[i * m + j] * up[j] + rows(b.Y_along)[i * m + j] * along[j];
+      a[i] = sum;
+      w[i] += rate * sum;
+      given += rows(b.driven)[i] * sum;
+    }
+    const Row* value = rows(b.C.value);
+    for (int e = 0; e < b.C.count; ++e) lost += value[e] * w[b.C.row[e]] * w[b.C.column[e]];
+    for (int j = 0; j < m; ++j) given -= row(b.drive) * along[j];
+    if (!kinematics) continue;
+    Row *up_rate = rows(task.up_rate) + b.first_wheel, *along_rate = rows(task.along_rate) + b.first_wheel;
+    for (int j = 0; j < m; ++j) {
+      up_rate[j] = Row{};
+      along_rate[j] = row(b.speed);
+    }
+    add_product(b.G, 1.0, w, up_rate);
+    add_product(b.G_along, 1.0, w, along_rate);
+  }
+  rows(task.lost)[stage + 1] = lost;
+  rows(task.given)[stage + 1] = given;
+  for (int i = 0; i < task.wheels; ++i) {
+    const Row force = rows(task.normal)[i], largest = rows(task.largest)[i];
+    rows(task.history[stage])[i] = force;
+    rows(task.largest)[i] = force > largest ? force : largest;
+  }
+  if (!kinematics) return;
+  for (int i = 0; i < task.wheels; ++i)
+    rows(task.penetration_rate)[i] =
+        -rows(task.normal_up)[i] * rows(task.up_rate)[i] - rows(task.normal_along)[i] * rows(task.along_rate)[i];
+  const int width = 2 * task.per_node;
+  for_wheels_on_elements<kind>(task, [&](int i, int l, int slot, const Row* direction) {
+    double rising = 0.0;
+    for (int k = 0; k < width; ++k) rising += Rows::numbers(direction[k])[l] * task.nodal_rate[slot * width + k];
+    Rows::numbers(rows(task.penetration_rate)[i])[l] += rising;
+  });
+}
+}  // namespace
+}  // namespace traverse::engine

@@ -1,0 +1,213 @@
+// The vehicles' part of the kernel (train_kernel.hpp): where they are without contact forces, how their wheels yield to
+// these, and the end of a step.
+#pragma once
+
+#include "engine/lane.hpp"
+#include "engine/train_task.hpp"
+
+namespace traverse::engine {
+namespace {
+
+using Rows = Lanes<block_lanes>;
+using Row = Rows::Lane;
+using RowMask = Rows::Mask;
+
+inline const Row* rows(const double* numbers) { return Rows::lanes(numbers); }
+inline Row* rows(double* numbers) { return Rows::lanes(numbers); }
+inline const Row& row(const double* numbers) { return *rows(numbers); }
+
+/// The inverse of a matrix whose symmetric part is positive, in place, without pivots.
+inline void invert(Row* A, int n) {
+  for (int k = 0; k < n; ++k) {
+    const Row pivot = 1.0 / A[k * n + k];
+    for (int j = 0; j < n; ++j) A[k * n + j] *= pivot;
+    A[k * n + k] = pivot;
+    for (int i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const Row factor = A[i * n + k];
+      A[i * n + k] = Row{};
+      for (int j = 0; j < n; ++j) A[i * n + j] -= factor * A[k * n + j];
+    }
+  }
+}
+
+/// y[row] += scale A[row, column] x[column].
+template <class Scale>
+void add_product(const SparseRows& A, Scale scale, const Row* x, Row* y) {
+  const Row* value = rows(A.value);
+  for (int i = 0; i < A.count; ++i) y[A.row[i]] += scale * value[i] * x[A.column[i]];
+}
+
+/// to (freedom x wheels) = inverse G^T.
+inline void respond(const VehicleBlock& b, const SparseRows& G, Row* to) {
+  for (int i = 0; i < b.freedom * b.wheels; ++i) to[i] = Row{};
+  const Row *inverse = rows(b.inverse), *value = rows(G.value);
+  for (int e = 0; e < G.count; ++e)
+    for (int i = 0; i < b.freedom; ++i) to[i * b.wheels + G.row[e]] += inverse[i * b.freedom + G.column[e]] * value[e];
+}
+
+/// to (wheels x wheels) = displacement G Y.
+inline void compliance_of(const VehicleBlock& b, const SparseRows& G, const Row* Y, Row displacement, Row* to) {
+  for (int i = 0; i < b.wheels * b.wheels; ++i) to[i] = Row{};
+  const Row* value = rows(G.value);
+  for (int e = 0; e < G.count; ++e)
+    for (int j = 0; j < b.wheels; ++j)
+      to[G.row[e] * b.wheels + j] += displacement * value[e] * Y[G.column[e] * b.wheels + j];
+}
+
+/// Of the stages' common rate and displacement.
+inline void set_step(const TrainTask& task) {
+  const Row rate = row(task.stage[0].rate), displacement = row(task.stage[0].displacement);
+  for (int k = 0; k < task.blocks; ++k) {
+    const VehicleBlock& b = task.block[k];
+    const int f = b.freedom, m = b.wheels;
+    Row* J = rows(b.inverse);
+    for (int i = 0; i < f * f; ++i) J[i] = rows(b.M)[i];
+    for (int e = 0; e < b.C.count; ++e) J[b.C.row[e] * f + b.C.column[e]] += rate * rows(b.C.value)[e];
+    for (int e = 0; e < b.K.count; ++e) J[b.K.row[e] * f + b.K.column[e]] += displacement * rows(b.K.value)[e];
+    invert(J, f);
+    respond(b, b.G, rows(b.Y));
+    respond(b, b.G_along, rows(b.Y_along));
+    Row* H = rows(b.H);
+    compliance_of(b, b.G, rows(b.Y), displacement, H);
+    compliance_of(b, b.G, rows(b.Y_along), displacement, H + m * m);
+    compliance_of(b, b.G_along, rows(b.Y), displacement, H + 2 * m * m);
+    compliance_of(b, b.G_along, rows(b.Y_along), displacement, H + 3 * m * m);
+  }
+}
+
+/// v~ and w~ of n coordinates from `Known` accelerations, from the first one on.
+template <int Known>
+void combine(const TrainTask& task, const StageRows& rule, int first, int n, Row* position, Row* rate) {
+  const Row w_in_v = row(rule.w_in_v);
+  Row a_in_v[Known], a_in_w[Known];
+  for (int j = 0; j < Known; ++j) {
+    a_in_v[j] = row(rule.a_in_v[j]);
+    a_in_w[j] = row(rule.a_in_w[j]);
+  }
+  for (int i = 0; i < n; ++i) {
+    const Row w = rows(task.w)[first + i];
+    Row at = rows(task.x)[first + i] + w_in_v * w, moving = w;
+    for (int j = 0; j < Known; ++j) {
+      const Row a = rows(task.a[j])[first + i];
+      at += a_in_v[j] * a;
+      moving += a_in_w[j] * a;
+    }
+    position[i] = at;
+    rate[i] = moving;
+  }
+}
+inline void combine(int known, const TrainTask& task, const StageRows& rule, int first, int n, Row* position,
+                    Row* rate) {
+  switch (known) {
+    case 1:
+      return combine<1>(task, rule, first, n, position, rate);
+    case 2:
+      return combine<2>(task, rule, first, n, position, rate);
+    case 3:
+      return combine<3>(task, rule, first, n, position, rate);
+    case 4:
+      return combine<4>(task, rule, first, n, position, rate);
+    case 5:
+      return combine<5>(task, rule, first, n, position, rate);
+    default:
+      return combine<6>(task, rule, first, n, position, rate);
+  }
+}
+
+/// y = A x for a square matrix by rows; four rows at a time keep the processor busy.
+inline void multiply(const Row* A, int n, const Row* x, Row* y) {
+  int i = 0;
+  for (; i + 4 <= n; i += 4) {
+    const Row *A0 = A + i * n, *A1 = A0 + n, *A2 = A1 + n, *A3 = A2 + n;
+    Row y0{}, y1{}, y2{}, y3{};
+    for (int k = 0; k < n; ++k) {
+      y0 += A0[k] * x[k];
+      y1 += A1[k] * x[k];
+      y2 += A2[k] * x[k];
+      y3 += A3[k] * x[k];
+    }
+    y[i] = y0;
+    y[i + 1] = y1;
+    y[i + 2] = y2;
+    y[i + 3] = y3;
+  }
+  for (; i < n; ++i) {
+    Row sum{};
+    for (int k = 0; k < n; ++k) sum += A[i * n + k] * x[k];
+    y[i] = sum;
+  }
+}
+
+/// Where wheels are without contact forces, and a first guess of these. `work`: three rows a coordinate.
+inline void predict(const TrainTask& task, int stage, double* work) {
+  const StageRows& rule = task.stage[stage];
+  const Row displacement = row(rule.displacement);
+  Row *at = rows(work), *force = at + task.coordinates;
+  for (int k = 0; k < task.blocks; ++k) {
+    const VehicleBlock& b = task.block[k];
+    const int first = b.first_coordinate, f = b.freedom;
+    Row *rate = rows(task.w_predicted) + first, *free = rows(task.a_free) + first;
+    combine(stage + 1, task, rule, first, f, at, rate);
+    for (int i = 0; i < f; ++i) force[i] = -rows(b.r0)[i];
+    add_product(b.K, -1.0, at, force);
+    add_product(b.C, -1.0, rate, force);
+    multiply(rows(b.inverse), f, force, free);
+    for (int i = 0; i < f; ++i) at[i] += displacement * free[i];
+    Row *up = rows(task.up) + b.first_wheel, *along = rows(task.along) + b.first_wheel;
+    for (int j = 0; j < b.wheels; ++j) {
+      up[j] = rows(task.height)[b.first_wheel + j];
+      along[j] = rows(task.place)[b.first_wheel + j] + row(b.distance);
+    }
+    add_product(b.G, 1.0, at, up);
+    add_product(b.G_along, 1.0, at, along);
+  }
+  for (int i = 0; i < task.wheels; ++i) {
+    Row guess{};
+    for (int j = 0; j < stage; ++j) guess += row(rule.guess[j]) * rows(task.history[j])[i];
+    for (int j = most_stages; j < most_stages + 2; ++j) guess += row(rule.guess[j]) * rows(task.history[j])[i];
+    guess = guess > 0.0 ? guess : Row{};
+    const Row before = rows(task.normal)[i], ratio = before > 0.0 ? guess / before : Row{};
+    rows(task.force_along)[i] *= ratio;
+    rows(task.force_up)[i] = before > 0.0 ? rows(task.force_up)[i] * ratio : guess;
+    rows(task.normal)[i] = guess;
+    const Row ahead = rows(task.ahead)[i], moving = ahead - rows(task.ahead_before)[i];
+    rows(task.station)[i] = rows(task.along)[i] + ahead + task.extrapolation * moving;
+    rows(task.ahead_before)[i] = ahead;
+  }
+}
+
+/// Whether all wheels are between the stations where their patches are known.
+inline bool in_place(const TrainTask& task) {
+  RowMask out{};
+  for (int i = 0; i < task.wheels; ++i) {
+    const Row x = rows(task.along)[i];
+    out |= (x < rows(task.from)[i]) | (x > rows(task.to)[i]);
+  }
+  return !Rows::any(out);
+}
+
+/// The state at the end of the step.
+inline void finish_step(const TrainTask& task) {
+  const StageRows& rule = task.end;
+  const Row w_in_v = row(rule.w_in_v);
+  for (int i = 0; i < task.coordinates; ++i) {
+    Row &x = rows(task.x)[i], &w = rows(task.w)[i], next{};
+    Row at = x + w_in_v * w, rate = w;
+    for (int j = 0; j < task.known; ++j) {
+      const Row a = rows(task.a[j])[i];
+      at += row(rule.a_in_v[j]) * a;
+      rate += row(rule.a_in_w[j]) * a;
+      next += task.a_next[j] * a;
+    }
+    x = at;
+    w = rate;
+    rows(task.a[0])[i] = next;
+  }
+  for (int i = 0; i < task.wheels; ++i) {
+    rows(task.history[most_stages + 1])[i] = rows(task.history[most_stages])[i];
+    rows(task.history[most_stages])[i] = rows(task.normal)[i];
+  }
+}
+}  // namespace
+}  // namespace traverse::engine
