@@ -23,8 +23,8 @@ class SameAsArkimex : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
     SecondOrder, SameAsArkimex,
     testing::Values(
-        // ARKIMEX's contact has a penetration that is a difference of places, whose last digit is 3.7e-8 N: the bridge's
-        // 256 elements without damping ring of it
+        // ARKIMEX's contact has a penetration that is a difference of places, whose last digit is 3.7e-8 N: the
+        // bridge's 256 elements without damping ring of it
         Case{"hertz_wheel", "r4_hertz_wheel", {{"ts_dt", "1e-3"}}, 1.5e-8},
         Case{"free_half_cars_with_friction", "three_span_half_car", {{"ts_dt", "2e-3"}, {"ts_max_time", "2"}}},
         // a Hertz contact's rounding, 1e-7 N, on the few kg of a bay of rail
