@@ -136,7 +136,7 @@ int traverse_open(int argc, const char* const* argv, traverse_passage** passage)
     if (argc < 0) throw InputError("argc is negative");
     if (argc > 0) there(argv, "argv");
     auto steps = std::make_unique<traverse::app::StepByStep>(scene_of(std::span(argv, static_cast<std::size_t>(argc))));
-    *passage = &handles().emplace_back(std::move(steps));
+    *passage = &handles().emplace_back(traverse_passage{std::move(steps)});
   });
 }
 
