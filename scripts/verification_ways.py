@@ -141,6 +141,8 @@ WAYS = [
         Row("every dataset of all other scenes, of its peak", "the same scene on one rank", "Ranks.*",
             [Check("double at_rest = 0.0, double bound = {});", file="tests/support/same_on_ranks.hpp")]),
         Row("an articulated train", "the same scene on one rank", "Ranks.ArticulatedTrain", [Check("60, {});")]),
+        Row("a bridge whose modes are coupled", "the same scene on one rank", "Ranks.ABridgeWhoseModesAreCoupled",
+            [Check("35, {});")]),
         Row("a bridge as found, a span that shears", "the same scenes on one rank", "Ranks.BridgesAsFoundAndThatShear",
             [Check("30, {});")]),
         Row("linear vehicles", "the same scene on one rank", "Ranks.LinearVehicles", [Check("35, {});")]),

@@ -46,11 +46,12 @@ void limit(int resource, double most) {
   setrlimit(resource, &now);
 }
 
-/// Signals end the copy without a word, and it takes no more than a file of this size can need.
+/// Signals and the C library end the copy without a word, and it takes no more than a file of this size can need.
 void confine(double size) {
   for (const int number :
        {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGTERM, SIGINT, SIGHUP, SIGQUIT, SIGPIPE})
     ::signal(number, SIG_DFL);
+  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, STDERR_FILENO);
   limit(RLIMIT_CORE, 0.0);
   limit(RLIMIT_CPU, seconds_at_least + seconds_a_byte * size);
   double pages = 0.0;
