@@ -1,3 +1,4 @@
+// The stages and steps of a linear train, and what the fleet is told between them.
 #include "engine/linear_train.hpp"
 
 #include <fmt/format.h>
