@@ -27,7 +27,7 @@ Eigen::MatrixXd rows_of_wheels(const train::MovingVehicle& vehicle, Eigen::Index
 }
 
 /// What rounding has left of a zero is one.
-Eigen::MatrixXd cleaned(Eigen::MatrixXd A) {
+Eigen::MatrixXd cleaned(const Eigen::MatrixXd& A) {
   const double none = 1e-14 * A.cwiseAbs().maxCoeff();
   return A.unaryExpr([none](double x) { return std::abs(x) > none ? x : 0.0; });
 }

@@ -1,7 +1,7 @@
 // Compiled once for each kind of processor, each time with another name for TRAVERSE_LANES_TARGET.
 #include "engine/train_kernel.hpp"
 
-namespace traverse::engine::TRAVERSE_LANES_TARGET {
+namespace traverse::engine::TRAVERSE_LANES_TARGET {  // NOLINT(readability-identifier-naming): plain, avx2 or avx512
 
 namespace {
 

@@ -28,7 +28,7 @@ struct Touched {
   RowMask fallen;         // the centre is below the surface, and not beside its end
 };
 
-constexpr int closest_steps = 2;  // of Newton's method a pass: the point hardly moves from one pass to the next
+inline constexpr int closest_steps = 2;  // of Newton's method a pass: the point hardly moves from one pass to the next
 
 /// The point of the patch that is closest to the centre, which is at `along` and a radius above `up`. With its height
 /// e above the surface, less a radius, all that the penetration is computed from is small, so that it keeps its digits.
@@ -59,9 +59,9 @@ Touched closest(const TrainTask& task, const SurfacePatch& p, int i, Row along, 
   return {depth, dy * inverse, dx * inverse, origin + s, at.xi, at.turn, fallen};
 }
 
-constexpr double least_root = 1e-6;  // m^0.5: from where the next contact is looked for after a loss
-constexpr int most_steps = 60;       // of a contact's own Newton iteration
-constexpr double root_tolerance = 1e-14;
+inline constexpr double least_root = 1e-6;  // m^0.5: from where the next contact is looked for after a loss
+inline constexpr int most_steps = 60;       // of a contact's own Newton iteration
+inline constexpr double root_tolerance = 1e-14;
 
 /// r with r^2 + yielding r^3 = target > 0, from a guess, by Newton's method, which does not pass the solution twice.
 inline Row hertz_root(Row guess, Row yielding, Row target) {
