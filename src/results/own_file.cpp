@@ -41,17 +41,22 @@ FileId id_at(const char* path) noexcept {
   return ::lstat(path, &status) == 0 ? id_of_status(status) : FileId();
 }
 
+std::string Descriptor::path() const {
+  std::string open_file = "/proc/self/fd/" + std::to_string(number_);
+  return ::access(open_file.c_str(), F_OK) == 0 ? open_file : name_;
+}
+
 FileId id_of(const Descriptor& file) noexcept {
   struct stat status {};
   return ::fstat(file.get(), &status) == 0 ? id_of_status(status) : FileId();
 }
 
 Descriptor make_file(const std::string& path) {
-  return Descriptor(::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666));
+  return {::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666), path};
 }
 
 Descriptor open_ordinary(const std::string& path, bool to_write) {
-  Descriptor file(::open(path.c_str(), (to_write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  Descriptor file(::open(path.c_str(), (to_write ? O_RDWR : O_RDONLY) | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC), path);
   struct stat status {};
   if (!file.open() || (::fstat(file.get(), &status) == 0 && S_ISREG(status.st_mode))) return file;
   errno = EINVAL;

@@ -12,20 +12,24 @@ namespace traverse::results {
 class Descriptor {
  public:
   Descriptor() = default;
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+  /// name: the path that it was opened by.
+  Descriptor(int number, std::string name) : number_(number), name_(std::move(name)) {}
+  Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)), name_(std::move(other.name_)) {}
   Descriptor& operator=(Descriptor&& other) noexcept {
     std::swap(number_, other.number_);
+    std::swap(name_, other.name_);
     return *this;
   }
   ~Descriptor();
   int get() const { return number_; }
   bool open() const { return number_ >= 0; }
-  /// A name by which libraries open the very file, whatever stands at its path by then.
-  std::string path() const { return "/proc/self/fd/" + std::to_string(number_); }
+  /// A name by which libraries open the very file, whatever stands at its path by then; where the system has no /proc,
+  /// that path.
+  std::string path() const;
 
  private:
   int number_ = -1;
+  std::string name_;
 };
 
 /// Tells one file from another as long as one of its names or descriptors is held; `there` false: there is none.
