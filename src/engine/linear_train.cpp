@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include "traverse/base/error.hpp"
@@ -30,7 +32,7 @@ constexpr double measurable = 1e-10;   // of the weight: changes above it tell a
 constexpr double growth = 1.1;         // of a contraction that is trusted without having been measured again
 constexpr double near_look_up = 2e-5;  // m: as far the profile's parabola is exact
 
-void fill(double (&row)[block_lanes], double value) { std::fill_n(row, block_lanes, value); }
+void fill(double (&row)[most_lanes], double value) { std::fill_n(row, most_lanes, value); }
 
 void fill_rule(StageRows& to, double w_in_v, const structure::Weights& a_in_v, const structure::Weights& a_in_w) {
   fill(to.w_in_v, w_in_v);
@@ -85,7 +87,7 @@ void LinearTrain::set_method(const structure::Method& method, double h) {
 }
 
 void LinearTrain::begin_step() {
-  std::fill_n(task_.largest, static_cast<std::size_t>(task_.wheels) * block_lanes, 0.0);
+  std::fill_n(task_.largest, static_cast<std::size_t>(task_.wheels) * lanes_, 0.0);
   for (std::size_t s = 0; s < method_.stages.size(); ++s) {
     Instants known;
     for (std::size_t j = 0; j < s; ++j) known.add(method_.stages[j].time, static_cast<int>(j));
@@ -129,7 +131,7 @@ void LinearTrain::predict(std::size_t stage, double t) {
   time_before_ = std::exchange(last_time_, t);
   converged_ = false;
   for (std::size_t b = 0; b < blocks_.size(); ++b)
-    for (int l = 0; l < block_lanes; ++l) distance_[b][l] = blocks_[b].speed[l] * t;
+    for (std::size_t l = 0; l < lanes_; ++l) distance_[b][l] = blocks_[b].speed[l] * t;
   TRAVERSE_LANES_CALL(predict_train(task_, static_cast<int>(stage), work_));
 }
 
@@ -195,7 +197,7 @@ void LinearTrain::place_wheel(const train::WheelContact& c, std::size_t at) {
     p.low[at] = there ? patch.low : k == 0 ? -infinite : 1.0;
     p.high[at] = there ? patch.high : k == 0 ? infinite : -1.0;
   }
-  if (c.candidates > 1) second_[at / block_lanes] = 1;
+  if (c.candidates > 1) second_[at / lanes_] = 1;
   if (task_.active[at] >= c.candidates) task_.active[at] = 0;
   task_.h[at] = c.candidates > 0 ? 0.0 : no_surface;
   task_.h_x[at] = task_.h_xx[at] = 0.0;
@@ -242,18 +244,10 @@ void LinearTrain::end_stage(const std::vector<double>& w) {
   TRAVERSE_LANES_CALL(end_train_stage(task_, static_cast<int>(stage_), last));
 }
 
-namespace {
-
-double sum_of(const double* row) {
-  double sum = 0.0;
-  for (int l = 0; l < block_lanes; ++l) sum += row[l];
-  return sum;
+double LinearTrain::sum_in_stage(const double* rows) const {
+  const double* row = rows + (stage_ + 1) * lanes_;
+  return std::accumulate(row, row + lanes_, 0.0);
 }
-
-}  // namespace
-
-double LinearTrain::lost() const { return sum_of(task_.lost + (stage_ + 1) * block_lanes); }
-double LinearTrain::given() const { return sum_of(task_.given + (stage_ + 1) * block_lanes); }
 
 void LinearTrain::finish_step(double* p, double* pd, double* pdd) {
   TRAVERSE_LANES_CALL(finish_train_step(task_));
@@ -283,22 +277,21 @@ void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
   }
 }
 
+// One behind the other, as another processor may have other lanes.
 void LinearTrain::keep(base::Bytes& bytes) {
-  const auto rows = [&](double* numbers, int count) {
-    std::vector<double> list(numbers, numbers + static_cast<std::ptrdiff_t>(count) * block_lanes);
-    const std::size_t size = list.size();
+  const auto numbers = [&](auto* of_lanes, const std::vector<std::size_t>& places) {
+    auto list = std::vector<std::remove_pointer_t<decltype(of_lanes)>>(places.size());
+    std::transform(places.begin(), places.end(), list.begin(), [&](std::size_t at) { return of_lanes[at]; });
     bytes(list);
-    if (list.size() != size) throw FileError("the checkpoint does not fit this scene");
-    std::copy(list.begin(), list.end(), numbers);
+    if (list.size() != places.size()) throw FileError("the checkpoint does not fit this scene");
+    for (std::size_t i = 0; i < places.size(); ++i) of_lanes[places[i]] = list[i];
   };
-  for (double* of : {task_.x, task_.w, task_.a[0]}) rows(of, task_.coordinates);
+  for (double* of : {task_.x, task_.w, task_.a[0]}) numbers(of, coordinate_);
   for (double* of :
        {task_.normal, task_.root, task_.normal_up, task_.normal_along, task_.force_up, task_.force_along, task_.ahead,
         task_.ahead_before, task_.turn, task_.history[most_stages], task_.history[most_stages + 1]})
-    rows(of, task_.wheels);
-  std::vector<int> active(task_.active, task_.active + static_cast<std::ptrdiff_t>(task_.wheels) * block_lanes);
-  bytes(active);
-  std::copy_n(active.begin(), static_cast<std::size_t>(task_.wheels) * block_lanes, task_.active);
+    numbers(of, wheel_);
+  numbers(task_.active, wheel_);
   bytes(length_before_, contraction_, last_time_, time_before_);
   if (bytes.reads()) placed_ = false;
 }

@@ -54,8 +54,8 @@ class LinearTrain {
   /// Ends the stage; w: the elements' rates then.
   void end_stage(const std::vector<double>& w);
   /// W lost in dampers and given by the drives in the stage that was ended last.
-  double lost() const;
-  double given() const;
+  double lost() const { return sum_in_stage(task_.lost); }
+  double given() const { return sum_in_stage(task_.given); }
   /// p'' of the stage that was ended last.
   void accelerations(double* pdd) const { write(task_.a[stage_ + 1], pdd); }
   /// p, p' and p'' at the end of the step.
@@ -86,8 +86,10 @@ class LinearTrain {
   bool look_up_profiles(double within);
   double* add(std::size_t rows);
   int* add_integers(std::size_t rows);
+  double sum_in_stage(const double* rows) const;
   void write(const double* rows, double* coordinates) const;
 
+  const std::size_t lanes_ = best_width();  // numbers of a row
   TrainTask task_;
   std::vector<VehicleBlock> blocks_;
   std::vector<Place> places_;                      // of every vehicle

@@ -66,7 +66,7 @@ LinearTrain::LinearTrain(const train::Fleet& fleet, const beam::Mesh* mesh, int 
 }
 
 double* LinearTrain::add(std::size_t rows) {
-  numbers_.push_back(std::make_unique<Aligned>(rows * block_lanes));
+  numbers_.push_back(std::make_unique<Aligned>(rows * lanes_));
   return numbers_.back()->data();
 }
 
@@ -80,7 +80,7 @@ void LinearTrain::make_blocks(const train::Fleet& fleet) {
   places_.resize(fleet.vehicles.size());
   for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
     const auto fits = [&](const std::vector<int>& block) {
-      return block.size() < block_lanes &&
+      return block.size() < lanes_ &&
              in_block_with(fleet.vehicles[static_cast<std::size_t>(block.front())], fleet.vehicles[k]);
     };
     auto block = std::find_if(members.begin(), members.end(), fits);
@@ -111,7 +111,7 @@ SparseRows LinearTrain::sparse(const std::vector<Eigen::MatrixXd>& of_lanes) {
     const auto [i, j] = entries[e];
     row[e] = static_cast<int>(i);
     column[e] = static_cast<int>(j);
-    for (std::size_t l = 0; l < of_lanes.size(); ++l) value[e * block_lanes + l] = of_lanes[l](i, j);
+    for (std::size_t l = 0; l < of_lanes.size(); ++l) value[e * lanes_ + l] = of_lanes[l](i, j);
   }
   to.row = row;
   to.column = column;
@@ -131,7 +131,7 @@ void LinearTrain::fill_block(const train::Fleet& fleet, std::size_t number, cons
   task_.wheels += b.wheels;
   double *M = add(f * f), *r0 = add(f), *driven = add(f), *speed = add(1), *drive = add(1);
   for (std::size_t i = 0; i < f; ++i)  // lanes without a vehicle
-    std::fill_n(M + (i * f + i) * block_lanes, block_lanes, 1.0);
+    std::fill_n(M + (i * f + i) * lanes_, lanes_, 1.0);
   std::vector<Eigen::MatrixXd> C, K, G, G_along;
   for (std::size_t l = 0; l < vehicles.size(); ++l) {
     const train::MovingVehicle& vehicle = fleet.vehicles[static_cast<std::size_t>(vehicles[l])];
@@ -145,9 +145,9 @@ void LinearTrain::fill_block(const train::Fleet& fleet, std::size_t number, cons
     drive[l] = drives ? speed[l] : 0.0;
     for (std::size_t i = 0; i < f; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
-      r0[i * block_lanes + l] = of.r0[row];
-      driven[i * block_lanes + l] = drives ? of.driven[row] : 0.0;
-      for (std::size_t j = 0; j < f; ++j) M[(i * f + j) * block_lanes + l] = of.M(row, static_cast<Eigen::Index>(j));
+      r0[i * lanes_ + l] = of.r0[row];
+      driven[i * lanes_ + l] = drives ? of.driven[row] : 0.0;
+      for (std::size_t j = 0; j < f; ++j) M[(i * f + j) * lanes_ + l] = of.M(row, static_cast<Eigen::Index>(j));
     }
   }
   b.C = sparse(C);
@@ -184,13 +184,13 @@ void LinearTrain::make_rows(const train::Fleet& fleet) {
                       &task_.up_rate,  &task_.along_rate,  &task_.largest})
     *of = add(wheels);
   for (double*& history : task_.history) history = add(wheels);
-  task_.active = add_integers(wheels * block_lanes);
+  task_.active = add_integers(wheels * lanes_);
   task_.lost = add(most_kept);
   task_.given = add(most_kept);
   hertz_.assign(wheels, 1);
   second_.assign(wheels, 0);
   // Lanes without a vehicle: far above a level ground.
-  for (std::size_t i = 0; i < wheels * block_lanes; ++i) {
+  for (std::size_t i = 0; i < wheels * lanes_; ++i) {
     radius[i] = stiffness[i] = scale[i] = 1.0;
     task_.h[i] = no_surface;
     task_.from[i] = -infinite;
@@ -199,13 +199,13 @@ void LinearTrain::make_rows(const train::Fleet& fleet) {
     task_.normal_up[i] = 1.0;
   }
   for (SurfacePatch& p : task_.patch) {
-    p.slot = add_integers(wheels * block_lanes);
+    p.slot = add_integers(wheels * lanes_);
     for (double** of : {&p.x, &p.length, &p.shear, &p.yield, &p.low, &p.high}) *of = add(wheels);
     for (double*& entry : p.compliance) entry = add(wheels);
-    std::fill_n(p.length, wheels * block_lanes, 1.0);
+    std::fill_n(p.length, wheels * lanes_, 1.0);
     const bool first = &p == task_.patch;
-    std::fill_n(p.low, wheels * block_lanes, first ? -infinite : 1.0);
-    std::fill_n(p.high, wheels * block_lanes, first ? infinite : -1.0);
+    std::fill_n(p.low, wheels * lanes_, first ? -infinite : 1.0);
+    std::fill_n(p.high, wheels * lanes_, first ? infinite : -1.0);
   }
   coordinate_.resize(static_cast<std::size_t>(fleet.freedom()));
   for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
@@ -215,10 +215,10 @@ void LinearTrain::make_rows(const train::Fleet& fleet) {
     const auto lane = static_cast<std::size_t>(places_[k].lane);
     for (int i = 0; i < b.freedom; ++i)
       coordinate_[static_cast<std::size_t>(vehicle.offset + i)] =
-          static_cast<std::size_t>(b.first_coordinate + i) * block_lanes + lane;
+          static_cast<std::size_t>(b.first_coordinate + i) * lanes_ + lane;
     for (std::size_t j = 0; j < vehicle.wheels.size(); ++j) {
       const train::Wheel& wheel = vehicle.wheels[j];
-      const std::size_t row = static_cast<std::size_t>(b.first_wheel) + j, number = row * block_lanes + lane;
+      const std::size_t row = static_cast<std::size_t>(b.first_wheel) + j, number = row * lanes_ + lane;
       const auto body = 3 * static_cast<Eigen::Index>(wheel.body);
       place[number] = of.q0[body];
       height[number] = of.q0[body + 1] - wheel.radius;
@@ -240,7 +240,7 @@ void LinearTrain::make_rows(const train::Fleet& fleet) {
     if (c.is_further) continue;
     const VehicleBlock& b = blocks_[places_[static_cast<std::size_t>(c.vehicle)].block];
     entry_.push_back(i);
-    wheel_.push_back(static_cast<std::size_t>(b.first_wheel + c.wheel) * block_lanes +
+    wheel_.push_back(static_cast<std::size_t>(b.first_wheel + c.wheel) * lanes_ +
                      static_cast<std::size_t>(places_[static_cast<std::size_t>(c.vehicle)].lane));
     const track::Profile& profile = fleet.profile(c);
     profile_.push_back(profile.level() ? nullptr : &profile);

@@ -1,5 +1,5 @@
-// Linear vehicles and their contacts with the structure in a stage of a one-step method (one_step_methods.hpp), eight
-// vehicles at a time.
+// Linear vehicles and their contacts with the structure in a stage of a one-step method (one_step_methods.hpp), as
+// many vehicles at a time as the processor's vectors have lanes.
 //
 //   vehicles   J a = G^T f - r0 - C w~ - K v~,   J = M + rate C + displacement K
 //              so that wheels move by H f, H = displacement G J^-1 G^T, from where they are without contact forces
@@ -77,15 +77,15 @@ inline Row hertz_root(Row guess, Row yielding, Row target) {
   return r;
 }
 
-/// One wheel of eight vehicles: the patch that it touches, and the point.
-struct Contact8 {
+/// One wheel of every lane: the patch that it touches, and the point.
+struct ContactRow {
   Touched at;
   Row length, shear, structure, seat, seat_by_x;
 };
 
 /// What the patch makes of a force at the point.
 template <Surface kind>
-Contact8 on_patch(const SurfacePatch& p, int i, const Touched& at) {
+ContactRow on_patch(const SurfacePatch& p, int i, const Touched& at) {
   const Row length = rows(p.length)[i], shear = rows(p.shear)[i];
   const Shapes s = shapes_at<kind>(at.xi, length, shear);
   Row structure{};
@@ -100,16 +100,16 @@ Contact8 on_patch(const SurfacePatch& p, int i, const Touched& at) {
 
 /// The patch that is touched: of two the one where the wheel is deeper.
 template <Surface kind>
-Contact8 touched_patch(const TrainTask& task, int i, Row along, Row up) {
-  Contact8 c = on_patch<kind>(task.patch[0], i, closest<kind>(task, task.patch[0], i, along, up));
-  int* active = task.active + static_cast<long>(i) * block_lanes;
-  for (int l = 0; l < block_lanes; ++l) active[l] = 0;
+ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
+  ContactRow c = on_patch<kind>(task.patch[0], i, closest<kind>(task, task.patch[0], i, along, up));
+  int* active = task.active + static_cast<long>(i) * lanes;
+  for (int l = 0; l < lanes; ++l) active[l] = 0;
   if (task.second[i] == 0) return c;
   const SurfacePatch& p = task.patch[1];
-  const Contact8 other = on_patch<kind>(p, i, closest<kind>(task, p, i, along, up));
+  const ContactRow other = on_patch<kind>(p, i, closest<kind>(task, p, i, along, up));
   const RowMask two = rows(p.high)[i] >= rows(p.low)[i], there = two & (other.at.depth > c.at.depth);
   const auto choose = [there](Row a, Row b) { return there ? a : b; };
-  for (int l = 0; l < block_lanes; ++l) active[l] = Rows::holds(there, l) ? 1 : 0;
+  for (int l = 0; l < lanes; ++l) active[l] = Rows::holds(there, l) ? 1 : 0;
   return {{choose(other.at.depth, c.at.depth), choose(other.at.up, c.at.up), choose(other.at.along, c.at.along),
            choose(other.at.station, c.at.station), choose(other.at.xi, c.at.xi), choose(other.at.turn, c.at.turn),
            c.at.fallen | (two & other.at.fallen)},
@@ -156,7 +156,7 @@ double update_forces(const TrainTask& task) {
     }
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
-      const Contact8 c = touched_patch<kind>(task, i, along[j], up[j]);
+      const ContactRow c = touched_patch<kind>(task, i, along[j], up[j]);
       const Row depth = c.at.depth, before = rows(task.normal)[i];
       fallen |= c.at.fallen;
       const Row force = own_force(task, i, depth, (H[j * m + j] + c.structure) * c.at.up * c.at.up, c.seat);
@@ -177,7 +177,7 @@ double update_forces(const TrainTask& task) {
   }
   if (Rows::any(fallen)) return -1.0;
   double largest = 0.0;
-  for (int l = 0; l < block_lanes; ++l)
+  for (int l = 0; l < lanes; ++l)
     if (!(Rows::numbers(most)[l] <= largest)) largest = Rows::numbers(most)[l];
   return largest;
 }
@@ -190,11 +190,10 @@ void for_wheels_on_elements(const TrainTask& task, Use use) {
       const SurfacePatch& p = task.patch[patch];
       const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) / length;
       Row direction[most_nodal];
-      directions<kind>(task, xi, length, rows(p.shear)[i], task.turn + static_cast<long>(i) * block_lanes,
+      directions<kind>(task, xi, length, rows(p.shear)[i], task.turn + static_cast<long>(i) * lanes,
                        rows(task.normal_up)[i], rows(task.normal_along)[i], direction);
-      const int *slot = p.slot + static_cast<long>(i) * block_lanes,
-                *active = task.active + static_cast<long>(i) * block_lanes;
-      for (int l = 0; l < block_lanes; ++l)
+      const int *slot = p.slot + static_cast<long>(i) * lanes, *active = task.active + static_cast<long>(i) * lanes;
+      for (int l = 0; l < lanes; ++l)
         if (active[l] == patch && slot[l] != task.slots - 1) use(i, l, slot[l], direction);
     }
 }

@@ -1,4 +1,4 @@
-// The running surface under eight wheels at a time, as part of the kernel (train_kernel.hpp): the equations of
+// The running surface under a row of wheels, as part of the kernel (train_kernel.hpp): the equations of
 // wheel_on_track.hpp.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace {
 /// What the contact's geometry takes of an element: general: with unknowns along x, a surface above the axis, shear.
 enum class Surface { flat, general };
 
-/// The surface under eight wheels: the deflection's cubic over xi, with what makes it general.
+/// The surface under a row of wheels: the deflection's cubic over xi, with what makes it general.
 template <Surface kind>
 struct SurfaceRows {
   Row xi_start, per_length;              // xi = (x - element's x)/length = xi_start + per_length s at s from `origin`
@@ -20,17 +20,17 @@ struct SurfaceRows {
   double height = 0.0;
 };
 
-/// Eight nodal values, one a lane, `offset` behind the first of each slot.
+/// A nodal value of every lane, `offset` behind the first of each slot.
 inline Row gather(const double* nodal, const int* slot, int width, int offset) {
   Row value{};
-  for (int l = 0; l < block_lanes; ++l) Rows::numbers(value)[l] = nodal[slot[l] * width + offset];
+  for (int l = 0; l < lanes; ++l) Rows::numbers(value)[l] = nodal[slot[l] * width + offset];
   return value;
 }
 
 template <Surface kind>
 SurfaceRows<kind> surface_under(const TrainTask& task, const SurfacePatch& p, int i, Row origin) {
   SurfaceRows<kind> s;
-  const int *slot = p.slot + static_cast<long>(i) * block_lanes, width = 2 * task.per_node, o = task.per_node - 2;
+  const int *slot = p.slot + static_cast<long>(i) * lanes, width = 2 * task.per_node, o = task.per_node - 2;
   const Row length = rows(p.length)[i];
   s.per_length = 1.0 / length;
   s.xi_start = (origin - rows(p.x)[i]) * s.per_length;

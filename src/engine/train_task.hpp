@@ -1,19 +1,19 @@
 // A train of linear vehicles on its structure as plain arrays: the only thing that the kernel (train_kernel.hpp), which
 // is compiled once for each kind of processor, sees of the rest of the program.
 //
-// Vehicles with as many coordinates and wheels stand in blocks of eight, one in each lane of the processor's vectors;
-// a *row* is eight numbers, one a lane. With several runs at once the lanes of a block are vehicles of several runs. A
-// lane without a vehicle has the mass 1 and wheels that touch nothing.
+// Vehicles with as many coordinates and wheels stand in blocks, one in each lane of the processor's vectors; a *row*
+// has a number of each lane (best_width() of processor.hpp). A lane without a vehicle has the mass 1 and wheels that
+// touch nothing.
 #pragma once
 
 namespace traverse::engine {
 
-inline constexpr int block_lanes = 8;
+inline constexpr int most_lanes = 8;
 inline constexpr int most_stages = 5, most_kept = 6;  // implicit stages of a method, accelerations that it combines
 inline constexpr int most_nodal = 6;                  // unknowns of an element
 inline constexpr int most_wheels = 64;                // of a vehicle
 
-/// A sparse matrix: entry i stands in row[i] and column[i], its value is a row of eight.
+/// A sparse matrix: entry i stands in row[i] and column[i], its value is a row.
 struct SparseRows {
   int count = 0;
   const int *row = nullptr, *column = nullptr;
@@ -51,10 +51,10 @@ struct SurfacePatch {
 };
 
 /// Scaled to the length of a step, a row each.
-struct alignas(8 * block_lanes) StageRows {
-  double w_in_v[block_lanes], a_in_v[most_kept][block_lanes], a_in_w[most_kept][block_lanes];
-  double rate[block_lanes], displacement[block_lanes];
-  double guess[most_stages + 2][block_lanes];  // weights of the contact forces at the stages before and at two ends
+struct alignas(8 * most_lanes) StageRows {
+  double w_in_v[most_lanes], a_in_v[most_kept][most_lanes], a_in_w[most_kept][most_lanes];
+  double rate[most_lanes], displacement[most_lanes];
+  double guess[most_stages + 2][most_lanes];  // weights of the contact forces at the stages before and at two ends
 };
 
 struct TrainTask {

@@ -8,7 +8,8 @@
 namespace traverse::engine {
 namespace {
 
-using Rows = Lanes<block_lanes>;
+using Rows = Lanes<Lanes<most_lanes>::in_a_row>;
+inline constexpr int lanes = Lanes<most_lanes>::in_a_row;
 using Row = Rows::Lane;
 using RowMask = Rows::Mask;
 
