@@ -28,7 +28,7 @@ struct Touched {
   RowMask fallen;         // the centre is below the surface, and not beside its end
 };
 
-inline constexpr int closest_steps = 2;  // of Newton's method a pass: the point hardly moves from one pass to the next
+inline constexpr int closest_steps = 1;  // of Newton's method a pass: the point hardly moves from one pass to the next
 
 /// The point of the patch that is closest to the centre, which is at `along` and a radius above `up`. With its height
 /// e above the surface, less a radius, all that the penetration is computed from is small, so that it keeps its digits.
