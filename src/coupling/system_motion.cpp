@@ -170,15 +170,14 @@ bool System::stage_by_passes(const StageTime& at) {
   train_->predict(stage_, at.t);
   const engine::LinearTrain::Placing placing = train_->place(fleet_);
   if (placing == engine::LinearTrain::Placing::several_points) return false;
-  const structure::ElementCompliance* compliance = nullptr;
   if (structure_) {
     structure_->gather_free(train_->elements(), v_, w_);
-    compliance = &structure_->yield(train_->elements());
-    if (placing == engine::LinearTrain::Placing::anew) train_->set_compliance(*compliance);
+    const structure::ElementCompliance& compliance = structure_->yield_alone(train_->elements());
+    if (placing == engine::LinearTrain::Placing::anew) train_->set_compliance(compliance);
   }
   const auto respond = [&] {
     passed_ = v_;
-    if (compliance != nullptr && !passed_.empty()) compliance->respond(train_->compute_loads(), passed_);
+    if (structure_ && !passed_.empty()) structure_->respond(train_->compute_loads(), passed_);
   };
   do {
     respond();

@@ -59,23 +59,10 @@ Compliance::Compliance(const beam::Beam& beam, BeamOperator& op)
 
 void Compliance::prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements) {
   const BeamFactor& factor = operator_.factored(shift, shift2, added);
-  const long stamp = operator_.factor_stamp();
-  if (stamp == stamp_ && elements == elements_) return;
-  const bool same_factor = stamp == stamp_;
+  if (!alone_ && operator_.factor_stamp() == stamp_ && elements == elements_) return;
+  const bool same_factor = find_columns() && !alone_;
+  alone_ = false;
   std::swap(before_.elements, elements_);
-  if (!same_factor) {
-    of_slot_.assign(of_slot_.size(), columns_.end());
-    for (auto c = columns_.begin(); c != columns_.end();) {
-      if (c->stamp == stamp) of_slot_[c->slot] = c;
-      if (operator_.keeps(c->stamp)) {
-        ++c;
-      } else {
-        kept_ -= c->values.size();
-        c = columns_.erase(c);
-      }
-    }
-  }
-  stamp_ = stamp;
   elements_ = elements;
   active_.clear();
   for (int e : elements) {
@@ -87,12 +74,62 @@ void Compliance::prepare(double shift, double shift2, const AddedSprings* added,
   std::swap(before_.blocks, blocks_);
   find_responses();
   fill_blocks(same_factor);
+  forget_columns();
+}
 
-  // Forget the oldest columns beyond what is worth keeping.
+void Compliance::prepare_alone(double shift, double shift2, const AddedSprings* added,
+                               const std::vector<int>& elements) {
+  const BeamFactor& factor = operator_.factored(shift, shift2, added);
+  if (alone_ && operator_.factor_stamp() == stamp_ && elements == elements_) return;
+  const bool same_factor = find_columns() && alone_;
+  alone_ = true;
+  std::swap(before_.elements, elements_);
+  std::swap(before_.blocks, blocks_);
+  elements_ = elements;
+  active_.resize(elements.size());
+  responses_.clear();
+  const std::size_t size = static_cast<std::size_t>(m_) * m_;
+  blocks_.assign(elements.size() * size, 0.0);
+  std::size_t old = 0;
+  for (int b = 0; b < static_cast<int>(elements.size()); ++b) {
+    const int element = elements[static_cast<std::size_t>(b)];
+    responses_.push_back({b, b + 1, static_cast<std::size_t>(b) * size});
+    double* const to = &blocks_[responses_.back().begin];
+    while (old < before_.elements.size() && before_.elements[old] < element) ++old;
+    if (same_factor && old < before_.elements.size() && before_.elements[old] == element) {
+      std::copy_n(&before_.blocks[old * size], size, to);
+      continue;
+    }
+    active_[static_cast<std::size_t>(b)] = {&column(factor, shift, added, element), place_of(element).unknown, 0, 0};
+    fill_block(b, b, to);
+  }
+  forget_columns();
+}
+
+// Of the factorisation that is in force; false: it is another one than before.
+bool Compliance::find_columns() {
+  const long stamp = operator_.factor_stamp();
+  if (stamp == stamp_) return true;
+  stamp_ = stamp;
+  of_slot_.assign(of_slot_.size(), columns_.end());
+  for (auto c = columns_.begin(); c != columns_.end();) {
+    if (c->stamp == stamp) of_slot_[c->slot] = c;
+    if (operator_.keeps(c->stamp)) {
+      ++c;
+    } else {
+      kept_ -= c->values.size();
+      c = columns_.erase(c);
+    }
+  }
+  return false;
+}
+
+// The oldest columns beyond what is worth keeping.
+void Compliance::forget_columns() {
   while (kept_ > kept_values && columns_.size() > elements_.size()) {
     const Column& oldest = columns_.back();
     kept_ -= oldest.values.size();
-    if (oldest.stamp == stamp) of_slot_[oldest.slot] = columns_.end();
+    if (oldest.stamp == stamp_) of_slot_[oldest.slot] = columns_.end();
     columns_.pop_back();
   }
 }
@@ -117,6 +154,7 @@ void Compliance::keep(base::Bytes& bytes) {
   active_.clear();
   elements_.clear();
   before_.elements.clear();
+  alone_ = false;
   stamp_ = -1;  // the next prepare finds the columns
 }
 

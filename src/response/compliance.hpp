@@ -44,6 +44,9 @@ class Compliance final : public ElementCompliance {
   /// where there are some.
   void prepare(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements);
 
+  /// The same of each element by itself, its block() with itself alone; on one rank.
+  void prepare_alone(double shift, double shift2, const AddedSprings* added, const std::vector<int>& elements);
+
   /// Collective. Columns of the beam beyond which nothing is left of a response, for these shifts; 0 where parts of the
   /// beam do not touch: it ends with the part.
   int reach(double shift, double shift2);
@@ -68,6 +71,8 @@ class Compliance final : public ElementCompliance {
     int unknown = 0;  // local, of the part's beginning; 0 where the beam is one part
   };
   Place place_of(int element) const;
+  bool find_columns();
+  void forget_columns();
   const Column& column(const BeamFactor& factor, double shift, const AddedSprings* added, int element);
   std::ptrdiff_t solve_part(const BeamFactor& factor, int element);
   std::ptrdiff_t solve_window(const BeamFactor& factor, int element);
@@ -94,6 +99,7 @@ class Compliance final : public ElementCompliance {
   };
   std::vector<Active> active_;  // of the elements of the last prepare
   std::vector<int> elements_;
+  bool alone_ = false;  // the last prepare was prepare_alone
   long stamp_ = -1, reach_stamp_ = -1;
   std::ptrdiff_t margin_;  // nodes on either side of an element within which its response dies out, as found last
   struct {                 // of the prepare before

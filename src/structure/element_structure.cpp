@@ -10,7 +10,7 @@
 namespace traverse::structure {
 
 ElementStructure::ElementStructure(const beam::Beam& beam, double gravity, std::shared_ptr<BeamOperator> op)
-    : Structure(beam, std::move(op), gravity), compliance_(beam, *statics_) {
+    : Structure(beam, std::move(op), gravity), compliance_(beam, *statics_), response_(beam, *statics_) {
   for (std::vector<double>* x : {&z_, &v_still_, &w_still_, &work_}) x->resize(static_cast<std::size_t>(n_));
 }
 
@@ -165,11 +165,37 @@ void ElementStructure::solve_free() {
 }
 
 const ElementCompliance& ElementStructure::yield(const std::vector<int>& elements) {
+  solves_ = false;
   if (!elements.empty()) compliance_.prepare(stage_.shift, stage_.shift2, stage_.added, elements);
   return compliance_;
 }
 
+const ElementCompliance& ElementStructure::yield_alone(const std::vector<int>& elements) {
+  if (!response_.worthwhile(elements.size())) return Structure::yield_alone(elements);
+  solves_ = true;
+  const bool fused = stage_.kind == Kind::fused;
+  response_.place(elements, fused ? motion_->first() : 0, fused ? motion_->past() : beam_.local_columns());
+  compliance_.prepare_alone(stage_.shift, stage_.shift2, stage_.added, elements);
+  return compliance_;
+}
+
+void ElementStructure::solve_for(const std::vector<double>& loads) {
+  if (!response_.solved_for(loads))
+    response_.solve(statics_->factored(stage_.shift, stage_.shift2, stage_.added), loads);
+}
+
+void ElementStructure::respond(const std::vector<double>& loads, std::vector<double>& v) {
+  if (!solves_) return Structure::respond(loads, v);
+  solve_for(loads);
+  response_.add_to_elements(v);
+}
+
 void ElementStructure::take(const std::vector<double>& loads) {
+  if (solves_) {
+    solve_for(loads);
+    const bool fused = stage_.kind == Kind::fused;
+    return response_.add(fused ? stage_.shift2 : 1.0, fused ? motion_->kept(stage_.number) : z_.data());
+  }
   if (stage_.kind != Kind::fused) return compliance_.add_response(loads, z_.data());
   element_work_ = loads;
   for (double& load : element_work_) load *= stage_.shift2;

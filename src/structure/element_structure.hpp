@@ -21,6 +21,7 @@
 
 #include "response/compliance.hpp"
 #include "structure/beam_motion.hpp"
+#include "structure/contact_response.hpp"
 #include "structure/rest_window.hpp"
 #include "structure/structure.hpp"
 
@@ -43,6 +44,8 @@ class ElementStructure final : public Structure {
   void begin_stage(std::size_t i, const double* v, const double* w) override;
   void solve_free() override;
   const ElementCompliance& yield(const std::vector<int>& elements) override;
+  const ElementCompliance& yield_alone(const std::vector<int>& elements) override;
+  void respond(const std::vector<double>& loads, std::vector<double>& v) override;
   void take(const std::vector<double>& loads) override;
   Verdict judge() override;
   void end_stage(double* v, double* w) override;
@@ -89,6 +92,7 @@ class ElementStructure final : public Structure {
                   double* w_elements) const override;
   void external_load(double* nodal) const;
   void load_of_stills();
+  void solve_for(const std::vector<double>& loads);
   void stand(const std::vector<Reach>& loaded);
   double dissipation(const double* w);
   int local_node(int column) const;
@@ -99,6 +103,8 @@ class ElementStructure final : public Structure {
   void set_ranges(const std::vector<Reach>& loaded);
 
   Compliance compliance_;
+  ContactResponse response_;
+  bool solves_ = false;                           // for the contacts' forces of this stage, in place of columns
   std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
   std::vector<NodalLoad> nodal_forces_;           // the moving ones, of ascending unknowns
   Stage stage_;

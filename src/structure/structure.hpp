@@ -121,6 +121,13 @@ class Structure {
   void gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w);
   /// How these elements yield to forces on them in this stage.
   virtual const ElementCompliance& yield(const std::vector<int>& elements) = 0;
+  /// The same of each element by itself, where respond() tells what forces on all of them do.
+  virtual const ElementCompliance& yield_alone(const std::vector<int>& elements) {
+    responding_ = &yield(elements);
+    return *responding_;
+  }
+  /// v += what the elements of yield_alone() are moved by loads on them, 2 per_node values an element.
+  virtual void respond(const std::vector<double>& loads, std::vector<double>& v) { responding_->respond(loads, v); }
   /// The contacts' forces on these elements.
   virtual void take(const std::vector<double>& loads) = 0;
   /// Whether the stage is solved, or has to be solved once more from solve_free on.
@@ -188,6 +195,7 @@ class Structure {
   int n_, ranks_ = 1;
 
  private:
+  const ElementCompliance* responding_ = nullptr;
   std::vector<double> both_;  // of gather
 };
 
