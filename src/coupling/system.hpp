@@ -189,8 +189,9 @@ class System {
   /// Puts y back to where the last step began; a restart has to follow.
   void take_back_step(double* y);
 
-  /// Collective. Fills `out` for a state with its rate, and the fleet with accelerations, reactions, wheel forces.
-  void observe(double t, const double* y, const double* ydot, Observation& out);
+  /// Collective. Fills `out` for a state with its rate, and the fleet with accelerations, reactions, wheel forces;
+  /// without `vehicles`, where that is quicker, the fleet only with its wheels' places and forces, and no energies.
+  void observe(double t, const double* y, const double* ydot, Observation& out, bool vehicles = true);
 
   /// Lets constant forces act from here on, between two steps, besides all that the scene has: Fleet::apply, and a
   /// vertical force (N, upward) at a station (m) of the beam that wheels run on, instead of the last one there.
@@ -319,6 +320,7 @@ class System {
   void share_step();
   void note_wheels_apart();
   void note_touched();
+  bool contacts_are_known(double t) const;
   void powers(const double* w, Terms terms, double& dissipation, double& work);
   Powers fleet_powers() const;
   Energy energy(const double* y);

@@ -28,9 +28,10 @@ constexpr double tolerance = 1e-12;  // of a vehicle's weight: changes of forces
 constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
 constexpr int most_passes = 60;      // of a stage
 constexpr double best_contraction = 1e-3;
-constexpr double measurable = 1e-10;   // of the weight: changes above it tell a contraction
-constexpr double growth = 1.1;         // of a contraction that is trusted without having been measured again
-constexpr double near_look_up = 2e-5;  // m: as far the profile's parabola is exact
+constexpr double measurable = 1e-10;    // of the weight: changes above it tell a contraction
+constexpr double growth = 1.1;          // of a contraction that is trusted without having been measured again
+constexpr double worth_looking = 1.05;  // times the departure: of the residual a tenth
+constexpr double near_look_up = 2e-5;   // m: as far the profile's parabola is exact
 
 void fill(double (&row)[most_lanes], double value) { std::fill_n(row, most_lanes, value); }
 
@@ -257,6 +258,19 @@ void LinearTrain::finish_step(double* p, double* pd, double* pdd) {
   write(task_.a[0], pdd);
 }
 
+bool LinearTrain::departs_further() {
+  bool further = false;
+  for (std::size_t v = 0; v < farthest_.size(); ++v) {
+    double departure = 0.0;  // the root of the residual, at most
+    for (std::size_t k = first_entry_[v]; k < first_entry_[v + 1]; ++k)
+      departure += roots_[k] * std::abs(task_.x[coordinate_[k]]);
+    if (departure <= worth_looking * farthest_[v]) continue;
+    farthest_[v] = departure;
+    further = true;
+  }
+  return further;
+}
+
 void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
     train::WheelContact& c = fleet.wheels[entry_[i]];
@@ -269,6 +283,8 @@ void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
     c.law.seat = c.touch.seat = task_.seat[at];
     c.touch.ahead = task_.ahead[at];
     c.touch.station = task_.station[at];
+    const train::Patch& patch = c.patches[static_cast<std::size_t>(task_.active[at])];
+    c.touch.xi = patch.element >= 0 ? (c.touch.station - patch.x) / patch.length : 0.0;
     c.touch.normal_on_body = {-task_.normal_along[at], -task_.normal_up[at], 0.0};
     c.active = task_.active[at];
     c.force = {};
@@ -292,7 +308,7 @@ void LinearTrain::keep(base::Bytes& bytes) {
         task_.ahead_before, task_.turn, task_.history[most_stages], task_.history[most_stages + 1]})
     numbers(of, wheel_);
   numbers(task_.active, wheel_);
-  bytes(length_before_, contraction_, last_time_, time_before_);
+  bytes(length_before_, contraction_, last_time_, time_before_, farthest_);
   if (bytes.reads()) placed_ = false;
 }
 

@@ -64,6 +64,9 @@ class LinearTrain {
   void copy_contacts_to(train::Fleet& fleet) const;
   /// Whether the last stage is where the step ends.
   bool ends_with_stage() const { return ends_with_stage_; }
+  /// Whether after a step a vehicle is farther from where it was linearised than at any call before, by so much that
+  /// the residual of its being linear may have grown.
+  bool departs_further();
 
   /// The state between two steps.
   void keep(base::Bytes& bytes);
@@ -93,6 +96,8 @@ class LinearTrain {
   TrainTask task_;
   std::vector<VehicleBlock> blocks_;
   std::vector<Place> places_;                      // of every vehicle
+  std::vector<double> roots_, farthest_;           // of every entry of p: residual_roots; of every vehicle
+  std::vector<std::size_t> first_entry_;           // of every vehicle's coordinates in p, and the end
   std::vector<std::size_t> coordinate_;            // of every entry of p: its number in arrays of coordinates
   std::vector<std::size_t> entry_, wheel_;         // of every wheel: in Fleet::wheels; its number in arrays of wheels
   std::vector<const track::Profile*> profile_;     // that it runs on; null: level

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "engine/linear_train.hpp"
-#include "train/linear_dynamics.hpp"
+#include "train/linearisation_residual.hpp"
 
 namespace traverse::engine {
 namespace {
@@ -208,8 +208,12 @@ void LinearTrain::make_rows(const train::Fleet& fleet) {
     std::fill_n(p.high, wheels * lanes_, first ? infinite : -1.0);
   }
   coordinate_.resize(static_cast<std::size_t>(fleet.freedom()));
+  farthest_.assign(fleet.vehicles.size(), 0.0);
   for (std::size_t k = 0; k < fleet.vehicles.size(); ++k) {
     const train::MovingVehicle& vehicle = fleet.vehicles[k];
+    first_entry_.push_back(roots_.size());
+    const std::vector<double> roots = train::residual_roots(vehicle);
+    roots_.insert(roots_.end(), roots.begin(), roots.end());
     const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
     const VehicleBlock& b = blocks_[places_[k].block];
     const auto lane = static_cast<std::size_t>(places_[k].lane);
@@ -228,6 +232,7 @@ void LinearTrain::make_rows(const train::Fleet& fleet) {
       hertz_[row] = wheel.law.kind == contact::LawKind::hertz ? 1 : 0;
     }
   }
+  first_entry_.push_back(roots_.size());
   task_.place = place;
   task_.height = height;
   task_.radius = radius;

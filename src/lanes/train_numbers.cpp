@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "train/linear_dynamics.hpp"
+#include "train/linearisation_residual.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::lanes {
@@ -35,29 +35,6 @@ bool alike(const VehicleNumbers& a, const VehicleNumbers& b, double weight) {
          alike(a.K, b.K, 0.0) && alike(a.G, b.G, 0.0) && alike(a.G_along, b.G_along, 0.0) && alike(a.r0, b.r0, weight);
 }
 
-/// How far a mechanism is out of balance at x from its start, over its weight.
-double defect_at(train::MovingVehicle& vehicle, const double* x) {
-  const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
-  const Eigen::VectorXd p = of.p0 + Eigen::Map<const Eigen::VectorXd>(x, of.p0.size());
-  Eigen::VectorXd pdd(vehicle.freedom());
-  train::AnyDynamics moved = vehicle.dynamics;  // one that has not seen anything else
-  moved->set(vehicle, 0.0, p.data(), of.c.data());
-  moved->accelerations(vehicle, pdd.data());
-  moved->observe(vehicle, pdd.data());
-  return moved->defect();
-}
-
-std::vector<double> bend_of(train::MovingVehicle& vehicle) {
-  constexpr double little = 1e-3;  // m or rad: the square is far from rounding, all higher powers are far below it
-  std::vector<double> x(static_cast<std::size_t>(vehicle.freedom()), 0.0), bend;
-  for (double& one : x) {
-    one = little;
-    bend.push_back(std::sqrt(defect_at(vehicle, x.data())) / little);
-    one = 0.0;
-  }
-  return bend;
-}
-
 VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
   const train::LinearMatrices of = vehicle.dynamics->linear()->matrices();
   VehicleNumbers v;
@@ -75,7 +52,7 @@ VehicleNumbers numbers_of(train::MovingVehicle& vehicle) {
   };
   v.G_along = rows_of_wheels(0);
   v.G = rows_of_wheels(1);
-  v.bend = bend_of(vehicle);
+  v.bend = train::residual_roots(vehicle);
   v.driven.assign(of.driven.begin(), of.driven.end());
   return v;
 }
@@ -195,7 +172,7 @@ TrainNumbers train_numbers(train::Fleet& fleet) {
 double defect(train::Fleet& fleet, const std::vector<double>& x) {
   double largest = 0.0;
   for (train::MovingVehicle& vehicle : fleet.vehicles)
-    largest = std::max(largest, defect_at(vehicle, x.data() + vehicle.offset));
+    largest = std::max(largest, train::linearisation_residual_at(vehicle, x.data() + vehicle.offset));
   return largest;
 }
 

@@ -25,6 +25,8 @@ class BeyondTrials {
   /// until: when they ended, s of the run. beam: null where there is none.
   BeyondTrials(double until, const train::Fleet& fleet, const beam::BeamModel* beam);
 
+  /// Whether instants need what vehicles do inside.
+  bool looks_at_springs() const { return !springs_.empty(); }
   /// The next instant, before `peaks` has it.
   void add(double t, const train::Fleet& fleet, const structure::NonlinearForces& foundation, Peaks& peaks);
 

@@ -60,7 +60,9 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
 }
 
 void Watch::sample(const integrate::Instant& instant) {
-  system_.observe(instant.time, instant.y, instant.ydot, now_.motion);
+  const bool stored = instant.purpose != integrate::Purpose::look;
+  const bool vehicles = stored || judge_ || beyond_trials_.looks_at_springs() || scene_.train.drive == Drive::free;
+  system_.observe(instant.time, instant.y, instant.ydot, now_.motion, vehicles);
   const structure::NodalMotion& beam = now_.motion.beam;
   sample_.time = instant.time;
   if (beam_ != nullptr) {
@@ -83,7 +85,7 @@ void Watch::sample(const integrate::Instant& instant) {
   if (judge_) judge_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
   if (beam_ != nullptr && scene_.train.drive == Drive::free) paths_.add(instant.time, system_.fleet());
-  if (instant.purpose != integrate::Purpose::look) store(instant.purpose == integrate::Purpose::end);
+  if (stored) store(instant.purpose == integrate::Purpose::end);
 }
 
 void Watch::store(bool end) {
