@@ -51,8 +51,6 @@ std::string not_promised(Quantity quantity, const Promise& promise);
 /// Why quantities are not promised.
 /// Of one that is not asked for.
 std::string why_not_asked(const Scene& scene, std::size_t quantity);
-inline constexpr const char* not_by_modes =
-    "the run goes by modes, which do not look for it; accuracy_of shear asks for it";
 inline constexpr const char* no_sum =
     "without damping that grows with the frequency the accelerations of all modes have no sum";
 /// Whether the scene asks for damping that grows with the frequency.

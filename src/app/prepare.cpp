@@ -8,7 +8,6 @@
 #include "accuracy/trials.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/wheel_unloading.hpp"
-#include "study/lanes_choice.hpp"
 
 namespace traverse::app {
 namespace {
@@ -16,13 +15,7 @@ namespace {
 Accuracy try_models(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   if (chooses_mode_mesh(scene)) return choose_mode_mesh(comm, scene, notes);
   if (chooses(scene)) settle_low_pass(comm, scene, notes);
-  const std::optional<LanesChoice> lanes = lanes_for_one(scene, notes);
-  if (!lanes) return choose(comm, scene, notes);
-  scene = lanes->scene;
-  Accuracy accuracy;
-  accuracy.measured = true;
-  accuracy.promises = lanes->promises;
-  return accuracy;
+  return choose(comm, scene, notes);
 }
 
 }  // namespace

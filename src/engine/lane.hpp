@@ -72,24 +72,6 @@ struct Lanes {
   }
 };
 
-/// One run alone: its numbers stand behind each other, so that loops over modes go in the processor's vectors.
-template <>
-struct Lanes<1> {
-  using Lane = double;
-  using Mask = long;  // 0 or 1
-
-  static Lane fill(double value) { return value; }
-  static double* numbers(Lane& x) { return &x; }
-  static const double* numbers(const Lane& x) { return &x; }
-  static bool holds(Mask mask, int /*lane*/) { return mask != 0; }
-  static const Lane* lanes(const double* numbers) { return numbers; }
-  static Lane* lanes(double* numbers) { return numbers; }
-  static Lane magnitude(Lane x) { return __builtin_fabs(x); }
-  static Lane greater(Lane a, Lane b) { return a > b ? a : b; }
-  static Lane root(Lane x) { return __builtin_sqrt(x); }
-  static bool any(Mask mask) { return mask != 0; }
-};
-
 /// The next `count` numbers of type T of the memory at `work`, of which `used` lanes are taken, from where the widest
 /// vectors may start; null while work is null and the size alone is asked for.
 template <class T>

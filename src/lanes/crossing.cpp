@@ -22,7 +22,7 @@ std::size_t places_kept(const CrossingPlan& plan) {
 }  // namespace
 
 std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const CrossingRun> runs) {
-  const std::size_t width = runs.size() > 4 ? 8 : runs.size() > 2 ? 4 : plan.one_by_itself ? runs.size() : 2;
+  const std::size_t width = runs.size() > 4 ? 8 : runs.size() > 2 ? 4 : 2;
   const CrossingNumbers numbers(plan, runs, width);
   Task task = numbers.task();
   const std::size_t probes = static_cast<std::size_t>(task.probes.count);

@@ -61,9 +61,6 @@ struct CrossingPlan {
   std::vector<TaskStretch> stretches;
   std::vector<double> kinks;  // m: stations at which the surface has a corner, ascending
   double level_until = 0.0;   // m: before it the track is level and the ground rigid
-  // A run with none beside it goes by the kernel of one, which is quicker and rounds otherwise: not where what is
-  // beside a run must not change it.
-  bool one_by_itself = false;
 };
 
 /// What is one run's own. In all runs of a group vehicles with as many coordinates and wheels at the same places.

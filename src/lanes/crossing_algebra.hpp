@@ -37,31 +37,10 @@ struct CrossingAlgebra : Lanes<W> {
     for (; i < n; ++i) a += term(i);
     return (a + b) + (c + d);
   }
-  /// The sum of a_i b_i; of a run alone eight at a time.
+  /// The sum of a_i b_i.
   template <class Number>
   static Lane dot(const Number* a, const Lane* b, int n) {
-    if constexpr (W > 1)
-      return sum(n, [=](int i) { return a[i] * b[i]; });
-    else
-      return dot_alone(a, b, n);
-  }
-  static double dot_alone(const double* a, const double* b, int n) {
-    using Eight = typename Lanes<8>::Unaligned;
-    const auto eight = [](const double* x) { return *reinterpret_cast<const Eight*>(x); };
-    Eight even{}, odd{};
-    int i = 0;
-    for (; i + 16 <= n; i += 16) {
-      even += eight(a + i) * eight(b + i);
-      odd += eight(a + i + 8) * eight(b + i + 8);
-    }
-    if (i + 8 <= n) {
-      even += eight(a + i) * eight(b + i);
-      i += 8;
-    }
-    even += odd;
-    double sum = ((even[0] + even[4]) + (even[1] + even[5])) + ((even[2] + even[6]) + (even[3] + even[7]));
-    for (; i < n; ++i) sum += a[i] * b[i];
-    return sum;
+    return sum(n, [=](int i) { return a[i] * b[i]; });
   }
 
   /// In place, without pivots: of matrices whose symmetric part is positive.
@@ -82,8 +61,6 @@ struct CrossingAlgebra : Lanes<W> {
   /// y += sign A x for a matrix by rows; four rows at a time keep the processor busy.
   static void multiply(double sign, const Lane* A, int rows, int columns, const Lane* x, Lane* y) {
     int i = 0;
-    if constexpr (W == 1)
-      for (; i < rows; ++i) y[i] += sign * dot(A + i * columns, x, columns);
     for (; i + 4 <= rows; i += 4) {
       const Lane *A0 = A + i * columns, *A1 = A0 + columns, *A2 = A1 + columns, *A3 = A2 + columns;
       Lane y0{}, y1{}, y2{}, y3{};

@@ -16,13 +16,9 @@ struct CrossingInfluence : CrossingAlgebra<W> {
   /// Takes from `sums` of the vehicle's wheels on the bridge what the modes at q have of each one's influence.
   static void weigh(const State& s, const TaskVehicle& vehicle, const Lane* q, Lane* sums) {
     with_influence(s, vehicle, [&](const Lane* const* g, const int* wheel, int count) {
-      if constexpr (W == 1) {
-        for (int k = 0; k < count; ++k) sums[wheel[k]] -= dot(g[k], q, s.modes);
-      } else {
-        int k = 0;
-        for (; k + 4 <= count; k += 4) weigh_four(g + k, wheel + k, q, s.modes, sums);
-        for (; k < count; ++k) sums[wheel[k]] -= dot(g[k], q, s.modes);
-      }
+      int k = 0;
+      for (; k + 4 <= count; k += 4) weigh_four(g + k, wheel + k, q, s.modes, sums);
+      for (; k < count; ++k) sums[wheel[k]] -= dot(g[k], q, s.modes);
     });
   }
   /// Adds to the modal forces those of the vehicle's wheels on the bridge.

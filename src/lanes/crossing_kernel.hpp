@@ -24,7 +24,6 @@
 #include "lanes/crossing_looks.hpp"
 #include "lanes/crossing_motion.hpp"
 #include "lanes/crossing_places.hpp"
-#include "lanes/crossing_powers.hpp"
 
 namespace traverse::lanes {
 namespace {
@@ -38,7 +37,6 @@ class Group : CrossingAlgebra<W> {
   using Motion = CrossingMotion<W>;
   using Looks = CrossingLooks<W>;
   using Places = CrossingPlaces<W>;
-  using Powers = CrossingPowers<W>;
   using Own::any;
   using Own::fill;
   using Own::invert;
@@ -50,7 +48,6 @@ class Group : CrossingAlgebra<W> {
 
  public:
   Group(const Task& task, double* work) : state_(task) { CrossingMemory<W>::lay_out(state_, work); }
-  static void* operator new(__SIZE_TYPE__, double* at) { return at; }
   long size() const { return state_.used * W; }
 
   void run() {
@@ -82,79 +79,6 @@ class Group : CrossingAlgebra<W> {
     Looks::give(s);
   }
 
-  // The same step by step, by somebody else's choice of steps, with the energies that come and go.
-  void begin() {
-    begin(state_);
-    Powers::begin(state_);
-  }
-  /// From where it is until all have gone `to` m. Where that fails, the crossing is where it was. from_kink, to_kink:
-  /// the surface may have a kink where the step begins or ends.
-  void step(double to, bool from_kink, bool to_kink) {
-    State& s = state_;
-    set_step(s, to - s.distance);
-    Places::place_vehicles(s, s.distance);
-    s.behind_kink = from_kink;
-    if (from_kink) Powers::begin_behind_kink(s);
-    for (int stage = 0; stage < s.task.method.stages; ++stage) {
-      solve_stage(s, stage, to_kink);
-      if (!any(s.failed == fill(0.0))) return;
-      Powers::note(s, stage + 1, to_kink && stage + 1 == s.task.method.stages);
-    }
-    finish_step(s);
-    Powers::finish_step(s);
-    s.distance = to;
-    Looks::see(s);
-    for (int j = 0; j < s.task.wheels; ++j) s.F_seen[4][j] = Contacts::normal(s, j);
-    if (to_kink) CrossingCorners<W>::pass(s);
-  }
-  /// Goes on from where another crossing of the same task was, whose numbers have been copied behind this one.
-  void go_on_from(const Group& other) {
-    State& s = state_;
-    const State& o = other.state_;
-    s.h = o.h;
-    s.rate = o.rate;
-    s.d = o.d;
-    s.failed = o.failed;
-    s.ds = o.ds;
-    s.ds_before = o.ds_before;
-    s.start = o.start;
-    s.distance = o.distance;
-    s.yield_to_force = o.yield_to_force;
-    s.moved = o.moved;
-    s.hard = o.hard;
-    s.known = o.known;
-    s.looks = o.looks;
-    s.seen = o.seen;
-    for (int i = 0; i < 5; ++i) {
-      s.s_seen[i] = o.s_seen[i];
-      s.F_seen[i] = s.x + (o.F_seen[i] - o.x);  // they take turns
-      s.row_of[i] = s.x + (o.row_of[i] - o.x);
-    }
-    for (int i = 0; i < 2; ++i) s.bent_to[i] = s.x + (o.bent_to[i] - o.x);
-    s.left_keeps = o.left_keeps;
-    for (int i = 0; i < 4; ++i) {
-      s.to_left[i] = o.to_left[i];
-      s.to_left_rate[i] = o.to_left_rate[i];
-    }
-    s.h_before = o.h_before;
-    for (int j = 0; j < most_kept; ++j) {
-      s.lost[j] = o.lost[j];
-      s.given[j] = o.given[j];
-    }
-    s.all_lost = o.all_lost;
-    s.all_given = o.all_given;
-    s.speed = o.speed;
-    s.end_time = o.end_time;
-    s.least = o.least;
-    s.greatest = o.greatest;
-    s.edge = o.edge;
-  }
-  TaskInstant instant() const {
-    const State& s = state_;
-    const auto all = [](const Lane* x) { return reinterpret_cast<const double*>(x); };
-    return {*all(&s.failed), all(s.q),         all(s.r),         all(s.x),         all(s.w),
-            all(s.bent),     all(s.F_seen[4]), all(s.row_of[4]), all(&s.all_lost), all(&s.all_given)};
-  }
 
  private:
   static constexpr double same_step = 1e-10;  // far above what rounding leaves of differences of distances

@@ -90,30 +90,11 @@ void CrossingNumbers::add_train(const TrainNumbers& train) {
                          [&](const CrossingRun& run) { return run.train->kinds[k].G[i] != 0.0; });
     })));
     const Pattern& wheels = *patterns_.back();
-    Pattern& losses = *patterns_.emplace_back(std::make_unique<Pattern>());
-    losses.row.clear();
-    for (int i = 0; i < f; ++i)
-      for (int j = 0; j <= i; ++j) {
-        const auto loses = [&](const CrossingRun& run) {
-          const std::vector<double>& C = run.train->kinds[k].C;
-          return C[static_cast<std::size_t>(i * f + j)] != 0.0 || C[static_cast<std::size_t>(j * f + i)] != 0.0;
-        };
-        if (std::none_of(runs_.begin(), runs_.end(), loses)) continue;
-        losses.row.push_back(i);
-        losses.column.push_back(j);
-      }
-    const double* loss = side_by_side(losses.row.size(), [&](const CrossingRun& run, std::size_t e) {
-      const std::vector<double>& C = run.train->kinds[k].C;
-      const int i = losses.row[e], j = losses.column[e];
-      const double one = C[static_cast<std::size_t>(i * f + j)];
-      return i == j ? one : one + C[static_cast<std::size_t>(j * f + i)];
-    });
     kinds_.push_back({f, kind.wheels, of(&VehicleNumbers::M, size * size), of(&VehicleNumbers::C, size * size),
                       of(&VehicleNumbers::K, size * size), of(&VehicleNumbers::r0, size),
                       of(&VehicleNumbers::G, size * static_cast<std::size_t>(kind.wheels)),
                       of(&VehicleNumbers::G_along, size * static_cast<std::size_t>(kind.wheels)), wheels.row.data(),
-                      wheels.column.data(), kind.bend.data(), static_cast<int>(losses.row.size()), losses.row.data(),
-                      losses.column.data(), loss, of(&VehicleNumbers::driven, size)});
+                      wheels.column.data(), kind.bend.data()});
   }
   for (const TrainNumbers::Vehicle& vehicle : train.vehicles) {
     double foremost = -1e300;

@@ -79,8 +79,6 @@ struct CrossingState {
   Lane *bend_rate = nullptr, *left = nullptr, *left_rate = nullptr;
   Lane to_left[4] = {}, to_left_rate[4] = {}, left_keeps{}, h_before{};
   bool behind_kink = false;
-  // W, at the start of a step and at its stages, and their integrals, J: CrossingPowers.
-  Lane lost[most_kept] = {}, given[most_kept] = {}, all_lost{}, all_given{};
   Lane *peak = nullptr, *peak_time = nullptr, least{}, greatest{}, edge{};  // the last one: CrossingResult::edge
 };
 

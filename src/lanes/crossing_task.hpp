@@ -26,11 +26,6 @@ struct TaskKind {
   const double* G_along = nullptr;                  // the wheels move along the track by G_along x
   const int *G_row = nullptr, *G_column = nullptr;  // where G has entries
   const double* bend = nullptr;  // of every coordinate: root of what its square puts the mechanism out of balance by
-  // Of C the part that loses energy: w^T C w is the sum of loss w_row w_column.
-  int losses = 0;
-  const int *loss_row = nullptr, *loss_column = nullptr;
-  const double* loss = nullptr;    // lanes
-  const double* driven = nullptr;  // lanes: driven x'' is the power that holds the masses' speed along the track, N s
 };
 
 struct TaskVehicle {
@@ -120,17 +115,6 @@ struct Task {
   double* edge = nullptr;    // CrossingResult::edge
   double* failed = nullptr;  // 0: none of what follows
   double* work = nullptr;    // as many numbers as work_size() says, aligned as a lane
-};
-
-/// What a crossing that is taken step by step is at.
-struct TaskInstant {
-  double failed = 0.0;
-  const double *q = nullptr, *q_rate = nullptr;  // of the modes
-  // Coordinates of every vehicle from where they started, m or rad, their rates, and Task::bent.
-  const double *x = nullptr, *x_rate = nullptr, *bent = nullptr;
-  const double* force = nullptr;     // N, of each wheel
-  const double* response = nullptr;  // deflection of each probe, then acceleration, moment and, with a lag, its rate
-  const double *lost = nullptr, *given = nullptr;  // J since the start: in dampers; by what holds the speed
 };
 
 enum Trouble { none = 0, contact_lost = 1, not_converged = 2, not_finite = 3 };

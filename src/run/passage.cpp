@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "by_lanes.hpp"
 #include "by_spans.hpp"
 #include "integrate/integrator_choice.hpp"
 #include "results/stage.hpp"
@@ -135,10 +134,10 @@ void Passage::start(std::vector<std::string>& notes) {
   stepper_->restore_state(&y);
 }
 
-// Linear vehicles over modes of the bridge, or over spans that do not touch, have ways of their own.
+// Linear vehicles over spans that do not touch have a way of their own.
 void Passage::step_apart(const double* y, std::vector<std::string>& notes) {
-  std::unique_ptr<coupling::SteppedApart> apart = by_lanes(scene_, shared_, system_, y, plan_.end_time);
-  if (!apart && (apart = by_spans(scene_, shared_, system_, y, plan_.end_time)))
+  std::unique_ptr<coupling::SteppedApart> apart = by_spans(scene_, shared_, system_, y, plan_.end_time);
+  if (apart)
     notes.push_back(
         fmt::format("spans do not touch: each is stepped by the modes of its elements under the train, {}",
                     scene_.rest_tolerance == 0.0 ? "and all others beside" : "and rings exactly behind it"));

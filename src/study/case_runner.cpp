@@ -11,7 +11,7 @@
 #include "engine/processor.hpp"
 #include "integrate/modal_peaks.hpp"
 #include "lanes/speed_class.hpp"
-#include "run/by_lanes.hpp"
+#include "study/lanes_obstacle.hpp"
 #include "run/signals.hpp"
 #include "run/watch.hpp"
 

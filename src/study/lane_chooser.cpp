@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
@@ -23,27 +22,11 @@ namespace {
 constexpr double part_of_all = 0.95, part_of_corners = 0.5;  // of the wanted error
 constexpr int most_tries = 6;
 constexpr double modes_over_wholes = 0.5;  // of the wanted error
-// Of a single run, and of one to less than the usual accuracy: with more modes, elements take less.
-constexpr int most_modes = 84, few_modes = 48;
-constexpr double usual_accuracy = 3e-4;
-constexpr int modes_of_a_check = 30;     // at least: few modes may agree on what they all leave out
-constexpr double shorter = 0.7;          // a quarter of an error of fourth order
-constexpr double part_for_forces = 0.5;  // of steps that follow the contacts: forces of longer ones agree by chance
+constexpr int most_modes = 84;   // with more, elements take less
+constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 // What is left in the peaks, as measured, of the swing that a wheel's force would have after a corner if the kernel did
 // not make up for when the wheel passes it.
 constexpr std::array<double, quantities> part_of_swing = {0.02, 0.4, 0.02, 0.1, 0.02};
-
-/// The largest ones of a run.
-void note_peaks(const CrossingResult& run, std::array<Promise, quantities>& promises) {
-  const auto note = [&](const std::vector<lanes::CrossingPeak>& of_probes, Quantity q) {
-    for (const lanes::CrossingPeak& peak : of_probes) promises[q].peak = std::max(promises[q].peak, peak.value);
-  };
-  note(run.deflection, deflection);
-  note(run.acceleration, acceleration);
-  note(run.moment, moment);
-  note(run.low_passed, low_passed);
-  promises[wheel_force].peak = run.greatest_force;
-}
 
 }  // namespace
 
@@ -55,8 +38,7 @@ std::string words_of(const Scene& scene, const Errors& errors) {
   return words;
 }
 
-LaneChooser::LaneChooser(const Scene& scene, const TrialSpeeds& speeds, bool alone)
-    : scene_(scene), fastest_(scene), alone_(alone) {
+LaneChooser::LaneChooser(const Scene& scene, const TrialSpeeds& speeds) : scene_(scene), fastest_(scene) {
   fastest_.train.speed = scene.sweep->speeds.back();
   for (const double x : wheels_at_start(fastest_)) whole_ = std::max(whole_, scene.beam->length() - x);
   whole_ += scene.tail.value_or(0.0) * fastest_.train.speed;
@@ -71,15 +53,8 @@ LaneChooser::LaneChooser(const Scene& scene, const TrialSpeeds& speeds, bool alo
 }
 
 LanesChoice LaneChooser::choose() {
-  const int most = alone_ && scene_.accuracy < usual_accuracy ? few_modes : most_modes;
-  LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy, most);
-  // The peaks of one passage may agree by chance where steps do not follow the contacts. Elements, which serve then,
-  // take shorter steps for accelerations.
-  const bool forces_alone = asks_for_forces_alone(scene_),
-             follows = alone_ && (asks_for(scene_, low_passed) || forces_alone);
-  const double part = forces_alone ? part_for_forces : 1.0;
-  const double longest = follows ? part * longest_following_contacts(scene_) : std::numeric_limits<double>::infinity();
-  const LaneModel first = search.first(whole_ / fastest_.train.speed, longest);
+  LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy, most_modes);
+  const LaneModel first = search.first(whole_ / fastest_.train.speed);
   if (greatest(left_by_corners(beginnings_->run(first))) > part_of_corners * scene_.accuracy)
     throw NotChosen{"wheels pass the corners of the surface at other times"};
   take(search.run(first));
@@ -97,7 +72,6 @@ LanesChoice LaneChooser::choose() {
     const bool present = !by_elements_alone(q) || q == shear_force;
     choice.promises[q] = {present, kept, errors[q], kept ? "" : why_not_asked(scene_, q)};
   }
-  if (alone_) note_peaks(wholes_->run(better_).back(), choice.promises);
   if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
   choice.scene.step_probes = true;
   choice.scene.contact_seats = true;
@@ -123,13 +97,10 @@ LaneErrors LaneChooser::check_wholes(LaneSearch& search) {
   Errors errors{};
   for (int i = 0; i <= most_tries; ++i) {
     LaneModel other = search.with_more_modes(model_);
-    while (alone_ && other.modes < modes_of_a_check) other = search.with_more_modes(other);
     other.method = structure::find_method("esdirk4");
-    other.step *= alone_ ? shorter : 0.5;
-    better_ = other;
+    other.step *= 0.5;
     wholes_->run_at_once(std::array{other, model_});
     errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
-    for (double& error : errors) error *= alone_ ? off_a_better_trial : 1.0;
     if (asks_for_forces_alone(scene_)) errors[wheel_force] *= of_the_change;
     const Errors corners = left_by_corners(wholes_->run(model_));
     for (std::size_t q = 0; q < quantities; ++q)
@@ -152,7 +123,6 @@ void LaneChooser::refine(LaneSearch& search, const LaneModel& other) {
     model_.step *= shorter;
     return;
   }
-  if (alone_ && other.modes > search.most_modes()) throw NotChosen{"whole passages ask for too many modes"};
   model_.modes = other.modes;
   model_.elements = other.elements;
   model_.method = structure::find_method("esdirk4");

@@ -20,8 +20,8 @@ struct TrialSpeeds {
 
 class LaneChooser {
  public:
-  /// Of a scene with a sweep, which must outlive it; alone: of a single passage, whose speeds are those beside its own.
-  LaneChooser(const Scene& scene, const TrialSpeeds& speeds, bool alone);
+  /// Of a scene with a sweep, which must outlive it.
+  LaneChooser(const Scene& scene, const TrialSpeeds& speeds);
 
   /// Why nothing is chosen.
   struct NotChosen {
@@ -32,8 +32,6 @@ class LaneChooser {
   /// How far the model is from the elements and the mechanisms themselves in the last trial, at its speed.
   LaneErrors off_the_elements(double speed);
   const LaneModel& model() const { return model_; }
-  std::size_t trials() const { return beginnings_->trials() + wholes_->trials(); }
-  double horizon() const { return distance_ / fastest_.train.speed; }  // s: of the beginnings
 
  private:
   /// What corners of the surface, at the bridge's ends, joints and hinges, leave of errors: a wheel that has moved
@@ -42,18 +40,17 @@ class LaneChooser {
   LaneErrors left_by_corners(const std::vector<lanes::CrossingResult>& runs) const;
   void take(const std::optional<LaneModel>& found);
   /// Whole passages: errors add up while the train crosses, and what stirs higher modes may come late. Against more
-  /// modes, by esdirk4: genalpha takes all vibration out of wheels in time, and two of its steps may agree on that. Of
-  /// a sweep with half the step, of a single passage, which should not cost several, with 0.7 of it.
+  /// modes and half the step, by esdirk4: genalpha takes all vibration out of wheels in time, and two of its steps may
+  /// agree on that.
   LaneErrors check_wholes(LaneSearch& search);
   /// By more modes where it is these that the other one differs by, else by shorter steps.
   void refine(LaneSearch& search, const LaneModel& other);
 
   const Scene& scene_;
   Scene fastest_;
-  bool alone_;
   double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
   std::optional<LaneTrials> beginnings_, mixed_, wholes_;
-  LaneModel model_, better_;  // what was chosen, and what its whole passages were compared with
+  LaneModel model_;  // what was chosen
 };
 
 /// The errors that a scene asks for, by their names.

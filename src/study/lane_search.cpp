@@ -74,11 +74,11 @@ double solves(const LaneModel& model) { return model.method->solves() / model.st
 
 }  // namespace
 
-LaneModel LaneSearch::first(double duration, double longest) {
+LaneModel LaneSearch::first(double duration) {
   const int modes = numbers_of_modes.front();
   LaneModel model{modes, mesh_for(trials_.scene(), modes), structure::find_method("esdirk4"), 0.0};
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
-  longest_ = std::min(steps.longest, longest);
+  longest_ = steps.longest;
   model.step = std::min(first_step_factor * steps.first, longest_);
   trials_.run_at_once(std::array{with_step(model, 0.25), with_step(model, 0.5), model, with_step(model, 2.0)});
   return model;

@@ -17,10 +17,9 @@ class LaneSearch {
   /// and mesh change is seen there as well. accuracy: the error that all of it may leave.
   LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy, int most_modes)
       : trials_(trials), mixed_(mixed), accuracy_(accuracy), most_modes_(most_modes) {}
-  int most_modes() const { return most_modes_; }
 
-  /// The model that the search begins with, for passages that last so long, of steps up to the longest, s.
-  LaneModel first(double duration, double longest);
+  /// The model that the search begins with, for passages that last so long, s.
+  LaneModel first(double duration);
   /// The cheapest model within the accuracy; empty: none.
   std::optional<LaneModel> run(LaneModel model);
   /// The same with this number of modes, by steps of esdirk4 that begin with this one.

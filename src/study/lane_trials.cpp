@@ -7,7 +7,7 @@
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/trials.hpp"
-#include "run/by_lanes.hpp"
+#include "study/lanes_obstacle.hpp"
 #include "run/deck_acceleration.hpp"
 
 namespace traverse::app {

@@ -4,11 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 
 #include "accuracy/accuracy.hpp"
-#include "accuracy/first_guess.hpp"
-#include "accuracy/trials.hpp"
 #include "lanes/speed_class.hpp"
 #include "results/stage.hpp"
 #include "study/lane_chooser.hpp"
@@ -18,24 +15,9 @@ namespace traverse::app {
 namespace {
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
-constexpr std::size_t most_spans_alone = 8;  // each wants some sixteen modes
-// Accuracies below which a single run goes by elements, as the kernel's own errors count: on level tracks, on others.
-constexpr double finest_alone = 1e-4, finest_on_slopes = 3e-4;
-// Times its speed: the trials of a single run, whose peaks may agree by chance; as many as go side by side.
-constexpr std::array beside = {1.0, 1.01, 1.02, 1.03, 0.99, 0.98, 0.97};
-
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open &&
          scene.vehicle_model != VehicleModel::full && scene.beam && options::in_force().find("ts_type") == nullptr;
-}
-
-/// Whether a single run is left open, and of a kind that the lanes' kernel takes: what is fixed is judged by the search
-/// by elements.
-bool open_alone(const Scene& scene) {
-  return open(scene) && scene.mesh_open && scene.step_lanes && scene.analysis == Analysis::transient &&
-         !scene.beam->track && scene.train.steady() &&
-         scene.accuracy >= (scene.profile.level() ? finest_alone : finest_on_slopes) &&
-         scene.beam->spans.size() <= most_spans_alone && own_measure() == nullptr;
 }
 
 /// Neighbouring speeds of one class around each of the given places among all.
@@ -62,14 +44,6 @@ std::string words_of(const Scene& scene, const std::array<Promise, quantities>& 
   return words_of(scene, errors);
 }
 
-/// What a single run is asked for and can be judged by.
-std::vector<std::string> judged_alone(const Scene& scene) {
-  std::vector<std::string> judged;
-  for (std::size_t q = 0; q < quantities; ++q)
-    if (asks_for(scene, q) && (q != acceleration || damps_high_modes(scene))) judged.emplace_back(stored_names[q]);
-  return judged;
-}
-
 }  // namespace
 
 std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes) {
@@ -86,7 +60,7 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
   TrialSpeeds trials = {some_speeds(speeds, {0.0, 1.0}, trial_lanes), {}, some_speeds(speeds, {0.5}, engine::widest)};
   if (n > 0) trials.mixed = {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}};
   try {
-    LaneChooser chooser(given, trials, false);
+    LaneChooser chooser(given, trials);
     LanesChoice choice = chooser.choose();
     const LaneErrors off = chooser.off_the_elements(some_speeds(speeds, {1.0}, trial_lanes).back().back());
     if (greatest(off) > given.accuracy)
@@ -105,54 +79,6 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
   } catch (const Error& failed) {
     return refuse(failed.what());  // the runs one by one will say so too, if it is theirs
   }
-}
-
-std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::string>& notes) {
-  if (!open_alone(given)) return std::nullopt;
-  const results::Stage stage("trial runs");
-  const options::WithoutMonitors without_monitors;
-  const auto begin = std::chrono::steady_clock::now();
-  Scene scene = given;
-  scene.accuracy_of = judged_alone(given);
-  if (scene.accuracy_of.empty()) return std::nullopt;
-  for (std::size_t q = 0; q < quantities; ++q)
-    if (by_elements_alone(q) && asks_for(given, q)) return std::nullopt;
-  scene.sweep.emplace();
-  std::vector<double>& speeds = scene.sweep->speeds;
-  for (const double part : beside)
-    if (speeds.size() < trial_lanes &&
-        lanes::speed_class(part * given.train.speed) == lanes::speed_class(given.train.speed))
-      speeds.push_back(part * given.train.speed);
-  std::sort(speeds.begin(), speeds.end());
-  try {
-    LaneChooser chooser(scene, {{speeds}, {}, {{given.train.speed}}}, true);
-    LanesChoice choice = chooser.choose();
-    if (!follows_contacts(given, chooser.model().step)) return std::nullopt;  // peaks may agree by chance
-    choice.scene.sweep.reset();
-    choice.scene.accuracy_of = given.accuracy_of;
-    choice.scene.integrator = chooser.model().method->name;
-    const double speed = given.train.speed;
-    choice.scene.time_step =
-        chooser.model().step * lanes::speed_of_class(lanes::speed_class(speed)) / speed;  // as tried
-    notes.push_back(fmt::format(
-        "accuracy {:g}: {} elements a span, of these {} modes, linear vehicles, {} with steps of {:g} s; {} trial runs "
-        "of {:.3g} s took {:.2g} s",
-        given.accuracy, mesh_of(choice.scene), chooser.model().modes, chooser.model().method->name,
-        *choice.scene.time_step, chooser.trials(), chooser.horizon(),
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count()));
-    notes.push_back("expected errors of the peaks: " + words_of(scene, choice.promises));
-    choice.promises[shear_force].why_not = not_by_modes;
-    if (is_welcome(given, shear_force)) notes.push_back(not_promised(shear_force, choice.promises[shear_force]));
-    if (asks_for(given, acceleration) && !choice.promises[acceleration].kept) {
-      choice.promises[acceleration].why_not = no_sum;
-      notes.push_back(not_promised(acceleration, choice.promises[acceleration]));
-    }
-    return choice;
-  } catch (const LaneChooser::NotChosen&) {
-  } catch (const LaneTrials::Refused&) {
-  } catch (const Error&) {  // which the run itself will meet
-  }
-  return std::nullopt;
 }
 
 }  // namespace traverse::app

@@ -1,5 +1,5 @@
-// How the runs of a sweep of trains go side by side, or a single one by itself, by the lanes' kernel: modes, mesh,
-// method and step, chosen from the accuracy.
+// How the runs of a sweep of trains go side by side by the lanes' kernel: modes, mesh, method and step, chosen from the
+// accuracy.
 #pragma once
 
 #include <array>
@@ -22,9 +22,5 @@ struct LanesChoice {
 /// and against a run by elements with the mechanisms themselves. `notes` says what was chosen, or why the runs go one
 /// by one. The same on every rank.
 std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes);
-
-/// The same for a scene without a sweep, by trials at its speed and just above: without a run by elements, and with
-/// none of `notes` where nothing was chosen.
-std::optional<LanesChoice> lanes_for_one(const Scene& given, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -5,7 +5,6 @@
 
 #include "integrate/integrator_choice.hpp"
 #include "lanes/speed_class.hpp"
-#include "run/by_lanes.hpp"
 #include "run/passage.hpp"
 
 namespace traverse::app {
@@ -29,7 +28,9 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
   if (!obstacle_.empty()) return;
   train_ = lanes::train_numbers(fleet_);
   q_.assign(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(shared.modal->modes()));
-  plan_ = lanes_plan(scene, shared, system_);
+  plan_.bridge = &*shared.modal;
+  plan_.kinks = system_.corners();
+  plan_.level_until = scene.profile.level() ? shared.beam->mesh().start() : -1e300;
 }
 
 /// Distances at which a wheel meets a corner of the surface or passes a probe.
@@ -119,7 +120,6 @@ SideBySide::Ready SideBySide::ready(std::span<const Member> members, const Steps
   lanes::CrossingPlan& plan = ready.plan_;
   plan.method = steps.method;
   plan.exact_modes = steps.method.stages.size() == 1;
-  plan.one_by_itself = steps.trial;
   const double ds = spacing(steps, members.front().run.speed);
   double past = 0.0;
   for (const Member& member : members) past = std::max(past, member.run.speed * member.run.end);

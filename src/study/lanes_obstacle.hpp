@@ -1,0 +1,14 @@
+// Which scenes run side by side (src/lanes): linear vehicles over the modes of a bridge.
+#pragma once
+
+#include <string>
+
+#include "run/shared_beam.hpp"
+#include "traverse/scene/scene.hpp"
+
+namespace traverse::app {
+
+/// Why a scene's runs cannot go side by side, in words; empty: as far as the scene itself tells, they can.
+std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared);
+
+}  // namespace traverse::app
