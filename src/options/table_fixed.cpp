@@ -162,7 +162,7 @@ constexpr Row later_rows[] = {
   {"contact_tolerance", number, "s", "(a thousandth of the step)", not_negative, "", 0, "steps end so close behind the loss or gain of a contact; 0: wherever they end"},
   {"step_kinks", flag, "", "true", any, "", 0, "steps end where wheels pass kinks of their way, such as span ends; needed for orders above 2"},
   {"step_probes", flag, "", "false", any, "", 0, "steps end where wheels pass probes, and peaks are looked for at every step, not among stored samples; so it is where accuracy chooses mesh or step"},
-  {"step_lanes", flag, "", "true", any, "", 0, "linear vehicles over modes are stepped by the kernel that runs of sweeps go side by side in, those over spans that do not touch by the modes of each, which is many times faster; peaks are looked for at every step then"},
+  {"step_lanes", flag, "", "true", any, "", 0, "linear vehicles over spans that do not touch are stepped by the modes of each span, which is faster on long bridges; peaks are looked for at every step then"},
   {"step_ranks", choice, "", "auto", any, "auto all", 0, "ranks that take the steps of a single run: auto: as many of those at hand as make it faster, the others wait; all: all, by elements where spans do not touch"},
   {"contact_seats", flag, "", "false", any, "", 0, "under wheels a bridge's elements bend between their nodes too, as those of rails and of beams that shear do; so it is where accuracy chooses mesh or step"},
   {"contact_impact_steps", integer, "", "20", {0, 100000}, "", 0, "steps that an impact after a separation takes at least; 0: as the step is"},

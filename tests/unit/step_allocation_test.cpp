@@ -7,7 +7,6 @@
 
 #include "base/petsc.hpp"
 #include "integrate/stepper.hpp"
-#include "run/by_lanes.hpp"
 #include "run/outputs.hpp"
 #include "run/passage.hpp"
 #include "support/counted_memory.hpp"
@@ -91,10 +90,6 @@ long allocations_of_steps(const Words& scene_words, const std::string& type, con
   double* y = stepper.state();
   (void)system.start(true, y);
   if (scene.vehicle_model == app::VehicleModel::linear) (void)system.linearise_vehicles(y);
-  if (scene.model_modes > 0 && scene.vehicle_model == app::VehicleModel::linear) {
-    system.step_apart(app::by_lanes(scene, shared, system, y, 0.1));
-    EXPECT_NE(system.apart(), nullptr);
-  }
   stepper.restore_state(&y);
   long before = 0, after = 0;
   stepper.run([](const Instant&) {},

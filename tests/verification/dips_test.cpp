@@ -54,7 +54,8 @@ output: {probes: 10.0}
   Results beside = run_yaml(scene, dips), each = run_yaml(scene, dips + Values{{"sweep_lanes", "0"}}),
           without = run_yaml(scene);
   for (const char* name : {"/study/greatest_wheel_force", "/study/least_wheel_force"}) {
-    EXPECT_LT(relative_difference(beside(name), each(name)), 1e-6) << name;
+    // Side by side contacts take the first power of slopes.
+    EXPECT_LT(relative_difference(beside(name), each(name)), 5e-6) << name;
     for (const std::size_t run : {0U, 1U})
       EXPECT_GT(std::abs(beside(name)[run] - without(name)[run]), 1e-5 * without(name)[run]) << name;
   }

@@ -2,10 +2,13 @@
 // (coupling/contact_newton.hpp), which a damper takes over that is too small to be felt.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
+#include <string_view>
 
 #include "support/curve.hpp"
 #include "support/message.hpp"
+#include "support/paths.hpp"
 
 namespace traverse::test {
 namespace {
@@ -51,6 +54,54 @@ TEST_P(Passes, SameAsNewtonOfAllContacts) {
     EXPECT_LE(difference, c.bound) << curve;
   }
   EXPECT_GT(relative_difference(passes(curves[3]), newton(curves[3])), 0.0) << "both are the same run";
+}
+
+// Between samples peaks are looked for in the contacts' forces that the step has ended with, without the vehicles.
+TEST(LinearTrain, PeaksBetweenSamples) {
+  const Values scene = {{"train_vehicles", "coach*2"}, {"beam_elements_per_span", "8"},
+                        {"model_modes", "0"},          {"model_vehicles", "linear"},
+                        {"step_probes", "true"},       {"ts_dt", "1e-3"},
+                        {"output_interval", "0.5"},    {"scene_tail", "0.1"}};
+  Values damped = scene;
+  for (const char* wheel : {"1", "2", "3", "4"})
+    damped.emplace_back("vehicle_coach_wheel_" + std::string(wheel) + "_damping", "1e-9");
+  Results passes = run_scene("three_span_train", scene), newton = run_scene("three_span_train", damped);
+  for (const char* name : {"deflection", "acceleration", "moment", "shear", "greatest_wheel_force", "linear_defect"}) {
+    const double off = std::abs(passes.attribute("/summary", name) / newton.attribute("/summary", name) - 1.0);
+    RecordProperty(name, text(off));
+    // Of the residual the departure from the start tells the size, and not how its parts add up.
+    EXPECT_LT(off, std::string_view(name) == "linear_defect" ? 0.3 : 1e-8) << name;
+  }
+}
+
+// Everything is left open: mesh, step and linear vehicles are chosen, and keep to the accuracy against the mechanisms.
+TEST(LinearTrain, ChosenByTheAccuracy) {
+  const Values scene = {{"train_vehicles", "coach*2"}, {"scene_tail", "0.2"}};
+  Results chosen = run_scene("fifty_metre_train", scene + Values{{"accuracy", "1e-3"}});
+  Results exact = run_scene("fifty_metre_train", scene + Values{{"ts_dt", "1e-4"},
+                                                                {"beam_elements_per_span", "64"},
+                                                                {"model_vehicles", "full"},
+                                                                {"step_probes", "true"}});
+  for (const char* name : {"deflection", "acceleration", "moment", "greatest_wheel_force"}) {
+    const double off = std::abs(chosen.attribute("/summary", name) / exact.attribute("/summary", name) - 1.0);
+    RecordProperty(name, text(off));
+    EXPECT_LT(off, 1e-3) << name;
+  }
+}
+
+// A step ends where a wheel would be at a corner of the surface that had not moved along the track.
+TEST(LinearTrain, PassesCornersWhereItHasMovedTo) {
+  const Values coarse = {{"model_vehicles", "linear"}, {"step_probes", "true"}, {"ts_dt", "2e-4"}};
+  const Values fine = coarse + Values{{"ts_dt", "1e-4"}};
+  const std::string scene =
+      "beam: {spans: 29.3, elements_per_span: 96, EI: 4.70444e+10, mass: 4283.07, damping_ratios: 0.0062}\n"
+      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      "/options/vehicles/velaro.yml}}\ntrain: {vehicles: coach*2, speed: 23.5}\nmodel: {modes: 0}\n";
+  Results with_coarse = run_yaml(scene, coarse), with_fine = run_yaml(scene, fine);
+  const double by_steps = std::abs(
+      with_coarse.attribute("/summary", "acceleration") / with_fine.attribute("/summary", "acceleration") - 1.0);
+  RecordProperty("steps", text(by_steps));
+  EXPECT_LT(by_steps, 1e-4);
 }
 
 }  // namespace

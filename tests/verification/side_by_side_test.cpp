@@ -48,7 +48,6 @@ double difference(const Peaks& a, const Peaks& b, std::span<const char* const> n
 Values sweep(const char* speeds, const char* lanes, const char* step) {
   return {{"sweep_speed", speeds},
           {"sweep_lanes", lanes},
-          {"step_lanes", std::string_view(lanes) == "0" ? "false" : "true"},  // by themselves: all by TS
           {"ts_dt", step},
           {"model_vehicles", "linear"},
           {"model_modes", "8"}};

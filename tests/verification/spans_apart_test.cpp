@@ -9,6 +9,7 @@
 #include <span>
 
 #include "support/curve.hpp"
+#include "support/paths.hpp"
 
 namespace traverse::test {
 namespace {
@@ -85,6 +86,23 @@ TEST(SpansApart, TakenWhereNothingIsSaid) {
   Results mechanisms = run_scene("danyang_kunshan", open + Values{{"model_vehicles", "full"}});
   EXPECT_GT(chosen.attribute("/summary", "linear_defect"), 0.0);
   EXPECT_LT(relative_difference(chosen("/probes/deflection"), mechanisms("/probes/deflection")), 1e-3);
+}
+
+// Where what a wheel missed until the step's end at a corner was not made up for, forces were 6e-5 off.
+TEST(SpansApart, WheelsPassCornersWhereTheyHaveMovedTo) {
+  const Values options = {{"model_vehicles", "linear"}, {"step_probes", "true"}, {"ts_dt", "1e-4"}};
+  const std::string scene =
+      "beam: {spans: 29.3*2, continuity: simply_supported, elements_per_span: 24, EI: 4.70444e+10, mass: 4283.07, "
+      "damping_ratios: 0.0062}\n"
+      "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
+      "/options/vehicles/velaro.yml}}\ntrain: {vehicles: coach*2, speed: 23.5}\nmodel: {modes: 0}\n";
+  Results spans = run_yaml(scene, options), elements = run_yaml(scene, options + Values{{"step_lanes", "false"}});
+  const double off = std::abs(spans.attribute("/summary", "greatest_wheel_force") /
+                                  elements.attribute("/summary", "greatest_wheel_force") -
+                              1.0);
+  RecordProperty("force", text(off));
+  EXPECT_LT(off, 1e-5);
+  EXPECT_GT(off, 0.0) << "both are the same run";
 }
 
 }  // namespace
