@@ -237,8 +237,13 @@ const Entries& in_force() { return last_put; }
 
 std::vector<std::string> notes_on_unused(const Entries& entries) {
   const std::vector<std::string> left = left_over();
+  const bool vehicles = std::any_of(entries.begin(), entries.end(), [](const Entry& entry) {
+    return entry.name.starts_with("vehicle") || entry.name.find("train_vehicles") != std::string::npos;
+  });
   std::vector<std::string> notes;
   for (const Entry& entry : entries) {
+    if (!vehicles && (entry.name.starts_with("train_") || entry.name.starts_with("contact_")))
+      notes.push_back(entry.given() + " has no effect: no vehicles run in this scene");
     if (!is_read_by_ts(entry)) continue;
     if (std::find(left.begin(), left.end(), entry.name) != left.end())
       notes.push_back(entry.given() + " has no effect in this scene");

@@ -325,6 +325,18 @@ TEST(Table, OptionsOfTsWithoutEffect) {
                "ts_atol = 1e-6 (command line) has no effect with this ts_adapt_type");
 }
 
+TEST(Table, OptionsOfVehiclesWithoutAny) {
+  Entries entries;
+  entries.set({"load_speed", "40", "s.yml", 3});
+  entries.set({"train_speed", "40", "command line", 0});
+  entries.set({"contact_impact_steps", "5", "s.yml", 4});
+  EXPECT_PRED2(any_contains, notes_on_unused(entries),
+               "train_speed = 40 (command line) has no effect: no vehicles run in this scene");
+  EXPECT_EQ(notes_on_unused(entries).size(), 2U);
+  entries.set({"vehicle_car_file", "car.yml", "s.yml", 5});
+  EXPECT_TRUE(notes_on_unused(entries).empty());
+}
+
 TEST(Table, NoneOfOursStandsInPetscsTable) {
   Input input = input_of({"-train_speed", "40", "-ts_dt", "0.1"});
   put_into_petsc(input);
