@@ -79,7 +79,6 @@ class Group : CrossingAlgebra<W> {
     Looks::give(s);
   }
 
-
  private:
   static constexpr double same_step = 1e-10;  // far above what rounding leaves of differences of distances
 

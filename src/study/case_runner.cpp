@@ -11,9 +11,9 @@
 #include "engine/processor.hpp"
 #include "integrate/modal_peaks.hpp"
 #include "lanes/speed_class.hpp"
-#include "study/lanes_obstacle.hpp"
 #include "run/signals.hpp"
 #include "run/watch.hpp"
+#include "study/lanes_obstacle.hpp"
 
 namespace traverse::app {
 namespace {

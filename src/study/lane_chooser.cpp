@@ -22,8 +22,8 @@ namespace {
 constexpr double part_of_all = 0.95, part_of_corners = 0.5;  // of the wanted error
 constexpr int most_tries = 6;
 constexpr double modes_over_wholes = 0.5;  // of the wanted error
-constexpr int most_modes = 84;   // with more, elements take less
-constexpr double shorter = 0.7;  // a quarter of an error of fourth order
+constexpr int most_modes = 84;             // with more, elements take less
+constexpr double shorter = 0.7;            // a quarter of an error of fourth order
 // What is left in the peaks, as measured, of the swing that a wheel's force would have after a corner if the kernel did
 // not make up for when the wheel passes it.
 constexpr std::array<double, quantities> part_of_swing = {0.02, 0.4, 0.02, 0.1, 0.02};

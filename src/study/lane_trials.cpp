@@ -7,8 +7,8 @@
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/trials.hpp"
-#include "study/lanes_obstacle.hpp"
 #include "run/deck_acceleration.hpp"
+#include "study/lanes_obstacle.hpp"
 
 namespace traverse::app {
 

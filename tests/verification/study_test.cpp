@@ -152,8 +152,8 @@ TEST(Study, TrainsInLanesAreThoseOfRunsAlone) {
   EXPECT_LT(worst, 1e-9);
 }
 
-// Each by itself, driven by TS: steps lie elsewhere, so that what is left falls with their length. What modes left out do
-// at the probes is static then, which accelerations show.
+// Each by itself, driven by TS: steps lie elsewhere, so that what is left falls with their length. What modes left out
+// do at the probes is static then, which accelerations show.
 TEST(Study, TracksInLanesAgainstEachByItself) {
   double errors[2] = {};
   for (const int finer : {0, 1}) {
