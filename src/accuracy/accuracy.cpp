@@ -194,19 +194,6 @@ std::string Accuracy::withdrawn_by_bends(double times, double wanted) {
       names, seen_until, times, what_to_do);
 }
 
-std::string Accuracy::withdrawn_by_peaks(const Peaks& peaks, double wanted) {
-  std::string names;
-  for (std::size_t q = 0; q < quantities; ++q) {
-    Promise& promise = promises[q];
-    if (!measured || !promise.present || !promise.kept || promise.peak == 0.0) continue;
-    const double off = std::abs(std::abs(peaks.largest(static_cast<Quantity>(q)).value) / promise.peak - 1.0);
-    promise.expected = std::max(promise.expected, off_a_better_trial * off);
-    promise.kept = promise.expected <= wanted;
-    if (!promise.kept) names += fmt::format("{}{} ({:.1g})", names.empty() ? "" : ", ", quantity_names[q], off);
-  }
-  return names.empty() ? names : names + ": a trial run with more modes has other peaks";
-}
-
 std::string Accuracy::withdrawn_at_end(bool unsettled) {
   Promise& promise = promises[low_passed];
   if (!unsettled || !measured || !promise.present || !promise.kept) return {};

@@ -24,14 +24,9 @@ struct Promise {
   bool kept = false;      // promised: the expected error is not above the wanted one
   double expected = 0.0;  // relative to the peak
   std::string why_not;    // where it is not promised
-  double peak = 0.0;      // as large as a better trial of the whole run has it, to compare with; 0: there is none
 
-  void keep(base::Bytes& bytes) { bytes(present, kept, expected, why_not, peak); }
+  void keep(base::Bytes& bytes) { bytes(present, kept, expected, why_not); }
 };
-
-/// Times the difference from a trial with 0.7 of the steps and more modes: the error, where it falls with the third
-/// power of the steps or faster.
-inline constexpr double off_a_better_trial = 1.5;
 
 /// A row of -accuracy_report, printed or not. wanted, error: relative. Whether the promise is not broken.
 bool report_row(const std::string& name, const Promise& promise, double wanted, double error, bool prints);
@@ -80,10 +75,8 @@ struct Accuracy {
   /// After the run, in which curves bend within steps so many times as much as trial runs have seen: errors are larger,
   /// by the square of that, and what is above `wanted` then is not promised any more. Says so, or "".
   std::string withdrawn_by_bends(double times, double wanted);
-  /// After a run to its end, whose peaks are not those of the better trial: what may be off by more than `wanted` is
-  /// not promised any more. Says what and by how much, or "".
-  std::string withdrawn_by_peaks(const Peaks& peaks, double wanted);
-  /// The same of low-passed accelerations, where their peak is within the unsettled end of the run.
+  /// After a run to its end: the same of low-passed accelerations, where their peak is within the unsettled end of the
+  /// run.
   std::string withdrawn_at_end(bool unsettled);
   void promise_nothing();
   bool promises_something() const;  // of a bridge

@@ -31,8 +31,7 @@ ReadyRun::ReadyRun(Job& given)
       passage(scene, given.beam, given.notes, earlier ? &*earlier : nullptr),
       wheels(wheels_at_start(scene).size()) {
   MPI_Comm_rank(job.comm, &rank);
-  const double halved = goes_on() && job.earlier->repeated.with_half_steps ? 0.5 : 1.0;
-  if (earlier && scene.time_step && earlier->time_step < halved * *scene.time_step) accuracy.promise_nothing();
+  if (earlier && scene.time_step && earlier->time_step < *scene.time_step) accuracy.promise_nothing();
   if (goes_on() && !(passage.plan().end_time > job.earlier->time))
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  passage.plan().end_time));
@@ -43,6 +42,11 @@ ReadyRun::ReadyRun(Job& given)
   if (goes_on()) {
     archive.emplace(job.comm, job.earlier->of_ranks);
     passage.keep(*archive);
+    if (passage.stopped_at_limit())
+      throw InputError(
+          fmt::format("restart: the run has taken {} steps already, which is the limit of ts_max_steps; "
+                      "raise it or leave it out",
+                      passage.steps()));
     job.notes.push_back(fmt::format("goes on from t = {:g} s", job.earlier->time));
   }
   print_notes(job.comm, job.notes);

@@ -11,10 +11,9 @@ namespace {
 constexpr int most_halvings = 4;  // of a step that was chosen
 
 /// In place of linear vehicles; by elements where `accuracy` has chosen modes: what these leave out has its own motion
-/// in the kernel of linear vehicles alone. Trial runs with these have other peaks then.
-void take_mechanisms(Scene& scene, Accuracy& accuracy) {
+/// in the kernel of linear vehicles alone.
+void take_mechanisms(Scene& scene) {
   scene.vehicle_model = VehicleModel::full;
-  for (Promise& promise : accuracy.promises) promise.peak = 0.0;
   if (!scene.modes_open || scene.model_modes == 0) return;
   scene.model_modes = 0;
   scene.integrator.clear();
@@ -30,7 +29,7 @@ int run_in_time(Job job) {
   std::optional<SharedBeam> own;
   if (repeated.with_mechanisms) {
     std::vector<std::string> ignored;
-    take_mechanisms(scene, accuracy);
+    take_mechanisms(scene);
     own.emplace(job.comm, scene, ignored);
   }
   int halvings = goes_on || !scene.step_open ? 0 : most_halvings;
@@ -40,16 +39,12 @@ int run_in_time(Job job) {
   while (end.again != Retry::none) {
     std::vector<std::string> notes;
     if (end.again == Retry::mechanisms) {
-      take_mechanisms(scene, accuracy);
+      take_mechanisms(scene);
       repeated.with_mechanisms = true;
       notes.push_back(fmt::format(
           "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
           scene.most_defect));
-    } else if (end.again == Retry::other_peaks) {
-      repeated.with_half_steps = true;
-      scene.time_step = 0.5 * end.step;
-      notes.push_back(fmt::format("the run is repeated with steps of {:g} s: {}", *scene.time_step, end.why));
     } else {
       --halvings;
       scene.time_step = 0.5 * end.step;

@@ -84,6 +84,7 @@ results::Recorder recorder_of(ReadyRun& ready, const Outputs& outputs) {
   if (ready.goes_on()) return {job.comm, std::move(job.place), layout, job.earlier->results};
   results::Recorder recorder(job.comm, std::move(job.place), layout, attributes(job.comm, ready.scene),
                              ready.scene.options);
+  recorder.of_scene(digest_of(ready.scene));
   record_model(ready.scene, job.notes, recorder);
   store_modes(job.beam, recorder);
   return recorder;
@@ -109,7 +110,7 @@ class WatchedRun {
 
   void step_through();
   results::Summary summarise(const std::string& ended);
-  std::vector<std::string> withdraw(bool whole);
+  std::vector<std::string> withdraw();
   std::optional<norm::NormCheck> judge_by_norm(std::vector<results::Verdict>& verdicts);
   void say_what_happened(bool by_signal) const;
   double wall_seconds() const { return before_ + std::chrono::duration<double>(Clock::now() - begin_).count(); }
@@ -117,7 +118,7 @@ class WatchedRun {
 
   ReadyRun& ready_;
   const Scene& scene_;
-  bool may_shorten_, may_halve_;  // steps: after StepTooLong, and where peaks are others
+  bool may_shorten_;  // steps, after StepTooLong
   Passage& passage_;
   coupling::System& system_;
   std::optional<SignalsNoted> noted_{std::in_place};  // from here on what is stored is to stay readable
@@ -130,15 +131,13 @@ class WatchedRun {
   Clock::time_point begin_ = Clock::now();
   Asked asked_;
   bool reaches_end_ = false;
-  std::string other_peaks_;  // which, where the run will be repeated for them
-  bool repeated_ = false;    // or will be
+  bool repeated_ = false;  // or will be
 };
 
 WatchedRun::WatchedRun(ReadyRun& ready, results::Repeated repeated, bool may_shorten)
     : ready_(ready),
       scene_(ready.scene),
       may_shorten_(may_shorten),
-      may_halve_(scene_.step_open && !repeated.with_half_steps),
       passage_(ready.passage),
       system_(passage_.system()),
       outputs_(outputs_of({scene_, system_.fleet(), ready.job.beam.bridge()})),
@@ -194,8 +193,7 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   if (system_.structure() != nullptr && system_.structure()->energy_left())
     summary.energy_left = total(ready_.job.comm, *system_.structure()->energy_left());
   summary.static_error = system_.static_error();
-  const bool whole = reaches_end_ && !passage_.stopped_at_limit();
-  const std::vector<std::string> withdrawn = withdraw(whole);
+  const std::vector<std::string> withdrawn = withdraw();
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
   const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.most_defect);
@@ -216,22 +214,12 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   return summary;
 }
 
-/// The promises that do not hold, in words. whole: the run, to its end.
-std::vector<std::string> WatchedRun::withdraw(bool whole) {
+/// The promises that do not hold, in words.
+std::vector<std::string> WatchedRun::withdraw() {
   Accuracy& accuracy = ready_.accuracy;
-  std::vector<std::string> words = {accuracy.withdrawn(watch_.losses()),
-                                    accuracy.withdrawn_by_surprise(watch_.beyond_trials().surprise()),
-                                    accuracy.withdrawn_by_bends(watch_.bends_beyond_trials(), scene_.accuracy),
-                                    accuracy.withdrawn_at_end(watch_.ends_unsettled())};
-  if (!whole) return words;
-  const std::string other = accuracy.withdrawn_by_peaks(watch_.finished_peaks(), scene_.accuracy);
-  int differs = other.empty() ? 0 : 1;
-  MPI_Bcast(&differs, 1, MPI_INT, 0, ready_.job.comm);
-  repeated_ = may_halve_ && differs != 0;
-  if (repeated_) other_peaks_ = other;
-  if (!other.empty())
-    words.push_back(fmt::format("not promised after all: {}; a smaller -accuracy takes shorter steps", other));
-  return words;
+  return {accuracy.withdrawn(watch_.losses()), accuracy.withdrawn_by_surprise(watch_.beyond_trials().surprise()),
+          accuracy.withdrawn_by_bends(watch_.bends_beyond_trials(), scene_.accuracy),
+          accuracy.withdrawn_at_end(watch_.ends_unsettled())};
 }
 
 /// Where the scene asks for it; with its own verdicts.
@@ -295,7 +283,6 @@ RunEnd WatchedRun::take() {
   if (reaches_end_ && !passage_.stopped_at_limit()) checkpoints_.forget();
   noted_.reset();
   if (reaches_end_ && summary.linear_defect > scene_.most_defect) return {0, Retry::mechanisms, {}, 0.0};
-  if (repeated_) return {0, Retry::other_peaks, other_peaks_, passage_.plan().time_step};
   check_deflection(comm, scene_, summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, watch_.finished_peaks()))

@@ -8,14 +8,14 @@
 namespace traverse::app {
 
 /// Whether a run has to be taken again, and how. mechanisms: linear vehicles were out of balance by more than
-/// Scene::most_defect; shorter_steps: StepTooLong; other_peaks: than a better trial run has.
-enum class Retry { none, mechanisms, shorter_steps, other_peaks };
+/// Scene::most_defect; shorter_steps: StepTooLong.
+enum class Retry { none, mechanisms, shorter_steps };
 
 struct RunEnd {
   int status = 0;  // of the program, where the run is not taken again
   Retry again = Retry::none;
-  std::string why;    // of shorter_steps: the message of StepTooLong; of other_peaks: which
-  double step = 0.0;  // s, of both: the longest step that was taken
+  std::string why;    // of shorter_steps: the message of StepTooLong
+  double step = 0.0;  // s, of these: the longest step that was taken
 };
 
 /// Collective. Computes the motion in time, or rest where the loads stand, and writes results and summary. InputError,

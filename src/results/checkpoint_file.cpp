@@ -78,13 +78,15 @@ class Aside {
  public:
   explicit Aside(const std::string& path) : path_(path), aside_(aside_of_checkpoint(path)) {
     file_ = make_file(aside_);
-    if (!file_.open() && errno == EEXIST && is_unfinished(aside_)) {  // of a run that was killed
+    int why = errno;
+    if (!file_.open() && why == EEXIST && is_unfinished(aside_)) {  // of a run that was killed
       (void)::unlink(aside_.c_str());
       file_ = make_file(aside_);
+      why = errno;
     }
-    if (!file_.open() && errno == EEXIST)
+    if (!file_.open() && why == EEXIST)
       fail_checkpoint(path_, aside_ + " is there already and is no checkpoint of Traverse" + another_checkpoint);
-    if (!file_.open()) fail_checkpoint(path_, std::strerror(errno));
+    if (!file_.open()) fail_checkpoint(path_, aside_ + ": " + std::strerror(why));
   }
   Aside(const Aside&) = delete;
   Aside& operator=(const Aside&) = delete;
@@ -126,12 +128,19 @@ std::string contents(const std::string& path) {
   return text;
 }
 
+/// Whether there is a name and what goes with it, or neither.
+bool is_possible(const Recorder::Earlier& results) {
+  if (results.file.empty()) return results.rows == 0 && results.objects.empty() && results.digests.empty();
+  return results.file.find('\0') == std::string::npos && results.rows >= 1 && !results.objects.empty() &&
+         !results.digests.empty();
+}
+
 /// Whether a run can be at this instant with this plan.
 bool is_possible(const Checkpoint& checkpoint) {
   const auto within = [](double value, double least) { return value >= least && std::isfinite(value); };
   return within(checkpoint.time, 0.0) && checkpoint.end_time >= checkpoint.time && within(checkpoint.time_step, 0.0) &&
          within(checkpoint.interval, 0.0) && checkpoint.stored >= 1 && within(checkpoint.wall_seconds, 0.0) &&
-         checkpoint.given_ranks >= 1 && !checkpoint.of_ranks.empty();
+         checkpoint.given_ranks >= 1 && !checkpoint.of_ranks.empty() && is_possible(checkpoint.results);
 }
 
 }  // namespace
@@ -174,6 +183,8 @@ Checkpoint read_checkpoint(MPI_Comm comm, const std::string& path) {
   bytes = base::Bytes{std::span<const char>(text)};
   bytes(checkpoint, checkpoint.of_ranks);
   if (!is_possible(checkpoint)) throw FileError("restart = " + path + ": the checkpoint is damaged");
+  checkpoint.results.scene = checkpoint.digest;
+  checkpoint.results.beside = path;
   return checkpoint;
 }
 

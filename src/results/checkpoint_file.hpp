@@ -15,7 +15,6 @@ namespace traverse::results {
 /// What a run is repeated with.
 struct Repeated {
   bool with_mechanisms = false;  // after linear vehicles would not do
-  bool with_half_steps = false;  // after its peaks were not those of a better trial run
 };
 
 struct Checkpoint {
@@ -33,7 +32,7 @@ struct Checkpoint {
   template <class Bytes>
   void keep(Bytes& bytes) {
     bytes(version, digest, time, end_time, time_step, interval, stored, wall_seconds, given_ranks,
-          repeated.with_mechanisms, repeated.with_half_steps, results.file, results.rows, results.objects,
+          repeated.with_mechanisms, results.file, results.rows, results.objects,
           results.digests);
   }
 };

@@ -67,6 +67,18 @@ Id open_to_read(const std::string& path) {
   return Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()));
 }
 
+std::string text_of(const Id& file, const char* object, const char* attribute) {
+  if (file.get() < 0 || H5Aexists_by_name(file.get(), object, attribute, H5P_DEFAULT) <= 0) return {};
+  const Id found(H5Aopen_by_name(file.get(), object, attribute, H5P_DEFAULT, H5P_DEFAULT)),
+      type(H5Aget_type(found.get()));
+  if (type.get() < 0 || H5Tis_variable_str(type.get()) <= 0) return {};
+  char* read = nullptr;
+  if (H5Aread(found.get(), type.get(), static_cast<void*>(&read)) < 0 || read == nullptr) return {};
+  std::string text = read;
+  H5free_memory(read);
+  return text;
+}
+
 Id open_whole(const std::string& path) {
   Id file = open_to_read(path);
   if (file.get() < 0) throw FileError(path + ": HDF5 cannot read it: the file is damaged");
@@ -81,10 +93,9 @@ File::File(Place place) : place_(std::move(place)), path_(place_.path()) {
   place_.keep();
 }
 
-File::File(Place place, const std::string& source, const std::function<void(const std::string&)>& check_copy)
+File::File(Place place, std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right)
     : place_(std::move(place)), path_(place_.path()) {
-  place_.copy_aside(source);
-  check_copy(place_.file_aside());
+  place_.copy_aside(std::move(sources), is_right);
   open(Id(check(H5Fopen(place_.file_aside().c_str(), H5F_ACC_RDWR, access().get()))));
   hsize_t size = 0;
   check(H5Fget_filesize(file_.get(), &size));

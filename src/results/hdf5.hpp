@@ -38,7 +38,9 @@ class Id {
 
 /// Opens a file to read it; not valid where HDF5 cannot. Called within isolated_read.
 Id open_to_read(const std::string& path);
-/// The same where all of it can be reached, and none of it stands in other files; otherwise FileError.
+/// An attribute's text; empty where there is none. Called within isolated_read.
+std::string text_of(const Id& file, const char* object, const char* attribute);
+/// The same as open_to_read where all of it can be reached, and none of it stands in other files; otherwise FileError.
 Id open_whole(const std::string& path);
 
 /// A file being written, by one process, such that a kill at any time leaves the state of the last flush() readable:
@@ -49,9 +51,9 @@ class File {
   /// Creates the file at its place, replacing an older one. The place is held until the file is closed.
   explicit File(Place place);
 
-  /// Opens a copy of a results file beside its place, which it takes by take_place() and not before. `check` is given
-  /// its path before it is opened, and may throw. FileError where there is none to copy.
-  File(Place place, const std::string& source, const std::function<void(const std::string&)>& check);
+  /// Opens a copy of a results file beside its place, which it takes by take_place() and not before: of the first
+  /// source whose copy `is_right`, by its path. FileError where none is.
+  File(Place place, std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right);
 
   const std::string& path() const { return path_; }
   /// A copy that has been changed becomes the file at its place, at once.

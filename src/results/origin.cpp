@@ -25,7 +25,8 @@ constexpr const char *group = "/input", *digest_name = "digest";
 constexpr std::string_view new_name = "another name than ";
 // Of one run alone.
 std::string opened;
-constexpr std::array own = {"restart", "checkpoint_file", "options_file", "log_view", "malloc_debug", "skip_petscrc"};
+constexpr std::array own = {"restart",  "checkpoint_file", "options_file", "ts_max_steps",
+                            "log_view", "malloc_debug",    "skip_petscrc"};
 
 bool of_one_run(const std::string& name) { return std::find(own.begin(), own.end(), name) != own.end(); }
 

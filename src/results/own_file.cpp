@@ -19,15 +19,7 @@ FileId id_of_status(const struct stat& status) { return {true, status.st_dev, st
 
 /// In a copy of the process: HDF5 may end by a signal in a file that is damaged.
 bool names_traverse(const std::string& path) {
-  const hdf5::Id content = hdf5::open_to_read(path);
-  if (content.get() < 0 || H5Aexists(content.get(), "program") <= 0) return false;
-  const hdf5::Id attribute(H5Aopen(content.get(), "program", H5P_DEFAULT)), type(H5Aget_type(attribute.get()));
-  if (type.get() < 0 || H5Tis_variable_str(type.get()) <= 0) return false;
-  char* text = nullptr;
-  if (H5Aread(attribute.get(), type.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return false;
-  const bool ours = std::string_view(text) == "traverse";
-  H5free_memory(text);
-  return ours;
+  return hdf5::text_of(hdf5::open_to_read(path), "/", "program") == "traverse";
 }
 
 }  // namespace

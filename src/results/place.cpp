@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
@@ -74,6 +75,24 @@ bool copy(const Descriptor& from, const Descriptor& to) {
   }
 }
 
+/// Whether a file is what a run that was killed has left of its copy of `source`: nobody has it open, and it is a
+/// beginning of that.
+bool is_left_over(const std::string& path, const Descriptor& source) {
+  const Descriptor file = open_ordinary(path, false);
+  if (!file.open()) return false;
+  if (!locks_are_off() && ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return false;
+  std::vector<char> part(std::size_t{1} << 20), same(part.size());
+  for (off_t at = 0;;) {
+    const ssize_t read = ::pread(file.get(), part.data(), part.size(), at);
+    if (read <= 0) return read == 0;
+    const auto size = static_cast<std::size_t>(read);
+    if (::pread(source.get(), same.data(), size, at) != read ||
+        !std::equal(part.begin(), part.begin() + read, same.begin()))
+      return false;
+    at += read;
+  }
+}
+
 constexpr const char* other_results = "; name another file with -output_file";
 
 }  // namespace
@@ -116,23 +135,50 @@ void Place::claim() {
   made_something = true;
 }
 
-void Place::copy_aside(const std::string& source) {
-  const std::string& found = id_at(source.c_str()).there ? source : path_;  // they may have been moved
-  const Descriptor from = open_ordinary(found, false);
-  if (!from.open() || !is_results_file(from))
-    fail(path_, "the results to take up, " + source + ", are not there; name them with -output_file");
+void Place::copy_aside(std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right) {
+  sources.push_back(path_);  // they may have been moved there
+  std::string tried;
+  for (auto source = sources.begin(); source != sources.end(); ++source) {
+    if (std::find(sources.begin(), source, *source) != source) continue;
+    const Descriptor from = open_ordinary(*source, false);
+    const bool there = from.open() && is_results_file(from);
+    const FileId id = id_at(source->c_str());
+    const bool missing = !id.there || (made_ && id == id_of(file_));  // but for the place that was claimed
+    if (there) {
+      make_aside(from);
+      if (!copy(from, aside_)) fail(path_, aside() + ": " + std::strerror(errno));
+      if (is_right(file_aside())) return;
+      drop_aside();
+    }
+    tried += (tried.empty() ? "" : "; ") + *source +
+             (there ? ": its datasets do not hold the rows that the checkpoint was written with, as it is damaged or "
+                      "another one"
+              : missing ? " is not there"
+                        : " is no results file of Traverse");
+  }
+  fail(path_, "there are no results to take up: " + tried + "; name them with -output_file");
+}
+
+void Place::make_aside(const Descriptor& source) {
   aside_ = make_file(aside());
-  if (!aside_.open() && errno == EEXIST && is_results_file(aside())) {  // of a run that was killed
+  int why = errno;
+  if (!aside_.open() && why == EEXIST && is_left_over(aside(), source)) {
     (void)::unlink(aside().c_str());
     aside_ = make_file(aside());
+    why = errno;
   }
-  if (!aside_.open() && errno == EEXIST)
-    fail(path_, aside() + " is there already and is no results file of Traverse; move it away");
-  if (!aside_.open() || !copy(from, aside_)) fail(path_, std::strerror(errno));
+  if (!aside_.open() && why == EEXIST)
+    fail(path_, aside() + " is there already and is no copy that a run has left; move it away");
+  if (!aside_.open()) fail(path_, aside() + ": " + std::strerror(why));
+  if (!locks_are_off()) (void)::flock(aside_.get(), LOCK_EX | LOCK_NB);
+}
+
+void Place::drop_aside() noexcept {
+  if (aside_.open() && id_at(aside().c_str()) == id_of(aside_)) (void)::unlink(aside().c_str());
+  aside_ = Descriptor();
 }
 
 void Place::take_aside() {
-  if (!locks_are_off()) (void)::flock(aside_.get(), LOCK_EX | LOCK_NB);
   check_is_there();
   if (id_at(aside().c_str()) != id_of(aside_)) fail(path_, aside() + " was removed or replaced meanwhile");
   if (::rename(aside().c_str(), path_.c_str()) != 0) fail(path_, std::strerror(errno));
@@ -148,15 +194,11 @@ void Place::check_is_there() const {
 
 void Place::give_up() noexcept {
   std::error_code ignored;
-  const auto is_ours = [](const std::string& name, const Descriptor& file) {
-    return file.open() && id_at(name.c_str()) == id_of(file);
-  };
-  if (is_ours(aside(), aside_)) fs::remove(aside(), ignored);
+  drop_aside();
   if (made_) made_something = false;
-  if (made_ && is_ours(path_, file_)) fs::remove(path_, ignored);
+  if (made_ && file_.open() && id_at(path_.c_str()) == id_of(file_)) fs::remove(path_, ignored);
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder) fs::remove(*folder, ignored);
   file_ = Descriptor();
-  aside_ = Descriptor();
   made_ = false;
   folders_.clear();
 }

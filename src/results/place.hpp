@@ -5,6 +5,7 @@
 #include <mpi.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,9 @@ class Place {
   /// FileError where the file is not at its path any more.
   void check_is_there() const;
 
-  /// Copies a file beside the place, under the name aside(). FileError where there is no results file to copy, or
-  /// something else has that name.
-  void copy_aside(const std::string& source);
+  /// Copies the first results file, of these and the one at the place, whose copy `is_right` beside the place, under
+  /// the name aside(). FileError where none is, or where something else has that name.
+  void copy_aside(std::vector<std::string> sources, const std::function<bool(const std::string&)>& is_right);
   std::string aside() const { return path_ + ".part"; }
   std::string file_aside() const { return aside_.path(); }
   /// The copy takes the place, locked.
@@ -43,6 +44,8 @@ class Place {
 
  private:
   void claim();
+  void make_aside(const Descriptor& source);
+  void drop_aside() noexcept;
   void give_up() noexcept;
 
   std::string path_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <numeric>
 #include <utility>
@@ -74,24 +75,36 @@ Recorder::Impl::Impl(Place place, const Layout& given, const Pairs& attributes, 
 
 namespace {
 
-/// FileError where the rows of a copy are not those that were written.
-void check_rows(const std::string& copy, const Recorder::Earlier& earlier, const Layout& layout) {
+constexpr const char *of_scene_in = "/options", *of_scene_name = "scene_digest";
+
+/// Where the results of an earlier run may be: under their name, or beside the checkpoint that has been moved with
+/// them.
+std::vector<std::string> sources_of(const Recorder::Earlier& earlier) {
+  const std::filesystem::path file = earlier.file, beside = earlier.beside;
+  return {file.string(), (beside.parent_path() / file.filename()).string()};
+}
+
+/// Whether a copy is of the scene and holds the rows that were written.
+bool is_right(const std::string& copy, const Recorder::Earlier& earlier, const Layout& layout) {
   std::vector<std::string> names = {"/time"};
   for (const Layout::Field& field : layout.fields) names.push_back(field.name);
-  std::vector<std::uint64_t> now;
+  if (earlier.rows == 0 || earlier.digests.size() != names.size()) return false;
   try {
-    now = isolated_read(copy, [&] { return hdf5::digests_of(copy, names, earlier.rows); });
+    const auto [scene, digests] = isolated_read(copy, [&] {
+      return std::pair(hdf5::text_of(hdf5::open_to_read(copy), of_scene_in, of_scene_name),
+                       hdf5::digests_of(copy, names, earlier.rows));
+    });
+    return scene == earlier.scene && digests == earlier.digests;
   } catch (const FileError&) {  // nothing of it can be read
+    return false;
   }
-  if (now != earlier.digests)
-    throw FileError("the results to take up, " + earlier.file +
-                    ", do not hold the rows that the checkpoint was written with: the file is damaged, or another one");
 }
 
 }  // namespace
 
 Recorder::Impl::Impl(Place place, const Layout& given, const Recorder::Earlier& earlier)
-    : file(std::move(place), earlier.file, [&](const std::string& copy) { check_rows(copy, earlier, given); }),
+    : file(std::move(place), sources_of(earlier),
+           [&](const std::string& copy) { return is_right(copy, earlier, given); }),
       layout(given),
       width(given.width()),
       block_rows(rows_of_block(sizeof(double) * (1 + width))),
@@ -207,6 +220,8 @@ Recorder::Recorder(MPI_Comm comm, Place place, const Layout& layout, const Earli
   }
   share_failure(comm, failure);
 }
+
+void Recorder::of_scene(const std::string& digest) { attributes(of_scene_in, {{of_scene_name, digest}}); }
 
 Recorder::Earlier Recorder::secure() {
   Earlier now;

@@ -147,7 +147,11 @@ class Recorder {
     std::size_t rows = 0;                // of its series
     std::vector<std::string> objects;    // all that the file held by then
     std::vector<std::uint64_t> digests;  // of the rows of /time and of each field
+    std::string scene{};                 // digest of the scene, as it was given to of_scene()
+    std::string beside{};                // a file that the results may have been moved with
   };
+  /// Notes the digest of the scene, by which its run alone takes the results up.
+  void of_scene(const std::string& digest);
   /// Takes up the results of an earlier run as they were then, under the same layout: a copy takes its place when it
   /// is complete. FileError where they cannot be those, or have been changed since.
   Recorder(MPI_Comm comm, Place place, const Layout& layout, const Earlier& earlier);

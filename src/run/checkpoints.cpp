@@ -63,6 +63,22 @@ void check_that_none_is_read(const Scene& scene) {
       throw InputError(fmt::format("output_file = {}: the run reads this file; name another one", scene.output.file));
 }
 
+/// The results of a run that goes on are its own, unless the command line names another file for them. The name in a
+/// checkpoint ends as one in a file of options does.
+void take_results_file(const std::string& earlier, const std::string& restart, Scene& scene) {
+  const options::Entry* output = options::in_force().find("output_file");
+  const bool asked = output != nullptr && !output->from_file() && !results::is_new_name(*output);
+  if (asked && earlier.empty() && !scene.output.file.empty())
+    throw InputError("restart = " + restart +
+                     ": that run had no results file, its rows so far are nowhere; go on with -output_file none, or "
+                     "begin anew without -restart");
+  if (asked) return;
+  if (!earlier.empty() && !earlier.ends_with(".h5"))
+    throw InputError("restart = " + restart + ": the name of its results file, " + earlier +
+                     ", does not end in .h5; name the file with -output_file");
+  scene.output.file = earlier;
+}
+
 }  // namespace
 
 results::Place claim_outputs(MPI_Comm comm, const Scene& scene) {
@@ -97,8 +113,7 @@ std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
     throw InputError("restart = " + path +
                      ": is of another scene; only ts_max_time, scene_tail, ts_max_steps and the names of files may be "
                      "changed");
-  const options::Entry* output = options::in_force().find("output_file");
-  if (output == nullptr || results::is_new_name(*output)) scene.output.file = earlier.results.file;
+  take_results_file(earlier.results.file, path, scene);
   return earlier;
 }
 
@@ -109,6 +124,7 @@ Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, Wa
       watch_(watch),
       recorder_(recorder),
       so_far_(std::move(so_far)),
+      own_(results::id_at(given("restart").c_str())),
       interval_(usual_interval) {
   if (scene.analysis != Analysis::transient) return;
   path_ = path_for(scene);
@@ -140,12 +156,13 @@ void Checkpoints::write(double time, double wall_seconds) {
   so_far_.time = time;
   so_far_.wall_seconds = wall_seconds;
   results::write_checkpoint(comm_, path_, so_far_, archive.take());
+  own_ = results::id_at(path_.c_str());
   last_ = Clock::now();
   cost_ = std::chrono::duration<double>(last_ - begin).count();
 }
 
 void Checkpoints::forget() {
-  if (possible()) results::remove_checkpoint(comm_, path_);
+  if (possible() && own_.there && results::id_at(path_.c_str()) == own_) results::remove_checkpoint(comm_, path_);
 }
 
 }  // namespace traverse::app

@@ -20,8 +20,8 @@ namespace traverse::app {
 std::string digest_of(const Scene& scene);
 
 /// Collective. The checkpoint that the option `restart` names; none where it is not given. InputError where it is of
-/// another scene, or of a kind of run that has no checkpoints. The scene takes its results file from it where it names
-/// none.
+/// another scene, or of a kind of run that has no checkpoints. The scene takes its results file from it where the
+/// command line names none.
 std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene);
 
 /// Collective. The place of the results, and a look at that of the checkpoints: InputError or FileError where a file
@@ -43,7 +43,7 @@ class Checkpoints {
   const std::string& path() const { return path_; }
   /// Why there are none, where it is not that nobody wants them; empty: there are.
   const std::string& trouble() const { return trouble_; }
-  /// Collective. The run has ended by itself: it needs none any more.
+  /// The run has ended by itself: it needs none any more, of those that it has written or gone on from.
   void forget();
 
  private:
@@ -55,8 +55,9 @@ class Checkpoints {
   results::Recorder& recorder_;
   results::Checkpoint so_far_;
   std::string path_, trouble_;
-  double interval_;    // s; 0: only where a signal asks
-  double cost_ = 0.0;  // s, of the last one
+  results::FileId own_;  // the file that the run has written or goes on from
+  double interval_;      // s; 0: only where a signal asks
+  double cost_ = 0.0;    // s, of the last one
   Clock::time_point last_ = Clock::now();
   unsigned looks_ = 0;
 };

@@ -119,7 +119,7 @@ class ResultsFiles(Files):
             apart.write(h5py.h5s.ALL, h5py.h5s.ALL, values)
         before = users.read_bytes()
         self.refused("do not hold the rows", "-options_file", "part.yml", "-restart", "part.h5.checkpoint", "-output_file",
-                     "next.h5", status=4)
+                     "beside.h5", status=4)
         self.assertEqual(users.read_bytes(), before)
         self.write("part.h5", whole)
 

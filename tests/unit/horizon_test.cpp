@@ -97,25 +97,6 @@ TEST(Accuracy, IsWithdrawnWhereMoreComesThanTrialsSaw) {
   EXPECT_TRUE(accuracy.expected().empty());
 }
 
-TEST(Accuracy, IsWithdrawnWhereABetterTrialHasOtherPeaks) {
-  Peaks peaks({}, 1);
-  for (int i = 0; i < 3; ++i) {
-    const double force[] = {i == 1 ? 110.0 : 100.0};
-    peaks.add(i, {}, force);
-  }
-  peaks.finish();
-  Accuracy accuracy;
-  accuracy.measured = true;
-  for (Promise& promise : accuracy.promises) promise = {true, true, 1e-4, ""};
-  EXPECT_EQ(accuracy.withdrawn_by_peaks(peaks, 1e-2), "");
-  accuracy.promises[wheel_force].peak = peaks.largest(wheel_force).value / 1.005;
-  EXPECT_EQ(accuracy.withdrawn_by_peaks(peaks, 1e-2), "");
-  EXPECT_NEAR(accuracy.promises[wheel_force].expected, 7.5e-3, 1e-12);
-  EXPECT_EQ(accuracy.withdrawn_by_peaks(peaks, 7e-3),
-            "wheel force (0.005): a trial run with more modes has other peaks");
-  EXPECT_EQ(accuracy.expected().size(), quantities - 1U);
-}
-
 TEST(SweepModel, PromisesNothingOfRunsThatMeetWhatNoTrialHasSeen) {
   results::Sweep::Model model;
   model.expected_errors = {{"deflection", 1e-3}};
