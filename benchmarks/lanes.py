@@ -4,8 +4,7 @@
 
 Runs sweeps of moving forces (options/scenes/hslm_sweep.yml with one station, hslm_two_spans.yml with 41) and of eight
 coaches (fifty_metre_train.yml by 16 modes), in turn with one, four and eight runs side by side on one rank, with eight on
-two, and the coaches' one by one too, which PETSc's TS then drives, by the lanes' kernel and in the general way
-(step_lanes false); takes the quickest of several rounds. Peaks are held
+two, and the coaches' one by one too, which PETSc's TS then drives; takes the quickest of several rounds. Peaks are held
 against those of a finer sweep: forces looked at 400 times a period (sweep_instants), coaches with a quarter of the step
 and twice the modes. The error is the largest difference of any run and station, over the largest of the run's stations.
 --beside adds another build of the program, an older one say. Prints a table; writes lanes.csv.
@@ -52,8 +51,6 @@ def measured(given, scene, how, folder):
     options = {"options_file": runs.scene(scene)} | how["options"] | (how["smallest"] if given.smallest else {})
     cases = {f"{lanes} side by side" if lanes else "one by one": (given.build, {"sweep_lanes": lanes}, 1)
              for lanes in how["lanes"]}
-    if 0 in how["lanes"]:
-        cases["the general way"] = (given.build, {"sweep_lanes": 0, "step_lanes": "false"}, 1)
     cases["8, two ranks"] = (given.build, {"sweep_lanes": 8}, 2)
     if given.beside:
         cases["the other build"] = (given.beside, {}, 1)

@@ -168,11 +168,8 @@ FirstSteps first_steps(const Scene& scene, double omega, double duration) {
           fmt::format("wheels vibrate on their contacts at {:.3g} Hz", contact / (2.0 * std::numbers::pi))};
 }
 
-double longest_following_contacts(const Scene& scene) {
-  const double contact = unstirred(scene) ? 0.0 : contact_frequency(scene);
-  return contact > 0.0 ? 2.0 * contact_angle / contact : std::numeric_limits<double>::infinity();
+bool follows_contacts(const Scene& scene, double step) {
+  return unstirred(scene) || step * contact_frequency(scene) <= 2.0 * contact_angle;
 }
-
-bool follows_contacts(const Scene& scene, double step) { return step <= longest_following_contacts(scene); }
 
 }  // namespace traverse::app

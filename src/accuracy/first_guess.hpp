@@ -33,9 +33,7 @@ struct FirstSteps {
 /// omega: the first frequency of the beam, rad/s; 0: not known. duration: of a trial run, s.
 FirstSteps first_steps(const Scene& scene, double omega, double duration);
 
-/// The longest step that follows the contacts' vibration so far that its forces are told, s.
-double longest_following_contacts(const Scene& scene);
-/// Whether steps follow the contacts' vibration so far that its forces are told.
+/// Whether a step (s) follows the contacts' vibration so far that its forces are told.
 bool follows_contacts(const Scene& scene, double step);
 
 }  // namespace traverse::app

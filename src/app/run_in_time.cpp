@@ -10,15 +10,6 @@ namespace {
 
 constexpr int most_halvings = 4;  // of a step that was chosen
 
-/// In place of linear vehicles; by elements where `accuracy` has chosen modes: what these leave out has its own motion
-/// in the kernel of linear vehicles alone.
-void take_mechanisms(Scene& scene) {
-  scene.vehicle_model = VehicleModel::full;
-  if (!scene.modes_open || scene.model_modes == 0) return;
-  scene.model_modes = 0;
-  scene.integrator.clear();
-}
-
 }  // namespace
 
 int run_in_time(Job job) {
@@ -29,7 +20,7 @@ int run_in_time(Job job) {
   std::optional<SharedBeam> own;
   if (repeated.with_mechanisms) {
     std::vector<std::string> ignored;
-    take_mechanisms(scene);
+    scene.vehicle_model = VehicleModel::full;  // in place of linear vehicles
     own.emplace(job.comm, scene, ignored);
   }
   int halvings = goes_on || !scene.step_open ? 0 : most_halvings;
@@ -39,7 +30,7 @@ int run_in_time(Job job) {
   while (end.again != Retry::none) {
     std::vector<std::string> notes;
     if (end.again == Retry::mechanisms) {
-      take_mechanisms(scene);
+      scene.vehicle_model = VehicleModel::full;
       repeated.with_mechanisms = true;
       notes.push_back(fmt::format(
           "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "

@@ -1,6 +1,7 @@
 #include "lanes/crossing.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/processor.hpp"
 #include "lanes/crossing_numbers.hpp"
@@ -21,7 +22,13 @@ std::size_t places_kept(const CrossingPlan& plan) {
 
 }  // namespace
 
+// Vectors wider than the processor's are taken apart number by number, which takes several times as long.
 std::vector<CrossingResult> cross(const CrossingPlan& plan, std::span<const CrossingRun> runs) {
+  if (const std::size_t most = engine::best_width(); runs.size() > most) {
+    std::vector<CrossingResult> all = cross(plan, runs.first(most));
+    for (CrossingResult& result : cross(plan, runs.subspan(most))) all.push_back(std::move(result));
+    return all;
+  }
   const std::size_t width = runs.size() > 4 ? 8 : runs.size() > 2 ? 4 : 2;
   const CrossingNumbers numbers(plan, runs, width);
   Task task = numbers.task();

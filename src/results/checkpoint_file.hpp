@@ -32,8 +32,7 @@ struct Checkpoint {
   template <class Bytes>
   void keep(Bytes& bytes) {
     bytes(version, digest, time, end_time, time_step, interval, stored, wall_seconds, given_ranks,
-          repeated.with_mechanisms, results.file, results.rows, results.objects,
-          results.digests);
+          repeated.with_mechanisms, results.file, results.rows, results.objects, results.digests);
   }
 };
 

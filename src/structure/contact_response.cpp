@@ -1,3 +1,4 @@
+// The solve for the forces of all contacts on the nodes near them (eq. of a stage: element_structure.hpp).
 #include "structure/contact_response.hpp"
 
 #include <algorithm>

@@ -126,7 +126,8 @@ class Structure {
     responding_ = &yield(elements);
     return *responding_;
   }
-  /// v += what the elements of yield_alone() are moved by loads on them, 2 per_node values an element.
+  /// v (m, rad) += what the elements of yield_alone() are moved by loads on them (N, N m), both 2 per_node values an
+  /// element in the order of beam::Line::unknowns.
   virtual void respond(const std::vector<double>& loads, std::vector<double>& v) { responding_->respond(loads, v); }
   /// The contacts' forces on these elements.
   virtual void take(const std::vector<double>& loads) = 0;

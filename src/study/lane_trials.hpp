@@ -58,7 +58,6 @@ class LaneTrials {
   /// The largest SideBySide::defect of a model's runs, which are known.
   double defect(const LaneModel& model) const;
   const Scene& scene() const { return scene_; }
-  std::size_t trials() const { return kept_.size(); }
 
   struct Refused {
     std::string why;

@@ -15,6 +15,7 @@ namespace traverse::app {
 namespace {
 
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
+
 bool open(const Scene& scene) {
   return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.modes_open &&
          scene.vehicle_model != VehicleModel::full && scene.beam && options::in_force().find("ts_type") == nullptr;

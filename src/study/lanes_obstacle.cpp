@@ -1,3 +1,4 @@
+// What of a scene keeps its runs from going side by side.
 #include "study/lanes_obstacle.hpp"
 
 #include <algorithm>

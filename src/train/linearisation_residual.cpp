@@ -1,3 +1,4 @@
+// The mechanism's own equations of motion at coordinates where its linear model has been.
 #include "train/linearisation_residual.hpp"
 
 #include <cmath>

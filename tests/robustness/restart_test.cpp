@@ -141,7 +141,7 @@ TEST(Restart, FindsResultsThatWereMoved) {
   expect_success(run.workplace.run({"-ts_max_steps", "3", "-output_file", "new.h5"}));
   run.move("new.h5.checkpoint", "r.h5.checkpoint");
   run.move("new.h5", "newer.h5");
-  run.expect_refused({"new.h5 is no results file", "other.h5 is no results file"}, {"-output_file", "other.h5"});
+  run.expect_refused({"new.h5 is not there", "other.h5 is not there"}, {"-output_file", "other.h5"});
   expect_success(run.go_on({"-output_file", "newer.h5"}));
 }
 

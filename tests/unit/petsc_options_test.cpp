@@ -1,4 +1,5 @@
-// Which options reach PETSc: those of a list, with values that name no file, program or library, wherever they stand.
+// Which options reach PETSc: those of a list, with values that name no file, program or library, wherever they stand;
+// and options that do nothing.
 #include <gtest/gtest.h>
 #include <petscsys.h>
 
@@ -197,6 +198,47 @@ TEST_F(Petscrc, SkippedFilesAreNotRead) {
   folder_.write(".petscrc", "not an option\n");
   EXPECT_PRED2(contains, message_of([] { input_of({}); }), ".petscrc:1");
   EXPECT_TRUE(input_of({"-skip_petscrc"}).notes.empty());
+}
+
+TEST(Table, OptionsOfTsWithoutEffect) {
+  Entries entries;
+  entries.set({"ts_rk_type", "4", "s.yml", 7});
+  ASSERT_EQ(PetscOptionsSetValue(nullptr, "-ts_rk_type", "4"), 0);
+  EXPECT_PRED2(any_contains, notes_on_unused(entries), "ts_rk_type = 4 (s.yml:7) has no effect in this scene");
+  ASSERT_EQ(PetscOptionsClearValue(nullptr, "-ts_rk_type"), 0);
+  Entries tolerance;
+  tolerance.set({"ts_rtol", "1e-6", "command line", 0});
+  EXPECT_PRED2(any_contains, notes_on_unused(tolerance),
+               "ts_rtol = 1e-6 (command line) has no effect with this ts_adapt_type");
+  tolerance.set({"ts_adapt_type", "ladder", "command line", 0});
+  EXPECT_TRUE(notes_on_unused(tolerance).empty());
+  tolerance.set({"ts_atol", "1e-6", "command line", 0});
+  EXPECT_PRED2(any_contains, notes_on_unused(tolerance),
+               "ts_atol = 1e-6 (command line) has no effect with this ts_adapt_type");
+}
+
+TEST(Table, OptionsOfVehiclesWithoutAny) {
+  Entries entries;
+  entries.set({"load_speed", "40", "s.yml", 3});
+  entries.set({"train_speed", "40", "command line", 0});
+  entries.set({"contact_impact_steps", "5", "s.yml", 4});
+  EXPECT_PRED2(any_contains, notes_on_unused(entries),
+               "train_speed = 40 (command line) has no effect: no vehicles run in this scene");
+  EXPECT_EQ(notes_on_unused(entries).size(), 2U);
+  entries.set({"vehicle_car_file", "car.yml", "s.yml", 5});
+  EXPECT_TRUE(notes_on_unused(entries).empty());
+}
+
+TEST(Table, NoneOfOursStandsInPetscsTable) {
+  Input input = input_of({"-train_speed", "40", "-ts_dt", "0.1"});
+  put_into_petsc(input);
+  PetscBool found = PETSC_TRUE;
+  ASSERT_EQ(PetscOptionsHasName(nullptr, nullptr, "-train_speed", &found), 0);
+  EXPECT_EQ(found, PETSC_FALSE);
+  ASSERT_EQ(PetscOptionsHasName(nullptr, nullptr, "-ts_dt", &found), 0);
+  EXPECT_EQ(found, PETSC_TRUE);
+  EXPECT_EQ(in_force().find("train_speed")->value, "40");
+  ASSERT_EQ(PetscOptionsClear(nullptr), 0);
 }
 
 }  // namespace
