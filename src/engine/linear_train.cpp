@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <type_traits>
@@ -33,34 +32,6 @@ constexpr double growth = 1.1;          // of a contraction that is trusted with
 constexpr double worth_looking = 1.05;  // times the departure: of the residual a tenth
 constexpr double near_look_up = 2e-5;   // m: as far the profile's parabola is exact
 
-void fill(double (&row)[most_lanes], double value) { std::fill_n(row, most_lanes, value); }
-
-void fill_rule(StageRows& to, double w_in_v, const structure::Weights& a_in_v, const structure::Weights& a_in_w) {
-  fill(to.w_in_v, w_in_v);
-  for (int j = 0; j < most_kept; ++j) {
-    fill(to.a_in_v[j], a_in_v[static_cast<std::size_t>(j)]);
-    fill(to.a_in_w[j], a_in_w[static_cast<std::size_t>(j)]);
-  }
-}
-
-/// Instants at which contact forces are known, and which of their histories has them.
-struct Instants {
-  std::array<double, most_stages + 2> time{};
-  std::array<int, most_stages + 2> history{};
-  std::size_t count = 0;
-  void add(double t, int of) {
-    time[count] = t;
-    history[count++] = of;
-  }
-  /// The weight of instant i in the polynomial through all of them, at t.
-  double weight(std::size_t i, double t) const {
-    double weight = 1.0;
-    for (std::size_t j = 0; j < count; ++j)
-      if (j != i) weight *= (t - time[j]) / (time[i] - time[j]);
-    return weight;
-  }
-};
-
 }  // namespace
 
 void LinearTrain::write(const double* rows, double* coordinates) const {
@@ -70,17 +41,7 @@ void LinearTrain::write(const double* rows, double* coordinates) const {
 void LinearTrain::set_method(const structure::Method& method, double h) {
   method_ = method;
   length_ = h;
-  task_.stages = static_cast<int>(method.stages.size());
-  task_.known = method.step.known;
-  for (std::size_t s = 0; s < method.stages.size(); ++s) {
-    const structure::StageRule& rule = method.stages[s];
-    StageRows& to = task_.stage[s];
-    fill_rule(to, rule.w_in_v, rule.a_in_v, rule.a_in_w);
-    fill(to.rate, rule.rate);
-    fill(to.displacement, rule.displacement);
-  }
-  fill_rule(task_.end, method.step.w_in_v, method.step.a_in_v, method.step.a_in_w);
-  for (std::size_t j = 0; j < most_kept; ++j) task_.a_next[j] = method.step.a_next[j];
+  arrays_.set_rules(method, std::vector<double>(arrays_.lanes, 1.0));
   const structure::StageRule& last = method.stages.back();
   ends_with_stage_ = std::abs(last.time - h) <= 1e-9 * h;
   TRAVERSE_LANES_CALL(set_train_step(task_));
@@ -88,16 +49,8 @@ void LinearTrain::set_method(const structure::Method& method, double h) {
 }
 
 void LinearTrain::begin_step() {
-  std::fill_n(task_.largest, static_cast<std::size_t>(task_.wheels) * lanes_, 0.0);
-  for (std::size_t s = 0; s < method_.stages.size(); ++s) {
-    Instants known;
-    for (std::size_t j = 0; j < s; ++j) known.add(method_.stages[j].time, static_cast<int>(j));
-    known.add(0.0, most_stages);
-    if (s < 2 && length_before_ > 0.0) known.add(-length_before_, most_stages + 1);
-    for (auto& row : task_.stage[s].guess) fill(row, 0.0);
-    for (std::size_t i = 0; i < known.count; ++i)
-      fill(task_.stage[s].guess[known.history[i]], known.weight(i, method_.stages[s].time));
-  }
+  std::fill_n(task_.largest, static_cast<std::size_t>(task_.wheels) * arrays_.lanes, 0.0);
+  arrays_.set_guesses(method_, length_before_);
 }
 
 void LinearTrain::restart(const train::Fleet& fleet, const double* p, const double* pd, const double* pdd) {
@@ -107,19 +60,7 @@ void LinearTrain::restart(const train::Fleet& fleet, const double* p, const doub
     task_.w[at] = pd[k];
     task_.a[0][at] = pdd[k];
   }
-  for (std::size_t i = 0; i < wheel_.size(); ++i) {
-    const train::WheelContact& c = fleet.wheels[entry_[i]];
-    const std::size_t at = wheel_[i];
-    const double force = c.force.normal;
-    task_.normal[at] = force;
-    task_.normal_up[at] = -c.touch.normal_on_body.y();
-    task_.normal_along[at] = -c.touch.normal_on_body.x();
-    task_.force_up[at] = force * task_.normal_up[at];
-    task_.force_along[at] = force * task_.normal_along[at];
-    task_.ahead[at] = task_.ahead_before[at] = c.touch.ahead;
-    task_.root[at] = force > 0.0 ? std::cbrt(force / c.law.stiffness) : 1e-3;
-    for (const int j : {most_stages, most_stages + 1}) task_.history[j][at] = force;
-  }
+  for (std::size_t i = 0; i < wheel_.size(); ++i) arrays_.start_contact(wheel_[i], fleet.wheels[entry_[i]]);
   length_before_ = last_time_ = time_before_ = 0.0;
   placed_ = false;
 }
@@ -131,8 +72,8 @@ void LinearTrain::predict(std::size_t stage, double t) {
       last_time_ > time_before_ ? std::clamp((t - last_time_) / (last_time_ - time_before_), 0.0, 2.0) : 0.0;
   time_before_ = std::exchange(last_time_, t);
   converged_ = false;
-  for (std::size_t b = 0; b < blocks_.size(); ++b)
-    for (std::size_t l = 0; l < lanes_; ++l) distance_[b][l] = blocks_[b].speed[l] * t;
+  for (std::size_t b = 0; b < arrays_.blocks.size(); ++b)
+    for (std::size_t l = 0; l < arrays_.lanes; ++l) arrays_.distance[b][l] = arrays_.speed[b][l] * t;
   TRAVERSE_LANES_CALL(predict_train(task_, static_cast<int>(stage), work_));
 }
 
@@ -142,7 +83,7 @@ bool LinearTrain::look_up_profiles(double within) {
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
     if (profile_[i] == nullptr) continue;
     const std::size_t at = wheel_[i];
-    if (task_.h[at] == no_surface || std::abs(task_.station[at] - task_.looked_up[at]) <= within) continue;
+    if (task_.h[at] == TrainArrays::no_surface || std::abs(task_.station[at] - task_.looked_up[at]) <= within) continue;
     moved = true;
     task_.looked_up[at] = task_.station[at];
     const track::Height height = profile_[i]->at(task_.station[at]);
@@ -169,15 +110,23 @@ LinearTrain::Placing LinearTrain::place(train::Fleet& fleet) {
   const auto points = [&](const train::WheelContact& c) { return c.further > 0 && fleet.has_points(c); };
   if (std::any_of(fleet.wheels.begin(), fleet.wheels.end(), points)) return Placing::several_points;
   elements_ = fleet.elements();
-  task_.slots = static_cast<int>(elements_.size()) + 1;
-  const std::size_t size = 2 * static_cast<std::size_t>(task_.per_node * task_.slots);
+  const int width = 2 * task_.per_node;
+  task_.ground = width * static_cast<int>(elements_.size());
+  task_.unknowns = task_.ground + width;
+  const auto size = static_cast<std::size_t>(task_.unknowns);
   for (std::vector<double>* nodal : {&nodal_, &nodal_rate_, &load_}) nodal->assign(size, 0.0);
-  loads_.resize(size - 2 * static_cast<std::size_t>(task_.per_node));
+  loads_.resize(static_cast<std::size_t>(task_.ground));
   task_.nodal = nodal_.data();
   task_.nodal_rate = nodal_rate_.data();
   task_.load = load_.data();
-  std::fill(second_.begin(), second_.end(), 0);
+  std::fill(arrays_.second.begin(), arrays_.second.end(), 0);
   for (std::size_t i = 0; i < wheel_.size(); ++i) place_wheel(fleet.wheels[entry_[i]], wheel_[i]);
+  for (SurfacePatch& p : task_.patch)
+    for (std::size_t row = 0; row < arrays_.second.size(); ++row) {
+      const int* slot = p.slot + row * arrays_.lanes;
+      const bool ground = std::all_of(slot, slot + arrays_.lanes, [&](int at) { return at == task_.ground; });
+      p.together[row] = ground ? 2 : 0;
+    }
   look_up_profiles(0.0);
   placed_ = true;
   return Placing::anew;
@@ -189,23 +138,23 @@ void LinearTrain::place_wheel(const train::WheelContact& c, std::size_t at) {
     const bool there = k < c.candidates;
     const train::Patch& patch = c.patches[static_cast<std::size_t>(k)];
     const bool on_beam = there && patch.element >= 0;
-    p.slot[at] = on_beam ? c.slots[static_cast<std::size_t>(k)] : task_.slots - 1;
+    p.slot[at] = on_beam ? 2 * task_.per_node * c.slots[static_cast<std::size_t>(k)] : task_.ground;
     p.x[at] = on_beam ? patch.x : 0.0;
     p.length[at] = on_beam ? patch.length : 1.0;
     p.shear[at] = on_beam ? patch.shear : 0.0;
     p.yield[at] = on_beam ? patch.yield : 0.0;
     for (double* entry : p.compliance) entry[at] = 0.0;
-    p.low[at] = there ? patch.low : k == 0 ? -infinite : 1.0;
-    p.high[at] = there ? patch.high : k == 0 ? infinite : -1.0;
+    p.low[at] = there ? patch.low : k == 0 ? -TrainArrays::infinite : 1.0;
+    p.high[at] = there ? patch.high : k == 0 ? TrainArrays::infinite : -1.0;
   }
-  if (c.candidates > 1) second_[at / lanes_] = 1;
+  if (c.candidates > 1) arrays_.second[at / arrays_.lanes] = 1;
   if (task_.active[at] >= c.candidates) task_.active[at] = 0;
-  task_.h[at] = c.candidates > 0 ? 0.0 : no_surface;
+  task_.h[at] = c.candidates > 0 ? 0.0 : TrainArrays::no_surface;
   task_.h_x[at] = task_.h_xx[at] = 0.0;
   const double x = task_.along[at];
   const auto next = std::upper_bound(borders_.begin(), borders_.end(), x);
-  task_.to[at] = next == borders_.end() ? infinite : *next;
-  task_.from[at] = next == borders_.begin() ? -infinite : next[-1];
+  task_.to[at] = next == borders_.end() ? TrainArrays::infinite : *next;
+  task_.from[at] = next == borders_.begin() ? -TrainArrays::infinite : next[-1];
 }
 
 void LinearTrain::set_compliance(const structure::ElementCompliance& compliance) {
@@ -213,8 +162,8 @@ void LinearTrain::set_compliance(const structure::ElementCompliance& compliance)
   for (const std::size_t at : wheel_)
     for (SurfacePatch& p : task_.patch) {
       const int slot = p.slot[at];
-      if (slot == task_.slots - 1) continue;
-      const double* block = compliance.block(slot, slot);
+      if (slot == task_.ground) continue;
+      const double* block = compliance.block(slot / m, slot / m);
       const int place[4] = {o, o + 1, task_.per_node + o, task_.per_node + o + 1};
       for (int i = 0, k = 0; i < 4; ++i)
         for (int j = i; j < 4; ++j, ++k) p.compliance[k][at] = (j > i ? 2.0 : 1.0) * block[place[i] + m * place[j]];
@@ -246,8 +195,8 @@ void LinearTrain::end_stage(const std::vector<double>& w) {
 }
 
 double LinearTrain::sum_in_stage(const double* rows) const {
-  const double* row = rows + (stage_ + 1) * lanes_;
-  return std::accumulate(row, row + lanes_, 0.0);
+  const double* row = rows + (stage_ + 1) * arrays_.lanes;
+  return std::accumulate(row, row + arrays_.lanes, 0.0);
 }
 
 void LinearTrain::finish_step(double* p, double* pd, double* pdd) {

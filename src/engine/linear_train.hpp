@@ -3,17 +3,12 @@
 // and what the contacts' iteration begins with; the fleet is told what is seen between steps.
 #pragma once
 
-#include <limits>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "engine/processor.hpp"
-#include "engine/train_task.hpp"
-#include "methods/one_step_methods.hpp"
+#include "engine/train_arrays.hpp"
 #include "response/compliance.hpp"
-#include "train/fleet.hpp"
 
 namespace traverse::engine {
 
@@ -72,40 +67,21 @@ class LinearTrain {
   void keep(base::Bytes& bytes);
 
  private:
-  static constexpr double infinite = std::numeric_limits<double>::infinity();
-  static constexpr double no_surface = -1e3;  // m: height of what is under a wheel with no surface
-
-  struct Place {  // of a vehicle among the blocks
-    std::size_t block = 0;
-    int lane = 0;
-  };
-
-  void make_blocks(const train::Fleet& fleet);
-  void fill_block(const train::Fleet& fleet, std::size_t block, const std::vector<int>& vehicles);
-  SparseRows sparse(const std::vector<Eigen::MatrixXd>& of_lanes);
-  void make_rows(const train::Fleet& fleet);
+  void find_numbers(const train::Fleet& fleet);
   void find_borders(const train::Fleet& fleet);
   void place_wheel(const train::WheelContact& c, std::size_t number);
   bool look_up_profiles(double within);
-  double* add(std::size_t rows);
-  int* add_integers(std::size_t rows);
   double sum_in_stage(const double* rows) const;
   void write(const double* rows, double* coordinates) const;
 
-  const std::size_t lanes_ = best_width();  // numbers of a row
-  TrainTask task_;
-  std::vector<VehicleBlock> blocks_;
-  std::vector<Place> places_;                      // of every vehicle
+  TrainArrays arrays_;
+  TrainTask& task_ = arrays_.task;
   std::vector<double> roots_, farthest_;           // of every entry of p: residual_roots; of every vehicle
   std::vector<std::size_t> first_entry_;           // of every vehicle's coordinates in p, and the end
   std::vector<std::size_t> coordinate_;            // of every entry of p: its number in arrays of coordinates
   std::vector<std::size_t> entry_, wheel_;         // of every wheel: in Fleet::wheels; its number in arrays of wheels
   std::vector<const track::Profile*> profile_;     // that it runs on; null: level
-  std::vector<std::unique_ptr<Aligned>> numbers_;  // what the arrays of the task are
-  std::vector<std::unique_ptr<std::vector<int>>> integers_;
-  std::vector<char> hertz_, second_;
   double* work_ = nullptr;         // of predictions
-  std::vector<double*> distance_;  // m, of every block's lanes: travelled
 
   const beam::Mesh* mesh_;
   std::vector<double> borders_;  // m, ascending: between two of them a wheel has the same patches

@@ -22,6 +22,11 @@
 namespace traverse::engine {
 namespace {
 
+/// Whether surfaces are level with the axis, of elements that neither shear nor move along x.
+inline bool is_flat(const TrainTask& task) {
+  return task.per_node == 2 && task.surface_height == 0.0 && !task.shears;
+}
+
 struct Touched {
   Row depth, up, along;   // m: the penetration; direction from the surface to the centre
   Row station, xi, turn;  // of the point: m, in the element, rotation of the section
@@ -83,6 +88,11 @@ struct ContactRow {
   Row length, shear, structure, seat, seat_by_x;
 };
 
+/// On level rigid ground.
+inline Touched on_ground(Row height, Row along, Row up) {
+  return {height - up, Rows::fill(1.0), Row{}, along, Row{}, Row{}, up != up};
+}
+
 /// What the patch makes of a force at the point.
 template <Surface kind>
 ContactRow on_patch(const SurfacePatch& p, int i, const Touched& at) {
@@ -101,9 +111,11 @@ ContactRow on_patch(const SurfacePatch& p, int i, const Touched& at) {
 /// The patch that is touched: of two the one where the wheel is deeper.
 template <Surface kind>
 ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
-  ContactRow c = on_patch<kind>(task.patch[0], i, closest<kind>(task, task.patch[0], i, along, up));
   int* active = task.active + static_cast<long>(i) * lanes;
   for (int l = 0; l < lanes; ++l) active[l] = 0;
+  if (task.level[i] != 0 && task.second[i] == 0 && task.patch[0].together[i] == 2)
+    return {on_ground(rows(task.h)[i], along, up), Rows::fill(1.0), Row{}, Row{}, Row{}, Row{}};
+  ContactRow c = on_patch<kind>(task.patch[0], i, closest<kind>(task, task.patch[0], i, along, up));
   if (task.second[i] == 0) return c;
   const SurfacePatch& p = task.patch[1];
   const ContactRow other = on_patch<kind>(p, i, closest<kind>(task, p, i, along, up));
@@ -133,14 +145,20 @@ inline Row own_force(const TrainTask& task, int i, Row depth, Row q, Row seat) {
   return touches ? stiffness * r * r * r : Row{};
 }
 
-/// The forces of all contacts with the structure as `nodal` has it. Returns the largest change of a force over its
-/// scale, or a number below 0 where a wheel has fallen below the surface.
+/// What a pass has changed, lane by lane.
+struct Changes {
+  Row most;        // largest change of a force over its scale
+  RowMask fallen;  // a wheel's centre is below the surface
+};
+
+/// The forces of all contacts with the structure as `nodal` has it.
 template <Surface kind>
-double update_forces(const TrainTask& task) {
+Changes update_forces(const TrainTask& task) {
   Row most{};
   RowMask fallen{};
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
+    if (*b.awake == 0) continue;
     const int m = b.wheels, first = b.first_wheel;
     const Row* H = rows(b.H);
     const Row *up_forces = rows(task.force_up) + first, *along_forces = rows(task.force_along) + first;
@@ -161,7 +179,7 @@ double update_forces(const TrainTask& task) {
       fallen |= c.at.fallen;
       const Row force = own_force(task, i, depth, (H[j * m + j] + c.structure) * c.at.up * c.at.up, c.seat);
       const Row change = Rows::magnitude(force - before) / rows(task.scale)[i];
-      most = change > most ? change : most;
+      most = change <= most ? most : change;  // one that is not a number stays
       rows(task.normal)[i] = force;
       rows(task.normal_up)[i] = c.at.up;
       rows(task.normal_along)[i] = c.at.along;
@@ -175,38 +193,57 @@ double update_forces(const TrainTask& task) {
       rows(task.station)[i] = c.at.station;
     }
   }
-  if (Rows::any(fallen)) return -1.0;
-  double largest = 0.0;
-  for (int l = 0; l < lanes; ++l)
-    if (!(Rows::numbers(most)[l] <= largest)) largest = Rows::numbers(most)[l];
-  return largest;
+  return {most, fallen};
 }
 
-/// use(row of wheels, lane, slot, directions): of all wheels on elements.
+/// use(row of wheels, patch, directions): of all rows with wheels on elements.
 template <Surface kind, class Use>
 void for_wheels_on_elements(const TrainTask& task, Use use) {
   for (int i = 0; i < task.wheels; ++i)
     for (int patch = 0; patch < (task.second[i] != 0 ? 2 : 1); ++patch) {
       const SurfacePatch& p = task.patch[patch];
+      if (p.together[i] == 2) continue;
       const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) / length;
       Row direction[most_nodal];
       directions<kind>(task, xi, length, rows(p.shear)[i], task.turn + static_cast<long>(i) * lanes,
                        rows(task.normal_up)[i], rows(task.normal_along)[i], direction);
-      const int *slot = p.slot + static_cast<long>(i) * lanes, *active = task.active + static_cast<long>(i) * lanes;
-      for (int l = 0; l < lanes; ++l)
-        if (active[l] == patch && slot[l] != task.slots - 1) use(i, l, slot[l], direction);
+      use(i, patch, direction);
     }
 }
 
-/// The contacts' forces as loads on the elements, into `load`.
+/// use(lane): those of a row whose wheels touch this patch, an element's.
+template <class Use>
+void for_lanes_on(const TrainTask& task, int i, int patch, Use use) {
+  const int *slot = task.patch[patch].slot + static_cast<long>(i) * lanes;
+  const int *active = task.active + static_cast<long>(i) * lanes;
+  for (int l = 0; l < lanes; ++l)
+    if (active[l] == patch && slot[l] != task.ground) use(l);
+}
+
+/// Adds the contacts' forces to the loads on the elements.
+template <Surface kind>
+void add_loads(const TrainTask& task) {
+  const int width = 2 * task.per_node;
+  for_wheels_on_elements<kind>(task, [&](int i, int patch, const Row* direction) {
+    const SurfacePatch& p = task.patch[patch];
+    const int* slot = p.slot + static_cast<long>(i) * lanes;
+    if (p.together[i] == 1 && task.second[i] == 0) {
+      const Row force = rows(task.normal)[i];
+      for (int k = 0; k < width; ++k)
+        *reinterpret_cast<Rows::Unaligned*>(task.load + slot[0] + task.offset[k]) -= force * direction[k];
+      return;
+    }
+    for_lanes_on(task, i, patch, [&](int l) {
+      const double force = Rows::numbers(rows(task.normal)[i])[l];
+      for (int k = 0; k < width; ++k) task.load[slot[l] + task.offset[k]] -= force * Rows::numbers(direction[k])[l];
+    });
+  });
+}
+
 template <Surface kind>
 void load_structure(const TrainTask& task) {
-  const int width = 2 * task.per_node;
-  for (int i = 0; i < task.slots * width; ++i) task.load[i] = 0.0;
-  for_wheels_on_elements<kind>(task, [&](int i, int l, int slot, const Row* direction) {
-    const double force = Rows::numbers(rows(task.normal)[i])[l];
-    for (int k = 0; k < width; ++k) task.load[slot * width + k] -= force * Rows::numbers(direction[k])[l];
-  });
+  for (int i = 0; i < task.unknowns; ++i) task.load[i] = 0.0;
+  add_loads<kind>(task);
 }
 
 /// The accelerations of a stage from its contact forces; with `kinematics` the rates of wheels and contacts too.
@@ -216,6 +253,7 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
   Row lost{}, given{};
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
+    if (*b.awake == 0) continue;
     const int f = b.freedom, m = b.wheels, first = b.first_coordinate;
     const Row *up = rows(task.force_up) + b.first_wheel, *along = rows(task.force_along) + b.first_wheel;
     Row *a = rows(task.a[stage + 1]) + first, *w = rows(task.w_predicted) + first;
@@ -250,10 +288,13 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
     rows(task.penetration_rate)[i] =
         -rows(task.normal_up)[i] * rows(task.up_rate)[i] - rows(task.normal_along)[i] * rows(task.along_rate)[i];
   const int width = 2 * task.per_node;
-  for_wheels_on_elements<kind>(task, [&](int i, int l, int slot, const Row* direction) {
-    double rising = 0.0;
-    for (int k = 0; k < width; ++k) rising += Rows::numbers(direction[k])[l] * task.nodal_rate[slot * width + k];
-    Rows::numbers(rows(task.penetration_rate)[i])[l] += rising;
+  for_wheels_on_elements<kind>(task, [&](int i, int patch, const Row* direction) {
+    const int* slot = task.patch[patch].slot + static_cast<long>(i) * lanes;
+    for_lanes_on(task, i, patch, [&](int l) {
+      double rising = 0.0;
+      for (int k = 0; k < width; ++k) rising += Rows::numbers(direction[k])[l] * task.nodal_rate[slot[l] + task.offset[k]];
+      Rows::numbers(rows(task.penetration_rate)[i])[l] += rising;
+    });
   });
 }
 }  // namespace

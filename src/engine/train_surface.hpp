@@ -20,23 +20,26 @@ struct SurfaceRows {
   double height = 0.0;
 };
 
-/// A nodal value of every lane, `offset` behind the first of each slot.
-inline Row gather(const double* nodal, const int* slot, int width, int offset) {
+/// Unknown k of the element of every lane, whose slots are these.
+inline Row gather(const TrainTask& task, const int* slot, int together, int k) {
+  const double* nodal = task.nodal + task.offset[k];
+  if (together == 1) return *reinterpret_cast<const Rows::Unaligned*>(nodal + slot[0]);
   Row value{};
-  for (int l = 0; l < lanes; ++l) Rows::numbers(value)[l] = nodal[slot[l] * width + offset];
+  if (together == 2) return value;
+  for (int l = 0; l < lanes; ++l) Rows::numbers(value)[l] = nodal[slot[l]];
   return value;
 }
 
 template <Surface kind>
 SurfaceRows<kind> surface_under(const TrainTask& task, const SurfacePatch& p, int i, Row origin) {
   SurfaceRows<kind> s;
-  const int *slot = p.slot + static_cast<long>(i) * lanes, width = 2 * task.per_node, o = task.per_node - 2;
+  const int *slot = p.slot + static_cast<long>(i) * lanes, o = task.per_node - 2, together = p.together[i];
   const Row length = rows(p.length)[i];
   s.per_length = 1.0 / length;
   s.xi_start = (origin - rows(p.x)[i]) * s.per_length;
-  const Row v0 = gather(task.nodal, slot, width, o), v1 = gather(task.nodal, slot, width, o + task.per_node);
-  Row left = length * gather(task.nodal, slot, width, o + 1);
-  Row right = length * gather(task.nodal, slot, width, o + 1 + task.per_node);
+  const Row v0 = gather(task, slot, together, o), v1 = gather(task, slot, together, o + task.per_node);
+  Row left = length * gather(task, slot, together, o + 1);
+  Row right = length * gather(task, slot, together, o + 1 + task.per_node);
   const Row difference = v1 - v0;
   if constexpr (kind == Surface::general) {
     const Row shear = rows(p.shear)[i], sheared = shear / (1.0 + shear) * (difference - 0.5 * (left + right));
@@ -44,8 +47,8 @@ SurfaceRows<kind> surface_under(const TrainTask& task, const SurfacePatch& p, in
     left += sheared;
     right += sheared;
     if (task.per_node == 3) {
-      s.axial = gather(task.nodal, slot, width, 0);
-      s.axial_slope = gather(task.nodal, slot, width, 3) - s.axial;
+      s.axial = gather(task, slot, together, 0);
+      s.axial_slope = gather(task, slot, together, 3) - s.axial;
     }
     s.height = task.surface_height;
   }

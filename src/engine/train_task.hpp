@@ -31,16 +31,18 @@ struct VehicleBlock {
   const double* speed = nullptr;     // a row: m/s, of the steady motion
   const double* drive = nullptr;     // a row: the same where the speed is prescribed, else 0
   const double* distance = nullptr;  // a row: m, travelled at the stage's time
+  int alike = -1;                    // an earlier block of the same numbers, whose matrices below are used; -1: none
+  const char* awake = nullptr;       // whether it moves: else it stands still, and nothing of it is computed
   double* inverse = nullptr;         // (M + rate C + displacement K)^-1
   double *Y = nullptr, *Y_along = nullptr;  // freedom x wheels: inverse G^T, inverse G_along^T
   double* H =
       nullptr;  // 4 x wheels x wheels: displacement of wheels per force: up by up, up by along, along by up, ...
 };
 
-/// The piece of surface under a wheel, a row each: an element of the structure, or rigid ground (the last slot, whose
-/// nodal values are 0).
+/// The piece of surface under a wheel, a row each: an element of the structure, or rigid ground.
 struct SurfacePatch {
-  int* slot = nullptr;                     // of the element in TrainTask::nodal
+  int* slot = nullptr;                     // where the element's values are in TrainTask::nodal
+  char* together = nullptr;                // one a row: 1 where its slots follow each other, 2 on rigid ground, else 0
   double *x = nullptr, *length = nullptr;  // of the element, m
   double* shear = nullptr;                 // 12 EI/(GA length^2)
   double* yield = nullptr;                 // length^3/(3 EI), m/N, where the element bends between its nodes
@@ -77,6 +79,7 @@ struct TrainTask {
   double *up = nullptr, *along = nullptr;  // m: the same without contact forces
   double *from = nullptr, *to = nullptr;   // m: stations between which its patches are the ones that it has
   const char* second = nullptr;            // one a row: a wheel of it may touch the second patch
+  const char* level = nullptr;             // one a row: its wheels' track is level
   // The track's profile, its slope and curvature at `looked_up`, m.
   double *h = nullptr, *h_x = nullptr, *h_xx = nullptr, *looked_up = nullptr;
   double *normal = nullptr, *root = nullptr;             // N; the Hertz law's square root of the penetration
@@ -92,11 +95,12 @@ struct TrainTask {
   int* active = nullptr;                  // the patch that is touched
   SurfacePatch patch[2];
 
-  // The structure at the elements under wheels.
-  int per_node = 2, slots = 0;                                      // unknowns of a node; elements, then the ground's
+  // The structure where wheels may be. Unknown k of an element is at its slot and offset[k].
+  int per_node = 2;                     // unknowns of a node that an element sees
+  int offset[most_nodal] = {}, ground = 0, unknowns = 0;  // the slot of rigid ground, whose values are 0; of `nodal`
   double surface_height = 0.0;                                      // m, of the surface above the axis
   bool shears = false;                                              // some of its elements do
-  double *nodal = nullptr, *nodal_rate = nullptr, *load = nullptr;  // [slot][2 per_node]: m and rad; N and N m
+  double *nodal = nullptr, *nodal_rate = nullptr, *load = nullptr;  // m and rad; N and N m
 
   // Of every stage, a row: W lost in dampers, and what the drives give.
   double *lost = nullptr, *given = nullptr;

@@ -61,6 +61,7 @@ inline void set_step(const TrainTask& task) {
   const Row rate = row(task.stage[0].rate), displacement = row(task.stage[0].displacement);
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
+    if (b.alike >= 0) continue;
     const int f = b.freedom, m = b.wheels;
     Row* J = rows(b.inverse);
     for (int i = 0; i < f * f; ++i) J[i] = rows(b.M)[i];
@@ -140,6 +141,23 @@ inline void multiply(const Row* A, int n, const Row* x, Row* y) {
   }
 }
 
+/// A first guess of the contact forces, and where they act.
+inline void guess_forces(const TrainTask& task, const StageRows& rule, int stage, int first, int past) {
+  for (int i = first; i < past; ++i) {
+    Row guess{};
+    for (int j = 0; j < stage; ++j) guess += row(rule.guess[j]) * rows(task.history[j])[i];
+    for (int j = most_stages; j < most_stages + 2; ++j) guess += row(rule.guess[j]) * rows(task.history[j])[i];
+    guess = guess > 0.0 ? guess : Row{};
+    const Row before = rows(task.normal)[i], ratio = before > 0.0 ? guess / before : Row{};
+    rows(task.force_along)[i] *= ratio;
+    rows(task.force_up)[i] = before > 0.0 ? rows(task.force_up)[i] * ratio : guess;
+    rows(task.normal)[i] = guess;
+    const Row ahead = rows(task.ahead)[i], moving = ahead - rows(task.ahead_before)[i];
+    rows(task.station)[i] = rows(task.along)[i] + ahead + task.extrapolation * moving;
+    rows(task.ahead_before)[i] = ahead;
+  }
+}
+
 /// Where wheels are without contact forces, and a first guess of these. `work`: three rows a coordinate.
 inline void predict(const TrainTask& task, int stage, double* work) {
   const StageRows& rule = task.stage[stage];
@@ -147,6 +165,7 @@ inline void predict(const TrainTask& task, int stage, double* work) {
   Row *at = rows(work), *force = at + task.coordinates;
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
+    if (*b.awake == 0) continue;
     const int first = b.first_coordinate, f = b.freedom;
     Row *rate = rows(task.w_predicted) + first, *free = rows(task.a_free) + first;
     combine(stage + 1, task, rule, first, f, at, rate);
@@ -162,19 +181,7 @@ inline void predict(const TrainTask& task, int stage, double* work) {
     }
     add_product(b.G, 1.0, at, up);
     add_product(b.G_along, 1.0, at, along);
-  }
-  for (int i = 0; i < task.wheels; ++i) {
-    Row guess{};
-    for (int j = 0; j < stage; ++j) guess += row(rule.guess[j]) * rows(task.history[j])[i];
-    for (int j = most_stages; j < most_stages + 2; ++j) guess += row(rule.guess[j]) * rows(task.history[j])[i];
-    guess = guess > 0.0 ? guess : Row{};
-    const Row before = rows(task.normal)[i], ratio = before > 0.0 ? guess / before : Row{};
-    rows(task.force_along)[i] *= ratio;
-    rows(task.force_up)[i] = before > 0.0 ? rows(task.force_up)[i] * ratio : guess;
-    rows(task.normal)[i] = guess;
-    const Row ahead = rows(task.ahead)[i], moving = ahead - rows(task.ahead_before)[i];
-    rows(task.station)[i] = rows(task.along)[i] + ahead + task.extrapolation * moving;
-    rows(task.ahead_before)[i] = ahead;
+    guess_forces(task, rule, stage, b.first_wheel, b.first_wheel + b.wheels);
   }
 }
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "engine/processor.hpp"
-#include "lanes/speed_class.hpp"
+#include "engine/speed_class.hpp"
 
 namespace traverse::lanes {
 
@@ -114,7 +114,7 @@ std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<c
   task.end = end.data();
   const double fastest = *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
   task.instant = 2.0 * std::numbers::pi / fastest / instants;
-  task.ds = task.instant * speed_of_class(speed_class(speeds.front()));
+  task.ds = task.instant * engine::speed_of_class(engine::speed_class(speeds.front()));
   task.intervals = static_cast<long>(history_.start.size());
   task.channels = static_cast<int>(history_.channels);
   task.start = history_.start.data();

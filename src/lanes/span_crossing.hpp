@@ -17,10 +17,14 @@
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "lanes/crossing.hpp"
+#include "engine/train_task.hpp"
+#include "lanes/train_numbers.hpp"
+#include "methods/one_step_methods.hpp"
 #include "lanes/span_forces.hpp"
 
 namespace traverse::lanes {
+
+using engine::most_kept;
 
 /// Spans with the same modes, of unit modal masses and unit length of their coordinates.
 struct SpanKind {

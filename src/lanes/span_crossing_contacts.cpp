@@ -106,7 +106,7 @@ void SpanCrossing::guess_forces(std::size_t stage) {
 }
 
 // The shapes where wheels touch: they have moved along the track, and on a slope they touch ahead of their centres,
-// where that is higher (CrossingPlaces::place_ahead).
+// where that is higher.
 void SpanCrossing::touch_ahead(const std::vector<double>& modes_at) {
   for (std::size_t j = 0; j < wheels_.size(); ++j) {
     Wheel& wheel = wheels_[j];

@@ -6,15 +6,11 @@
 #include <cmath>
 
 #include "train/linearisation_residual.hpp"
-#include "traverse/base/error.hpp"
 
 namespace traverse::lanes {
 namespace {
 
 constexpr double same = 1e-9;  // of the largest entry: vehicles are alike, but for rounding
-constexpr double stations_a_wave = 40.0, most_stations = 2e7;
-constexpr double most_off = 2e-9;    // m: of a track between its stations; a wheel on steel feels a few N of that
-constexpr int checked_places = 200;  // along the track
 
 std::vector<double> by_rows(const Eigen::MatrixXd& A) {
   std::vector<double> numbers;
@@ -69,59 +65,6 @@ std::vector<double> follow_of(const train::MovingVehicle& vehicle) {
   return follow;
 }
 
-/// The height of the lowest point of a wheel at x that rolls on the profile, whose height is h there, and its slope. It
-/// touches `ahead` of its centre, where the profile's slope is that of the circle.
-std::array<double, 2> rolled(const track::Profile& profile, double radius, double x, track::Height h) {
-  double ahead = radius * h.slope / (1.0 - radius * h.curvature);
-  double height = h.value + ahead * (h.slope + 0.5 * ahead * h.curvature), slope = h.slope + ahead * h.curvature;
-  if (!profile.is_rough() || profile.has_dip(x - radius, x + radius)) {
-    // Corners and short bumps: the profile itself, until the place is exact.
-    for (int i = 0; i < 30; ++i) {
-      h = profile.at(x + ahead);
-      const double up = std::sqrt(radius * radius - ahead * ahead);
-      const double step = (h.slope - ahead / up) / (radius * radius / (up * up * up) - h.curvature);
-      if (std::abs(step) <= 1e-14) break;
-      ahead = std::clamp(ahead + step, -0.5 * radius, 0.5 * radius);
-    }
-    height = h.value;
-    slope = h.slope;
-  }
-  return {height + std::sqrt(radius * radius - ahead * ahead) - radius, slope};
-}
-
-std::array<double, 2> rolled(const track::Profile& profile, double radius, double x) {
-  return rolled(profile, radius, x, profile.at(x));
-}
-
-/// By how much the cubic between the stations before and behind x may miss the wheel's height, m: in its middle, and in
-/// its quarters, where it is off when a corner lies in the middle.
-double off_at(const track::Profile& profile, double radius, const TrackNumbers& track, double x) {
-  const double d = track.distance, left = track.start + std::floor((x - track.start) / d) * d;
-  const auto a = rolled(profile, radius, left), b = rolled(profile, radius, left + d);
-  double off = 0.0;
-  for (const double u : {0.25, 0.5, 0.75}) {
-    const double v = 1.0 - u;
-    const double cubic =
-        v * v * ((1.0 + 2.0 * u) * a[0] + u * d * a[1]) + u * u * ((1.0 + 2.0 * v) * b[0] - v * d * b[1]);
-    off = std::max(off, std::abs(rolled(profile, radius, left + u * d)[0] - cubic));
-  }
-  return off;
-}
-
-/// The largest of these at the profile's kinks and sharpest place and at some places between.
-double off_between_stations(const track::Profile& profile, double radius, const TrackNumbers& track, double to) {
-  double off = 0.0;
-  std::vector<double> kinks = profile.kinks();
-  kinks.push_back(profile.sharpest_place(track.start, to));
-  for (const double kink : kinks)
-    for (const double beside : {-0.5, 0.0, 0.5})
-      if (kink > track.start && kink < to)
-        off = std::max(off, off_at(profile, radius, track, kink + beside * track.distance));
-  for (int i = 0; i < checked_places; ++i)
-    off = std::max(off, off_at(profile, radius, track, track.start + (to - track.start) * (i + 0.5) / checked_places));
-  return off;
-}
-
 }  // namespace
 
 std::string obstacle(const train::Fleet& fleet) {
@@ -174,38 +117,6 @@ double defect(train::Fleet& fleet, const std::vector<double>& x) {
   for (train::MovingVehicle& vehicle : fleet.vehicles)
     largest = std::max(largest, train::linearisation_residual_at(vehicle, x.data() + vehicle.offset));
   return largest;
-}
-
-double track_distance(const track::Profile& profile, double radius, double from, double to) {
-  TrackNumbers track;
-  if (profile.level()) return track.distance;
-  track.start = from;
-  track.distance = std::min(profile.resolution(), profile.shortest_wave() / stations_a_wave);
-  while (off_between_stations(profile, radius, track, to) > most_off) {
-    track.distance *= 0.5;
-    if ((to - from) / track.distance > most_stations)
-      throw InputError("sweep_lanes: the track has corners that runs side by side cannot follow; allowed: 0");
-  }
-  if (!((to - from) / track.distance + 2.0 < most_stations))
-    throw InputError("sweep_lanes: so long and so fine a track does not fit into memory beside others; allowed: 0");
-  return track.distance;
-}
-
-TrackNumbers track_numbers(const track::Profile& profile, double radius, double from, double to, double distance) {
-  TrackNumbers track;
-  if (profile.level()) return track;
-  track.start = from;
-  track.distance = distance;
-  const double stations = std::ceil((to - from) / distance) + 1.0;
-  const std::vector<track::Height> heights = profile.along(from, distance, static_cast<std::size_t>(stations));
-  track.values.reserve(2 * heights.size());
-  for (std::size_t i = 0; i < heights.size(); ++i) {
-    const double x = from + static_cast<double>(i) * distance;
-    const auto [height, slope] = rolled(profile, radius, x, heights[i]);
-    track.values.push_back(height);
-    track.values.push_back(slope * distance);
-  }
-  return track;
 }
 
 }  // namespace traverse::lanes

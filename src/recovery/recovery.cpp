@@ -152,6 +152,28 @@ Response Recovery::respond(const RecoverySection& s, const Values& v, const Valu
   return r;
 }
 
+StationForms Recovery::forms(std::size_t station) const {
+  const RecoverySection& s = sections_[station];
+  StationForms f;
+  f.element = s.at.element;
+  f.unknown = {s.unknowns[1], s.unknowns[2], s.unknowns[4], s.unknowns[5]};
+  f.acceleration = s.psi.value;
+  f.nodal_moment = s.bending.moment();
+  f.deflection = {s.psi.value};
+  if (s.held)
+    for (std::size_t i = 0; i < 4; ++i) {
+      f.deflection[0][i] += s.held_by_stiffness[i];
+      f.deflection[1][i] += s.held_by_damping[i];
+      f.deflection[2][i] += s.held_by_mass[i];
+    }
+  f.moment = {s.stiffness.moment(), s.damping.moment(), s.mass.moment()};
+  for (auto* forms : {&f.deflection, &f.moment})  // mass-proportional damping acts like inertia
+    for (std::size_t i = 0; i < 4; ++i) (*forms)[1][i] += beam_.rayleigh().a * (*forms)[2][i];
+  f.constant_deflection = s.weight.deflection;
+  f.constant_moment = s.weight.moment;
+  return f;
+}
+
 // What the sleepers on the element do to it: the spring below each, the mass that rides, the spring along x.
 void Recovery::add_riders(const RecoverySection& s, const Values* values, const double* riders, Response& r) const {
   for (const RecoverySection::Rider& rider : s.riders) {

@@ -40,6 +40,16 @@ using Forces = std::array<double, 3>;
 
 struct RecoverySection;
 
+/// How a station on the bridge responds without loads inside its element: forms of v1, theta1, v2, theta2 there.
+struct StationForms {
+  using Form = std::array<double, 4>;
+  int element = 0;
+  std::array<int, 4> unknown{};                                // global
+  std::array<Form, 3> deflection{}, moment{};                  // of v, w and a; the moment but for nodal_moment
+  Form acceleration{}, nodal_moment{};                         // of a; of v
+  double constant_deflection = 0.0, constant_moment = 0.0;     // by its own weight and temperature
+};
+
 /// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.
 class Recovery {
  public:
@@ -63,6 +73,8 @@ class Recovery {
                 std::vector<Response>& out);
 
   const std::vector<double>& stations() const { return stations_; }
+  /// Of a station on a bridge without sleepers.
+  StationForms forms(std::size_t station) const;
   /// Where the element of a station begins and ends, m.
   std::pair<double, double> element_of(std::size_t station) const;
   /// Where a load on this line stands, m.

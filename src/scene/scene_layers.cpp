@@ -11,7 +11,7 @@ namespace {
 
 using options::Options;
 
-constexpr double least_approach = 30.0;  // m
+constexpr double least_bed_before = 30.0;  // m
 constexpr double behind_train = 12.0;  // m of track behind the last wheel at the start, and before the first at the end
 
 /// Track on either side long enough for the whole train to stand on it at the start and at the end.
@@ -24,7 +24,7 @@ double approach_of(const Scene& scene) {
     all.insert(all.end(), scene.load.positions.begin(), scene.load.positions.end());
     for (const double x : all) rear = std::min(rear, scene.beam->length() - x);
   }
-  return std::max(least_approach, std::ceil(-rear + greatest_speed(scene) * scene.tail.value_or(0.0) + behind_train));
+  return std::max(least_bed_before, std::ceil(-rear + greatest_speed(scene) * scene.tail.value_or(0.0) + behind_train));
 }
 
 beam::Layer read_layer(const Options& o, const std::string& name) {

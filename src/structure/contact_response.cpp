@@ -61,8 +61,8 @@ void ContactResponse::solve(const BeamFactor& factor, const std::vector<double>&
   const int block = beam_.block();
   for (const Run& run : runs_) std::fill(z_.begin() + run.first * block, z_.begin() + run.past * block, 0.0);
   for (std::size_t i = 0; i < places_.size(); ++i) z_[static_cast<std::size_t>(places_[i])] += loads[i];
-  for (std::size_t i = 0; i < places_.size(); ++i)
-    if (beam_.fixed()[static_cast<std::size_t>(places_[i])] != 0) z_[static_cast<std::size_t>(places_[i])] = 0.0;
+  for (const int place : places_)
+    if (beam_.fixed()[static_cast<std::size_t>(place)] != 0) z_[static_cast<std::size_t>(place)] = 0.0;
   for (const Run& run : runs_) {
     double* const z = z_.data() + run.first * block;
     if (run.part != nullptr)

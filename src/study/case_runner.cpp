@@ -10,7 +10,7 @@
 
 #include "engine/processor.hpp"
 #include "integrate/modal_peaks.hpp"
-#include "lanes/speed_class.hpp"
+#include "engine/speed_class.hpp"
 #include "run/signals.hpp"
 #include "run/watch.hpp"
 #include "study/lanes_obstacle.hpp"
@@ -23,8 +23,8 @@ constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 // As measured. Peaks by modes take that much at each instant for every mode, and for every mode and probe;
 // with modes that dampers couple, whose runs go one by one, several times that.
 constexpr double seconds_a_mode = 2e-9, seconds_a_probe = 4e-10;
-// Of a run side by side with seven others, a stage.
-constexpr double seconds_a_lane_vehicle = 2e-8, seconds_a_lane_mode = 4e-9;
+// Of a run side by side with others, a stage.
+constexpr double seconds_a_lane_vehicle = 1e-7, seconds_a_lane_element = 5e-9;
 constexpr double alone_over_beside = 20.0;
 constexpr double rough_over_level = 3.5;  // no vehicle rests, and contacts take more iterations
 constexpr double coupled_over_uncoupled = 8.0;
@@ -84,13 +84,13 @@ std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& run
   std::vector<std::size_t> order(runs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto key = [&](std::size_t i) {
-    return std::tuple(lanes::speed_class(runs[i].speed), runs[i].seed, runs[i].speed);
+    return std::tuple(engine::speed_class(runs[i].speed), runs[i].seed, runs[i].speed);
   };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
   std::vector<std::vector<std::size_t>> groups;
   for (const std::size_t i : order) {
     const bool joins = !groups.empty() && groups.back().size() < most &&
-                       lanes::speed_class(runs[groups.back().front()].speed) == lanes::speed_class(runs[i].speed);
+                       engine::speed_class(runs[groups.back().front()].speed) == engine::speed_class(runs[i].speed);
     if (!joins) groups.emplace_back();
     groups.back().push_back(i);
   }
@@ -129,15 +129,14 @@ std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<co
   for (const auto& [runner, one] : members)
     beside.push_back({&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed}});
   std::vector<CaseResult> results;
-  for (const lanes::CrossingResult& crossing :
+  for (const engine::BatchResult& crossing :
        SideBySide::ready(std::span<const SideBySide::Member>(beside), beside.front().lanes->steps()).run()) {
     if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const auto& [runner, one] = members[results.size()];
-    if (crossing.trouble != lanes::none || runner->lanes_->defect(crossing) > runner->scene_.most_defect) {
+    if (getenv("DBG")) fprintf(stderr, "lane %d defect %g  d %g a %g m %g N %g %g\n", (int)crossing.trouble, runner->lanes_->defect(crossing), crossing.deflection[0].value, crossing.acceleration[0].value, crossing.moment[0].value, crossing.least_force, crossing.greatest_force);
+    if (crossing.trouble != engine::none || runner->lanes_->defect(crossing) > runner->scene_.most_defect) {
       ++runner->alone_;
       results.push_back(runner->run(train, one, reached));
-      // What modes leave out has its own motion in the lanes alone, as the trials had it.
-      if (runner->scene_.modes_open) results.back().unseen = true;
     } else {
       results.push_back(runner->result_of(crossing, train));
     }
@@ -145,14 +144,17 @@ std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<co
   return results;
 }
 
-CaseResult CaseRunner::result_of(const lanes::CrossingResult& crossing, std::size_t train) const {
+CaseResult CaseRunner::result_of(const engine::BatchResult& crossing, std::size_t train) const {
   CaseResult result;
-  const auto peak = [](const lanes::CrossingPeak& p) { return integrate::Peak{p.value, p.time}; };
+  const auto peak = [](const engine::BatchPeak& p) { return integrate::Peak{p.value, p.time}; };
   for (std::size_t p = 0; p < crossing.deflection.size(); ++p)
     result.peaks.push_back({peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
   result.static_deflection = static_deflection_.at(train);
   result.least_wheel_force = crossing.least_force;
   result.greatest_wheel_force = crossing.greatest_force;
+  result.contact_losses = crossing.contact_losses;
+  result.longest_loss = crossing.longest_loss;
+  result.unseen = crossing.contact_losses > 0.0 && !scene_.sweep->trials_lost_contact;
   result.ended = true;
   return result;
 }
@@ -186,7 +188,7 @@ double CaseRunner::cost() const {
   if (by_kernel_) {
     const double alone = lanes_ ? 1.0 : alone_over_beside;
     const double a_stage = seconds_a_lane_vehicle * static_cast<double>(scene_.train.vehicles.size()) +
-                           seconds_a_lane_mode * static_cast<double>(beam_->modal->modes());
+                           seconds_a_lane_element * beam_->beam->mesh().elements();
     const double rough = scene_.profile.level() ? 1.0 : rough_over_level;
     return alone * rough * a_stage * static_cast<double>(method_of(scene_).stages.size()) / *scene_.time_step;
   }

@@ -85,7 +85,7 @@ class CaseRunner {
   std::vector<CaseResult> run_by_modes(std::size_t train, std::span<const CaseRun> runs);
   static std::vector<CaseResult> run_in_lanes(std::size_t train, std::span<const Member> members,
                                               const std::function<void(double)>& reached);
-  CaseResult result_of(const lanes::CrossingResult& crossing, std::size_t train) const;
+  CaseResult result_of(const engine::BatchResult& crossing, std::size_t train) const;
   void set_up_lanes();
   void set_up_limits(std::vector<std::string>& notes);
   /// Whether runs are exact in time, and their modes tell all that is asked.

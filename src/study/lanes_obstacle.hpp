@@ -1,4 +1,4 @@
-// Which scenes run side by side (src/lanes): linear vehicles over the modes of a bridge.
+// Which scenes run side by side (engine/batch.hpp): linear vehicles over a bridge by its elements.
 #pragma once
 
 #include <string>

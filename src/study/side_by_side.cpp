@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/train_arrays.hpp"
 #include "integrate/integrator_choice.hpp"
-#include "lanes/speed_class.hpp"
 #include "run/passage.hpp"
+#include "engine/speed_class.hpp"
+#include "train/linearisation_residual.hpp"
 
 namespace traverse::app {
 namespace {
 
 constexpr double one_place = 1e-9;         // m: events nearer than that are one
+constexpr double beside_track = 1.0;       // m: wheels touch it before and behind their centres
 constexpr double most_of_tracks = 2.56e8;  // bytes, of tracks that are kept
 
 }  // namespace
@@ -19,27 +22,31 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
     : scene_(scene),
       shared_(shared),
       input_(system_input(scene, false)),
-      system_(PETSC_COMM_SELF, carrier(scene, shared, input_), input_) {
-  std::vector<double> y(static_cast<std::size_t>(system_.local_size()));
-  system_.start(true, y.data());
-  system_.linearise_vehicles(y.data());
+      system_(PETSC_COMM_SELF, carrier(scene, shared, input_), input_),
+      state_(static_cast<std::size_t>(system_.local_size())) {
+  system_.start(true, state_.data());
+  system_.linearise_vehicles(state_.data());
   fleet_ = system_.fleet();
-  obstacle_ = lanes::obstacle(fleet_);
+  obstacle_ = engine::TrainArrays::obstacle(fleet_);
+  if (obstacle_.empty()) obstacle_ = engine::BatchStructure::obstacle(*shared.beam);
   if (!obstacle_.empty()) return;
-  train_ = lanes::train_numbers(fleet_);
-  q_.assign(y.begin(), y.begin() + static_cast<std::ptrdiff_t>(shared.modal->modes()));
-  plan_.bridge = &*shared.modal;
-  plan_.kinks = system_.corners();
-  plan_.level_until = scene.profile.level() ? shared.beam->mesh().start() : -1e300;
+  for (const train::WheelContact& c : fleet_.wheels) wheels_.push_back(fleet_.coordinates(c).x());
+  state_.resize(2 * static_cast<std::size_t>(shared.beam->local_unknowns()));
+  const double gravity = scene.self_weight ? scene.gravity : 0.0;
+  structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, fleet_, system_.structure()->dead_load(),
+                                                              scene.output.probes, gravity);
+  plan_.structure = structure_.get();
+  plan_.level_until = scene.profile.level() && !system_.structure()->bent_at_rest() ? shared.beam->mesh().start() : -1e300;
+  kinks_ = system_.corners();
 }
 
 /// Distances at which a wheel meets a corner of the surface or passes a probe.
 std::vector<double> SideBySide::events(double past) const {
   std::vector<double> events;
-  for (const std::vector<double>& stations : {plan_.kinks, scene_.output.probes})
+  for (const std::vector<double>& stations : {kinks_, scene_.output.probes})
     for (const double station : stations)
-      for (const double x : train_.x)
-        if (station > x && station - x < past) events.push_back(station - x);
+      for (const double x : wheels_)
+        if (station - x > one_place && station - x < past) events.push_back(station - x);
   std::sort(events.begin(), events.end());
   events.erase(std::unique(events.begin(), events.end(), [](double a, double b) { return b - a < one_place; }),
                events.end());
@@ -49,25 +56,31 @@ std::vector<double> SideBySide::events(double past) const {
 void SideBySide::expect(double past) {
   tracks_.clear();
   track_past_ = past;
-  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
-  track_distance_ =
-      lanes::track_distance(scene_.profile, fleet_.vehicles.front().wheels.front().radius, *rear, *front + track_past_);
+  const auto [rear, front] = track_reach();
+  const std::optional<double> distance = track::table_distance(scene_.profile, rear, front);
+  if (!distance) throw InputError("sweep_lanes: the track has corners that runs side by side cannot follow; allowed: 0");
+  track_distance_ = *distance;
+}
+
+/// What wheels may touch of it, m.
+std::pair<double, double> SideBySide::track_reach() const {
+  const auto [rear, front] = std::minmax_element(wheels_.begin(), wheels_.end());
+  return {*rear - beside_track, *front + track_past_ + beside_track};
 }
 
 /// All tracks of a spectrum have their stations where the scene's own has.
 SideBySide::Track SideBySide::track(const std::optional<std::uint64_t>& seed, double past) {
-  const auto [rear, front] = std::minmax_element(train_.x.begin(), train_.x.end());
-  const double radius = fleet_.vehicles.front().wheels.front().radius;
   if (past > track_past_) expect(past);
   const auto known = std::find_if(tracks_.begin(), tracks_.end(), [&](const auto& one) { return one.first == seed; });
   if (known != tracks_.end()) return known->second;
   const track::Profile other = seed ? scene_.roughness->profile(*seed) : track::Profile();
-  const lanes::TrackNumbers made =
-      lanes::track_numbers(seed ? other : scene_.profile, radius, *rear, *front + track_past_, track_distance_);
-  if (static_cast<double>((tracks_.size() + 1) * made.values.size() * sizeof(double)) > most_of_tracks &&
+  const auto [rear, front] = track_reach();
+  auto made = std::make_shared<const track::HeightTable>(
+      track::height_table(seed ? other : scene_.profile, rear, front, track_distance_));
+  if (static_cast<double>((tracks_.size() + 1) * made->values.size() * sizeof(double)) > most_of_tracks &&
       !tracks_.empty())
     tracks_.pop_front();
-  return tracks_.emplace_back(seed, std::make_shared<lanes::TrackNumbers>(made)).second;
+  return tracks_.emplace_back(seed, std::move(made)).second;
 }
 
 structure::Method method_of(const Scene& scene) {
@@ -78,11 +91,11 @@ structure::Method method_of(const Scene& scene) {
 SideBySide::Steps SideBySide::steps() const { return {method_of(scene_), *scene_.time_step}; }
 
 double SideBySide::spacing(const Steps& steps, double speed) {
-  return steps.longest * lanes::speed_of_class(lanes::speed_class(speed));
+  return steps.longest * engine::speed_of_class(engine::speed_class(speed));
 }
 
 void SideBySide::Ready::stretch(const std::vector<double>& events, double ds, double past, const Steps& steps) {
-  std::vector<lanes::TaskStretch>& stretches = plan_.stretches;
+  std::vector<engine::BatchStretch>& stretches = plan_.stretches;
   double from = 0.0;
   long kept = 0;
   const auto add = [&](double to, bool kink, bool keeps) {
@@ -117,43 +130,55 @@ SideBySide::Ready SideBySide::ready(std::span<const Member> members, const Steps
   const SideBySide& first = *members.front().lanes;
   Ready ready;
   ready.plan_ = first.plan_;
-  lanes::CrossingPlan& plan = ready.plan_;
-  plan.method = steps.method;
-  plan.exact_modes = steps.method.stages.size() == 1;
+  ready.plan_.method = steps.method;
   const double ds = spacing(steps, members.front().run.speed);
   double past = 0.0;
   for (const Member& member : members) past = std::max(past, member.run.speed * member.run.end);
   ready.stretch(first.events(past), ds, past, steps);
   for (const auto& [lanes, run] : members) {
     ready.tracks_.push_back(lanes->track(run.seed, past + ds));
-    ready.crossings_.push_back({&lanes->train_, ready.tracks_.back().get(), nullptr, &lanes->q_, run.speed, run.end});
+    ready.runs_.push_back({&lanes->fleet_, ready.tracks_.back().get(), &lanes->state_, run.speed, run.end});
   }
   return ready;
 }
 
+// As many at a time as the processor's vectors have numbers.
+std::vector<engine::BatchResult> SideBySide::Ready::run() const {
+  std::vector<engine::BatchResult> all;
+  const std::span<const engine::BatchRun> runs(runs_);
+  for (std::size_t first = 0; first < runs.size(); first += engine::best_width())
+    for (engine::BatchResult& result :
+         engine::run_batch(plan_, runs.subspan(first, std::min(engine::best_width(), runs.size() - first))))
+      all.push_back(std::move(result));
+  return all;
+}
+
 bool SideBySide::join(const SideBySide& other) {
-  const auto same_kind = [](const lanes::VehicleNumbers& a, const lanes::VehicleNumbers& b) {
-    return a.freedom == b.freedom && a.wheels == b.wheels;
-  };
-  const auto same_vehicle = [](const lanes::TrainNumbers::Vehicle& a, const lanes::TrainNumbers::Vehicle& b) {
-    return a.kind == b.kind && a.first_coordinate == b.first_coordinate && a.first_wheel == b.first_wheel;
+  const auto same_vehicle = [](const train::MovingVehicle& a, const train::MovingVehicle& b) {
+    const auto same_wheel = [](const train::Wheel& x, const train::Wheel& y) {
+      return x.law.kind == y.law.kind && x.radius == y.radius;
+    };
+    return a.freedom() == b.freedom() &&
+           std::equal(a.wheels.begin(), a.wheels.end(), b.wheels.begin(), b.wheels.end(), same_wheel);
   };
   const auto near = [](double a, double b) { return std::abs(a - b) < one_place; };
-  const lanes::TrainNumbers& its = other.train_;
-  const bool same_train =
-      std::equal(train_.kinds.begin(), train_.kinds.end(), its.kinds.begin(), its.kinds.end(), same_kind) &&
-      std::equal(train_.vehicles.begin(), train_.vehicles.end(), its.vehicles.begin(), its.vehicles.end(),
-                 same_vehicle) &&
-      std::equal(train_.x.begin(), train_.x.end(), its.x.begin(), its.x.end(), near) && train_.hertz == its.hertz;
-  if (!same_train || plan_.bridge != other.plan_.bridge || plan_.kinks != other.plan_.kinks ||
-      plan_.level_until != other.plan_.level_until || scene_.output.probes != other.scene_.output.probes ||
-      track_past_ != other.track_past_ || track_distance_ != other.track_distance_)
+  const std::vector<train::MovingVehicle>&own = fleet_.vehicles, &its = other.fleet_.vehicles;
+  if (!std::equal(own.begin(), own.end(), its.begin(), its.end(), same_vehicle) ||
+      !std::equal(wheels_.begin(), wheels_.end(), other.wheels_.begin(), other.wheels_.end(), near) ||
+      &shared_ != &other.shared_ || kinks_ != other.kinks_ || plan_.level_until != other.plan_.level_until ||
+      scene_.output.probes != other.scene_.output.probes || track_past_ != other.track_past_ ||
+      track_distance_ != other.track_distance_)
     return false;
-  train_.x = its.x;
-  train_.arm = its.arm;
-  train_.force_scale = its.force_scale;
-  for (std::size_t k = 0; k < train_.kinds.size(); ++k) train_.kinds[k].bend = its.kinds[k].bend;
+  structure_ = other.structure_;
+  plan_.structure = structure_.get();
   return true;
+}
+
+double SideBySide::defect(const engine::BatchResult& result) {
+  double largest = 0.0;
+  for (train::MovingVehicle& vehicle : fleet_.vehicles)
+    largest = std::max(largest, train::linearisation_residual_at(vehicle, result.farthest.data() + vehicle.offset));
+  return largest;
 }
 
 std::vector<double> SideBySide::static_deflection() {

@@ -1,5 +1,5 @@
-// The runs of a sweep or a study that go side by side in the lanes of the processor's vectors (lanes/crossing.hpp): one
-// train of linear vehicles over the modes of the bridge, at several speeds and over several tracks.
+// The runs of a sweep or a study that go side by side in the lanes of the processor's vectors (engine/batch.hpp): one
+// train of linear vehicles over a bridge, at several speeds and over several tracks.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "coupling/system.hpp"
-#include "lanes/train_numbers.hpp"
+#include "engine/batch.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -49,17 +49,17 @@ class SideBySide {
   /// Runs that any thread may take, while others take theirs; their trains must outlive it.
   class Ready {
    public:
-    std::vector<lanes::CrossingResult> run() const { return lanes::cross(plan_, crossings_); }
+    std::vector<engine::BatchResult> run() const;
 
    private:
     friend class SideBySide;
     void stretch(const std::vector<double>& events, double ds, double past, const Steps& steps);
 
-    lanes::CrossingPlan plan_;
-    std::vector<std::shared_ptr<const lanes::TrackNumbers>> tracks_;
-    std::vector<lanes::CrossingRun> crossings_;
+    engine::BatchPlan plan_;
+    std::vector<std::shared_ptr<const track::HeightTable>> tracks_;
+    std::vector<engine::BatchRun> runs_;
   };
-  /// At most engine::widest runs with speeds of a class (lanes/speed_class.hpp).
+  /// At most engine::widest runs with speeds of a class (engine/speed_class.hpp).
   Ready ready(std::span<const LaneRun> runs, const Steps& steps);
   /// m: between the places where runs of the class of such a speed keep accelerations.
   static double spacing(const Steps& steps, double speed);
@@ -72,14 +72,15 @@ class SideBySide {
   /// From now on its runs may go beside those of another scene on the same bridge: what all lanes have in common it
   /// takes from there. False where the trains differ in more than numbers.
   bool join(const SideBySide& other);
-  /// How far the mechanisms were out of balance in a run: lanes::defect.
-  double defect(const lanes::CrossingResult& result) { return lanes::defect(fleet_, result.bent); }
+  /// How far the mechanisms were out of balance in a run, at most, over their weight (train::linearisation_residual).
+  double defect(const engine::BatchResult& result);
   /// The largest deflection at rest of each probe while the train passes, m.
   std::vector<double> static_deflection();
 
  private:
   std::vector<double> events(double past) const;
-  using Track = std::shared_ptr<const lanes::TrackNumbers>;
+  std::pair<double, double> track_reach() const;
+  using Track = std::shared_ptr<const track::HeightTable>;
   Track track(const std::optional<std::uint64_t>& seed, double past);
 
   const Scene& scene_;
@@ -88,13 +89,15 @@ class SideBySide {
   coupling::System system_;
   train::Fleet fleet_;
   std::string obstacle_;
-  lanes::TrainNumbers train_;
+  std::vector<double> wheels_;  // m: of every wheel at the start
   /// Tracks made last, which the next runs are likely to go over too.
   std::deque<std::pair<std::optional<std::uint64_t>, Track>> tracks_;
   double track_past_ = 0.0;      // m: distance that tracks are known for
   double track_distance_ = 0.0;  // m: between their stations
-  std::vector<double> q_;
-  lanes::CrossingPlan plan_;
+  std::vector<double> state_;  // of the bridge at the start, v and w
+  std::shared_ptr<const engine::BatchStructure> structure_;
+  engine::BatchPlan plan_;
+  std::vector<double> kinks_;  // m: stations at which the surface has a corner
 };
 
 }  // namespace traverse::app

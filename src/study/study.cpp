@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "accuracy/kept_choice.hpp"
+#include "engine/processor.hpp"
 #include "results/stage.hpp"
 #include "results/terminal.hpp"
 #include "run/deflection_check.hpp"

@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "accuracy/kept_choice.hpp"
+#include "engine/processor.hpp"
 #include "case_runner.hpp"
 #include "modes_choice.hpp"
 #include "results/stage.hpp"

@@ -15,7 +15,6 @@
 namespace traverse::options {
 namespace {
 
-using test::any_contains;
 using test::contains;
 using test::message_of;
 

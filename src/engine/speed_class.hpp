@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace traverse::lanes {
+namespace traverse::engine {
 
 inline constexpr double classes_an_octave = 4.0;  // of speeds: steps are at most a fifth shorter than asked for
 
@@ -15,4 +15,4 @@ inline int speed_class(double speed) {
 /// The lowest speed of a class, m/s.
 inline double speed_of_class(int number) { return std::exp2(number / classes_an_octave); }
 
-}  // namespace traverse::lanes
+}  // namespace traverse::engine

@@ -1,0 +1,94 @@
+// Runs side by side: passages of trains that differ in numbers only (speeds, tracks, masses, springs) over one structure
+// by its elements, one run in each lane of the processor's vectors. The same stages of the same methods as a run by
+// itself has (coupling/system.hpp), by the kernel that its train has, too (train_kernel.hpp).
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "beam/beam.hpp"
+#include "engine/batch_task.hpp"
+#include "methods/one_step_methods.hpp"
+#include "recovery/recovery.hpp"
+#include "track/height_table.hpp"
+#include "train/fleet.hpp"
+
+namespace traverse::engine {
+
+/// What all runs have in common: the structure, the surface on it, the stations that are looked at.
+class BatchStructure {
+ public:
+  /// Why a structure cannot be taken so, in words; empty: it can.
+  static std::string obstacle(const beam::Beam& beam);
+
+  /// The fleet's wheels as they stand on the structure; dead: its nodal forces without wheels; probes in m; gravity of
+  /// its own weight, m/s2 (0: it has none). The beam must outlive it.
+  BatchStructure(const beam::Beam& beam, const train::Fleet& fleet, std::vector<double> dead,
+                 const std::vector<double>& probes, double gravity);
+  BatchStructure(const BatchStructure&) = delete;
+  BatchStructure& operator=(const BatchStructure&) = delete;
+
+ private:
+  friend class Batch;
+  void find_columns();
+  void add_surface(train::Fleet fleet, std::size_t entry);
+  void add_probe(const beam::Recovery& recovery, std::size_t station);
+
+  const beam::Beam& beam_;
+  BeamTask task_;  // but for the rows
+  std::vector<double> mass_, damping_, stiffness_, dead_;
+  std::vector<char> held_;
+  std::vector<int> first_column_;
+  int offset_[most_nodal] = {};  // of an element's unknowns, counted from its first column
+  struct Surface {
+    double radius = 0.0;
+    std::vector<PatchesThere> there;
+  };
+  std::deque<Surface> surfaces_;
+  std::vector<ProbeForms> probes_;
+  std::vector<double> kinks_;
+  bool shears_ = false;
+};
+
+/// A stretch of equal steps.
+struct BatchStretch {
+  double to = 0.0;  // m travelled since t = 0
+  long steps = 0;
+  bool kink = true;    // a wheel meets a corner of the surface or a probe at its end
+  bool keeps = false;  // accelerations at its end are kept
+};
+
+/// One run: a train as it starts, with vehicles as those of the other runs but for their numbers, on its own track.
+struct BatchRun {
+  const train::Fleet* fleet = nullptr;
+  const track::HeightTable* track = nullptr;   // stations as in all runs
+  const std::vector<double>* state = nullptr;   // of the structure at t = 0, v and w; w of the fleet's own speed
+  double speed = 0.0, end_time = 0.0;           // m/s; s: peaks count until then
+};
+
+struct BatchPlan {
+  const BatchStructure* structure = nullptr;
+  structure::Method method;  // for steps of 1 s
+  std::vector<BatchStretch> stretches;
+  double level_until = 0.0;  // m: before it the track is level and the ground rigid, so that a vehicle stands still
+};
+
+struct BatchPeak {
+  double value = 0.0, time = 0.0;
+};
+struct BatchResult {
+  Trouble trouble = none;
+  std::vector<BatchPeak> deflection, acceleration, moment;  // of each probe: magnitudes
+  std::vector<double> kept;                                 // accelerations, a row of probes at each place
+  double least_force = 0.0, greatest_force = 0.0;           // N, of all wheels
+  double contact_losses = 0.0, longest_loss = 0.0;          // of all wheels; s, to a step
+  std::vector<double> farthest;  // coordinates of every vehicle where it was farthest from linear
+};
+
+/// At most as many runs as the processor's vectors have numbers (best_width()).
+std::vector<BatchResult> run_batch(const BatchPlan& plan, std::span<const BatchRun> runs);
+
+}  // namespace traverse::engine

@@ -1,0 +1,200 @@
+// A stage of runs side by side (batch_task.hpp): the structure under the forces of its wheels, these forces anew
+// (train_kernel.hpp), and so on until none changes any more, lane by lane.
+#pragma once
+
+#include "engine/batch_looks.hpp"
+#include "engine/beam_kernel.hpp"
+#include "engine/train_kernel.hpp"
+
+namespace traverse::engine {
+namespace {
+
+inline constexpr double pass_tolerance = 1e-12;  // of a vehicle's weight: changes of forces still to come
+inline constexpr double pass_rounding = 1e-9;    // below this a change that stays is taken as rounding
+inline constexpr double measurable = 1e-10;      // changes above it tell a contraction
+inline constexpr double best_contraction = 1e-3, growth = 1.1;
+inline constexpr int most_passes = 60;
+inline constexpr double near_look_up = 2e-5;  // m: as far a track's parabola is exact
+
+/// The wheel of one lane on other patches.
+inline void place_wheel(const BatchTask& t, int at, int lane) {
+  TrainTask& train = *t.train;
+  const BeamTask& beam = *t.beam;
+  const SurfaceTable& table = t.surface[t.table[at]];
+  const double x = train.along[at];
+  int& k = t.there[at];
+  while (k + 1 < table.count && x > table.there[k].to) ++k;
+  while (k > 0 && x < table.there[k].from) --k;
+  const PatchesThere& there = table.there[k];
+  train.from[at] = there.from;
+  train.to[at] = there.to;
+  if (train.active[at] >= there.candidates) train.active[at] = 0;
+  for (int n = 0; n < 2; ++n) {
+    const PatchesThere::Patch& from = there.patch[n];
+    SurfacePatch& p = train.patch[n];
+    p.slot[at] = from.element < 0 ? train.ground : beam.first_column[from.element] * beam.block * lanes + lane;
+    p.x[at] = from.x;
+    p.length[at] = from.length;
+    p.shear[at] = from.shear;
+    p.yield[at] = from.yield;
+    p.low[at] = from.low;
+    p.high[at] = from.high;
+    for (int i = 0; i < 10; ++i)
+      p.compliance[i][at] = from.element < 0 ? 0.0 : beam.compliance[(10L * from.element + i) * lanes + lane];
+  }
+}
+
+/// Those that have left theirs, or all.
+inline void place_wheels(const BatchTask& t, bool all) {
+  TrainTask& train = *t.train;
+  for (int i = 0; i < train.wheels; ++i) {
+    const Row x = rows(train.along)[i];
+    const RowMask out = (x < rows(train.from)[i]) | (x > rows(train.to)[i]);
+    if (!all && !Rows::any(out)) continue;
+    bool two = false;
+    for (int l = 0; l < lanes; ++l) {
+      const int at = i * lanes + l;
+      if (t.table[at] < 0) continue;  // a lane without a run
+      if (all || Rows::holds(out, l)) place_wheel(t, at, l);
+      two |= t.surface[t.table[at]].there[t.there[at]].candidates > 1;
+    }
+    t.second[i] = two ? 1 : 0;
+    for (SurfacePatch& p : train.patch) {
+      const int* slot = p.slot + i * lanes;
+      bool follow = slot[0] != train.ground, ground = !follow;
+      for (int l = 1; l < lanes; ++l) {
+        follow = follow && slot[l] == slot[0] + l;
+        ground = ground && slot[l] == train.ground;
+      }
+      p.together[i] = ground ? 2 : follow ? 1 : 0;
+    }
+  }
+}
+
+/// Heights of the track where contacts have moved farther than `within`; whether there were any.
+inline bool look_up_heights(const BatchTask& t, double within) {
+  const HeightTable& track = t.heights;
+  if (track.stations == 0) return false;
+  TrainTask& train = *t.train;
+  bool moved = false;
+  for (int i = 0; i < train.wheels; ++i) {
+    const Row x = rows(train.station)[i];
+    if (!Rows::any(Rows::magnitude(x - rows(train.looked_up)[i]) > within)) continue;
+    moved = true;
+    rows(train.looked_up)[i] = x;
+    for (int l = 0; l < lanes; ++l) {
+      double at = (Rows::numbers(x)[l] - track.start) / track.distance;
+      const double last = static_cast<double>(track.stations - 1);
+      at = at > 0.0 ? at : 0.0;
+      at = at < last ? at : last;
+      long k = static_cast<long>(at);
+      if (k > track.stations - 2) k = track.stations - 2;
+      const double u = at - static_cast<double>(k), per = 1.0 / track.distance;
+      const long stride = track.shared ? 1 : lanes;
+      const double* values = track.values + 2 * k * stride + (track.shared ? 0 : l);
+      const double h0 = values[0], s0 = values[stride], h1 = values[2 * stride], s1 = values[3 * stride];
+      const double second = 3.0 * (h1 - h0) - 2.0 * s0 - s1, third = s0 + s1 - 2.0 * (h1 - h0);
+      const int number = i * lanes + l;
+      train.h[number] = h0 + u * (s0 + u * (second + u * third));
+      train.h_x[number] = per * (s0 + u * (2.0 * second + 3.0 * u * third));
+      train.h_xx[number] = per * per * (2.0 * second + 6.0 * u * third);
+    }
+  }
+  return moved;
+}
+
+/// v~ and w~ of the structure.
+inline void predict_structure(const BeamTask& beam, const StageRows& rule, int known) {
+  Row a_in_v[most_kept], a_in_w[most_kept];
+  for (int j = 0; j < known; ++j) {
+    a_in_v[j] = row(rule.a_in_v[j]);
+    a_in_w[j] = row(rule.a_in_w[j]);
+  }
+  const Row w_in_v = row(rule.w_in_v);
+  for (int i = 0; i < beam.columns * beam.block; ++i) {
+    const Row w = rows(beam.w)[i];
+    Row at = rows(beam.v)[i] + w_in_v * w, moving = w;
+    for (int j = 0; j < known; ++j) {
+      const Row a = rows(beam.a[j])[i];
+      at += a_in_v[j] * a;
+      moving += a_in_w[j] * a;
+    }
+    rows(beam.v_predicted)[i] = at;
+    rows(beam.w_predicted)[i] = moving;
+  }
+}
+
+template <Surface kind, class Structure>
+void solve_structure(const BatchTask& t, const Structure& structure, Row displacement) {
+  const BeamTask& beam = *t.beam;
+  const int n = beam.columns * beam.block;
+  Row* a = rows(beam.solution);
+  for (int i = 0; i < n; ++i) a[i] = rows(beam.residual)[i];
+  add_loads<kind>(*t.train);
+  structure.solve(a);
+  for (int i = 0; i < n; ++i) rows(t.train->nodal)[i] = rows(beam.v_predicted)[i] + displacement * a[i];
+}
+
+/// gone: m that all runs have travelled then; anew: steps have another length than before.
+template <Surface kind>
+void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
+  TrainTask& train = *t.train;
+  const BeamTask& beam = *t.beam;
+  const Row displacement = row(train.stage[stage].displacement);
+  for (int k = 0; k < train.blocks; ++k) *rows(t.distance[k]) = Rows::fill(gone);
+  predict_structure(beam, train.stage[stage], stage + 1);
+  predict(train, stage, t.work);
+  place_wheels(t, anew);
+  look_up_heights(t, 0.0);
+  Row &contraction = *rows(t.contraction), &failed = *rows(t.failed);
+  with_beam(beam, [&](const auto& structure) {
+    structure.find_residual();
+    Row before{};
+    RowMask open = failed == Row{};
+    for (int pass = 1; Rows::any(open); ++pass) {
+      solve_structure<kind>(t, structure, displacement);
+      const Changes changes = update_forces<kind>(train);
+      const Row change = changes.most;
+      failed = open & changes.fallen ? Rows::fill(below_surface) : failed;
+      if (pass > 1) {
+        Row measured = change / before;
+        measured = measured > best_contraction ? measured : Rows::fill(best_contraction);
+        measured = measured < 1.0 ? measured : Rows::fill(1.0);
+        contraction = open & (before > measurable) ? measured : contraction;
+      }
+      RowMask done = change * contraction <= pass_tolerance;
+      if (pass > 1) done |= (change <= pass_rounding) & (change > 0.1 * before);
+      if (pass == 1) contraction = open & done ? (growth * contraction < 1.0 ? growth * contraction : Rows::fill(1.0)) : contraction;
+      if (look_up_heights(t, near_look_up)) done = RowMask{};
+      open &= ~done & (failed == Row{});
+      if (pass == most_passes) {
+        failed = open ? Rows::fill(not_converged) : failed;
+        break;
+      }
+      before = change;
+    }
+    solve_structure<kind>(t, structure, displacement);
+  });
+  for (int i = 0; i < beam.columns * beam.block; ++i) rows(beam.a[stage + 1])[i] = rows(beam.solution)[i];
+  end_stage_of_train<kind>(train, stage, false);
+}
+
+inline void finish_structure_step(const TrainTask& train, const BeamTask& beam) {
+  const StageRows& rule = train.end;
+  const Row w_in_v = row(rule.w_in_v);
+  for (int i = 0; i < beam.columns * beam.block; ++i) {
+    Row &v = rows(beam.v)[i], &w = rows(beam.w)[i], next{}, at = v + w_in_v * w, moving = w;
+    for (int j = 0; j < train.known; ++j) {
+      const Row a = rows(beam.a[j])[i];
+      at += row(rule.a_in_v[j]) * a;
+      moving += row(rule.a_in_w[j]) * a;
+      next += train.a_next[j] * a;
+    }
+    v = at;
+    w = moving;
+    rows(beam.a[0])[i] = next;
+  }
+}
+
+}  // namespace
+}  // namespace traverse::engine
