@@ -9,6 +9,8 @@
 namespace traverse::app {
 namespace {
 
+constexpr double tighter = 0.5;  // of the accuracy: modes that are too few by little at one scene
+
 /// What serves both: the finer mesh and the shorter step, more modes, the method of higher order.
 void join(const SweepChoice& one, SweepChoice& all) {
   Scene& scene = all.scene;
@@ -37,23 +39,48 @@ void join(const SweepChoice& one, SweepChoice& all) {
   });
 }
 
-}  // namespace
+using Choose = std::optional<SweepChoice> (*)(const Scene& scene, std::vector<std::string>& notes);
 
-// At all of the study's extreme scenes.
-SweepChoice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes) {
+std::optional<SweepChoice> side_by_side(const Scene& scene, std::vector<std::string>& notes) {
+  if (std::optional<SweepChoice> choice = choose_side_by_side(scene, notes)) return choice;
+  if (notes.empty()) return {};  // the scene does not leave it open
+  Scene strict = scene;
+  strict.accuracy *= tighter;
+  notes.push_back(fmt::format("once more, with an accuracy of {:g}:", strict.accuracy));
+  std::optional<SweepChoice> choice = choose_side_by_side(strict, notes);
+  if (!choice) return choice;
+  choice->scene.accuracy = choice->model.accuracy = scene.accuracy;
+  return choice;
+}
+
+std::optional<SweepChoice> one_by_one(const Scene& scene, std::vector<std::string>& notes) {
+  return choose_one_by_one(scene, notes);
+}
+
+/// At all of the study's extreme scenes; nothing where one of them refuses.
+std::optional<SweepChoice> choose_at_extremes(const StudyScenes& scenes, Choose choose,
+                                              std::vector<std::string>& notes) {
   const std::vector<std::size_t> bases = scenes.extreme_bases();
   std::optional<SweepChoice> all;
   for (const std::size_t base : bases) {
     std::vector<std::string> own;
-    const SweepChoice one = choose_for_sweep(scenes.base(base), own);
+    const std::optional<SweepChoice> one = choose(scenes.base(base), own);
     if (bases.size() > 1 && !own.empty()) notes.push_back(fmt::format("scene {} of {}:", base + 1, scenes.bases()));
     notes.insert(notes.end(), own.begin(), own.end());
+    if (!one) return std::nullopt;
     if (all)
-      join(one, *all);
+      join(*one, *all);
     else
       all = one;
   }
-  return *all;
+  return all;
+}
+
+}  // namespace
+
+SweepChoice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes) {
+  if (std::optional<SweepChoice> choice = choose_at_extremes(scenes, side_by_side, notes)) return *choice;
+  return *choose_at_extremes(scenes, one_by_one, notes);
 }
 
 }  // namespace traverse::app

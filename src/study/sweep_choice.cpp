@@ -8,6 +8,7 @@
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/trials.hpp"
+#include "lanes_choice.hpp"
 #include "modes_choice.hpp"
 #include "run/deck_acceleration.hpp"
 
@@ -113,7 +114,27 @@ Scene at_speed(const Scene& sweep, double speed) {
   return scene;
 }
 
+std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes) {
+  if (given.vehicles.empty()) return {};
+  std::optional<LanesChoice> lanes = lanes_that_do(judged(given, notes), notes);
+  if (!lanes) return {};
+  lanes->scene.output.low_pass = given.output.low_pass;
+  lanes->scene.accuracy_of = given.accuracy_of;
+  SweepChoice choice{std::move(lanes->scene), {}};
+  choice.model = model_of(choice.scene);
+  choice.model.accuracy = given.accuracy;
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (lanes->promises[q].kept)
+      choice.model.expected_errors.emplace_back(stored_names[q], lanes->promises[q].expected);
+  return choice;
+}
+
 SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes) {
+  if (std::optional<SweepChoice> lanes = choose_side_by_side(given, notes)) return *lanes;
+  return choose_one_by_one(given, notes);
+}
+
+SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& notes) {
   const Scene by = judged(given, notes);
   SweepChoice choice{given, {}};
   const std::optional<Accuracy> all = choose_at_speeds(by, choice.scene, notes);

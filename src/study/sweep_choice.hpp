@@ -1,6 +1,7 @@
 // What all runs of a sweep are computed with: mesh, step and modes, as far as the scene leaves them open.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,5 +22,8 @@ Scene at_speed(const Scene& sweep, double speed);
 /// The finest mesh and step that the slowest, a middle and the fastest run need, or modes; the same on every rank.
 /// What was chosen, and the errors to expect, go into `notes`. InputError as the runs themselves would throw it.
 SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes);
+/// The two ways that it tries: of trains side by side by modes, nothing where these do not do; else run by run.
+std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes);
+SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

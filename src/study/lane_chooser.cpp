@@ -1,0 +1,107 @@
+#include "study/lane_chooser.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "accuracy/accuracy.hpp"
+#include "accuracy/first_guess.hpp"
+#include "accuracy/horizon.hpp"
+#include "accuracy/trials.hpp"
+#include "run/deck_acceleration.hpp"
+
+namespace traverse::app {
+
+using Errors = LaneErrors;
+
+namespace {
+
+constexpr double part_of_all = 0.95;  // of the wanted error
+constexpr int most_tries = 6;
+constexpr double mesh_over_wholes = 0.5;  // of the wanted error
+constexpr double shorter = 0.7;           // a quarter of an error of fourth order
+
+}  // namespace
+
+std::string words_of(const Scene& scene, const Errors& errors) {
+  std::string words;
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (asks_for(scene, q))
+      words += fmt::format("{}{} {:.1g}", words.empty() ? "" : ", ", quantity_names[q], errors[q]);
+  return words;
+}
+
+LaneChooser::LaneChooser(const Scene& scene, const TrialSpeeds& speeds) : scene_(scene), fastest_(scene) {
+  fastest_.train.speed = scene.sweep->speeds.back();
+  for (const double x : wheels_at_start(fastest_)) whole_ = std::max(whole_, scene.beam->length() - x);
+  whole_ += scene.tail.value_or(0.0) * fastest_.train.speed;
+  if (scene.end_time) whole_ = *scene.end_time * fastest_.train.speed;
+  distance_ = beginning(fastest_, whole_ / fastest_.train.speed) * fastest_.train.speed;
+  if (asks_for(scene, low_passed))
+    distance_ = std::min(whole_, distance_ + unsettled_end(*scene.output.low_pass) * fastest_.train.speed);
+  const Scene part = shortened(fastest_, distance_ / fastest_.train.speed);
+  beginnings_.emplace(part, speeds.beginnings, distance_);
+  if (!speeds.mixed.empty()) mixed_.emplace(part, speeds.mixed, distance_);
+  wholes_.emplace(scene, speeds.wholes, whole_, &*beginnings_);
+}
+
+LanesChoice LaneChooser::choose() {
+  LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy);
+  take(search.run(search.first(whole_ / fastest_.train.speed)));
+  if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
+  const double defect = beginnings_->defect(model_);
+  if (scene_.vehicle_model == VehicleModel::automatic && defect > most_defect(scene_))
+    throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
+  Errors errors = check_wholes(search);
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (asks_for(scene_, q)) errors[q] += defect;
+  LanesChoice choice;
+  choice.scene = with(scene_, model_);
+  for (std::size_t q = 0; q < quantities; ++q) {
+    const bool kept = asks_for(scene_, q);
+    const bool present = !by_elements_alone(q) || q == shear_force;
+    choice.promises[q] = {present, kept, errors[q], kept ? "" : why_not_asked(scene_, q)};
+  }
+  if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most_defect(scene_);
+  choice.scene.step_probes = true;
+  choice.scene.contact_seats = true;
+  return choice;
+}
+
+void LaneChooser::take(const std::optional<LaneModel>& found) {
+  if (!found) throw NotChosen{"their peaks do not settle to the accuracy"};
+  model_ = *found;
+}
+
+LaneErrors LaneChooser::check_wholes(LaneSearch& search) {
+  Errors errors{};
+  for (int i = 0; i <= most_tries; ++i) {
+    LaneModel other = search.on_finer_mesh(model_);
+    other.method = structure::find_method("esdirk4");
+    other.step *= 0.5;
+    wholes_->run_at_once(std::array{other, model_});
+    errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
+    for (std::size_t q = 0; q < quantities; ++q)
+      errors[q] = std::max(errors[q], search.error_of_mesh(q) + search.error_of_steps(q));
+    if (greatest(errors) <= part_of_all * scene_.accuracy) {
+      if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
+      return errors;
+    }
+    refine(other);
+  }
+  throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, errors))};
+}
+
+void LaneChooser::refine(const LaneModel& other) {
+  LaneModel same_mesh = other;
+  same_mesh.elements = model_.elements;
+  const Errors by_mesh = difference(scene_, wholes_->run(same_mesh), wholes_->run(other));
+  if (greatest(by_mesh) <= mesh_over_wholes * scene_.accuracy)
+    model_.step *= shorter;
+  else
+    model_.elements = other.elements;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,52 @@
+// The choice of what passages in lanes are computed with (lanes_choice.hpp): a search on their beginnings, checked on
+// whole ones.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "study/lane_search.hpp"
+#include "study/lane_trials.hpp"
+#include "study/lanes_choice.hpp"
+
+namespace traverse::app {
+
+/// Where trains have their trials: groups of speeds, m/s.
+struct TrialSpeeds {
+  std::vector<std::vector<double>> beginnings, mixed, wholes;  // mixed: none where the beginnings serve for them
+};
+
+class LaneChooser {
+ public:
+  /// Of a scene with a sweep, which must outlive it.
+  LaneChooser(const Scene& scene, const TrialSpeeds& speeds);
+
+  /// Why nothing is chosen.
+  struct NotChosen {
+    std::string why;
+  };
+  /// Throws NotChosen, and LaneTrials::Refused where passages cannot go in lanes.
+  LanesChoice choose();
+  const LaneModel& model() const { return model_; }
+
+ private:
+  void take(const std::optional<LaneModel>& found);
+  /// Whole passages: errors add up while the train crosses. Against a finer mesh and half the step, by esdirk4: genalpha
+  /// takes all vibration out of wheels in time, and two of its steps may agree on that.
+  LaneErrors check_wholes(LaneSearch& search);
+  /// By a finer mesh where it is that what the other one differs by, else by shorter steps.
+  void refine(const LaneModel& other);
+
+  const Scene& scene_;
+  Scene fastest_;
+  double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
+  std::optional<LaneTrials> beginnings_, mixed_, wholes_;
+  LaneModel model_;  // what was chosen
+};
+
+/// The errors that a scene asks for, by their names.
+std::string words_of(const Scene& scene, const LaneErrors& errors);
+
+}  // namespace traverse::app

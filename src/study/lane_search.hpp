@@ -1,0 +1,43 @@
+// The search for mesh, method and step of runs side by side.
+#pragma once
+
+#include <optional>
+
+#include "study/lane_trials.hpp"
+
+namespace traverse::app {
+
+class LaneSearch {
+ public:
+  /// mixed: the same passages at slow and fast speeds in one group, whose steps are those of the slowest: what the mesh
+  /// changes is seen there as well. accuracy: the error that all of it may leave.
+  LaneSearch(LaneTrials& trials, LaneTrials& mixed, double accuracy)
+      : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
+
+  /// The model that the search begins with, for passages that last so long, s.
+  LaneModel first(double duration);
+  /// The cheapest model within the accuracy; empty: none.
+  std::optional<LaneModel> run(LaneModel model);
+  double error_of_mesh(std::size_t q) const { return mesh_[q]; }
+  double error_of_steps(std::size_t q) const { return steps_[q]; }
+  /// What a mesh is compared with: one twice as fine.
+  LaneModel on_finer_mesh(LaneModel model) const;
+
+ private:
+  bool foresee_step(LaneModel& model);
+  bool halve_step(LaneModel& model);
+  void measure_steps(const LaneModel& model);
+  bool refine_mesh(LaneModel& model);
+  LaneModel cheaper(const LaneModel& model);
+  LaneErrors left_by(const LaneModel& tried, const LaneModel& model);
+  double over(const LaneErrors& errors) const;
+
+  LaneTrials &trials_, &mixed_;
+  double accuracy_;
+  double longest_ = 0.0;    // s: no step is longer
+  bool one_solve_ = false;  // methods of one solve a step are tried
+  LaneErrors mesh_{}, steps_{};
+  LaneErrors halved_{};  // what half the step leaves
+};
+
+}  // namespace traverse::app

@@ -1,0 +1,172 @@
+#include "study/lane_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <iterator>
+
+#include "accuracy/accuracy.hpp"
+#include "accuracy/trials.hpp"
+#include "engine/processor.hpp"
+#include "run/deck_acceleration.hpp"
+#include "study/lanes_obstacle.hpp"
+
+namespace traverse::app {
+
+using engine::BatchResult;
+
+namespace {
+
+void note_difference(double a, double b, double scale, double& worst) {
+  if (scale > 0.0) worst = std::max(worst, std::abs(a - b) / scale);
+}
+
+/// Puts the peaks before the unsettled end into the result.
+void filter_kept(BatchResult& result, std::size_t probes, double frequency, double interval) {
+  if (result.trouble != engine::none) return;
+  const std::size_t settled = filter(result.kept, probes, frequency, interval);
+  Peaks peaks(std::vector<std::vector<double>>(probes), 0);
+  peaks.add_low_passed(std::span<const double>(result.kept).first(settled * probes), interval);
+  for (const Peak& peak : peaks.largest_of_each(low_passed))
+    result.low_passed.push_back({std::abs(peak.value), peak.time});
+  result.kept = {};
+}
+
+}  // namespace
+
+Scene with(const Scene& given, const LaneModel& model) {
+  Scene scene = given;
+  scene.model_modes = 0;
+  if (scene.mesh_open) set_mesh(scene, model.elements);
+  scene.time_step = model.step;
+  scene.sweep->method = model.method->name;
+  scene.vehicle_model = VehicleModel::linear;
+  return scene;
+}
+
+LaneErrors difference(const Scene& scene, const std::vector<BatchResult>& a, const std::vector<BatchResult>& b) {
+  LaneErrors worst{};
+  for (std::size_t run = 0; run < a.size(); ++run) {
+    if (a[run].trouble != engine::none || b[run].trouble != engine::none) {
+      worst.fill(1.0);  // too long a step, most likely
+      continue;
+    }
+    const auto compare = [&](std::vector<engine::BatchPeak> BatchResult::*peaks, Quantity q) {
+      double largest = 0.0;
+      for (const engine::BatchPeak& peak : b[run].*peaks) largest = std::max(largest, peak.value);
+      for (std::size_t p = 0; p < (b[run].*peaks).size(); ++p)
+        note_difference((a[run].*peaks)[p].value, (b[run].*peaks)[p].value, largest, worst[q]);
+    };
+    compare(&BatchResult::deflection, deflection);
+    compare(&BatchResult::acceleration, acceleration);
+    compare(&BatchResult::moment, moment);
+    compare(&BatchResult::low_passed, low_passed);
+    note_difference(a[run].greatest_force, b[run].greatest_force, b[run].greatest_force, worst[wheel_force]);
+    note_difference(a[run].least_force, b[run].least_force, b[run].greatest_force, worst[wheel_force]);
+  }
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (!asks_for(scene, q)) worst[q] = 0.0;
+  return worst;
+}
+
+double greatest(const LaneErrors& errors) { return *std::max_element(errors.begin(), errors.end()); }
+
+bool lose_contact(const std::vector<BatchResult>& runs) {
+  return std::any_of(runs.begin(), runs.end(), [](const BatchResult& run) { return run.contact_losses > 0.0; });
+}
+
+LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
+                       const LaneTrials* before)
+    : scene_(std::move(scene)),
+      before_(before != nullptr && before->scene_.beam->spans == scene_.beam->spans ? before : nullptr) {
+  for (const std::vector<double>& group : speeds) {
+    std::vector<LaneRun>& runs = groups_.emplace_back();
+    for (const std::uint64_t seed : scene_.sweep->seeds)
+      if (group.size() == 1 && runs.size() + 1 < engine::widest)
+        runs.push_back({group.front(), distance / group.front(), seed});
+    for (const double speed : group) runs.push_back({speed, distance / speed, {}});
+  }
+}
+
+const std::vector<BatchResult>& LaneTrials::run(const LaneModel& model) {
+  run_at_once({&model, 1});
+  return known(model)->results;
+}
+
+void LaneTrials::run_at_once(std::span<const LaneModel> models) {
+  std::vector<std::vector<SideBySide::Ready>> ready;
+  std::vector<LaneModel> own;
+  for (const LaneModel& model : models) {
+    if (known(model) != nullptr || std::find(own.begin(), own.end(), model) != own.end()) continue;
+    own.push_back(model);
+    check_memory(model);
+    std::vector<SideBySide::Ready>& groups = ready.emplace_back();
+    for (const std::vector<LaneRun>& runs : groups_) groups.push_back(setup(model).lanes->ready(runs, steps_of(model)));
+  }
+  const auto results_of = [&](std::size_t i) { return run_all(ready[i], steps_of(own[i])); };
+  std::vector<std::future<std::vector<BatchResult>>> others;
+  for (std::size_t i = 1; i < own.size(); ++i) others.push_back(std::async(std::launch::async, results_of, i));
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    Kept kept{own[i], i == 0 ? results_of(i) : others[i - 1].get(), 0.0};
+    for (const BatchResult& result : kept.results)
+      if (result.trouble == engine::none) kept.defect = std::max(kept.defect, setup(own[i]).lanes->defect(result));
+    kept_.push_back(std::move(kept));
+  }
+}
+
+void LaneTrials::check_memory(const LaneModel& model) const {
+  const SideBySide::Steps steps = steps_of(model);
+  double numbers = 0.0;
+  for (const std::vector<LaneRun>& runs : groups_) {
+    const double places = runs.front().speed * runs.front().end / SideBySide::spacing(steps, runs.front().speed);
+    numbers += places * static_cast<double>(runs.size() * scene_.output.probes.size());
+  }
+  if (steps.keeps && numbers > DeckAcceleration::most_kept)
+    throw Refused{"the accelerations of so many probes would have to be kept"};
+}
+
+SideBySide::Steps LaneTrials::steps_of(const LaneModel& model) const {
+  return {model.method->make(model.method->parameter.value), model.step, true, asks_for(scene_, low_passed)};
+}
+
+/// Of one model, whose accelerations are filtered run by run: a place each step is an instant each interval of its own.
+std::vector<BatchResult> LaneTrials::run_all(const std::vector<SideBySide::Ready>& groups,
+                                                const SideBySide::Steps& steps) const {
+  std::vector<BatchResult> results;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const std::vector<LaneRun>& runs = groups_[g];
+    const double spacing = SideBySide::spacing(steps, runs.front().speed);
+    std::vector<BatchResult> own = groups[g].run();
+    for (std::size_t i = 0; i < own.size() && steps.keeps; ++i)
+      filter_kept(own[i], scene_.output.probes.size(), *scene_.output.low_pass, spacing / runs[i].speed);
+    std::move(own.begin(), own.end(), std::back_inserter(results));
+  }
+  return results;
+}
+
+const LaneTrials::Kept* LaneTrials::known(const LaneModel& model) const {
+  const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; });
+  return found == kept_.end() ? nullptr : &*found;
+}
+
+double LaneTrials::defect(const LaneModel& model) const { return known(model)->defect; }
+
+LaneTrials::Setup& LaneTrials::setup(const LaneModel& model) {
+  std::unique_ptr<Setup>& place = setups_[model.elements];
+  if (place) return *place;
+  place = std::make_unique<Setup>();
+  place->scene = with(scene_, model);
+  if (const std::optional<beam::Rayleigh> known = damping()) place->scene.damping = {{{known->a, known->b}}, {}, {}};
+  std::vector<std::string> ignored;
+  place->shared.emplace(PETSC_COMM_SELF, place->scene, ignored);
+  place->shared->damp(place->scene, first_omega_ == 0.0, ignored);
+  if (first_omega_ == 0.0) first_omega_ = place->shared->omega->first;
+  damping_ = place->shared->rayleigh;
+  place->shared->prepare(place->scene, ignored);
+  if (const std::string why = lanes_obstacle(place->scene, *place->shared); !why.empty()) throw Refused{why};
+  place->lanes.emplace(place->scene, *place->shared);
+  if (!place->lanes->obstacle().empty()) throw Refused{place->lanes->obstacle()};
+  return *place;
+}
+
+}  // namespace traverse::app

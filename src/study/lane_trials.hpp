@@ -1,0 +1,97 @@
+// Trial passages side by side, by several models: what meshes, methods and steps change.
+#pragma once
+
+#include <array>
+#include <deque>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/peaks.hpp"
+#include "study/side_by_side.hpp"
+
+namespace traverse::app {
+
+/// What the runs are computed with.
+struct LaneModel {
+  int elements = 0;  // of a span
+  const structure::MethodRow* method = nullptr;
+  double step = 0.0;  // s
+  bool operator==(const LaneModel&) const = default;
+};
+
+/// The scene by such a model, with linear vehicles.
+Scene with(const Scene& given, const LaneModel& model);
+
+/// Errors of each quantity's peaks.
+using LaneErrors = std::array<double, quantities>;
+
+/// The largest differences of the peaks of runs, of the scene's accuracy_of, relative to the largest of their kind in
+/// the run; 1 where one of them has found no end.
+LaneErrors difference(const Scene& scene, const std::vector<engine::BatchResult>& a,
+                      const std::vector<engine::BatchResult>& b);
+double greatest(const LaneErrors& errors);
+bool lose_contact(const std::vector<engine::BatchResult>& runs);
+
+/// Passages of one scene at some speeds.
+class LaneTrials {
+ public:
+  /// Groups of speeds, those of a group in one class, or the slowest one first; distance: of every passage, m. A group
+  /// of one speed goes over the tracks of the scene's sweep too, its own track last, as many as there are lanes.
+  /// before: trials whose damping serves for these too, where the bridge is the same; it must outlive these.
+  LaneTrials(Scene scene, const std::vector<std::vector<double>>& speeds, double distance,
+             const LaneTrials* before = nullptr);
+
+  /// Kept. Refused where runs cannot go side by side.
+  const std::vector<engine::BatchResult>& run(const LaneModel& model);
+  /// Those of several models that are not known yet, each in a thread of its own.
+  void run_at_once(std::span<const LaneModel> models);
+  /// rad/s, of the bridge by that model or another one.
+  double first_omega(const LaneModel& model) {
+    setup(model);
+    return first_omega_;
+  }
+  /// The largest SideBySide::defect of a model's runs, which are known.
+  double defect(const LaneModel& model) const;
+  const Scene& scene() const { return scene_; }
+
+  struct Refused {
+    std::string why;
+  };
+
+ private:
+  struct Setup {
+    Scene scene;
+    std::optional<SharedBeam> shared;
+    std::optional<SideBySide> lanes;
+  };
+  struct Kept {
+    LaneModel model;
+    std::vector<engine::BatchResult> results;
+    double defect = 0.0;
+  };
+  const Kept* known(const LaneModel& model) const;
+  void check_memory(const LaneModel& model) const;
+  SideBySide::Steps steps_of(const LaneModel& model) const;
+  std::vector<engine::BatchResult> run_all(const std::vector<SideBySide::Ready>& groups,
+                                             const SideBySide::Steps& steps) const;
+  Setup& setup(const LaneModel& model);
+  /// That of the first mesh, for all of them.
+  std::optional<beam::Rayleigh> damping() const {
+    return !damping_ && before_ != nullptr ? before_->damping_ : damping_;
+  }
+
+  Scene scene_;
+  const LaneTrials* before_;
+  std::vector<std::vector<LaneRun>> groups_;
+  std::map<int, std::unique_ptr<Setup>> setups_;  // by elements
+  std::deque<Kept> kept_;                                         // references to its entries stay
+  std::optional<beam::Rayleigh> damping_;
+  double first_omega_ = 0.0;
+};
+
+}  // namespace traverse::app

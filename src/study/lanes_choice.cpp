@@ -1,0 +1,81 @@
+#include "study/lanes_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "accuracy/accuracy.hpp"
+#include "accuracy/trials.hpp"
+#include "engine/processor.hpp"
+#include "engine/speed_class.hpp"
+#include "results/stage.hpp"
+#include "study/lane_chooser.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
+
+bool open(const Scene& scene) {
+  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.model_modes == 0 && scene.mesh_open &&
+         scene.vehicle_model != VehicleModel::full && scene.beam && options::in_force().find("ts_type") == nullptr;
+}
+
+/// Neighbouring speeds of one class around each of the given places among all.
+std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, std::initializer_list<double> places,
+                                             std::size_t most) {
+  std::vector<std::vector<double>> groups;
+  for (const double place : places) {
+    const auto at = static_cast<std::size_t>(place * static_cast<double>(speeds.size() - 1));
+    const int number = engine::speed_class(speeds[at]);
+    std::vector<double> group;
+    for (std::size_t i = at; i < speeds.size() && group.size() < most; ++i)
+      if (engine::speed_class(speeds[i]) == number) group.push_back(speeds[i]);
+    for (std::size_t i = at; i > 0 && group.size() < most; --i)
+      if (engine::speed_class(speeds[i - 1]) == number) group.push_back(speeds[i - 1]);
+    std::sort(group.begin(), group.end());
+    if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(group);
+  }
+  return groups;
+}
+
+std::string words_of(const Scene& scene, const std::array<Promise, quantities>& promises) {
+  LaneErrors errors{};
+  for (std::size_t q = 0; q < quantities; ++q) errors[q] = promises[q].expected;
+  return words_of(scene, errors);
+}
+
+}  // namespace
+
+std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes) {
+  const std::vector<double>& speeds = given.sweep->speeds;
+  if (!open(given) || given.sweep->lanes == 0 || std::max(given.sweep->runs, speeds.size()) < fewest_runs)
+    return std::nullopt;
+  const results::Stage stage("trial runs side by side");
+  const options::WithoutMonitors without_monitors;
+  const auto refuse = [&](const std::string& why) {
+    notes.push_back("mesh and step are not those of trial runs side by side: " + why);
+    return std::nullopt;
+  };
+  const std::size_t n = speeds.size() - 1;
+  TrialSpeeds trials = {some_speeds(speeds, {0.0, 1.0}, trial_lanes), {}, some_speeds(speeds, {0.5}, engine::widest)};
+  if (n > 0) trials.mixed = {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}};
+  try {
+    LaneChooser chooser(given, trials);
+    LanesChoice choice = chooser.choose();
+    notes.push_back(fmt::format("runs side by side: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
+                                mesh_of(choice.scene), chooser.model().method->name, chooser.model().step));
+    notes.push_back("expected errors of the peaks: " + words_of(given, choice.promises));
+    return choice;
+  } catch (const LaneChooser::NotChosen& none) {
+    return refuse(none.why);
+  } catch (const LaneTrials::Refused& refused) {
+    return refuse(refused.why);
+  } catch (const Error& failed) {
+    return refuse(failed.what());  // the runs one by one will say so too, if it is theirs
+  }
+}
+
+}  // namespace traverse::app
