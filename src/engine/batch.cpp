@@ -29,7 +29,8 @@ class Batch {
 
  private:
   using Blocks = std::vector<std::vector<const train::MovingVehicle*>>;
-  static Blocks blocks_of(std::span<const BatchRun> runs);
+  static std::vector<BatchRun> filled(std::span<const BatchRun> runs);
+  static Blocks blocks_of(const std::vector<BatchRun>& runs);
   void start_structure();
   void start_vehicles();
   void start_wheels();
@@ -42,7 +43,8 @@ class Batch {
 
   const BatchPlan& plan_;
   const BatchStructure& structure_;
-  std::span<const BatchRun> runs_;
+  const std::size_t count_;
+  const std::vector<BatchRun> runs_;  // one a lane: what lanes are left repeat the last one
   TrainArrays arrays_;
   TrainTask& train_ = arrays_.task;
   BeamTask beam_;
@@ -57,7 +59,14 @@ class Batch {
   std::vector<std::vector<double>> kept_;  // of every run
 };
 
-Batch::Blocks Batch::blocks_of(std::span<const BatchRun> runs) {
+std::vector<BatchRun> Batch::filled(std::span<const BatchRun> runs) {
+  if (runs.empty() || runs.size() > best_width()) throw std::logic_error("so many runs do not go side by side");
+  std::vector<BatchRun> all(runs.begin(), runs.end());
+  all.resize(best_width(), runs.back());
+  return all;
+}
+
+Batch::Blocks Batch::blocks_of(const std::vector<BatchRun>& runs) {
   Blocks blocks(runs.front().fleet->vehicles.size());
   for (std::size_t v = 0; v < blocks.size(); ++v)
     for (const BatchRun& run : runs) blocks[v].push_back(&run.fleet->vehicles[v]);
@@ -67,12 +76,12 @@ Batch::Blocks Batch::blocks_of(std::span<const BatchRun> runs) {
 Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
     : plan_(plan),
       structure_(*plan.structure),
-      runs_(runs),
-      arrays_(blocks_of(runs), plan.structure->beam_.bridge().per_node,
+      count_(runs.size()),
+      runs_(filled(runs)),
+      arrays_(blocks_of(runs_), plan.structure->beam_.bridge().per_node,
               plan.structure->beam_.bridge().model.surface_height),
       beam_(structure_.task_),
       kept_(runs.size()) {
-  if (runs.empty() || runs.size() > arrays_.lanes) throw std::logic_error("so many runs do not go side by side");
   task_.train = &train_;
   task_.beam = &beam_;
   task_.look = &looks_;
@@ -82,11 +91,9 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
   double *speed = arrays_.add(1), *end_time = arrays_.add(1), *failed = arrays_.add(1);
   task_.contraction = arrays_.add(1);
   for (std::size_t l = 0; l < arrays_.lanes; ++l) {
-    const BatchRun& run = runs_[std::min(l, runs_.size() - 1)];
-    speed[l] = run.speed;
-    end_time[l] = run.end_time;
+    speed[l] = runs_[l].speed;
+    end_time[l] = runs_[l].end_time;
     task_.contraction[l] = 1.0;
-    failed[l] = l < runs_.size() ? none : not_finite;  // a lane without a run is never waited for
   }
   task_.speed = speed;
   task_.end_time = end_time;
@@ -158,7 +165,7 @@ void Batch::start_vehicles() {
 
 void Batch::start_wheels() {
   const auto wheels = static_cast<std::size_t>(train_.wheels);
-  table_.assign(rows(wheels), -1);
+  table_.assign(rows(wheels), 0);
   there_.assign(rows(wheels), 0);
   for (std::size_t v = 0; v < arrays_.blocks.size(); ++v) {
     const VehicleBlock& b = arrays_.blocks[v];
@@ -182,12 +189,8 @@ void Batch::start_wheels() {
   task_.surface = surfaces_.data();
   task_.table = table_.data();
   task_.there = there_.data();
-  for (SurfacePatch& p : train_.patch) std::fill_n(p.slot, table_.size(), train_.ground);
-  for (std::size_t at = 0; at < table_.size(); ++at)
-    if (table_[at] >= 0) {
-      train_.h[at] = 0.0;
-      train_.looked_up[at] = nowhere;
-    }
+  std::fill_n(train_.h, table_.size(), 0.0);
+  std::fill_n(train_.looked_up, table_.size(), nowhere);
 }
 
 void Batch::set_track() {
@@ -205,7 +208,7 @@ void Batch::set_track() {
   double* values = arrays_.add(track->values.size());
   for (std::size_t i = 0; i < track->values.size(); ++i)
     for (std::size_t l = 0; l < arrays_.lanes; ++l)
-      values[i * arrays_.lanes + l] = runs_[std::min(l, runs_.size() - 1)].track->values[i];
+      values[i * arrays_.lanes + l] = runs_[l].track->values[i];
   task_.heights.values = values;
 }
 
@@ -248,7 +251,7 @@ void Batch::wake(double gone) {
 
 void Batch::keep_accelerations() {
   const std::size_t n = structure_.probes_.size();
-  for (std::size_t l = 0; l < runs_.size(); ++l)
+  for (std::size_t l = 0; l < count_; ++l)
     for (std::size_t p = 0; p < n; ++p) kept_[l].push_back(looks_.seen[looks_kept - 1][rows(n + p) + l]);
 }
 
@@ -257,7 +260,7 @@ void Batch::run() {
   const std::vector<BatchStretch>& stretches = plan_.stretches;
   const bool keeps = std::any_of(stretches.begin(), stretches.end(), [](const BatchStretch& s) { return s.keeps; });
   const auto going = [&] {
-    return std::any_of(task_.failed, task_.failed + runs_.size(), [](double trouble) { return static_cast<int>(trouble) == none; });
+    return std::any_of(task_.failed, task_.failed + arrays_.lanes, [](double trouble) { return static_cast<int>(trouble) == none; });
   };
   TRAVERSE_LANES_CALL(look_at_batch(task_));
   if (keeps) keep_accelerations();
@@ -290,9 +293,9 @@ void Batch::run() {
 }
 
 std::vector<BatchResult> Batch::results() const {
-  std::vector<BatchResult> results(runs_.size());
+  std::vector<BatchResult> results(count_);
   const std::size_t n = structure_.probes_.size();
-  for (std::size_t l = 0; l < runs_.size(); ++l) {
+  for (std::size_t l = 0; l < count_; ++l) {
     BatchResult& r = results[l];
     r.trouble = static_cast<Trouble>(static_cast<int>(task_.failed[l]));
     const auto peaks = [&](std::size_t first) {

@@ -9,7 +9,7 @@
 namespace traverse::engine {
 namespace {
 
-inline constexpr double pass_tolerance = 1e-12;  // of a vehicle's weight: changes of forces still to come
+inline constexpr double pass_tolerance = 1e-10;  // of a vehicle's weight: changes of forces still to come
 inline constexpr double pass_rounding = 1e-9;    // below this a change that stays is taken as rounding
 inline constexpr double measurable = 1e-10;      // changes above it tell a contraction
 inline constexpr double best_contraction = 1e-3, growth = 1.1;
@@ -54,7 +54,6 @@ inline void place_wheels(const BatchTask& t, bool all) {
     bool two = false;
     for (int l = 0; l < lanes; ++l) {
       const int at = i * lanes + l;
-      if (t.table[at] < 0) continue;  // a lane without a run
       if (all || Rows::holds(out, l)) place_wheel(t, at, l);
       two |= t.surface[t.table[at]].there[t.there[at]].candidates > 1;
     }
@@ -71,18 +70,19 @@ inline void place_wheels(const BatchTask& t, bool all) {
   }
 }
 
-/// Heights of the track where contacts have moved farther than `within`; whether there were any.
-inline bool look_up_heights(const BatchTask& t, double within) {
+/// Heights of the track where contacts have moved farther than `within`; lanes with such ones.
+inline RowMask look_up_heights(const BatchTask& t, double within) {
   const HeightTable& track = t.heights;
-  if (track.stations == 0) return false;
+  RowMask moved{};
+  if (track.stations == 0) return moved;
   TrainTask& train = *t.train;
-  bool moved = false;
   for (int i = 0; i < train.wheels; ++i) {
     const Row x = rows(train.station)[i];
-    if (!Rows::any(Rows::magnitude(x - rows(train.looked_up)[i]) > within)) continue;
-    moved = true;
-    rows(train.looked_up)[i] = x;
+    const RowMask anew = Rows::magnitude(x - rows(train.looked_up)[i]) > within;
+    if (!Rows::any(anew)) continue;
+    moved |= anew;
     for (int l = 0; l < lanes; ++l) {
+      if (!Rows::holds(anew, l)) continue;
       double at = (Rows::numbers(x)[l] - track.start) / track.distance;
       const double last = static_cast<double>(track.stations - 1);
       at = at > 0.0 ? at : 0.0;
@@ -95,6 +95,7 @@ inline bool look_up_heights(const BatchTask& t, double within) {
       const double h0 = values[0], s0 = values[stride], h1 = values[2 * stride], s1 = values[3 * stride];
       const double second = 3.0 * (h1 - h0) - 2.0 * s0 - s1, third = s0 + s1 - 2.0 * (h1 - h0);
       const int number = i * lanes + l;
+      train.looked_up[number] = Rows::numbers(x)[l];
       train.h[number] = h0 + u * (s0 + u * (second + u * third));
       train.h_x[number] = per * (s0 + u * (2.0 * second + 3.0 * u * third));
       train.h_xx[number] = per * per * (2.0 * second + 6.0 * u * third);
@@ -153,7 +154,7 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
     RowMask open = failed == Row{};
     for (int pass = 1; Rows::any(open); ++pass) {
       solve_structure<kind>(t, structure, displacement);
-      const Changes changes = update_forces<kind>(train);
+      const Changes changes = update_forces<kind>(train, open);
       const Row change = changes.most;
       failed = open & changes.fallen ? Rows::fill(below_surface) : failed;
       if (pass > 1) {
@@ -165,13 +166,12 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
       RowMask done = change * contraction <= pass_tolerance;
       if (pass > 1) done |= (change <= pass_rounding) & (change > 0.1 * before);
       if (pass == 1) contraction = open & done ? (growth * contraction < 1.0 ? growth * contraction : Rows::fill(1.0)) : contraction;
-      if (look_up_heights(t, near_look_up)) done = RowMask{};
-      open &= ~done & (failed == Row{});
+      open &= ~(done & ~look_up_heights(t, near_look_up)) & (failed == Row{});
+      before = change;
       if (pass == most_passes) {
         failed = open ? Rows::fill(not_converged) : failed;
         break;
       }
-      before = change;
     }
     solve_structure<kind>(t, structure, displacement);
   });

@@ -5,6 +5,9 @@
 namespace traverse::engine {
 namespace {
 
+/// For what is called for every wheel: values in registers are not worth a call's memory.
+#define TRAVERSE_INLINE inline __attribute__((always_inline))
+
 // NOLINTBEGIN: vector types have no other spelling
 typedef double TwoNumbers __attribute__((vector_size(16), may_alias));
 typedef double FourNumbers __attribute__((vector_size(32), may_alias));

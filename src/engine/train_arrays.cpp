@@ -271,7 +271,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   for (double** of : {&task.x, &task.w, &task.w_predicted, &task.a_free}) *of = add(coordinates);
   for (double*& a : task.a) a = add(coordinates);
   double *place = add(wheels), *height = add(wheels), *radius = add(wheels), *stiffness = add(wheels),
-         *scale = add(wheels);
+         *per_scale = add(wheels);
   for (double** of : {&task.up,       &task.along,       &task.from,
                       &task.to,       &task.h,           &task.h_x,
                       &task.h_xx,     &task.looked_up,   &task.normal,
@@ -290,7 +290,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   level.assign(wheels, 1);
   // Lanes without a vehicle: far above a level ground.
   for (std::size_t i = 0; i < wheels * lanes; ++i) {
-    radius[i] = stiffness[i] = scale[i] = 1.0;
+    radius[i] = stiffness[i] = per_scale[i] = 1.0;
     task.h[i] = no_surface;
     task.from[i] = -infinite;
     task.to[i] = infinite;
@@ -320,7 +320,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
         height[number] = of.q0[body + 1] - wheel.radius;
         radius[number] = wheel.radius;
         stiffness[number] = wheel.law.stiffness;
-        scale[number] = vehicle.scale;
+        per_scale[number] = 1.0 / vehicle.scale;
         hertz_[row] = wheel.law.kind == contact::LawKind::hertz ? 1 : 0;
       }
     }
@@ -329,7 +329,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   task.height = height;
   task.radius = radius;
   task.stiffness = stiffness;
-  task.scale = scale;
+  task.per_scale = per_scale;
   task.hertz = hertz_.data();
   task.second = second.data();
   task.level = level.data();

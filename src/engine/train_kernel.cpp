@@ -10,7 +10,8 @@ void load_by_train(const TrainTask& task) {
   is_flat(task) ? load_structure<Surface::flat>(task) : load_structure<Surface::general>(task);
 }
 double update_train_forces(const TrainTask& task) {
-  const Changes changes = is_flat(task) ? update_forces<Surface::flat>(task) : update_forces<Surface::general>(task);
+  const RowMask all = Row{} == Row{};
+  const Changes changes = is_flat(task) ? update_forces<Surface::flat>(task, all) : update_forces<Surface::general>(task, all);
   if (Rows::any(changes.fallen)) return -1.0;
   double largest = 0.0;
   for (int l = 0; l < lanes; ++l)

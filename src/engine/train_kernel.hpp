@@ -38,7 +38,7 @@ inline constexpr int closest_steps = 1;  // of Newton's method a pass: the point
 /// The point of the patch that is closest to the centre, which is at `along` and a radius above `up`. With its height
 /// e above the surface, less a radius, all that the penetration is computed from is small, so that it keeps its digits.
 template <Surface kind>
-Touched closest(const TrainTask& task, const SurfacePatch& p, int i, Row along, Row up) {
+TRAVERSE_INLINE Touched closest(const TrainTask& task, const SurfacePatch& p, int i, Row along, Row up) {
   const Row origin = rows(task.station)[i];
   const SurfaceRows<kind> f = surface_under<kind>(task, p, i, origin);
   const Row low = rows(p.low)[i] - origin, high = rows(p.high)[i] - origin, across = along - origin;
@@ -68,18 +68,22 @@ inline constexpr double least_root = 1e-6;  // m^0.5: from where the next contac
 inline constexpr int most_steps = 60;       // of a contact's own Newton iteration
 inline constexpr double root_tolerance = 1e-14;
 
-/// r with r^2 + yielding r^3 = target > 0, from a guess, by Newton's method, which does not pass the solution twice.
-inline Row hertz_root(Row guess, Row yielding, Row target) {
-  Row r = guess;
+/// r with r^2 + yielding r^3 = target > 0 of n wheels, from guesses, by Newton's method, which does not pass the solution
+/// twice. All at once, as one by one would wait for each division; each stops where it has arrived.
+TRAVERSE_INLINE void hertz_roots(int n, const Row* yielding, const Row* target, Row* r) {
+  RowMask arrived[most_wheels] = {};
   for (int step = 0; step < most_steps; ++step) {
-    const Row excess = r * r * (1.0 + yielding * r) - target, slope = r * (2.0 + 3.0 * yielding * r);
-    Row next = r - excess / slope;
-    next = next < 0.1 * r ? 0.1 * r : next;
-    const Row change = Rows::magnitude(next - r);
-    r = next;
-    if (!Rows::any(change > root_tolerance + 1e-7 * r)) break;
+    RowMask all = arrived[0] == arrived[0];
+    for (int j = 0; j < n; ++j) {
+      const Row x = r[j], excess = x * x * (1.0 + yielding[j] * x) - target[j];
+      Row next = x - excess / (x * (2.0 + 3.0 * yielding[j] * x));
+      next = next < 0.1 * x ? 0.1 * x : next;
+      r[j] = arrived[j] ? x : next;
+      arrived[j] |= ~(Rows::magnitude(next - x) > root_tolerance + 1e-7 * next);
+      all &= arrived[j];
+    }
+    if (!Rows::any(~all)) break;
   }
-  return r;
 }
 
 /// One wheel of every lane: the patch that it touches, and the point.
@@ -89,13 +93,13 @@ struct ContactRow {
 };
 
 /// On level rigid ground.
-inline Touched on_ground(Row height, Row along, Row up) {
+TRAVERSE_INLINE Touched on_ground(Row height, Row along, Row up) {
   return {height - up, Rows::fill(1.0), Row{}, along, Row{}, Row{}, up != up};
 }
 
 /// What the patch makes of a force at the point.
 template <Surface kind>
-ContactRow on_patch(const SurfacePatch& p, int i, const Touched& at) {
+TRAVERSE_INLINE ContactRow on_patch(const SurfacePatch& p, int i, const Touched& at) {
   const Row length = rows(p.length)[i], shear = rows(p.shear)[i];
   const Shapes s = shapes_at<kind>(at.xi, length, shear);
   Row structure{};
@@ -108,41 +112,69 @@ ContactRow on_patch(const SurfacePatch& p, int i, const Touched& at) {
   return {at, length, shear, structure, seat.value, seat.by_x};
 }
 
+/// a in the lanes of a mask, b in others.
+TRAVERSE_INLINE ContactRow choose(RowMask there, const ContactRow& a, const ContactRow& b) {
+  const auto of = [there](Row x, Row y) { return there ? x : y; };
+  return {{of(a.at.depth, b.at.depth), of(a.at.up, b.at.up), of(a.at.along, b.at.along), of(a.at.station, b.at.station),
+           of(a.at.xi, b.at.xi), of(a.at.turn, b.at.turn), there ? a.at.fallen : b.at.fallen},
+          of(a.length, b.length),
+          of(a.shear, b.shear),
+          of(a.structure, b.structure),
+          of(a.seat, b.seat),
+          of(a.seat_by_x, b.seat_by_x)};
+}
+
 /// The patch that is touched: of two the one where the wheel is deeper.
 template <Surface kind>
 ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
+  const SurfacePatch &first = task.patch[0], &other = task.patch[1];
   int* active = task.active + static_cast<long>(i) * lanes;
   for (int l = 0; l < lanes; ++l) active[l] = 0;
-  if (task.level[i] != 0 && task.second[i] == 0 && task.patch[0].together[i] == 2)
-    return {on_ground(rows(task.h)[i], along, up), Rows::fill(1.0), Row{}, Row{}, Row{}, Row{}};
-  ContactRow c = on_patch<kind>(task.patch[0], i, closest<kind>(task, task.patch[0], i, along, up));
-  if (task.second[i] == 0) return c;
-  const SurfacePatch& p = task.patch[1];
-  const ContactRow other = on_patch<kind>(p, i, closest<kind>(task, p, i, along, up));
-  const RowMask two = rows(p.high)[i] >= rows(p.low)[i], there = two & (other.at.depth > c.at.depth);
-  const auto choose = [there](Row a, Row b) { return there ? a : b; };
-  for (int l = 0; l < lanes; ++l) active[l] = Rows::holds(there, l) ? 1 : 0;
-  return {{choose(other.at.depth, c.at.depth), choose(other.at.up, c.at.up), choose(other.at.along, c.at.along),
-           choose(other.at.station, c.at.station), choose(other.at.xi, c.at.xi), choose(other.at.turn, c.at.turn),
-           c.at.fallen | (two & other.at.fallen)},
-          choose(other.length, c.length),
-          choose(other.shear, c.shear),
-          choose(other.structure, c.structure),
-          choose(other.seat, c.seat),
-          choose(other.seat_by_x, c.seat_by_x)};
+  const ContactRow ground = {on_ground(rows(task.h)[i], along, up), Rows::fill(1.0), Row{}, Row{}, Row{}, Row{}};
+  if (task.level[i] != 0 && task.second[i] == 0 && first.together[i] == 2) return ground;
+  ContactRow c = on_patch<kind>(first, i, closest<kind>(task, first, i, along, up));
+  RowMask two{};
+  if (task.second[i] != 0) {
+    const ContactRow second = on_patch<kind>(other, i, closest<kind>(task, other, i, along, up));
+    two = rows(other.high)[i] >= rows(other.low)[i];
+    const RowMask there = two & (second.at.depth > c.at.depth), fallen = c.at.fallen | (two & second.at.fallen);
+    for (int l = 0; l < lanes; ++l) active[l] = Rows::holds(there, l) ? 1 : 0;
+    c = choose(there, second, c);
+    c.at.fallen = fallen;
+  }
+  if (task.level[i] == 0 || first.together[i] == 1) return c;
+  // Level ground is the same whatever the lanes beside it are on.
+  Row on_it{};
+  for (int l = 0; l < lanes; ++l) Rows::numbers(on_it)[l] = first.slot[i * lanes + l] == task.ground ? 1.0 : 0.0;
+  return choose((on_it > 0.0) & ~two, ground, c);
 }
 
-/// The normal force with all others held, by the law; `q`: what vehicle and structure yield to it.
-inline Row own_force(const TrainTask& task, int i, Row depth, Row q, Row seat) {
-  const Row stiffness = rows(task.stiffness)[i], yielding = (q + seat) * stiffness;
-  const Row target = depth + q * rows(task.normal)[i];
-  const RowMask touches = target > 0.0;
-  const Row one = Rows::fill(1.0), safe = touches ? target : one;
-  if (task.hertz[i] == 0) return touches ? stiffness * safe / (1.0 + yielding) : Row{};
-  Row& root = rows(task.root)[i];
-  const Row r = hertz_root(touches ? root : one, touches ? yielding : Row{}, safe), least = Rows::fill(least_root);
-  root = touches ? (r > least ? r : least) : root;
-  return touches ? stiffness * r * r * r : Row{};
+/// The normal forces of n wheels, the first of them i, each with all others held, by the law; `q`: what vehicle and
+/// structure yield to them.
+TRAVERSE_INLINE void own_forces(const TrainTask& task, RowMask open, int i, int n, const Row* depth, const Row* q,
+                                const Row* seat, Row* force) {
+  Row yielding[most_wheels], target[most_wheels], root[most_wheels];
+  for (int j = 0; j < n; ++j) {
+    const Row all = (q[j] + seat[j]) * rows(task.stiffness)[i + j], own = depth[j] + q[j] * rows(task.normal)[i + j];
+    const RowMask touches = own > 0.0;
+    yielding[j] = touches ? all : Row{};
+    target[j] = touches ? own : Row{};
+    // Where nothing touches the root is 1.
+    root[j] = task.hertz[i + j] == 0 ? Rows::fill(1.0) : touches ? rows(task.root)[i + j] : Rows::fill(1.0);
+    force[j] = touches ? own : Rows::fill(1.0);
+  }
+  hertz_roots(n, yielding, force, root);
+  for (int j = 0; j < n; ++j) {
+    const RowMask touches = target[j] > 0.0;
+    const Row stiffness = rows(task.stiffness)[i + j], r = root[j], least = Rows::fill(least_root);
+    if (task.hertz[i + j] == 0) {
+      force[j] = touches ? stiffness * target[j] / (1.0 + yielding[j]) : Row{};
+      continue;
+    }
+    Row& known = rows(task.root)[i + j];
+    known = open & touches ? (r > least ? r : least) : known;
+    force[j] = touches ? stiffness * r * r * r : Row{};
+  }
 }
 
 /// What a pass has changed, lane by lane.
@@ -151,9 +183,10 @@ struct Changes {
   RowMask fallen;  // a wheel's centre is below the surface
 };
 
-/// The forces of all contacts with the structure as `nodal` has it.
+/// The forces of all contacts with the structure as `nodal` has it, in the lanes that are still open; others stay as
+/// they are, so that no lane depends on its neighbours.
 template <Surface kind>
-Changes update_forces(const TrainTask& task) {
+Changes update_forces(const TrainTask& task, RowMask open) {
   Row most{};
   RowMask fallen{};
   for (int k = 0; k < task.blocks; ++k) {
@@ -172,25 +205,34 @@ Changes update_forces(const TrainTask& task) {
       up[j] = y;
       along[j] = x;
     }
+    Row depth[most_wheels], q[most_wheels], seat[most_wheels], seat_by_x[most_wheels], force[most_wheels];
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
       const ContactRow c = touched_patch<kind>(task, i, along[j], up[j]);
-      const Row depth = c.at.depth, before = rows(task.normal)[i];
       fallen |= c.at.fallen;
-      const Row force = own_force(task, i, depth, (H[j * m + j] + c.structure) * c.at.up * c.at.up, c.seat);
-      const Row change = Rows::magnitude(force - before) / rows(task.scale)[i];
+      depth[j] = c.at.depth;
+      q[j] = (H[j * m + j] + c.structure) * c.at.up * c.at.up;
+      seat[j] = c.seat;
+      seat_by_x[j] = c.seat_by_x;
+      const auto take = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
+      take(task.normal_up, c.at.up);
+      take(task.normal_along, c.at.along);
+      take(task.turn, c.at.turn);
+      take(task.ahead, c.at.station - along[j]);
+      take(task.station, c.at.station);
+    }
+    own_forces(task, open, first, m, depth, q, seat, force);
+    for (int j = 0; j < m; ++j) {
+      const int i = first + j;
+      const Row change = Rows::magnitude(force[j] - rows(task.normal)[i]) * rows(task.per_scale)[i];
       most = change <= most ? most : change;  // one that is not a number stays
-      rows(task.normal)[i] = force;
-      rows(task.normal_up)[i] = c.at.up;
-      rows(task.normal_along)[i] = c.at.along;
-      rows(task.force_up)[i] = force * c.at.up;
+      const auto take = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
+      take(task.normal, force[j]);
+      take(task.force_up, force[j] * rows(task.normal_up)[i]);
       // The element's inner shape drives the wheel on: f^2/2 ds/dx (wheel_on_track.hpp).
-      rows(task.force_along)[i] = force * (c.at.along + 0.5 * c.seat_by_x * force);
-      rows(task.penetration)[i] = depth;
-      rows(task.turn)[i] = c.at.turn;
-      rows(task.seat)[i] = c.seat;
-      rows(task.ahead)[i] = c.at.station - along[j];
-      rows(task.station)[i] = c.at.station;
+      take(task.force_along, force[j] * (rows(task.normal_along)[i] + 0.5 * seat_by_x[j] * force[j]));
+      take(task.penetration, depth[j]);
+      take(task.seat, seat[j]);
     }
   }
   return {most, fallen};

@@ -21,7 +21,7 @@ struct SurfaceRows {
 };
 
 /// Unknown k of the element of every lane, whose slots are these.
-inline Row gather(const TrainTask& task, const int* slot, int together, int k) {
+TRAVERSE_INLINE Row gather(const TrainTask& task, const int* slot, int together, int k) {
   const double* nodal = task.nodal + task.offset[k];
   if (together == 1) return *reinterpret_cast<const Rows::Unaligned*>(nodal + slot[0]);
   Row value{};
@@ -31,7 +31,7 @@ inline Row gather(const TrainTask& task, const int* slot, int together, int k) {
 }
 
 template <Surface kind>
-SurfaceRows<kind> surface_under(const TrainTask& task, const SurfacePatch& p, int i, Row origin) {
+TRAVERSE_INLINE SurfaceRows<kind> surface_under(const TrainTask& task, const SurfacePatch& p, int i, Row origin) {
   SurfaceRows<kind> s;
   const int *slot = p.slot + static_cast<long>(i) * lanes, o = task.per_node - 2, together = p.together[i];
   const Row length = rows(p.length)[i];
@@ -69,7 +69,7 @@ struct SurfacePoint {
 };
 
 template <Surface kind>
-SurfacePoint point_at(const SurfaceRows<kind>& f, Row s) {
+TRAVERSE_INLINE SurfacePoint point_at(const SurfaceRows<kind>& f, Row s) {
   SurfacePoint p;
   p.xi = f.xi_start + s * f.per_length;
   const Row slope = (f.c[1] + p.xi * (2.0 * f.c[2] + p.xi * (3.0 * f.c[3]))) * f.per_length;
@@ -102,7 +102,7 @@ struct Shapes {
 };
 
 template <Surface kind>
-Shapes shapes_at(Row xi, Row length, Row shear) {
+TRAVERSE_INLINE Shapes shapes_at(Row xi, Row length, Row shear) {
   const Row rest = 1.0 - xi, rise = xi * xi * (3.0 - 2.0 * xi);
   Shapes s;
   s.value[0] = 1.0 - rise;
@@ -127,7 +127,7 @@ Shapes shapes_at(Row xi, Row length, Row shear) {
 /// How the penetration grows with an element's unknowns, in their order (wheel_on_track.hpp: normal_on_beam), from the
 /// normal's parts.
 template <Surface kind>
-void directions(const TrainTask& task, Row xi, Row length, Row shear, const double* turned, Row up, Row along,
+TRAVERSE_INLINE void directions(const TrainTask& task, Row xi, Row length, Row shear, const double* turned, Row up, Row along,
                 Row* to) {
   const Shapes s = shapes_at<kind>(xi, length, shear);
   const int o = task.per_node - 2;
@@ -152,7 +152,7 @@ struct Seat {
 };
 
 template <Surface kind>
-Seat seat_at(Row xi, Row length, Row shear, Row yield) {
+TRAVERSE_INLINE Seat seat_at(Row xi, Row length, Row shear, Row yield) {
   const Row hump = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / length;
   if constexpr (kind == Surface::flat) return {yield * hump * hump * hump, yield * 3.0 * hump * hump * by_x};
   const Row quarter = 0.25 * yield, s = shear;

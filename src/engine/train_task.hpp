@@ -73,7 +73,8 @@ struct TrainTask {
 
   // Of every wheel, constant.
   const double *place = nullptr, *height = nullptr;  // m: x of its centre, y of its lowest point, at the start
-  const double *radius = nullptr, *stiffness = nullptr, *scale = nullptr;  // m; N/m^1.5 or N/m; N: what errors count by
+  const double *radius = nullptr, *stiffness = nullptr;  // m; N/m^1.5 or N/m
+  const double* per_scale = nullptr;                     // 1/N: one over what errors of forces count by
   const char* hertz = nullptr;                                             // one a row: the former
   // Of every wheel, in a stage.
   double *up = nullptr, *along = nullptr;  // m: the same without contact forces

@@ -133,7 +133,6 @@ std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<co
        SideBySide::ready(std::span<const SideBySide::Member>(beside), beside.front().lanes->steps()).run()) {
     if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const auto& [runner, one] = members[results.size()];
-    if (getenv("DBG")) fprintf(stderr, "lane %d defect %g  d %g a %g m %g N %g %g\n", (int)crossing.trouble, runner->lanes_->defect(crossing), crossing.deflection[0].value, crossing.acceleration[0].value, crossing.moment[0].value, crossing.least_force, crossing.greatest_force);
     if (crossing.trouble != engine::none || runner->lanes_->defect(crossing) > runner->scene_.most_defect) {
       ++runner->alone_;
       results.push_back(runner->run(train, one, reached));

@@ -24,9 +24,9 @@ const std::string coaches =
     "/options/vehicles/velaro.yml}}\n"
     "train: {vehicles: coach*2, speed: 64.0}\n";
 
-LaneModel model_with(double step) { return {12, 40, structure::find_method("esdirk4"), step}; }
+LaneModel model_with(double step) { return {40, structure::find_method("esdirk4"), step}; }
 
-lanes::CrossingResult trial(bool filtered, double step, double distance) {
+engine::BatchResult trial(bool filtered, double step, double distance) {
   Scene scene = scene_of(coaches);
   scene.sweep.emplace();
   scene.sweep->speeds = {64.0};
@@ -45,8 +45,8 @@ TEST(LaneTrials, LowPassedAccelerationsAreThoseOfTheRunItself) {
                                                        {"step_probes", "true"},
                                                        {"output_lowpass", "30"}});
   const double truth = std::abs(alone.attribute("/summary", "acceleration_lowpass"));
-  const lanes::CrossingResult lane = trial(true, step, 64.0 * alone.attribute("/summary", "end_time"));
-  ASSERT_EQ(lane.trouble, lanes::none);
+  const engine::BatchResult lane = trial(true, step, 64.0 * alone.attribute("/summary", "end_time"));
+  ASSERT_EQ(lane.trouble, engine::none);
   ASSERT_EQ(lane.low_passed.size(), 2U);
   const double found = std::max(lane.low_passed[0].value, lane.low_passed[1].value);
   EXPECT_LT(alone.attribute("/summary", "acceleration_lowpass_time"), alone.attribute("/summary", "end_time") - 0.1);
@@ -57,7 +57,7 @@ TEST(LaneTrials, LowPassedAccelerationsAreThoseOfTheRunItself) {
 
 TEST(LaneTrials, KeepingAccelerationsChangesNothingElse) {
   for (const double step : {1e-3, 5e-4}) {
-    const lanes::CrossingResult with = trial(true, step, 110.0), without = trial(false, step, 110.0);
+    const engine::BatchResult with = trial(true, step, 110.0), without = trial(false, step, 110.0);
     EXPECT_TRUE(without.low_passed.empty());
     for (std::size_t p = 0; p < 2; ++p) {
       EXPECT_NEAR(with.deflection[p].value, without.deflection[p].value, 1e-5 * without.deflection[p].value);

@@ -217,8 +217,8 @@ TEST(ForcePassages, StopsWhenItIsTold) {
 TEST(SpeedClass, HoldsItsSpeeds) {
   for (const double speed : {1.0, 27.8, 38.0546276800871, 100.0, 128.0}) {
     const int number = engine::speed_class(speed);
-    EXPECT_LE(lanes::speed_of_class(number), speed * (1.0 + 1e-9));
-    EXPECT_GT(lanes::speed_of_class(number + 1), speed * (1.0 + 1e-9));
+    EXPECT_LE(engine::speed_of_class(number), speed * (1.0 + 1e-9));
+    EXPECT_GT(engine::speed_of_class(number + 1), speed * (1.0 + 1e-9));
   }
   for (const double speed : speeds) EXPECT_EQ(engine::speed_class(speed), engine::speed_class(speeds.front()));
 }
