@@ -89,11 +89,9 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
   task_.second = arrays_.second.data();
   task_.work = arrays_.add(2 * static_cast<std::size_t>(train_.coordinates));
   double *speed = arrays_.add(1), *end_time = arrays_.add(1), *failed = arrays_.add(1);
-  task_.contraction = arrays_.add(1);
   for (std::size_t l = 0; l < arrays_.lanes; ++l) {
     speed[l] = runs_[l].speed;
     end_time[l] = runs_[l].end_time;
-    task_.contraction[l] = 1.0;
   }
   task_.speed = speed;
   task_.end_time = end_time;
@@ -114,7 +112,7 @@ void Batch::start_structure() {
   beam_.factor = arrays_.add(columns * bb);
   beam_.inverse = arrays_.add(2 * columns * bb);
   beam_.compliance = arrays_.add(10 * static_cast<std::size_t>(beam_.elements));
-  for (double** of : {&beam_.v, &beam_.w, &beam_.v_predicted, &beam_.w_predicted, &beam_.residual, &beam_.solution})
+  for (double** of : {&beam_.v, &beam_.w, &beam_.v_predicted, &beam_.w_predicted, &beam_.residual, &beam_.solution, &beam_.work})
     *of = arrays_.add(unknowns_ + beyond);
   for (double*& a : beam_.a) a = arrays_.add(unknowns_);
   for (std::size_t l = 0; l < runs_.size(); ++l) {
@@ -131,8 +129,8 @@ void Batch::start_structure() {
   train_.unknowns = static_cast<int>(unknowns_ + beyond) * lanes;
   train_.shears = structure_.shears_;
   train_.nodal = arrays_.add(unknowns_ + beyond);
-  train_.nodal_rate = train_.nodal;
-  train_.load = beam_.solution;
+  train_.lost = train_.given = nullptr;
+  train_.load = beam_.work;
 }
 
 // At rest in the state that they were linearised in, but for what follows the surface as it rises.

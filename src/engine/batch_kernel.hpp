@@ -9,10 +9,7 @@
 namespace traverse::engine {
 namespace {
 
-inline constexpr double pass_tolerance = 1e-10;  // of a vehicle's weight: changes of forces still to come
-inline constexpr double pass_rounding = 1e-9;    // below this a change that stays is taken as rounding
-inline constexpr double measurable = 1e-10;      // changes above it tell a contraction
-inline constexpr double best_contraction = 1e-3, growth = 1.1;
+inline constexpr double pass_tolerance = 1e-7;  // of a vehicle's weight: of the last change of a force
 inline constexpr int most_passes = 60;
 inline constexpr double near_look_up = 2e-5;  // m: as far a track's parabola is exact
 
@@ -35,6 +32,7 @@ inline void place_wheel(const BatchTask& t, int at, int lane) {
     p.slot[at] = from.element < 0 ? train.ground : beam.first_column[from.element] * beam.block * lanes + lane;
     p.x[at] = from.x;
     p.length[at] = from.length;
+    p.per_length[at] = 1.0 / from.length;
     p.shear[at] = from.shear;
     p.yield[at] = from.yield;
     p.low[at] = from.low;
@@ -125,15 +123,19 @@ inline void predict_structure(const BeamTask& beam, const StageRows& rule, int k
   }
 }
 
+/// The structure under the forces as they are, in lanes that are open.
 template <Surface kind, class Structure>
-void solve_structure(const BatchTask& t, const Structure& structure, Row displacement) {
+void solve_structure(const BatchTask& t, const Structure& structure, Row displacement, RowMask open) {
   const BeamTask& beam = *t.beam;
   const int n = beam.columns * beam.block;
-  Row* a = rows(beam.solution);
-  for (int i = 0; i < n; ++i) a[i] = rows(beam.residual)[i];
+  Row *x = rows(beam.work), *solution = rows(beam.solution), *nodal = rows(t.train->nodal);
+  for (int i = 0; i < n; ++i) x[i] = rows(beam.residual)[i];
   add_loads<kind>(*t.train);
-  structure.solve(a);
-  for (int i = 0; i < n; ++i) rows(t.train->nodal)[i] = rows(beam.v_predicted)[i] + displacement * a[i];
+  structure.solve(x);
+  for (int i = 0; i < n; ++i) {
+    solution[i] = open ? x[i] : solution[i];
+    nodal[i] = rows(beam.v_predicted)[i] + displacement * solution[i];
+  }
 }
 
 /// gone: m that all runs have travelled then; anew: steps have another length than before.
@@ -141,41 +143,28 @@ template <Surface kind>
 void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
   TrainTask& train = *t.train;
   const BeamTask& beam = *t.beam;
-  const Row displacement = row(train.stage[stage].displacement);
+  const Row rate = row(train.stage[stage].rate), displacement = row(train.stage[stage].displacement);
   for (int k = 0; k < train.blocks; ++k) *rows(t.distance[k]) = Rows::fill(gone);
   predict_structure(beam, train.stage[stage], stage + 1);
   predict(train, stage, t.work);
   place_wheels(t, anew);
   look_up_heights(t, 0.0);
-  Row &contraction = *rows(t.contraction), &failed = *rows(t.failed);
+  Row& failed = *rows(t.failed);
   with_beam(beam, [&](const auto& structure) {
-    structure.find_residual();
-    Row before{};
+    structure.find_residual(rate, displacement);
     RowMask open = failed == Row{};
-    for (int pass = 1; Rows::any(open); ++pass) {
-      solve_structure<kind>(t, structure, displacement);
+    for (int pass = 0; Rows::any(open); ++pass) {
+      solve_structure<kind>(t, structure, displacement, open);
       const Changes changes = update_forces<kind>(train, open);
-      const Row change = changes.most;
       failed = open & changes.fallen ? Rows::fill(below_surface) : failed;
-      if (pass > 1) {
-        Row measured = change / before;
-        measured = measured > best_contraction ? measured : Rows::fill(best_contraction);
-        measured = measured < 1.0 ? measured : Rows::fill(1.0);
-        contraction = open & (before > measurable) ? measured : contraction;
-      }
-      RowMask done = change * contraction <= pass_tolerance;
-      if (pass > 1) done |= (change <= pass_rounding) & (change > 0.1 * before);
-      if (pass == 1) contraction = open & done ? (growth * contraction < 1.0 ? growth * contraction : Rows::fill(1.0)) : contraction;
-      open &= ~(done & ~look_up_heights(t, near_look_up)) & (failed == Row{});
-      before = change;
-      if (pass == most_passes) {
-        failed = open ? Rows::fill(not_converged) : failed;
-        break;
-      }
+      open &= (changes.most > pass_tolerance) | look_up_heights(t, near_look_up);
+      open &= failed == Row{};
+      if (pass < most_passes) continue;
+      failed = open ? Rows::fill(not_converged) : failed;
+      break;
     }
-    solve_structure<kind>(t, structure, displacement);
+    structure.accelerations(rate, rows(beam.a[stage + 1]));
   });
-  for (int i = 0; i < beam.columns * beam.block; ++i) rows(beam.a[stage + 1])[i] = rows(beam.solution)[i];
   end_stage_of_train<kind>(train, stage, false);
 }
 

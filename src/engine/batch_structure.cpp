@@ -57,8 +57,11 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const train::Fleet& fleet
   const auto read = [&](Mat matrix) { return solve::BlockTridiagonal::from(matrix, block); };
   const solve::BlockTridiagonal mass = read(beam.mass()), stiffness = read(beam.stiffness());
   solve::BlockTridiagonal damping = mass;
-  if (beam.springs() == nullptr && beam.dampers() == nullptr)
-    damping.combine(beam.rayleigh().a, mass, 0.0, mass, beam.rayleigh().b, stiffness);
+  task_.proportional = beam.springs() == nullptr && beam.dampers() == nullptr;
+  task_.by_mass = beam.rayleigh().a;
+  task_.by_stiffness = beam.rayleigh().b;
+  if (task_.proportional)
+    damping.combine(task_.by_mass, mass, 0.0, mass, task_.by_stiffness, stiffness);
   else
     damping = read(beam.damping());
   mass_ = by_columns(mass);

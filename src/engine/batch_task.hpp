@@ -80,7 +80,6 @@ struct BatchTask {
   HeightTable heights;
   double* const* distance = nullptr;  // a row of every block: VehicleBlock::distance
   char* second = nullptr;             // TrainTask::second
-  double* contraction = nullptr;  // a row: by how much a pass makes changes of forces smaller
   double* failed = nullptr;       // a row: Trouble
   double* work = nullptr;         // two rows a coordinate
 

@@ -1,5 +1,5 @@
-// The structure's side of a stage (beam_task.hpp): J a = P + forces - C w~ - K v~, with w = w~ + rate a and
-// v = v~ + displacement a.
+// The structure's side of a stage (beam_task.hpp): J a = P + forces - C w~ - K v~ with J = M + rate C + displacement K,
+// from w = w~ + rate a and v = v~ + displacement a.
 //
 // Elimination from both ends to the column in the middle keeps two chains of products busy. As all kernels it is seen by
 // no linker (train_kernel.hpp).
@@ -97,30 +97,55 @@ struct BeamRows {
     });
   }
 
-  /// P - C w~ - K v~.
-  void find_residual() const {
-    const Row *v = rows(t.v_predicted), *w = rows(t.w_predicted);
-    Row* r = rows(t.residual);
-    for (int i = 0; i < t.columns * b; ++i) r[i] = Rows::fill(t.dead[i]);
-    for (int c = 0; c < t.columns; ++c) {
-      const double *d = t.damping + 2L * c * bb, *k = t.stiffness + 2L * c * bb;
-      const long at = static_cast<long>(c) * b, next = at + b;
-      for (int j = 0; j < b; ++j)
-        for (int i = 0; i < b; ++i) r[at + i] -= d[i + b * j] * w[at + j] + k[i + b * j] * v[at + j];
-      if (c + 1 == t.columns) break;
-      d += bb;
-      k += bb;
-      for (int j = 0; j < b; ++j)
-        for (int i = 0; i < b; ++i) {
-          r[at + i] -= d[i + b * j] * w[next + j] + k[i + b * j] * v[next + j];
-          r[next + j] -= d[i + b * j] * w[at + i] + k[i + b * j] * v[at + i];
-        }
+  /// r with J x = r + forces. Damping C = a M + b K spares its product: with alpha = a/(1 + rate a)
+  ///
+  ///   J (acceleration + alpha w~) = P + forces - K (v~ + (b - alpha (displacement + rate b)) w~)
+  ///
+  /// and x is the acceleration and alpha w~, of which v~ is made less already. Else x is the acceleration.
+  void find_residual(Row rate, Row displacement) const {
+    Row *v = rows(t.v_predicted), *w = rows(t.w_predicted), *r = rows(t.residual), *u = rows(t.work);
+    const int n = t.columns * b;
+    for (int i = 0; i < n; ++i) r[i] = Rows::fill(t.dead[i]);
+    if (!t.proportional) {
+      subtract_product(t.stiffness, v, r);
+      subtract_product(t.damping, w, r);
+      return;
     }
+    const Row alpha = shift(rate), of_w = t.by_stiffness - alpha * (displacement + rate * t.by_stiffness);
+    for (int i = 0; i < n; ++i) {
+      u[i] = v[i] + of_w * w[i];
+      v[i] -= displacement * alpha * w[i];
+    }
+    subtract_product(t.stiffness, u, r);
+  }
+  /// The accelerations of x.
+  void accelerations(Row rate, Row* a) const {
+    const Row *w = rows(t.w_predicted), *x = rows(t.solution), alpha = t.proportional ? shift(rate) : Row{};
+    for (int i = 0; i < t.columns * b; ++i) a[i] = x[i] - alpha * w[i];
   }
 
   static constexpr int most_block = Size > 0 ? Size : most_unknowns_of_a_column;
 
  private:
+  Row shift(Row rate) const { return t.by_mass / (1.0 + rate * t.by_mass); }
+
+  /// y -= A x.
+  void subtract_product(const double* A, const Row* x, Row* y) const {
+    for (int c = 0; c < t.columns; ++c) {
+      const double *own = A + 2L * c * bb, *next = own + bb;
+      const Row* of = x + static_cast<long>(c) * b;
+      Row* to = y + static_cast<long>(c) * b;
+      for (int j = 0; j < b; ++j)
+        for (int i = 0; i < b; ++i) to[i] -= own[i + b * j] * of[j];
+      if (c + 1 == t.columns) break;
+      for (int j = 0; j < b; ++j)
+        for (int i = 0; i < b; ++i) {
+          to[i] -= next[i + b * j] * of[b + j];
+          to[b + j] -= next[i + b * j] * of[i];
+        }
+    }
+  }
+
   void invert_pivot(int column) const {
     invert(pivot(column), b);
     for (int j = 0; j < b; ++j)

@@ -13,6 +13,8 @@ struct BeamTask {
   int block = 2, columns = 0;                                // unknowns of a column
   const double *mass = nullptr, *damping = nullptr, *stiffness = nullptr;  // [column][2]: blocks by columns, of it and
                                                                            // of its unknowns with those of the next one
+  bool proportional = false;     // C = by_mass M + by_stiffness K
+  double by_mass = 0.0, by_stiffness = 0.0;  // 1/s, s
   const char* held = nullptr;    // of every unknown: whether a support holds it
   const double* dead = nullptr;  // of every unknown, N and N m: P
 
@@ -25,7 +27,8 @@ struct BeamTask {
   double *v = nullptr, *w = nullptr, *a[most_kept] = {};
   double *v_predicted = nullptr, *w_predicted = nullptr;
   double* residual = nullptr;  // P - C w - K v of the predicted state
-  double* solution = nullptr;  // accelerations of the stage
+  double* solution = nullptr;  // of the stage: accelerations, but for what BeamRows::find_residual leaves out
+  double* work = nullptr;      // loads, and what solves them
   // The upper half of what every element yields to forces and moments on its transverse unknowns, row by row; those
   // beside the diagonal twice: 10 rows an element.
   double* compliance = nullptr;

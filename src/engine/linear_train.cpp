@@ -141,6 +141,7 @@ void LinearTrain::place_wheel(const train::WheelContact& c, std::size_t at) {
     p.slot[at] = on_beam ? 2 * task_.per_node * c.slots[static_cast<std::size_t>(k)] : task_.ground;
     p.x[at] = on_beam ? patch.x : 0.0;
     p.length[at] = on_beam ? patch.length : 1.0;
+    p.per_length[at] = 1.0 / p.length[at];
     p.shear[at] = on_beam ? patch.shear : 0.0;
     p.yield[at] = on_beam ? patch.yield : 0.0;
     for (double* entry : p.compliance) entry[at] = 0.0;

@@ -245,7 +245,7 @@ void for_wheels_on_elements(const TrainTask& task, Use use) {
     for (int patch = 0; patch < (task.second[i] != 0 ? 2 : 1); ++patch) {
       const SurfacePatch& p = task.patch[patch];
       if (p.together[i] == 2) continue;
-      const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) / length;
+      const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) * rows(p.per_length)[i];
       Row direction[most_nodal];
       directions<kind>(task, xi, length, rows(p.shear)[i], task.turn + static_cast<long>(i) * lanes,
                        rows(task.normal_up)[i], rows(task.normal_along)[i], direction);
@@ -303,8 +303,11 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
       Row sum = rows(task.a_free)[first + i];
       for (int j = 0; j < m; ++j) sum += rows(b.Y)[i * m + j] * up[j] + rows(b.Y_along)[i * m + j] * along[j];
       a[i] = sum;
-      w[i] += rate * sum;
-      given += rows(b.driven)[i] * sum;
+    }
+    if (task.lost == nullptr) continue;
+    for (int i = 0; i < f; ++i) {
+      w[i] += rate * a[i];
+      given += rows(b.driven)[i] * a[i];
     }
     const Row* value = rows(b.C.value);
     for (int e = 0; e < b.C.count; ++e) lost += value[e] * w[b.C.row[e]] * w[b.C.column[e]];
@@ -318,8 +321,10 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
     add_product(b.G, 1.0, w, up_rate);
     add_product(b.G_along, 1.0, w, along_rate);
   }
-  rows(task.lost)[stage + 1] = lost;
-  rows(task.given)[stage + 1] = given;
+  if (task.lost != nullptr) {
+    rows(task.lost)[stage + 1] = lost;
+    rows(task.given)[stage + 1] = given;
+  }
   for (int i = 0; i < task.wheels; ++i) {
     const Row force = rows(task.normal)[i], largest = rows(task.largest)[i];
     rows(task.history[stage])[i] = force;

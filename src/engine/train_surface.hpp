@@ -35,7 +35,7 @@ TRAVERSE_INLINE SurfaceRows<kind> surface_under(const TrainTask& task, const Sur
   SurfaceRows<kind> s;
   const int *slot = p.slot + static_cast<long>(i) * lanes, o = task.per_node - 2, together = p.together[i];
   const Row length = rows(p.length)[i];
-  s.per_length = 1.0 / length;
+  s.per_length = rows(p.per_length)[i];
   s.xi_start = (origin - rows(p.x)[i]) * s.per_length;
   const Row v0 = gather(task, slot, together, o), v1 = gather(task, slot, together, o + task.per_node);
   Row left = length * gather(task, slot, together, o + 1);

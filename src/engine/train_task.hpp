@@ -43,7 +43,7 @@ struct VehicleBlock {
 struct SurfacePatch {
   int* slot = nullptr;                     // where the element's values are in TrainTask::nodal
   char* together = nullptr;                // one a row: 1 where its slots follow each other, 2 on rigid ground, else 0
-  double *x = nullptr, *length = nullptr;  // of the element, m
+  double *x = nullptr, *length = nullptr, *per_length = nullptr;  // of the element, m, m, 1/m
   double* shear = nullptr;                 // 12 EI/(GA length^2)
   double* yield = nullptr;                 // length^3/(3 EI), m/N, where the element bends between its nodes
   double *low = nullptr, *high = nullptr;  // m: stations between which the piece reaches
@@ -103,7 +103,7 @@ struct TrainTask {
   bool shears = false;                                              // some of its elements do
   double *nodal = nullptr, *nodal_rate = nullptr, *load = nullptr;  // m and rad; N and N m
 
-  // Of every stage, a row: W lost in dampers, and what the drives give.
+  // Of every stage, a row: W lost in dampers, and what the drives give; null: nobody asks.
   double *lost = nullptr, *given = nullptr;
 };
 

@@ -32,11 +32,15 @@ inline void invert(Row* A, int n) {
   }
 }
 
-/// y[row] += scale A[row, column] x[column].
-template <class Scale>
-void add_product(const SparseRows& A, Scale scale, const Row* x, Row* y) {
+/// y[row] += sign A[row, column] x[column]; entries of a row follow each other.
+inline void add_product(const SparseRows& A, double sign, const Row* x, Row* y) {
   const Row* value = rows(A.value);
-  for (int i = 0; i < A.count; ++i) y[A.row[i]] += scale * value[i] * x[A.column[i]];
+  for (int e = 0; e < A.count;) {
+    const int i = A.row[e];
+    Row sum{};
+    for (; e < A.count && A.row[e] == i; ++e) sum += value[e] * x[A.column[e]];
+    y[i] += sign * sum;
+  }
 }
 
 /// to (freedom x wheels) = inverse G^T.

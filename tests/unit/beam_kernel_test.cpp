@@ -1,0 +1,153 @@
+// The structure of runs side by side (engine/beam_kernel.hpp) against dense matrices, lane by lane.
+#include "engine/beam_kernel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "engine/processor.hpp"
+
+namespace traverse::engine {
+namespace {
+
+using Eigen::Index;
+
+/// A chain of columns with three symmetric positive matrices and some held unknowns.
+struct Chain {
+  Chain(int block, int columns, bool proportional) : size(block * columns), held(static_cast<std::size_t>(size), 0) {
+    for (Eigen::MatrixXd* A : {&M, &C, &K}) {
+      A->setZero(size, size);
+      for (int c = 0; c + 1 < columns; ++c) {
+        const Eigen::MatrixXd R = Eigen::MatrixXd::NullaryExpr(2 * block, 2 * block, [&] { return random(); });
+        A->block(c * block, c * block, 2 * block, 2 * block) +=
+            R * R.transpose() + 0.1 * Eigen::MatrixXd::Identity(2 * block, 2 * block);
+      }
+    }
+    if (proportional) C = 0.3 * M + 0.02 * K;
+    for (const int i : {0, (columns / 2) * block, size - block}) held[static_cast<std::size_t>(i)] = 1;
+    for (int i = 0; i < size; ++i) dead.push_back(random());
+    for (int e = 0; e + 1 < columns; ++e) first_column.push_back(e);
+    task.block = block;
+    task.columns = columns;
+    task.mass = by_columns(M);
+    task.damping = by_columns(C);
+    task.stiffness = by_columns(K);
+    task.proportional = proportional;
+    task.by_mass = 0.3;
+    task.by_stiffness = 0.02;
+    task.held = held.data();
+    task.dead = dead.data();
+    const int bb = block * block;
+    task.pivot = rows_of(columns * bb);
+    task.factor = rows_of(columns * bb);
+    task.inverse = rows_of(2 * columns * bb);
+    task.compliance = rows_of(10 * columns);
+    for (double** of : {&task.v_predicted, &task.w_predicted, &task.residual, &task.solution}) *of = rows_of(size);
+    task.elements = columns - 1;
+    task.first_column = first_column.data();
+    for (int i = 0; i < size * lanes; ++i) {
+      task.v_predicted[i] = random();
+      task.w_predicted[i] = held[static_cast<std::size_t>(i / lanes)] != 0 ? 0.0 : random();
+    }
+  }
+
+  double random() { return std::uniform_real_distribution<double>(-0.5, 0.5)(generator); }
+  double* rows_of(int count) {
+    memory.push_back(std::make_unique<Aligned>(static_cast<std::size_t>(count * lanes)));
+    return memory.back()->data();
+  }
+  const double* by_columns(const Eigen::MatrixXd& A) {
+    std::vector<double>& to = *matrices.emplace_back(std::make_unique<std::vector<double>>());
+    const int b = task.block;
+    for (int c = 0; c < task.columns; ++c)
+      for (const int next : {0, 1})
+        for (int j = 0; j < b; ++j)
+          for (int i = 0; i < b; ++i)
+            to.push_back(c + next < task.columns ? A(c * b + i, (c + next) * b + j) : 0.0);
+    return to.data();
+  }
+  /// (M + rate C + displacement K)^-1 of the unknowns that are not held, 0 of others.
+  Eigen::MatrixXd inverse(double rate, double displacement) const {
+    Eigen::MatrixXd J = M + rate * C + displacement * K;
+    for (int i = 0; i < size; ++i) {
+      if (held[static_cast<std::size_t>(i)] == 0) continue;
+      J.row(i).setZero();
+      J.col(i).setZero();
+      J(i, i) = 1.0;
+    }
+    J = J.inverse().eval();
+    for (int i = 0; i < size; ++i)
+      if (held[static_cast<std::size_t>(i)] != 0) J(i, i) = 0.0;
+    return J;
+  }
+
+  std::mt19937 generator{7};
+  int size;
+  Eigen::MatrixXd M, C, K;
+  std::vector<char> held;
+  std::vector<double> dead;
+  std::vector<int> first_column;
+  BeamTask task;
+  std::vector<std::unique_ptr<Aligned>> memory;
+  std::vector<std::unique_ptr<std::vector<double>>> matrices;
+};
+
+class BeamKernel : public testing::TestWithParam<std::tuple<int, int, bool>> {};
+
+TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
+  const auto [block, columns, proportional] = GetParam();
+  Chain chain(block, columns, proportional);
+  BeamTask& t = chain.task;
+  Row rate{}, displacement{};
+  for (int l = 0; l < lanes; ++l) {
+    Rows::numbers(rate)[l] = 0.1 + 0.01 * l;
+    Rows::numbers(displacement)[l] = 0.2 + 0.02 * l;
+  }
+  const auto column = [&](const double* numbers, int l) {
+    Eigen::VectorXd x(chain.size);
+    for (int i = 0; i < chain.size; ++i) x[i] = numbers[i * lanes + l];
+    return x;
+  };
+  std::vector<Eigen::VectorXd> v, w;
+  for (int l = 0; l < lanes; ++l) {
+    v.push_back(column(t.v_predicted, l));
+    w.push_back(column(t.w_predicted, l));
+  }
+  double* a = chain.rows_of(chain.size);
+  with_beam(t, [&](const auto& structure) {
+    structure.factorise(rate, displacement);
+    structure.find_residual(rate, displacement);
+    std::copy_n(t.residual, chain.size * lanes, t.solution);
+    structure.solve(rows(t.solution));
+    structure.accelerations(rate, rows(a));
+  });
+  for (int l = 0; l < lanes; ++l) {
+    const double d = Rows::numbers(displacement)[l];
+    const Eigen::MatrixXd inverse = chain.inverse(Rows::numbers(rate)[l], d);
+    const Eigen::VectorXd P = Eigen::Map<const Eigen::VectorXd>(chain.dead.data(), chain.size);
+    const Eigen::VectorXd exact = inverse * (P - chain.C * w[static_cast<std::size_t>(l)] - chain.K * v[static_cast<std::size_t>(l)]);
+    EXPECT_LT((column(a, l) - exact).cwiseAbs().maxCoeff(), 1e-13);
+    // v~ and what the accelerations add is where the structure is.
+    const Eigen::VectorXd there = column(t.v_predicted, l) + d * column(t.solution, l);
+    EXPECT_LT((there - v[static_cast<std::size_t>(l)] - d * exact).cwiseAbs().maxCoeff(), 1e-13);
+    for (int e = 0; e + 1 < columns; ++e) {
+      const int first = e * block;
+      const int unknown[4] = {first, first + 1, first + block, first + block + 1};
+      for (int i = 0, n = 0; i < 4; ++i)
+        for (int j = i; j < 4; ++j, ++n)
+          EXPECT_NEAR(t.compliance[(10 * e + n) * lanes + l], (i == j ? 1.0 : 2.0) * d * inverse(unknown[i], unknown[j]),
+                      1e-13);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Chains, BeamKernel,
+                         testing::Combine(testing::Values(2, 3, 5), testing::Values(2, 3, 6, 27), testing::Bool()));
+
+}  // namespace
+}  // namespace traverse::engine
