@@ -71,15 +71,16 @@ inline constexpr double root_tolerance = 1e-14;
 /// r with r^2 + yielding r^3 = target > 0 of n wheels, from guesses, by Newton's method, which does not pass the solution
 /// twice. All at once, as one by one would wait for each division; each stops where it has arrived.
 TRAVERSE_INLINE void hertz_roots(int n, const Row* yielding, const Row* target, Row* r) {
-  RowMask arrived[most_wheels] = {};
+  RowMask arrived[most_wheels];
+  for (int j = 0; j < n; ++j) arrived[j] = RowMask{};
   for (int step = 0; step < most_steps; ++step) {
-    RowMask all = arrived[0] == arrived[0];
+    RowMask all = ~RowMask{};
     for (int j = 0; j < n; ++j) {
       const Row x = r[j], excess = x * x * (1.0 + yielding[j] * x) - target[j];
       Row next = x - excess / (x * (2.0 + 3.0 * yielding[j] * x));
       next = next < 0.1 * x ? 0.1 * x : next;
       r[j] = arrived[j] ? x : next;
-      arrived[j] |= ~(Rows::magnitude(next - x) > root_tolerance + 1e-7 * next);
+      arrived[j] |= ~(Rows::magnitude(next - x) > root_tolerance + 1e-6 * next);
       all &= arrived[j];
     }
     if (!Rows::any(~all)) break;

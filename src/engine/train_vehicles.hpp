@@ -153,6 +153,7 @@ inline void guess_forces(const TrainTask& task, const StageRows& rule, int stage
     for (int j = most_stages; j < most_stages + 2; ++j) guess += row(rule.guess[j]) * rows(task.history[j])[i];
     guess = guess > 0.0 ? guess : Row{};
     const Row before = rows(task.normal)[i], ratio = before > 0.0 ? guess / before : Row{};
+    rows(task.root)[i] *= ratio > 0.5 ? (2.0 + ratio) * (1.0 / 3.0) : Rows::fill(1.0);  // about its third root
     rows(task.force_along)[i] *= ratio;
     rows(task.force_up)[i] = before > 0.0 ? rows(task.force_up)[i] * ratio : guess;
     rows(task.normal)[i] = guess;
