@@ -3,10 +3,10 @@
 /usr/bin/python3 benchmarks/lanes.py [BUILD_FOLDER] [OUT_FOLDER] [--smallest] [--beside OTHER_BUILD_FOLDER]
 
 Runs sweeps of moving forces (options/scenes/hslm_sweep.yml with one station, hslm_two_spans.yml with 41) and of eight
-coaches (fifty_metre_train.yml by 16 modes), in turn with one, four and eight runs side by side on one rank, with eight on
+coaches (fifty_metre_train.yml by 20 elements), in turn with one, four and eight runs side by side on one rank, with eight on
 two, and the coaches' one by one too, which PETSc's TS then drives; takes the quickest of several rounds. Peaks are held
 against those of a finer sweep: forces looked at 400 times a period (sweep_instants), coaches with a quarter of the step
-and twice the modes. The error is the largest difference of any run and station, over the largest of the run's stations.
+and twice the elements. The error is the largest difference of any run and station, over the largest of the run's stations.
 --beside adds another build of the program, an older one say. Prints a table; writes lanes.csv.
 """
 
@@ -20,10 +20,10 @@ import runs
 FORCES = {"lanes": [1, 4, 8], "options": {}, "fine": {"sweep_instants": "400"}, "rounds": 9,
           "smallest": {"sweep_hslm_a": "1,9", "sweep_speed": "60,64,0.4"}}
 COACHES = {"lanes": [0, 1, 4, 8], "rounds": 3,
-           "options": {"sweep_speed": "77,84,1", "model_vehicles": "linear", "model_modes": "16", "ts_dt": "6e-4",
-                       "beam_elements_per_span": "64", "step_probes": "true"},
-           "fine": {"ts_dt": "1.5e-4", "model_modes": "32"},
-           "smallest": {"train_vehicles": "coach", "sweep_speed": "77,84,7", "model_modes": "4", "ts_dt": "2e-3"}}
+           "options": {"sweep_speed": "77,84,1", "model_vehicles": "linear", "ts_dt": "6e-4",
+                       "beam_elements_per_span": "20", "step_probes": "true"},
+           "fine": {"ts_dt": "1.5e-4", "beam_elements_per_span": "40"},
+           "smallest": {"train_vehicles": "coach", "sweep_speed": "77,84,7", "beam_elements_per_span": "6", "ts_dt": "2e-3"}}
 SCENES = {"hslm_sweep": FORCES, "hslm_two_spans": FORCES, "fifty_metre_train": COACHES}
 QUANTITIES = {"deflection": "peak_deflection", "acceleration": "peak_acceleration", "moment": "peak_moment",
               "wheel force": "greatest_wheel_force"}

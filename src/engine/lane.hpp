@@ -1,5 +1,5 @@
 // What the kernels share: a number of every run, one in each lane of a vector. As all that kernels are made of, it is
-// compiled once for each kind of processor and seen by no linker (crossing_kernel.hpp).
+// compiled once for each kind of processor and seen by no linker (train_kernel.hpp).
 #pragma once
 
 namespace traverse::engine {

@@ -1,7 +1,7 @@
 // A train of linear vehicles over spans that do not touch each other, each by all the modes of its elements: what is
 // computed is what the elements themselves give with the same method, but for rounding and the contacts' first power.
 // A span that the train has left rings freely, which is known exactly whenever somebody looks; ahead of the train all
-// rest. So a step is that of the vehicles and of the few spans under them (crossing_kernel.hpp has the same equations):
+// rest. So a step is that of the vehicles and of the few spans under them:
 //
 //   vehicles   J a = G^T F - r0 - C w~ - K v~,   J = M + rate C + d K;   H = d G J^-1 G^T
 //   modes      q = z - p,  S p = sum phi F,  S = (1 + rate c)/d + omega^2, span by span

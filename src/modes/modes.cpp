@@ -167,12 +167,6 @@ Basis bending_basis(const beam::Beam& beam, int count) {
   return basis;
 }
 
-Basis lowest_of(const Basis& basis, int count) {
-  const double last = basis.omega[static_cast<std::size_t>(count) - 1] * (1.0 + distinct);
-  const auto kept = std::upper_bound(basis.omega.begin(), basis.omega.end(), last) - basis.omega.begin();
-  return {{basis.omega.begin(), basis.omega.begin() + kept}, {basis.shape.begin(), basis.shape.begin() + kept}};
-}
-
 Modes as_stored(const beam::Beam& beam, const Basis& basis, const beam::ShapePoints& points) {
   Modes modes;
   modes.omega = basis.omega;

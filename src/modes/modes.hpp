@@ -44,8 +44,6 @@ struct Basis {
 /// Collective; the same on every rank. The `count` lowest modes of bending, and the remaining copies of the last
 /// one's frequency, so that nothing depends on which of equal spans comes first. Not for layered tracks.
 Basis bending_basis(const beam::Beam& beam, int count);
-/// Those of a basis of at least so many.
-Basis lowest_of(const Basis& basis, int count);
 
 /// The `count` lowest of the modes that the beam's model gives.
 Basis given_basis(const beam::Beam& beam, int count);

@@ -99,7 +99,7 @@ void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<s
         omega->first / (2.0 * std::numbers::pi), omega->second / (2.0 * std::numbers::pi), rayleigh.a, rayleigh.b));
 }
 
-void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes, const modes::Basis* more) {
+void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
   if (!beam) return;
   const results::Stage stage(scene.model_modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
   statics = std::make_shared<structure::BeamOperator>(*beam);
@@ -107,11 +107,7 @@ void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes, co
   if (scene.by_given_modes())
     modal.emplace(*beam, *statics, scene.model_modes);
   else
-    modal.emplace(
-        *beam, *statics,
-        more != nullptr ? modes::lowest_of(*more, scene.model_modes) : modes::bending_basis(*beam, scene.model_modes),
-        scene.damping_of_modes);
-  if (!scene.vehicles.empty()) modal->add_probes(scene.output.probes, scene.self_weight ? scene.gravity : 0.0);
+    modal.emplace(*beam, *statics, modes::bending_basis(*beam, scene.model_modes), scene.damping_of_modes);
   if (scene.by_given_modes() && modal->modes() < scene.beam->given->omega.size())
     notes.push_back(fmt::format("of these modes the {} lowest", modal->modes()));
   if (scene.by_given_modes()) return;

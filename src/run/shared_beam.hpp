@@ -22,9 +22,8 @@ struct SharedBeam {
   /// Collective, once. Sets the scene's Rayleigh damping. Finds the first two distinct frequencies where damping ratios
   /// need them or frequencies_wanted is true.
   void damp(const Scene& scene, bool frequencies_wanted, std::vector<std::string>& notes);
-  /// Collective, after damp. Prepares what transient and static runs need. more: modes of the same beam, among which
-  /// the scene's are; null: they are computed.
-  void prepare(const Scene& scene, std::vector<std::string>& notes, const modes::Basis* more = nullptr);
+  /// Collective, after damp. Prepares what transient and static runs need.
+  void prepare(const Scene& scene, std::vector<std::string>& notes);
 
   const beam::Beam* bridge() const { return beam ? &*beam : nullptr; }
   double first_period() const;  // s; 0: not known

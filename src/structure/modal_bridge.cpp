@@ -38,12 +38,6 @@ ModalBridge::ModalBridge(const beam::Beam& beam, BeamOperator& statics, int coun
   influence_ = influence_of(lines_of_modes(), {});
 }
 
-// Bending waves: frequencies grow with the square of the number.
-double ModalBridge::next_omega() const {
-  const double growth = 1.0 + 1.0 / static_cast<double>(modes());
-  return omega().back() * growth * growth;
-}
-
 std::vector<ModalBridge::Line> ModalBridge::lines_of_modes() const {
   std::vector<Line> lines;
   for (const auto& shape : basis_.shape) {

@@ -80,12 +80,6 @@ class ModalBridge {
   const std::vector<double>& sigma() const { return sigma_; }
   /// Damping between modes, 1/s: phi^T C* phi with zeros on its diagonal, symmetric; 0 x 0 where C* is diagonal.
   const Eigen::MatrixXd& cross_damping() const { return cross_damping_; }
-  /// About the frequency of the next mode, the lowest of those left out, rad/s, and its decay rate by Rayleigh damping,
-  /// 1/s.
-  double next_omega() const;
-  double next_sigma() const { return 0.5 * (ab_.a + ab_.b * next_omega() * next_omega()); }
-  /// s: b of the damping b K, by which modes far above follow what bends them; 0 where ratios damp the modes.
-  double lag() const { return ab_.b; }
   bool coupled() const { return cross_damping_.size() > 0; }
   /// Whether dampers couple modes with each other, or with those left out (after add_probes).
   bool dampers_couple() const { return coupled() || !probes_.deflection_by_rate.empty(); }
