@@ -24,9 +24,9 @@ class BatchStructure {
   /// Why a structure cannot be taken so, in words; empty: it can.
   static std::string obstacle(const beam::Beam& beam);
 
-  /// The fleet's wheels as they stand on the structure; dead: its nodal forces without wheels; probes in m; gravity of
+  /// The fleet's wheels as they stand on the structure; rest: its displacements without them; probes in m; gravity of
   /// its own weight, m/s2 (0: it has none). The beam must outlive it.
-  BatchStructure(const beam::Beam& beam, const train::Fleet& fleet, std::vector<double> dead,
+  BatchStructure(const beam::Beam& beam, const train::Fleet& fleet, const std::vector<double>& rest,
                  const std::vector<double>& probes, double gravity);
   BatchStructure(const BatchStructure&) = delete;
   BatchStructure& operator=(const BatchStructure&) = delete;

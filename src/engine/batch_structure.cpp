@@ -22,6 +22,21 @@ std::vector<double> by_columns(const solve::BlockTridiagonal& A) {
   return numbers;
 }
 
+std::vector<double> product(const solve::BlockTridiagonal& A, const std::vector<double>& x) {
+  const auto b = static_cast<std::size_t>(A.block), bb = b * b;
+  std::vector<double> y(x.size(), 0.0);
+  for (std::size_t c = 0; c < static_cast<std::size_t>(A.nodes); ++c)
+    for (std::size_t j = 0; j < b; ++j)
+      for (std::size_t i = 0; i < b; ++i) {
+        y[c * b + i] += A.diagonal[c * bb + i + b * j] * x[c * b + j];
+        if (c + 1 == static_cast<std::size_t>(A.nodes)) continue;
+        const double coupling = A.upper[c * bb + i + b * j];
+        y[c * b + i] += coupling * x[(c + 1) * b + j];
+        y[(c + 1) * b + j] += coupling * x[c * b + i];
+      }
+  return y;
+}
+
 /// The unknowns of an element counted from its first column's, or -1 where they are not in two neighbouring ones.
 std::array<int, most_nodal> places(const beam::Line& line, int block, int element) {
   std::array<int, most_nodal> place{};
@@ -50,9 +65,9 @@ std::string BatchStructure::obstacle(const beam::Beam& beam) {
   return {};
 }
 
-BatchStructure::BatchStructure(const beam::Beam& beam, const train::Fleet& fleet, std::vector<double> dead,
+BatchStructure::BatchStructure(const beam::Beam& beam, const train::Fleet& fleet, const std::vector<double>& rest,
                                const std::vector<double>& probes, double gravity)
-    : beam_(beam), dead_(std::move(dead)), held_(beam.fixed()), kinks_(beam.bridge().mesh.kinks()) {
+    : beam_(beam), held_(beam.fixed()), kinks_(beam.bridge().mesh.kinks()) {
   const int block = beam.block();
   const auto read = [&](Mat matrix) { return solve::BlockTridiagonal::from(matrix, block); };
   const solve::BlockTridiagonal mass = read(beam.mass()), stiffness = read(beam.stiffness());
@@ -73,6 +88,7 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const train::Fleet& fleet
   task_.damping = damping_.data();
   task_.stiffness = stiffness_.data();
   task_.held = held_.data();
+  dead_ = product(stiffness, rest);  // whatever bends it; settlements are no part of the matrices' columns
   task_.dead = dead_.data();
   find_columns();
   for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {

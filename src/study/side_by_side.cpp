@@ -16,13 +16,20 @@ constexpr double one_place = 1e-9;         // m: events nearer than that are one
 constexpr double beside_track = 1.0;       // m: wheels touch it before and behind their centres
 constexpr double most_of_tracks = 2.56e8;  // bytes, of tracks that are kept
 
+/// The structure, and in `rest` its displacements without vehicles.
+std::unique_ptr<structure::Structure> with_rest(std::unique_ptr<structure::Structure> structure,
+                                                std::vector<double>& rest) {
+  rest = structure->rest();
+  return structure;
+}
+
 }  // namespace
 
 SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
     : scene_(scene),
       shared_(shared),
       input_(system_input(scene, false)),
-      system_(PETSC_COMM_SELF, carrier(scene, shared, input_), input_),
+      system_(PETSC_COMM_SELF, with_rest(carrier(scene, shared, input_), rest_), input_),
       state_(static_cast<std::size_t>(system_.local_size())) {
   system_.start(true, state_.data());
   system_.linearise_vehicles(state_.data());
@@ -33,7 +40,7 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
   for (const train::WheelContact& c : fleet_.wheels) wheels_.push_back(fleet_.coordinates(c).x());
   state_.resize(2 * static_cast<std::size_t>(shared.beam->local_unknowns()));
   const double gravity = scene.self_weight ? scene.gravity : 0.0;
-  structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, fleet_, system_.structure()->dead_load(),
+  structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, fleet_, rest_,
                                                               scene.output.probes, gravity);
   plan_.structure = structure_.get();
   plan_.level_until = scene.profile.level() && !system_.structure()->bent_at_rest() ? shared.beam->mesh().start() : -1e300;

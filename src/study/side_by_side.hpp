@@ -86,6 +86,7 @@ class SideBySide {
   const Scene& scene_;
   const SharedBeam& shared_;
   coupling::SystemInput input_;
+  std::vector<double> rest_;  // m, rad: of the bridge without vehicles
   coupling::System system_;
   train::Fleet fleet_;
   std::string obstacle_;
