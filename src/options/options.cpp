@@ -53,6 +53,7 @@ std::string why_no_number(const std::string& word, const Row& row) {
   }
   const std::size_t end = word.find_first_not_of("+-.0123456789eE");
   if (end == std::string::npos || row.unit.empty() || !parse_number(word.substr(0, end), number)) return "";
+  if (row.unit == "m/s") return " (a speed is in m/s, or in km/h as in 100 km/h)";
   return fmt::format(" (a number stands without its unit, in {})", row.unit);
 }
 

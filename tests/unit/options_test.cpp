@@ -235,7 +235,8 @@ TEST(Numbers, SayWhatStandsInTheWay) {
   };
   EXPECT_PRED2(contains, refused("beam_spans", "28 m"), "a number stands without its unit, in m");
   EXPECT_PRED2(contains, refused("beam_EI", "260 GN.m2"), "a number stands without its unit, in N m2");
-  EXPECT_PRED2(contains, refused("train_speed", "30 mph"), "without its unit, in m/s");
+  EXPECT_PRED2(contains, refused("train_speed", "30 mph"), "a speed is in m/s, or in km/h as in 100 km/h");
+  EXPECT_PRED2(contains, refused("load_speed", "144_km/h"), "or in km/h");
   EXPECT_PRED2(contains, refused("ts_dt", "1,5e-3"), "decimals follow a point: 1.5e-3");
   EXPECT_PRED2(contains, refused("beam_EI", "1e10,2e10"), "one number is wanted, not a list");
   EXPECT_PRED2(contains, refused("beam_spans", "28,0"), "'0' is none of what is allowed");
