@@ -18,6 +18,7 @@ TRAVERSE_LANES_DECLARE(void set_batch_step(const BatchTask& t);
                        void finish_batch_step(const BatchTask& t, double gone); void look_at_batch(const BatchTask& t);
                        void look_before_kink(const BatchTask& t); void finish_batch(const BatchTask& t);)
 
+constexpr double last_change = 1e-7;  // of a force, over the vehicle's weight
 constexpr double nowhere = -1e9;  // m: where no track is looked up
 
 /// The memory of a batch, and its way.
@@ -130,6 +131,8 @@ void Batch::start_structure() {
   train_.shears = structure_.shears_;
   train_.nodal = arrays_.add(unknowns_ + beyond);
   train_.lost = train_.given = nullptr;
+  train_.settled = arrays_.add(arrays_.blocks.size());
+  train_.tolerance = last_change;
   train_.load = beam_.work;
 }
 

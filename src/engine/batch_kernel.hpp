@@ -9,7 +9,6 @@
 namespace traverse::engine {
 namespace {
 
-inline constexpr double pass_tolerance = 1e-7;  // of a vehicle's weight: of the last change of a force
 inline constexpr int most_passes = 60;
 inline constexpr double near_look_up = 2e-5;  // m: as far a track's parabola is exact
 
@@ -153,11 +152,12 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
   with_beam(beam, [&](const auto& structure) {
     structure.find_residual(rate, displacement);
     RowMask open = failed == Row{};
+    for (int k = 0; k < train.blocks; ++k) rows(train.settled)[k] = Row{};
     for (int pass = 0; Rows::any(open); ++pass) {
       solve_structure<kind>(t, structure, displacement, open);
       const Changes changes = update_forces<kind>(train, open);
       failed = open & changes.fallen ? Rows::fill(below_surface) : failed;
-      open &= (changes.most > pass_tolerance) | look_up_heights(t, near_look_up);
+      open &= (changes.most > train.tolerance) | look_up_heights(t, near_look_up);
       open &= failed == Row{};
       if (pass < most_passes) continue;
       failed = open ? Rows::fill(not_converged) : failed;

@@ -178,6 +178,23 @@ TRAVERSE_INLINE void own_forces(const TrainTask& task, RowMask open, int i, int 
   }
 }
 
+/// Whether forces of a vehicle on level rigid ground would not change by more than the tolerance in another pass, as what
+/// its wheels yield to the new forces of each other tells.
+inline RowMask settles(const TrainTask& task, const VehicleBlock& b, const Row* force) {
+  const int m = b.wheels, first = b.first_wheel;
+  RowMask still = ~RowMask{};
+  for (int j = 0; j < m; ++j) {
+    const int i = first + j;
+    if (task.level[i] == 0 || task.second[i] != 0 || task.patch[0].together[i] != 2) return RowMask{};
+    Row moved{};
+    for (int l = 0; l < m; ++l)
+      if (l != j) moved += Rows::magnitude(rows(b.H)[j * m + l] * (force[l] - rows(task.normal)[first + l]));
+    const Row stiffness = rows(task.stiffness)[i], tangent = task.hertz[i] == 0 ? stiffness : 1.5 * stiffness * rows(task.root)[i];
+    still &= tangent * moved * rows(task.per_scale)[i] <= task.tolerance;
+  }
+  return still;
+}
+
 /// What a pass has changed, lane by lane.
 struct Changes {
   Row most;        // largest change of a force over its scale
@@ -187,12 +204,14 @@ struct Changes {
 /// The forces of all contacts with the structure as `nodal` has it, in the lanes that are still open; others stay as
 /// they are, so that no lane depends on its neighbours.
 template <Surface kind>
-Changes update_forces(const TrainTask& task, RowMask open) {
+Changes update_forces(const TrainTask& task, RowMask of_runs) {
   Row most{};
   RowMask fallen{};
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
     if (*b.awake == 0) continue;
+    const RowMask open = task.settled == nullptr ? of_runs : of_runs & (rows(task.settled)[k] == 0.0);
+    if (!Rows::any(open)) continue;
     const int m = b.wheels, first = b.first_wheel;
     const Row* H = rows(b.H);
     const Row *up_forces = rows(task.force_up) + first, *along_forces = rows(task.force_along) + first;
@@ -223,10 +242,15 @@ Changes update_forces(const TrainTask& task, RowMask open) {
       take(task.station, c.at.station);
     }
     own_forces(task, open, first, m, depth, q, seat, force);
+    RowMask settled{};
+    if (task.settled != nullptr) {
+      settled = settles(task, b, force);
+      rows(task.settled)[k] = open & settled ? Rows::fill(1.0) : rows(task.settled)[k];
+    }
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
       const Row change = Rows::magnitude(force[j] - rows(task.normal)[i]) * rows(task.per_scale)[i];
-      most = change <= most ? most : change;  // one that is not a number stays
+      most = (change <= most) | settled ? most : change;  // one that is not a number stays
       const auto take = [&](double* to, Row value) { rows(to)[i] = open ? value : rows(to)[i]; };
       take(task.normal, force[j]);
       take(task.force_up, force[j] * rows(task.normal_up)[i]);

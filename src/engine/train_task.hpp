@@ -103,6 +103,11 @@ struct TrainTask {
   bool shears = false;                                              // some of its elements do
   double *nodal = nullptr, *nodal_rate = nullptr, *load = nullptr;  // m and rad; N and N m
 
+  // A row of every block: 1 in lanes where another pass would change no force by more than `tolerance` of its scale, as the
+  // vehicle stands on rigid ground alone; null: nobody asks.
+  double* settled = nullptr;
+  double tolerance = 0.0;
+
   // Of every stage, a row: W lost in dampers, and what the drives give; null: nobody asks.
   double *lost = nullptr, *given = nullptr;
 };
