@@ -19,7 +19,7 @@ TRAVERSE_LANES_DECLARE(void set_batch_step(const BatchTask& t);
                        void look_before_kink(const BatchTask& t); void finish_batch(const BatchTask& t);)
 
 constexpr double last_change = 1e-7;  // of a force, over the vehicle's weight
-constexpr double nowhere = -1e9;  // m: where no track is looked up
+constexpr double nowhere = -1e9;      // m: where no track is looked up
 
 /// The memory of a batch, and its way.
 class Batch {
@@ -113,12 +113,15 @@ void Batch::start_structure() {
   beam_.factor = arrays_.add(columns * bb);
   beam_.inverse = arrays_.add(2 * columns * bb);
   beam_.compliance = arrays_.add(10 * static_cast<std::size_t>(beam_.elements));
-  for (double** of : {&beam_.v, &beam_.w, &beam_.v_predicted, &beam_.w_predicted, &beam_.residual, &beam_.solution, &beam_.work})
+  for (double** of :
+       {&beam_.v, &beam_.w, &beam_.v_predicted, &beam_.w_predicted, &beam_.residual, &beam_.solution, &beam_.work})
     *of = arrays_.add(unknowns_ + beyond);
   for (double*& a : beam_.a) a = arrays_.add(unknowns_);
   for (std::size_t l = 0; l < runs_.size(); ++l) {
     const BatchRun& run = runs_[l];
-    const double own = run.fleet->vehicles.front().dynamics->linear()->matrices().u[3 * run.fleet->vehicles.front().wheels.front().body];
+    const double own =
+        run.fleet->vehicles.front().dynamics->linear()->matrices().u[3 *
+                                                                     run.fleet->vehicles.front().wheels.front().body];
     for (std::size_t i = 0; i < unknowns_; ++i) {
       beam_.v[i * arrays_.lanes + l] = (*run.state)[i];
       beam_.w[i * arrays_.lanes + l] = own != 0.0 ? (*run.state)[unknowns_ + i] * run.speed / own : 0.0;
@@ -178,9 +181,8 @@ void Batch::start_wheels() {
         const train::WheelContact& c = fleet.wheels[static_cast<std::size_t>(vehicle.first_wheel + j)];
         arrays_.start_contact(at, c);
         train_.along[at] = train_.station[at] = train_.place[at];  // while it stands still
-        const auto known = std::find_if(structure_.surfaces_.begin(), structure_.surfaces_.end(), [&](const auto& s) {
-          return s.radius == fleet.wheel(c).radius;
-        });
+        const auto known = std::find_if(structure_.surfaces_.begin(), structure_.surfaces_.end(),
+                                        [&](const auto& s) { return s.radius == fleet.wheel(c).radius; });
         table_[at] = static_cast<int>(known - structure_.surfaces_.begin());
       }
     }
@@ -208,8 +210,7 @@ void Batch::set_track() {
   if (shared) return;
   double* values = arrays_.add(track->values.size());
   for (std::size_t i = 0; i < track->values.size(); ++i)
-    for (std::size_t l = 0; l < arrays_.lanes; ++l)
-      values[i * arrays_.lanes + l] = runs_[l].track->values[i];
+    for (std::size_t l = 0; l < arrays_.lanes; ++l) values[i * arrays_.lanes + l] = runs_[l].track->values[i];
   task_.heights.values = values;
 }
 
@@ -261,7 +262,8 @@ void Batch::run() {
   const std::vector<BatchStretch>& stretches = plan_.stretches;
   const bool keeps = std::any_of(stretches.begin(), stretches.end(), [](const BatchStretch& s) { return s.keeps; });
   const auto going = [&] {
-    return std::any_of(task_.failed, task_.failed + arrays_.lanes, [](double trouble) { return static_cast<int>(trouble) == none; });
+    return std::any_of(task_.failed, task_.failed + arrays_.lanes,
+                       [](double trouble) { return static_cast<int>(trouble) == none; });
   };
   TRAVERSE_LANES_CALL(look_at_batch(task_));
   if (keeps) keep_accelerations();
@@ -315,7 +317,8 @@ std::vector<BatchResult> Batch::results() const {
     r.longest_loss = looks_.longest[l];
     for (std::size_t v = 0; v < arrays_.blocks.size(); ++v)
       for (int i = 0; i < arrays_.blocks[v].freedom; ++i)
-        r.farthest.push_back(looks_.farthest[rows(static_cast<std::size_t>(arrays_.blocks[v].first_coordinate + i)) + l]);
+        r.farthest.push_back(
+            looks_.farthest[rows(static_cast<std::size_t>(arrays_.blocks[v].first_coordinate + i)) + l]);
   }
   return results;
 }

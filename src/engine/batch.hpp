@@ -1,6 +1,6 @@
-// Runs side by side: passages of trains that differ in numbers only (speeds, tracks, masses, springs) over one structure
-// by its elements, one run in each lane of the processor's vectors. The same stages of the same methods as a run by
-// itself has (coupling/system.hpp), by the kernel that its train has, too (train_kernel.hpp).
+// Runs side by side: passages of trains that differ in numbers only (speeds, tracks, masses, springs) over one
+// structure by its elements, one run in each lane of the processor's vectors. The same stages of the same methods as a
+// run by itself has (coupling/system.hpp), by the kernel that its train has, too (train_kernel.hpp).
 #pragma once
 
 #include <deque>
@@ -65,8 +65,8 @@ struct BatchStretch {
 struct BatchRun {
   const train::Fleet* fleet = nullptr;
   const track::HeightTable* track = nullptr;   // stations as in all runs
-  const std::vector<double>* state = nullptr;   // of the structure at t = 0, v and w; w of the fleet's own speed
-  double speed = 0.0, end_time = 0.0;           // m/s; s: peaks count until then
+  const std::vector<double>* state = nullptr;  // of the structure at t = 0, v and w; w of the fleet's own speed
+  double speed = 0.0, end_time = 0.0;          // m/s; s: peaks count until then
 };
 
 struct BatchPlan {

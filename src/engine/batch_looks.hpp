@@ -1,5 +1,5 @@
-// What is seen of runs side by side (batch_task.hpp): peaks at the probes and extremes of wheel forces, between steps too,
-// lane by lane as app::Curve and app::WheelExtremes have them for one run.
+// What is seen of runs side by side (batch_task.hpp): peaks at the probes and extremes of wheel forces, between steps
+// too, lane by lane as app::Curve and app::WheelExtremes have them for one run.
 #pragma once
 
 #include "engine/batch_task.hpp"
@@ -12,7 +12,9 @@ inline constexpr double near_peak = 0.9;    // of the largest magnitude so far: 
 inline constexpr double most_uneven = 4.0;  // as in run/turn.hpp
 inline constexpr int latest = looks_kept - 1;
 
-inline RowMask runs_until(const BatchTask& t, double gone) { return gone / row(t.speed) <= row(t.end_time) * (1.0 + 1e-12); }
+inline RowMask runs_until(const BatchTask& t, double gone) {
+  return gone / row(t.speed) <= row(t.end_time) * (1.0 + 1e-12);
+}
 
 inline double* take_turns(double** kept) {
   double* const oldest = kept[0];
@@ -34,7 +36,8 @@ inline void add_wheels(const BatchTask& t, const ProbeForms& p, Row& deflection,
     const Row x = rows(train.station)[i], force = rows(train.force_up)[i];
     const RowMask there = (x >= p.from) & (x <= p.to) & (force != 0.0);
     if (!Rows::any(there)) continue;
-    const Row lever = rows(train.normal)[i] * (rows(train.normal_along)[i] + rows(train.normal_up)[i] * rows(train.turn)[i]);
+    const Row lever =
+        rows(train.normal)[i] * (rows(train.normal_along)[i] + rows(train.normal_up)[i] * rows(train.turn)[i]);
     const Row load[2] = {there ? -force : Row{}, there ? train.surface_height * lever : Row{}};
     const Row xi = (x - p.from) / length;
     const RowMask left = x < p.x;
@@ -122,7 +125,9 @@ inline Row turn(const double* at, double* const* seen, int i, int m, const Stenc
   const Row of_three = middle + 0.5 * slope * behind;
   if (!five) return of_three;
   const double s0 = at[0] - at[2], s1 = -before, s3 = after, s4 = at[4] - at[2];
-  const auto missed = [&](double d, Row Y) { return (Y - middle - d * (slope + bend * d)) / ((d - s1) * d * (d - s3)); };
+  const auto missed = [&](double d, Row Y) {
+    return (Y - middle - d * (slope + bend * d)) / ((d - s1) * d * (d - s3));
+  };
   const Row c = missed(s0, y(0)), fourth = (missed(s4, y(4)) - c) / (s4 - s0), e = c - fourth * s0;
   const Row first = slope + e * (s1 * s3), second = bend - e * (s1 + s3) + fourth * (s1 * s3),
             third = e - fourth * (s1 + s3);
@@ -224,7 +229,8 @@ inline void look_at_turns(const BatchTask& t, int m) {
   for (int j = 0; j < t.train->wheels; ++j) {
     const auto y = [&](int k) { return rows(s.force[k])[j]; };
     const Row F = y(m), before = F - y(by.left), after = y(by.right) - F;
-    const RowMask turns = counts & (before * after <= Row{}) & ((F - y(m - 1)) * (y(m + 1) - F) <= Row{}) & (after != Row{});
+    const RowMask turns =
+        counts & (before * after <= Row{}) & ((F - y(m - 1)) * (y(m + 1) - F) <= Row{}) & (after != Row{});
     const double x = t.train->place[static_cast<long>(j) * lanes];
     if (!Rows::any(turns) || !smooth(t, x, at[by.left], at[by.right])) continue;
     Row behind, top = turn(at, s.force, j, m, by, false, behind);

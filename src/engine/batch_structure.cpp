@@ -60,7 +60,8 @@ std::string BatchStructure::obstacle(const beam::Beam& beam) {
   const auto first = places(line, beam.block(), 0);
   for (int e = 0; e < line.mesh.elements(); ++e) {
     const auto own = places(line, beam.block(), e);
-    if (own != first || std::find(own.begin(), own.end(), -1) != own.end()) return "joints part the unknowns of its nodes";
+    if (own != first || std::find(own.begin(), own.end(), -1) != own.end())
+      return "joints part the unknowns of its nodes";
   }
   return {};
 }
@@ -93,7 +94,8 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const train::Fleet& fleet
   find_columns();
   for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
     const double radius = fleet.wheel(fleet.wheels[i]).radius;
-    const auto known = std::find_if(surfaces_.begin(), surfaces_.end(), [&](const Surface& s) { return s.radius == radius; });
+    const auto known =
+        std::find_if(surfaces_.begin(), surfaces_.end(), [&](const Surface& s) { return s.radius == radius; });
     if (known == surfaces_.end()) add_surface(fleet, i);
   }
   const beam::Recovery recovery(beam, probes, gravity);

@@ -11,7 +11,7 @@ namespace traverse::engine {
 /// The patches under a wheel whose centre is between two stations.
 struct PatchesThere {
   struct Patch {
-    int element = -1;  // -1: rigid ground
+    int element = -1;                                                                // -1: rigid ground
     double x = 0.0, length = 1.0, shear = 0.0, yield = 0.0, low = 1.0, high = -1.0;  // SurfacePatch
   };
   double from = 0.0, to = 0.0;  // m
@@ -30,17 +30,17 @@ struct HeightTable {
   int stations = 0;                    // 0: level
   bool shared = true;                  // all runs have one track
   double start = 0.0, distance = 1.0;  // m
-  const double* values = nullptr;      // [station][height, slope*distance], m: numbers, or rows where they are not shared
+  const double* values = nullptr;  // [station][height, slope*distance], m: numbers, or rows where they are not shared
 };
 
 /// How a station responds (recovery_section.hpp): forms of v1, theta1, v2, theta2 of its element.
 struct ProbeForms {
   int unknown[4] = {};
-  double deflection[3][4] = {};  // of v, w and a, m
-  double acceleration[4] = {};   // of a, m/s2
-  double nodal_moment[4] = {};   // of v, N m
-  double moment[3][4] = {};      // what else of the moment follows from v, w and a, N m
-  double constant[2] = {};       // of its own weight and temperature: deflection, moment
+  double deflection[3][4] = {};          // of v, w and a, m
+  double acceleration[4] = {};           // of a, m/s2
+  double nodal_moment[4] = {};           // of v, N m
+  double moment[3][4] = {};              // what else of the moment follows from v, w and a, N m
+  double constant[2] = {};               // of its own weight and temperature: deflection, moment
   double from = 0.0, to = 0.0, x = 0.0;  // m: of the element, of the station
   /// What a force or a moment at xi of the element adds, left and right of the station, to the deflection and to the
   /// moment: by powers of xi.
@@ -52,20 +52,20 @@ inline constexpr int looks_kept = 5;
 
 /// What is seen of the runs from step to step: rows of the latest instants, peaks.
 struct LookState {
-  long known = 0, looks = 0;       // instants since the last kink of moments, and since the start
-  double gone[looks_kept] = {};    // m: travelled
-  double* seen[looks_kept] = {};   // [deflections, accelerations, moments, rates of moments]
-  double* force[looks_kept] = {};  // normal, of all wheels
-  double* peak = nullptr;          // [deflections, accelerations, moments]: magnitudes
-  double* peak_time = nullptr;     // s
+  long known = 0, looks = 0;                     // instants since the last kink of moments, and since the start
+  double gone[looks_kept] = {};                  // m: travelled
+  double* seen[looks_kept] = {};                 // [deflections, accelerations, moments, rates of moments]
+  double* force[looks_kept] = {};                // normal, of all wheels
+  double* peak = nullptr;                        // [deflections, accelerations, moments]: magnitudes
+  double* peak_time = nullptr;                   // s
   double *least = nullptr, *greatest = nullptr;  // N: a row
-  double *lost_at = nullptr;                     // of every wheel, s: when it lost contact; below 0: it touches
+  double* lost_at = nullptr;                     // of every wheel, s: when it lost contact; below 0: it touches
   double *losses = nullptr, *longest = nullptr;  // a row: how many wheels lost contact, and for how long at most, s
-  double *inner = nullptr, *lagging = nullptr;   // of every probe: what loads and inertia add to the moment, and what of
-                                                 // it has reached the elastic forces (viscous_lag.hpp)
-  double lag = 0.0;                              // s
-  double* departure = nullptr;                   // of every block: the root of its linearisation residual at most
-  double* farthest = nullptr;                    // coordinates then
+  double *inner = nullptr, *lagging = nullptr;  // of every probe: what loads and inertia add to the moment, and what of
+                                                // it has reached the elastic forces (viscous_lag.hpp)
+  double lag = 0.0;                             // s
+  double* departure = nullptr;                  // of every block: the root of its linearisation residual at most
+  double* farthest = nullptr;                   // coordinates then
 };
 
 enum Trouble { none = 0, below_surface = 1, not_converged = 2, not_finite = 3 };
@@ -80,8 +80,8 @@ struct BatchTask {
   HeightTable heights;
   double* const* distance = nullptr;  // a row of every block: VehicleBlock::distance
   char* second = nullptr;             // TrainTask::second
-  double* failed = nullptr;       // a row: Trouble
-  double* work = nullptr;         // two rows a coordinate
+  double* failed = nullptr;           // a row: Trouble
+  double* work = nullptr;             // two rows a coordinate
 
   int probes = 0, kinks = 0;
   const ProbeForms* probe = nullptr;

@@ -1,8 +1,8 @@
 // The structure's side of a stage (beam_task.hpp): J a = P + forces - C w~ - K v~ with J = M + rate C + displacement K,
 // from w = w~ + rate a and v = v~ + displacement a.
 //
-// Elimination from both ends to the column in the middle keeps two chains of products busy. As all kernels it is seen by
-// no linker (train_kernel.hpp).
+// Elimination from both ends to the column in the middle keeps two chains of products busy. As all kernels it is seen
+// by no linker (train_kernel.hpp).
 #pragma once
 
 #include "engine/beam_task.hpp"
@@ -189,8 +189,9 @@ struct BeamRows {
     const int* o = t.transverse;
     for (int e = 0; e < t.elements; ++e) {
       const int c = t.first_column[e];
-      const Row *left = inverse + static_cast<long>(c) * bb, *right = left + bb, *with = pairs + static_cast<long>(c) * bb;
-      const bool of_right = c < middle;  // the rows of `with`
+      const Row *left = inverse + static_cast<long>(c) * bb, *right = left + bb,
+                *with = pairs + static_cast<long>(c) * bb;
+      const bool of_right = c < middle;       // the rows of `with`
       const auto entry = [&](int i, int j) {  // i <= j among v1, theta1, v2, theta2
         if (j < 2) return left[o[i] * b + o[j]];
         if (i >= 2) return right[o[i - 2] * b + o[j - 2]];

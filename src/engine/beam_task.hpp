@@ -10,11 +10,11 @@ inline constexpr int most_unknowns_of_a_column = 8;
 
 /// M a + C w + K v = P + forces of wheels, with block tridiagonal matrices that all runs share.
 struct BeamTask {
-  int block = 2, columns = 0;                                // unknowns of a column
+  int block = 2, columns = 0;                                              // unknowns of a column
   const double *mass = nullptr, *damping = nullptr, *stiffness = nullptr;  // [column][2]: blocks by columns, of it and
                                                                            // of its unknowns with those of the next one
-  bool proportional = false;     // C = by_mass M + by_stiffness K
-  double by_mass = 0.0, by_stiffness = 0.0;  // 1/s, s
+  bool proportional = false;                                               // C = by_mass M + by_stiffness K
+  double by_mass = 0.0, by_stiffness = 0.0;                                // 1/s, s
   const char* held = nullptr;    // of every unknown: whether a support holds it
   const double* dead = nullptr;  // of every unknown, N and N m: P
 

@@ -76,12 +76,12 @@ class LinearTrain {
 
   TrainArrays arrays_;
   TrainTask& task_ = arrays_.task;
-  std::vector<double> roots_, farthest_;           // of every entry of p: residual_roots; of every vehicle
-  std::vector<std::size_t> first_entry_;           // of every vehicle's coordinates in p, and the end
-  std::vector<std::size_t> coordinate_;            // of every entry of p: its number in arrays of coordinates
-  std::vector<std::size_t> entry_, wheel_;         // of every wheel: in Fleet::wheels; its number in arrays of wheels
-  std::vector<const track::Profile*> profile_;     // that it runs on; null: level
-  double* work_ = nullptr;         // of predictions
+  std::vector<double> roots_, farthest_;        // of every entry of p: residual_roots; of every vehicle
+  std::vector<std::size_t> first_entry_;        // of every vehicle's coordinates in p, and the end
+  std::vector<std::size_t> coordinate_;         // of every entry of p: its number in arrays of coordinates
+  std::vector<std::size_t> entry_, wheel_;      // of every wheel: in Fleet::wheels; its number in arrays of wheels
+  std::vector<const track::Profile*> profile_;  // that it runs on; null: level
+  double* work_ = nullptr;                      // of predictions
 
   const beam::Mesh* mesh_;
   std::vector<double> borders_;  // m, ascending: between two of them a wheel has the same patches

@@ -13,9 +13,9 @@
 namespace traverse::engine {
 namespace {
 
-constexpr int most_freedom = 64;  // of a vehicle; larger ones are matrices that are mostly zeros
+constexpr int most_freedom = 64;       // of a vehicle; larger ones are matrices that are mostly zeros
 constexpr double least_before = 1e-3;  // of a step: from a shorter one before it rounding would be extrapolated
-constexpr double same = 1e-13;    // of the largest entry: matrices are equal, but for rounding
+constexpr double same = 1e-13;         // of the largest entry: matrices are equal, but for rounding
 
 bool in_block_with(const train::MovingVehicle& a, const train::MovingVehicle& b) {
   const auto same_law = [](const train::Wheel& x, const train::Wheel& y) { return x.law.kind == y.law.kind; };

@@ -45,10 +45,10 @@ class TrainArrays {
   const std::size_t lanes = best_width();  // numbers of a row
   TrainTask task;
   std::vector<VehicleBlock> blocks;
-  std::vector<double*> distance;  // m, of every block's lanes: travelled
-  std::vector<double*> speed;     // m/s, of every block's lanes
+  std::vector<double*> distance;    // m, of every block's lanes: travelled
+  std::vector<double*> speed;       // m/s, of every block's lanes
   std::vector<char> second, level;  // one a row of wheels, as the TrainTask's
-  std::deque<char> awake;         // one a block: VehicleBlock::awake
+  std::deque<char> awake;           // one a block: VehicleBlock::awake
 
  private:
   void fill_block(std::size_t block, const std::vector<const train::MovingVehicle*>& vehicles);

@@ -11,7 +11,8 @@ void load_by_train(const TrainTask& task) {
 }
 double update_train_forces(const TrainTask& task) {
   const RowMask all = Row{} == Row{};
-  const Changes changes = is_flat(task) ? update_forces<Surface::flat>(task, all) : update_forces<Surface::general>(task, all);
+  const Changes changes =
+      is_flat(task) ? update_forces<Surface::flat>(task, all) : update_forces<Surface::general>(task, all);
   if (Rows::any(changes.fallen)) return -1.0;
   double largest = 0.0;
   for (int l = 0; l < lanes; ++l)
@@ -20,7 +21,7 @@ double update_train_forces(const TrainTask& task) {
 }
 void end_train_stage(const TrainTask& task, int stage, bool kinematics) {
   is_flat(task) ? end_stage_of_train<Surface::flat>(task, stage, kinematics)
-             : end_stage_of_train<Surface::general>(task, stage, kinematics);
+                : end_stage_of_train<Surface::general>(task, stage, kinematics);
 }
 void finish_train_step(const TrainTask& task) { finish_step(task); }
 

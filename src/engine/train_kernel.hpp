@@ -23,9 +23,7 @@ namespace traverse::engine {
 namespace {
 
 /// Whether surfaces are level with the axis, of elements that neither shear nor move along x.
-inline bool is_flat(const TrainTask& task) {
-  return task.per_node == 2 && task.surface_height == 0.0 && !task.shears;
-}
+inline bool is_flat(const TrainTask& task) { return task.per_node == 2 && task.surface_height == 0.0 && !task.shears; }
 
 struct Touched {
   Row depth, up, along;   // m: the penetration; direction from the surface to the centre
@@ -68,8 +66,8 @@ inline constexpr double least_root = 1e-6;  // m^0.5: from where the next contac
 inline constexpr int most_steps = 60;       // of a contact's own Newton iteration
 inline constexpr double root_tolerance = 1e-14;
 
-/// r with r^2 + yielding r^3 = target > 0 of n wheels, from guesses, by Newton's method, which does not pass the solution
-/// twice. All at once, as one by one would wait for each division; each stops where it has arrived.
+/// r with r^2 + yielding r^3 = target > 0 of n wheels, from guesses, by Newton's method, which does not pass the
+/// solution twice. All at once, as one by one would wait for each division; each stops where it has arrived.
 TRAVERSE_INLINE void hertz_roots(int n, const Row* yielding, const Row* target, Row* r) {
   RowMask arrived[most_wheels];
   for (int j = 0; j < n; ++j) arrived[j] = RowMask{};
@@ -178,8 +176,8 @@ TRAVERSE_INLINE void own_forces(const TrainTask& task, RowMask open, int i, int 
   }
 }
 
-/// Whether forces of a vehicle on level rigid ground would not change by more than the tolerance in another pass, as what
-/// its wheels yield to the new forces of each other tells.
+/// Whether forces of a vehicle on level rigid ground would not change by more than the tolerance in another pass, as
+/// what its wheels yield to the new forces of each other tells.
 inline RowMask settles(const TrainTask& task, const VehicleBlock& b, const Row* force) {
   const int m = b.wheels, first = b.first_wheel;
   RowMask still = ~RowMask{};
@@ -189,7 +187,8 @@ inline RowMask settles(const TrainTask& task, const VehicleBlock& b, const Row* 
     Row moved{};
     for (int l = 0; l < m; ++l)
       if (l != j) moved += Rows::magnitude(rows(b.H)[j * m + l] * (force[l] - rows(task.normal)[first + l]));
-    const Row stiffness = rows(task.stiffness)[i], tangent = task.hertz[i] == 0 ? stiffness : 1.5 * stiffness * rows(task.root)[i];
+    const Row stiffness = rows(task.stiffness)[i],
+              tangent = task.hertz[i] == 0 ? stiffness : 1.5 * stiffness * rows(task.root)[i];
     still &= tangent * moved * rows(task.per_scale)[i] <= task.tolerance;
   }
   return still;
@@ -281,8 +280,8 @@ void for_wheels_on_elements(const TrainTask& task, Use use) {
 /// use(lane): those of a row whose wheels touch this patch, an element's.
 template <class Use>
 void for_lanes_on(const TrainTask& task, int i, int patch, Use use) {
-  const int *slot = task.patch[patch].slot + static_cast<long>(i) * lanes;
-  const int *active = task.active + static_cast<long>(i) * lanes;
+  const int* slot = task.patch[patch].slot + static_cast<long>(i) * lanes;
+  const int* active = task.active + static_cast<long>(i) * lanes;
   for (int l = 0; l < lanes; ++l)
     if (active[l] == patch && slot[l] != task.ground) use(l);
 }
@@ -364,7 +363,8 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
     const int* slot = task.patch[patch].slot + static_cast<long>(i) * lanes;
     for_lanes_on(task, i, patch, [&](int l) {
       double rising = 0.0;
-      for (int k = 0; k < width; ++k) rising += Rows::numbers(direction[k])[l] * task.nodal_rate[slot[l] + task.offset[k]];
+      for (int k = 0; k < width; ++k)
+        rising += Rows::numbers(direction[k])[l] * task.nodal_rate[slot[l] + task.offset[k]];
       Rows::numbers(rows(task.penetration_rate)[i])[l] += rising;
     });
   });

@@ -127,8 +127,8 @@ TRAVERSE_INLINE Shapes shapes_at(Row xi, Row length, Row shear) {
 /// How the penetration grows with an element's unknowns, in their order (wheel_on_track.hpp: normal_on_beam), from the
 /// normal's parts.
 template <Surface kind>
-TRAVERSE_INLINE void directions(const TrainTask& task, Row xi, Row length, Row shear, const double* turned, Row up, Row along,
-                Row* to) {
+TRAVERSE_INLINE void directions(const TrainTask& task, Row xi, Row length, Row shear, const double* turned, Row up,
+                                Row along, Row* to) {
   const Shapes s = shapes_at<kind>(xi, length, shear);
   const int o = task.per_node - 2;
   const int place[4] = {o, o + 1, task.per_node + o, task.per_node + o + 1};

@@ -41,10 +41,10 @@ struct VehicleBlock {
 
 /// The piece of surface under a wheel, a row each: an element of the structure, or rigid ground.
 struct SurfacePatch {
-  int* slot = nullptr;                     // where the element's values are in TrainTask::nodal
-  char* together = nullptr;                // one a row: 1 where its slots follow each other, 2 on rigid ground, else 0
+  int* slot = nullptr;       // where the element's values are in TrainTask::nodal
+  char* together = nullptr;  // one a row: 1 where its slots follow each other, 2 on rigid ground, else 0
   double *x = nullptr, *length = nullptr, *per_length = nullptr;  // of the element, m, m, 1/m
-  double* shear = nullptr;                 // 12 EI/(GA length^2)
+  double* shear = nullptr;                                        // 12 EI/(GA length^2)
   double* yield = nullptr;                 // length^3/(3 EI), m/N, where the element bends between its nodes
   double *low = nullptr, *high = nullptr;  // m: stations between which the piece reaches
   // Displacement of (v, theta) of the element's nodes per force and moment on them: the upper half of a symmetric
@@ -72,10 +72,10 @@ struct TrainTask {
   double *x = nullptr, *w = nullptr, *a[most_kept] = {}, *w_predicted = nullptr, *a_free = nullptr;
 
   // Of every wheel, constant.
-  const double *place = nullptr, *height = nullptr;  // m: x of its centre, y of its lowest point, at the start
+  const double *place = nullptr, *height = nullptr;      // m: x of its centre, y of its lowest point, at the start
   const double *radius = nullptr, *stiffness = nullptr;  // m; N/m^1.5 or N/m
   const double* per_scale = nullptr;                     // 1/N: one over what errors of forces count by
-  const char* hertz = nullptr;                                             // one a row: the former
+  const char* hertz = nullptr;                           // one a row: the former
   // Of every wheel, in a stage.
   double *up = nullptr, *along = nullptr;  // m: the same without contact forces
   double *from = nullptr, *to = nullptr;   // m: stations between which its patches are the ones that it has
@@ -97,14 +97,14 @@ struct TrainTask {
   SurfacePatch patch[2];
 
   // The structure where wheels may be. Unknown k of an element is at its slot and offset[k].
-  int per_node = 2;                     // unknowns of a node that an element sees
+  int per_node = 2;                                       // unknowns of a node that an element sees
   int offset[most_nodal] = {}, ground = 0, unknowns = 0;  // the slot of rigid ground, whose values are 0; of `nodal`
-  double surface_height = 0.0;                                      // m, of the surface above the axis
-  bool shears = false;                                              // some of its elements do
+  double surface_height = 0.0;                            // m, of the surface above the axis
+  bool shears = false;                                    // some of its elements do
   double *nodal = nullptr, *nodal_rate = nullptr, *load = nullptr;  // m and rad; N and N m
 
-  // A row of every block: 1 in lanes where another pass would change no force by more than `tolerance` of its scale, as the
-  // vehicle stands on rigid ground alone; null: nobody asks.
+  // A row of every block: 1 in lanes where another pass would change no force by more than `tolerance` of its scale, as
+  // the vehicle stands on rigid ground alone; null: nobody asks.
   double* settled = nullptr;
   double tolerance = 0.0;
 

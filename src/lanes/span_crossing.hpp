@@ -18,9 +18,9 @@
 
 #include "base/bytes.hpp"
 #include "engine/train_task.hpp"
+#include "lanes/span_forces.hpp"
 #include "lanes/train_numbers.hpp"
 #include "methods/one_step_methods.hpp"
-#include "lanes/span_forces.hpp"
 
 namespace traverse::lanes {
 

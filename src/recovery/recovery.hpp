@@ -44,10 +44,10 @@ struct RecoverySection;
 struct StationForms {
   using Form = std::array<double, 4>;
   int element = 0;
-  std::array<int, 4> unknown{};                                // global
-  std::array<Form, 3> deflection{}, moment{};                  // of v, w and a; the moment but for nodal_moment
-  Form acceleration{}, nodal_moment{};                         // of a; of v
-  double constant_deflection = 0.0, constant_moment = 0.0;     // by its own weight and temperature
+  std::array<int, 4> unknown{};                             // global
+  std::array<Form, 3> deflection{}, moment{};               // of v, w and a; the moment but for nodal_moment
+  Form acceleration{}, nodal_moment{};                      // of a; of v
+  double constant_deflection = 0.0, constant_moment = 0.0;  // by its own weight and temperature
 };
 
 /// The nodal values of a station's element give these as linear forms, and the loads inside the element add to them.

@@ -47,11 +47,10 @@ void check_step(const Scene& scene, const Plan& plan) {
         plan.end_time, plan.time_step,
         scene.end_time ? "an earlier end" : "a higher train_speed or load_speed, an earlier end (ts_max_time)"));
   if (!(plan.end_time / plan.time_step < most_steps))
-    throw InputError(
-        fmt::format("ts_dt = {:g}: too many steps to the end at {:g} s{}; allowed: above {:g} s", plan.time_step,
-                    plan.end_time,
-                    scene.end_time ? "" : fmt::format(", when all has passed at {:g} m/s", greatest_speed(scene)),
-                    plan.end_time / most_steps));
+    throw InputError(fmt::format(
+        "ts_dt = {:g}: too many steps to the end at {:g} s{}; allowed: above {:g} s", plan.time_step, plan.end_time,
+        scene.end_time ? "" : fmt::format(", when all has passed at {:g} m/s", greatest_speed(scene)),
+        plan.end_time / most_steps));
   const double speed = greatest_speed(scene);
   if (!scene.beam || speed <= 0.0) return;
   const double crossing = *std::max_element(scene.beam->spans.begin(), scene.beam->spans.end()) / speed;

@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "engine/processor.hpp"
-#include "integrate/modal_peaks.hpp"
 #include "engine/speed_class.hpp"
+#include "integrate/modal_peaks.hpp"
 #include "run/signals.hpp"
 #include "run/watch.hpp"
 #include "study/lanes_obstacle.hpp"

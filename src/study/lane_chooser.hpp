@@ -33,8 +33,8 @@ class LaneChooser {
 
  private:
   void take(const std::optional<LaneModel>& found);
-  /// Whole passages: errors add up while the train crosses. Against a finer mesh and half the step, by esdirk4: genalpha
-  /// takes all vibration out of wheels in time, and two of its steps may agree on that.
+  /// Whole passages: errors add up while the train crosses. Against a finer mesh and half the step, by esdirk4:
+  /// genalpha takes all vibration out of wheels in time, and two of its steps may agree on that.
   LaneErrors check_wholes(LaneSearch& search);
   /// By a finer mesh where it is that what the other one differs by, else by shorter steps.
   void refine(const LaneModel& other);

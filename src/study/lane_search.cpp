@@ -68,7 +68,8 @@ LaneModel LaneSearch::first(double duration) {
   return model;
 }
 
-// Steps first, as meshes are told apart by what the contacts do to them; and again where a finer mesh wants shorter ones.
+// Steps first, as meshes are told apart by what the contacts do to them; and again where a finer mesh wants shorter
+// ones.
 std::optional<LaneModel> LaneSearch::run(LaneModel model) {
   if (!foresee_step(model) || !refine_mesh(model) || !halve_step(model)) return std::nullopt;
   return cheaper(model);
@@ -79,8 +80,8 @@ LaneModel LaneSearch::on_finer_mesh(LaneModel model) const {
   return model;
 }
 
-/// The step that the first mesh asks for, which the one that does is to confirm, and whether methods of one solve a step
-/// are worth a trial.
+/// The step that the first mesh asks for, which the one that does is to confirm, and whether methods of one solve a
+/// step are worth a trial.
 bool LaneSearch::foresee_step(LaneModel& model) {
   for (int i = 0; i < most_halvings; ++i, model.step *= 0.5) {
     measure_steps(model);

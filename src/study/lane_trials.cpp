@@ -131,7 +131,7 @@ SideBySide::Steps LaneTrials::steps_of(const LaneModel& model) const {
 
 /// Of one model, whose accelerations are filtered run by run: a place each step is an instant each interval of its own.
 std::vector<BatchResult> LaneTrials::run_all(const std::vector<SideBySide::Ready>& groups,
-                                                const SideBySide::Steps& steps) const {
+                                             const SideBySide::Steps& steps) const {
   std::vector<BatchResult> results;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const std::vector<LaneRun>& runs = groups_[g];

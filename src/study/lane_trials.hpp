@@ -78,7 +78,7 @@ class LaneTrials {
   void check_memory(const LaneModel& model) const;
   SideBySide::Steps steps_of(const LaneModel& model) const;
   std::vector<engine::BatchResult> run_all(const std::vector<SideBySide::Ready>& groups,
-                                             const SideBySide::Steps& steps) const;
+                                           const SideBySide::Steps& steps) const;
   Setup& setup(const LaneModel& model);
   /// That of the first mesh, for all of them.
   std::optional<beam::Rayleigh> damping() const {
@@ -89,7 +89,7 @@ class LaneTrials {
   const LaneTrials* before_;
   std::vector<std::vector<LaneRun>> groups_;
   std::map<int, std::unique_ptr<Setup>> setups_;  // by elements
-  std::deque<Kept> kept_;                                         // references to its entries stay
+  std::deque<Kept> kept_;                         // references to its entries stay
   std::optional<beam::Rayleigh> damping_;
   double first_omega_ = 0.0;
 };

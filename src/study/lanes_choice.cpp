@@ -19,8 +19,9 @@ namespace {
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
 
 bool open(const Scene& scene) {
-  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.model_modes == 0 && scene.mesh_open &&
-         scene.vehicle_model != VehicleModel::full && scene.beam && options::in_force().find("ts_type") == nullptr;
+  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.model_modes == 0 &&
+         scene.mesh_open && scene.vehicle_model != VehicleModel::full && scene.beam &&
+         options::in_force().find("ts_type") == nullptr;
 }
 
 /// Neighbouring speeds of one class around each of the given places among all.
@@ -65,8 +66,9 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
   try {
     LaneChooser chooser(given, trials);
     LanesChoice choice = chooser.choose();
-    notes.push_back(fmt::format("runs side by side: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
-                                mesh_of(choice.scene), chooser.model().method->name, chooser.model().step));
+    notes.push_back(
+        fmt::format("runs side by side: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
+                    mesh_of(choice.scene), chooser.model().method->name, chooser.model().step));
     notes.push_back("expected errors of the peaks: " + words_of(given, choice.promises));
     return choice;
   } catch (const LaneChooser::NotChosen& none) {

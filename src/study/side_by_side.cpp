@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/speed_class.hpp"
 #include "engine/train_arrays.hpp"
 #include "integrate/integrator_choice.hpp"
 #include "run/passage.hpp"
-#include "engine/speed_class.hpp"
 #include "train/linearisation_residual.hpp"
 
 namespace traverse::app {
@@ -40,10 +40,11 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
   for (const train::WheelContact& c : fleet_.wheels) wheels_.push_back(fleet_.coordinates(c).x());
   state_.resize(2 * static_cast<std::size_t>(shared.beam->local_unknowns()));
   const double gravity = scene.self_weight ? scene.gravity : 0.0;
-  structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, fleet_, rest_,
-                                                              scene.output.probes, gravity);
+  structure_ =
+      std::make_shared<const engine::BatchStructure>(*shared.beam, fleet_, rest_, scene.output.probes, gravity);
   plan_.structure = structure_.get();
-  plan_.level_until = scene.profile.level() && !system_.structure()->bent_at_rest() ? shared.beam->mesh().start() : -1e300;
+  plan_.level_until =
+      scene.profile.level() && !system_.structure()->bent_at_rest() ? shared.beam->mesh().start() : -1e300;
   kinks_ = system_.corners();
 }
 
@@ -65,7 +66,8 @@ void SideBySide::expect(double past) {
   track_past_ = past;
   const auto [rear, front] = track_reach();
   const std::optional<double> distance = track::table_distance(scene_.profile, rear, front);
-  if (!distance) throw InputError("sweep_lanes: the track has corners that runs side by side cannot follow; allowed: 0");
+  if (!distance)
+    throw InputError("sweep_lanes: the track has corners that runs side by side cannot follow; allowed: 0");
   track_distance_ = *distance;
 }
 

@@ -95,7 +95,7 @@ class SideBySide {
   std::deque<std::pair<std::optional<std::uint64_t>, Track>> tracks_;
   double track_past_ = 0.0;      // m: distance that tracks are known for
   double track_distance_ = 0.0;  // m: between their stations
-  std::vector<double> state_;  // of the bridge at the start, v and w
+  std::vector<double> state_;    // of the bridge at the start, v and w
   std::shared_ptr<const engine::BatchStructure> structure_;
   engine::BatchPlan plan_;
   std::vector<double> kinks_;  // m: stations at which the surface has a corner

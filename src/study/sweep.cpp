@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "accuracy/kept_choice.hpp"
-#include "engine/processor.hpp"
 #include "case_runner.hpp"
+#include "engine/processor.hpp"
 #include "modes_choice.hpp"
 #include "results/stage.hpp"
 #include "results/sweep.hpp"

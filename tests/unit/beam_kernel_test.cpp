@@ -67,8 +67,7 @@ struct Chain {
     for (int c = 0; c < task.columns; ++c)
       for (const int next : {0, 1})
         for (int j = 0; j < b; ++j)
-          for (int i = 0; i < b; ++i)
-            to.push_back(c + next < task.columns ? A(c * b + i, (c + next) * b + j) : 0.0);
+          for (int i = 0; i < b; ++i) to.push_back(c + next < task.columns ? A(c * b + i, (c + next) * b + j) : 0.0);
     return to.data();
   }
   /// (M + rate C + displacement K)^-1 of the unknowns that are not held, 0 of others.
@@ -130,7 +129,8 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
     const double d = Rows::numbers(displacement)[l];
     const Eigen::MatrixXd inverse = chain.inverse(Rows::numbers(rate)[l], d);
     const Eigen::VectorXd P = Eigen::Map<const Eigen::VectorXd>(chain.dead.data(), chain.size);
-    const Eigen::VectorXd exact = inverse * (P - chain.C * w[static_cast<std::size_t>(l)] - chain.K * v[static_cast<std::size_t>(l)]);
+    const Eigen::VectorXd exact =
+        inverse * (P - chain.C * w[static_cast<std::size_t>(l)] - chain.K * v[static_cast<std::size_t>(l)]);
     EXPECT_LT((column(a, l) - exact).cwiseAbs().maxCoeff(), 1e-13);
     // v~ and what the accelerations add is where the structure is.
     const Eigen::VectorXd there = column(t.v_predicted, l) + d * column(t.solution, l);
@@ -140,8 +140,8 @@ TEST_P(BeamKernel, SolvesAStageAsDenseMatricesDo) {
       const int unknown[4] = {first, first + 1, first + block, first + block + 1};
       for (int i = 0, n = 0; i < 4; ++i)
         for (int j = i; j < 4; ++j, ++n)
-          EXPECT_NEAR(t.compliance[(10 * e + n) * lanes + l], (i == j ? 1.0 : 2.0) * d * inverse(unknown[i], unknown[j]),
-                      1e-13);
+          EXPECT_NEAR(t.compliance[(10 * e + n) * lanes + l],
+                      (i == j ? 1.0 : 2.0) * d * inverse(unknown[i], unknown[j]), 1e-13);
     }
   }
 }

@@ -291,8 +291,9 @@ TEST(CoupledModes, UnderVehicles) {
 // Passages side by side, by elements with the same dampers, against passages one after the other, which look at their
 // samples alone.
 TEST(CoupledModes, SideBySide) {
-  const Values options = {{"beam_elements_per_span", "16"}, {"model_vehicles", "linear"}, {"sweep_speed", "80,90,10"},
-                          {"ts_dt", "5e-4"},                {"output_interval", "5e-4"},  {"beam_damping_ratios", "0.05"}};
+  const Values options = {{"beam_elements_per_span", "16"}, {"model_vehicles", "linear"},
+                          {"sweep_speed", "80,90,10"},      {"ts_dt", "5e-4"},
+                          {"output_interval", "5e-4"},      {"beam_damping_ratios", "0.05"}};
   Results together = run_yaml(coaches, options);
   Results alone = run_yaml(coaches, options + Values{{"sweep_lanes", "0"}});
   for (const auto& [name, bound] : {std::pair("/sweep/peak_deflection", 1e-4), {"/sweep/least_wheel_force", 1e-3}}) {

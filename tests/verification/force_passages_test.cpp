@@ -9,8 +9,8 @@
 #include <memory>
 #include <numbers>
 
-#include "integrate/modal_motion.hpp"
 #include "engine/speed_class.hpp"
+#include "integrate/modal_motion.hpp"
 #include "support/curve.hpp"
 
 namespace traverse::test {

@@ -79,17 +79,16 @@ TEST(SideBySide, RoughTrack) {
 
 /// What bends a bridge at rest, a deck above the axis, and a linear bed.
 TEST(SideBySide, BentBridges) {
-  const Values cases[] = {{{"beam_self_weight", "true"}},
-                          {{"support_settlement", "0,-0.012,0,0"}},
-                          {{"beam_temperature_gradient", "8"},
-                           {"beam_temperature_depth", "1.6"},
-                           {"beam_temperature_expansion", "1.2e-5"}},
-                          {{"beam_surface_height", "1.8"}},
-                          {{"foundation_vertical_bed_k", "1e6"}}};
+  const Values cases[] = {
+      {{"beam_self_weight", "true"}},
+      {{"support_settlement", "0,-0.012,0,0"}},
+      {{"beam_temperature_gradient", "8"}, {"beam_temperature_depth", "1.6"}, {"beam_temperature_expansion", "1.2e-5"}},
+      {{"beam_surface_height", "1.8"}},
+      {{"foundation_vertical_bed_k", "1e6"}}};
   for (const Values& bent : cases) {
     SCOPED_TRACE(bent.begin()->first);
-    expect_same_motion("three_span_train", bent + Values{{"train_vehicles", "coach"}, {"scene_tail", "0.1"}}, "76.2,84,7.8",
-                       "8e-4", "2e-4", 2e-3);
+    expect_same_motion("three_span_train", bent + Values{{"train_vehicles", "coach"}, {"scene_tail", "0.1"}},
+                       "76.2,84,7.8", "8e-4", "2e-4", 2e-3);
   }
 }
 

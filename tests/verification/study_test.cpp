@@ -138,8 +138,8 @@ TEST(Study, TrainsInLanesAreThoseOfRunsAlone) {
   double worst = 0.0;
   for (const std::size_t run : {0u, 2u, 4u}) {
     Results alone = run_yaml(
-        coach,
-        by_elements + Values{{"vehicle_coach_car_mass", text(study("/study/vehicle_coach_car_mass")[run])},
+        coach, by_elements +
+                   Values{{"vehicle_coach_car_mass", text(study("/study/vehicle_coach_car_mass")[run])},
                           {"vehicle_coach_wheelset_1_mass", text(study("/study/vehicle_coach_wheelset_1_mass")[run])},
                           {"study_vary_track_seed", "1"}});
     for (const char* name : {"peak_deflection", "peak_acceleration", "peak_moment", "least_wheel_force"}) {
@@ -157,8 +157,8 @@ TEST(Study, TracksInLanesAgainstEachByItself) {
   double errors[2] = {};
   for (const int finer : {0, 1}) {
     const Values study = by_elements + Values{{"beam_elements_per_span", "24"},
-                                           {"study_vary_track_seed", "3,7"},
-                                           {"ts_dt", finer == 1 ? "2e-4" : "8e-4"}};
+                                              {"study_vary_track_seed", "3,7"},
+                                              {"ts_dt", finer == 1 ? "2e-4" : "8e-4"}};
     Results beside = run_yaml(coach, study),
             alone = run_yaml(coach, study + Values{{"sweep_lanes", "0"}, {"ts_dt", "2e-4"}});
     for (const char* name : {"peak_deflection", "peak_moment", "greatest_wheel_force"})
