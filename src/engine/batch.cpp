@@ -315,10 +315,9 @@ std::vector<BatchResult> Batch::results() const {
     r.greatest_force = looks_.greatest[l];
     r.contact_losses = looks_.losses[l];
     r.longest_loss = looks_.longest[l];
-    for (std::size_t v = 0; v < arrays_.blocks.size(); ++v)
-      for (int i = 0; i < arrays_.blocks[v].freedom; ++i)
-        r.farthest.push_back(
-            looks_.farthest[rows(static_cast<std::size_t>(arrays_.blocks[v].first_coordinate + i)) + l]);
+    for (const VehicleBlock& b : arrays_.blocks)
+      for (int i = 0; i < b.freedom; ++i)
+        r.farthest.push_back(looks_.farthest[rows(static_cast<std::size_t>(b.first_coordinate + i)) + l]);
   }
   return results;
 }

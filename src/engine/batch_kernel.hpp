@@ -62,7 +62,7 @@ inline void place_wheels(const BatchTask& t, bool all) {
         follow = follow && slot[l] == slot[0] + l;
         ground = ground && slot[l] == train.ground;
       }
-      p.together[i] = ground ? 2 : follow ? 1 : 0;
+      p.together[i] = ground ? grounded : follow ? in_line : apart;
     }
   }
 }

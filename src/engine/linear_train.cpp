@@ -125,7 +125,7 @@ LinearTrain::Placing LinearTrain::place(train::Fleet& fleet) {
     for (std::size_t row = 0; row < arrays_.second.size(); ++row) {
       const int* slot = p.slot + row * arrays_.lanes;
       const bool ground = std::all_of(slot, slot + arrays_.lanes, [&](int at) { return at == task_.ground; });
-      p.together[row] = ground ? 2 : 0;
+      p.together[row] = ground ? grounded : apart;
     }
   look_up_profiles(0.0);
   placed_ = true;

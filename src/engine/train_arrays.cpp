@@ -299,7 +299,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   }
   for (SurfacePatch& p : task.patch) {
     p.slot = add_integers(wheels * lanes);
-    p.together = together_.emplace_back(wheels, 0).data();
+    p.together = add_integers(wheels);
     for (double** of : {&p.x, &p.length, &p.per_length, &p.shear, &p.yield, &p.low, &p.high}) *of = add(wheels);
     for (double*& entry : p.compliance) entry = add(wheels);
     for (double* of : {p.length, p.per_length}) std::fill_n(of, wheels * lanes, 1.0);

@@ -59,7 +59,6 @@ class TrainArrays {
   std::vector<std::unique_ptr<Aligned>> numbers_;  // what the arrays of the task are
   std::vector<std::unique_ptr<std::vector<int>>> integers_;
   std::vector<char> hertz_;
-  std::deque<std::vector<char>> together_;  // of each patch
 };
 
 }  // namespace traverse::engine

@@ -130,7 +130,7 @@ ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
   int* active = task.active + static_cast<long>(i) * lanes;
   for (int l = 0; l < lanes; ++l) active[l] = 0;
   const ContactRow ground = {on_ground(rows(task.h)[i], along, up), Rows::fill(1.0), Row{}, Row{}, Row{}, Row{}};
-  if (task.level[i] != 0 && task.second[i] == 0 && first.together[i] == 2) return ground;
+  if (task.level[i] != 0 && task.second[i] == 0 && first.together[i] == grounded) return ground;
   ContactRow c = on_patch<kind>(first, i, closest<kind>(task, first, i, along, up));
   RowMask two{};
   if (task.second[i] != 0) {
@@ -141,7 +141,7 @@ ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
     c = choose(there, second, c);
     c.at.fallen = fallen;
   }
-  if (task.level[i] == 0 || first.together[i] == 1) return c;
+  if (task.level[i] == 0 || first.together[i] == in_line) return c;
   // Level ground is the same whatever the lanes beside it are on.
   Row on_it{};
   for (int l = 0; l < lanes; ++l) Rows::numbers(on_it)[l] = first.slot[i * lanes + l] == task.ground ? 1.0 : 0.0;
@@ -183,7 +183,7 @@ inline RowMask settles(const TrainTask& task, const VehicleBlock& b, const Row* 
   RowMask still = ~RowMask{};
   for (int j = 0; j < m; ++j) {
     const int i = first + j;
-    if (task.level[i] == 0 || task.second[i] != 0 || task.patch[0].together[i] != 2) return RowMask{};
+    if (task.level[i] == 0 || task.second[i] != 0 || task.patch[0].together[i] != grounded) return RowMask{};
     Row moved{};
     for (int l = 0; l < m; ++l)
       if (l != j) moved += Rows::magnitude(rows(b.H)[j * m + l] * (force[l] - rows(task.normal)[first + l]));
@@ -268,7 +268,7 @@ void for_wheels_on_elements(const TrainTask& task, Use use) {
   for (int i = 0; i < task.wheels; ++i)
     for (int patch = 0; patch < (task.second[i] != 0 ? 2 : 1); ++patch) {
       const SurfacePatch& p = task.patch[patch];
-      if (p.together[i] == 2) continue;
+      if (p.together[i] == grounded) continue;
       const Row length = rows(p.length)[i], xi = (rows(task.station)[i] - rows(p.x)[i]) * rows(p.per_length)[i];
       Row direction[most_nodal];
       directions<kind>(task, xi, length, rows(p.shear)[i], task.turn + static_cast<long>(i) * lanes,
@@ -293,7 +293,7 @@ void add_loads(const TrainTask& task) {
   for_wheels_on_elements<kind>(task, [&](int i, int patch, const Row* direction) {
     const SurfacePatch& p = task.patch[patch];
     const int* slot = p.slot + static_cast<long>(i) * lanes;
-    if (p.together[i] == 1 && task.second[i] == 0) {
+    if (p.together[i] == in_line && task.second[i] == 0) {
       const Row force = rows(task.normal)[i];
       for (int k = 0; k < width; ++k)
         *reinterpret_cast<Rows::Unaligned*>(task.load + slot[0] + task.offset[k]) -= force * direction[k];

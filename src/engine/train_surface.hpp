@@ -23,9 +23,9 @@ struct SurfaceRows {
 /// Unknown k of the element of every lane, whose slots are these.
 TRAVERSE_INLINE Row gather(const TrainTask& task, const int* slot, int together, int k) {
   const double* nodal = task.nodal + task.offset[k];
-  if (together == 1) return *reinterpret_cast<const Rows::Unaligned*>(nodal + slot[0]);
+  if (together == in_line) return *reinterpret_cast<const Rows::Unaligned*>(nodal + slot[0]);
   Row value{};
-  if (together == 2) return value;
+  if (together == grounded) return value;
   for (int l = 0; l < lanes; ++l) Rows::numbers(value)[l] = nodal[slot[l]];
   return value;
 }

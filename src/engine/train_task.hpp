@@ -39,10 +39,13 @@ struct VehicleBlock {
       nullptr;  // 4 x wheels x wheels: displacement of wheels per force: up by up, up by along, along by up, ...
 };
 
+/// How the slots of a row are: somewhere, one behind the other, or all of rigid ground.
+enum Together { apart = 0, in_line = 1, grounded = 2 };
+
 /// The piece of surface under a wheel, a row each: an element of the structure, or rigid ground.
 struct SurfacePatch {
-  int* slot = nullptr;       // where the element's values are in TrainTask::nodal
-  char* together = nullptr;  // one a row: 1 where its slots follow each other, 2 on rigid ground, else 0
+  int* slot = nullptr;                                            // where the element's values are in TrainTask::nodal
+  int* together = nullptr;                                        // one a row: Together
   double *x = nullptr, *length = nullptr, *per_length = nullptr;  // of the element, m, m, 1/m
   double* shear = nullptr;                                        // 12 EI/(GA length^2)
   double* yield = nullptr;                 // length^3/(3 EI), m/N, where the element bends between its nodes
