@@ -73,30 +73,32 @@ inline RowMask look_up_heights(const BatchTask& t, double within) {
   RowMask moved{};
   if (track.stations == 0) return moved;
   TrainTask& train = *t.train;
+  const double per = 1.0 / track.distance, last = static_cast<double>(track.stations - 1);
+  const long stride = track.shared ? 1 : lanes;
   for (int i = 0; i < train.wheels; ++i) {
     const Row x = rows(train.station)[i];
     const RowMask anew = Rows::magnitude(x - rows(train.looked_up)[i]) > within;
     if (!Rows::any(anew)) continue;
     moved |= anew;
+    Row at = (x - track.start) * per, u{}, h0{}, s0{}, h1{}, s1{};
+    at = at > 0.0 ? at : Row{};  // one that is no number, too
+    at = at < last ? at : Rows::fill(last);
     for (int l = 0; l < lanes; ++l) {
-      if (!Rows::holds(anew, l)) continue;
-      double at = (Rows::numbers(x)[l] - track.start) / track.distance;
-      const double last = static_cast<double>(track.stations - 1);
-      at = at > 0.0 ? at : 0.0;
-      at = at < last ? at : last;
-      long k = static_cast<long>(at);
+      long k = static_cast<long>(Rows::numbers(at)[l]);
       if (k > track.stations - 2) k = track.stations - 2;
-      const double u = at - static_cast<double>(k), per = 1.0 / track.distance;
-      const long stride = track.shared ? 1 : lanes;
       const double* values = track.values + 2 * k * stride + (track.shared ? 0 : l);
-      const double h0 = values[0], s0 = values[stride], h1 = values[2 * stride], s1 = values[3 * stride];
-      const double second = 3.0 * (h1 - h0) - 2.0 * s0 - s1, third = s0 + s1 - 2.0 * (h1 - h0);
-      const int number = i * lanes + l;
-      train.looked_up[number] = Rows::numbers(x)[l];
-      train.h[number] = h0 + u * (s0 + u * (second + u * third));
-      train.h_x[number] = per * (s0 + u * (2.0 * second + 3.0 * u * third));
-      train.h_xx[number] = per * per * (2.0 * second + 6.0 * u * third);
+      Rows::numbers(u)[l] = Rows::numbers(at)[l] - static_cast<double>(k);
+      Rows::numbers(h0)[l] = values[0];
+      Rows::numbers(s0)[l] = values[stride];
+      Rows::numbers(h1)[l] = values[2 * stride];
+      Rows::numbers(s1)[l] = values[3 * stride];
     }
+    const Row second = 3.0 * (h1 - h0) - 2.0 * s0 - s1, third = s0 + s1 - 2.0 * (h1 - h0);
+    const auto take = [&](double* to, Row value) { rows(to)[i] = anew ? value : rows(to)[i]; };
+    take(train.looked_up, x);
+    take(train.h, h0 + u * (s0 + u * (second + u * third)));
+    take(train.h_x, per * (s0 + u * (2.0 * second + 3.0 * u * third)));
+    take(train.h_xx, per * per * (2.0 * second + 6.0 * u * third));
   }
   return moved;
 }

@@ -47,7 +47,8 @@ struct Chain {
     task.factor = rows_of(columns * bb);
     task.inverse = rows_of(2 * columns * bb);
     task.compliance = rows_of(10 * columns);
-    for (double** of : {&task.v_predicted, &task.w_predicted, &task.residual, &task.solution}) *of = rows_of(size);
+    for (double** of : {&task.v_predicted, &task.w_predicted, &task.residual, &task.solution, &task.work})
+      *of = rows_of(size);
     task.elements = columns - 1;
     task.first_column = first_column.data();
     for (int i = 0; i < size * lanes; ++i) {
