@@ -14,7 +14,7 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
 }
 void finish_batch_step(const BatchTask& t, double gone) {
   finish_step(*t.train);
-  finish_structure_step(*t.train, *t.beam);
+  end_step(*t.train, t.beam->columns * t.beam->block, t.beam->v, t.beam->w, t.beam->a);
   look(t, gone, true);
 }
 void look_at_batch(const BatchTask& t) { look(t, 0.0, false); }

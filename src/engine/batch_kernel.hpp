@@ -103,27 +103,6 @@ inline RowMask look_up_heights(const BatchTask& t, double within) {
   return moved;
 }
 
-/// v~ and w~ of the structure.
-inline void predict_structure(const BeamTask& beam, const StageRows& rule, int known) {
-  Row a_in_v[most_kept], a_in_w[most_kept];
-  for (int j = 0; j < known; ++j) {
-    a_in_v[j] = row(rule.a_in_v[j]);
-    a_in_w[j] = row(rule.a_in_w[j]);
-  }
-  const Row w_in_v = row(rule.w_in_v);
-  for (int i = 0; i < beam.columns * beam.block; ++i) {
-    const Row w = rows(beam.w)[i];
-    Row at = rows(beam.v)[i] + w_in_v * w, moving = w;
-    for (int j = 0; j < known; ++j) {
-      const Row a = rows(beam.a[j])[i];
-      at += a_in_v[j] * a;
-      moving += a_in_w[j] * a;
-    }
-    rows(beam.v_predicted)[i] = at;
-    rows(beam.w_predicted)[i] = moving;
-  }
-}
-
 /// The structure under the forces as they are, in lanes that are open.
 template <Surface kind, class Structure>
 void solve_structure(const BatchTask& t, const Structure& structure, Row displacement, RowMask open) {
@@ -146,7 +125,8 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
   const BeamTask& beam = *t.beam;
   const Row rate = row(train.stage[stage].rate), displacement = row(train.stage[stage].displacement);
   for (int k = 0; k < train.blocks; ++k) *rows(t.distance[k]) = Rows::fill(gone);
-  predict_structure(beam, train.stage[stage], stage + 1);
+  combine(stage + 1, train.stage[stage], 0, beam.columns * beam.block, beam.v, beam.w, beam.a, rows(beam.v_predicted),
+          rows(beam.w_predicted));
   predict(train, stage, t.work);
   place_wheels(t, anew);
   look_up_heights(t, 0.0);
@@ -168,23 +148,6 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
     structure.accelerations(rate, rows(beam.a[stage + 1]));
   });
   end_stage_of_train<kind>(train, stage, false);
-}
-
-inline void finish_structure_step(const TrainTask& train, const BeamTask& beam) {
-  const StageRows& rule = train.end;
-  const Row w_in_v = row(rule.w_in_v);
-  for (int i = 0; i < beam.columns * beam.block; ++i) {
-    Row &v = rows(beam.v)[i], &w = rows(beam.w)[i], next{}, at = v + w_in_v * w, moving = w;
-    for (int j = 0; j < train.known; ++j) {
-      const Row a = rows(beam.a[j])[i];
-      at += row(rule.a_in_v[j]) * a;
-      moving += row(rule.a_in_w[j]) * a;
-      next += train.a_next[j] * a;
-    }
-    v = at;
-    w = moving;
-    rows(beam.a[0])[i] = next;
-  }
 }
 
 }  // namespace

@@ -82,42 +82,70 @@ inline void set_step(const TrainTask& task) {
   }
 }
 
-/// v~ and w~ of n coordinates from `Known` accelerations, from the first one on.
+/// Positions and rates that a stage's rule makes of n coordinates x, their rates w and `Known` accelerations.
 template <int Known>
-void combine(const TrainTask& task, const StageRows& rule, int first, int n, Row* position, Row* rate) {
+void combine(const StageRows& rule, int n, const Row* x, const Row* w, const Row* const* a, Row* position, Row* rate) {
   const Row w_in_v = row(rule.w_in_v);
   Row a_in_v[Known], a_in_w[Known];
+  const Row* acceleration[Known];
   for (int j = 0; j < Known; ++j) {
     a_in_v[j] = row(rule.a_in_v[j]);
     a_in_w[j] = row(rule.a_in_w[j]);
+    acceleration[j] = a[j];
   }
   for (int i = 0; i < n; ++i) {
-    const Row w = rows(task.w)[first + i];
-    Row at = rows(task.x)[first + i] + w_in_v * w, moving = w;
+    Row at = x[i] + w_in_v * w[i], moving = w[i];
     for (int j = 0; j < Known; ++j) {
-      const Row a = rows(task.a[j])[first + i];
-      at += a_in_v[j] * a;
-      moving += a_in_w[j] * a;
+      const Row own = acceleration[j][i];
+      at += a_in_v[j] * own;
+      moving += a_in_w[j] * own;
     }
     position[i] = at;
     rate[i] = moving;
   }
 }
-inline void combine(int known, const TrainTask& task, const StageRows& rule, int first, int n, Row* position,
-                    Row* rate) {
+/// The same of coordinates from the first one on.
+inline void combine(int known, const StageRows& rule, int first, int n, const double* x, const double* w,
+                    const double* const* accelerations, Row* position, Row* rate) {
+  const Row* a[most_kept];
+  for (int j = 0; j < known; ++j) a[j] = rows(accelerations[j]) + first;
+  const Row *from = rows(x) + first, *rates = rows(w) + first;
   switch (known) {
     case 1:
-      return combine<1>(task, rule, first, n, position, rate);
+      return combine<1>(rule, n, from, rates, a, position, rate);
     case 2:
-      return combine<2>(task, rule, first, n, position, rate);
+      return combine<2>(rule, n, from, rates, a, position, rate);
     case 3:
-      return combine<3>(task, rule, first, n, position, rate);
+      return combine<3>(rule, n, from, rates, a, position, rate);
     case 4:
-      return combine<4>(task, rule, first, n, position, rate);
+      return combine<4>(rule, n, from, rates, a, position, rate);
     case 5:
-      return combine<5>(task, rule, first, n, position, rate);
+      return combine<5>(rule, n, from, rates, a, position, rate);
     default:
-      return combine<6>(task, rule, first, n, position, rate);
+      return combine<6>(rule, n, from, rates, a, position, rate);
+  }
+}
+
+/// n coordinates, their rates and first accelerations at the end of a step.
+inline void end_step(const TrainTask& task, int n, double* x, double* w, double* const* accelerations) {
+  const Row w_in_v = row(task.end.w_in_v);
+  Row *at = rows(x), *rate = rows(w), *a[most_kept], a_in_v[most_kept], a_in_w[most_kept];
+  for (int j = 0; j < task.known; ++j) {
+    a[j] = rows(accelerations[j]);
+    a_in_v[j] = row(task.end.a_in_v[j]);
+    a_in_w[j] = row(task.end.a_in_w[j]);
+  }
+  for (int i = 0; i < n; ++i) {
+    Row next{}, position = at[i] + w_in_v * rate[i], moving = rate[i];
+    for (int j = 0; j < task.known; ++j) {
+      const Row own = a[j][i];
+      position += a_in_v[j] * own;
+      moving += a_in_w[j] * own;
+      next += task.a_next[j] * own;
+    }
+    at[i] = position;
+    rate[i] = moving;
+    a[0][i] = next;
   }
 }
 
@@ -173,7 +201,7 @@ inline void predict(const TrainTask& task, int stage, double* work) {
     if (*b.awake == 0) continue;
     const int first = b.first_coordinate, f = b.freedom;
     Row *rate = rows(task.w_predicted) + first, *free = rows(task.a_free) + first;
-    combine(stage + 1, task, rule, first, f, at, rate);
+    combine(stage + 1, rule, first, f, task.x, task.w, task.a, at, rate);
     for (int i = 0; i < f; ++i) force[i] = -rows(b.r0)[i];
     add_product(b.K, -1.0, at, force);
     add_product(b.C, -1.0, rate, force);
@@ -202,21 +230,7 @@ inline bool in_place(const TrainTask& task) {
 
 /// The state at the end of the step.
 inline void finish_step(const TrainTask& task) {
-  const StageRows& rule = task.end;
-  const Row w_in_v = row(rule.w_in_v);
-  for (int i = 0; i < task.coordinates; ++i) {
-    Row &x = rows(task.x)[i], &w = rows(task.w)[i], next{};
-    Row at = x + w_in_v * w, rate = w;
-    for (int j = 0; j < task.known; ++j) {
-      const Row a = rows(task.a[j])[i];
-      at += row(rule.a_in_v[j]) * a;
-      rate += row(rule.a_in_w[j]) * a;
-      next += task.a_next[j] * a;
-    }
-    x = at;
-    w = rate;
-    rows(task.a[0])[i] = next;
-  }
+  end_step(task, task.coordinates, task.x, task.w, task.a);
   for (int i = 0; i < task.wheels; ++i) {
     rows(task.history[most_stages + 1])[i] = rows(task.history[most_stages])[i];
     rows(task.history[most_stages])[i] = rows(task.normal)[i];
