@@ -119,9 +119,9 @@ void Batch::start_structure() {
   for (double*& a : beam_.a) a = arrays_.add(unknowns_);
   for (std::size_t l = 0; l < runs_.size(); ++l) {
     const BatchRun& run = runs_[l];
-    const double own =
-        run.fleet->vehicles.front().dynamics->linear()->matrices().u[3 *
-                                                                     run.fleet->vehicles.front().wheels.front().body];
+    const train::MovingVehicle& first = run.fleet->vehicles.front();
+    const auto x = 3 * static_cast<Eigen::Index>(first.wheels.front().body);
+    const double own = first.dynamics->linear()->matrices().u[x];  // m/s, that the fleet starts with
     for (std::size_t i = 0; i < unknowns_; ++i) {
       beam_.v[i * arrays_.lanes + l] = (*run.state)[i];
       beam_.w[i * arrays_.lanes + l] = own != 0.0 ? (*run.state)[unknowns_ + i] * run.speed / own : 0.0;

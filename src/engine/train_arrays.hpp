@@ -39,6 +39,7 @@ class TrainArrays {
   /// The contact of the wheel with that number as it is at the start.
   void start_contact(std::size_t at, const train::WheelContact& c);
 
+  /// Zeros that live as long as this: so many rows, so many integers.
   double* add(std::size_t rows);
   int* add_integers(std::size_t rows);
 

@@ -61,14 +61,13 @@ std::vector<double> SideBySide::events(double past) const {
   return events;
 }
 
-void SideBySide::expect(double past) {
+bool SideBySide::expect(double past) {
   tracks_.clear();
   track_past_ = past;
   const auto [rear, front] = track_reach();
   const std::optional<double> distance = track::table_distance(scene_.profile, rear, front);
-  if (!distance)
-    throw InputError("sweep_lanes: the track has corners that runs side by side cannot follow; allowed: 0");
-  track_distance_ = *distance;
+  if (distance) track_distance_ = *distance;
+  return distance.has_value();
 }
 
 /// What wheels may touch of it, m.
@@ -79,7 +78,7 @@ std::pair<double, double> SideBySide::track_reach() const {
 
 /// All tracks of a spectrum have their stations where the scene's own has.
 SideBySide::Track SideBySide::track(const std::optional<std::uint64_t>& seed, double past) {
-  if (past > track_past_) expect(past);
+  if (past > track_past_ && !expect(past)) throw InputError(corners_of_the_track);
   const auto known = std::find_if(tracks_.begin(), tracks_.end(), [&](const auto& one) { return one.first == seed; });
   if (known != tracks_.end()) return known->second;
   const track::Profile other = seed ? scene_.roughness->profile(*seed) : track::Profile();

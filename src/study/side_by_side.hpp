@@ -44,8 +44,9 @@ class SideBySide {
   /// Those that the scene asks for.
   Steps steps() const;
   /// Tracks shall be known at once for all runs up to this distance gone (m), so that none depends on which runs come
-  /// first.
-  void expect(double past);
+  /// first. False where the track has corners that they cannot follow.
+  bool expect(double past);
+  static constexpr const char* corners_of_the_track = "the track has corners that runs side by side cannot follow";
   /// Runs that any thread may take, while others take theirs; their trains must outlive it.
   class Ready {
    public:

@@ -76,7 +76,7 @@ void announce(const Scene& scene, const CaseRunner& runner, const results::Sweep
   if (runner.has_lanes())
     notes.push_back(fmt::format("up to {} runs go side by side, in the lanes of {} vectors", scene.sweep->lanes,
                                 engine::instructions()));
-  else if (!scene.vehicles.empty() && scene.model_modes > 0)
+  else if (!scene.vehicles.empty())
     notes.push_back("runs go one by one: " + runner.why_no_lanes());
   const bool known = model.modes > 0 || model.time_step > 0.0;
   notes.push_back(fmt::format("the sweep is {}{}", results::method_of(model),
