@@ -78,7 +78,7 @@ class Runs {
       coupling::Observation seen;
       passage.run(
           [&](const integrate::Instant& now) {
-            passage.system().observe(now.time, now.y, now.ydot, seen);
+            passage.system().observe(now.time, now.y, now.acceleration, seen);
             add(passage.system().fleet(), curves);
           },
           [](double, long) { return true; });

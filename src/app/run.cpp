@@ -8,7 +8,6 @@
 #include "prepare.hpp"
 #include "results/stage.hpp"
 #include "run/active_ranks.hpp"
-#include "run/by_spans.hpp"
 #include "run/checkpoints.hpp"
 #include "run/rank_choice.hpp"
 #include "study/study.hpp"
@@ -18,11 +17,13 @@ namespace traverse::app {
 
 namespace {
 
-/// Linear vehicles over spans that do not touch go many times as fast. What they leave out is computed; where that is
-/// too much the run is repeated with the mechanisms.
+/// On a long viaduct, whose spans do not touch, the vehicles are nearly all that a step has to move, and linear ones take
+/// a fraction of what mechanisms take. What they neglect is computed; where that is too much the run is repeated with
+/// the mechanisms.
 void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
-  if (scene.vehicle_model != VehicleModel::automatic || scene.analysis != Analysis::transient || !scene.step_lanes ||
-      scene.all_ranks || !spans_obstacle(scene).empty())
+  const bool viaduct = scene.beam && scene.beam->all_separate() && scene.beam->spans.size() > 1;
+  if (scene.vehicle_model != VehicleModel::automatic || scene.analysis != Analysis::transient || !viaduct ||
+      scene.vehicles.empty() || !scene.train.steady() || scene.start != Start::equilibrium)
     return;
   scene.vehicle_model = VehicleModel::linear;
   scene.most_defect = most_defect(scene);

@@ -37,7 +37,6 @@
 #include "coupling/contact_newton.hpp"
 #include "coupling/corner_events.hpp"
 #include "coupling/passing_weights.hpp"
-#include "coupling/stepped_apart.hpp"
 #include "methods/one_step_methods.hpp"
 #include "recovery/recovery.hpp"
 #include "structure/structure.hpp"
@@ -129,7 +128,7 @@ class System {
   /// Collective. How far the mechanisms have been from equilibrium in what was observed, over their weights: what
   /// linear vehicles leave out.
   double defect() const {
-    double largest = std::max(fleet_.defect(), apart_ ? apart_->defect() : defect_apart_);
+    double largest = fleet_.defect();
     MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPI_DOUBLE, MPI_MAX, comm_);
     return largest;
   }
@@ -148,18 +147,6 @@ class System {
   }
   /// Collective. The method of the steps to come, for steps of 1 s.
   void begin_motion(const structure::Method& method);
-  // Steps apart (stepped_apart.hpp), from the first one on.
-
-  /// After start, before begin_motion.
-  void step_apart(std::unique_ptr<SteppedApart> apart) { apart_ = std::move(apart); }
-  /// Null: the system takes its steps itself.
-  const SteppedApart* apart() const { return apart_.get(); }
-  /// Takes the step that step_motion is to take, or goes on by itself from y at t, the start of that step: false then,
-  /// and a restart has to follow.
-  bool try_apart(double t, double h, double* y);
-  /// Writes where the steps apart have led into y. Does nothing where there are none.
-  void fetch(double* y);
-
   /// Whether the last step can be taken back.
   void keep_steps(bool keep) { keep_steps_ = keep; }
   /// Collective. Before the first step from a state, and where it was changed from outside.
@@ -176,26 +163,23 @@ class System {
   /// rest, and of the worst vehicle's, as a root of the mean of its masses' accelerations, measured by gravity and what
   /// they are.
   double step_error(const double* y);
-  /// Of steps apart: writes the structure's part of y' of where they have led, y, into ydot (SteppedApart::tell_rate).
-  bool fetch_rate(double t, const double* y, double* ydot);
-  /// Whether rate_of_motion serves: not where a method's own acceleration is another one than the state's, nor
-  /// for steps apart.
-  bool knows_rate() const {
-    return motion_ && !apart_ &&
-           motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
+  /// Whether acceleration() serves: not where a method's own acceleration is another one than the state's.
+  bool knows_acceleration() const {
+    return motion_ && motion_->unit.step.a_next[static_cast<std::size_t>(motion_->unit.step.known) - 1] == 1.0;
   }
-  /// y' of the state that the last step led to, as `rate` gives it, but for D' and W', which are left 0.
-  void rate_of_motion(const double* y, double* ydot) const;
+  /// w' of the structure in the state that the last step led to; null without a structure.
+  const double* acceleration() const { return structure_ ? structure_->acceleration() : nullptr; }
   /// Puts y back to where the last step began; a restart has to follow.
   void take_back_step(double* y);
 
-  /// Collective. Fills `out` for a state with its rate, and the fleet with accelerations, reactions, wheel forces;
-  /// without `vehicles`, where that is quicker, the fleet only with its wheels' places and forces, and no energies.
-  void observe(double t, const double* y, const double* ydot, Observation& out, bool vehicles = true);
+  /// Collective. Fills `out` for a state with the structure's w' = a, and the fleet with accelerations, reactions,
+  /// wheel forces; where not all is wanted, the fleet only with its wheels' places and forces where that is quicker,
+  /// and neither energies nor nodal loads.
+  void observe(double t, const double* y, const double* a, Observation& out, bool all = true);
 
   /// Lets constant forces act from here on, between two steps, besides all that the scene has: Fleet::apply, and a
   /// vertical force (N, upward) at a station (m) of the beam that wheels run on, instead of the last one there.
-  /// InputError where there is no such beam or station, or where steps are taken apart.
+  /// InputError where there is no such beam or station.
   void apply_to_body(int member, int body, const Eigen::Vector3d& action);
   void apply_to_beam(double x, double force);
   /// Settles which moving forces are on the beam during the coming step, which ends at known events: by its middle, so
@@ -314,11 +298,9 @@ class System {
   void note_braking();
   bool brakes_track(int wheel) const;
   bool take_braking(double t);
-  void check_applied() const;
   structure::ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
   void share_step();
-  void note_wheels_apart();
   void note_touched();
   bool contacts_are_known(double t) const;
   void powers(const double* w, Terms terms, double& dissipation, double& work);
@@ -359,8 +341,6 @@ class System {
   std::unique_ptr<engine::LinearTrain> train_;  // null: vehicles are not all linear, or their contacts not plain
   bool by_passes_ = false;                      // the step under way is taken with it
   std::size_t stage_ = 0;                       // of the step, that is under way
-  std::unique_ptr<SteppedApart> apart_;
-  double defect_apart_ = 0.0;
   bool keep_steps_ = false;
 };
 

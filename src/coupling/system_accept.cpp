@@ -34,10 +34,6 @@ void System::arrive(double t, const double* y) {
 }
 
 bool System::accept(double t, double* y) {
-  if (apart_) {
-    note_wheels_apart();
-    return false;
-  }
   if (structure_ && motion_) structure_->complete_step(y, y + n_);
   if (structure_ && !motion_) structure_->settle(y, loaded(t, 0.0));
   if (fleet_.vehicles.empty()) return false;
@@ -58,21 +54,12 @@ bool System::accept(double t, double* y) {
 }
 
 void System::keep(base::Archive& archive, double* y) {
-  bool apart = apart_ != nullptr;
-  archive.same(apart);
-  if (apart && !apart_)
-    throw FileError("on another number of ranks this run takes other steps; restart it on as many as it had");
-  if (apart_ && !apart) {
-    apart_.reset();
-    if (motion_) share_.deal(comm_, fleet_);
-  }
   const auto n = static_cast<std::size_t>(n_);
   archive.cut({y, n});
   archive.cut({y + n, n});
   std::vector<double> behind(y + 2 * n, y + local_size());
   archive.same(behind);
   if (rank_ == 0) std::copy(behind.begin(), behind.end(), y + 2 * n);
-  if (apart_) apart_->keep(archive);
   if (motion_) {
     Motion& m = *motion_;
     if (rank_ != 0 && !share_.dealt()) m.powers[0] = {};  // which count on the first rank alone
@@ -80,8 +67,7 @@ void System::keep(base::Archive& archive, double* y) {
     archive.sum(m.powers[0].dissipation, m.powers[0].work, m.dissipated, m.worked);
     if (archive.reads() && m.length > 0.0) set_step(m.length);
   }
-  archive.same(on_beam_, braking_force_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, signs_,
-               defect_apart_);
+  archive.same(on_beam_, braking_force_, loads_, p_, c_p_, pdd_, pd_, evaluated_, evaluated_time_, signs_);
   std::vector<int> owners = share_.owners(fleet_.vehicles.size());
   archive.same(owners);
   fleet_.keep(archive, owners);

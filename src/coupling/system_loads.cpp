@@ -29,23 +29,17 @@ void System::load_structure(double t) {
 }
 
 void System::apply_to_body(int member, int body, const Eigen::Vector3d& action) {
-  check_applied();
   fleet_.apply(member, body, action);
   applied_anew_ = true;
 }
 
 void System::apply_to_beam(double x, double force) {
-  check_applied();
   if (line_ == nullptr) throw InputError("a force at a station needs a beam");
   if (!(x >= line_->mesh.start() && x <= line_->mesh.end()))
     throw InputError("the station " + std::to_string(x) + " m is not on the beam, which goes from " +
                      std::to_string(line_->mesh.start()) + " to " + std::to_string(line_->mesh.end()) + " m");
   applied_[x] = force;
   applied_anew_ = true;
-}
-
-void System::check_applied() const {
-  if (apart_) throw InputError("forces cannot be set where steps are taken apart: model_vehicles full");
 }
 
 structure::ElementLoads System::contact_loads() {

@@ -21,8 +21,8 @@ void System::begin_motion(const structure::Method& method) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
-  if (!apart_) begin_passes();
-  if (!apart_ && !train_) share_.deal(comm_, fleet_);
+  begin_passes();
+  if (!train_) share_.deal(comm_, fleet_);
   if (structure_) structure_->begin_motion(method);
 }
 
@@ -55,7 +55,6 @@ const std::vector<structure::Reach>& System::loaded(double t, double h) {
 }
 
 void System::restart_motion(double t, double* y) {
-  if (apart_) return;
   Motion& m = *motion_;
   m.rate.resize(static_cast<std::size_t>(local_size()));
   rate(t, y, m.rate.data(), Terms::all);
@@ -66,18 +65,6 @@ void System::restart_motion(double t, double* y) {
   m.powers[0] = fleet_powers();
   if (train_) train_->restart(fleet_, m.p.data(), m.pd.data(), m.pdd[0].data());
   if (structure_) structure_->restart(loaded(t, 0.0), y, y + n_, m.rate.data() + n_);
-}
-
-void System::rate_of_motion(const double* y, double* ydot) const {
-  const Motion& m = *motion_;
-  std::fill_n(ydot, local_size(), 0.0);
-  if (structure_) {
-    std::copy_n(y + n_, n_, ydot);
-    std::copy_n(structure_->acceleration(), n_, ydot + n_);
-  }
-  if (rank_ != 0) return;
-  double* pdd = std::copy(m.pd.begin(), m.pd.end(), ydot + 2 * n_);
-  std::copy(m.pdd[0].begin(), m.pdd[0].end(), pdd);
 }
 
 void System::take_back_step(double* y) {
@@ -98,7 +85,6 @@ void System::set_step(double h) {
 }
 
 bool System::step_motion(double t, double h, double* y, const std::function<bool()>& good_enough) {
-  if (apart_) return true;  // try_apart has taken it
   Motion& m = *motion_;
   if (std::abs(h - m.length) > same_length * m.length) set_step(h);
   m.before.dissipated = m.dissipated;

@@ -12,9 +12,9 @@ bool System::contacts_are_known(double t) const {
          std::none_of(fleet_.wheels.begin(), fleet_.wheels.end(), [](const auto& wheel) { return wheel.further > 0; });
 }
 
-void System::observe(double t, const double* y, const double* ydot, Observation& out, bool vehicles) {
+void System::observe(double t, const double* y, const double* a, Observation& out, bool all) {
   const bool known = contacts_are_known(t), residual_grows = known && train_->departs_further();
-  const bool quick = known && !vehicles && !residual_grows;
+  const bool quick = known && !all && !residual_grows;
   if (!quick) evaluate_fleet(t, y);
   out.loads.clear();
   out.bridge_loads.clear();
@@ -29,7 +29,7 @@ void System::observe(double t, const double* y, const double* ydot, Observation&
     }
     const structure::ElementLoads contacts =
         quick ? structure::ElementLoads{fleet_.elements(), train_->loads()} : contact_loads();
-    structure_->observe(y, y + n_, ydot + n_, contacts, out.beam);
+    structure_->observe(y, y + n_, a, contacts, all, out.beam);
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
     out.bridge_loads.insert(out.bridge_loads.end(), out.beam.foundation_loads.begin(), out.beam.foundation_loads.end());
   }
@@ -50,11 +50,7 @@ double System::moment_about_axis(const train::WheelContact& c) const {
 
 Energy System::energy(const double* y) {
   structure::StructureEnergy s;
-  const std::optional<structure::StructureEnergy> told = apart_ ? apart_->energy() : std::nullopt;
-  if (told)
-    s = *told;
-  else if (structure_)
-    s = structure_->energy(y, y + n_);
+  if (structure_) s = structure_->energy(y, y + n_);
   if (motion_) {
     s.dissipated += motion_->dissipated;
     s.work += motion_->worked;

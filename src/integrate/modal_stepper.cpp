@@ -35,7 +35,7 @@ ModalStepper::ModalStepper(coupling::System& system, const structure::ModalBridg
     statics_.solve_static(sagging_.data());
   }
   y_.assign(static_cast<std::size_t>(system_.local_size()), 0.0);
-  ydot_.assign(y_.size(), 0.0);
+  acceleration_.assign(n, 0.0);
   force_.assign(n, 0.0);
   drag_.assign(n, 0.0);
   most_at_once_ = phase_at_once / *std::max_element(bridge_.omega().begin(), bridge_.omega().end());
@@ -117,7 +117,7 @@ void ModalStepper::load_now(double* nodal) const {
 
 void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
   const std::size_t n = force_.size();
-  double *v = y_.data(), *w = v + n, *a = ydot_.data() + n;
+  double *v = y_.data(), *w = v + n, *a = acceleration_.data();
   // The static correction first: K* v = P and dampers' forces, less the modes' share of it.
   load_now(force_.data());
   bridge_.add_forces_on_others(motion_.rate().data(), force_.data());
@@ -149,13 +149,12 @@ void ModalStepper::sample_now(const std::function<void(const Instant&)>& sample,
       drag_[k] += bridge_.own_drag()[i] * rate * phi[k];
     }
   }
-  std::copy_n(w, n, ydot_.data());
   for (std::size_t k = 0; k < n; ++k) v[k] += sagging_[k];
   if (y_.size() > 2 * n) {  // the rank that keeps the energies
     y_[2 * n] = motion_.dissipated();
     y_[2 * n + 1] = motion_.work() + stored - at_start_;  // what the correction stores, forces have put in
   }
-  sample({motion_.time(), y_.data(), ydot_.data(), dragged_ ? drag_.data() : nullptr, purpose});
+  sample({motion_.time(), y_.data(), acceleration_.data(), dragged_ ? drag_.data() : nullptr, purpose});
 }
 
 }  // namespace traverse::integrate

@@ -163,9 +163,6 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
                     const std::function<void(double)>& between) {
   const double slack = near_event * std::min({settings_.time_step, settings_.interval, settings_.end_time});
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * std::max(settings_.end_time, 1.0);
-  const auto look = [&](Purpose purpose) {  // steps apart are looked at one by one, at their ends
-    if (purpose != Purpose::look || system_.apart() == nullptr) sample_now(sample, purpose);
-  };
   Way& way = way_;
   double& t = way.t;
   begin(sample);
@@ -181,16 +178,18 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
       Array y(y_);
       const bool rewritten = system_.accept(t, y.data);
       if (rewritten) check(TSRestartStep(ts_));
-      if (steps_ % steps_unseen == 0 && system_.apart() == nullptr) check_bounds(t, y.data, nullptr);
+      if (steps_ % steps_unseen == 0) check_bounds(t, y.data);
       show_to_monitors(t);
       going = step(t, steps_) && !stopped_at_limit();
     }
     way.under_way = t < way.target;
     if (t == way.next_sample) {
       const bool stored = ++way.samples % settings_.stored == 0 && !way.beyond;
-      look(stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::look);
+      sample_now(sample, stored                     ? Purpose::sample
+                         : t == settings_.end_time ? Purpose::end
+                                                   : Purpose::look);
     } else if (way.passage < settings_.passages.size() && t == settings_.passages[way.passage]) {
-      look(Purpose::look);
+      sample_now(sample, Purpose::look);
     }
   }
   return t;
@@ -214,18 +213,14 @@ void Stepper::set_target(double slack) {
 // TS takes single steps here, in which it calls none.
 void Stepper::show_to_monitors(double t) {
   if (!monitored_) return;
-  fetch_steps_apart();
   check(TSMonitor(ts_, static_cast<PetscInt>(steps_), t, y_));
 }
 
 // What comes next on the way to a target `left` s away: a rung of the ladder, or what is left shared evenly among the
 // steps that it takes. Where the target moves a little, the step stays, and with it the beam's factorisation.
 double Stepper::next_step(double from, double left) const {
-  double limit = std::numeric_limits<double>::infinity(), impact = limit;
-  if (system_.apart() == nullptr) {  // contacts are held while steps are taken apart
-    limit = system_.contacts().step_limit(from);
-    impact = system_.contacts().time_to_impact(settings_.contact_tolerance);
-  }
+  const double limit = system_.contacts().step_limit(from);
+  const double impact = system_.contacts().time_to_impact(settings_.contact_tolerance);
   if (ladder_) return std::min(ladder_->towards(left, limit), impact);
   const double wanted = std::min({adaptive_ ? next_step_ : settings_.time_step, limit, impact});
   const double even = shared_evenly(left, wanted);
@@ -238,10 +233,6 @@ double Stepper::take_step(double from, double left) {
   const auto turn = next_turn(from, left);
   if (turn) left = turn->time - from;
   const double h = next_step(from, left);
-  if (system_.apart() != nullptr) {
-    Array y(y_);
-    if (!system_.try_apart(from, h, y.data)) check(TSRestartStep(ts_));
-  }
   // generalised-alpha carries on an acceleration of a part of a step elsewhere, as multistep methods do
   const bool carries = multistep_ || (second_order_ && !high_order_);
   if (carries && last_step_ > 0.0 && (h > restart_growth * last_step_)) check(TSRestartStep(ts_));
@@ -250,8 +241,7 @@ double Stepper::take_step(double from, double left) {
     check(TSRestartStep(ts_));
   }
   const bool turns = turn && h == left;
-  const bool locating =
-      settings_.contact_tolerance > 0.0 && system_.fleet().contacts() > 0 && system_.apart() == nullptr;
+  const bool locating = settings_.contact_tolerance > 0.0 && system_.fleet().contacts() > 0;
   if (second_order_)
     system_.keep_steps(locating || turns);
   else if (locating || turns)
@@ -284,42 +274,23 @@ double Stepper::step_to(double from, double end) {
   return t;
 }
 
-void Stepper::fetch_steps_apart() {
-  if (system_.apart() == nullptr || steps_ == 0) return;
-  Array y(y_);
-  system_.fetch(y.data);
-}
-
-bool Stepper::fetch_rate_apart(double t) {
-  if (steps_ == 0) return false;
-  ReadArray y(y_);
-  Array ydot(rate_);
-  return system_.fetch_rate(t, y.data, ydot.data);
-}
-
 void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose) {
-  fetch_steps_apart();
   PetscReal t = 0.0;
   check(TSGetTime(ts_, &t));
-  if (second_order_ && steps_ > 0 && system_.knows_rate()) {
-    ReadArray in(y_);
-    Array out(rate_);
-    system_.rate_of_motion(in.data, out.data);
-  } else if (!fetch_rate_apart(t)) {
-    rate(t, y_, rate_, Terms::all);
-  }
+  const bool known = second_order_ && steps_ > 0 && system_.knows_acceleration();
+  if (!known) rate(t, y_, rate_, Terms::all);
   ReadArray y(y_);
   ReadArray ydot(rate_);
-  if (system_.apart() == nullptr || steps_ == 0) check_bounds(t, y.data, ydot.data);
-  sample({t, y.data, ydot.data, nullptr, purpose});
+  if (purpose != Purpose::look) check_bounds(t, y.data);
+  sample(
+      {t, y.data, known ? system_.acceleration() : ydot.data + system_.structure_unknowns(), nullptr, purpose});
 }
 
-// SolverError where the motion is no number any more, or the beam deflects by more than its length. ydot: or null.
-void Stepper::check_bounds(double t, const double* y, const double* ydot) const {
+// SolverError where the motion is no number any more, or the beam deflects by more than its length.
+void Stepper::check_bounds(double t, const double* y) const {
   const auto abs = [](const double* x, int size) { return Eigen::Map<const Eigen::ArrayXd>(x, size).abs(); };
   const int n = system_.local_size(), unknowns = system_.structure_unknowns();
   double bounds[2] = {abs(y, n).sum(), unknowns > 0 ? abs(y, unknowns).maxCoeff() : 0.0};  // of displacements
-  if (ydot != nullptr) bounds[0] += abs(ydot, n).sum();
   MPI_Allreduce(MPI_IN_PLACE, bounds, 2, MPI_DOUBLE, MPI_MAX, system_.comm());
   const bool off = system_.beam() != nullptr && bounds[1] > system_.beam()->model().length();
   if (t == 0.0 && off)

@@ -33,11 +33,11 @@ struct Settings {
 /// that is no multiple of the interval between samples.
 enum class Purpose { sample, look, end };
 
-/// An accepted instant: y and y' = G(t, y) of this rank.
+/// An accepted instant of this rank: y, and w' of the structure.
 struct Instant {
   double time;
   const double* y;
-  const double* ydot;
+  const double* acceleration;
   const double* drag = nullptr;  // modal damping forces over the mass, m/s2, of this rank's beam; null: none
   Purpose purpose = Purpose::sample;
 };
@@ -102,10 +102,8 @@ class Stepper {
   double step_again(double from, double end);
   double locate_contact_change(double from, double full);
   double end_at_turn(double from, double at, const coupling::CornerEvents::Turn& turn);
-  void fetch_steps_apart();
-  bool fetch_rate_apart(double t);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
-  void check_bounds(double t, const double* y, const double* ydot) const;
+  void check_bounds(double t, const double* y) const;
   void rate(double t, Vec y, Vec ydot, coupling::Terms terms);
   bool remembered(double t, const double* y) const;
   void implicit_residual(double t, Vec y, Vec ydot, Vec residual);

@@ -25,12 +25,6 @@ void Stepper::keep(base::Archive& archive) {
     Array y(y_);
     system_.keep(archive, y.data);
   }
-  if (system_.apart() != nullptr) {  // which writes into what it has written before
-    Array ydot(rate_);
-    std::vector<double> rate(ydot.data, ydot.data + system_.local_size());
-    archive.cache(rate);
-    std::copy(rate.begin(), rate.end(), ydot.data);
-  }
   TS ts = ts_;
   bool started = second_order_ && has_started(ts), restarts = ts->steprestart == PETSC_TRUE;
   archive.same(ts->ptime, ts->ptime_prev, ts->time_step, ts->steps, ts->reject, restarts, started);

@@ -19,7 +19,7 @@ constexpr int most_turn_trials = 3;  // and where a wheel turns about a corner
 // anew by a short step, which costs it more; the ladder sees the corner's error, and keeps to the steps it has factors
 // of.
 std::optional<coupling::CornerEvents::Turn> Stepper::next_turn(double from, double left) {
-  if (!settings_.corners || multistep_ || ladder_ || system_.apart() != nullptr) return std::nullopt;
+  if (!settings_.corners || multistep_ || ladder_) return std::nullopt;
   ReadArray y(y_);
   return system_.next_turn(from, left, y.data);
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "by_spans.hpp"
 #include "integrate/integrator_choice.hpp"
 #include "results/stage.hpp"
 #include "run/axle_passages.hpp"
@@ -129,19 +128,8 @@ void Passage::start(std::vector<std::string>& notes) {
     notes.push_back(line);
   if (scene_.vehicle_model == VehicleModel::linear && !still_)
     for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(line);
-  if (!still_ && !stepper_->adaptive()) step_apart(y, notes);
   if (!still_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);
-}
-
-// Linear vehicles over spans that do not touch have a way of their own.
-void Passage::step_apart(const double* y, std::vector<std::string>& notes) {
-  std::unique_ptr<coupling::SteppedApart> apart = by_spans(scene_, shared_, system_, y, plan_.end_time);
-  if (apart)
-    notes.push_back(
-        fmt::format("spans do not touch: each is stepped by the modes of its elements under the train, {}",
-                    scene_.rest_tolerance == 0.0 ? "and all others beside" : "and rings exactly behind it"));
-  system_.step_apart(std::move(apart));
 }
 
 void Passage::run(const std::function<void(const integrate::Instant&)>& sample,

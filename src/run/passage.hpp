@@ -52,7 +52,6 @@ class Passage {
  private:
   void add_axle_passages(std::vector<double>& times) const;
   void leave_out_rest(std::vector<std::string>& notes);
-  void step_apart(const double* y, std::vector<std::string>& notes);
 
   const Scene& scene_;
   const SharedBeam& shared_;

@@ -100,11 +100,6 @@ void Peaks::add(double t, std::span<const beam::Response> probes, std::span<cons
   }
 }
 
-void Peaks::add_shear(double t, std::span<const beam::Response> probes) {
-  for (std::size_t i = 0; i < probes.size(); ++i)
-    forces_[i].add_shear(t, probes[i], passages_[i], lag_, note_of_forces(i));
-}
-
 Bends Peaks::bends() const {
   const auto relative = [this](double bend, Quantity q) {
     const double largest = std::abs(largest_[q].value);

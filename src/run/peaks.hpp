@@ -52,8 +52,6 @@ class Peaks {
 
   /// A shear that is no number is not known at this instant.
   void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
-  /// Shear and axial forces alone, of instants at which add() did not know them.
-  void add_shear(double t, std::span<const beam::Response> probes);
   void finish();
   /// The extremes of low-passed accelerations, rows of all probes at instants `interval` s apart from 0 on.
   void add_low_passed(std::span<const double> rows, double interval);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double first_steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
 constexpr double steps_a_wave = 20.0;           // of the track or of a wheel out of round, at that accuracy
-constexpr double samples_a_period = 20.0;       // of a bridge by its modes, where the interval is left open
+constexpr double samples_a_period = 20.0;       // of the first period: where a response turns is seen from as many
 constexpr double mechanism_step = 1e-3;         // s, where there is no beam to judge by
 constexpr double least_steps_a_span = 10.0;
 constexpr double most_steps = 1e10;
@@ -59,6 +59,13 @@ void check_step(const Scene& scene, const Plan& plan) {
                                  plan.time_step, crossing, crossing / least_steps_a_span));
 }
 
+// s: the shorter of the first period and the crossing of the shortest span, where there is a beam.
+double shortest_scale(const Scene& scene, double first_period) {
+  const double scale = first_period > 0.0 ? first_period : 1.0, speed = greatest_speed(scene);
+  const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
+  return speed > 0.0 ? std::min(scale, span / speed) : scale;
+}
+
 double chosen_step(const Scene& scene, double first_period, std::vector<std::string>& notes) {
   const double finer = std::pow(scene.accuracy / 1e-3, 0.25);
   const double wave_step = round_down(std::min(shortest_wave(scene) / scene.train.speed, 1e6) / steps_a_wave * finer);
@@ -73,11 +80,7 @@ double chosen_step(const Scene& scene, double first_period, std::vector<std::str
     notes.push_back(fmt::format("time step {:g} s: no beam to judge by; -ts_dt changes it", mechanism_step));
     return mechanism_step;
   }
-  double scale = first_period > 0.0 ? first_period : 1.0;
-  const double speed = greatest_speed(scene);
-  const double span = *std::min_element(scene.beam->spans.begin(), scene.beam->spans.end());
-  if (speed > 0.0) scale = std::min(scale, span / speed);
-  const double step = round_down(scale / first_steps_a_period * finer);
+  const double step = round_down(shortest_scale(scene, first_period) / first_steps_a_period * finer);
   if (wave_step < step) return by_waves();
   notes.push_back(fmt::format(
       "time step {:g} s: from accuracy {:g}, the first period and the crossing of a span; -ts_dt changes it", step,
@@ -144,18 +147,21 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   if (scene.output.interval && *scene.output.interval > plan.end_time)
     notes.push_back(fmt::format("output_interval {:g} s is longer than the run: of its series only the start is stored",
                                 *scene.output.interval));
+  // Peaks are looked for between stored samples, too, where these are further apart.
+  const double looks =
+      scene.beam ? std::min(scene.looks, shortest_scale(scene, first_period) / samples_a_period) : scene.looks;
   if (scene.output.interval) {
     plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9))));
     plan.stored =
-        scene.step_probes ? steps : looks_among(steps, plan.interval / static_cast<double>(steps), scene.looks);
+        scene.step_probes ? steps : looks_among(steps, plan.interval / static_cast<double>(steps), looks);
     plan.interval /= static_cast<double>(plan.stored);
     if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples)));
-    plan.stored = scene.step_probes ? steps : looks_among(steps, plan.time_step, scene.looks);
+    plan.stored = scene.step_probes ? steps : looks_among(steps, plan.time_step, looks);
     plan.interval = plan.time_step * static_cast<double>(steps) / static_cast<double>(plan.stored);
   }
   move_end_to_sample(plan);

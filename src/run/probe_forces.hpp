@@ -35,12 +35,6 @@ class ProbeForces {
       moment_.add(t, r.moment, passages, of_moment(note));
     if (knows_shear) add_jumping(t, r, passages, relaxes ? lag : 0.0, note);
   }
-  /// Shear and axial force alone.
-  template <class Note>
-  void add_shear(double t, const beam::Response& r, const std::vector<double>& passages, double lag, Note&& note) {
-    remember({t, r.moment, r.shear, r.axial_force});
-    add_jumping(t, r, passages, std::isnan(r.moment_rate) ? 0.0 : lag, note);
-  }
   template <class Note>
   void finish(const std::vector<double>& passages, double lag, Note&& note) {
     lagging_.finish(of_moment(note));

@@ -8,8 +8,6 @@
 #include <cmath>
 #include <limits>
 
-#include "run/by_spans.hpp"
-
 namespace traverse::app {
 namespace {
 
@@ -48,12 +46,13 @@ StageWork stage_work(const Scene& scene) {
   const bool spans_apart = beam.all_separate() && beam.spans.size() > 1;
   work.unknowns = unknowns_of(scene);
   work.each = beam.track ? layered : spans_apart ? apart : continuous;
-  work.vehicles = static_cast<double>(scene.train.vehicles.size());
+  // Every rank steps all vehicles that are linear.
+  work.vehicles = scene.vehicle_model == VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
   work.cut = !(scene.rest_tolerance > 0.0 || (scene.rest_tolerance < 0.0 && spans_apart));
   if (scene.model_modes > 0)
     work.alone = "the modes' steps have no more in them than a message";
-  else if (scene.step_lanes && !scene.all_ranks && spans_obstacle(scene).empty())
-    work.alone = "the spans under the train have no more in them than a message";
+  else if (work.vehicles == 0.0 && !work.cut)
+    work.alone = "the spans near linear vehicles have no more in them than a message";
   return work;
 }
 

@@ -49,26 +49,22 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
     }
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
-  double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
+  const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
-  if (system.apart() != nullptr) {
-    lag = system.apart()->moment_lag();
-    seen_apart_.resize(scene.output.probes.size());
-  }
   peaks_ = peaks_for(scene, wheel_count_, lag);
   wheels_ = WheelExtremes(wheel_count_, system.corners());
 }
 
 void Watch::sample(const integrate::Instant& instant) {
   const bool stored = instant.purpose != integrate::Purpose::look;
-  const bool vehicles = stored || judge_ || beyond_trials_.looks_at_springs() || scene_.train.drive == Drive::free;
-  system_.observe(instant.time, instant.y, instant.ydot, now_.motion, vehicles);
+  const bool all = stored || judge_ || beyond_trials_.looks_at_springs() || scene_.train.drive == Drive::free;
+  system_.observe(instant.time, instant.y, instant.acceleration, now_.motion, all);
   const structure::NodalMotion& beam = now_.motion.beam;
   sample_.time = instant.time;
   if (beam_ != nullptr) {
     if (instant.drag != nullptr) drag(instant.drag);
     if (!beam.drag.empty()) drag(beam.drag.data());
-    recovery_->evaluate(beam.v, beam.w, beam.a.data(), now_.motion.bridge_loads, now_.probes);
+    recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.bridge_loads, now_.probes);
     if (lag_) lag_->apply(instant.time, now_.motion.bridge_loads, now_.probes);
     for (beam::Response& probe : now_.probes)
       if (!lag_) probe.moment_rate = std::numeric_limits<double>::quiet_NaN();
@@ -77,10 +73,7 @@ void Watch::sample(const integrate::Instant& instant) {
     for (std::size_t i = 0; i < dragged_.size(); ++i) now_.probes[i].acceleration -= dragged_[i].acceleration;
   }
   step(instant.time);  // the first instant is no step's end
-  if (system_.apart() == nullptr)
-    note_peaks(now_.probes);
-  else
-    take_from_apart();
+  note_peaks();
   note_worst();
   if (judge_) judge_->sample(instant.time, beam.v);
   axle_passages_.add(instant.time, system_.fleet());
@@ -91,9 +84,9 @@ void Watch::sample(const integrate::Instant& instant) {
 void Watch::store(bool end) {
   if (beam_ != nullptr) {
     const structure::NodalMotion& beam = now_.motion.beam;
-    if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a.data(), now_.motion.loads, now_.rail);
-    beam_->reactions(beam.v, beam.w, beam.a.data(), beam.P.data(), now_.supports);
-    now_.ground->evaluate(beam.v, beam.w, beam.a.data());
+    if (rail_recovery_) rail_recovery_->evaluate(beam.v, beam.w, beam.a, now_.motion.loads, now_.rail);
+    beam_->reactions(beam.v, beam.w, beam.a, beam.P.data(), now_.supports);
+    now_.ground->evaluate(beam.v, beam.w, beam.a);
     if (now_.sleepers) now_.sleepers->evaluate(beam.v, beam.w);
     if (now_.devices && !now_.devices->x().empty()) now_.devices->evaluate(beam.v);
   }
@@ -112,14 +105,16 @@ void Watch::store(bool end) {
 
 // Damping by modes acts like inertia: with the accelerations in all forces, but no acceleration of the probes.
 void Watch::drag(const double* drag) {
-  std::vector<double>& a = now_.motion.beam.a;
-  const std::vector<double> still(a.size(), 0.0);
+  structure::NodalMotion& beam = now_.motion.beam;
+  const auto size = static_cast<std::size_t>(beam_->local_unknowns());
+  const std::vector<double> still(size, 0.0);
   recovery_->evaluate(still.data(), still.data(), drag, {}, dragged_);
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] += drag[i];
+  with_drag_.assign(beam.a, beam.a + size);
+  for (std::size_t i = 0; i < size; ++i) with_drag_[i] += drag[i];
+  beam.a = with_drag_.data();
 }
 
-// Of an instant that is the end of a step apart, or is observed.
-void Watch::note_peaks(const std::vector<beam::Response>& probes) {
+void Watch::note_peaks() {
   wheel_forces_.clear();
   const train::Fleet& fleet = system_.fleet();
   for (const train::Member& member : fleet.members) {
@@ -128,8 +123,8 @@ void Watch::note_peaks(const std::vector<beam::Response>& probes) {
       wheel_forces_.push_back(fleet.load(fleet.wheels[first + i]).normal);
   }
   beyond_trials_.add(sample_.time, fleet, now_.motion.beam.foundation, peaks_);
-  peaks_.add(sample_.time, probes, wheel_forces_);
-  if (deck_) deck_->add(sample_.time, probes);
+  peaks_.add(sample_.time, now_.probes, wheel_forces_);
+  if (deck_) deck_->add(sample_.time, now_.probes);
 }
 
 void Watch::note_worst() {
@@ -139,9 +134,10 @@ void Watch::note_worst() {
     most_deflected_ = deflected;
     worst_.time = sample_.time;
     const structure::NodalMotion& beam = now_.motion.beam;
-    worst_.v.assign(beam.v, beam.v + beam.a.size());
-    worst_.w.assign(beam.w, beam.w + beam.a.size());
-    worst_.a = beam.a;
+    const int size = beam_->local_unknowns();
+    worst_.v.assign(beam.v, beam.v + size);
+    worst_.w.assign(beam.w, beam.w + size);
+    worst_.a.assign(beam.a, beam.a + size);
     worst_.loads = now_.motion.bridge_loads;
   }
 }
@@ -175,21 +171,6 @@ void Watch::step(double t) {
       if (kept) filtered_wheels_->add(force);
       wheels_.add(wheel++, t, fleet.coordinates(c).x(), force);
     }
-  if (system_.apart() == nullptr || t <= last_apart_) return;
-  last_apart_ = sample_.time = t;
-  system_.apart()->see(seen_apart_);
-  note_peaks(seen_apart_);
-}
-
-// What was seen of a step apart stands for what the system makes of the same instant.
-void Watch::take_from_apart() {
-  for (std::size_t i = 0; i < seen_apart_.size(); ++i) {
-    now_.probes[i].deflection = seen_apart_[i].deflection;
-    now_.probes[i].acceleration = seen_apart_[i].acceleration;
-    now_.probes[i].moment = seen_apart_[i].moment;
-    if (!std::isnan(seen_apart_[i].shear)) now_.probes[i].shear = seen_apart_[i].shear;
-  }
-  peaks_.add_shear(sample_.time, now_.probes);
 }
 
 void Watch::note_wheels() {
@@ -255,8 +236,8 @@ const results::Summary& Watch::finished_extremes() {
 }
 
 void Watch::keep(base::Archive& archive) {
-  archive.same(peaks_, beyond_trials_, wheels_, paths_, energy_at_start_, first_, last_apart_, sample_.time,
-               now_.probes, seen_apart_, most_deflected_);
+  archive.same(peaks_, beyond_trials_, wheels_, paths_, energy_at_start_, first_, sample_.time, now_.probes,
+               most_deflected_);
   if (lag_) archive.same(*lag_);
   if (judge_) archive.same(*judge_);
   archive.same(axle_passages_);

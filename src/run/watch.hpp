@@ -83,11 +83,10 @@ class Watch {
   void note_separations();
   void note_wheels();
   void store(bool end);
-  void note_peaks(const std::vector<beam::Response>& probes);
+  void note_peaks();
   void note_worst();
   void note_energy();
   void note_static_deflections();
-  void take_from_apart();
 
   const Scene& scene_;
   coupling::System& system_;
@@ -97,7 +96,8 @@ class Watch {
   std::optional<beam::ViscousLag> lag_;
   const Outputs* outputs_;  // null where this rank writes no file
   bool recorded_;           // whether some rank stores samples
-  std::vector<beam::Response> dragged_, seen_apart_;
+  std::vector<beam::Response> dragged_;
+  std::vector<double> with_drag_;  // accelerations with what damping by modes adds to them
   Peaks peaks_;
   BeyondTrials beyond_trials_;
   std::optional<DeckAcceleration> deck_;
@@ -116,7 +116,6 @@ class Watch {
   WorstInstant worst_;
   coupling::Energy energy_at_start_;
   bool first_ = true;
-  double last_apart_ = -1.0;  // s: when a step apart was seen last
 };
 
 /// SolverError where so much energy does not balance that the result is meaningless.

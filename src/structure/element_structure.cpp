@@ -263,17 +263,19 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
 }
 
 void ElementStructure::observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
-                               NodalMotion& out) {
+                               bool with_loads, NodalMotion& out) {
   out.v = v;
   out.w = w;
-  out.a.assign(a, a + n_);
-  out.P.resize(static_cast<std::size_t>(n_));
-  external_load(out.P.data());
-  add_contacts(contacts, out.P.data());
+  out.a = a;
+  if (with_loads) {
+    out.P.resize(static_cast<std::size_t>(n_));
+    external_load(out.P.data());
+    add_contacts(contacts, out.P.data());
+  }
   out.foundation_loads.clear();
   if (!nonlinear_) return;
   nonlinear_->evaluate(v, w);
-  nonlinear_->add_forces(out.P.data());
+  if (with_loads) nonlinear_->add_forces(out.P.data());
   nonlinear_->report(out.foundation, out.foundation_loads);
 }
 

@@ -69,7 +69,7 @@ class ElementStructure final : public Structure {
   double error_energy(const double* v, const double* w) override;
 
   StructureEnergy energy(const double* v, const double* w) override;
-  void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
+  void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                NodalMotion& out) override;
   void keep(base::Archive& archive) override;
 

@@ -153,7 +153,7 @@ StructureEnergy ModalStructure::energy(const double* v, const double* w) {
 }
 
 void ModalStructure::observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
-                             NodalMotion& out) {
+                             bool /*with_loads*/, NodalMotion& out) {
   const auto size = static_cast<std::size_t>(beam_.local_unknowns());
   const auto first = static_cast<std::size_t>(beam_.first_column()) * static_cast<std::size_t>(beam_.block());
   std::vector<double>&q = seen_, &share = share_;
@@ -194,20 +194,21 @@ void ModalStructure::observe(const double* v, const double* w, const double* a, 
     q[3 * modes_ + i] = bridge_.own_drag()[i] * q[modes_ + i];
   }
   nodal_.noalias() = phi * motion;
-  out.a.resize(size);
   out.drag.resize(size);
   v_nodal_.resize(size);
   w_nodal_.resize(size);
+  a_nodal_.resize(size);
   for (std::size_t k = 0; k < size; ++k) {
     const auto row = static_cast<Eigen::Index>(k);
     v_nodal_[k] = sag_[first + k] + rest_[k] + nodal_(row, 0);
     w_nodal_[k] = nodal_(row, 1);
-    out.a[k] = nodal_(row, 2);
+    a_nodal_[k] = nodal_(row, 2);
     out.drag[k] = nodal_(row, 3);
     out.P[k] += dead_load_[k];
   }
   out.v = v_nodal_.data();
   out.w = w_nodal_.data();
+  out.a = a_nodal_.data();
 }
 
 }  // namespace traverse::structure

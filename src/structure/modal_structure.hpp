@@ -48,7 +48,7 @@ class ModalStructure final : public Structure {
   double error_energy(const double* v, const double* w) override;
 
   StructureEnergy energy(const double* v, const double* w) override;
-  void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
+  void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                NodalMotion& out) override;
   void keep(base::Archive& archive) override {
     archive.cut(kept_[0]);
@@ -113,7 +113,7 @@ class ModalStructure final : public Structure {
   } before_;
   std::vector<double> q_, moved_;  // modal forces and what they move, of solve_free and take
   // What is seen: nodal values, the static solution; q, q', q'' and the modes' share of that.
-  std::vector<double> v_nodal_, w_nodal_, rest_, seen_, share_;
+  std::vector<double> v_nodal_, w_nodal_, a_nodal_, rest_, seen_, share_;
   Eigen::MatrixXd nodal_;  // [unknown][as seen_]
 };
 

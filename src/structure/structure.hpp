@@ -48,9 +48,8 @@ struct StructureEnergy {
 
 /// An accepted instant of a structure, as nodal values of the beam: this rank's.
 struct NodalMotion {
-  const double *v = nullptr, *w = nullptr;
-  std::vector<double> a;     // accelerations
-  std::vector<double> P;     // loads, on held unknowns too
+  const double *v = nullptr, *w = nullptr, *a = nullptr;
+  std::vector<double> P;     // loads, on held unknowns too, where they are asked for
   std::vector<double> drag;  // what damping that acts like inertia adds to the accelerations in all forces; empty: none
   std::vector<double> coordinates;  // of a bridge by its modes: q of each, m kg^(1/2), on every rank
   NonlinearForces foundation;
@@ -174,8 +173,9 @@ class Structure {
 
   /// This rank's share.
   virtual StructureEnergy energy(const double* v, const double* w) = 0;
-  /// A state with its accelerations as nodal values, under the moving forces and the contacts' loads.
-  virtual void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts,
+  /// A state with its accelerations as nodal values, under the moving forces and the contacts' loads; with_loads:
+  /// whether NodalMotion::P is asked for.
+  virtual void observe(const double* v, const double* w, const double* a, const ElementLoads& contacts, bool with_loads,
                        NodalMotion& out) = 0;
 
   /// Between steps: what changes with time but v and w. When it is read the method has been set.

@@ -248,7 +248,7 @@ void run_from(const beam::BeamModel& model, const Set& set, int which, double st
   coupling::Observation seen;
   stepper.run(
       [&](const integrate::Instant& now) {
-        system.observe(now.time, now.y, now.ydot, seen);
+        system.observe(now.time, now.y, now.acceleration, seen);
         check(now.time, now.y[beam.local(beam.bridge().unknown(1, which))], seen.energy);
       },
       [](double, long) { return true; });
