@@ -228,8 +228,10 @@ System::Solution System::solve_coupled(const StageTime& at, Terms terms) {
     if (terms == Terms::all && !(by_passes_ ? stage_by_passes(at) : stage_of_fleet(at)))
       return Solution::fleet_unsettled;
     if (!structure_) return Solution::found;
-    if (terms == Terms::all && !fleet_.elements().empty())
-      structure_->take(by_passes_ ? train_->loads() : newton_.element_loads());
+    if (by_passes_)
+      structure_->take_loads();
+    else if (terms == Terms::all && !fleet_.elements().empty())
+      structure_->take(newton_.element_loads());
     const structure::Structure::Verdict verdict = structure_->judge();
     if (verdict == structure::Structure::Verdict::settled) return Solution::found;
     if (verdict == structure::Structure::Verdict::failed) return Solution::structure_unsettled;

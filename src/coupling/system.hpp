@@ -334,7 +334,6 @@ class System {
   double evaluated_time_ = 0.0;
   unsigned signs_ = 0;          // VehicleShare's of that state or, after a step, of its end
   std::vector<double> v_, w_;   // of elements, 2*per_node each
-  std::vector<double> passed_;  // v_ under the contacts' forces
   std::vector<double> element_loads_;
   std::vector<structure::Reach> reaches_;
   std::unique_ptr<Motion> motion_;              // null before begin_motion

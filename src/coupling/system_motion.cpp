@@ -157,25 +157,23 @@ bool System::stage_by_passes(const StageTime& at) {
   const engine::LinearTrain::Placing placing = train_->place(fleet_);
   if (placing == engine::LinearTrain::Placing::several_points) return false;
   if (structure_) {
-    structure_->gather_free(train_->elements(), v_, w_);
-    const structure::ElementCompliance& compliance = structure_->yield_alone(train_->elements());
-    if (placing == engine::LinearTrain::Placing::anew) train_->set_compliance(compliance);
+    const structure::ContactField& field = structure_->begin_passes(train_->elements());
+    train_->meet(field, &structure_->own_compliance());
   }
   const auto respond = [&] {
-    passed_ = v_;
-    if (structure_ && !passed_.empty()) structure_->respond(train_->compute_loads(), passed_);
+    if (!structure_) return;
+    structure_->clear_loads();
+    train_->add_loads();
+    structure_->respond();
   };
   do {
     respond();
-    if (!train_->update_forces(passed_)) return false;
+    if (!train_->update_forces()) return false;
   } while (!train_->converged());
-  if (stage_ + 1 < motion_->method.stages.size()) {
-    (void)train_->compute_loads();
-  } else {  // where the step ends rates are seen too
-    respond();
-    for (std::size_t i = 0; i < passed_.size(); ++i) w_[i] += at.shift * (passed_[i] - v_[i]);
-  }
-  train_->end_stage(w_);
+  respond();
+  // Where the step ends rates are seen, too.
+  if (structure_ && stage_ + 1 == motion_->method.stages.size()) structure_->find_rates(at.shift);
+  train_->end_stage();
   return true;
 }
 

@@ -28,7 +28,7 @@ void System::observe(double t, const double* y, const double* a, Observation& ou
           {c.patches[c.active].element, c.touch.xi, f.x(), f.y(), moment_about_axis(c), fleet_.velocities(c).x()});
     }
     const structure::ElementLoads contacts =
-        quick ? structure::ElementLoads{fleet_.elements(), train_->loads()} : contact_loads();
+        quick ? structure::ElementLoads{train_->elements(), structure_->pass_loads()} : contact_loads();
     structure_->observe(y, y + n_, a, contacts, all, out.beam);
     if (beam()->rail() == nullptr) out.bridge_loads = out.loads;
     out.bridge_loads.insert(out.bridge_loads.end(), out.beam.foundation_loads.begin(), out.beam.foundation_loads.end());

@@ -51,7 +51,6 @@ class Batch {
   BeamTask beam_;
   BatchTask task_;
   LookState looks_;
-  std::vector<SurfaceTable> surfaces_;
   std::vector<int> table_, there_;
   std::vector<double> rests_until_;  // m, of every block
   double ds_ = 0.0, ds_before_ = 0.0;
@@ -130,9 +129,8 @@ void Batch::start_structure() {
   const int lanes = static_cast<int>(arrays_.lanes);
   for (int k = 0; k < 2 * train_.per_node; ++k) train_.offset[k] = structure_.offset_[k] * lanes;
   train_.ground = static_cast<int>(unknowns_) * lanes;
-  train_.unknowns = static_cast<int>(unknowns_ + beyond) * lanes;
   train_.shears = structure_.shears_;
-  train_.nodal = arrays_.add(unknowns_ + beyond);
+  train_.nodal = beam_.v_stage = arrays_.add(unknowns_ + beyond);
   train_.lost = train_.given = nullptr;
   train_.settled = arrays_.add(arrays_.blocks.size());
   train_.tolerance = last_change;
@@ -181,15 +179,11 @@ void Batch::start_wheels() {
         const train::WheelContact& c = fleet.wheels[static_cast<std::size_t>(vehicle.first_wheel + j)];
         arrays_.start_contact(at, c);
         train_.along[at] = train_.station[at] = train_.place[at];  // while it stands still
-        const auto known = std::find_if(structure_.surfaces_.begin(), structure_.surfaces_.end(),
-                                        [&](const auto& s) { return s.radius == fleet.wheel(c).radius; });
-        table_[at] = static_cast<int>(known - structure_.surfaces_.begin());
+        table_[at] = static_cast<int>(structure_.surfaces_.number(fleet.wheel(c).radius));
       }
     }
   }
-  for (const BatchStructure::Surface& s : structure_.surfaces_)
-    surfaces_.push_back({static_cast<int>(s.there.size()), s.there.data()});
-  task_.surface = surfaces_.data();
+  task_.surface = structure_.surfaces_.tables().data();
   task_.table = table_.data();
   task_.there = there_.data();
   std::fill_n(train_.h, table_.size(), 0.0);

@@ -3,7 +3,6 @@
 // run by itself has (coupling/system.hpp), by the kernel that its train has, too (train_kernel.hpp).
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <span>
 #include <string>
@@ -11,6 +10,7 @@
 
 #include "beam/beam.hpp"
 #include "engine/batch_task.hpp"
+#include "engine/surfaces.hpp"
 #include "methods/one_step_methods.hpp"
 #include "recovery/recovery.hpp"
 #include "track/height_table.hpp"
@@ -34,7 +34,6 @@ class BatchStructure {
  private:
   friend class Batch;
   void find_columns();
-  void add_surface(train::Fleet fleet, std::size_t entry);
   void add_probe(const beam::Recovery& recovery, std::size_t station);
 
   const beam::Beam& beam_;
@@ -43,11 +42,7 @@ class BatchStructure {
   std::vector<char> held_;
   std::vector<int> first_column_;
   int offset_[most_nodal] = {};  // of an element's unknowns, counted from its first column
-  struct Surface {
-    double radius = 0.0;
-    std::vector<PatchesThere> there;
-  };
-  std::deque<Surface> surfaces_;
+  Surfaces surfaces_;
   std::vector<ProbeForms> probes_;
   std::vector<double> kinks_;
   bool shears_ = false;

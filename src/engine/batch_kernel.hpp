@@ -17,27 +17,15 @@ inline void place_wheel(const BatchTask& t, int at, int lane) {
   TrainTask& train = *t.train;
   const BeamTask& beam = *t.beam;
   const SurfaceTable& table = t.surface[t.table[at]];
-  const double x = train.along[at];
   int& k = t.there[at];
-  while (k + 1 < table.count && x > table.there[k].to) ++k;
-  while (k > 0 && x < table.there[k].from) --k;
-  const PatchesThere& there = table.there[k];
-  train.from[at] = there.from;
-  train.to[at] = there.to;
-  if (train.active[at] >= there.candidates) train.active[at] = 0;
+  k = follow(table, train.along[at], k);
+  put_on(train, at, table.there[k]);
   for (int n = 0; n < 2; ++n) {
-    const PatchesThere::Patch& from = there.patch[n];
+    const int element = table.there[k].patch[n].element;
     SurfacePatch& p = train.patch[n];
-    p.slot[at] = from.element < 0 ? train.ground : beam.first_column[from.element] * beam.block * lanes + lane;
-    p.x[at] = from.x;
-    p.length[at] = from.length;
-    p.per_length[at] = 1.0 / from.length;
-    p.shear[at] = from.shear;
-    p.yield[at] = from.yield;
-    p.low[at] = from.low;
-    p.high[at] = from.high;
+    p.slot[at] = element < 0 ? train.ground : beam.first_column[element] * beam.block * lanes + lane;
     for (int i = 0; i < 10; ++i)
-      p.compliance[i][at] = from.element < 0 ? 0.0 : beam.compliance[(10L * from.element + i) * lanes + lane];
+      p.compliance[i][at] = element < 0 ? 0.0 : beam.compliance[(10L * element + i) * lanes + lane];
   }
 }
 
@@ -108,13 +96,13 @@ template <Surface kind, class Structure>
 void solve_structure(const BatchTask& t, const Structure& structure, Row displacement, RowMask open) {
   const BeamTask& beam = *t.beam;
   const int n = beam.columns * beam.block;
-  Row *x = rows(beam.work), *solution = rows(beam.solution), *nodal = rows(t.train->nodal);
+  Row *x = rows(beam.work), *solution = rows(beam.solution), *v = rows(beam.v_stage);
   for (int i = 0; i < n; ++i) x[i] = rows(beam.residual)[i];
   add_loads<kind>(*t.train);
   structure.solve(x);
   for (int i = 0; i < n; ++i) {
     solution[i] = open ? x[i] : solution[i];
-    nodal[i] = rows(beam.v_predicted)[i] + displacement * solution[i];
+    v[i] = rows(beam.v_predicted)[i] + displacement * solution[i];
   }
 }
 

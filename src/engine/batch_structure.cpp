@@ -2,7 +2,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "engine/batch.hpp"
@@ -68,7 +67,7 @@ std::string BatchStructure::obstacle(const beam::Beam& beam) {
 
 BatchStructure::BatchStructure(const beam::Beam& beam, const train::Fleet& fleet, const std::vector<double>& rest,
                                const std::vector<double>& probes, double gravity)
-    : beam_(beam), held_(beam.fixed()), kinks_(beam.bridge().mesh.kinks()) {
+    : beam_(beam), held_(beam.fixed()), surfaces_(fleet), kinks_(beam.bridge().mesh.kinks()) {
   const int block = beam.block();
   const auto read = [&](Mat matrix) { return solve::BlockTridiagonal::from(matrix, block); };
   const solve::BlockTridiagonal mass = read(beam.mass()), stiffness = read(beam.stiffness());
@@ -92,12 +91,6 @@ BatchStructure::BatchStructure(const beam::Beam& beam, const train::Fleet& fleet
   dead_ = product(stiffness, rest);  // whatever bends it; settlements are no part of the matrices' columns
   task_.dead = dead_.data();
   find_columns();
-  for (std::size_t i = 0; i < fleet.wheels.size(); ++i) {
-    const double radius = fleet.wheel(fleet.wheels[i]).radius;
-    const auto known =
-        std::find_if(surfaces_.begin(), surfaces_.end(), [&](const Surface& s) { return s.radius == radius; });
-    if (known == surfaces_.end()) add_surface(fleet, i);
-  }
   const beam::Recovery recovery(beam, probes, gravity);
   for (std::size_t i = 0; i < probes.size(); ++i) add_probe(recovery, i);
 }
@@ -114,31 +107,6 @@ void BatchStructure::find_columns() {
   }
   task_.elements = line.mesh.elements();
   task_.first_column = first_column_.data();
-}
-
-/// As the fleet finds the patches of one of its wheels, from border to border.
-void BatchStructure::add_surface(train::Fleet fleet, std::size_t entry) {
-  constexpr double infinite = std::numeric_limits<double>::infinity(), above = 10.0;
-  train::WheelContact& c = fleet.wheels[entry];
-  Surface& surface = surfaces_.emplace_back();
-  surface.radius = fleet.wheel(c).radius;
-  std::vector<double> borders = fleet.borders_of_patches(c);
-  borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
-  train::MovingVehicle& vehicle = fleet.vehicles[static_cast<std::size_t>(c.vehicle)];
-  vehicle.state.q[3 * static_cast<Eigen::Index>(c.body) + 1] = above;
-  for (std::size_t i = 0; i <= borders.size(); ++i) {
-    PatchesThere& there = surface.there.emplace_back();
-    there.from = i == 0 ? -infinite : borders[i - 1];
-    there.to = i == borders.size() ? infinite : borders[i];
-    fleet.x(c) = i == 0 ? there.to - 1.0 : i == borders.size() ? there.from + 1.0 : 0.5 * (there.from + there.to);
-    fleet.place_wheels();
-    there.candidates = c.candidates;
-    for (int k = 0; k < c.candidates; ++k) {
-      const train::Patch& p = c.patches[static_cast<std::size_t>(k)];
-      there.patch[k] = p.element < 0 ? PatchesThere::Patch{-1, 0.0, 1.0, 0.0, 0.0, p.low, p.high}
-                                     : PatchesThere::Patch{p.element, p.x, p.length, p.shear, p.yield, p.low, p.high};
-    }
-  }
 }
 
 void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t station) {

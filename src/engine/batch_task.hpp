@@ -4,26 +4,9 @@
 #pragma once
 
 #include "engine/beam_task.hpp"
-#include "engine/train_task.hpp"
+#include "engine/surface_table.hpp"
 
 namespace traverse::engine {
-
-/// The patches under a wheel whose centre is between two stations.
-struct PatchesThere {
-  struct Patch {
-    int element = -1;                                                                // -1: rigid ground
-    double x = 0.0, length = 1.0, shear = 0.0, yield = 0.0, low = 1.0, high = -1.0;  // SurfacePatch
-  };
-  double from = 0.0, to = 0.0;  // m
-  int candidates = 0;
-  Patch patch[2];
-};
-
-/// Those of wheels of one radius, ascending.
-struct SurfaceTable {
-  int count = 0;
-  const PatchesThere* there = nullptr;
-};
 
 /// Heights of the track: cubics between equidistant stations.
 struct HeightTable {

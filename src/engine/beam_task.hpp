@@ -26,6 +26,7 @@ struct BeamTask {
   // Rows, of every unknown: m, rad and their rates.
   double *v = nullptr, *w = nullptr, *a[most_kept] = {};
   double *v_predicted = nullptr, *w_predicted = nullptr;
+  double* v_stage = nullptr;   // under the forces of the last pass: TrainTask::nodal
   double* residual = nullptr;  // P - C w - K v of the predicted state
   double* solution = nullptr;  // of the stage: accelerations, but for what BeamRows::find_residual leaves out
   double* work = nullptr;      // loads, and what solves them

@@ -99,86 +99,101 @@ LinearTrain::Placing LinearTrain::place(train::Fleet& fleet) {
     look_up_profiles(0.0);
     return Placing::as_before;
   }
+  placed_ = false;
+  if (surfaces_) {
+    const std::vector<SurfaceTable>& tables = surfaces_->tables();
+    for (std::size_t i = 0; i < wheel_.size(); ++i) {
+      const SurfaceTable& table = tables[table_[i]];
+      entry_in_table_[i] = follow(table, task_.along[wheel_[i]], entry_in_table_[i]);
+      there_[i] = &table.there[entry_in_table_[i]];
+    }
+  } else if (!place_by_fleet(fleet)) {
+    return Placing::several_points;
+  }
+  elements_.clear();
+  for (const PatchesThere* there : there_)
+    for (int k = 0; k < there->candidates; ++k)
+      if (there->patch[k].element >= 0) elements_.push_back(there->patch[k].element);
+  std::sort(elements_.begin(), elements_.end());
+  elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    const std::size_t at = wheel_[i];
+    put_on(task_, static_cast<int>(at), *there_[i]);
+    task_.h[at] = there_[i]->candidates > 0 ? 0.0 : TrainArrays::no_surface;
+    task_.h_x[at] = task_.h_xx[at] = 0.0;
+  }
+  look_up_profiles(0.0);
+  field_ = nullptr;
+  if (mesh_ == nullptr) meet(nowhere_, nullptr);
+  placed_ = true;
+  return Placing::anew;
+}
+
+// As the fleet finds its wheels' patches: where they may leave the surface, or touch it at several points. False where
+// one does the latter.
+bool LinearTrain::place_by_fleet(train::Fleet& fleet) {
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
     train::WheelContact& c = fleet.wheels[entry_[i]];
     fleet.x(c) = task_.along[wheel_[i]];
     fleet.vehicles[static_cast<std::size_t>(c.vehicle)].state.q[3 * static_cast<Eigen::Index>(c.body) + 1] =
         task_.up[wheel_[i]] + task_.radius[wheel_[i]];
   }
-  placed_ = false;
   fleet.place_wheels();
   const auto points = [&](const train::WheelContact& c) { return c.further > 0 && fleet.has_points(c); };
-  if (std::any_of(fleet.wheels.begin(), fleet.wheels.end(), points)) return Placing::several_points;
-  elements_ = fleet.elements();
-  const int width = 2 * task_.per_node;
-  task_.ground = width * static_cast<int>(elements_.size());
-  task_.unknowns = task_.ground + width;
-  const auto size = static_cast<std::size_t>(task_.unknowns);
-  for (std::vector<double>* nodal : {&nodal_, &nodal_rate_, &load_}) nodal->assign(size, 0.0);
-  loads_.resize(static_cast<std::size_t>(task_.ground));
-  task_.nodal = nodal_.data();
-  task_.nodal_rate = nodal_rate_.data();
-  task_.load = load_.data();
+  if (std::any_of(fleet.wheels.begin(), fleet.wheels.end(), points)) return false;
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    found_[i] = patches_of(fleet.wheels[entry_[i]]);
+    const double x = task_.along[wheel_[i]];
+    const auto next = std::upper_bound(borders_.begin(), borders_.end(), x);
+    found_[i].to = next == borders_.end() ? TrainArrays::infinite : *next;
+    found_[i].from = next == borders_.begin() ? -TrainArrays::infinite : next[-1];
+    there_[i] = &found_[i];
+  }
+  return true;
+}
+
+void LinearTrain::meet(const structure::ContactField& field, const structure::ElementCompliance* own) {
+  task_.nodal = field.v;
+  task_.nodal_rate = field.w;
+  task_.load = field.load;
+  if (&field == field_) return;  // on the same elements, by the same unknowns
+  field_ = &field;
+  std::copy_n(field.offset.begin(), 2 * task_.per_node, task_.offset);
+  task_.ground = field.ground;
   std::fill(arrays_.second.begin(), arrays_.second.end(), 0);
-  for (std::size_t i = 0; i < wheel_.size(); ++i) place_wheel(fleet.wheels[entry_[i]], wheel_[i]);
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    const PatchesThere& there = *there_[i];
+    const std::size_t at = wheel_[i];
+    if (there.candidates > 1) arrays_.second[at / arrays_.lanes] = 1;
+    for (int k = 0; k < 2; ++k) put_on_element(task_.patch[k], at, there.patch[k].element, own);
+  }
   for (SurfacePatch& p : task_.patch)
     for (std::size_t row = 0; row < arrays_.second.size(); ++row) {
       const int* slot = p.slot + row * arrays_.lanes;
       const bool ground = std::all_of(slot, slot + arrays_.lanes, [&](int at) { return at == task_.ground; });
       p.together[row] = ground ? grounded : apart;
     }
-  look_up_profiles(0.0);
-  placed_ = true;
-  return Placing::anew;
 }
 
-void LinearTrain::place_wheel(const train::WheelContact& c, std::size_t at) {
-  for (int k = 0; k < 2; ++k) {
-    SurfacePatch& p = task_.patch[k];
-    const bool there = k < c.candidates;
-    const train::Patch& patch = c.patches[static_cast<std::size_t>(k)];
-    const bool on_beam = there && patch.element >= 0;
-    p.slot[at] = on_beam ? 2 * task_.per_node * c.slots[static_cast<std::size_t>(k)] : task_.ground;
-    p.x[at] = on_beam ? patch.x : 0.0;
-    p.length[at] = on_beam ? patch.length : 1.0;
-    p.per_length[at] = 1.0 / p.length[at];
-    p.shear[at] = on_beam ? patch.shear : 0.0;
-    p.yield[at] = on_beam ? patch.yield : 0.0;
+void LinearTrain::put_on_element(SurfacePatch& p, std::size_t at, int element,
+                                 const structure::ElementCompliance* own) {
+  if (element < 0) {
+    p.slot[at] = task_.ground;
     for (double* entry : p.compliance) entry[at] = 0.0;
-    p.low[at] = there ? patch.low : k == 0 ? -TrainArrays::infinite : 1.0;
-    p.high[at] = there ? patch.high : k == 0 ? TrainArrays::infinite : -1.0;
+    return;
   }
-  if (c.candidates > 1) arrays_.second[at / arrays_.lanes] = 1;
-  if (task_.active[at] >= c.candidates) task_.active[at] = 0;
-  task_.h[at] = c.candidates > 0 ? 0.0 : TrainArrays::no_surface;
-  task_.h_x[at] = task_.h_xx[at] = 0.0;
-  const double x = task_.along[at];
-  const auto next = std::upper_bound(borders_.begin(), borders_.end(), x);
-  task_.to[at] = next == borders_.end() ? TrainArrays::infinite : *next;
-  task_.from[at] = next == borders_.begin() ? -TrainArrays::infinite : next[-1];
-}
-
-void LinearTrain::set_compliance(const structure::ElementCompliance& compliance) {
+  const auto number = std::lower_bound(elements_.begin(), elements_.end(), element) - elements_.begin();
+  p.slot[at] = field_->slot[static_cast<std::size_t>(number)];
+  const double* block = own->block(static_cast<int>(number), static_cast<int>(number));
   const int m = 2 * task_.per_node, o = task_.per_node - 2;
-  for (const std::size_t at : wheel_)
-    for (SurfacePatch& p : task_.patch) {
-      const int slot = p.slot[at];
-      if (slot == task_.ground) continue;
-      const double* block = compliance.block(slot / m, slot / m);
-      const int place[4] = {o, o + 1, task_.per_node + o, task_.per_node + o + 1};
-      for (int i = 0, k = 0; i < 4; ++i)
-        for (int j = i; j < 4; ++j, ++k) p.compliance[k][at] = (j > i ? 2.0 : 1.0) * block[place[i] + m * place[j]];
-    }
+  const int place[4] = {o, o + 1, task_.per_node + o, task_.per_node + o + 1};
+  for (int i = 0, k = 0; i < 4; ++i)
+    for (int j = i; j < 4; ++j, ++k) p.compliance[k][at] = (j > i ? 2.0 : 1.0) * block[place[i] + m * place[j]];
 }
 
-const std::vector<double>& LinearTrain::compute_loads() {
-  TRAVERSE_LANES_CALL(load_by_train(task_));
-  std::copy_n(load_.begin(), loads_.size(), loads_.begin());
-  return loads_;
-}
+void LinearTrain::add_loads() { TRAVERSE_LANES_CALL(load_by_train(task_)); }
 
-bool LinearTrain::update_forces(const std::vector<double>& v) {
-  std::copy(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(loads_.size()), nodal_.begin());
+bool LinearTrain::update_forces() {
   const double before = change_;
   change_ = TRAVERSE_LANES_CALL(update_train_forces(task_));
   if (!(change_ >= 0.0) || !std::isfinite(change_) || ++passes_ > most_passes) return false;
@@ -189,8 +204,7 @@ bool LinearTrain::update_forces(const std::vector<double>& v) {
   return true;
 }
 
-void LinearTrain::end_stage(const std::vector<double>& w) {
-  std::copy(w.begin(), w.begin() + static_cast<std::ptrdiff_t>(loads_.size()), nodal_rate_.begin());
+void LinearTrain::end_stage() {
   const bool last = stage_ + 1 == method_.stages.size();
   TRAVERSE_LANES_CALL(end_train_stage(task_, static_cast<int>(stage_), last));
 }
@@ -233,10 +247,11 @@ void LinearTrain::copy_contacts_to(train::Fleet& fleet) const {
     c.law.seat = c.touch.seat = task_.seat[at];
     c.touch.ahead = task_.ahead[at];
     c.touch.station = task_.station[at];
-    const train::Patch& patch = c.patches[static_cast<std::size_t>(task_.active[at])];
+    put_patches(*there_[i], c);
+    c.active = task_.active[at];
+    const train::Patch& patch = c.patches[static_cast<std::size_t>(c.active)];
     c.touch.xi = patch.element >= 0 ? (c.touch.station - patch.x) / patch.length : 0.0;
     c.touch.normal_on_body = {-task_.normal_along[at], -task_.normal_up[at], 0.0};
-    c.active = task_.active[at];
     c.force = {};
     c.force.normal = task_.normal[at];
     c.touched = c.touched || task_.largest[at] > 0.0;

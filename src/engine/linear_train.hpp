@@ -3,12 +3,15 @@
 // and what the contacts' iteration begins with; the fleet is told what is seen between steps.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/bytes.hpp"
+#include "engine/surfaces.hpp"
 #include "engine/train_arrays.hpp"
 #include "response/compliance.hpp"
+#include "structure/contact_field.hpp"
 
 namespace traverse::engine {
 
@@ -35,19 +38,17 @@ class LinearTrain {
   Placing place(train::Fleet& fleet);
   /// The elements under wheels, ascending.
   const std::vector<int>& elements() const { return elements_; }
-  /// How these yield in the stage (displacement per force); before the first pass of a stage whose elements or matrices
-  /// are others than before.
-  void set_compliance(const structure::ElementCompliance& compliance);
-  /// The contacts' forces on the elements, 2 per_node each, N and N m: as they are now, and as computed last.
-  const std::vector<double>& compute_loads();
-  const std::vector<double>& loads() const { return loads_; }
-  /// One pass: all forces anew with the elements' unknowns at v (2 per_node an element). False where a wheel has fallen
-  /// below the surface, or where the passes do not converge.
-  bool update_forces(const std::vector<double>& v);
+  /// Where the contacts meet these in the stage, and how each yields to forces on itself (displacement per force).
+  void meet(const structure::ContactField& field, const structure::ElementCompliance* own);
+  /// Adds the contacts' forces to the field's loads.
+  void add_loads();
+  /// One pass: all forces anew with the field's v. False where a wheel has fallen below the surface, or where the passes
+  /// do not converge.
+  bool update_forces();
   /// Whether forces will change by no more than the tolerance.
   bool converged() const { return converged_; }
-  /// Ends the stage; w: the elements' rates then.
-  void end_stage(const std::vector<double>& w);
+  /// Ends the stage, the last one of a step with the field's w.
+  void end_stage();
   /// W lost in dampers and given by the drives in the stage that was ended last.
   double lost() const { return sum_in_stage(task_.lost); }
   double given() const { return sum_in_stage(task_.given); }
@@ -68,8 +69,9 @@ class LinearTrain {
 
  private:
   void find_numbers(const train::Fleet& fleet);
-  void find_borders(const train::Fleet& fleet);
-  void place_wheel(const train::WheelContact& c, std::size_t number);
+  void find_surfaces(const train::Fleet& fleet);
+  bool place_by_fleet(train::Fleet& fleet);
+  void put_on_element(SurfacePatch& p, std::size_t at, int element, const structure::ElementCompliance* own);
   bool look_up_profiles(double within);
   double sum_in_stage(const double* rows) const;
   void write(const double* rows, double* coordinates) const;
@@ -84,7 +86,7 @@ class LinearTrain {
   double* work_ = nullptr;                      // of predictions
 
   const beam::Mesh* mesh_;
-  std::vector<double> borders_;  // m, ascending: between two of them a wheel has the same patches
+  std::vector<double> borders_;  // m, ascending: between two of them a wheel has the same patches, without tables
   bool always_places_ = false;   // wheels may fall off the end of the surface
   structure::Method method_;
   double length_ = 0.0, length_before_ = 0.0;   // s, of this step and of the one before
@@ -92,7 +94,13 @@ class LinearTrain {
   std::size_t stage_ = 0;
   bool ends_with_stage_ = true;
   std::vector<int> elements_;
-  std::vector<double> nodal_, nodal_rate_, load_, loads_;
+  std::optional<Surfaces> surfaces_;        // where wheels stay on the surface, and touch it at one point each
+  std::vector<std::size_t> table_;          // of every wheel: which of these
+  std::vector<int> entry_in_table_;         // where it is there
+  std::vector<PatchesThere> found_;         // by the fleet, where there are no tables
+  std::vector<const PatchesThere*> there_;  // of every wheel
+  const structure::ContactField* field_ = nullptr;  // that wheels were put on the elements of; null: they were not
+  structure::ContactField nowhere_;                 // without elements
   double change_ = 0.0, contraction_ = 1.0;
   int passes_ = 0;
   bool converged_ = false, placed_ = false;

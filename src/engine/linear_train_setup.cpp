@@ -15,10 +15,9 @@ LinearTrain::LinearTrain(const train::Fleet& fleet, const beam::Mesh* mesh, int 
     : arrays_(TrainArrays::side_by_side(fleet), per_node, surface_height), mesh_(mesh) {
   for (int e = 0; mesh_ != nullptr && e < mesh_->elements(); ++e)
     task_.shears = task_.shears || mesh_->element(e).shear != 0.0;
-  for (int k = 0; k < 2 * per_node; ++k) task_.offset[k] = k;
   work_ = arrays_.add(2 * static_cast<std::size_t>(task_.coordinates));
   find_numbers(fleet);
-  find_borders(fleet);
+  find_surfaces(fleet);
 }
 
 // Of the fleet's coordinates and wheels among those of the rows.
@@ -57,10 +56,19 @@ void LinearTrain::find_numbers(const train::Fleet& fleet) {
   }
 }
 
-// Of wheels of all radii.
-void LinearTrain::find_borders(const train::Fleet& fleet) {
+void LinearTrain::find_surfaces(const train::Fleet& fleet) {
+  found_.resize(wheel_.size());
+  there_.resize(wheel_.size());
+  always_places_ = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
+  const bool several = std::any_of(fleet.wheels.begin(), fleet.wheels.end(), [](const auto& c) { return c.further > 0; });
+  if (!always_places_ && !several) {
+    surfaces_.emplace(fleet);
+    entry_in_table_.assign(wheel_.size(), 0);
+    for (const std::size_t entry : entry_)
+      table_.push_back(surfaces_->number(fleet.wheel(fleet.wheels[entry]).radius));
+    return;
+  }
   if (mesh_ == nullptr) return;
-  always_places_ = !(mesh_->ground_before() && mesh_->ground_behind());
   std::vector<double> radii;
   for (const train::WheelContact& c : fleet.wheels) {
     const double radius = fleet.wheel(c).radius;

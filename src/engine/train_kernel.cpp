@@ -7,7 +7,7 @@ void set_train_step(const TrainTask& task) { set_step(task); }
 void predict_train(const TrainTask& task, int stage, double* work) { predict(task, stage, work); }
 bool train_in_place(const TrainTask& task) { return in_place(task); }
 void load_by_train(const TrainTask& task) {
-  is_flat(task) ? load_structure<Surface::flat>(task) : load_structure<Surface::general>(task);
+  is_flat(task) ? add_loads<Surface::flat>(task) : add_loads<Surface::general>(task);
 }
 double update_train_forces(const TrainTask& task) {
   const RowMask all = Row{} == Row{};

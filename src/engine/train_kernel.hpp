@@ -306,12 +306,6 @@ void add_loads(const TrainTask& task) {
   });
 }
 
-template <Surface kind>
-void load_structure(const TrainTask& task) {
-  for (int i = 0; i < task.unknowns; ++i) task.load[i] = 0.0;
-  add_loads<kind>(task);
-}
-
 /// The accelerations of a stage from its contact forces; with `kinematics` the rates of wheels and contacts too.
 template <Surface kind>
 void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {

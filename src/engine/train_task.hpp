@@ -101,10 +101,11 @@ struct TrainTask {
 
   // The structure where wheels may be. Unknown k of an element is at its slot and offset[k].
   int per_node = 2;                                       // unknowns of a node that an element sees
-  int offset[most_nodal] = {}, ground = 0, unknowns = 0;  // the slot of rigid ground, whose values are 0; of `nodal`
+  int offset[most_nodal] = {}, ground = 0;                // the slot of rigid ground, whose values are 0
   double surface_height = 0.0;                            // m, of the surface above the axis
   bool shears = false;                                    // some of its elements do
-  double *nodal = nullptr, *nodal_rate = nullptr, *load = nullptr;  // m and rad; N and N m
+  const double *nodal = nullptr, *nodal_rate = nullptr;   // m, rad and their rates
+  double* load = nullptr;                                 // N, N m
 
   // A row of every block: 1 in lanes where another pass would change no force by more than `tolerance` of its scale, as
   // the vehicle stands on rigid ground alone; null: nobody asks.

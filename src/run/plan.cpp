@@ -11,7 +11,8 @@ namespace {
 
 constexpr double first_steps_a_period = 100.0;  // of the first period or a span's crossing, at an accuracy of 1e-3
 constexpr double steps_a_wave = 20.0;           // of the track or of a wheel out of round, at that accuracy
-constexpr double samples_a_period = 20.0;       // of the first period: where a response turns is seen from as many
+constexpr double samples_a_period = 20.0;       // of a bridge by its modes, where the interval is left open
+constexpr double looks_a_period = 10.0;         // of the first period: peaks are found among as many at least
 constexpr double mechanism_step = 1e-3;         // s, where there is no beam to judge by
 constexpr double least_steps_a_span = 10.0;
 constexpr double most_steps = 1e10;
@@ -149,7 +150,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
                                 *scene.output.interval));
   // Peaks are looked for between stored samples, too, where these are further apart.
   const double looks =
-      scene.beam ? std::min(scene.looks, shortest_scale(scene, first_period) / samples_a_period) : scene.looks;
+      scene.beam ? std::min(scene.looks, shortest_scale(scene, first_period) / looks_a_period) : scene.looks;
   if (scene.output.interval) {
     plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9))));

@@ -44,7 +44,6 @@ void read_run(const Options& o, Scene& scene) {
   scene.contact_seats = o.flag("contact_seats");
   scene.step_kinks = o.flag("step_kinks");
   scene.step_probes = o.flag("step_probes");
-  scene.step_lanes = o.flag("step_lanes");
   scene.all_ranks = o.choice("step_ranks") == "all";
   scene.rest_tolerance = read_window(o);
   const std::string vehicles = o.choice("model_vehicles");

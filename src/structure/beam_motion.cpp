@@ -222,6 +222,11 @@ std::pair<double, double> BeamMotion::state(std::size_t stage, const double* v, 
   return {of_v, of_w};
 }
 
+void BeamMotion::states(std::size_t stage, const double* v, const double* w, std::ptrdiff_t from, int size,
+                        double* v_stage, double* w_stage) const {
+  terms_of<2>({&stages_[stage].v, &stages_[stage].w}, view_of(v, w)).evaluate(from, size, {v_stage, w_stage});
+}
+
 void BeamMotion::still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const {
   const Stage& s = stages_[stage];
   terms_of<2>({&s.v_still, &s.w_still}, view_of(v, w)).evaluate(0, n_, {v_still, w_still});

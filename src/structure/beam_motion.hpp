@@ -72,7 +72,9 @@ class BeamMotion final : private solve::NodeFiller {
 
   /// v~ and w~ of this rank's unknowns.
   void still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const;
-  /// v and w of a solved stage at one unknown.
+  /// v and w of a solved stage at the unknowns [from, from + size), and at one of them.
+  void states(std::size_t stage, const double* v, const double* w, std::ptrdiff_t from, int size, double* v_stage,
+              double* w_stage) const;
   std::pair<double, double> state(std::size_t stage, const double* v, const double* w, int unknown) const;
 
   /// Collective. Strain energy of the springs and beams and kinetic energy, J: this rank's share; where fused.

@@ -11,25 +11,46 @@ constexpr std::size_t many_elements = 4;  // from here on a solve costs less tha
 }  // namespace
 
 ContactResponse::ContactResponse(const beam::Beam& beam, const BeamOperator& op)
-    : beam_(beam), operator_(op), line_(beam.running()) {}
+    : beam_(beam), operator_(op), line_(beam.running()) {
+  const auto unknowns = static_cast<std::size_t>(2 * line_.per_node);
+  for (int e = 0; e < line_.mesh.elements(); ++e) {
+    const auto of = line_.unknowns(e);
+    for (std::size_t k = 0; k < unknowns; ++k) {
+      const int offset = of[k] - of[0];
+      if (e == 0) field_.offset[k] = offset;
+      uniform_ = uniform_ && offset == field_.offset[k];
+    }
+  }
+}
 
 // Under a track a force is felt nearby, and columns are short.
 bool ContactResponse::worthwhile(std::size_t elements) const {
-  return !operator_.shared() && beam_.block() == line_.per_node && elements >= many_elements;
+  return uniform_ && !operator_.shared() && beam_.block() == line_.per_node && elements >= many_elements;
 }
 
 void ContactResponse::place(const std::vector<int>& elements, int first, int past) {
   if (elements == elements_ && range_ == std::pair(first, past)) return;
   elements_ = elements;
   range_ = {first, past};
-  solved_ = false;
-  places_.clear();
-  for (int element : elements) {
-    const auto unknowns = line_.unknowns(element);
-    for (int i = 0; i < 2 * line_.per_node; ++i) places_.push_back(beam_.local(unknowns[static_cast<std::size_t>(i)]));
+  if (z_.empty()) {
+    const auto unknowns = static_cast<std::size_t>(beam_.local_unknowns()),
+               beyond = static_cast<std::size_t>(2 * line_.per_node);
+    for (std::vector<double>* x : {&z_, &v_free_, &w_free_, &v_, &w_}) x->assign(unknowns + beyond, 0.0);
+    field_.ground = static_cast<int>(unknowns);
+    field_.v = v_.data();
+    field_.w = w_.data();
+    field_.load = z_.data();
+  }
+  field_.slot.clear();
+  held_.clear();
+  for (const int element : elements) {
+    field_.slot.push_back(beam_.local(line_.unknowns(element)[0]));
+    for (int k = 0; k < 2 * line_.per_node; ++k) {
+      const auto unknown = static_cast<std::size_t>(field_.slot.back() + field_.offset[static_cast<std::size_t>(k)]);
+      if (beam_.fixed()[unknown] != 0) held_.push_back(unknown);
+    }
   }
   find_runs(first, past);
-  z_.resize(static_cast<std::size_t>(beam_.local_unknowns()));
 }
 
 void ContactResponse::find_runs(int first, int past) {
@@ -57,33 +78,39 @@ void ContactResponse::find_runs(int first, int past) {
   }
 }
 
-void ContactResponse::solve(const BeamFactor& factor, const std::vector<double>& loads) {
-  const int block = beam_.block();
-  for (const Run& run : runs_) std::fill(z_.begin() + run.first * block, z_.begin() + run.past * block, 0.0);
-  for (std::size_t i = 0; i < places_.size(); ++i) z_[static_cast<std::size_t>(places_[i])] += loads[i];
-  for (const int place : places_)
-    if (beam_.fixed()[static_cast<std::size_t>(place)] != 0) z_[static_cast<std::size_t>(place)] = 0.0;
+void ContactResponse::clear() {
+  for_runs([&](std::ptrdiff_t from, std::ptrdiff_t size) { std::fill_n(z_.begin() + from, size, 0.0); });
+}
+
+void ContactResponse::solve(const BeamFactor& factor) {
+  for (const std::size_t unknown : held_) z_[unknown] = 0.0;
   for (const Run& run : runs_) {
-    double* const z = z_.data() + run.first * block;
+    double* const z = z_.data() + run.first * beam_.block();
     if (run.part != nullptr)
       factor.parts().solve_together(*run.part, z, run.count);
     else
       factor.solve_local(z, 1, run.first, run.past);
   }
   operator_.solves += 1;
-  loads_ = loads;
-  solved_ = true;
+  for_runs([&](std::ptrdiff_t from, std::ptrdiff_t size) {
+    const double *free = v_free_.data() + from, *z = z_.data() + from;
+    double* v = v_.data() + from;
+    for (std::ptrdiff_t i = 0; i < size; ++i) v[i] = free[i] + z[i];
+  });
 }
 
-void ContactResponse::add_to_elements(std::vector<double>& values) const {
-  for (std::size_t i = 0; i < places_.size(); ++i) values[i] += z_[static_cast<std::size_t>(places_[i])];
+void ContactResponse::find_rates(double shift) {
+  for_runs([&](std::ptrdiff_t from, std::ptrdiff_t size) {
+    const double *free = w_free_.data() + from, *z = z_.data() + from;
+    double* w = w_.data() + from;
+    for (std::ptrdiff_t i = 0; i < size; ++i) w[i] = free[i] + shift * z[i];
+  });
 }
 
 void ContactResponse::add(double factor, double* x) const {
-  const int block = beam_.block();
-  for (const Run& run : runs_)
-    for (std::ptrdiff_t i = run.first * block; i < run.past * block; ++i)
-      x[i] += factor * z_[static_cast<std::size_t>(i)];
+  for_runs([&](std::ptrdiff_t from, std::ptrdiff_t size) {
+    for (std::ptrdiff_t i = from; i < from + size; ++i) x[i] += factor * z_[static_cast<std::size_t>(i)];
+  });
 }
 
 }  // namespace traverse::structure

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "response/beam_operator.hpp"
+#include "structure/contact_field.hpp"
 
 namespace traverse::structure {
 
@@ -18,12 +19,21 @@ class ContactResponse {
   bool worthwhile(std::size_t elements) const;
   /// The elements under forces, ascending, and the nodes [first, past) that are stepped.
   void place(const std::vector<int>& elements, int first, int past);
-  /// z under `loads`: 2 per_node an element, N and N m.
-  void solve(const BeamFactor& factor, const std::vector<double>& loads);
-  /// Whether these are what it was solved for.
-  bool solved_for(const std::vector<double>& loads) const { return solved_ && loads == loads_; }
-  /// values += z of the elements' unknowns, 2 per_node each.
-  void add_to_elements(std::vector<double>& values) const;
+  /// Values by this rank's unknowns.
+  const ContactField& field() const { return field_; }
+  /// evaluate(from, size, v, w) writes where those unknowns are without forces.
+  template <class Evaluate>
+  void set_free(Evaluate evaluate) {
+    for_runs([&](std::ptrdiff_t from, std::ptrdiff_t size) {
+      evaluate(from, static_cast<int>(size), &v_free_[static_cast<std::size_t>(from)],
+               &w_free_[static_cast<std::size_t>(from)]);
+    });
+  }
+  void clear();
+  /// z of the field's loads, in their place, and the field's v.
+  void solve(const BeamFactor& factor);
+  /// The field's w, `shift` (1/s) times what v has changed by.
+  void find_rates(double shift);
   /// x += factor z, of this rank's unknowns.
   void add(double factor, double* x) const;
 
@@ -35,16 +45,22 @@ class ContactResponse {
   };
   void find_runs(int first, int past);
   int node_of(int element) const { return line_.first_column + line_.mesh.element(element).left; }
+  /// use(unknown, count) of every run.
+  template <class Use>
+  void for_runs(Use use) const {
+    for (const Run& run : runs_) use(run.first * beam_.block(), (run.past - run.first) * beam_.block());
+  }
 
   const beam::Beam& beam_;
   const BeamOperator& operator_;
   const beam::Line& line_;
+  bool uniform_ = true;  // an element's unknowns stand alike everywhere
   std::vector<int> elements_;
   std::pair<int, int> range_;
   std::vector<Run> runs_;
-  std::vector<int> places_;  // of the elements' unknowns in z
-  std::vector<double> z_, loads_;
-  bool solved_ = false;
+  std::vector<std::size_t> held_;  // of the elements' unknowns
+  ContactField field_;
+  std::vector<double> z_, v_free_, w_free_, v_, w_;
 };
 
 }  // namespace traverse::structure

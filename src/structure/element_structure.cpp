@@ -165,41 +165,57 @@ void ElementStructure::solve_free() {
 }
 
 const ElementCompliance& ElementStructure::yield(const std::vector<int>& elements) {
-  solves_ = false;
   if (!elements.empty()) compliance_.prepare(stage_.shift, stage_.shift2, stage_.added, elements);
   return compliance_;
 }
 
-const ElementCompliance& ElementStructure::yield_alone(const std::vector<int>& elements) {
-  if (!response_.worthwhile(elements.size())) return Structure::yield_alone(elements);
-  solves_ = true;
-  const bool fused = stage_.kind == Kind::fused;
-  response_.place(elements, fused ? motion_->first() : 0, fused ? motion_->past() : beam_.local_columns());
-  compliance_.prepare_alone(stage_.shift, stage_.shift2, stage_.added, elements);
-  return compliance_;
-}
-
-void ElementStructure::solve_for(const std::vector<double>& loads) {
-  if (!response_.solved_for(loads))
-    response_.solve(statics_->factored(stage_.shift, stage_.shift2, stage_.added), loads);
-}
-
-void ElementStructure::respond(const std::vector<double>& loads, std::vector<double>& v) {
-  if (!solves_) return Structure::respond(loads, v);
-  solve_for(loads);
-  response_.add_to_elements(v);
-}
-
 void ElementStructure::take(const std::vector<double>& loads) {
-  if (solves_) {
-    solve_for(loads);
-    const bool fused = stage_.kind == Kind::fused;
-    return response_.add(fused ? stage_.shift2 : 1.0, fused ? motion_->kept(stage_.number) : z_.data());
-  }
   if (stage_.kind != Kind::fused) return compliance_.add_response(loads, z_.data());
   element_work_ = loads;
   for (double& load : element_work_) load *= stage_.shift2;
   compliance_.add_response(element_work_, motion_->kept(stage_.number));
+}
+
+const ContactField& ElementStructure::begin_passes(const std::vector<int>& elements) {
+  solves_ = response_.worthwhile(elements.size());
+  if (!solves_) return Structure::begin_passes(elements);
+  const bool fused = stage_.kind == Kind::fused;
+  response_.place(elements, fused ? motion_->first() : 0, fused ? motion_->past() : beam_.local_columns());
+  compliance_.prepare_alone(stage_.shift, stage_.shift2, stage_.added, elements);
+  if (fused) {
+    response_.set_free([&](std::ptrdiff_t from, int size, double* v, double* w) {
+      motion_->states(stage_.number, stage_.v, stage_.w, from, size, v, w);
+    });
+  } else {
+    response_.set_free([&](std::ptrdiff_t from, int size, double* v, double* w) {
+      for (int i = 0; i < size; ++i) {
+        v[i] = v_still_[from + i] + z_[from + i];
+        w[i] = w_still_[from + i] + stage_.shift * z_[from + i];
+      }
+    });
+  }
+  return response_.field();
+}
+
+const ElementCompliance& ElementStructure::own_compliance() const {
+  return solves_ ? compliance_ : Structure::own_compliance();
+}
+
+void ElementStructure::clear_loads() { solves_ ? response_.clear() : Structure::clear_loads(); }
+
+void ElementStructure::respond() {
+  if (!solves_) return Structure::respond();
+  response_.solve(statics_->factored(stage_.shift, stage_.shift2, stage_.added));
+}
+
+void ElementStructure::find_rates(double shift) {
+  solves_ ? response_.find_rates(shift) : Structure::find_rates(shift);
+}
+
+void ElementStructure::take_loads() {
+  if (!solves_) return Structure::take_loads();
+  const bool fused = stage_.kind == Kind::fused;
+  response_.add(fused ? stage_.shift2 : 1.0, fused ? motion_->kept(stage_.number) : z_.data());
 }
 
 Structure::Verdict ElementStructure::judge() {

@@ -44,9 +44,13 @@ class ElementStructure final : public Structure {
   void begin_stage(std::size_t i, const double* v, const double* w) override;
   void solve_free() override;
   const ElementCompliance& yield(const std::vector<int>& elements) override;
-  const ElementCompliance& yield_alone(const std::vector<int>& elements) override;
-  void respond(const std::vector<double>& loads, std::vector<double>& v) override;
   void take(const std::vector<double>& loads) override;
+  const ContactField& begin_passes(const std::vector<int>& elements) override;
+  const ElementCompliance& own_compliance() const override;
+  void clear_loads() override;
+  void respond() override;
+  void find_rates(double shift) override;
+  void take_loads() override;
   Verdict judge() override;
   void end_stage(double* v, double* w) override;
   void settle(const double* v, const std::vector<Reach>& loaded) override;
@@ -92,7 +96,6 @@ class ElementStructure final : public Structure {
                   double* w_elements) const override;
   void external_load(double* nodal) const;
   void load_of_stills();
-  void solve_for(const std::vector<double>& loads);
   void stand(const std::vector<Reach>& loaded);
   double dissipation(const double* w);
   int local_node(int column) const;
@@ -104,7 +107,7 @@ class ElementStructure final : public Structure {
 
   Compliance compliance_;
   ContactResponse response_;
-  bool solves_ = false;                           // for the contacts' forces of this stage, in place of columns
+  bool solves_ = false;                           // in passes, in place of columns of the compliance
   std::optional<NonlinearFoundation> nonlinear_;  // only where a foundation is not linear
   std::vector<NodalLoad> nodal_forces_;           // the moving ones, of ascending unknowns
   Stage stage_;

@@ -74,6 +74,33 @@ void Structure::gather_free(const std::vector<int>& elements, std::vector<double
   gather(elements, nullptr, nullptr, v, w);
 }
 
+const ContactField& Structure::begin_passes(const std::vector<int>& elements) {
+  const std::size_t m = 2 * static_cast<std::size_t>(per_node()), size = elements.size() * m;
+  gather_free(elements, v_free_, w_free_);
+  own_ = &yield(elements);
+  for (std::vector<double>* x : {&v_passed_, &w_passed_}) x->assign(size + m, 0.0);
+  loads_.resize(size);
+  field_.slot.resize(elements.size());
+  for (std::size_t i = 0; i < elements.size(); ++i) field_.slot[i] = static_cast<int>(i * m);
+  for (std::size_t k = 0; k < m; ++k) field_.offset[k] = static_cast<int>(k);
+  field_.ground = static_cast<int>(size);
+  field_.v = v_passed_.data();
+  field_.w = w_passed_.data();
+  field_.load = loads_.data();
+  return field_;
+}
+
+void Structure::clear_loads() { std::fill(loads_.begin(), loads_.end(), 0.0); }
+
+void Structure::respond() {
+  std::copy_n(v_free_.begin(), loads_.size(), v_passed_.begin());
+  if (!loads_.empty()) own_->respond(loads_, v_passed_);
+}
+
+void Structure::find_rates(double shift) {
+  for (std::size_t i = 0; i < loads_.size(); ++i) w_passed_[i] = w_free_[i] + shift * (v_passed_[i] - v_free_[i]);
+}
+
 void Structure::add_contacts(const ElementLoads& contacts, double* nodal) const {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node());
   for (std::size_t a = 0; a < contacts.elements.size(); ++a) {

@@ -21,6 +21,7 @@
 #include "recovery/recovery.hpp"
 #include "response/beam_operator.hpp"
 #include "response/compliance.hpp"
+#include "structure/contact_field.hpp"
 #include "structure/nonlinear_foundation.hpp"
 
 namespace traverse::structure {
@@ -120,18 +121,29 @@ class Structure {
   void gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w);
   /// How these elements yield to forces on them in this stage.
   virtual const ElementCompliance& yield(const std::vector<int>& elements) = 0;
-  /// The same of each element by itself, where respond() tells what forces on all of them do.
-  virtual const ElementCompliance& yield_alone(const std::vector<int>& elements) {
-    responding_ = &yield(elements);
-    return *responding_;
-  }
-  /// v (m, rad) += what the elements of yield_alone() are moved by loads on them (N, N m), both 2 per_node values an
-  /// element in the order of beam::Line::unknowns.
-  virtual void respond(const std::vector<double>& loads, std::vector<double>& v) { responding_->respond(loads, v); }
-  /// The contacts' forces on these elements.
+  /// The contacts' forces on these elements, 2 per_node values each, N and N m.
   virtual void take(const std::vector<double>& loads) = 0;
   /// Whether the stage is solved, or has to be solved once more from solve_free on.
   virtual Verdict judge() { return Verdict::settled; }
+
+  // The contacts of a stage by passes, in place of gather_free, yield and take: loads are cleared, added to the field and
+  // responded to until the contacts' forces no longer change, and taken then.
+
+  /// From solve_free on, with contacts on these elements, ascending.
+  virtual const ContactField& begin_passes(const std::vector<int>& elements);
+  /// How each of them yields to forces on itself alone.
+  virtual const ElementCompliance& own_compliance() const { return *own_; }
+  virtual void clear_loads();
+  /// The field's v under its loads.
+  virtual void respond();
+  /// The field's w, which follows its v by `shift` (1/s).
+  virtual void find_rates(double shift);
+  virtual void take_loads() {
+    if (!loads_.empty()) take(loads_);
+  }
+  /// The loads of the last pass, 2 per_node values an element of begin_passes; ElementStructure::observe asks for none.
+  const std::vector<double>& pass_loads() const { return loads_; }
+
   /// v and w of a stage that is not one of a step.
   virtual void end_stage(double* v, double* w) = 0;
   /// What slides has slid to v, from which the motion goes on with wheels and forces there.
@@ -196,8 +208,11 @@ class Structure {
   int n_, ranks_ = 1;
 
  private:
-  const ElementCompliance* responding_ = nullptr;
   std::vector<double> both_;  // of gather
+  // Of the contacts' passes
+  ContactField field_;
+  const ElementCompliance* own_ = nullptr;
+  std::vector<double> v_free_, w_free_, v_passed_, w_passed_, loads_;
 };
 
 }  // namespace traverse::structure

@@ -43,7 +43,6 @@ INSTANTIATE_TEST_SUITE_P(
               {"beam_elements_per_span", "8"},
               {"model_window", "0"},
               {"model_vehicles", "full"},
-              {"step_lanes", "false"},
               {"ts_dt", "4e-3"},
               {"ts_max_time", "1.2"}}}),
     [](const auto& which) { return which.param.name; });
