@@ -154,8 +154,7 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
 // As solve_coupled asks for it, by passes over all contacts until their forces no longer change.
 bool System::stage_by_passes(const StageTime& at) {
   train_->predict(stage_, at.t);
-  const engine::LinearTrain::Placing placing = train_->place(fleet_);
-  if (placing == engine::LinearTrain::Placing::several_points) return false;
+  if (!train_->place(fleet_)) return false;
   if (structure_) {
     const structure::ContactField& field = structure_->begin_passes(train_->elements());
     train_->meet(field, &structure_->own_compliance());

@@ -23,7 +23,7 @@ TRAVERSE_LANES_DECLARE(void set_train_step(const TrainTask& task);
 
 namespace {
 
-constexpr double tolerance = 1e-12;  // of a vehicle's weight: changes of forces still to come
+constexpr double tolerance = 1e-10;  // of a vehicle's weight: changes of forces still to come
 constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
 constexpr int most_passes = 60;      // of a stage
 constexpr double best_contraction = 1e-3;
@@ -94,39 +94,35 @@ bool LinearTrain::look_up_profiles(double within) {
   return moved;
 }
 
-LinearTrain::Placing LinearTrain::place(train::Fleet& fleet) {
+bool LinearTrain::place(train::Fleet& fleet) {
   if (placed_ && !always_places_ && TRAVERSE_LANES_CALL(train_in_place(task_))) {
     look_up_profiles(0.0);
-    return Placing::as_before;
+    return true;
   }
-  placed_ = false;
-  if (surfaces_) {
-    const std::vector<SurfaceTable>& tables = surfaces_->tables();
-    for (std::size_t i = 0; i < wheel_.size(); ++i) {
-      const SurfaceTable& table = tables[table_[i]];
-      entry_in_table_[i] = follow(table, task_.along[wheel_[i]], entry_in_table_[i]);
-      there_[i] = &table.there[entry_in_table_[i]];
-    }
-  } else if (!place_by_fleet(fleet)) {
-    return Placing::several_points;
+  if (!surfaces_ && !place_by_fleet(fleet)) {
+    placed_ = false;
+    return false;
   }
-  elements_.clear();
-  for (const PatchesThere* there : there_)
-    for (int k = 0; k < there->candidates; ++k)
-      if (there->patch[k].element >= 0) elements_.push_back(there->patch[k].element);
-  std::sort(elements_.begin(), elements_.end());
-  elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
   for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    const PatchesThere* there = surfaces_ ? there_[i] : &found_[i];
+    if (surfaces_) {
+      const SurfaceTable& table = surfaces_->tables()[table_[i]];
+      entry_in_table_[i] = follow(table, task_.along[wheel_[i]], entry_in_table_[i]);
+      there = &table.there[entry_in_table_[i]];
+    }
+    if (placed_ && surfaces_ && there == there_[i]) continue;
+    there_[i] = there;
+    moved_[i] = 1;
     const std::size_t at = wheel_[i];
-    put_on(task_, static_cast<int>(at), *there_[i]);
-    task_.h[at] = there_[i]->candidates > 0 ? 0.0 : TrainArrays::no_surface;
+    put_on(task_, static_cast<int>(at), *there);
+    task_.h[at] = there->candidates > 0 ? 0.0 : TrainArrays::no_surface;
     task_.h_x[at] = task_.h_xx[at] = 0.0;
   }
+  if (!placed_ || !all_listed()) list_elements();
   look_up_profiles(0.0);
-  field_ = nullptr;
-  if (mesh_ == nullptr) meet(nowhere_, nullptr);
   placed_ = true;
-  return Placing::anew;
+  if (mesh_ == nullptr) meet(nowhere_, nullptr);
+  return true;
 }
 
 // As the fleet finds its wheels' patches: where they may leave the surface, or touch it at several points. False where
@@ -147,26 +143,59 @@ bool LinearTrain::place_by_fleet(train::Fleet& fleet) {
     const auto next = std::upper_bound(borders_.begin(), borders_.end(), x);
     found_[i].to = next == borders_.end() ? TrainArrays::infinite : *next;
     found_[i].from = next == borders_.begin() ? -TrainArrays::infinite : next[-1];
-    there_[i] = &found_[i];
   }
   return true;
+}
+
+bool LinearTrain::all_listed() const {
+  for (std::size_t i = 0; i < wheel_.size(); ++i)
+    for (int k = 0; moved_[i] != 0 && k < there_[i]->candidates; ++k) {
+      const int element = there_[i]->patch[k].element;
+      if (element >= 0 && !std::binary_search(elements_.begin(), elements_.end(), element)) return false;
+    }
+  return true;
+}
+
+// Those under wheels, and those that wheels will be on before the step ends, so that one list serves all its stages.
+void LinearTrain::list_elements() {
+  elements_.clear();
+  const auto add = [this](const PatchesThere& there) {
+    for (int k = 0; k < there.candidates; ++k)
+      if (there.patch[k].element >= 0) elements_.push_back(there.patch[k].element);
+  };
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    add(*there_[i]);
+    if (!surfaces_) continue;
+    const SurfaceTable& table = surfaces_->tables()[table_[i]];
+    const double way = speed_[i] * length_, x = task_.along[wheel_[i]] + way;
+    for (int k = entry_in_table_[i]; way > 0.0 && k + 1 < table.count && table.there[k].to < x;) add(table.there[++k]);
+    for (int k = entry_in_table_[i]; way < 0.0 && k > 0 && table.there[k].from > x;) add(table.there[--k]);
+  }
+  std::sort(elements_.begin(), elements_.end());
+  elements_.erase(std::unique(elements_.begin(), elements_.end()), elements_.end());
+  field_ = nullptr;
 }
 
 void LinearTrain::meet(const structure::ContactField& field, const structure::ElementCompliance* own) {
   task_.nodal = field.v;
   task_.nodal_rate = field.w;
   task_.load = field.load;
-  if (&field == field_) return;  // on the same elements, by the same unknowns
+  const bool anew = &field != field_;
   field_ = &field;
-  std::copy_n(field.offset.begin(), 2 * task_.per_node, task_.offset);
-  task_.ground = field.ground;
-  std::fill(arrays_.second.begin(), arrays_.second.end(), 0);
-  for (std::size_t i = 0; i < wheel_.size(); ++i) {
-    const PatchesThere& there = *there_[i];
-    const std::size_t at = wheel_[i];
-    if (there.candidates > 1) arrays_.second[at / arrays_.lanes] = 1;
-    for (int k = 0; k < 2; ++k) put_on_element(task_.patch[k], at, there.patch[k].element, own);
+  if (anew) {
+    std::copy_n(field.offset.begin(), 2 * task_.per_node, task_.offset);
+    task_.ground = field.ground;
+  } else if (std::find(moved_.begin(), moved_.end(), 1) == moved_.end()) {
+    return;
   }
+  for (std::size_t i = 0; i < wheel_.size(); ++i) {
+    if (!anew && moved_[i] == 0) continue;
+    moved_[i] = 0;
+    for (int k = 0; k < 2; ++k) put_on_element(task_.patch[k], wheel_[i], there_[i]->patch[k].element, own);
+  }
+  std::fill(arrays_.second.begin(), arrays_.second.end(), 0);
+  for (std::size_t i = 0; i < wheel_.size(); ++i)
+    if (there_[i]->candidates > 1) arrays_.second[wheel_[i] / arrays_.lanes] = 1;
   for (SurfacePatch& p : task_.patch)
     for (std::size_t row = 0; row < arrays_.second.size(); ++row) {
       const int* slot = p.slot + row * arrays_.lanes;

@@ -32,11 +32,10 @@ class LinearTrain {
 
   /// Where the wheels are in stage i, at t, without contact forces.
   void predict(std::size_t i, double t);
-  /// Puts wheels on the elements where they are: the same as before, others, or a wheel is where it may touch at
-  /// several points, so that the stage cannot be taken so.
-  enum class Placing { as_before, anew, several_points };
-  Placing place(train::Fleet& fleet);
-  /// The elements under wheels, ascending.
+  /// Puts wheels on the elements where they are. False where a wheel may touch at several points, so that the stage
+  /// cannot be taken so.
+  bool place(train::Fleet& fleet);
+  /// The elements under wheels in the stages of the step, ascending.
   const std::vector<int>& elements() const { return elements_; }
   /// Where the contacts meet these in the stage, and how each yields to forces on itself (displacement per force).
   void meet(const structure::ContactField& field, const structure::ElementCompliance* own);
@@ -71,6 +70,8 @@ class LinearTrain {
   void find_numbers(const train::Fleet& fleet);
   void find_surfaces(const train::Fleet& fleet);
   bool place_by_fleet(train::Fleet& fleet);
+  bool all_listed() const;
+  void list_elements();
   void put_on_element(SurfacePatch& p, std::size_t at, int element, const structure::ElementCompliance* own);
   bool look_up_profiles(double within);
   double sum_in_stage(const double* rows) const;
@@ -99,6 +100,8 @@ class LinearTrain {
   std::vector<int> entry_in_table_;         // where it is there
   std::vector<PatchesThere> found_;         // by the fleet, where there are no tables
   std::vector<const PatchesThere*> there_;  // of every wheel
+  std::vector<double> speed_;               // m/s, of every wheel's vehicle
+  std::vector<char> moved_;                 // whether a wheel is on others since it was put on its elements
   const structure::ContactField* field_ = nullptr;  // that wheels were put on the elements of; null: they were not
   structure::ContactField nowhere_;                 // without elements
   double change_ = 0.0, contraction_ = 1.0;

@@ -50,6 +50,7 @@ void LinearTrain::find_numbers(const train::Fleet& fleet) {
     entry_.push_back(i);
     wheel_.push_back(static_cast<std::size_t>(arrays_.blocks[place.block].first_wheel + c.wheel) * arrays_.lanes +
                      place.lane);
+    speed_.push_back(arrays_.speed[place.block][place.lane]);
     const track::Profile& profile = fleet.profile(c);
     profile_.push_back(profile.level() ? nullptr : &profile);
     if (!profile.level()) arrays_.level[wheel_.back() / arrays_.lanes] = 0;
@@ -59,6 +60,7 @@ void LinearTrain::find_numbers(const train::Fleet& fleet) {
 void LinearTrain::find_surfaces(const train::Fleet& fleet) {
   found_.resize(wheel_.size());
   there_.resize(wheel_.size());
+  moved_.assign(wheel_.size(), 0);
   always_places_ = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
   const bool several = std::any_of(fleet.wheels.begin(), fleet.wheels.end(), [](const auto& c) { return c.further > 0; });
   if (!always_places_ && !several) {

@@ -77,11 +77,12 @@ class BeamMotion final : private solve::NodeFiller {
               double* w_stage) const;
   std::pair<double, double> state(std::size_t stage, const double* v, const double* w, int unknown) const;
 
-  /// Collective. Strain energy of the springs and beams and kinetic energy, J: this rank's share; where fused.
+  /// Collective. Strain energy of the springs and beams and kinetic energy of the nodes [first, past), J: this rank's
+  /// share; where fused.
   struct Energy {
     double strain = 0.0, kinetic = 0.0;
   };
-  Energy energy(const double* v, const double* w);
+  Energy energy(int first, int past, const double* v, const double* w);
   /// Energy of the step's error as StepRule's embedded method estimates it, J: this rank's share. Once all stages are
   /// solved. Only where fused; elsewhere error() serves, of v and w of this rank's unknowns.
   double error_energy();

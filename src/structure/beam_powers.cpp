@@ -111,9 +111,9 @@ BeamMotion::Energy BeamMotion::energy_of(const Sum& displacement, const Sum& rat
   return energy;
 }
 
-BeamMotion::Energy BeamMotion::energy(const double* v, const double* w) {
+BeamMotion::Energy BeamMotion::energy(int first, int past, const double* v, const double* w) {
   view_ = view_of(v, w);
-  return energy_of({1.0, 0.0, {}}, {0.0, 1.0, {}}, 0, nodes_);
+  return energy_of({1.0, 0.0, {}}, {0.0, 1.0, {}}, first, past);
 }
 
 double BeamMotion::error_energy() {

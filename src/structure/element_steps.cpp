@@ -36,15 +36,17 @@ void ElementStructure::set_method(const Method& method, double h) {
 // The columns of the elements under wheels and forces: [first, past); equal: none.
 std::pair<int, int> ElementStructure::loaded_columns(const std::vector<Reach>& loaded) const {
   const beam::Mesh& mesh = line_.mesh;
-  int low = beam_.columns(), high = 0;
+  double from = mesh.end(), to = mesh.start();
+  bool some = false;
   for (const Reach& reach : loaded) {
     if (reach.to < mesh.start() || reach.from > mesh.end()) continue;
-    const int first = mesh.element(mesh.locate(reach.from, true).element).left;
-    const int last = mesh.element(mesh.locate(reach.to).element).left;
-    low = std::min(low, line_.first_column + std::max(0, first - 1));
-    high = std::max(high, line_.first_column + std::min(mesh.nodes(), last + 3));
+    some = true;
+    from = std::min(from, reach.from);
+    to = std::max(to, reach.to);
   }
-  if (low >= high) return {0, 0};
+  if (!some) return {0, 0};
+  int low = line_.first_column + std::max(0, mesh.element(mesh.locate(from, true).element).left - 1);
+  int high = line_.first_column + std::min(mesh.nodes(), mesh.element(mesh.locate(to).element).left + 3);
   if (statics_->parts() != nullptr) {
     const std::vector<int>& parts = beam_.parts();
     const auto part_of = [&](int column) { return std::upper_bound(parts.begin(), parts.end(), column) - 1; };

@@ -259,7 +259,9 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   StructureEnergy e;
   e.potential = -base::dot(dead_load_, v);
   if (motion_ && motion_->fused()) {
-    const BeamMotion::Energy energy = motion_->energy(v, w);
+    const bool some = window_ && rest_.empty();  // beyond the window all is zero
+    const BeamMotion::Energy energy = motion_->energy(some ? local_node(window_->first()) : 0,
+                                                      some ? local_node(window_->past()) : beam_.local_columns(), v, w);
     e.strain = energy.strain;
     e.kinetic = energy.kinetic;
   } else {
