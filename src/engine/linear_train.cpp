@@ -23,7 +23,7 @@ TRAVERSE_LANES_DECLARE(void set_train_step(const TrainTask& task);
 
 namespace {
 
-constexpr double tolerance = 1e-10;  // of a vehicle's weight: changes of forces still to come
+constexpr double tolerance = 1e-11;  // of a vehicle's weight: changes of forces still to come
 constexpr double rounding = 1e-9;    // of the weight: below this a change that stays is taken as rounding
 constexpr int most_passes = 60;      // of a stage
 constexpr double best_contraction = 1e-3;
