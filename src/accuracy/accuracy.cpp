@@ -253,7 +253,7 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   search->apply(scene, result);
   if (scene.vehicle_model == VehicleModel::automatic) {
     scene.vehicle_model = VehicleModel::linear;
-    scene.most_defect = most_defect(scene);
+    scene.most_defect = search->most_defect();
   }
   leave_out_rest(scene);
   result.measured = true;

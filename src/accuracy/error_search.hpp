@@ -27,6 +27,7 @@ class ErrorSearch {
 
   double horizon() const { return horizon_; }  // s, of a trial run
   std::size_t trials() const { return trials_.count(); }
+  double most_defect() const { return trials_.most_defect(); }  // of linear vehicles
 
  private:
   using Errors = std::array<ErrorLaw, quantities>;

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "accuracy/linearisation_error.hpp"
 #include "run/peaks.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -52,12 +53,9 @@ struct OutOfBalance {
   double defect = 0.0;  // coupling::System::defect
 };
 
-/// What linear vehicles that the scene leaves open may be out of balance by, over their weights.
-double most_defect(const Scene& scene);
-
 class Trials {
  public:
-  Trials(MPI_Comm comm, Scene scene) : comm_(comm), scene_(std::move(scene)) {}
+  Trials(MPI_Comm comm, Scene scene) : comm_(comm), scene_(std::move(scene)), most_defect_(app::most_defect(scene_)) {}
 
   static constexpr double most_seconds = 150.0;  // of all trial runs of a scene, as `seconds` estimates them
 
@@ -68,6 +66,8 @@ class Trials {
   /// Collective. What energy is missing after the run, of what the energies change by.
   double energy_missing(int elements, double step);
   std::size_t count() const { return kept_.size(); }
+  /// What linear vehicles may be out of balance by.
+  double most_defect() const { return most_defect_; }
   bool lost_contact() const { return lost_contact_; }  // wheels did in one of them
   /// An estimate of what a run takes, or of what all took so far, s: by counting, since decisions must not depend on
   /// the clock.
@@ -76,6 +76,8 @@ class Trials {
 
  private:
   double seconds_a_step(int elements) const;
+  bool linear_is_in_doubt(double defect) const;
+  void measure_linear(int elements, double step);
   struct Kept {
     Peaks peaks;
     double energy_missing = 0.0;
@@ -85,6 +87,8 @@ class Trials {
   MPI_Comm comm_;
   Scene scene_;
   std::map<std::tuple<int, double, std::string>, Kept> kept_;  // by elements, step and integrator
+  double most_defect_;
+  bool measured_linear_ = false;  // against the mechanisms
   bool lost_contact_ = false;
   double spent_ = 0.0;  // s, estimated from the steps that were taken
 };

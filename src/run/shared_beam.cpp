@@ -32,11 +32,11 @@ std::string what_track(const beam::Beam& beam) {
 
 std::string what_given(const beam::Beam& beam) {
   const beam::GivenModes& m = *beam.model().given;
-  const auto [least, most] = std::minmax_element(m.ratio.begin(), m.ratio.end());
+  const auto [least, greatest] = std::minmax_element(m.ratio.begin(), m.ratio.end());
   return fmt::format(
       "bridge of {:g} m by given modes: {} from {:.6g} to {:.6g} Hz, damping {}{:.4g} %, shapes at {} stations",
       m.x.back(), m.omega.size(), m.omega.front() / (2.0 * std::numbers::pi), m.omega.back() / (2.0 * std::numbers::pi),
-      *least < *most ? fmt::format("{:.4g} to ", 100.0 * *least) : "", 100.0 * *most, m.x.size());
+      *least < *greatest ? fmt::format("{:.4g} to ", 100.0 * *least) : "", 100.0 * *greatest, m.x.size());
 }
 
 std::string what_beam(const beam::Beam& beam) {

@@ -33,6 +33,7 @@ class LaneChooser {
 
  private:
   void take(const std::optional<LaneModel>& found);
+  Scene tried() const;
   /// Whole passages: errors add up while the train crosses. Against a finer mesh and half the step, by esdirk4:
   /// genalpha takes all vibration out of wheels in time, and two of its steps may agree on that.
   LaneErrors check_wholes(LaneSearch& search);
