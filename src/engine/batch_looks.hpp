@@ -228,7 +228,9 @@ inline void look_at_turns(const BatchTask& t, int m) {
   const RowMask counts = runs_until(t, at[m + 1]);
   for (int j = 0; j < t.train->wheels; ++j) {
     const auto y = [&](int k) { return rows(s.force[k])[j]; };
-    const Row F = y(m), before = F - y(by.left), after = y(by.right) - F;
+    const Row F = y(m);
+    if (!Rows::any((F > near_peak * row(s.greatest)) | (near_peak * F < row(s.least)))) continue;
+    const Row before = F - y(by.left), after = y(by.right) - F;
     const RowMask turns =
         counts & (before * after <= Row{}) & ((F - y(m - 1)) * (y(m + 1) - F) <= Row{}) & (after != Row{});
     const double x = t.train->place[static_cast<long>(j) * lanes];

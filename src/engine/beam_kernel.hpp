@@ -75,9 +75,12 @@ struct BeamRows {
   void solve(Row* x) const {
     inwards([&](int pair, int further, int nearer) {
       const Row *F = factor(pair), *from = x + static_cast<long>(further) * b;
-      Row* to = x + static_cast<long>(nearer) * b;
-      for (int i = 0; i < b; ++i)
-        for (int k = 0; k < b; ++k) to[i] -= F[i * b + k] * from[k];
+      Row *to = x + static_cast<long>(nearer) * b, y[most_block];
+      for (int i = 0; i < b; ++i) {
+        y[i] = to[i];
+        for (int k = 0; k < b; ++k) y[i] -= F[i * b + k] * from[k];
+      }
+      for (int i = 0; i < b; ++i) to[i] = y[i];
     });
     for (int c = 0; c < t.columns; ++c) {
       const Row* P = pivot(c);
@@ -91,9 +94,12 @@ struct BeamRows {
     }
     outwards([&](int pair, int further, int nearer) {
       const Row *F = factor(pair), *from = x + static_cast<long>(nearer) * b;
-      Row* to = x + static_cast<long>(further) * b;
-      for (int k = 0; k < b; ++k)
-        for (int i = 0; i < b; ++i) to[i] -= F[k * b + i] * from[k];
+      Row *to = x + static_cast<long>(further) * b, y[most_block];
+      for (int i = 0; i < b; ++i) {
+        y[i] = to[i];
+        for (int k = 0; k < b; ++k) y[i] -= F[k * b + i] * from[k];
+      }
+      for (int i = 0; i < b; ++i) to[i] = y[i];
     });
   }
 
@@ -132,17 +138,16 @@ struct BeamRows {
   /// y -= A x.
   void subtract_product(const double* A, const Row* x, Row* y) const {
     for (int c = 0; c < t.columns; ++c) {
-      const double *own = A + 2L * c * bb, *next = own + bb;
+      const double *own = A + 2L * c * bb, *next = own + bb, *before = own - bb;
       const Row* of = x + static_cast<long>(c) * b;
-      Row* to = y + static_cast<long>(c) * b;
-      for (int j = 0; j < b; ++j)
-        for (int i = 0; i < b; ++i) to[i] -= own[i + b * j] * of[j];
-      if (c + 1 == t.columns) break;
-      for (int j = 0; j < b; ++j)
-        for (int i = 0; i < b; ++i) {
-          to[i] -= next[i + b * j] * of[b + j];
-          to[b + j] -= next[i + b * j] * of[i];
-        }
+      Row sum[most_block];
+      for (int i = 0; i < b; ++i) {
+        sum[i] = Row{};
+        for (int j = 0; j < b; ++j) sum[i] += own[i + b * j] * of[j];
+        for (int j = 0; j < b && c + 1 < t.columns; ++j) sum[i] += next[i + b * j] * of[b + j];
+        for (int j = 0; j < b && c > 0; ++j) sum[i] += before[j + b * i] * of[j - b];
+      }
+      for (int i = 0; i < b; ++i) y[static_cast<long>(c) * b + i] -= sum[i];
     }
   }
 

@@ -187,6 +187,33 @@ SparseRows TrainArrays::sparse(const std::vector<Eigen::MatrixXd>& of_lanes) {
   return to;
 }
 
+PairedRows TrainArrays::paired(const std::vector<Eigen::MatrixXd>& A, const std::vector<Eigen::MatrixXd>& B) {
+  const auto n = static_cast<std::size_t>(A.front().rows());
+  std::vector<std::vector<Eigen::Index>> columns(n);
+  std::size_t width = 1;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto is_entry = [&](Eigen::Index j) {
+      const auto there = [&](const Eigen::MatrixXd& of) { return of(static_cast<Eigen::Index>(i), j) != 0.0; };
+      return std::any_of(A.begin(), A.end(), there) || std::any_of(B.begin(), B.end(), there);
+    };
+    for (Eigen::Index j = 0; j < A.front().cols(); ++j)
+      if (is_entry(j)) columns[i].push_back(j);
+    width = std::max(width, columns[i].size());
+  }
+  int* column = add_integers(n * width);
+  double *one = add(n * width), *other = add(n * width);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < columns[i].size(); ++k) {
+      const std::size_t e = i * width + k;
+      column[e] = static_cast<int>(columns[i][k]);
+      for (std::size_t l = 0; l < A.size(); ++l) {
+        one[e * lanes + l] = A[l](static_cast<Eigen::Index>(i), columns[i][k]);
+        other[e * lanes + l] = B[l](static_cast<Eigen::Index>(i), columns[i][k]);
+      }
+    }
+  return {static_cast<int>(width), column, one, other};
+}
+
 void TrainArrays::fill_block(std::size_t number, const std::vector<const train::MovingVehicle*>& vehicles) {
   VehicleBlock& b = blocks[number];
   const train::MovingVehicle& any = *vehicles.front();
@@ -222,6 +249,8 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
   b.K = sparse(K);
   b.G = sparse(G);
   b.G_along = sparse(G_along);
+  b.K_and_C = paired(K, C);
+  b.both_G = paired(G, G_along);
   b.M = M;
   b.r0 = r0;
   b.driven = driven;
@@ -235,6 +264,9 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
   const auto other = std::find_if(blocks.begin(), its, [&](const VehicleBlock& before) { return is_alike(before, b); });
   if (other != its) {
     b.alike = static_cast<int>(other - blocks.begin());
+    b.C = other->C;
+    b.K_and_C = other->K_and_C;
+    b.both_G = other->both_G;
     b.inverse = other->inverse;
     b.Y = other->Y;
     b.Y_along = other->Y_along;
@@ -277,7 +309,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
                       &task.h_xx,     &task.looked_up,   &task.normal,
                       &task.root,     &task.normal_up,   &task.normal_along,
                       &task.force_up, &task.force_along, &task.turn,
-                      &task.seat,     &task.ahead,       &task.ahead_before,
+                      &task.yielding, &task.seat_by_x,   &task.seat,     &task.ahead,       &task.ahead_before,
                       &task.station,  &task.penetration, &task.penetration_rate,
                       &task.up_rate,  &task.along_rate,  &task.largest})
     *of = add(wheels);

@@ -55,6 +55,7 @@ class TrainArrays {
   void fill_block(std::size_t block, const std::vector<const train::MovingVehicle*>& vehicles);
   bool is_alike(const VehicleBlock& a, const VehicleBlock& b) const;
   SparseRows sparse(const std::vector<Eigen::MatrixXd>& of_lanes);
+  PairedRows paired(const std::vector<Eigen::MatrixXd>& A, const std::vector<Eigen::MatrixXd>& B);  // of lanes
   void make_rows(std::span<const std::vector<const train::MovingVehicle*>> vehicles);
 
   std::vector<std::unique_ptr<Aligned>> numbers_;  // what the arrays of the task are

@@ -88,7 +88,7 @@ TRAVERSE_INLINE void hertz_roots(int n, const Row* yielding, const Row* target, 
 /// One wheel of every lane: the patch that it touches, and the point.
 struct ContactRow {
   Touched at;
-  Row length, shear, structure, seat, seat_by_x;
+  Row structure, seat, seat_by_x;
 };
 
 /// On level rigid ground.
@@ -108,7 +108,7 @@ TRAVERSE_INLINE ContactRow on_patch(const SurfacePatch& p, int i, const Touched&
     structure += sum * s.value[a];
   }
   const Seat seat = seat_at<kind>(at.xi, length, shear, rows(p.yield)[i]);
-  return {at, length, shear, structure, seat.value, seat.by_x};
+  return {at, structure, seat.value, seat.by_x};
 }
 
 /// a in the lanes of a mask, b in others.
@@ -116,22 +116,24 @@ TRAVERSE_INLINE ContactRow choose(RowMask there, const ContactRow& a, const Cont
   const auto of = [there](Row x, Row y) { return there ? x : y; };
   return {{of(a.at.depth, b.at.depth), of(a.at.up, b.at.up), of(a.at.along, b.at.along), of(a.at.station, b.at.station),
            of(a.at.xi, b.at.xi), of(a.at.turn, b.at.turn), there ? a.at.fallen : b.at.fallen},
-          of(a.length, b.length),
-          of(a.shear, b.shear),
           of(a.structure, b.structure),
           of(a.seat, b.seat),
           of(a.seat_by_x, b.seat_by_x)};
 }
 
-/// The patch that is touched: of two the one where the wheel is deeper.
+/// The patch that is touched: of two the one where the wheel is deeper. known: what the structure yields is that of an
+/// earlier pass, as a contact hardly moves along an element from one pass to the next.
 template <Surface kind>
-ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
+ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up, bool known) {
   const SurfacePatch &first = task.patch[0], &other = task.patch[1];
   int* active = task.active + static_cast<long>(i) * lanes;
   for (int l = 0; l < lanes; ++l) active[l] = 0;
-  const ContactRow ground = {on_ground(rows(task.h)[i], along, up), Rows::fill(1.0), Row{}, Row{}, Row{}, Row{}};
+  const ContactRow ground = {on_ground(rows(task.h)[i], along, up), Row{}, Row{}, Row{}};
   if (task.level[i] != 0 && task.second[i] == 0 && first.together[i] == grounded) return ground;
-  ContactRow c = on_patch<kind>(first, i, closest<kind>(task, first, i, along, up));
+  const Touched at = closest<kind>(task, first, i, along, up);
+  if (known && task.second[i] == 0 && (task.level[i] == 0 || first.together[i] == in_line))
+    return {at, rows(task.yielding)[i], rows(task.seat)[i], rows(task.seat_by_x)[i]};
+  ContactRow c = on_patch<kind>(first, i, at);
   RowMask two{};
   if (task.second[i] != 0) {
     const ContactRow second = on_patch<kind>(other, i, closest<kind>(task, other, i, along, up));
@@ -203,7 +205,7 @@ struct Changes {
 /// The forces of all contacts with the structure as `nodal` has it, in the lanes that are still open; others stay as
 /// they are, so that no lane depends on its neighbours.
 template <Surface kind>
-Changes update_forces(const TrainTask& task, RowMask of_runs) {
+Changes update_forces(const TrainTask& task, RowMask of_runs, bool first_pass) {
   Row most{};
   RowMask fallen{};
   for (int k = 0; k < task.blocks; ++k) {
@@ -227,7 +229,9 @@ Changes update_forces(const TrainTask& task, RowMask of_runs) {
     Row depth[most_wheels], q[most_wheels], seat[most_wheels], seat_by_x[most_wheels], force[most_wheels];
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
-      const ContactRow c = touched_patch<kind>(task, i, along[j], up[j]);
+      const ContactRow c = touched_patch<kind>(task, i, along[j], up[j], !first_pass);
+      rows(task.yielding)[i] = c.structure;
+      rows(task.seat_by_x)[i] = c.seat_by_x;
       fallen |= c.at.fallen;
       depth[j] = c.at.depth;
       q[j] = (H[j * m + j] + c.structure) * c.at.up * c.at.up;

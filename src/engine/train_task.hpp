@@ -20,6 +20,14 @@ struct SparseRows {
   const double* value = nullptr;
 };
 
+/// Two sparse matrices with as many entries in each row, which stand in the same columns: [row][width]. What a row has
+/// fewer is 0 in column 0, so that no loop ends sooner or later than the one before.
+struct PairedRows {
+  int width = 0;
+  const int* column = nullptr;
+  const double *first = nullptr, *second = nullptr;  // values, rows
+};
+
 /// Vehicles M x'' + C x' + K x + r0 + drive s'' = G^T f_up + G_along^T f_along, with the forces f on their wheels.
 /// Matrices by rows of `freedom` columns; units N, m, rad, s.
 struct VehicleBlock {
@@ -27,6 +35,7 @@ struct VehicleBlock {
   int first_coordinate = 0, first_wheel = 0;  // among all rows of coordinates, of wheels
   const double *M = nullptr, *r0 = nullptr;
   SparseRows C, K, G, G_along;       // G, G_along: row: the wheel, column: the coordinate
+  PairedRows K_and_C, both_G;        // the same again: K and C; G and G_along
   const double* driven = nullptr;    // row by coordinate: driven x'' is the power that holds the masses' speed, N s
   const double* speed = nullptr;     // a row: m/s, of the steady motion
   const double* drive = nullptr;     // a row: the same where the speed is prescribed, else 0
@@ -89,7 +98,9 @@ struct TrainTask {
   double *normal = nullptr, *root = nullptr;             // N; the Hertz law's square root of the penetration
   double *normal_up = nullptr, *normal_along = nullptr;  // the direction from the surface to the centre
   double *force_up = nullptr, *force_along = nullptr;    // N, on the wheel
-  double *turn = nullptr, *seat = nullptr;               // rotation of the section under it; m/N of the element inside
+  double* turn = nullptr;                                // rotation of the section under it
+  double *yielding = nullptr, *seat = nullptr, *seat_by_x = nullptr;  // m/N, 1/N: of the structure's nodes there, of the
+                                                                      // element inside, and the rise of that over x
   double *ahead = nullptr, *station = nullptr;           // m: of the contact before the centre; x of it
   double* ahead_before = nullptr;                        // m: at the stage before the last one
   double *penetration = nullptr, *penetration_rate = nullptr;  // m, m/s

@@ -43,6 +43,20 @@ inline void add_product(const SparseRows& A, double sign, const Row* x, Row* y) 
   }
 }
 
+/// n rows of the first matrix times x and of the second times y: use(row, both products).
+template <class Use>
+void products(const PairedRows& A, int n, const Row* x, const Row* y, Use use) {
+  const Row *first = rows(A.first), *second = rows(A.second);
+  for (int i = 0, e = 0; i < n; ++i) {
+    Row by_first{}, by_second{};
+    for (int k = 0; k < A.width; ++k, ++e) {
+      by_first += first[e] * x[A.column[e]];
+      by_second += second[e] * y[A.column[e]];
+    }
+    use(i, by_first, by_second);
+  }
+}
+
 /// to (freedom x wheels) = inverse G^T.
 inline void respond(const VehicleBlock& b, const SparseRows& G, Row* to) {
   for (int i = 0; i < b.freedom * b.wheels; ++i) to[i] = Row{};
@@ -202,18 +216,15 @@ inline void predict(const TrainTask& task, int stage, double* work) {
     const int first = b.first_coordinate, f = b.freedom;
     Row *rate = rows(task.w_predicted) + first, *free = rows(task.a_free) + first;
     combine(stage + 1, rule, first, f, task.x, task.w, task.a, at, rate);
-    for (int i = 0; i < f; ++i) force[i] = -rows(b.r0)[i];
-    add_product(b.K, -1.0, at, force);
-    add_product(b.C, -1.0, rate, force);
+    products(b.K_and_C, f, at, rate, [&](int i, Row Kx, Row Cw) { force[i] = -(rows(b.r0)[i] + Kx + Cw); });
     multiply(rows(b.inverse), f, force, free);
     for (int i = 0; i < f; ++i) at[i] += displacement * free[i];
     Row *up = rows(task.up) + b.first_wheel, *along = rows(task.along) + b.first_wheel;
-    for (int j = 0; j < b.wheels; ++j) {
-      up[j] = rows(task.height)[b.first_wheel + j];
-      along[j] = rows(task.place)[b.first_wheel + j] + row(b.distance);
-    }
-    add_product(b.G, 1.0, at, up);
-    add_product(b.G_along, 1.0, at, along);
+    const Row *height = rows(task.height) + b.first_wheel, *place = rows(task.place) + b.first_wheel;
+    products(b.both_G, b.wheels, at, at, [&](int j, Row lifted, Row moved) {
+      up[j] = height[j] + lifted;
+      along[j] = place[j] + row(b.distance) + moved;
+    });
     guess_forces(task, rule, stage, b.first_wheel, b.first_wheel + b.wheels);
   }
 }
