@@ -24,11 +24,20 @@ struct SurfaceTable {
 
 namespace {
 
-/// Where in the table x is, from where the wheel was.
+/// Where in the table x is, from where the wheel was: mostly there or beside that.
 inline int follow(const SurfaceTable& table, double x, int k) {
-  while (k + 1 < table.count && x > table.there[k].to) ++k;
-  while (k > 0 && x < table.there[k].from) --k;
-  return k;
+  constexpr int near = 4;
+  for (int step = 0; step < near && k + 1 < table.count && x > table.there[k].to; ++step) ++k;
+  for (int step = 0; step < near && k > 0 && x < table.there[k].from; ++step) --k;
+  int low = x < table.there[k].from ? 0 : k, high = x > table.there[k].to ? table.count - 1 : k;
+  while (low < high) {
+    const int middle = (low + high) / 2;
+    if (x > table.there[middle].to)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
 }
 
 /// Puts the wheel with that number on its patches, but for their slots and compliances.

@@ -20,7 +20,7 @@ BeamMotion::BeamMotion(const beam::Beam& beam, BeamOperator& op, const double* d
       block_(beam.block()),
       n_(beam.local_unknowns()),
       nodes_(beam.local_columns()),
-      past_(nodes_) {
+      ranges_{{0, nodes_}} {
   proportional_ = op.mass_damping().has_value();
   if (beam::ElementRows::fit(beam) && !beam.model().nonlinear()) elements_.emplace(beam);
   for (int i = 0; i < n_; ++i)
@@ -90,10 +90,9 @@ void BeamMotion::solve(std::size_t stage, const double* v, const double* w, cons
   exchange_borders({&stage_->e, &rate, &stage_->w_still});
   target_ = kept(stage);
   const BeamFactor& factor = operator_.factored(stage_->rate / stage_->displacement, 1.0 / stage_->displacement);
-  if (ranged_)
-    factor.solve_window(target_, first_, past_, *this);
-  else
-    factor.solve(target_, *this);
+  if (!ranged_) factor.solve(target_, *this);
+  for (const Range& r : ranges_)
+    if (ranged_) factor.solve_window(target_, r.first, r.past, *this);
   ++operator_.solves;
 }
 
@@ -250,14 +249,13 @@ void BeamMotion::end_step(const View& view, int begin, int end, double* v, doubl
 }
 
 void BeamMotion::finish(double* v, double* w) {
-  const int begin = fused() ? block_ * first_ : 0, end = fused() ? block_ * past_ : n_;
-  end_step(view_of(v, w), begin, end, v, w, start_acceleration());
+  for (const Range& r : ranges_)
+    end_step(view_of(v, w), block_ * r.first, block_ * r.past, v, w, start_acceleration());
 }
 
-void BeamMotion::set_range(int first, int past) {
+void BeamMotion::set_ranges(std::vector<Range> ranges) {
   ranged_ = true;
-  first_ = first;
-  past_ = past;
+  ranges_ = std::move(ranges);
 }
 
 }  // namespace traverse::structure

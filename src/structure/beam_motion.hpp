@@ -24,6 +24,7 @@
 #include "methods/one_step_methods.hpp"
 #include "response/beam_operator.hpp"
 #include "response/tile.hpp"
+#include "structure/ranges.hpp"
 
 namespace traverse::structure {
 
@@ -65,8 +66,8 @@ class BeamMotion final : private solve::NodeFiller {
     double rate = 0.0;   // W/s, with Rayleigh's damping alone
   };
   Dissipation dissipation() const { return dissipation_; }
-  /// Collective. The same of the nodes [first, past) between steps, with the acceleration at the start of the next one.
-  Dissipation dissipation(int first, int past, const double* v, const double* w);
+  /// Collective. The same of some nodes between steps, with the acceleration at the start of the next one.
+  Dissipation dissipation(const std::vector<Range>& nodes, const double* v, const double* w);
   /// Collective. w^T C w of a solved stage, this rank's share; where fused.
   double power(std::size_t stage, const double* v, const double* w);
 
@@ -77,12 +78,12 @@ class BeamMotion final : private solve::NodeFiller {
               double* w_stage) const;
   std::pair<double, double> state(std::size_t stage, const double* v, const double* w, int unknown) const;
 
-  /// Collective. Strain energy of the springs and beams and kinetic energy of the nodes [first, past), J: this rank's
-  /// share; where fused.
+  /// Collective. Strain energy of the springs and beams and kinetic energy of some nodes, J: this rank's share;
+  /// where fused.
   struct Energy {
     double strain = 0.0, kinetic = 0.0;
   };
-  Energy energy(int first, int past, const double* v, const double* w);
+  Energy energy(const std::vector<Range>& nodes, const double* v, const double* w);
   /// Energy of the step's error as StepRule's embedded method estimates it, J: this rank's share. Once all stages are
   /// solved. Only where fused; elsewhere error() serves, of v and w of this rank's unknowns.
   double error_energy();
@@ -95,11 +96,10 @@ class BeamMotion final : private solve::NodeFiller {
   /// `dissipation`, of the start of the step.
   void step_free(int first, int past, double* v, double* w, Dissipation& dissipation);
 
-  /// Stages and the ends of steps are for these nodes of this rank alone, beyond which nothing of them is felt. Only
-  /// where fused.
-  void set_range(int first, int past);
-  int first() const { return first_; }
-  int past() const { return past_; }
+  /// Stages and the ends of steps are for these nodes of this rank alone, beyond which nothing of them is felt; as many
+  /// ranges on all ranks. Only where fused.
+  void set_ranges(std::vector<Range> ranges);
+  const std::vector<Range>& ranges() const { return ranges_; }
   /// Puts the nodes [first, past) to rest: v as in `rest` (null: 0), w and all accelerations 0. Returns the energy that
   /// they had beyond rest, J, this rank's share.
   double put_to_rest(int first, int past, const double* rest, double* v, double* w);
@@ -141,7 +141,7 @@ class BeamMotion final : private solve::NodeFiller {
   void add_forces(int first, int past, Tile& v, Tile* w, Tile& force) const;
   static double product_of(int block, int nodes, const Tile& x, const Tile& forces);
   Energy energy_of(int first, int past, Tile& v, Tile& w) const;
-  Energy energy_of(const Sum& displacement, const Sum& rate, int first, int past);
+  Energy energy_of(const Sum& displacement, const Sum& rate, const std::vector<Range>& nodes);
   double at(const Sum& sum, const View& view, int unknown) const;
   View view_of(const double* v, const double* w) const;
   void end_step(const View& view, int begin, int end, double* v, double* w, double* a) const;
@@ -156,7 +156,7 @@ class BeamMotion final : private solve::NodeFiller {
   std::vector<int> held_;                                     // local unknowns that stay zero
   std::array<std::vector<double>, most_accelerations> kept_;  // A_0, then one a stage
   int n_ = 0, nodes_ = 0;
-  int first_ = 0, past_ = 0;
+  std::vector<Range> ranges_;
   bool ranged_ = false;
   std::vector<Stage> stages_;
   Sum v_end_, w_end_, a_end_, v_error_, w_error_;

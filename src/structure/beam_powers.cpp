@@ -62,25 +62,27 @@ double BeamMotion::power(std::size_t stage, const double* v, const double* w) {
   exchange_borders({&rate});
   double power = 0.0;
   Tile rates, none, force;
-  for (int first = first_; first < past_; first += tile) {
-    const int past = std::min(past_, first + tile);
-    combine(std::array{Summand{rate, ghosts_[0], rates}}, first, past);
-    none.clear(block_, past - first + 2);
-    force.clear(block_, past - first);
-    add_forces(first, past, none, &rates, force);
-    power += product_of(block_, past - first, rates, force);
-  }
+  for (const Range& r : ranges_)
+    for (int first = r.first; first < r.past; first += tile) {
+      const int past = std::min(r.past, first + tile);
+      combine(std::array{Summand{rate, ghosts_[0], rates}}, first, past);
+      none.clear(block_, past - first + 2);
+      force.clear(block_, past - first);
+      add_forces(first, past, none, &rates, force);
+      power += product_of(block_, past - first, rates, force);
+    }
   return power;
 }
 
-BeamMotion::Dissipation BeamMotion::dissipation(int first, int past, const double* v, const double* w) {
+BeamMotion::Dissipation BeamMotion::dissipation(const std::vector<Range>& nodes, const double* v, const double* w) {
   const Sum rate{0.0, 1.0, {}};
   view_ = view_of(v, w);
   exchange_borders({&rate});
   dissipation_ = {};
   Tile rates, force;
-  for (int from = first; from < past; from += tile)
-    measure_dissipation(from, std::min(past, from + tile), ghosts_[0], rates, force);
+  for (const Range& r : nodes)
+    for (int from = r.first; from < r.past; from += tile)
+      measure_dissipation(from, std::min(r.past, from + tile), ghosts_[0], rates, force);
   return dissipation_;
 }
 
@@ -97,27 +99,28 @@ BeamMotion::Energy BeamMotion::energy_of(int first, int past, Tile& v, Tile& w) 
   return energy;
 }
 
-BeamMotion::Energy BeamMotion::energy_of(const Sum& displacement, const Sum& rate, int first, int past) {
+BeamMotion::Energy BeamMotion::energy_of(const Sum& displacement, const Sum& rate, const std::vector<Range>& nodes) {
   exchange_borders({&displacement, &rate});
   Tile v, w;
   Energy energy;
-  for (int from = first; from < past; from += tile) {
-    const int to = std::min(past, from + tile);
-    combine(std::array{Summand{displacement, ghosts_[0], v}, Summand{rate, ghosts_[1], w}}, from, to);
-    const Energy more = energy_of(from, to, v, w);
-    energy.strain += more.strain;
-    energy.kinetic += more.kinetic;
-  }
+  for (const Range& r : nodes)
+    for (int from = r.first; from < r.past; from += tile) {
+      const int to = std::min(r.past, from + tile);
+      combine(std::array{Summand{displacement, ghosts_[0], v}, Summand{rate, ghosts_[1], w}}, from, to);
+      const Energy more = energy_of(from, to, v, w);
+      energy.strain += more.strain;
+      energy.kinetic += more.kinetic;
+    }
   return energy;
 }
 
-BeamMotion::Energy BeamMotion::energy(int first, int past, const double* v, const double* w) {
+BeamMotion::Energy BeamMotion::energy(const std::vector<Range>& nodes, const double* v, const double* w) {
   view_ = view_of(v, w);
-  return energy_of({1.0, 0.0, {}}, {0.0, 1.0, {}}, first, past);
+  return energy_of({1.0, 0.0, {}}, {0.0, 1.0, {}}, nodes);
 }
 
 double BeamMotion::error_energy() {
-  const Energy energy = energy_of(v_error_, w_error_, first_, past_);
+  const Energy energy = energy_of(v_error_, w_error_, ranges_);
   return energy.strain + energy.kinetic;
 }
 

@@ -28,10 +28,10 @@ bool ContactResponse::worthwhile(std::size_t elements) const {
   return uniform_ && !operator_.shared() && beam_.block() == line_.per_node && elements >= many_elements;
 }
 
-void ContactResponse::place(const std::vector<int>& elements, int first, int past) {
-  if (elements == elements_ && range_ == std::pair(first, past)) return;
+void ContactResponse::place(const std::vector<int>& elements, const std::vector<Range>& stepped) {
+  if (elements == elements_ && stepped == stepped_) return;
   elements_ = elements;
-  range_ = {first, past};
+  stepped_ = stepped;
   if (z_.empty()) {
     const auto unknowns = static_cast<std::size_t>(beam_.local_unknowns()),
                beyond = static_cast<std::size_t>(2 * line_.per_node);
@@ -50,14 +50,14 @@ void ContactResponse::place(const std::vector<int>& elements, int first, int pas
       if (beam_.fixed()[unknown] != 0) held_.push_back(unknown);
     }
   }
-  find_runs(first, past);
+  find_runs();
 }
 
-void ContactResponse::find_runs(int first, int past) {
+void ContactResponse::find_runs() {
   runs_.clear();
   const solve::Parts* parts = operator_.parts();
   if (parts == nullptr) {
-    runs_.push_back({first, past, nullptr, 1});
+    for (const Range& r : stepped_) runs_.push_back({r.first, r.past, nullptr, 1});
     return;
   }
   const solve::Parts::Part* const end = parts->parts.data() + parts->parts.size();

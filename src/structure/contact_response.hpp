@@ -2,11 +2,11 @@
 // (ElementStructure). On one rank, and of the nodes near the forces alone where parts of the structure do not touch.
 #pragma once
 
-#include <utility>
 #include <vector>
 
 #include "response/beam_operator.hpp"
 #include "structure/contact_field.hpp"
+#include "structure/ranges.hpp"
 
 namespace traverse::structure {
 
@@ -17,8 +17,8 @@ class ContactResponse {
 
   /// Whether a solve is quicker than the columns of Compliance for forces on so many elements.
   bool worthwhile(std::size_t elements) const;
-  /// The elements under forces, ascending, and the nodes [first, past) that are stepped.
-  void place(const std::vector<int>& elements, int first, int past);
+  /// The elements under forces, ascending, and the nodes that are stepped.
+  void place(const std::vector<int>& elements, const std::vector<Range>& stepped);
   /// Values by this rank's unknowns.
   const ContactField& field() const { return field_; }
   /// evaluate(from, size, v, w) writes where those unknowns are without forces.
@@ -43,7 +43,7 @@ class ContactResponse {
     const solve::Parts::Part* part = nullptr;  // the first of `count`
     int count = 1;
   };
-  void find_runs(int first, int past);
+  void find_runs();
   int node_of(int element) const { return line_.first_column + line_.mesh.element(element).left; }
   /// use(unknown, count) of every run.
   template <class Use>
@@ -56,7 +56,7 @@ class ContactResponse {
   const beam::Line& line_;
   bool uniform_ = true;  // an element's unknowns stand alike everywhere
   std::vector<int> elements_;
-  std::pair<int, int> range_;
+  std::vector<Range> stepped_;
   std::vector<Run> runs_;
   std::vector<std::size_t> held_;  // of the elements' unknowns
   ContactField field_;

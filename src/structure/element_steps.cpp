@@ -33,51 +33,61 @@ void ElementStructure::set_method(const Method& method, double h) {
   motion_->begin(method);
 }
 
-// The columns of the elements under wheels and forces: [first, past); equal: none.
-std::pair<int, int> ElementStructure::loaded_columns(const std::vector<Reach>& loaded) const {
+// The columns of the elements under wheels and forces. Those that are less than a span apart are in one range.
+std::vector<Range> ElementStructure::loaded_columns(const std::vector<Reach>& loaded) const {
   const beam::Mesh& mesh = line_.mesh;
-  double from = mesh.end(), to = mesh.start();
-  bool some = false;
-  for (const Reach& reach : loaded) {
-    if (reach.to < mesh.start() || reach.from > mesh.end()) continue;
-    some = true;
-    from = std::min(from, reach.from);
-    to = std::max(to, reach.to);
+  std::vector<Reach> stretches;
+  for (const Reach& reach : loaded)
+    if (reach.to >= mesh.start() && reach.from <= mesh.end()) stretches.push_back(reach);
+  std::sort(stretches.begin(), stretches.end(), [](const Reach& a, const Reach& b) { return a.from < b.from; });
+  std::vector<Range> columns;
+  for (std::size_t i = 0; i < stretches.size();) {
+    Reach all = stretches[i];
+    for (++i; i < stretches.size() && stretches[i].from <= all.to + longest_span_; ++i)
+      all.to = std::max(all.to, stretches[i].to);
+    const int left = mesh.element(mesh.locate(all.from, true).element).left;
+    const int right = mesh.element(mesh.locate(all.to).element).left;
+    Range range{line_.first_column + std::max(0, left - 1), line_.first_column + std::min(mesh.nodes(), right + 3)};
+    if (statics_->parts() != nullptr) {
+      const std::vector<int>& parts = beam_.parts();
+      const auto part_of = [&](int column) { return std::upper_bound(parts.begin(), parts.end(), column) - 1; };
+      range = {*part_of(range.first), part_of(range.past - 1)[1]};
+    }
+    columns.push_back(range);
   }
-  if (!some) return {0, 0};
-  int low = line_.first_column + std::max(0, mesh.element(mesh.locate(from, true).element).left - 1);
-  int high = line_.first_column + std::min(mesh.nodes(), mesh.element(mesh.locate(to).element).left + 3);
-  if (statics_->parts() != nullptr) {
-    const std::vector<int>& parts = beam_.parts();
-    const auto part_of = [&](int column) { return std::upper_bound(parts.begin(), parts.end(), column) - 1; };
-    low = *part_of(low);
-    high = part_of(high - 1)[1];
-  }
-  return {low, high};
+  return merged(std::move(columns));
 }
 
 int ElementStructure::local_node(int column) const {
   return std::clamp(column - beam_.first_column(), 0, beam_.local_columns());
 }
 
+std::vector<Range> ElementStructure::local_nodes(const std::vector<Range>& columns) const {
+  std::vector<Range> nodes;
+  for (const Range& r : columns) nodes.push_back({local_node(r.first), local_node(r.past)});
+  return nodes;
+}
+
+// Of this rank.
+std::vector<Range> ElementStructure::moving_nodes() const {
+  return window_ ? local_nodes(window_->moving()) : std::vector<Range>{{0, beam_.local_columns()}};
+}
+
 // What the stages of the coming step are solved for, and what moves freely during it.
 void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
-  const auto [low, high] = loaded_columns(loaded);
-  const bool parts = statics_->parts() != nullptr;
-  int first = 0, past = beam_.columns();
+  const std::vector<Range> columns = loaded_columns(loaded);
   if (window_) {
     const StageRule& rule = method_.stages.front();
-    window_->open(low, high, compliance_.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
-    first = window_->first();
-    past = window_->past();
+    window_->open(columns, compliance_.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
   }
-  free_ = {};
-  if (parts && motion_->proportional() && !measures_errors_) {  // else a step is judged by all that moves
-    free_ = {{{local_node(first), local_node(low < high ? low : past)},
-              {local_node(low < high ? high : past), local_node(past)}}};
-    motion_->set_range(local_node(low), local_node(high));
-  } else if (window_ || (parts && motion_->proportional())) {
-    motion_->set_range(local_node(first), local_node(past));
+  const bool by_parts = statics_->parts() != nullptr && motion_->proportional();
+  free_.clear();
+  if (by_parts && !measures_errors_) {  // else a step is judged by all that moves
+    const std::vector<Range> moving = window_ ? window_->moving() : std::vector<Range>{{0, beam_.columns()}};
+    free_ = local_nodes(without(moving, columns));
+    motion_->set_ranges(local_nodes(columns));
+  } else if (window_ || by_parts) {
+    motion_->set_ranges(moving_nodes());
   }
 }
 
@@ -92,10 +102,13 @@ void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double
   before_.dissipated = dissipated_;
   before_.worked = worked_;
   if (keep) {
-    before_.first = fused() ? statics_->block() * motion_->first() : 0;
-    before_.past = fused() ? statics_->block() * motion_->past() : n_;
-    before_.v.assign(v + before_.first, v + before_.past);
-    before_.w.assign(w + before_.first, w + before_.past);
+    before_.v.clear();
+    before_.w.clear();
+    const auto block = static_cast<std::ptrdiff_t>(statics_->block());
+    for (const Range& r : motion_->ranges()) {
+      before_.v.insert(before_.v.end(), v + block * r.first, v + block * r.past);
+      before_.w.insert(before_.w.end(), w + block * r.first, w + block * r.past);
+    }
   }
   powers_[0].forces = 0.0;
   for (const NodalLoad& force : nodal_forces_) powers_[0].forces += force.force * w[force.unknown];
@@ -132,7 +145,7 @@ void ElementStructure::complete_step(double* v, double* w) {
   incomplete_ = false;
   if (fused()) {
     BeamMotion::Dissipation dissipation = motion_->dissipation();
-    for (const auto& [first, past] : free_) motion_->step_free(first, past, v, w, dissipation);
+    for (const Range& r : free_) motion_->step_free(r.first, r.past, v, w, dissipation);
     if (measuring_) {
       add_dissipation(dissipation);
       measuring_ = to_measure_ = false;
@@ -147,8 +160,15 @@ void ElementStructure::take_back_step(double* v, double* w) {
   dissipated_ = before_.dissipated;
   worked_ = before_.worked;
   stepped_ = incomplete_ = false;
-  std::copy(before_.v.begin(), before_.v.end(), v + before_.first);
-  std::copy(before_.w.begin(), before_.w.end(), w + before_.first);
+  const auto block = static_cast<std::ptrdiff_t>(statics_->block());
+  auto from_v = before_.v.begin(), from_w = before_.w.begin();
+  for (const Range& r : motion_->ranges()) {
+    const std::ptrdiff_t size = block * (r.past - r.first);
+    std::copy_n(from_v, size, v + block * r.first);
+    std::copy_n(from_w, size, w + block * r.first);
+    from_v += size;
+    from_w += size;
+  }
 }
 
 void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) {
@@ -160,8 +180,7 @@ void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, doub
   to_measure_ = true;
   stepped_ = false;
   if (!window_) return;
-  const auto [low, high] = loaded_columns(loaded);
-  window_->begin(*motion_, v, w, low, high);
+  window_->begin(*motion_, v, w, loaded_columns(loaded));
 }
 
 // What is lost until now: the trapezoidal rule, with Rayleigh's damping alone corrected by the rates to order 4. Strong
@@ -182,8 +201,7 @@ bool ElementStructure::measured_between_steps() const {
 // Between steps, of all that moves.
 void ElementStructure::measure_dissipation(const double* v, const double* w) {
   if (!measured_between_steps() || !statics_->damped()) return;
-  add_dissipation(motion_->dissipation(window_ ? local_node(window_->first()) : 0,
-                                       window_ ? local_node(window_->past()) : beam_.local_columns(), v, w));
+  add_dissipation(motion_->dissipation(moving_nodes(), v, w));
 }
 
 void ElementStructure::keep(base::Archive& archive) {

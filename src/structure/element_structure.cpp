@@ -10,7 +10,10 @@
 namespace traverse::structure {
 
 ElementStructure::ElementStructure(const beam::Beam& beam, double gravity, std::shared_ptr<BeamOperator> op)
-    : Structure(beam, std::move(op), gravity), compliance_(beam, *statics_), response_(beam, *statics_) {
+    : Structure(beam, std::move(op), gravity),
+      compliance_(beam, *statics_),
+      response_(beam, *statics_),
+      longest_span_(*std::max_element(beam.model().spans.begin(), beam.model().spans.end())) {
   for (std::vector<double>* x : {&z_, &v_still_, &w_still_, &work_}) x->resize(static_cast<std::size_t>(n_));
 }
 
@@ -180,7 +183,7 @@ const ContactField& ElementStructure::begin_passes(const std::vector<int>& eleme
   solves_ = response_.worthwhile(elements.size());
   if (!solves_) return Structure::begin_passes(elements);
   const bool fused = stage_.kind == Kind::fused;
-  response_.place(elements, fused ? motion_->first() : 0, fused ? motion_->past() : beam_.local_columns());
+  response_.place(elements, fused ? motion_->ranges() : std::vector<Range>{{0, beam_.local_columns()}});
   compliance_.prepare_alone(stage_.shift, stage_.shift2, stage_.added, elements);
   if (fused) {
     response_.set_free([&](std::ptrdiff_t from, int size, double* v, double* w) {
@@ -259,9 +262,9 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   StructureEnergy e;
   e.potential = -base::dot(dead_load_, v);
   if (motion_ && motion_->fused()) {
-    const bool some = window_ && rest_.empty();  // beyond the window all is zero
-    const BeamMotion::Energy energy = motion_->energy(some ? local_node(window_->first()) : 0,
-                                                      some ? local_node(window_->past()) : beam_.local_columns(), v, w);
+    // Where nothing moves all is zero, but for what bends the beam at rest.
+    const BeamMotion::Energy energy =
+        motion_->energy(rest_.empty() ? moving_nodes() : std::vector<Range>{{0, beam_.local_columns()}}, v, w);
     e.strain = energy.strain;
     e.kinetic = energy.kinetic;
   } else {

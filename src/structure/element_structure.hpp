@@ -102,7 +102,9 @@ class ElementStructure final : public Structure {
   bool measured_between_steps() const;
   void measure_dissipation(const double* v, const double* w);
   void add_dissipation(const BeamMotion::Dissipation& now);
-  std::pair<int, int> loaded_columns(const std::vector<Reach>& loaded) const;
+  std::vector<Range> loaded_columns(const std::vector<Reach>& loaded) const;
+  std::vector<Range> local_nodes(const std::vector<Range>& columns) const;
+  std::vector<Range> moving_nodes() const;
   void set_ranges(const std::vector<Reach>& loaded);
 
   Compliance compliance_;
@@ -120,6 +122,7 @@ class ElementStructure final : public Structure {
   double length_ = 0.0;  // s, of a step
   std::optional<BeamMotion> motion_;
   std::optional<RestWindow> window_;
+  double longest_span_ = 0.0;    // m
   double rest_tolerance_ = 0.0;  // 0: everything is stepped
   std::vector<int> watched_;     // columns of probes
   std::vector<double> rest_;     // deflections under its own weight alone; empty: none
@@ -131,12 +134,11 @@ class ElementStructure final : public Structure {
   bool measuring_ = false, to_measure_ = true;
   struct {
     double dissipated = 0.0, worked = 0.0;
-    int first = 0, past = 0;  // unknowns: [first, past)
-    std::vector<double> v, w;
-  } before_;                                   // the step, where it may be taken back
-  std::array<std::pair<int, int>, 2> free_{};  // nodes of parts that nothing loads during the step: [first, past)
-  bool stepped_ = false;                       // since the last restart
-  bool incomplete_ = false;                    // these are still at the start of the last step
+    std::vector<double> v, w;  // of the motion's ranges
+  } before_;                   // the step, where it may be taken back
+  std::vector<Range> free_;    // nodes of parts that nothing loads during the step
+  bool stepped_ = false;       // since the last restart
+  bool incomplete_ = false;    // these are still at the start of the last step
   bool measures_errors_ = false;
 };
 

@@ -7,7 +7,8 @@
 
 namespace traverse::structure {
 namespace {
-constexpr int steps_between_looks = 16;  // at the whole window, for the largest deflection and velocity
+constexpr int steps_between_looks = 16;  // at all that moves, for the largest deflection and velocity, and for rest
+constexpr int worth_parting = 4;         // times how far a load is felt, of a stretch that rests between two loads
 }
 
 RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> watched,
@@ -18,7 +19,7 @@ RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double to
       tolerance_(tolerance),
       watched_(std::move(watched)),
       rest_(rest),
-      past_(beam.columns()) {
+      moving_{{0, beam.columns()}} {
   std::sort(watched_.begin(), watched_.end());
 }
 
@@ -48,57 +49,116 @@ bool RestWindow::rests(int first, int past, const double* v, const double* w) co
   return true;
 }
 
-void RestWindow::begin(BeamMotion& motion, double* v, double* w, int low, int high) {
-  first_ = 0;
-  past_ = beam_.columns();
-  low_ = low;
-  high_ = high;
+void RestWindow::begin(BeamMotion& motion, double* v, double* w, const std::vector<Range>& loaded) {
+  moving_ = {{0, beam_.columns()}};
+  loaded_ = loaded;
   steps_ = 0;
   close(motion, v, w);
 }
 
-void RestWindow::open(int low, int high, int reach) {
-  low_ = low;
-  high_ = high;
-  if (low_ < high_) {
-    first_ = first_ < past_ ? std::min(first_, low_) : low_;
-    past_ = std::max(past_, high_);
+void RestWindow::open(const std::vector<Range>& loaded, int reach) {
+  loaded_ = loaded;
+  reach_ = reach;
+  moving_.insert(moving_.end(), loaded.begin(), loaded.end());
+  for (Range& r : moving_) r = {std::max(0, r.first - reach), std::min(beam_.columns(), r.past + reach)};
+  moving_ = merged(std::move(moving_));
+}
+
+// The node behind, or where the part of this one ends.
+int RestWindow::next(int node) const {
+  if (!parts_) return node + 1;
+  const auto& begins = beam_.parts();
+  return *std::upper_bound(begins.begin(), begins.end(), node + beam_.first_column()) - beam_.first_column();
+}
+
+int RestWindow::previous(int node) const {
+  if (!parts_) return node - 1;
+  const auto& begins = beam_.parts();
+  return std::lower_bound(begins.begin(), begins.end(), node + beam_.first_column())[-1] - beam_.first_column();
+}
+
+std::vector<Range> RestWindow::loaded_in(const Range& range) const {
+  std::vector<Range> inside;
+  for (const Range& l : loaded_)
+    if (l.first >= range.first && l.past <= range.past) inside.push_back(l);
+  return inside;
+}
+
+// Nodes of this rank, each end by the rank that has it, a part or a node at a time.
+Range RestWindow::trimmed(const Range& range, const std::vector<Range>& loaded, const double* v,
+                          const double* w) const {
+  Range r{local(range.first), local(range.past)};
+  const int low = loaded.empty() ? r.past : local(loaded.front().first);
+  const int high = loaded.empty() ? r.first : local(loaded.back().past);
+  const bool mine_left = range.first >= beam_.first_column(),
+             mine_right = range.past <= beam_.first_column() + beam_.local_columns();
+  while (mine_left && r.first < std::min(low, r.past) && rests(r.first, std::min(next(r.first), r.past), v, w))
+    r.first = next(r.first);
+  while (mine_right && r.past > std::max(high, r.first) && rests(std::max(previous(r.past), r.first), r.past, v, w))
+    r.past = previous(r.past);
+  return r;
+}
+
+// Columns that the ranges of all ranks' nodes reach over, as many.
+std::vector<Range> RestWindow::ends_of_all(const std::vector<Range>& local) const {
+  const int begin = beam_.first_column();
+  std::vector<int> ends;
+  for (const Range& r : local) {
+    ends.push_back(r.first < r.past ? begin + r.first : beam_.columns());
+    ends.push_back(r.first < r.past ? -(begin + r.past) : 0);
   }
-  first_ = std::max(0, first_ - reach);
-  past_ = std::min(beam_.columns(), past_ + reach);
+  if (shared_)
+    MPI_Allreduce(MPI_IN_PLACE, ends.data(), static_cast<int>(ends.size()), MPI_INT, MPI_MIN, beam_.comm());
+  std::vector<Range> all;
+  for (std::size_t i = 0; i < ends.size(); i += 2) all.push_back({ends[i], -ends[i + 1]});
+  return all;
 }
 
 void RestWindow::close(BeamMotion& motion, double* v, double* w) {
-  if (steps_ < steps_between_looks || steps_ % steps_between_looks == 0) {
-    note_largest(v, w, local(first_), local(past_));
+  const bool looks = steps_ % steps_between_looks == 0;
+  if (steps_ < steps_between_looks || looks) {
+    for (const Range& r : moving_) note_largest(v, w, local(r.first), local(r.past));
     if (shared_) agree();
   }
   ++steps_;
-  // Each end by the rank that has it, a part or a node at a time.
-  int first = local(first_), past = local(past_);
-  const int low = low_ < high_ ? local(low_) : past, high = low_ < high_ ? local(high_) : first;
-  const auto next = [&](int node) {
-    if (!parts_) return node + 1;
-    const auto& begins = beam_.parts();
-    return *std::upper_bound(begins.begin(), begins.end(), node + beam_.first_column()) - beam_.first_column();
-  };
-  const auto previous = [&](int node) {
-    if (!parts_) return node - 1;
-    const auto& begins = beam_.parts();
-    return std::lower_bound(begins.begin(), begins.end(), node + beam_.first_column())[-1] - beam_.first_column();
-  };
-  const bool mine_left = first_ >= beam_.first_column(),
-             mine_right = past_ <= beam_.first_column() + beam_.local_columns();
-  int from = first, to = past;
-  while (mine_left && from < std::min(low, to) && rests(from, std::min(next(from), to), v, w)) from = next(from);
-  while (mine_right && to > std::max(high, from) && rests(std::max(previous(to), from), to, v, w)) to = previous(to);
-  if (from > first) energy_left_ += motion.put_to_rest(first, from, rest_, v, w);
-  if (to < past) energy_left_ += motion.put_to_rest(to, past, rest_, v, w);
-  const int begin = beam_.first_column();
-  std::array<int, 2> ends = {from < to ? begin + from : beam_.columns(), from < to ? -(begin + to) : 0};
-  if (shared_) MPI_Allreduce(MPI_IN_PLACE, ends.data(), 2, MPI_INT, MPI_MIN, beam_.comm());
-  first_ = std::min(ends[0], -ends[1]);
-  past_ = -ends[1];
+  std::vector<Range> left;
+  for (const Range& range : moving_) {
+    const Range r = trimmed(range, loaded_in(range), v, w);
+    const int first = local(range.first), past = local(range.past);
+    if (r.first > first) energy_left_ += motion.put_to_rest(first, r.first, rest_, v, w);
+    if (r.past < past) energy_left_ += motion.put_to_rest(r.past, past, rest_, v, w);
+    left.push_back(r);
+  }
+  moving_ = merged(ends_of_all(left));
+  if (looks && !shared_) part(motion, v, w);
+}
+
+// Where it rests between two loads.
+void RestWindow::part(BeamMotion& motion, double* v, double* w) {
+  std::vector<Range> parted;
+  for (Range range : moving_) {
+    const std::vector<Range> loaded = loaded_in(range);
+    for (std::size_t i = 1; i < loaded.size(); ++i) {
+      const Range rest = longest_rest({loaded[i - 1].past, loaded[i].first}, v, w);
+      if (rest.past - rest.first <= (parts_ ? 0 : worth_parting * std::max(reach_, 1))) continue;
+      energy_left_ += motion.put_to_rest(rest.first, rest.past, rest_, v, w);
+      parted.push_back({range.first, rest.first});
+      range.first = rest.past;
+    }
+    parted.push_back(range);
+  }
+  moving_ = merged(std::move(parted));
+}
+
+Range RestWindow::longest_rest(Range gap, const double* v, const double* w) const {
+  Range longest, now{gap.first, gap.first};
+  for (int node = gap.first; node < gap.past;) {
+    const int behind = std::min(next(node), gap.past);
+    now = rests(node, behind, v, w) ? Range{now.first, behind} : Range{behind, behind};
+    if (now.past - now.first > longest.past - longest.first) longest = now;
+    node = behind;
+  }
+  return longest;
 }
 
 void RestWindow::agree() {

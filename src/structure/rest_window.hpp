@@ -1,4 +1,5 @@
-// The stretch of the bridge that moves. Ahead of the train nothing has happened yet; behind it vibrations die away.
+// The stretches of the bridge that move, one around each train. Ahead of a train nothing has happened yet; behind it
+// vibrations die away.
 // Stages and steps leave out what is at rest: spans that do not touch their neighbours whole, a continuous bridge node
 // by node, where waves are followed until they are below the tolerance. What is put to rest takes its energy with it,
 // which is counted.
@@ -9,6 +10,7 @@
 
 #include "base/archive.hpp"
 #include "structure/beam_motion.hpp"
+#include "structure/ranges.hpp"
 
 namespace traverse::structure {
 
@@ -22,23 +24,22 @@ class RestWindow {
 
   static constexpr double quiet = 1e-9;
 
-  /// Collective. From a state: only what moves is in the window, and what lies between `low` and `high` (columns; where
-  /// parts of the beam do not touch, borders of parts).
-  void begin(BeamMotion& motion, double* v, double* w, int low, int high);
-  /// Collective. Wider, for a step with loads between the columns `low` and `high`, whose effect dies out within
-  /// `reach` columns.
-  void open(int low, int high, int reach);
-  /// Collective. Narrower at both ends, after the step.
+  /// Collective. From a state: only what moves is in the window, and what is loaded (columns, as merged() has them; where
+  /// parts of the beam do not touch, whole parts).
+  void begin(BeamMotion& motion, double* v, double* w, const std::vector<Range>& loaded);
+  /// Collective. Wider, for a step with loads on these columns, whose effect dies out within `reach` columns.
+  void open(const std::vector<Range>& loaded, int reach);
+  /// Collective. Narrower at both ends of each stretch, after the step. On one rank a stretch with several loads is
+  /// parted where it rests between them.
   void close(BeamMotion& motion, double* v, double* w);
 
   /// J, put to rest so far, this rank's share.
   double energy_left() const { return energy_left_; }
   double tolerance() const { return tolerance_; }
-  /// Columns: [first, past).
-  int first() const { return first_; }
-  int past() const { return past_; }
+  /// Columns, as merged() has them.
+  const std::vector<Range>& moving() const { return moving_; }
   void keep(base::Archive& archive) {
-    archive.same(first_, past_, low_, high_, largest_, steps_);
+    archive.same(moving_, loaded_, reach_, largest_, steps_);
     archive.sum(energy_left_);
   }
 
@@ -46,6 +47,13 @@ class RestWindow {
   void note_largest(const double* v, const double* w, int first, int past);
   bool rests(int first, int past, const double* v, const double* w) const;
   void agree();
+  int next(int node) const;
+  int previous(int node) const;
+  std::vector<Range> loaded_in(const Range& range) const;
+  Range trimmed(const Range& range, const std::vector<Range>& loaded, const double* v, const double* w) const;
+  std::vector<Range> ends_of_all(const std::vector<Range>& local) const;
+  void part(BeamMotion& motion, double* v, double* w);
+  Range longest_rest(Range gap, const double* v, const double* w) const;
   int local(int column) const;
 
   const beam::Beam& beam_;
@@ -53,8 +61,9 @@ class RestWindow {
   double tolerance_;
   std::vector<int> watched_;  // ascending
   const double* rest_;
-  int first_ = 0, past_ = 0;  // columns: [first, past)
-  int low_ = 0, high_ = 0;    // with loads in the last step
+  std::vector<Range> moving_;  // columns
+  std::vector<Range> loaded_;  // in the last step
+  int reach_ = 0;
   struct Largest {
     double displacement = 0.0, rate = 0.0;
   };

@@ -17,6 +17,10 @@ namespace {
 
 using Vector = Eigen::VectorXd;
 
+// Of all that moves; both 0 where nothing does.
+int first_of(const RestWindow& window) { return window.moving().empty() ? 0 : window.moving().front().first; }
+int past_of(const RestWindow& window) { return window.moving().empty() ? 0 : window.moving().back().past; }
+
 /// A beam of bending alone with its state.
 struct Moving {
   explicit Moving(beam::BeamModel model, bool own_weight = false)
@@ -85,10 +89,9 @@ struct Moving {
     if (window != nullptr) {
       const auto [low, high] = columns_under(x);
       const auto [low_end, high_end] = columns_under(x + speed * h);
-      const bool both = low < high && low_end < high_end;
-      window->open(both ? low : std::max(low, low_end), std::max(high, high_end),
+      window->open(merged({{low, high}, {low_end, high_end}}),
                    compliance.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
-      motion.set_range(window->first(), window->past());
+      motion.set_ranges(window->moving());
     }
     Method method = esdirk4();
     method.scale_to(h);
@@ -133,9 +136,9 @@ TEST(RestWindow, ClosesAroundWhatMoves) {
   Moving m(continuous());
   m.add_bump(83, 97, 1e-3);
   RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
-  window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
-  EXPECT_EQ(window.first(), 83);
-  EXPECT_EQ(window.past(), 97);
+  window.begin(m.motion, m.v.data(), m.w.data(), {});
+  EXPECT_EQ(first_of(window), 83);
+  EXPECT_EQ(past_of(window), 97);
   EXPECT_EQ(window.energy_left(), 0.0);
   EXPECT_EQ(window.tolerance(), 1e-4);
 }
@@ -148,15 +151,15 @@ TEST(RestWindow, PutsToRestWhatIsBelowItsTolerance) {
     m.add_bump(152, 158, 2e-8);
     const double left = m.energy(32, 38) + m.energy(152, 158);
     RestWindow window(m.beam, m.op, tolerance, {}, nullptr);
-    window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
+    window.begin(m.motion, m.v.data(), m.w.data(), {});
     if (tolerance == 1e-6) {
-      EXPECT_EQ(window.first(), 32);
-      EXPECT_EQ(window.past(), 158);
+      EXPECT_EQ(first_of(window), 32);
+      EXPECT_EQ(past_of(window), 158);
       EXPECT_EQ(window.energy_left(), 0.0);
       continue;
     }
-    EXPECT_EQ(window.first(), 83);
-    EXPECT_EQ(window.past(), 97);
+    EXPECT_EQ(first_of(window), 83);
+    EXPECT_EQ(past_of(window), 97);
     EXPECT_NEAR(window.energy_left(), left, 1e-9 * left);
     EXPECT_TRUE(m.at_rest(0, 83));
     EXPECT_TRUE(m.at_rest(97, m.columns()));
@@ -176,9 +179,9 @@ TEST(RestWindow, LooksAtEveryKind) {
     x[2 * 44 + kind % 2] = 1.01e-4 * largest;
     x[2 * 131 + kind % 2] = -0.99e-4 * largest;
     RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
-    window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
-    EXPECT_EQ(window.first(), 44);
-    EXPECT_EQ(window.past(), 97);
+    window.begin(m.motion, m.v.data(), m.w.data(), {});
+    EXPECT_EQ(first_of(window), 44);
+    EXPECT_EQ(past_of(window), 97);
   }
 }
 
@@ -188,16 +191,16 @@ TEST(RestWindow, KeepsWhatIsLoadedOrWatched) {
   m.add_bump(32, 38, 1e-8);
   m.add_bump(152, 158, 1e-14);
   RestWindow loaded(m.beam, m.op, 1e-4, {}, nullptr);
-  loaded.begin(m.motion, m.v.data(), m.w.data(), 60, 120);
-  EXPECT_EQ(loaded.first(), 60);
-  EXPECT_EQ(loaded.past(), 120);
+  loaded.begin(m.motion, m.v.data(), m.w.data(), {{60, 120}});
+  EXPECT_EQ(first_of(loaded), 60);
+  EXPECT_EQ(past_of(loaded), 120);
   EXPECT_TRUE(m.at_rest(0, 60));
 
   m.add_bump(32, 38, 1e-8);
   RestWindow watching(m.beam, m.op, 1e-4, {155, 35}, nullptr);  // what is there counts down to 1e-9
-  watching.begin(m.motion, m.v.data(), m.w.data(), 60, 120);
-  EXPECT_EQ(watching.first(), 35);
-  EXPECT_EQ(watching.past(), 120);
+  watching.begin(m.motion, m.v.data(), m.w.data(), {{60, 120}});
+  EXPECT_EQ(first_of(watching), 35);
+  EXPECT_EQ(past_of(watching), 120);
 }
 
 TEST(RestWindow, ClosesWholeSpansThatDoNotTouch) {
@@ -209,9 +212,9 @@ TEST(RestWindow, ClosesWholeSpansThatDoNotTouch) {
   m.add_bump(9 * span + 2, 9 * span + 5, 1e-9);
   const double left = m.energy(9 * span, 10 * span);
   RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
-  window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
-  EXPECT_EQ(window.first(), 5 * span);
-  EXPECT_EQ(window.past(), 8 * span);
+  window.begin(m.motion, m.v.data(), m.w.data(), {});
+  EXPECT_EQ(first_of(window), 5 * span);
+  EXPECT_EQ(past_of(window), 8 * span);
   EXPECT_NEAR(window.energy_left(), left, 1e-9 * left);
 }
 
@@ -223,9 +226,9 @@ TEST(RestWindow, RestsUnderItsOwnWeight) {
   m.add_bump(32, 38, 1e-8);
   const double left = m.energy(32, 38);
   RestWindow window(m.beam, m.op, 1e-4, {}, m.rest.data());
-  window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
-  EXPECT_EQ(window.first(), 83);
-  EXPECT_EQ(window.past(), 97);
+  window.begin(m.motion, m.v.data(), m.w.data(), {});
+  EXPECT_EQ(first_of(window), 83);
+  EXPECT_EQ(past_of(window), 97);
   EXPECT_NEAR(window.energy_left(), left, 1e-6 * left);  // of what rounding leaves of the deflection
   EXPECT_TRUE(m.at_rest(0, 83));
 }
@@ -235,20 +238,44 @@ TEST(RestWindow, RestsUnderItsOwnWeight) {
 TEST(RestWindow, OpensByTheReachOfTheLoads) {
   Moving m(continuous());
   RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
-  window.begin(m.motion, m.v.data(), m.w.data(), 0, 0);
-  EXPECT_GE(window.first(), window.past());  // nothing moves
-  window.open(60, 62, 10);
-  EXPECT_EQ(window.first(), 50);
-  EXPECT_EQ(window.past(), 72);
-  window.open(64, 66, 10);  // what moves spreads, too
-  EXPECT_EQ(window.first(), 40);
-  EXPECT_EQ(window.past(), 82);
-  window.open(0, 0, 10);  // no loads
-  EXPECT_EQ(window.first(), 30);
-  EXPECT_EQ(window.past(), 92);
-  window.open(390, 395, 400);
-  EXPECT_EQ(window.first(), 0);
-  EXPECT_EQ(window.past(), m.columns());
+  window.begin(m.motion, m.v.data(), m.w.data(), {});
+  EXPECT_GE(first_of(window), past_of(window));  // nothing moves
+  window.open({{60, 62}}, 10);
+  EXPECT_EQ(first_of(window), 50);
+  EXPECT_EQ(past_of(window), 72);
+  window.open({{64, 66}}, 10);  // what moves spreads, too
+  EXPECT_EQ(first_of(window), 40);
+  EXPECT_EQ(past_of(window), 82);
+  window.open({}, 10);  // no loads
+  EXPECT_EQ(first_of(window), 30);
+  EXPECT_EQ(past_of(window), 92);
+  window.open({{390, 395}}, 400);
+  EXPECT_EQ(first_of(window), 0);
+  EXPECT_EQ(past_of(window), m.columns());
+}
+
+TEST(RestWindow, OpensAroundEachOfSeveralLoads) {
+  Moving m(continuous());
+  RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+  window.begin(m.motion, m.v.data(), m.w.data(), {});
+  window.open({{60, 62}, {200, 204}}, 10);
+  EXPECT_EQ(window.moving(), (std::vector<Range>{{50, 72}, {190, 214}}));
+  window.open({{60, 62}, {200, 204}}, 60);  // both feel each other
+  EXPECT_EQ(window.moving(), (std::vector<Range>{{0, 274}}));
+}
+
+// Trains that have met leave a stretch between them that comes to rest.
+TEST(RestWindow, IsPartedWhereItRestsBetweenLoads) {
+  for (const bool apart : {true, false}) {
+    Moving m(apart ? separate() : continuous());
+    RestWindow window(m.beam, m.op, 1e-4, {}, nullptr);
+    const int span = apart ? m.beam.parts()[1] : 0;
+    const std::vector<Range> loads = apart ? std::vector<Range>{{2 * span, 3 * span}, {15 * span, 16 * span}}
+                                           : std::vector<Range>{{30, 34}, {300, 304}};
+    window.open(loads, 5);
+    window.begin(m.motion, m.v.data(), m.w.data(), loads);
+    EXPECT_EQ(window.moving(), loads) << apart;
+  }
 }
 
 // --------------------------------------------------------------------------------------------- against all of it
@@ -265,7 +292,7 @@ Comparison compare(const beam::BeamModel& model, double tolerance, bool own_weig
   const int steps = static_cast<int>(1.05 * model.length() / (speed * Moving::h));
   Moving whole(model, own_weight), part(model, own_weight);
   RestWindow window(part.beam, part.op, tolerance, {}, own_weight ? part.rest.data() : nullptr);
-  window.begin(part.motion, part.v.data(), part.w.data(), 0, 0);
+  window.begin(part.motion, part.v.data(), part.w.data(), {});
   Comparison result;
   double peak = 0.0;
   for (int i = 0; i < steps; ++i) {
@@ -274,20 +301,20 @@ Comparison compare(const beam::BeamModel& model, double tolerance, bool own_weig
     part.step(x, speed, &window);
     const auto [low, high] = part.columns_under(x + speed * Moving::h);
     if (low < high) {
-      EXPECT_LE(window.first(), low);
-      EXPECT_GE(window.past(), high);
+      EXPECT_LE(first_of(window), low);
+      EXPECT_GE(past_of(window), high);
     }
-    if (window.first() < window.past()) {
-      EXPECT_TRUE(part.at_rest(0, window.first())) << i;
-      EXPECT_TRUE(part.at_rest(window.past(), part.columns())) << i;
-      result.widest = std::max(result.widest, window.past() - window.first());
+    if (first_of(window) < past_of(window)) {
+      EXPECT_TRUE(part.at_rest(0, first_of(window))) << i;
+      EXPECT_TRUE(part.at_rest(past_of(window), part.columns())) << i;
+      result.widest = std::max(result.widest, past_of(window) - first_of(window));
     }
-    if (i == 100) result.greatest_past = window.past();
+    if (i == 100) result.greatest_past = past_of(window);
     peak = std::max(peak, (whole.v - whole.rest).cwiseAbs().maxCoeff());
     result.difference = std::max(result.difference, (part.v - whole.v).cwiseAbs().maxCoeff());
   }
   result.difference /= peak;
-  result.last_first = window.first();
+  result.last_first = first_of(window);
   result.energy_left = window.energy_left();
   return result;
 }
