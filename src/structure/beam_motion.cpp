@@ -253,9 +253,9 @@ void BeamMotion::finish(double* v, double* w) {
     end_step(view_of(v, w), block_ * r.first, block_ * r.past, v, w, start_acceleration());
 }
 
-void BeamMotion::set_ranges(std::vector<Range> ranges) {
+void BeamMotion::set_ranges(const std::vector<Range>& ranges) {
   ranged_ = true;
-  ranges_ = std::move(ranges);
+  ranges_ = ranges;
 }
 
 }  // namespace traverse::structure

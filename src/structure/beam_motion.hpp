@@ -98,7 +98,7 @@ class BeamMotion final : private solve::NodeFiller {
 
   /// Stages and the ends of steps are for these nodes of this rank alone, beyond which nothing of them is felt; as many
   /// ranges on all ranks. Only where fused.
-  void set_ranges(std::vector<Range> ranges);
+  void set_ranges(const std::vector<Range>& ranges);
   const std::vector<Range>& ranges() const { return ranges_; }
   /// Puts the nodes [first, past) to rest: v as in `rest` (null: 0), w and all accelerations 0. Returns the energy that
   /// they had beyond rest, J, this rank's share.

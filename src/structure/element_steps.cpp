@@ -34,17 +34,17 @@ void ElementStructure::set_method(const Method& method, double h) {
 }
 
 // The columns of the elements under wheels and forces. Those that are less than a span apart are in one range.
-std::vector<Range> ElementStructure::loaded_columns(const std::vector<Reach>& loaded) const {
+const std::vector<Range>& ElementStructure::find_loaded(const std::vector<Reach>& loaded) {
   const beam::Mesh& mesh = line_.mesh;
-  std::vector<Reach> stretches;
+  reaches_.clear();
   for (const Reach& reach : loaded)
-    if (reach.to >= mesh.start() && reach.from <= mesh.end()) stretches.push_back(reach);
-  std::sort(stretches.begin(), stretches.end(), [](const Reach& a, const Reach& b) { return a.from < b.from; });
-  std::vector<Range> columns;
-  for (std::size_t i = 0; i < stretches.size();) {
-    Reach all = stretches[i];
-    for (++i; i < stretches.size() && stretches[i].from <= all.to + longest_span_; ++i)
-      all.to = std::max(all.to, stretches[i].to);
+    if (reach.to >= mesh.start() && reach.from <= mesh.end()) reaches_.push_back(reach);
+  std::sort(reaches_.begin(), reaches_.end(), [](const Reach& a, const Reach& b) { return a.from < b.from; });
+  loaded_.clear();
+  for (std::size_t i = 0; i < reaches_.size();) {
+    Reach all = reaches_[i];
+    for (++i; i < reaches_.size() && reaches_[i].from <= all.to + longest_span_; ++i)
+      all.to = std::max(all.to, reaches_[i].to);
     const int left = mesh.element(mesh.locate(all.from, true).element).left;
     const int right = mesh.element(mesh.locate(all.to).element).left;
     Range range{line_.first_column + std::max(0, left - 1), line_.first_column + std::min(mesh.nodes(), right + 3)};
@@ -53,42 +53,54 @@ std::vector<Range> ElementStructure::loaded_columns(const std::vector<Reach>& lo
       const auto part_of = [&](int column) { return std::upper_bound(parts.begin(), parts.end(), column) - 1; };
       range = {*part_of(range.first), part_of(range.past - 1)[1]};
     }
-    columns.push_back(range);
+    loaded_.push_back(range);
   }
-  return merged(std::move(columns));
+  merge(loaded_);
+  return loaded_;
 }
 
 int ElementStructure::local_node(int column) const {
   return std::clamp(column - beam_.first_column(), 0, beam_.local_columns());
 }
 
-std::vector<Range> ElementStructure::local_nodes(const std::vector<Range>& columns) const {
-  std::vector<Range> nodes;
-  for (const Range& r : columns) nodes.push_back({local_node(r.first), local_node(r.past)});
-  return nodes;
+/// Columns as nodes of this rank.
+void ElementStructure::make_local(std::vector<Range>& columns) const {
+  for (Range& r : columns) r = {local_node(r.first), local_node(r.past)};
 }
 
 // Of this rank.
-std::vector<Range> ElementStructure::moving_nodes() const {
-  return window_ ? local_nodes(window_->moving()) : std::vector<Range>{{0, beam_.local_columns()}};
+const std::vector<Range>& ElementStructure::moving_nodes() {
+  if (window_) {
+    moving_ = window_->moving();
+    make_local(moving_);
+  } else {
+    moving_.assign(1, {0, beam_.local_columns()});
+  }
+  return moving_;
 }
 
 // What the stages of the coming step are solved for, and what moves freely during it.
 void ElementStructure::set_ranges(const std::vector<Reach>& loaded) {
-  const std::vector<Range> columns = loaded_columns(loaded);
+  const bool by_parts = statics_->parts() != nullptr && motion_->proportional();
+  if (!window_ && !by_parts) return;
+  find_loaded(loaded);
   if (window_) {
     const StageRule& rule = method_.stages.front();
-    window_->open(columns, compliance_.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
+    window_->open(loaded_, compliance_.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
   }
-  const bool by_parts = statics_->parts() != nullptr && motion_->proportional();
   free_.clear();
-  if (by_parts && !measures_errors_) {  // else a step is judged by all that moves
-    const std::vector<Range> moving = window_ ? window_->moving() : std::vector<Range>{{0, beam_.columns()}};
-    free_ = local_nodes(without(moving, columns));
-    motion_->set_ranges(local_nodes(columns));
-  } else if (window_ || by_parts) {
+  if (!by_parts || measures_errors_) {  // a step is judged by all that moves
     motion_->set_ranges(moving_nodes());
+    return;
   }
+  if (window_)
+    moving_ = window_->moving();
+  else
+    moving_.assign(1, {0, beam_.columns()});
+  subtract(moving_, loaded_, free_);
+  make_local(free_);
+  make_local(loaded_);
+  motion_->set_ranges(loaded_);
 }
 
 void ElementStructure::begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) {
@@ -180,7 +192,7 @@ void ElementStructure::restart(const std::vector<Reach>& loaded, double* v, doub
   to_measure_ = true;
   stepped_ = false;
   if (!window_) return;
-  window_->begin(*motion_, v, w, loaded_columns(loaded));
+  window_->begin(*motion_, v, w, find_loaded(loaded));
 }
 
 // What is lost until now: the trapezoidal rule, with Rayleigh's damping alone corrected by the rates to order 4. Strong

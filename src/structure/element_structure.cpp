@@ -14,6 +14,7 @@ ElementStructure::ElementStructure(const beam::Beam& beam, double gravity, std::
       compliance_(beam, *statics_),
       response_(beam, *statics_),
       longest_span_(*std::max_element(beam.model().spans.begin(), beam.model().spans.end())) {
+  all_ = {{0, beam.local_columns()}};
   for (std::vector<double>* x : {&z_, &v_still_, &w_still_, &work_}) x->resize(static_cast<std::size_t>(n_));
 }
 
@@ -183,7 +184,7 @@ const ContactField& ElementStructure::begin_passes(const std::vector<int>& eleme
   solves_ = response_.worthwhile(elements.size());
   if (!solves_) return Structure::begin_passes(elements);
   const bool fused = stage_.kind == Kind::fused;
-  response_.place(elements, fused ? motion_->ranges() : std::vector<Range>{{0, beam_.local_columns()}});
+  response_.place(elements, fused ? motion_->ranges() : all_);
   compliance_.prepare_alone(stage_.shift, stage_.shift2, stage_.added, elements);
   if (fused) {
     response_.set_free([&](std::ptrdiff_t from, int size, double* v, double* w) {
@@ -264,7 +265,7 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   if (motion_ && motion_->fused()) {
     // Where nothing moves all is zero, but for what bends the beam at rest.
     const BeamMotion::Energy energy =
-        motion_->energy(rest_.empty() ? moving_nodes() : std::vector<Range>{{0, beam_.local_columns()}}, v, w);
+        motion_->energy(rest_.empty() ? moving_nodes() : all_, v, w);
     e.strain = energy.strain;
     e.kinetic = energy.kinetic;
   } else {

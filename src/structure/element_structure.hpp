@@ -102,9 +102,9 @@ class ElementStructure final : public Structure {
   bool measured_between_steps() const;
   void measure_dissipation(const double* v, const double* w);
   void add_dissipation(const BeamMotion::Dissipation& now);
-  std::vector<Range> loaded_columns(const std::vector<Reach>& loaded) const;
-  std::vector<Range> local_nodes(const std::vector<Range>& columns) const;
-  std::vector<Range> moving_nodes() const;
+  const std::vector<Range>& find_loaded(const std::vector<Reach>& loaded);
+  void make_local(std::vector<Range>& columns) const;
+  const std::vector<Range>& moving_nodes();
   void set_ranges(const std::vector<Reach>& loaded);
 
   Compliance compliance_;
@@ -137,6 +137,8 @@ class ElementStructure final : public Structure {
     std::vector<double> v, w;  // of the motion's ranges
   } before_;                   // the step, where it may be taken back
   std::vector<Range> free_;    // nodes of parts that nothing loads during the step
+  std::vector<Range> loaded_, moving_, all_;
+  std::vector<Reach> reaches_;
   bool stepped_ = false;       // since the last restart
   bool incomplete_ = false;    // these are still at the start of the last step
   bool measures_errors_ = false;

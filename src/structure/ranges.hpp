@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace traverse::structure {
@@ -11,34 +12,31 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
-/// Sorted, with those that overlap or touch in one.
-inline std::vector<Range> merged(std::vector<Range> ranges) {
+/// Sorts them, and makes one of those that overlap or touch; empty ones go. Takes no memory.
+inline void merge(std::vector<Range>& ranges) {
   std::sort(ranges.begin(), ranges.end(), [](const Range& a, const Range& b) { return a.first < b.first; });
-  std::vector<Range> all;
-  for (const Range& r : ranges) {
+  std::size_t count = 0;
+  for (const Range r : ranges) {
     if (r.first >= r.past) continue;
-    if (!all.empty() && r.first <= all.back().past)
-      all.back().past = std::max(all.back().past, r.past);
+    if (count > 0 && r.first <= ranges[count - 1].past)
+      ranges[count - 1].past = std::max(ranges[count - 1].past, r.past);
     else
-      all.push_back(r);
+      ranges[count++] = r;
   }
-  return all;
+  ranges.resize(count);
 }
 
-/// What of one list is not in the other, both as merged() has them.
-inline std::vector<Range> without(const std::vector<Range>& all, const std::vector<Range>& some) {
-  std::vector<Range> rest;
-  auto s = some.begin();
+/// What of one list is not in the other, both as merge() leaves them, into `rest`.
+inline void subtract(const std::vector<Range>& all, const std::vector<Range>& some, std::vector<Range>& rest) {
+  rest.clear();
   for (Range r : all) {
-    for (; s != some.end() && s->past <= r.first; ++s) {
-    }
-    for (auto inside = s; inside != some.end() && inside->first < r.past; ++inside) {
-      if (r.first < inside->first) rest.push_back({r.first, inside->first});
-      r.first = std::max(r.first, inside->past);
+    for (const Range& s : some) {
+      if (s.past <= r.first || s.first >= r.past) continue;
+      if (r.first < s.first) rest.push_back({r.first, s.first});
+      r.first = std::max(r.first, s.past);
     }
     if (r.first < r.past) rest.push_back(r);
   }
-  return rest;
 }
 
 }  // namespace traverse::structure

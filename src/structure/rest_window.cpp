@@ -61,7 +61,7 @@ void RestWindow::open(const std::vector<Range>& loaded, int reach) {
   reach_ = reach;
   moving_.insert(moving_.end(), loaded.begin(), loaded.end());
   for (Range& r : moving_) r = {std::max(0, r.first - reach), std::min(beam_.columns(), r.past + reach)};
-  moving_ = merged(std::move(moving_));
+  merge(moving_);
 }
 
 // The node behind, or where the part of this one ends.
@@ -77,19 +77,15 @@ int RestWindow::previous(int node) const {
   return std::lower_bound(begins.begin(), begins.end(), node + beam_.first_column())[-1] - beam_.first_column();
 }
 
-std::vector<Range> RestWindow::loaded_in(const Range& range) const {
-  std::vector<Range> inside;
-  for (const Range& l : loaded_)
-    if (l.first >= range.first && l.past <= range.past) inside.push_back(l);
-  return inside;
-}
-
 // Nodes of this rank, each end by the rank that has it, a part or a node at a time.
-Range RestWindow::trimmed(const Range& range, const std::vector<Range>& loaded, const double* v,
-                          const double* w) const {
+Range RestWindow::trimmed(const Range& range, const double* v, const double* w) const {
   Range r{local(range.first), local(range.past)};
-  const int low = loaded.empty() ? r.past : local(loaded.front().first);
-  const int high = loaded.empty() ? r.first : local(loaded.back().past);
+  int low = r.past, high = r.first;
+  for (const Range& load : loaded_) {
+    if (!is_loaded_in(range, load)) continue;
+    low = std::min(low, local(load.first));
+    high = std::max(high, local(load.past));
+  }
   const bool mine_left = range.first >= beam_.first_column(),
              mine_right = range.past <= beam_.first_column() + beam_.local_columns();
   while (mine_left && r.first < std::min(low, r.past) && rests(r.first, std::min(next(r.first), r.past), v, w))
@@ -99,19 +95,18 @@ Range RestWindow::trimmed(const Range& range, const std::vector<Range>& loaded, 
   return r;
 }
 
-// Columns that the ranges of all ranks' nodes reach over, as many.
-std::vector<Range> RestWindow::ends_of_all(const std::vector<Range>& local) const {
+// Of ranges of this rank's nodes: the columns that those of all ranks reach over.
+void RestWindow::agree_on_ends() {
   const int begin = beam_.first_column();
-  std::vector<int> ends;
-  for (const Range& r : local) {
-    ends.push_back(r.first < r.past ? begin + r.first : beam_.columns());
-    ends.push_back(r.first < r.past ? -(begin + r.past) : 0);
+  ends_.clear();
+  for (const Range& r : moving_) {
+    ends_.push_back(r.first < r.past ? begin + r.first : beam_.columns());
+    ends_.push_back(r.first < r.past ? -(begin + r.past) : 0);
   }
   if (shared_)
-    MPI_Allreduce(MPI_IN_PLACE, ends.data(), static_cast<int>(ends.size()), MPI_INT, MPI_MIN, beam_.comm());
-  std::vector<Range> all;
-  for (std::size_t i = 0; i < ends.size(); i += 2) all.push_back({ends[i], -ends[i + 1]});
-  return all;
+    MPI_Allreduce(MPI_IN_PLACE, ends_.data(), static_cast<int>(ends_.size()), MPI_INT, MPI_MIN, beam_.comm());
+  for (std::size_t i = 0; i < moving_.size(); ++i) moving_[i] = {ends_[2 * i], -ends_[2 * i + 1]};
+  merge(moving_);
 }
 
 void RestWindow::close(BeamMotion& motion, double* v, double* w) {
@@ -121,33 +116,35 @@ void RestWindow::close(BeamMotion& motion, double* v, double* w) {
     if (shared_) agree();
   }
   ++steps_;
-  std::vector<Range> left;
-  for (const Range& range : moving_) {
-    const Range r = trimmed(range, loaded_in(range), v, w);
+  for (Range& range : moving_) {
+    const Range r = trimmed(range, v, w);
     const int first = local(range.first), past = local(range.past);
     if (r.first > first) energy_left_ += motion.put_to_rest(first, r.first, rest_, v, w);
     if (r.past < past) energy_left_ += motion.put_to_rest(r.past, past, rest_, v, w);
-    left.push_back(r);
+    range = r;
   }
-  moving_ = merged(ends_of_all(left));
+  agree_on_ends();
   if (looks && !shared_) part(motion, v, w);
 }
 
 // Where it rests between two loads.
 void RestWindow::part(BeamMotion& motion, double* v, double* w) {
-  std::vector<Range> parted;
+  parted_.clear();
   for (Range range : moving_) {
-    const std::vector<Range> loaded = loaded_in(range);
-    for (std::size_t i = 1; i < loaded.size(); ++i) {
-      const Range rest = longest_rest({loaded[i - 1].past, loaded[i].first}, v, w);
+    const Range* before = nullptr;
+    for (const Range& load : loaded_) {
+      if (!is_loaded_in(range, load)) continue;
+      const Range rest = before == nullptr ? Range{} : longest_rest({before->past, load.first}, v, w);
+      before = &load;
       if (rest.past - rest.first <= (parts_ ? 0 : worth_parting * std::max(reach_, 1))) continue;
       energy_left_ += motion.put_to_rest(rest.first, rest.past, rest_, v, w);
-      parted.push_back({range.first, rest.first});
+      parted_.push_back({range.first, rest.first});
       range.first = rest.past;
     }
-    parted.push_back(range);
+    parted_.push_back(range);
   }
-  moving_ = merged(std::move(parted));
+  merge(parted_);
+  std::swap(moving_, parted_);
 }
 
 Range RestWindow::longest_rest(Range gap, const double* v, const double* w) const {

@@ -24,7 +24,7 @@ class RestWindow {
 
   static constexpr double quiet = 1e-9;
 
-  /// Collective. From a state: only what moves is in the window, and what is loaded (columns, as merged() has them; where
+  /// Collective. From a state: only what moves is in the window, and what is loaded (columns, as merge() leaves them; where
   /// parts of the beam do not touch, whole parts).
   void begin(BeamMotion& motion, double* v, double* w, const std::vector<Range>& loaded);
   /// Collective. Wider, for a step with loads on these columns, whose effect dies out within `reach` columns.
@@ -36,7 +36,7 @@ class RestWindow {
   /// J, put to rest so far, this rank's share.
   double energy_left() const { return energy_left_; }
   double tolerance() const { return tolerance_; }
-  /// Columns, as merged() has them.
+  /// Columns, as merge() leaves them.
   const std::vector<Range>& moving() const { return moving_; }
   void keep(base::Archive& archive) {
     archive.same(moving_, loaded_, reach_, largest_, steps_);
@@ -49,9 +49,11 @@ class RestWindow {
   void agree();
   int next(int node) const;
   int previous(int node) const;
-  std::vector<Range> loaded_in(const Range& range) const;
-  Range trimmed(const Range& range, const std::vector<Range>& loaded, const double* v, const double* w) const;
-  std::vector<Range> ends_of_all(const std::vector<Range>& local) const;
+  bool is_loaded_in(const Range& range, const Range& load) const {
+    return load.first >= range.first && load.past <= range.past;
+  }
+  Range trimmed(const Range& range, const double* v, const double* w) const;
+  void agree_on_ends();
   void part(BeamMotion& motion, double* v, double* w);
   Range longest_rest(Range gap, const double* v, const double* w) const;
   int local(int column) const;
@@ -64,6 +66,8 @@ class RestWindow {
   std::vector<Range> moving_;  // columns
   std::vector<Range> loaded_;  // in the last step
   int reach_ = 0;
+  std::vector<Range> parted_;  // of a step
+  std::vector<int> ends_;
   struct Largest {
     double displacement = 0.0, rate = 0.0;
   };

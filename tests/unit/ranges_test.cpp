@@ -8,6 +8,16 @@ namespace {
 
 using Ranges = std::vector<Range>;
 
+Ranges merged(Ranges ranges) {
+  merge(ranges);
+  return ranges;
+}
+Ranges without(const Ranges& all, const Ranges& some) {
+  Ranges rest;
+  subtract(all, some, rest);
+  return rest;
+}
+
 TEST(Ranges, ThatOverlapOrTouchBecomeOne) {
   EXPECT_EQ(merged({{5, 8}, {0, 2}, {2, 3}, {7, 9}, {4, 4}}), (Ranges{{0, 3}, {5, 9}}));
   EXPECT_EQ(merged({}), Ranges{});

@@ -89,8 +89,9 @@ struct Moving {
     if (window != nullptr) {
       const auto [low, high] = columns_under(x);
       const auto [low_end, high_end] = columns_under(x + speed * h);
-      window->open(merged({{low, high}, {low_end, high_end}}),
-                   compliance.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
+      std::vector<Range> loaded = {{low, high}, {low_end, high_end}};
+      merge(loaded);
+      window->open(loaded, compliance.reach(rule.rate / rule.displacement, 1.0 / rule.displacement));
       motion.set_ranges(window->moving());
     }
     Method method = esdirk4();

@@ -130,7 +130,13 @@ TEST(Steps, OfLinearVehiclesTakeNoMemory) {
   }
 }
 
-TEST(Steps, TakenApartTakeNoMemory) {
+TEST(Steps, OverSpansApartTakeNoMemory) {
+  Words scene = coaches_on_a_continuous_bridge();
+  scene.insert(scene.end(), {"-model_vehicles", "linear", "-beam_continuity", "simply_supported"});
+  for (const char* type : {"esdirk4", "genalpha"}) EXPECT_EQ(allocations_of_steps(scene, type), 0) << type;
+}
+
+TEST(Steps, OverModesTakeNoMemory) {
   Words scene = coaches_on_a_continuous_bridge();
   scene.insert(scene.end(), {"-model_vehicles", "linear", "-model_modes", "12", "-ts_dt", "1e-3"});
   for (const char* type : {"esdirk4", "genalpha"}) EXPECT_EQ(allocations_of_steps(scene, type), 0) << type;
