@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
 constexpr std::size_t few_spans = 24;    // are all kept
 constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
+constexpr double hopeless = 10.0;        // times what linear vehicles may be out of balance by
 constexpr double roughness = 1.3;        // times the work on vehicles on a rough track
 constexpr double same_node = 1e-9;
 constexpr double twice_as_long = 2.1;  // steps than a run may have, for comparison
@@ -237,9 +238,8 @@ const Trials::Kept& Trials::kept_run(int elements, double step, const std::strin
     result = peaks_of(comm_, scene, most_steps);
     if (linear_is_in_doubt(result.defect)) {
       measure_linear(elements, step);
-      const bool ended = result.defect > scene.most_defect;
       scene.most_defect = most_defect_;
-      if (ended && result.defect <= most_defect_) result = peaks_of(comm_, scene, most_steps);
+      if (result.defect <= most_defect_) result = peaks_of(comm_, scene, most_steps);
     }
   } catch (const SolverError&) {
     result.peaks = Peaks::of_failure();  // too long a step, most likely
@@ -254,7 +254,8 @@ const Trials::Kept& Trials::kept_run(int elements, double step, const std::strin
 }
 
 bool Trials::linear_is_in_doubt(double defect) const {
-  return scene_.vehicle_model == VehicleModel::automatic && !measured_linear_ && may_exceed(defect, scene_);
+  return scene_.vehicle_model == VehicleModel::automatic && !measured_linear_ && defect > most_defect_ &&
+         defect < hopeless * most_defect_;
 }
 
 // By twice the step: what linear vehicles neglect hardly depends on it.
