@@ -31,8 +31,8 @@ double tolerable_defect(MPI_Comm comm, Scene scene) {
     double error = 0.0;
     for (std::size_t q = 0; q < quantities; ++q)
       if (asks_for(scene, q))
-        error = std::max(error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q),
-                                           reach * *scene.time_step));
+        error = std::max(
+            error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q), reach * *scene.time_step));
     const double allowed = most_defect(scene);
     if (error > allowed) return allowed;
     return std::max(allowed, linear.defect * std::min(most_growth, allowed / std::max(error, 1e-300)));

@@ -17,9 +17,9 @@ namespace traverse::app {
 
 namespace {
 
-/// On a long viaduct, whose spans do not touch, the vehicles are nearly all that a step has to move, and linear ones take
-/// a fraction of what mechanisms take. What they neglect is computed; where that is too much the run is repeated with
-/// the mechanisms.
+/// On a long viaduct, whose spans do not touch, the vehicles are nearly all that a step has to move, and linear ones
+/// take a fraction of what mechanisms take. What they neglect is computed; where that is too much the run is repeated
+/// with the mechanisms.
 void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
   const bool viaduct = scene.beam && scene.beam->all_separate() && scene.beam->spans.size() > 1;
   if (scene.vehicle_model != VehicleModel::automatic || scene.analysis != Analysis::transient || !viaduct ||

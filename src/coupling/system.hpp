@@ -332,8 +332,8 @@ class System {
   std::vector<double> p_still_, pd_still_, x_;  // p and p' at zero acceleration, and the stage's change of p
   std::vector<double> evaluated_;               // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
-  unsigned signs_ = 0;          // VehicleShare's of that state or, after a step, of its end
-  std::vector<double> v_, w_;   // of elements, 2*per_node each
+  unsigned signs_ = 0;         // VehicleShare's of that state or, after a step, of its end
+  std::vector<double> v_, w_;  // of elements, 2*per_node each
   std::vector<double> element_loads_;
   std::vector<structure::Reach> reaches_;
   std::unique_ptr<Motion> motion_;              // null before begin_motion

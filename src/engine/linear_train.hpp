@@ -41,8 +41,8 @@ class LinearTrain {
   void meet(const structure::ContactField& field, const structure::ElementCompliance* own);
   /// Adds the contacts' forces to the field's loads.
   void add_loads();
-  /// One pass: all forces anew with the field's v. False where a wheel has fallen below the surface, or where the passes
-  /// do not converge.
+  /// One pass: all forces anew with the field's v. False where a wheel has fallen below the surface, or where the
+  /// passes do not converge.
   bool update_forces();
   /// Whether forces will change by no more than the tolerance.
   bool converged() const { return converged_; }
@@ -95,13 +95,13 @@ class LinearTrain {
   std::size_t stage_ = 0;
   bool ends_with_stage_ = true;
   std::vector<int> elements_;
-  std::optional<Surfaces> surfaces_;        // where wheels stay on the surface, and touch it at one point each
-  std::vector<std::size_t> table_;          // of every wheel: which of these
-  std::vector<int> entry_in_table_;         // where it is there
-  std::vector<PatchesThere> found_;         // by the fleet, where there are no tables
-  std::vector<const PatchesThere*> there_;  // of every wheel
-  std::vector<double> speed_;               // m/s, of every wheel's vehicle
-  std::vector<char> moved_;                 // whether a wheel is on others since it was put on its elements
+  std::optional<Surfaces> surfaces_;                // where wheels stay on the surface, and touch it at one point each
+  std::vector<std::size_t> table_;                  // of every wheel: which of these
+  std::vector<int> entry_in_table_;                 // where it is there
+  std::vector<PatchesThere> found_;                 // by the fleet, where there are no tables
+  std::vector<const PatchesThere*> there_;          // of every wheel
+  std::vector<double> speed_;                       // m/s, of every wheel's vehicle
+  std::vector<char> moved_;                         // whether a wheel is on others since it was put on its elements
   const structure::ContactField* field_ = nullptr;  // that wheels were put on the elements of; null: they were not
   structure::ContactField nowhere_;                 // without elements
   double change_ = 0.0, contraction_ = 1.0;

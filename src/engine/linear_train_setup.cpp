@@ -62,12 +62,12 @@ void LinearTrain::find_surfaces(const train::Fleet& fleet) {
   there_.resize(wheel_.size());
   moved_.assign(wheel_.size(), 0);
   always_places_ = mesh_ != nullptr && !(mesh_->ground_before() && mesh_->ground_behind());
-  const bool several = std::any_of(fleet.wheels.begin(), fleet.wheels.end(), [](const auto& c) { return c.further > 0; });
+  const bool several =
+      std::any_of(fleet.wheels.begin(), fleet.wheels.end(), [](const auto& c) { return c.further > 0; });
   if (!always_places_ && !several) {
     surfaces_.emplace(fleet);
     entry_in_table_.assign(wheel_.size(), 0);
-    for (const std::size_t entry : entry_)
-      table_.push_back(surfaces_->number(fleet.wheel(fleet.wheels[entry]).radius));
+    for (const std::size_t entry : entry_) table_.push_back(surfaces_->number(fleet.wheel(fleet.wheels[entry]).radius));
     return;
   }
   if (mesh_ == nullptr) return;

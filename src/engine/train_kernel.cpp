@@ -11,9 +11,8 @@ void load_by_train(const TrainTask& task) {
 }
 double update_train_forces(const TrainTask& task, bool first_pass) {
   const RowMask all = Row{} == Row{};
-  const Changes changes =
-      is_flat(task) ? update_forces<Surface::flat>(task, all, first_pass)
-                    : update_forces<Surface::general>(task, all, first_pass);
+  const Changes changes = is_flat(task) ? update_forces<Surface::flat>(task, all, first_pass)
+                                        : update_forces<Surface::general>(task, all, first_pass);
   if (Rows::any(changes.fallen)) return -1.0;
   double largest = 0.0;
   for (int l = 0; l < lanes; ++l)

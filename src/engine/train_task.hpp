@@ -99,10 +99,10 @@ struct TrainTask {
   double *normal_up = nullptr, *normal_along = nullptr;  // the direction from the surface to the centre
   double *force_up = nullptr, *force_along = nullptr;    // N, on the wheel
   double* turn = nullptr;                                // rotation of the section under it
-  double *yielding = nullptr, *seat = nullptr, *seat_by_x = nullptr;  // m/N, 1/N: of the structure's nodes there, of the
-                                                                      // element inside, and the rise of that over x
-  double *ahead = nullptr, *station = nullptr;           // m: of the contact before the centre; x of it
-  double* ahead_before = nullptr;                        // m: at the stage before the last one
+  double *yielding = nullptr, *seat = nullptr, *seat_by_x = nullptr;  // m/N, 1/N: of the structure's nodes there, of
+                                                                      // the element inside, and the rise of that over x
+  double *ahead = nullptr, *station = nullptr;                 // m: of the contact before the centre; x of it
+  double* ahead_before = nullptr;                              // m: at the stage before the last one
   double *penetration = nullptr, *penetration_rate = nullptr;  // m, m/s
   double *up_rate = nullptr, *along_rate = nullptr;            // m/s, of the centre
   double* largest = nullptr;                                   // N: of the stages of the step
@@ -111,12 +111,12 @@ struct TrainTask {
   SurfacePatch patch[2];
 
   // The structure where wheels may be. Unknown k of an element is at its slot and offset[k].
-  int per_node = 2;                                       // unknowns of a node that an element sees
-  int offset[most_nodal] = {}, ground = 0;                // the slot of rigid ground, whose values are 0
-  double surface_height = 0.0;                            // m, of the surface above the axis
-  bool shears = false;                                    // some of its elements do
-  const double *nodal = nullptr, *nodal_rate = nullptr;   // m, rad and their rates
-  double* load = nullptr;                                 // N, N m
+  int per_node = 2;                                      // unknowns of a node that an element sees
+  int offset[most_nodal] = {}, ground = 0;               // the slot of rigid ground, whose values are 0
+  double surface_height = 0.0;                           // m, of the surface above the axis
+  bool shears = false;                                   // some of its elements do
+  const double *nodal = nullptr, *nodal_rate = nullptr;  // m, rad and their rates
+  double* load = nullptr;                                // N, N m
 
   // A row of every block: 1 in lanes where another pass would change no force by more than `tolerance` of its scale, as
   // the vehicle stands on rigid ground alone; null: nobody asks.

@@ -44,10 +44,10 @@ class ModalStepper {
   PetscInt most_steps_ = 0;
   double most_at_once_ = 0.0;  // s
   double end_time_, interval_;
-  long stored_;                                  // one in so many of the samples at the interval is stored
-  std::vector<double> sagging_;                  // m, of this rank's unknowns: of the beam's own weight
+  long stored_;                                          // one in so many of the samples at the interval is stored
+  std::vector<double> sagging_;                          // m, of this rank's unknowns: of the beam's own weight
   std::vector<double> y_, acceleration_, drag_, force_;  // as Instant has them; nodal forces and what they do at rest
-  double at_start_ = 0.0;                        // J, in the static correction
+  double at_start_ = 0.0;                                // J, in the static correction
   bool dragged_ = false, begun_ = false;
   long steps_ = 0;
 };

@@ -185,9 +185,7 @@ double Stepper::run(const std::function<void(const Instant&)>& sample, const std
     way.under_way = t < way.target;
     if (t == way.next_sample) {
       const bool stored = ++way.samples % settings_.stored == 0 && !way.beyond;
-      sample_now(sample, stored                     ? Purpose::sample
-                         : t == settings_.end_time ? Purpose::end
-                                                   : Purpose::look);
+      sample_now(sample, stored ? Purpose::sample : t == settings_.end_time ? Purpose::end : Purpose::look);
     } else if (way.passage < settings_.passages.size() && t == settings_.passages[way.passage]) {
       sample_now(sample, Purpose::look);
     }
@@ -282,8 +280,7 @@ void Stepper::sample_now(const std::function<void(const Instant&)>& sample, Purp
   ReadArray y(y_);
   ReadArray ydot(rate_);
   if (purpose != Purpose::look) check_bounds(t, y.data);
-  sample(
-      {t, y.data, known ? system_.acceleration() : ydot.data + system_.structure_unknowns(), nullptr, purpose});
+  sample({t, y.data, known ? system_.acceleration() : ydot.data + system_.structure_unknowns(), nullptr, purpose});
 }
 
 // SolverError where the motion is no number any more, or the beam deflects by more than its length.

@@ -249,8 +249,7 @@ void BeamMotion::end_step(const View& view, int begin, int end, double* v, doubl
 }
 
 void BeamMotion::finish(double* v, double* w) {
-  for (const Range& r : ranges_)
-    end_step(view_of(v, w), block_ * r.first, block_ * r.past, v, w, start_acceleration());
+  for (const Range& r : ranges_) end_step(view_of(v, w), block_ * r.first, block_ * r.past, v, w, start_acceleration());
 }
 
 void BeamMotion::set_ranges(const std::vector<Range>& ranges) {

@@ -6,8 +6,8 @@
 
 namespace traverse::structure {
 
-/// Values at the unknowns of the elements under contacts. Unknown k of an element, in the order of beam::Line::unknowns,
-/// stands at its slot and offset[k].
+/// Values at the unknowns of the elements under contacts. Unknown k of an element, in the order of
+/// beam::Line::unknowns, stands at its slot and offset[k].
 struct ContactField {
   std::array<int, 6> offset{};
   std::vector<int> slot;                    // of every element

@@ -264,8 +264,7 @@ StructureEnergy ElementStructure::energy(const double* v, const double* w) {
   e.potential = -base::dot(dead_load_, v);
   if (motion_ && motion_->fused()) {
     // Where nothing moves all is zero, but for what bends the beam at rest.
-    const BeamMotion::Energy energy =
-        motion_->energy(rest_.empty() ? moving_nodes() : all_, v, w);
+    const BeamMotion::Energy energy = motion_->energy(rest_.empty() ? moving_nodes() : all_, v, w);
     e.strain = energy.strain;
     e.kinetic = energy.kinetic;
   } else {

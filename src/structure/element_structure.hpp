@@ -139,8 +139,8 @@ class ElementStructure final : public Structure {
   std::vector<Range> free_;    // nodes of parts that nothing loads during the step
   std::vector<Range> loaded_, moving_, all_;
   std::vector<Reach> reaches_;
-  bool stepped_ = false;       // since the last restart
-  bool incomplete_ = false;    // these are still at the start of the last step
+  bool stepped_ = false;     // since the last restart
+  bool incomplete_ = false;  // these are still at the start of the last step
   bool measures_errors_ = false;
 };
 

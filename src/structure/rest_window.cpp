@@ -9,7 +9,7 @@ namespace traverse::structure {
 namespace {
 constexpr int steps_between_looks = 16;  // at all that moves, for the largest deflection and velocity, and for rest
 constexpr int worth_parting = 4;         // times how far a load is felt, of a stretch that rests between two loads
-}
+}  // namespace
 
 RestWindow::RestWindow(const beam::Beam& beam, const BeamOperator& op, double tolerance, std::vector<int> watched,
                        const double* rest)

@@ -24,8 +24,8 @@ class RestWindow {
 
   static constexpr double quiet = 1e-9;
 
-  /// Collective. From a state: only what moves is in the window, and what is loaded (columns, as merge() leaves them; where
-  /// parts of the beam do not touch, whole parts).
+  /// Collective. From a state: only what moves is in the window, and what is loaded (columns, as merge() leaves them;
+  /// where parts of the beam do not touch, whole parts).
   void begin(BeamMotion& motion, double* v, double* w, const std::vector<Range>& loaded);
   /// Collective. Wider, for a step with loads on these columns, whose effect dies out within `reach` columns.
   void open(const std::vector<Range>& loaded, int reach);

@@ -40,8 +40,11 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST_P(Passes, SameAsNewtonOfAllContacts) {
   const Case& c = GetParam();
-  const Values scene = Values{{"train_vehicles", "coach*2"}, {"beam_elements_per_span", "8"}, {"model_modes", "0"},
-                              {"model_vehicles", "linear"},  {"ts_dt", "1e-3"},
+  const Values scene = Values{{"train_vehicles", "coach*2"},
+                              {"beam_elements_per_span", "8"},
+                              {"model_modes", "0"},
+                              {"model_vehicles", "linear"},
+                              {"ts_dt", "1e-3"},
                               {"scene_tail", "0.1"}} +
                        c.options;
   Values damped = scene;

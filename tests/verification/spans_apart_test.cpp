@@ -38,7 +38,8 @@ TEST(SpansApart, OfTrainsThatMeet) {
       "continuity: simply_supported}\n"
       "vehicle: {coach: {file: " TRAVERSE_SOURCE_DIR
       "/options/vehicles/s300.yml}}\ntrains: [up, down]\n"
-      "up: {vehicles: coach, positions: 200.0, speed: 83.333}\ndown: {vehicles: coach, positions: 1700.0, speed: -83.333}\n"
+      "up: {vehicles: coach, positions: 200.0, speed: 83.333}\ndown: {vehicles: coach, positions: 1700.0, speed: "
+      "-83.333}\n"
       "model: {vehicles: linear}\nts: {dt: 2e-2, max_time: 17}\noutput: {interval: 0.1, probes: [944.0, 1296.0]}\n";
   Results moving = run_yaml(scene), all = run_yaml(scene, {{"model_window", "0"}});
   EXPECT_LT(relative_difference(moving("/probes/deflection"), all("/probes/deflection")), 1e-9);

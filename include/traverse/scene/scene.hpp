@@ -118,7 +118,7 @@ struct Scene {
   bool contact_seats = false;                              // a bridge's elements bend between their nodes under wheels
   bool step_kinks = true;                                  // steps end where wheels pass kinks
   double looks = std::numeric_limits<double>::infinity();  // s: longest between instants at which responses are seen
-  bool all_ranks = false;        // take the steps, whether that is faster or not
+  bool all_ranks = false;                                  // take the steps, whether that is faster or not
   bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
   double rest_tolerance = -1.0;  // model_window; -1: auto
   VehicleModel vehicle_model = VehicleModel::full;
