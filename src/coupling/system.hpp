@@ -287,7 +287,7 @@ class System {
   bool stage_of_fleet(const StageTime& at);
   bool stage_by_passes(const StageTime& at);
   bool take_stages(double t, const double* v, const double* w);
-  void begin_passes();
+  void make_linear_train();
   void finish_passes();
   bool stage_of_motion(double t, std::size_t stage, const double* v, const double* w);
   const std::vector<structure::Reach>& loaded(double t, double h);

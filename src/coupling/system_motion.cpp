@@ -21,13 +21,13 @@ void System::begin_motion(const structure::Method& method) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   for (int j = 0; j < method.step.known; ++j) m.pdd[j].assign(f, 0.0);
   for (std::vector<double>* x : {&m.p, &m.pd}) x->assign(f, 0.0);
-  begin_passes();
+  make_linear_train();
   if (!train_) share_.deal(comm_, fleet_);
   if (structure_) structure_->begin_motion(method);
 }
 
 // Where vehicles are linear with plain contacts, every rank takes all of them: there is less in that than in messages.
-void System::begin_passes() {
+void System::make_linear_train() {
   train_.reset();
   const int own = static_cast<int>(engine::best_target());
   int bounds[2] = {own, -own};  // all ranks have to compute the same to the last bit

@@ -104,10 +104,10 @@ TEST(LinearVehicle, IsKeptWhereWhatItNeglectsChangesNoPeak) {
   RecordProperty("defect", text(defect));
   EXPECT_GT(defect, 1e-4);
   const Values same = {{"beam_elements_per_span", "32"}, {"ts_dt", "5e-4"}, {"step_probes", "true"}};
-  Results linear = run_scene("three_span_train", bent + same + Values{{"model_vehicles", "linear"}});
+  Results matrices = run_scene("three_span_train", bent + same + Values{{"model_vehicles", "linear"}});
   Results full = run_scene("three_span_train", bent + same + Values{{"model_vehicles", "full"}});
   for (const char* peak : {"deflection", "acceleration", "moment", "least_wheel_force", "greatest_wheel_force"}) {
-    const double off = linear.attribute("/summary", peak) / full.attribute("/summary", peak) - 1.0;
+    const double off = matrices.attribute("/summary", peak) / full.attribute("/summary", peak) - 1.0;
     RecordProperty(peak, text(off));
     EXPECT_LT(std::abs(off), 1e-4) << peak;
     EXPECT_NE(off, 0.0) << "both are the same run";
