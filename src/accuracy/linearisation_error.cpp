@@ -1,3 +1,4 @@
+// Peaks of the same run with linear vehicles and with the mechanisms.
 #include "accuracy/linearisation_error.hpp"
 
 #include <algorithm>
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double part_for_linear = 0.1;  // of the wanted error
 constexpr double most_growth = 4.0;      // of what is out of balance, from a trial run to others
+constexpr double steps_a_sample = 32.0;  // of the energies; peaks are looked for at every step
 constexpr double reach = 3.0;            // steps between peaks of both runs that are the same one
 
 }  // namespace
@@ -21,6 +23,7 @@ double most_defect(const Scene& scene) { return part_for_linear * scene.accuracy
 bool may_exceed(double defect, const Scene& scene) { return most_growth * defect > most_defect(scene); }
 
 double tolerable_defect(MPI_Comm comm, Scene scene) {
+  scene.output.interval = steps_a_sample * *scene.time_step;
   scene.most_defect = std::numeric_limits<double>::infinity();
   const auto run = [&](VehicleModel vehicles) {
     scene.vehicle_model = vehicles;
@@ -35,7 +38,7 @@ double tolerable_defect(MPI_Comm comm, Scene scene) {
             error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q), reach * *scene.time_step));
     const double allowed = most_defect(scene);
     if (error > allowed) return allowed;
-    return std::max(allowed, linear.defect * std::min(most_growth, allowed / std::max(error, 1e-300)));
+    return std::max(allowed, linear.defect * (most_growth * error > allowed ? allowed / error : most_growth));
   } catch (const SolverError&) {  // too long a step, most likely
     return most_defect(scene);
   }

@@ -264,7 +264,6 @@ void Trials::measure_linear(int elements, double step) {
   Scene scene = scene_;
   set_mesh(scene, elements);
   scene.time_step = 2.0 * step;
-  scene.output.interval = steps_a_check * *scene.time_step;
   most_defect_ = tolerable_defect(comm_, scene);
   spent_ += 2.0 * seconds(elements, *scene.time_step);
 }

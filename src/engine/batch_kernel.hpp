@@ -125,7 +125,7 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
     for (int k = 0; k < train.blocks; ++k) rows(train.settled)[k] = Row{};
     for (int pass = 0; Rows::any(open); ++pass) {
       solve_structure<kind>(t, structure, displacement, open);
-      const Changes changes = update_forces<kind>(train, open, pass == 0);
+      const Changes changes = update_forces<kind>(train, open);
       failed = open & changes.fallen ? Rows::fill(below_surface) : failed;
       open &= (changes.most > train.tolerance) | look_up_heights(t, near_look_up);
       open &= failed == Row{};

@@ -17,7 +17,7 @@ namespace traverse::engine {
 TRAVERSE_LANES_DECLARE(void set_train_step(const TrainTask& task);
                        void predict_train(const TrainTask& task, int stage, double* work);
                        bool train_in_place(const TrainTask& task); void load_by_train(const TrainTask& task);
-                       double update_train_forces(const TrainTask& task, bool first_pass);
+                       double update_train_forces(const TrainTask& task);
                        void end_train_stage(const TrainTask& task, int stage, bool kinematics);
                        void finish_train_step(const TrainTask& task);)
 
@@ -224,7 +224,7 @@ void LinearTrain::add_loads() { TRAVERSE_LANES_CALL(load_by_train(task_)); }
 
 bool LinearTrain::update_forces() {
   const double before = change_;
-  change_ = TRAVERSE_LANES_CALL(update_train_forces(task_, passes_ == 0));
+  change_ = TRAVERSE_LANES_CALL(update_train_forces(task_));
   if (!(change_ >= 0.0) || !std::isfinite(change_) || ++passes_ > most_passes) return false;
   if (passes_ > 1 && before > measurable) contraction_ = std::clamp(change_ / before, best_contraction, 1.0);
   converged_ = !look_up_profiles(near_look_up) && change_ * contraction_ <= tolerance;

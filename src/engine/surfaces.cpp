@@ -1,3 +1,4 @@
+// Tables of the patches under wheels, and their way from and to the fleet.
 #include "engine/surfaces.hpp"
 
 #include <algorithm>

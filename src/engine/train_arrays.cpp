@@ -304,32 +304,14 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   for (double*& a : task.a) a = add(coordinates);
   double *place = add(wheels), *height = add(wheels), *radius = add(wheels), *stiffness = add(wheels),
          *per_scale = add(wheels);
-  for (double** of : {&task.up,
-                      &task.along,
-                      &task.from,
-                      &task.to,
-                      &task.h,
-                      &task.h_x,
-                      &task.h_xx,
-                      &task.looked_up,
-                      &task.normal,
-                      &task.root,
-                      &task.normal_up,
-                      &task.normal_along,
-                      &task.force_up,
-                      &task.force_along,
-                      &task.turn,
-                      &task.yielding,
-                      &task.seat_by_x,
-                      &task.seat,
-                      &task.ahead,
-                      &task.ahead_before,
-                      &task.station,
-                      &task.penetration,
-                      &task.penetration_rate,
-                      &task.up_rate,
-                      &task.along_rate,
-                      &task.largest})
+  for (double** of : {&task.up,       &task.along,       &task.from,
+                      &task.to,       &task.h,           &task.h_x,
+                      &task.h_xx,     &task.looked_up,   &task.normal,
+                      &task.root,     &task.normal_up,   &task.normal_along,
+                      &task.force_up, &task.force_along, &task.turn,
+                      &task.seat,     &task.ahead,       &task.ahead_before,
+                      &task.station,  &task.penetration, &task.penetration_rate,
+                      &task.up_rate,  &task.along_rate,  &task.largest})
     *of = add(wheels);
   for (double*& history : task.history) history = add(wheels);
   task.active = add_integers(wheels * lanes);

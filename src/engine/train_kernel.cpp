@@ -9,10 +9,10 @@ bool train_in_place(const TrainTask& task) { return in_place(task); }
 void load_by_train(const TrainTask& task) {
   is_flat(task) ? add_loads<Surface::flat>(task) : add_loads<Surface::general>(task);
 }
-double update_train_forces(const TrainTask& task, bool first_pass) {
+double update_train_forces(const TrainTask& task) {
   const RowMask all = Row{} == Row{};
-  const Changes changes = is_flat(task) ? update_forces<Surface::flat>(task, all, first_pass)
-                                        : update_forces<Surface::general>(task, all, first_pass);
+  const Changes changes =
+      is_flat(task) ? update_forces<Surface::flat>(task, all) : update_forces<Surface::general>(task, all);
   if (Rows::any(changes.fallen)) return -1.0;
   double largest = 0.0;
   for (int l = 0; l < lanes; ++l)

@@ -121,19 +121,15 @@ TRAVERSE_INLINE ContactRow choose(RowMask there, const ContactRow& a, const Cont
           of(a.seat_by_x, b.seat_by_x)};
 }
 
-/// The patch that is touched: of two the one where the wheel is deeper. known: what the structure yields is that of an
-/// earlier pass, as a contact hardly moves along an element from one pass to the next.
+/// The patch that is touched: of two the one where the wheel is deeper.
 template <Surface kind>
-ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up, bool known) {
+ContactRow touched_patch(const TrainTask& task, int i, Row along, Row up) {
   const SurfacePatch &first = task.patch[0], &other = task.patch[1];
   int* active = task.active + static_cast<long>(i) * lanes;
   for (int l = 0; l < lanes; ++l) active[l] = 0;
   const ContactRow ground = {on_ground(rows(task.h)[i], along, up), Row{}, Row{}, Row{}};
   if (task.level[i] != 0 && task.second[i] == 0 && first.together[i] == grounded) return ground;
-  const Touched at = closest<kind>(task, first, i, along, up);
-  if (known && task.second[i] == 0 && (task.level[i] == 0 || first.together[i] == in_line))
-    return {at, rows(task.yielding)[i], rows(task.seat)[i], rows(task.seat_by_x)[i]};
-  ContactRow c = on_patch<kind>(first, i, at);
+  ContactRow c = on_patch<kind>(first, i, closest<kind>(task, first, i, along, up));
   RowMask two{};
   if (task.second[i] != 0) {
     const ContactRow second = on_patch<kind>(other, i, closest<kind>(task, other, i, along, up));
@@ -205,7 +201,7 @@ struct Changes {
 /// The forces of all contacts with the structure as `nodal` has it, in the lanes that are still open; others stay as
 /// they are, so that no lane depends on its neighbours.
 template <Surface kind>
-Changes update_forces(const TrainTask& task, RowMask of_runs, bool first_pass) {
+Changes update_forces(const TrainTask& task, RowMask of_runs) {
   Row most{};
   RowMask fallen{};
   for (int k = 0; k < task.blocks; ++k) {
@@ -229,9 +225,7 @@ Changes update_forces(const TrainTask& task, RowMask of_runs, bool first_pass) {
     Row depth[most_wheels], q[most_wheels], seat[most_wheels], seat_by_x[most_wheels], force[most_wheels];
     for (int j = 0; j < m; ++j) {
       const int i = first + j;
-      const ContactRow c = touched_patch<kind>(task, i, along[j], up[j], !first_pass);
-      rows(task.yielding)[i] = c.structure;
-      rows(task.seat_by_x)[i] = c.seat_by_x;
+      const ContactRow c = touched_patch<kind>(task, i, along[j], up[j]);
       fallen |= c.at.fallen;
       depth[j] = c.at.depth;
       q[j] = (H[j * m + j] + c.structure) * c.at.up * c.at.up;

@@ -98,14 +98,12 @@ struct TrainTask {
   double *normal = nullptr, *root = nullptr;             // N; the Hertz law's square root of the penetration
   double *normal_up = nullptr, *normal_along = nullptr;  // the direction from the surface to the centre
   double *force_up = nullptr, *force_along = nullptr;    // N, on the wheel
-  double* turn = nullptr;                                // rotation of the section under it
-  double *yielding = nullptr, *seat = nullptr, *seat_by_x = nullptr;  // m/N, 1/N: of the structure's nodes there, of
-                                                                      // the element inside, and the rise of that over x
-  double *ahead = nullptr, *station = nullptr;                        // m: of the contact before the centre; x of it
-  double* ahead_before = nullptr;                                     // m: at the stage before the last one
-  double *penetration = nullptr, *penetration_rate = nullptr;         // m, m/s
-  double *up_rate = nullptr, *along_rate = nullptr;                   // m/s, of the centre
-  double* largest = nullptr;                                          // N: of the stages of the step
+  double *turn = nullptr, *seat = nullptr;               // rotation of the section under it; m/N of the element inside
+  double *ahead = nullptr, *station = nullptr;           // m: of the contact before the centre; x of it
+  double* ahead_before = nullptr;                        // m: at the stage before the last one
+  double *penetration = nullptr, *penetration_rate = nullptr;  // m, m/s
+  double *up_rate = nullptr, *along_rate = nullptr;            // m/s, of the centre
+  double* largest = nullptr;                                   // N: of the stages of the step
   double* history[most_stages + 2] = {};  // N: normal forces of the stages, of the step's start and of the one before
   int* active = nullptr;                  // the patch that is touched
   SurfacePatch patch[2];

@@ -50,7 +50,6 @@ class Peaks {
   Peaks(std::vector<std::vector<double>> passages, std::size_t wheels, double lag = 0.0, bool axial = false,
         bool passages_known = true);
 
-  /// A shear that is no number is not known at this instant.
   void add(double t, std::span<const beam::Response> probes, std::span<const double> wheel_forces);
   void finish();
   /// The extremes of low-passed accelerations, rows of all probes at instants `interval` s apart from 0 on.

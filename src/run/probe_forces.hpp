@@ -26,14 +26,14 @@ class ProbeForces {
   /// passes, s, ascending; lag: b of Rayleigh damping, s, where the responses lag.
   template <class Note>
   void add(double t, const beam::Response& r, const std::vector<double>& passages, double lag, Note&& note) {
-    const bool relaxes = lag > 0.0 && !std::isnan(r.moment_rate), knows_shear = !std::isnan(r.shear);
-    if (knows_shear) remember({t, r.moment, r.shear, r.axial_force});
+    const bool relaxes = lag > 0.0 && !std::isnan(r.moment_rate);
+    remember({t, r.moment, r.shear, r.axial_force});
     largest_moment_ = std::max(largest_moment_, std::abs(r.moment));
     if (relaxes)
       lagging_.add(t, r.moment, r.moment_rate, lag, of_moment(note));
     else
       moment_.add(t, r.moment, passages, of_moment(note));
-    if (knows_shear) add_jumping(t, r, passages, relaxes ? lag : 0.0, note);
+    add_jumping(t, r, passages, relaxes ? lag : 0.0, note);
   }
   template <class Note>
   void finish(const std::vector<double>& passages, double lag, Note&& note) {

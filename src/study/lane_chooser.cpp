@@ -79,7 +79,6 @@ Scene LaneChooser::tried() const {
   scene.sweep.reset();
   set_mesh(scene, model_.elements);
   scene.time_step = model_.step;
-  scene.output.interval = 32.0 * model_.step;
   return scene;
 }
 
