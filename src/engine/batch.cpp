@@ -52,6 +52,7 @@ class Batch {
   BatchTask task_;
   LookState looks_;
   std::vector<int> table_, there_;
+  std::vector<char> under_wheels_;
   std::vector<double> rests_until_;  // m, of every block
   double ds_ = 0.0, ds_before_ = 0.0;
   std::size_t unknowns_ = 0;
@@ -78,8 +79,8 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
       structure_(*plan.structure),
       count_(runs.size()),
       runs_(filled(runs)),
-      arrays_(blocks_of(runs_), plan.structure->beam_.bridge().per_node,
-              plan.structure->beam_.bridge().model.surface_height),
+      arrays_(blocks_of(runs_), plan.structure->line_.per_node,
+              plan.structure->beam_.rail() == nullptr ? plan.structure->line_.model.surface_height : 0.0),
       beam_(structure_.task_),
       kept_(runs.size()) {
   task_.train = &train_;
@@ -104,17 +105,25 @@ Batch::Batch(const BatchPlan& plan, std::span<const BatchRun> runs)
 }
 
 void Batch::start_structure() {
-  unknowns_ = static_cast<std::size_t>(beam_.block) * static_cast<std::size_t>(beam_.columns);
+  unknowns_ = static_cast<std::size_t>(beam_.unknowns);
   const auto columns = static_cast<std::size_t>(beam_.columns);
   const auto block = static_cast<std::size_t>(beam_.block), bb = block * block;
-  const std::size_t beyond = 2 * block;  // what stands for rigid ground
-  beam_.pivot = arrays_.add(columns * bb);
-  beam_.factor = arrays_.add(columns * bb);
-  beam_.inverse = arrays_.add(2 * columns * bb);
+  const std::size_t nodal = (columns + 2) * block;  // the last two columns stand for rigid ground
+  if (beam_.shape != nullptr) {
+    under_wheels_.assign(columns, 0);
+    beam_.under_wheels = under_wheels_.data();
+    beam_.modal_stage = arrays_.add(unknowns_);
+    beam_.pivot = arrays_.add(unknowns_);
+  } else {
+    beam_.pivot = arrays_.add(columns * bb);
+    beam_.factor = arrays_.add(columns * bb);
+    beam_.inverse = arrays_.add(2 * columns * bb);
+    beam_.middle = beam_.columns / 2;
+  }
   beam_.compliance = arrays_.add(10 * static_cast<std::size_t>(beam_.elements));
-  for (double** of :
-       {&beam_.v, &beam_.w, &beam_.v_predicted, &beam_.w_predicted, &beam_.residual, &beam_.solution, &beam_.work})
-    *of = arrays_.add(unknowns_ + beyond);
+  for (double** of : {&beam_.v, &beam_.w, &beam_.v_predicted, &beam_.w_predicted, &beam_.residual, &beam_.solution})
+    *of = arrays_.add(unknowns_);
+  beam_.work = arrays_.add(nodal);
   for (double*& a : beam_.a) a = arrays_.add(unknowns_);
   for (std::size_t l = 0; l < runs_.size(); ++l) {
     const BatchRun& run = runs_[l];
@@ -128,9 +137,9 @@ void Batch::start_structure() {
   }
   const int lanes = static_cast<int>(arrays_.lanes);
   for (int k = 0; k < 2 * train_.per_node; ++k) train_.offset[k] = structure_.offset_[k] * lanes;
-  train_.ground = static_cast<int>(unknowns_) * lanes;
+  train_.ground = static_cast<int>(columns * block) * lanes;
   train_.shears = structure_.shears_;
-  train_.nodal = beam_.v_stage = arrays_.add(unknowns_ + beyond);
+  train_.nodal = beam_.v_stage = arrays_.add(nodal);
   train_.lost = train_.given = nullptr;
   train_.settled = arrays_.add(arrays_.blocks.size());
   train_.tolerance = last_change;

@@ -3,6 +3,7 @@
 // run by itself has (coupling/system.hpp), by the kernel that its train has, too (train_kernel.hpp).
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <span>
 #include <string>
@@ -13,6 +14,7 @@
 #include "engine/surfaces.hpp"
 #include "methods/one_step_methods.hpp"
 #include "recovery/recovery.hpp"
+#include "structure/modal_bridge.hpp"
 #include "track/height_table.hpp"
 #include "train/fleet.hpp"
 
@@ -21,29 +23,38 @@ namespace traverse::engine {
 /// What all runs have in common: the structure, the surface on it, the stations that are looked at.
 class BatchStructure {
  public:
-  /// Why a structure cannot be taken so, in words; empty: it can.
-  static std::string obstacle(const beam::Beam& beam);
+  /// Why a structure cannot be taken so, in words; empty: it can. modal: its modes, null by elements.
+  static std::string obstacle(const beam::Beam& beam, const structure::ModalBridge* modal);
 
-  /// The fleet's wheels as they stand on the structure; rest: its displacements without them; probes in m; gravity of
-  /// its own weight, m/s2 (0: it has none). The beam must outlive it.
-  BatchStructure(const beam::Beam& beam, const train::Fleet& fleet, const std::vector<double>& rest,
-                 const std::vector<double>& probes, double gravity);
+  /// The fleet's wheels as they stand on the structure; rest: its nodal displacements without them; probes in m;
+  /// gravity of its own weight, m/s2 (0: it has none). Beam and modes must outlive it.
+  BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
+                 const std::vector<double>& rest, const std::vector<double>& probes, double gravity);
   BatchStructure(const BatchStructure&) = delete;
   BatchStructure& operator=(const BatchStructure&) = delete;
 
  private:
   friend class Batch;
+  void read_matrices(const std::vector<double>& rest);
+  void read_modes(const std::vector<double>& rest);
   void find_columns();
   void add_probe(const beam::Recovery& recovery, std::size_t station);
+  void find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element, ProbeForms& p) const;
+  const double* keep(const std::vector<double>& numbers) { return numbers_.emplace_back(numbers).data(); }
+  std::vector<double> by_unknowns(const beam::StationForms& forms, const std::vector<double>& form) const;
 
   const beam::Beam& beam_;
-  BeamTask task_;  // but for the rows
-  std::vector<double> mass_, damping_, stiffness_, dead_;
+  const structure::ModalBridge* modal_;
+  const beam::Line& line_;  // that wheels run on
+  BeamTask task_;           // but for the rows
+  std::vector<double> mass_, damping_, stiffness_, dead_, shape_;
   std::vector<char> held_;
   std::vector<int> first_column_;
   int offset_[most_nodal] = {};  // of an element's unknowns, counted from its first column
   Surfaces surfaces_;
   std::vector<ProbeForms> probes_;
+  std::deque<std::vector<double>> numbers_;  // of their forms
+  std::deque<std::vector<int>> lists_;       // of their unknowns
   std::vector<double> kinks_;
   bool shears_ = false;
 };

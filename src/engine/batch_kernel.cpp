@@ -6,7 +6,7 @@ namespace traverse::engine::TRAVERSE_LANES_TARGET {  // NOLINT(readability-ident
 void set_batch_step(const BatchTask& t) {
   set_step(*t.train);
   const Row rate = row(t.train->stage[0].rate), displacement = row(t.train->stage[0].displacement);
-  with_beam(*t.beam, [&](const auto& structure) { structure.factorise(rate, displacement); });
+  with_structure(*t.beam, [&](const auto& structure) { structure.factorise(rate, displacement); });
 }
 void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
   is_flat(*t.train) ? engine::solve_batch_stage<Surface::flat>(t, stage, gone, anew)
@@ -14,7 +14,7 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
 }
 void finish_batch_step(const BatchTask& t, double gone) {
   finish_step(*t.train);
-  end_step(*t.train, t.beam->columns * t.beam->block, t.beam->v, t.beam->w, t.beam->a);
+  end_step(*t.train, t.beam->unknowns, t.beam->v, t.beam->w, t.beam->a);
   look(t, gone, true);
 }
 void look_at_batch(const BatchTask& t) { look(t, 0.0, false); }

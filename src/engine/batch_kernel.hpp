@@ -4,6 +4,7 @@
 
 #include "engine/batch_looks.hpp"
 #include "engine/beam_kernel.hpp"
+#include "engine/modal_kernel.hpp"
 #include "engine/train_kernel.hpp"
 
 namespace traverse::engine {
@@ -29,13 +30,30 @@ inline void place_wheel(const BatchTask& t, int at, int lane) {
   }
 }
 
-/// Those that have left theirs, or all.
-inline void place_wheels(const BatchTask& t, bool all) {
+/// use(the structure), as BeamRows of its blocks or as ModalRows.
+template <class Use>
+void with_structure(BeamTask& task, Use use) {
+  if (task.shape != nullptr)
+    use(ModalRows{task});
+  else if (task.block == 2)
+    use(BeamRows<2>{task});
+  else if (task.block == 3)
+    use(BeamRows<3>{task});
+  else if (task.block == 5)
+    use(BeamRows<5>{task});
+  else
+    use(BeamRows<0>{task});
+}
+
+/// Those that have left theirs, or all; whether there are any.
+inline bool place_wheels(const BatchTask& t, bool all) {
+  bool moved = false;
   TrainTask& train = *t.train;
   for (int i = 0; i < train.wheels; ++i) {
     const Row x = rows(train.along)[i];
     const RowMask out = (x < rows(train.from)[i]) | (x > rows(train.to)[i]);
     if (!all && !Rows::any(out)) continue;
+    moved = true;
     bool two = false;
     for (int l = 0; l < lanes; ++l) {
       const int at = i * lanes + l;
@@ -53,6 +71,7 @@ inline void place_wheels(const BatchTask& t, bool all) {
       p.together[i] = ground ? grounded : follow ? in_line : apart;
     }
   }
+  return moved;
 }
 
 /// Heights of the track where contacts have moved farther than `within`; lanes with such ones.
@@ -91,40 +110,29 @@ inline RowMask look_up_heights(const BatchTask& t, double within) {
   return moved;
 }
 
-/// The structure under the forces as they are, in lanes that are open.
-template <Surface kind, class Structure>
-void solve_structure(const BatchTask& t, const Structure& structure, Row displacement, RowMask open) {
-  const BeamTask& beam = *t.beam;
-  const int n = beam.columns * beam.block;
-  Row *x = rows(beam.work), *solution = rows(beam.solution), *v = rows(beam.v_stage);
-  for (int i = 0; i < n; ++i) x[i] = rows(beam.residual)[i];
-  add_loads<kind>(*t.train);
-  structure.solve(x);
-  for (int i = 0; i < n; ++i) {
-    solution[i] = open ? x[i] : solution[i];
-    v[i] = rows(beam.v_predicted)[i] + displacement * solution[i];
-  }
-}
-
 /// gone: m that all runs have travelled then; anew: steps have another length than before.
 template <Surface kind>
 void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
   TrainTask& train = *t.train;
-  const BeamTask& beam = *t.beam;
+  BeamTask& beam = *t.beam;
   const Row rate = row(train.stage[stage].rate), displacement = row(train.stage[stage].displacement);
   for (int k = 0; k < train.blocks; ++k) *rows(t.distance[k]) = Rows::fill(gone);
-  combine(stage + 1, train.stage[stage], 0, beam.columns * beam.block, beam.v, beam.w, beam.a, rows(beam.v_predicted),
+  combine(stage + 1, train.stage[stage], 0, beam.unknowns, beam.v, beam.w, beam.a, rows(beam.v_predicted),
           rows(beam.w_predicted));
   predict(train, stage, t.work);
-  place_wheels(t, anew);
+  const bool moved = place_wheels(t, anew);
   look_up_heights(t, 0.0);
   Row& failed = *rows(t.failed);
-  with_beam(beam, [&](const auto& structure) {
+  with_structure(beam, [&](const auto& structure) {
+    if (moved) structure.mark(train, rate, displacement);
     structure.find_residual(rate, displacement);
+    structure.begin_passes();
     RowMask open = failed == Row{};
     for (int k = 0; k < train.blocks; ++k) rows(train.settled)[k] = Row{};
     for (int pass = 0; Rows::any(open); ++pass) {
-      solve_structure<kind>(t, structure, displacement, open);
+      structure.clear_loads();
+      add_loads<kind>(train);
+      structure.solve(displacement, open);
       const Changes changes = update_forces<kind>(train, open);
       failed = open & changes.fallen ? Rows::fill(below_surface) : failed;
       open &= (changes.most > train.tolerance) | look_up_heights(t, near_look_up);
@@ -133,6 +141,7 @@ void solve_batch_stage(const BatchTask& t, int stage, double gone, bool anew) {
       failed = open ? Rows::fill(not_converged) : failed;
       break;
     }
+    structure.end_passes();
     structure.accelerations(rate, rows(beam.a[stage + 1]));
   });
   end_stage_of_train<kind>(train, stage, false);

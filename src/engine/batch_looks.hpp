@@ -22,9 +22,9 @@ inline double* take_turns(double** kept) {
   return kept[latest] = oldest;
 }
 
-inline Row product(const double (&form)[4], const int (&unknown)[4], const double* values) {
+inline Row product(const ProbeForms& p, const double* form, const double* values) {
   Row sum{};
-  for (int i = 0; i < 4; ++i) sum += form[i] * rows(values)[unknown[i]];
+  for (int i = 0; i < p.count; ++i) sum += form[i] * rows(values)[p.unknown[i]];
   return sum;
 }
 
@@ -68,8 +68,8 @@ inline void see(const BatchTask& t, double before) {
     Row deflection = Rows::fill(p.constant[0]), inner = Rows::fill(p.constant[1]);
     const double* const state[3] = {beam.v, beam.w, beam.a[0]};
     for (int d = 0; d < 3; ++d) {
-      deflection += product(p.deflection[d], p.unknown, state[d]);
-      inner += product(p.moment[d], p.unknown, state[d]);
+      deflection += product(p, p.deflection[d], state[d]);
+      inner += product(p, p.moment[d], state[d]);
     }
     add_wheels(t, p, deflection, inner);
     Row &known = rows(s.inner)[k], &lagging = rows(s.lagging)[k];
@@ -83,12 +83,12 @@ inline void see(const BatchTask& t, double before) {
     }
     known = inner;
     seen[k] = deflection;
-    seen[n + k] = product(p.acceleration, p.unknown, beam.a[0]);
-    seen[2 * n + k] = product(p.nodal_moment, p.unknown, beam.v) + lagging;
-    seen[3 * n + k] = product(p.nodal_moment, p.unknown, beam.w) + (s.lag > 0.0 ? (inner - lagging) / s.lag : Row{});
+    seen[n + k] = product(p, p.acceleration, beam.a[0]);
+    seen[2 * n + k] = product(p, p.nodal_moment, beam.v) + lagging;
+    seen[3 * n + k] = product(p, p.nodal_moment, beam.w) + (s.lag > 0.0 ? (inner - lagging) / s.lag : Row{});
   }
   Row sum{};
-  for (int i = 0; i < beam.columns * beam.block; ++i) sum += rows(beam.v)[i];
+  for (int i = 0; i < beam.unknowns; ++i) sum += rows(beam.v)[i];
   Row& failed = rows(t.failed)[0];
   failed = (sum - sum == Row{}) | (failed != Row{}) ? failed : Rows::fill(not_finite);
 }

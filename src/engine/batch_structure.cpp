@@ -2,6 +2,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "engine/batch.hpp"
@@ -50,12 +51,11 @@ std::array<int, most_nodal> places(const beam::Line& line, int block, int elemen
 
 }  // namespace
 
-std::string BatchStructure::obstacle(const beam::Beam& beam) {
-  const beam::Line& line = beam.bridge();
-  if (beam.rail() != nullptr) return "a layered track lies on the bridge";
+std::string BatchStructure::obstacle(const beam::Beam& beam, const structure::ModalBridge* modal) {
+  const beam::Line& line = beam.running();
+  if (modal != nullptr && !modal->given()) return "the bridge is taken by modes, with what others deflect by at rest";
   if (beam.model().nonlinear()) return "foundations that are not linear carry the beam";
   if (beam.block() > most_unknowns_of_a_column) return "too many unknowns meet in a node";
-  if (!line.mesh.steps().empty()) return "wheels meet steps of the surface, where the bridge's ends or joints yield";
   const auto first = places(line, beam.block(), 0);
   for (int e = 0; e < line.mesh.elements(); ++e) {
     const auto own = places(line, beam.block(), e);
@@ -65,67 +65,114 @@ std::string BatchStructure::obstacle(const beam::Beam& beam) {
   return {};
 }
 
-BatchStructure::BatchStructure(const beam::Beam& beam, const train::Fleet& fleet, const std::vector<double>& rest,
-                               const std::vector<double>& probes, double gravity)
-    : beam_(beam), held_(beam.fixed()), surfaces_(fleet), kinks_(beam.bridge().mesh.kinks()) {
-  const int block = beam.block();
-  const auto read = [&](Mat matrix) { return solve::BlockTridiagonal::from(matrix, block); };
-  const solve::BlockTridiagonal mass = read(beam.mass()), stiffness = read(beam.stiffness());
-  solve::BlockTridiagonal damping = mass;
-  task_.proportional = beam.springs() == nullptr && beam.dampers() == nullptr;
-  task_.by_mass = beam.rayleigh().a;
-  task_.by_stiffness = beam.rayleigh().b;
-  if (task_.proportional)
-    damping.combine(task_.by_mass, mass, 0.0, mass, task_.by_stiffness, stiffness);
-  else
-    damping = read(beam.damping());
-  mass_ = by_columns(mass);
-  damping_ = by_columns(damping);
-  stiffness_ = by_columns(stiffness);
-  task_.block = block;
+BatchStructure::BatchStructure(const beam::Beam& beam, const structure::ModalBridge* modal, const train::Fleet& fleet,
+                               const std::vector<double>& rest, const std::vector<double>& probes, double gravity)
+    : beam_(beam),
+      modal_(modal),
+      line_(beam.running()),
+      held_(beam.fixed()),
+      surfaces_(fleet),
+      kinks_(line_.mesh.kinks()) {
+  task_.block = beam.block();
   task_.columns = beam.columns();
-  task_.mass = mass_.data();
-  task_.damping = damping_.data();
-  task_.stiffness = stiffness_.data();
-  task_.held = held_.data();
-  dead_ = product(stiffness, rest);  // whatever bends it; settlements are no part of the matrices' columns
+  if (modal_ != nullptr)
+    read_modes(rest);
+  else
+    read_matrices(rest);
   task_.dead = dead_.data();
   find_columns();
   const beam::Recovery recovery(beam, probes, gravity);
   for (std::size_t i = 0; i < probes.size(); ++i) add_probe(recovery, i);
 }
 
-void BatchStructure::find_columns() {
-  const beam::Line& line = beam_.bridge();
-  const auto place = places(line, task_.block, 0);
-  std::copy(place.begin(), place.end(), offset_);
-  task_.transverse[0] = offset_[line.per_node - 2];
-  task_.transverse[1] = offset_[line.per_node - 1];
-  for (int e = 0; e < line.mesh.elements(); ++e) {
-    first_column_.push_back(line.first_column + line.mesh.element(e).left);
-    shears_ = shears_ || line.mesh.element(e).shear != 0.0;
+void BatchStructure::read_matrices(const std::vector<double>& rest) {
+  const auto read = [&](Mat matrix) { return solve::BlockTridiagonal::from(matrix, task_.block); };
+  const solve::BlockTridiagonal mass = read(beam_.mass()), stiffness = read(beam_.stiffness());
+  solve::BlockTridiagonal damping = mass;
+  task_.proportional = beam_.springs() == nullptr && beam_.dampers() == nullptr && beam_.rail() == nullptr;
+  task_.by_mass = beam_.rayleigh().a;
+  task_.by_stiffness = beam_.rayleigh().b;
+  if (task_.proportional)
+    damping.combine(task_.by_mass, mass, 0.0, mass, task_.by_stiffness, stiffness);
+  else
+    damping = read(beam_.damping());
+  mass_ = by_columns(mass);
+  damping_ = by_columns(damping);
+  stiffness_ = by_columns(stiffness);
+  dead_ = product(stiffness, rest);  // whatever bends it; settlements are no part of the matrices' columns
+  task_.unknowns = task_.block * task_.columns;
+  task_.mass = mass_.data();
+  task_.damping = damping_.data();
+  task_.stiffness = stiffness_.data();
+  task_.held = held_.data();
+}
+
+void BatchStructure::read_modes(const std::vector<double>& rest) {
+  task_.unknowns = static_cast<int>(modal_->modes());
+  for (std::size_t u = 0; u < rest.size(); ++u)
+    for (std::size_t i = 0; i < modal_->modes(); ++i) shape_.push_back(modal_->shape(i)[u]);
+  for (std::size_t i = 0; i < modal_->modes(); ++i) {
+    damping_.push_back(2.0 * modal_->sigma()[i]);
+    stiffness_.push_back(modal_->omega()[i] * modal_->omega()[i]);
   }
-  task_.elements = line.mesh.elements();
+  dead_ = rest;
+  task_.shape = shape_.data();
+  task_.modal_damping = damping_.data();
+  task_.modal_stiffness = stiffness_.data();
+}
+
+void BatchStructure::find_columns() {
+  const auto place = places(line_, task_.block, 0);
+  std::copy(place.begin(), place.end(), offset_);
+  task_.transverse[0] = offset_[line_.per_node - 2];
+  task_.transverse[1] = offset_[line_.per_node - 1];
+  for (int e = 0; e < line_.mesh.elements(); ++e) {
+    first_column_.push_back(line_.first_column + line_.mesh.element(e).left);
+    shears_ = shears_ || line_.mesh.element(e).shear != 0.0;
+  }
+  task_.elements = line_.mesh.elements();
   task_.first_column = first_column_.data();
+}
+
+/// A form of the station's nodal unknowns as one of the structure's.
+std::vector<double> BatchStructure::by_unknowns(const beam::StationForms& forms,
+                                                const std::vector<double>& form) const {
+  if (modal_ == nullptr) return form;
+  std::vector<double> of_modes(modal_->modes(), 0.0);
+  for (std::size_t i = 0; i < of_modes.size(); ++i)
+    for (std::size_t k = 0; k < form.size(); ++k) of_modes[i] += form[k] * modal_->shape(i)[forms.unknown[k]];
+  return of_modes;
 }
 
 void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t station) {
   const beam::StationForms forms = recovery.forms(station);
   ProbeForms& p = probes_.emplace_back();
-  for (std::size_t i = 0; i < 4; ++i) {
-    p.unknown[i] = forms.unknown[i];
-    p.acceleration[i] = forms.acceleration[i];
-    p.nodal_moment[i] = forms.nodal_moment[i];
-    for (std::size_t d = 0; d < 3; ++d) {
-      p.deflection[d][i] = forms.deflection[d][i];
-      p.moment[d][i] = forms.moment[d][i];
-    }
+  const auto kept = [&](const std::vector<double>& form) { return keep(by_unknowns(forms, form)); };
+  for (std::size_t d = 0; d < 3; ++d) {
+    p.deflection[d] = kept(forms.deflection[d]);
+    p.moment[d] = kept(forms.moment[d]);
   }
+  p.acceleration = kept(forms.acceleration);
+  p.nodal_moment = kept(forms.nodal_moment);
   p.constant[0] = forms.constant_deflection;
   p.constant[1] = forms.constant_moment;
+  lists_.push_back(forms.unknown);
+  if (modal_ != nullptr) {
+    for (std::size_t k = 0; k < forms.unknown.size(); ++k)
+      p.constant[0] += forms.deflection[0][k] * dead_[static_cast<std::size_t>(forms.unknown[k])];
+    lists_.back().resize(modal_->modes());
+    std::iota(lists_.back().begin(), lists_.back().end(), 0);
+  }
+  p.unknown = lists_.back().data();
+  p.count = static_cast<int>(lists_.back().size());
+  if (beam_.rail() == nullptr && modal_ == nullptr) find_inner_responses(recovery, station, forms.element, p);
+}
+
+/// Each side's polynomials from as many loads as they have powers.
+void BatchStructure::find_inner_responses(const beam::Recovery& recovery, std::size_t station, int element,
+                                          ProbeForms& p) const {
   p.x = recovery.stations()[station];
   std::tie(p.from, p.to) = recovery.element_of(station);
-  // Each side's polynomials from as many loads as they have powers.
   const double xi = (p.x - p.from) / (p.to - p.from);
   constexpr int n = ProbeForms::powers;
   for (int side = 0; side < 2; ++side) {
@@ -138,7 +185,7 @@ void BatchStructure::add_probe(const beam::Recovery& recovery, std::size_t stati
       for (int k = 0; k < n; ++k) powers(i, k) = std::pow(at, k);
       for (int kind = 0; kind < 2; ++kind) {
         beam::ElementLoad load;
-        load.element = forms.element;
+        load.element = element;
         load.xi = at;
         (kind == 0 ? load.fy : load.moment) = 1.0;
         const beam::Response r = recovery.inside_response(station, load);

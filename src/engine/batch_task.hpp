@@ -16,15 +16,16 @@ struct HeightTable {
   const double* values = nullptr;  // [station][height, slope*distance], m: numbers, or rows where they are not shared
 };
 
-/// How a station responds (recovery_section.hpp): forms of v1, theta1, v2, theta2 of its element.
+/// How a station responds: linear forms of `count` unknowns of the structure (beam::StationForms).
 struct ProbeForms {
-  int unknown[4] = {};
-  double deflection[3][4] = {};          // of v, w and a, m
-  double acceleration[4] = {};           // of a, m/s2
-  double nodal_moment[4] = {};           // of v, N m
-  double moment[3][4] = {};              // what else of the moment follows from v, w and a, N m
+  int count = 0;
+  const int* unknown = nullptr;
+  const double* deflection[3] = {};      // of v, w and a, m
+  const double* acceleration = nullptr;  // of a, m/s2
+  const double* nodal_moment = nullptr;  // of v, N m
+  const double* moment[3] = {};          // what else of the moment follows from v, w and a, N m
   double constant[2] = {};               // of its own weight and temperature: deflection, moment
-  double from = 0.0, to = 0.0, x = 0.0;  // m: of the element, of the station
+  double from = 1.0, to = 0.0, x = 0.0;  // m: of the element, if wheels run on it; of the station
   /// What a force or a moment at xi of the element adds, left and right of the station, to the deflection and to the
   /// moment: by powers of xi.
   static constexpr int powers = 6;

@@ -1,8 +1,10 @@
 // The structure's side of a stage (beam_task.hpp): J a = P + forces - C w~ - K v~ with J = M + rate C + displacement K,
 // from w = w~ + rate a and v = v~ + displacement a.
 //
-// Elimination from both ends to the column in the middle keeps two chains of products busy. As all kernels it is seen
-// by no linker (train_kernel.hpp).
+// Columns are eliminated from both ends to the middle column. Under the contacts' forces, which change from pass to
+// pass, only the window of columns that wheels are on is solved anew: those outside it are eliminated once in a stage
+// and found from it at its end. The middle goes along with a window that has left it. As all kernels it is seen by no
+// linker (train_kernel.hpp).
 #pragma once
 
 #include "engine/beam_task.hpp"
@@ -14,92 +16,89 @@ namespace {
 /// For blocks of `Size` unknowns; 0: of any size.
 template <int Size>
 struct BeamRows {
-  const BeamTask& t;
-  const int b = Size > 0 ? Size : t.block, bb = b * b, middle = t.columns / 2;
+  BeamTask& t;
+  const int b = Size > 0 ? Size : t.block, bb = b * b;
 
   Row* pivot(int column) const { return rows(t.pivot) + static_cast<long>(column) * bb; }
   /// Of the columns `pair` and pair + 1: rows of the one nearer to the middle.
   Row* factor(int pair) const { return rows(t.factor) + static_cast<long>(pair) * bb; }
-  /// Calls use(pair, further, nearer) of all pairs from both ends to the middle.
+  /// Calls use(pair, further, nearer) of the pairs from column `left` on to `to_left`, and from `right` back to
+  /// `to_right`, in turns: two chains of products keep the processor busy.
   template <class Use>
-  void inwards(Use use) const {
-    const int left = middle, right = t.columns - 1 - middle;
-    for (int k = 0; k < (left > right ? left : right); ++k) {
-      if (k < left) use(k, k, k + 1);
-      if (k < right) use(t.columns - 2 - k, t.columns - 1 - k, t.columns - 2 - k);
+  void inwards(int left, int right, int to_left, int to_right, Use use) const {
+    const int before = to_left - left, behind = right - to_right;
+    for (int k = 0; k < (before > behind ? before : behind); ++k) {
+      if (k < before) use(left + k, left + k, left + k + 1);
+      if (k < behind) use(right - k - 1, right - k, right - k - 1);
     }
   }
-  /// The same from the middle to both ends.
+  /// The same the other way.
   template <class Use>
-  void outwards(Use use) const {
-    const int left = middle, right = t.columns - 1 - middle;
-    for (int k = (left > right ? left : right) - 1; k >= 0; --k) {
-      if (k < left) use(k, k, k + 1);
-      if (k < right) use(t.columns - 2 - k, t.columns - 1 - k, t.columns - 2 - k);
+  void outwards(int left, int right, int to_left, int to_right, Use use) const {
+    const int before = to_left - left, behind = right - to_right;
+    for (int k = (before > behind ? before : behind) - 1; k >= 0; --k) {
+      if (k < before) use(left + k, left + k, left + k + 1);
+      if (k < behind) use(right - k - 1, right - k, right - k - 1);
     }
   }
 
   void factorise(Row rate, Row displacement) const {
-    for (int c = 0; c < t.columns; ++c) {
-      const double *m = t.mass + 2L * c * bb, *d = t.damping + 2L * c * bb, *k = t.stiffness + 2L * c * bb;
-      const char* held = t.held + static_cast<long>(c) * b;
-      Row* to = pivot(c);
-      for (int i = 0; i < b; ++i)
-        for (int j = 0; j < b; ++j) {
-          const int at = i + b * j;
-          to[i * b + j] = held[i] != 0 || held[j] != 0 ? Rows::fill(i == j ? 1.0 : 0.0)
-                                                       : m[at] + rate * d[at] + displacement * k[at];
-        }
-    }
-    inwards([&](int pair, int further, int nearer) {
-      invert_pivot(further);
-      const Row* inverse = pivot(further);
-      Row *to = factor(pair), *rest = pivot(nearer);
-      Row coupling[most_block * most_block];  // of the nearer column's rows with the further one
-      couple(pair, nearer > further, rate, displacement, coupling);
-      for (int i = 0; i < b; ++i)
-        for (int j = 0; j < b; ++j) {
-          Row sum{};
-          for (int k = 0; k < b; ++k) sum += coupling[i * b + k] * inverse[k * b + j];
-          to[i * b + j] = sum;
-        }
-      for (int i = 0; i < b; ++i)
-        for (int j = 0; j < b; ++j)
-          for (int k = 0; k < b; ++k) rest[i * b + j] -= to[i * b + k] * coupling[j * b + k];
-    });
-    invert_pivot(middle);
+    const int end = t.columns - 1;
+    inwards(0, end, t.middle, t.middle,
+            [&](int pair, int further, int nearer) { eliminate(pair, further, nearer, rate, displacement); });
+    invert_middle(rate, displacement);
     find_compliance(displacement);
   }
 
-  /// x, in: forces, out: J^-1 of them.
-  void solve(Row* x) const {
-    inwards([&](int pair, int further, int nearer) {
-      const Row *F = factor(pair), *from = x + static_cast<long>(further) * b;
-      Row *to = x + static_cast<long>(nearer) * b, y[most_block];
-      for (int i = 0; i < b; ++i) {
-        y[i] = to[i];
-        for (int k = 0; k < b; ++k) y[i] -= F[i * b + k] * from[k];
+  /// Sets the window to the columns that wheels are on.
+  void mark(const TrainTask& train, Row rate, Row displacement) const {
+    constexpr int worth_moving = 32;
+    int first = t.columns, last = -1;
+    for (const SurfacePatch& p : train.patch)
+      for (int at = 0; at < train.wheels * lanes; ++at) {
+        if (p.slot[at] == train.ground) continue;
+        const int column = p.slot[at] / lanes / b;
+        first = column < first ? column : first;
+        last = column + 1 > last ? column + 1 : last;
       }
-      for (int i = 0; i < b; ++i) to[i] = y[i];
+    if (last < 0) first = last = t.middle;
+    t.first = first < t.middle ? first : t.middle;
+    t.last = last > t.middle ? last : t.middle;
+    if (t.last - t.first <= 2 * (last - first) + worth_moving) return;
+    t.first = first;
+    t.last = last;
+    move_middle((first + last) / 2, rate, displacement);
+  }
+
+  /// Eliminates what is outside the window.
+  void begin_passes() const {
+    inwards(0, t.columns - 1, t.first, t.last, [&](int pair, int further, int nearer) {
+      subtract(factor(pair), rows(t.residual) + further * b, rows(t.residual) + nearer * b);
     });
-    for (int c = 0; c < t.columns; ++c) {
-      const Row* P = pivot(c);
-      Row *of = x + static_cast<long>(c) * b, y[most_block];
-      for (int i = 0; i < b; ++i) y[i] = of[i];
-      for (int i = 0; i < b; ++i) {
-        Row sum = P[i * b] * y[0];
-        for (int k = 1; k < b; ++k) sum += P[i * b + k] * y[k];
-        of[i] = sum;
-      }
+  }
+  void clear_loads() const {
+    for (int i = t.first * b; i < (t.last + 1) * b; ++i) rows(t.work)[i] = rows(t.residual)[i];
+  }
+  /// The window under the forces as they are, in lanes that are open.
+  void solve(Row displacement, RowMask open) const {
+    Row *x = rows(t.work), *solution = rows(t.solution), *v = rows(t.v_stage);
+    inwards(t.first, t.last, t.middle, t.middle,
+            [&](int pair, int further, int nearer) { subtract(factor(pair), x + further * b, x + nearer * b); });
+    for (int c = t.first; c <= t.last; ++c) multiply(pivot(c), x + c * b, x + c * b);
+    outwards(t.first, t.last, t.middle, t.middle, [&](int pair, int further, int nearer) {
+      subtract_transposed(factor(pair), x + nearer * b, x + further * b);
+    });
+    for (int i = t.first * b; i < (t.last + 1) * b; ++i) {
+      solution[i] = open ? x[i] : solution[i];
+      v[i] = rows(t.v_predicted)[i] + displacement * solution[i];
     }
-    outwards([&](int pair, int further, int nearer) {
-      const Row *F = factor(pair), *from = x + static_cast<long>(nearer) * b;
-      Row *to = x + static_cast<long>(further) * b, y[most_block];
-      for (int i = 0; i < b; ++i) {
-        y[i] = to[i];
-        for (int k = 0; k < b; ++k) y[i] -= F[k * b + i] * from[k];
-      }
-      for (int i = 0; i < b; ++i) to[i] = y[i];
+  }
+  /// Finds what is outside the window.
+  void end_passes() const {
+    Row* x = rows(t.solution);
+    outwards(0, t.columns - 1, t.first, t.last, [&](int pair, int further, int nearer) {
+      multiply(pivot(further), rows(t.residual) + further * b, x + further * b);
+      subtract_transposed(factor(pair), x + nearer * b, x + further * b);
     });
   }
 
@@ -110,7 +109,7 @@ struct BeamRows {
   /// and x is the acceleration and alpha w~, of which v~ is made less already. Else x is the acceleration.
   void find_residual(Row rate, Row displacement) const {
     Row *v = rows(t.v_predicted), *w = rows(t.w_predicted), *r = rows(t.residual), *u = rows(t.work);
-    const int n = t.columns * b;
+    const int n = t.unknowns;
     for (int i = 0; i < n; ++i) r[i] = Rows::fill(t.dead[i]);
     if (!t.proportional) {
       subtract_product(t.stiffness, v, r);
@@ -127,13 +126,92 @@ struct BeamRows {
   /// The accelerations of x.
   void accelerations(Row rate, Row* a) const {
     const Row *w = rows(t.w_predicted), *x = rows(t.solution), alpha = t.proportional ? shift(rate) : Row{};
-    for (int i = 0; i < t.columns * b; ++i) a[i] = x[i] - alpha * w[i];
+    for (int i = 0; i < t.unknowns; ++i) a[i] = x[i] - alpha * w[i];
   }
 
   static constexpr int most_block = Size > 0 ? Size : most_unknowns_of_a_column;
 
  private:
   Row shift(Row rate) const { return t.by_mass / (1.0 + rate * t.by_mass); }
+
+  /// y -= A x, y -= A^T x, y = A x, for one block by rows.
+  void subtract(const Row* A, const Row* x, Row* y) const {
+    Row sum[most_block];
+    for (int i = 0; i < b; ++i) {
+      sum[i] = y[i];
+      for (int k = 0; k < b; ++k) sum[i] -= A[i * b + k] * x[k];
+    }
+    for (int i = 0; i < b; ++i) y[i] = sum[i];
+  }
+  void subtract_transposed(const Row* A, const Row* x, Row* y) const {
+    Row sum[most_block];
+    for (int i = 0; i < b; ++i) {
+      sum[i] = y[i];
+      for (int k = 0; k < b; ++k) sum[i] -= A[k * b + i] * x[k];
+    }
+    for (int i = 0; i < b; ++i) y[i] = sum[i];
+  }
+  void multiply(const Row* A, const Row* x, Row* y) const {
+    Row of[most_block];
+    for (int i = 0; i < b; ++i) of[i] = x[i];
+    for (int i = 0; i < b; ++i) {
+      Row sum = A[i * b] * of[0];
+      for (int k = 1; k < b; ++k) sum += A[i * b + k] * of[k];
+      y[i] = sum;
+    }
+  }
+
+  /// J's block on the diagonal, by rows.
+  void set_diagonal(int column, Row rate, Row displacement) const {
+    const double *m = t.mass + 2L * column * bb, *d = t.damping + 2L * column * bb, *k = t.stiffness + 2L * column * bb;
+    const char* held = t.held + static_cast<long>(column) * b;
+    for (int i = 0; i < b; ++i)
+      for (int j = 0; j < b; ++j) {
+        const int at = i + b * j;
+        pivot(column)[i * b + j] =
+            held[i] != 0 || held[j] != 0 ? Rows::fill(i == j ? 1.0 : 0.0) : m[at] + rate * d[at] + displacement * k[at];
+      }
+  }
+  /// Less what an eliminated neighbour's factor makes of it.
+  void subtract_neighbour(int pair, int further, int nearer, Row rate, Row displacement) const {
+    Row coupling[most_block * most_block];  // of the nearer column's rows with the further one
+    couple(pair, nearer > further, rate, displacement, coupling);
+    const Row* F = factor(pair);
+    Row* to = pivot(nearer);
+    for (int i = 0; i < b; ++i)
+      for (int j = 0; j < b; ++j)
+        for (int k = 0; k < b; ++k) to[i * b + j] -= F[i * b + k] * coupling[j * b + k];
+  }
+  /// The further column, whose own further neighbour is eliminated if it has one.
+  void eliminate(int pair, int further, int nearer, Row rate, Row displacement) const {
+    const int before = 2 * further - nearer;
+    set_diagonal(further, rate, displacement);
+    if (before >= 0 && before < t.columns)
+      subtract_neighbour(before < further ? before : further, before, further, rate, displacement);
+    invert_pivot(further);
+    const Row* inverse = pivot(further);
+    Row *to = factor(pair), coupling[most_block * most_block];
+    couple(pair, nearer > further, rate, displacement, coupling);
+    for (int i = 0; i < b; ++i)
+      for (int j = 0; j < b; ++j) {
+        Row sum{};
+        for (int k = 0; k < b; ++k) sum += coupling[i * b + k] * inverse[k * b + j];
+        to[i * b + j] = sum;
+      }
+  }
+  void invert_middle(Row rate, Row displacement) const {
+    const int m = t.middle;
+    set_diagonal(m, rate, displacement);
+    if (m > 0) subtract_neighbour(m - 1, m - 1, m, rate, displacement);
+    if (m + 1 < t.columns) subtract_neighbour(m, m + 1, m, rate, displacement);
+    invert_pivot(m);
+  }
+  void move_middle(int to, Row rate, Row displacement) const {
+    for (int c = t.middle; c < to; ++c) eliminate(c, c, c + 1, rate, displacement);
+    for (int c = t.middle; c > to; --c) eliminate(c - 1, c, c - 1, rate, displacement);
+    t.middle = to;
+    invert_middle(rate, displacement);
+  }
 
   /// y -= A x.
   void subtract_product(const double* A, const Row* x, Row* y) const {
@@ -174,8 +252,8 @@ struct BeamRows {
   void find_compliance(Row displacement) const {
     Row* inverse = rows(t.inverse);  // of every column's block, then of every pair's: rows of the nearer one
     Row* const pairs = inverse + static_cast<long>(t.columns) * bb;
-    for (int i = 0; i < bb; ++i) inverse[static_cast<long>(middle) * bb + i] = pivot(middle)[i];
-    outwards([&](int pair, int further, int nearer) {
+    for (int i = 0; i < bb; ++i) inverse[static_cast<long>(t.middle) * bb + i] = pivot(t.middle)[i];
+    outwards(0, t.columns - 1, t.middle, t.middle, [&](int pair, int further, int nearer) {
       const Row *F = factor(pair), *P = pivot(further), *Z = inverse + static_cast<long>(nearer) * bb;
       Row *own = inverse + static_cast<long>(further) * bb, *with = pairs + static_cast<long>(pair) * bb;
       for (int i = 0; i < b; ++i)
@@ -196,7 +274,7 @@ struct BeamRows {
       const int c = t.first_column[e];
       const Row *left = inverse + static_cast<long>(c) * bb, *right = left + bb,
                 *with = pairs + static_cast<long>(c) * bb;
-      const bool of_right = c < middle;       // the rows of `with`
+      const bool of_right = c < t.middle;     // the rows of `with`
       const auto entry = [&](int i, int j) {  // i <= j among v1, theta1, v2, theta2
         if (j < 2) return left[o[i] * b + o[j]];
         if (i >= 2) return right[o[i - 2] * b + o[j - 2]];
@@ -208,17 +286,6 @@ struct BeamRows {
     }
   }
 };
-
-/// use(BeamRows of the structure's blocks).
-template <class Use>
-void with_beam(const BeamTask& task, Use use) {
-  if (task.block == 2)
-    use(BeamRows<2>{task});
-  else if (task.block == 3)
-    use(BeamRows<3>{task});
-  else
-    use(BeamRows<0>{task});
-}
 
 }  // namespace
 }  // namespace traverse::engine

@@ -60,6 +60,7 @@ void Surfaces::add(train::Fleet fleet, std::size_t entry) {
   constexpr double above = 10.0;  // m
   fleet.wheels = {fleet.wheels[entry]};
   train::WheelContact& c = fleet.wheels.front();
+  c.further = 0;
   std::vector<double> borders = fleet.borders_of_patches(c);
   borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
   fleet.vehicles[static_cast<std::size_t>(c.vehicle)].state.q[3 * static_cast<Eigen::Index>(c.body) + 1] = above;

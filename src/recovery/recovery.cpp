@@ -154,23 +154,42 @@ Response Recovery::respond(const RecoverySection& s, const Values& v, const Valu
 
 StationForms Recovery::forms(std::size_t station) const {
   const RecoverySection& s = sections_[station];
+  std::array<Values, 3> values{};
+  std::vector<double> riders(4 * s.riders.size(), 0.0);
+  const auto response = [&] {
+    Response r = respond(s, values[0], values[1], values[2]);
+    add_riders(s, values.data(), riders.data(), r);
+    return r;
+  };
   StationForms f;
+  const Response none = response();
   f.element = s.at.element;
-  f.unknown = {s.unknowns[1], s.unknowns[2], s.unknowns[4], s.unknowns[5]};
-  f.acceleration = s.psi.value;
-  f.nodal_moment = s.bending.moment();
-  f.deflection = {s.psi.value};
-  if (s.held)
-    for (std::size_t i = 0; i < 4; ++i) {
-      f.deflection[0][i] += s.held_by_stiffness[i];
-      f.deflection[1][i] += s.held_by_damping[i];
-      f.deflection[2][i] += s.held_by_mass[i];
+  f.constant_deflection = none.deflection;
+  f.constant_moment = none.moment;
+  // `of`: v, w and a of the unknown among these values; a null pointer where nothing follows from it.
+  const auto add = [&](int unknown, const std::array<double*, 3>& of) {
+    if (unknown < 0) return;
+    f.unknown.push_back(unknown);
+    for (std::size_t d = 0; d < 3; ++d) {
+      Response r = none;
+      if (of[d] != nullptr) {
+        *of[d] = 1.0;
+        r = response();
+        *of[d] = 0.0;
+      }
+      f.deflection[d].push_back(r.deflection - none.deflection);
+      f.moment[d].push_back(r.moment - r.nodal_moment - none.moment);
+      if (d == 0) f.nodal_moment.push_back(r.nodal_moment);
+      if (d == 2) f.acceleration.push_back(r.acceleration);
     }
-  f.moment = {s.stiffness.moment(), s.damping.moment(), s.mass.moment()};
-  for (auto* forms : {&f.deflection, &f.moment})  // mass-proportional damping acts like inertia
-    for (std::size_t i = 0; i < 4; ++i) (*forms)[1][i] += beam_.rayleigh().a * (*forms)[2][i];
-  f.constant_deflection = s.weight.deflection;
-  f.constant_moment = s.weight.moment;
+  };
+  for (std::size_t k = 0; k < s.unknowns.size(); ++k) add(s.unknowns[k], {&values[0][k], &values[1][k], &values[2][k]});
+  double* of_rider = riders.data();
+  for (const RecoverySection::Rider& rider : s.riders)
+    for (const int unknown : {rider.ride.unknown, rider.ride.along}) {
+      add(unknown, {of_rider, of_rider + 1, nullptr});
+      of_rider += 2;
+    }
   return f;
 }
 

@@ -40,13 +40,14 @@ using Forces = std::array<double, 3>;
 
 struct RecoverySection;
 
-/// How a station on the bridge responds without loads inside its element: forms of v1, theta1, v2, theta2 there.
+/// How a station responds without loads inside its element: linear forms of the unknowns of its element and of the
+/// sleepers on it.
 struct StationForms {
-  using Form = std::array<double, 4>;
+  using Form = std::vector<double>;
   int element = 0;
-  std::array<int, 4> unknown{};                             // global
-  std::array<Form, 3> deflection{}, moment{};               // of v, w and a; the moment but for nodal_moment
-  Form acceleration{}, nodal_moment{};                      // of a; of v
+  std::vector<int> unknown;                                 // global
+  std::array<Form, 3> deflection, moment;                   // of v, w and a; the moment without nodal_moment
+  Form acceleration, nodal_moment;                          // of a; of v
   double constant_deflection = 0.0, constant_moment = 0.0;  // by its own weight and temperature
 };
 
@@ -73,7 +74,6 @@ class Recovery {
                 std::vector<Response>& out);
 
   const std::vector<double>& stations() const { return stations_; }
-  /// Of a station on a bridge without sleepers.
   StationForms forms(std::size_t station) const;
   /// Where the element of a station begins and ends, m.
   std::pair<double, double> element_of(std::size_t station) const;

@@ -77,9 +77,8 @@ void CaseRunner::set_up_lanes() {
   static_deflection_[0] = lanes_->static_deflection();
   double past = 0.0;
   for (const double speed : speeds_) past = std::max(past, speed * (duration(0, speed) + lanes_->steps().longest));
-  if (lanes_->expect(past)) return;
-  why_no_lanes_ = SideBySide::corners_of_the_track;
-  lanes_.reset();
+  why_no_lanes_ = lanes_->expect(past);
+  if (!why_no_lanes_.empty()) lanes_.reset();
 }
 
 std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& runs, std::size_t most) {

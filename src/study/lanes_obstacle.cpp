@@ -8,7 +8,6 @@
 
 namespace traverse::app {
 std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
-  if (shared.modal) return "the bridge is taken by its modes, not by elements";
   if (scene.vehicles.empty()) return "no vehicles run";
   if (!scene.load.forces.empty()) return "forces move beside the vehicles";
   if (scene.vehicle_model != VehicleModel::linear) return "vehicles are mechanisms, not linear";
@@ -19,7 +18,7 @@ std::string lanes_obstacle(const Scene& scene, const SharedBeam& shared) {
   if (!scene.time_step) return "the step is not known";
   if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";
   if (scene.beam->ground != std::array{true, true}) return "the running surface ends with the bridge";
-  return engine::BatchStructure::obstacle(*shared.beam);
+  return engine::BatchStructure::obstacle(*shared.beam, shared.modal ? &*shared.modal : nullptr);
 }
 
 }  // namespace traverse::app

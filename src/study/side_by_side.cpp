@@ -35,16 +35,16 @@ SideBySide::SideBySide(const Scene& scene, const SharedBeam& shared)
   system_.linearise_vehicles(state_.data());
   fleet_ = system_.fleet();
   obstacle_ = engine::TrainArrays::obstacle(fleet_);
-  if (obstacle_.empty()) obstacle_ = engine::BatchStructure::obstacle(*shared.beam);
+  if (obstacle_.empty()) obstacle_ = engine::BatchStructure::obstacle(*shared.beam, modal());
   if (!obstacle_.empty()) return;
   for (const train::WheelContact& c : fleet_.wheels) wheels_.push_back(fleet_.coordinates(c).x());
-  state_.resize(2 * static_cast<std::size_t>(shared.beam->local_unknowns()));
+  state_.resize(2 * static_cast<std::size_t>(system_.structure()->unknowns()));
   const double gravity = scene.self_weight ? scene.gravity : 0.0;
-  structure_ =
-      std::make_shared<const engine::BatchStructure>(*shared.beam, fleet_, rest_, scene.output.probes, gravity);
+  structure_ = std::make_shared<const engine::BatchStructure>(*shared.beam, modal(), fleet_, rest_, scene.output.probes,
+                                                              gravity);
   plan_.structure = structure_.get();
   plan_.level_until =
-      scene.profile.level() && !system_.structure()->bent_at_rest() ? shared.beam->mesh().start() : -1e300;
+      scene.profile.level() && !system_.structure()->bent_at_rest() ? shared.beam->running().mesh.start() : -1e300;
   kinks_ = system_.corners();
 }
 
@@ -61,13 +61,17 @@ std::vector<double> SideBySide::events(double past) const {
   return events;
 }
 
-bool SideBySide::expect(double past) {
+std::string SideBySide::expect(double past) {
   tracks_.clear();
   track_past_ = past;
   const auto [rear, front] = track_reach();
+  for (const double step : shared_.beam->running().mesh.steps())
+    if (step > rear && step < front)
+      return "wheels meet steps of the surface, where ends or joints of what carries them yield";
   const std::optional<double> distance = track::table_distance(scene_.profile, rear, front);
-  if (distance) track_distance_ = *distance;
-  return distance.has_value();
+  if (!distance) return "the track has corners that runs side by side cannot follow";
+  track_distance_ = *distance;
+  return {};
 }
 
 /// What wheels may touch of it, m.
@@ -78,7 +82,8 @@ std::pair<double, double> SideBySide::track_reach() const {
 
 /// All tracks of a spectrum have their stations where the scene's own has.
 SideBySide::Track SideBySide::track(const std::optional<std::uint64_t>& seed, double past) {
-  if (past > track_past_ && !expect(past)) throw InputError(corners_of_the_track);
+  if (past > track_past_)
+    if (const std::string why = expect(past); !why.empty()) throw InputError(why);
   const auto known = std::find_if(tracks_.begin(), tracks_.end(), [&](const auto& one) { return one.first == seed; });
   if (known != tracks_.end()) return known->second;
   const track::Profile other = seed ? scene_.roughness->profile(*seed) : track::Profile();

@@ -44,9 +44,8 @@ class SideBySide {
   /// Those that the scene asks for.
   Steps steps() const;
   /// Tracks shall be known at once for all runs up to this distance gone (m), so that none depends on which runs come
-  /// first. False where the track has corners that they cannot follow.
-  bool expect(double past);
-  static constexpr const char* corners_of_the_track = "the track has corners that runs side by side cannot follow";
+  /// first. Returns what on this way runs side by side cannot follow, in words; empty: nothing.
+  std::string expect(double past);
   /// Runs that any thread may take, while others take theirs; their trains must outlive it.
   class Ready {
    public:
@@ -79,6 +78,7 @@ class SideBySide {
   std::vector<double> static_deflection();
 
  private:
+  const structure::ModalBridge* modal() const { return shared_.modal ? &*shared_.modal : nullptr; }
   std::vector<double> events(double past) const;
   std::pair<double, double> track_reach() const;
   using Track = std::shared_ptr<const track::HeightTable>;

@@ -258,7 +258,15 @@ TEST(GivenModes, SweepsAndKernels) {
                             "train: {vehicles: coach*2, speed: 70}\nts: {dt: 5e-4}\noutput: {interval: 5e-3}\n";
   Results full = run_yaml(bridge + coach, {{"model_vehicles", "full"}});
   Results linear = run_yaml(bridge + coach, {{"model_vehicles", "linear"}});
-  Results beside = run_yaml(bridge + coach, {{"model_vehicles", "linear"}, {"sweep_speed", "70,72,2"}});
+  const Values speeds = {{"model_vehicles", "linear"}, {"sweep_speed", "70,72,2"}, {"step_probes", "true"}};
+  Results beside = run_yaml(bridge + coach, speeds);
+  Results by_themselves = run_yaml(bridge + coach, speeds + Values{{"sweep_lanes", "0"}});
+  for (const char* name : {"peak_deflection", "peak_acceleration", "least_wheel_force", "greatest_wheel_force"}) {
+    const std::string path = std::string("/sweep/") + name;
+    const double difference = relative_difference(beside(path), by_themselves(path));
+    RecordProperty(name, text(difference));
+    EXPECT_LT(difference, 3e-4) << name;
+  }
   for (Results* other : {&linear}) {
     const double difference = relative_difference((*other)("/probes/deflection"), full("/probes/deflection"));
     RecordProperty("linear", text(difference));

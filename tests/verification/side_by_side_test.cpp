@@ -92,6 +92,9 @@ TEST(SideBySide, BentBridges) {
   }
 }
 
+// Rail, sleepers and ballast carry the wheels; a long track, of which a window is solved anew from pass to pass.
+TEST(SideBySide, LayeredTrack) { expect_same_motion("r8_ballasted_bridge", {}, "60,66,3", "2e-3", "5e-4", 1e-4); }
+
 /// A method of one solve a step: of second order.
 TEST(SideBySide, OneSolveAStep) {
   const Values scene = {{"train_vehicles", "coach"}, {"scene_tail", "0.1"}, {"step_probes", "true"}};
