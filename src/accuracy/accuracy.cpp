@@ -21,23 +21,22 @@ namespace {
 
 constexpr double some_step = 1e-6;             // s, to look at a scene before it has a step
 constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
-constexpr const char* what_to_do =
-    "-accuracy_whole makes trial runs as long as the run, -accuracy_report shows the errors";
-constexpr double part_for_rest = 0.02;  // of the wanted error: curves of accelerations lose more than that
+constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
 
-void leave_out_rest(Scene& scene) {
+void leave_out_rest(const Scene& scene, NumericalModel& model) {
   const beam::BeamModel& beam = *scene.beam;
-  if (scene.rest_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= continuous_spans)
-    scene.rest_tolerance = part_for_rest * scene.accuracy;
+  if (model.rest_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= continuous_spans)
+    model.rest_tolerance = part_for_rest * scene.accuracy;
 }
 
-void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, std::vector<std::string>& notes) {
+void say(const Scene& scene, const ErrorSearch& search, const Choice& choice, std::vector<std::string>& notes) {
+  const Accuracy& result = choice.accuracy;
   const std::string mesh = scene.by_given_modes() ? ""
-                                                  : fmt::format("{} elements a {}, ", mesh_of(scene),
+                                                  : fmt::format("{} elements a {}, ", choice.model.elements,
                                                                 scene.beam->track ? "sleeper bay" : "span");
   notes.push_back(fmt::format("accuracy {:g}: {}{}steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
-                              scene.accuracy, mesh, scene.integrator.empty() ? "" : scene.integrator + " with ",
-                              *scene.time_step, search.trials(), search.horizon(), result.seconds));
+                              scene.accuracy, mesh, choice.model.method.empty() ? "" : choice.model.method + " with ",
+                              *choice.model.step, search.trials(), search.horizon(), result.seconds));
   std::string expected;
   for (std::size_t q = 0; q < quantities; ++q)
     if (result.promises[q].present && result.promises[q].kept)
@@ -52,10 +51,10 @@ void say(const Scene& scene, const ErrorSearch& search, const Accuracy& result, 
 }  // namespace
 
 bool chooses(const Scene& scene) {
-  const bool open = scene.mesh_open || !scene.time_step;
+  const bool open = scene.mesh_open || !scene.model.step;
   const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
   return open && moves && scene.beam && scene.analysis == Analysis::transient &&
-         (scene.model_modes == 0 || (scene.by_given_modes() && !scene.exact_in_time()));
+         (scene.model.modes == 0 || (scene.by_given_modes() && !scene.exact_in_time()));
 }
 
 void set_first_mesh(Scene& scene) {
@@ -71,7 +70,7 @@ void settle_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& note
   std::vector<std::string> ignored;
   SharedBeam shared(comm, known, ignored);
   shared.damp(known, false, ignored);
-  if (known.model_modes > 0) shared.prepare(known, ignored);
+  if (known.model.modes > 0) shared.prepare(known, ignored);
   const bool affordable = scene.limits_deck_acceleration() || frequencies_are_cheap(*shared.beam);
   scene.output.low_pass = frequency_that_counts(known, shared, affordable, notes);
 }
@@ -87,27 +86,7 @@ namespace {
 /// Whether the whole acceleration, for which far more modes and shorter steps are needed, is judged by nothing.
 bool judged_low_passed(const Scene& scene) { return scene.limits_deck_acceleration() && filters_deck(scene); }
 
-std::string with_underscores(std::string name) {
-  std::replace(name.begin(), name.end(), ' ', '_');
-  return name;
-}
-
 }  // namespace
-
-void report_head(const std::string& against, const std::string& of) {
-  fmt::print("accuracy, against {}\n  {:<24}{:>12}{:>12}{:>12}\n", against, of, "wanted", "expected", "true");
-}
-
-bool report_row(const std::string& name, const Promise& promise, double wanted, double error, bool prints) {
-  const bool broken = promise.kept && error > wanted;
-  if (prints)
-    fmt::print("  {:<24}{:>12}{:>12}{:>12.1e}{}\n", name, promise.kept ? fmt::format("{:.1e}", wanted) : "-",
-               promise.kept ? fmt::format("{:.1e}", promise.expected) : "-", error,
-               broken         ? "  broken"
-               : promise.kept ? "  kept"
-                              : "  not promised");
-  return !broken;
-}
 
 bool asks_for(const Scene& scene, std::size_t quantity) {
   if (quantity == low_passed && !filters_deck(scene)) return false;
@@ -131,10 +110,6 @@ bool asks_for_forces_alone(const Scene& scene) {
   return asks_for(scene, wheel_force) && !asks_for(scene, acceleration);
 }
 
-std::string not_promised(Quantity quantity, const Promise& promise) {
-  return fmt::format("not promised: {}: {}", quantity_names[quantity], promise.why_not);
-}
-
 bool damps_high_modes(const Scene& scene) {
   const Damping& damping = scene.damping;
   return (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
@@ -150,95 +125,30 @@ bool damps_all_modes(const Scene& scene) {
          (damping.rayleigh && std::max(damping.rayleigh->first, damping.rayleigh->second) > 0.0);
 }
 
-void Accuracy::promise_nothing() {
-  for (Promise& promise : promises) promise.kept = false;
-  for (Promise& promise : alone) promise.kept = false;
-}
-
-bool Accuracy::promises_something() const {
-  return measured &&
-         std::any_of(promises.begin(), promises.end(), [](const Promise& p) { return p.present && p.kept; });
-}
-
-std::string Accuracy::withdrawn(const std::vector<double>& losses) {
-  const auto unseen =
-      std::count_if(losses.begin(), losses.end(), [&](double t) { return !lost_contact || t > seen_until; });
-  if (unseen == 0 || !promises_something()) return {};
-  promise_nothing();
-  return fmt::format("nothing is promised after all: wheels lost contact {} times{}, which no trial run has seen; {}",
-                     unseen, lost_contact ? fmt::format(" after {:.3g} s", seen_until) : "", what_to_do);
-}
-
-std::string Accuracy::withdrawn_by_surprise(const std::string& what) {
-  if (what.empty() || !promises_something()) return {};
-  promise_nothing();
-  return fmt::format("nothing is promised after all: {}, which no trial run has seen, as these ended at {:.3g} s; {}",
-                     what, seen_until, what_to_do);
-}
-
-// Within a step a curve of frequency omega bends by (omega h)^2 of itself, and is off by (omega h)^4.
-std::string Accuracy::withdrawn_by_bends(double times, double wanted) {
-  if (!measured || !(times > BeyondTrials::alike)) return {};
-  std::string names;
-  for (std::size_t q = 0; q < quantities; ++q) {
-    Promise& promise = promises[q];
-    if (!promise.present || !promise.kept) continue;
-    promise.expected *= times * times;
-    promise.kept = promise.expected <= wanted;
-    if (!promise.kept) names += fmt::format("{}{}", names.empty() ? "" : ", ", quantity_names[q]);
-  }
-  if (names.empty()) return {};
-  return fmt::format(
-      "not promised after all: {}: after {:.3g} s, where trial runs ended, accelerations or wheel forces change within "
-      "steps {:.2g} times as much as before; {}",
-      names, seen_until, times, what_to_do);
-}
-
-std::string Accuracy::withdrawn_at_end(bool unsettled) {
-  Promise& promise = promises[low_passed];
-  if (!unsettled || !measured || !promise.present || !promise.kept) return {};
-  promise.kept = false;
-  return "the low-passed acceleration is not promised after all: it is largest at the end of the run, where the filter "
-         "does not know what follows; a longer scene_tail may show it";
-}
-
-std::vector<std::pair<std::string, double>> Accuracy::expected() const {
-  std::vector<std::pair<std::string, double>> list;
-  for (std::size_t q = 0; q < quantities; ++q) {
-    if (!measured || !promises[q].present || !promises[q].kept) continue;
-    list.emplace_back(stored_names[q], promises[q].expected);
-  }
-  for (std::size_t q = 0; q < alone_quantities; ++q)
-    if (measured && alone[q].present && alone[q].kept)
-      list.emplace_back(with_underscores(alone_names[q]), alone[q].expected);
-  if (measured && frequencies.present && frequencies.kept) list.emplace_back("frequency", frequencies.expected);
-  return list;
-}
-
-Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
-  Accuracy result;
+Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
+  Choice none{model_of(scene), {}, {}};
   const bool alone = chooses_step_alone(scene);
-  if (!alone && !chooses(scene)) return result;
+  if (!alone && !chooses(scene)) return none;
   if (const options::Entry* option = own_measure()) {
     notes.push_back(fmt::format("accuracy {:g} is not searched for by trial runs and nothing is promised: {}",
                                 scene.accuracy, option->given()));
-    return result;
+    return none;
   }
   if (alone) return choose_step_alone(comm, scene, notes);
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
   std::vector<std::string> ignored;
-  set_first_mesh(scene);
-  SharedBeam shared(comm, scene, ignored);
-  shared.damp(scene, true, ignored);
-  shared.prepare(scene, ignored);
   Scene known = scene;
+  set_first_mesh(known);
+  SharedBeam shared(comm, known, ignored);
+  shared.damp(known, true, ignored);
+  shared.prepare(known, ignored);
   known.damping.ratios.reset();
   known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
   settle_low_pass(comm, known, ignored);
   Scene timed = known;
-  if (!timed.time_step) timed.time_step = some_step;
+  if (!timed.model.step) timed.model.step = some_step;
   const double end = Passage(timed, shared, ignored).plan().end_time;
   std::optional<ErrorSearch> search(std::in_place, comm, known, shared, end);
   try {
@@ -246,34 +156,33 @@ Accuracy choose(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   } catch (const OutOfBalance& linear) {
     notes.push_back(fmt::format("vehicles stay mechanisms: linear ones are out of balance by {:.1g} of their weights",
                                 linear.defect));
-    scene.vehicle_model = known.vehicle_model = VehicleModel::full;
+    known.model.vehicles = VehicleModel::full;
     search.emplace(comm, known, shared, end);
     search->run();
   }
-  search->apply(scene, result);
-  if (scene.vehicle_model == VehicleModel::automatic) {
-    scene.vehicle_model = VehicleModel::linear;
-    scene.most_defect = search->most_defect();
+  Choice choice = search->choice();
+  if (choice.model.vehicles == VehicleModel::automatic) {
+    choice.model.vehicles = VehicleModel::linear;
+    choice.model.most_defect = search->most_defect();
   }
-  leave_out_rest(scene);
-  result.measured = true;
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  say(scene, *search, result, notes);
-  return result;
+  leave_out_rest(scene, choice.model);
+  choice.accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  say(scene, *search, choice, notes);
+  return choice;
 }
 
 Scene refined(const Scene& scene) {
   Scene fine = scene;
-  if (scene.modes_open && scene.model_modes > 0) {  // chosen together with the steps, which do for modes
-    fine.model_modes = 0;
-    fine.vehicle_model = VehicleModel::full;
-    fine.integrator.clear();
+  if (scene.modes_open && scene.model.modes > 0) {  // chosen together with the steps, which do for modes
+    fine.model.modes = 0;
+    fine.model.vehicles = VehicleModel::full;
+    fine.model.method.clear();
   }
   if (fine.beam->track)
     fine.beam->track->elements_per_bay *= 2;
   else if (!fine.by_given_modes())
     for (int& elements : fine.beam->elements) elements *= 2;
-  fine.time_step = 0.5 * *scene.time_step;
+  fine.model.step = 0.5 * *scene.model.step;
   return fine;
 }
 

@@ -55,7 +55,7 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
       horizon_(scene.accuracy_whole ? end - moved_by() : until_all_is_met(shared)),
       trials_(comm, shortened(moved_up(scene), horizon_)),
       open_mesh_(scene.mesh_open),
-      open_step_(!scene.time_step),
+      open_step_(!scene.model.step),
       open_integrator_(!integrate::type_is_given() && !scene.sweep && !scene.study),
       wanted_((scene.accuracy > small_error ? usual_share : small_share) * scene.accuracy),
       mesh_(mesh_of(scene)),
@@ -68,7 +68,7 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
   longest_step_ = steps.longest;
   step_of_period_ = open_step_ ? steps.of_period : 0.0;
   shortest_ = open_step_ ? steps.why : "the step is given";
-  first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.time_step;
+  first_step_ = step_ = open_step_ ? two_digits(steps.first) : *scene.model.step;
   const double decay = scene.by_given_modes() ? scene.beam->given->ratio.front() * omega
                                               : 0.5 * (shared.rayleigh.a + shared.rayleigh.b * omega * omega);
   const double left = end - moved_by();
@@ -90,7 +90,7 @@ double ErrorSearch::moved_by() const { return beginning(scene_, end_) - beginnin
 double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
   const Scene scene = moved_up(scene_);
   const double first = beginning(scene, end_);
-  const double step = scene_.time_step.value_or(first_steps(scene_, first_omega(shared), first).first);
+  const double step = scene_.model.step.value_or(first_steps(scene_, first_omega(shared), first).first);
   double until = first;
   for (const Meeting& meeting : met_later(scene, first, end_ - moved_by())) {
     const Trials longer(comm_, shortened(scene, meeting.until));
@@ -326,16 +326,19 @@ double ErrorSearch::excess(const Errors& errors, const Errors& finest, const Err
   return most;
 }
 
-void ErrorSearch::apply(Scene& scene, Accuracy& result) {
+Choice ErrorSearch::choice() const {
+  Choice choice{scene_.model, {}, {}};
+  Accuracy& result = choice.accuracy;
+  result.measured = true;
   result.lost_contact = trials_.lost_contact();
   if (horizon_ < end_ - moved_by()) result.seen_until = horizon_ + moved_by();
   const double step = open_step_ ? two_digits(step_ * factor_of_step()) : step_;
   const int mesh = foreseen_mesh();
-  set_mesh(scene, mesh);
-  scene.time_step = step;
-  scene.integrator = integrator_;
-  scene.step_probes = true;
-  scene.contact_seats = true;
+  choice.model.elements = mesh;
+  choice.model.step = step;
+  choice.model.method = integrator_;
+  choice.model.step_probes = true;
+  choice.model.contact_seats = true;
   for (std::size_t q = 0; q < quantities; ++q) {
     const double ratio = step / step_;
     double in_time = time_[q].at(ratio);
@@ -347,11 +350,12 @@ void ErrorSearch::apply(Scene& scene, Accuracy& result) {
     Promise& promise = result.promises[q];
     promise.expected = in_time + in_space;
     const bool told = unseen_.empty() && time_[q].size > 0.0 && space_[q].size > 0.0;
-    if (!promise.present || !is_welcome(scene, q) || !told) continue;
-    promise.kept = promise.expected <= scene.accuracy;
+    if (!promise.present || !is_welcome(scene_, q) || !told) continue;
+    promise.kept = promise.expected <= scene_.accuracy;
     promise.why_not =
-        fmt::format("{}, and what does for the rest leaves {:.1g}", why_not_asked(scene, q), promise.expected);
+        fmt::format("{}, and what does for the rest leaves {:.1g}", why_not_asked(scene_, q), promise.expected);
   }
+  return choice;
 }
 
 }  // namespace traverse::app

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "accuracy/accuracy.hpp"
+#include "accuracy/choice.hpp"
 #include "accuracy/trials.hpp"
 #include "error_law.hpp"
 #include "run/shared_beam.hpp"
@@ -23,7 +24,7 @@ class ErrorSearch {
   /// Collective.
   void run();
   /// Mesh and step of the scene, where they are open, and what they promise.
-  void apply(Scene& scene, Accuracy& result);
+  Choice choice() const;
 
   double horizon() const { return horizon_; }  // s, of a trial run
   std::size_t trials() const { return trials_.count(); }

@@ -10,7 +10,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
-#include <numeric>
+#include <span>
+#include <utility>
 
 #include "base/digest.hpp"
 #include "base/regular_file.hpp"
@@ -44,11 +45,6 @@ std::string build() {
 
 bool within(double value, double least, double most) { return value >= least && value <= most; }
 
-bool are_elements(const std::vector<int>& elements, std::size_t spans) {
-  return elements.size() == spans && std::all_of(elements.begin(), elements.end(), [](int n) { return n >= 1; }) &&
-         std::accumulate(elements.begin(), elements.end(), 0.0) <= most_elements;
-}
-
 bool is_integrator(const std::string& name) {
   return name.empty() || structure::find_method(name) != nullptr || integrate::find_petsc_type(name) != nullptr;
 }
@@ -62,33 +58,43 @@ bool is_ours(const std::string& path) {
 
 }  // namespace
 
-void ChosenOf::keep(base::Bytes& bytes) {
-  int bays = scene.beam && scene.beam->track ? scene.beam->track->elements_per_bay : 0;
-  std::vector<int> elements = scene.beam ? scene.beam->elements : std::vector<int>();
-  Sweep sweep = scene.sweep.value_or(Sweep());
-  bytes(elements, bays, sweep.method, sweep.trials_reach, sweep.trials_lost_contact, scene.time_step, scene.integrator,
-        scene.model_modes, scene.step_probes, scene.contact_seats, scene.rest_tolerance, scene.vehicle_model,
-        scene.most_defect, scene.output.low_pass);
-  if (scene.beam) scene.beam->elements = elements;
-  if (scene.beam && scene.beam->track) scene.beam->track->elements_per_bay = bays;
-  if (scene.sweep) scene.sweep = sweep;
-}
-
-bool is_possible(const Scene& chosen, const Scene& scene) {
+bool is_possible(const Choice& choice, const Scene& scene) {
   constexpr double largest = std::numeric_limits<double>::max(), endless = std::numeric_limits<double>::infinity();
-  if (chosen.beam && !are_elements(chosen.beam->elements, scene.beam->elements.size())) return false;
-  if (chosen.beam && chosen.beam->track && !within(chosen.beam->track->elements_per_bay, 1, most_in_a_bay))
-    return false;
-  if (chosen.sweep && !(is_integrator(chosen.sweep->method) && within(chosen.sweep->trials_reach, 0.0, endless)))
-    return false;
-  const double longest = chosen.end_time.value_or(largest);
-  return (!chosen.time_step || within(*chosen.time_step, options::least_quantity, longest)) &&
-         is_integrator(chosen.integrator) && within(chosen.model_modes, 0, most_elements) &&
-         within(chosen.rest_tolerance, -1.0, largest) && chosen.vehicle_model <= VehicleModel::automatic &&
-         within(chosen.most_defect, 0.0, endless) && within(chosen.output.low_pass.value_or(0.0), 0.0, largest);
+  const NumericalModel& model = choice.model;
+  const double most = !scene.beam         ? 0.0
+                      : scene.beam->track ? most_in_a_bay
+                                          : most_elements / static_cast<double>(scene.beam->spans.size());
+  return within(model.elements, scene.beam ? 1.0 : 0.0, most) && within(model.modes, 0, most_elements) &&
+         (!model.step || within(*model.step, options::least_quantity, scene.end_time.value_or(largest))) &&
+         is_integrator(model.method) && model.vehicles <= VehicleModel::automatic &&
+         within(model.most_defect, 0.0, endless) && within(model.trials_reach, 0.0, endless) &&
+         within(model.rest_tolerance, -1.0, largest) && within(choice.low_pass.value_or(0.0), 0.0, largest);
 }
 
-KeptChoice::KeptChoice(MPI_Comm comm, const Scene& scene) {
+bool KeptChoice::read(std::vector<std::string>& notes, Choice& choice) const {
+  if (known_.empty()) return false;
+  Choice found;
+  std::vector<std::string> said;
+  try {
+    base::Bytes bytes{std::span<const char>(known_)};
+    bytes(found, said);
+    if (!bytes.at_end() || !is_possible(found, scene_)) return false;
+  } catch (const FileError&) {  // not what was written
+    return false;
+  }
+  choice = std::move(found);
+  notes = {"chosen as before for this scene; -accuracy_cache false tries again"};
+  for (const std::string& note : said) notes.push_back(printable(note));
+  return true;
+}
+
+void KeptChoice::write(std::vector<std::string>& notes, Choice& choice) {
+  base::Bytes bytes;
+  bytes(choice, notes);
+  write_file(bytes.written());
+}
+
+KeptChoice::KeptChoice(MPI_Comm comm, const Scene& scene) : scene_(scene) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   writes_ = rank == 0;

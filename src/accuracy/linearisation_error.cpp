@@ -23,10 +23,10 @@ double most_defect(const Scene& scene) { return part_for_linear * scene.accuracy
 bool may_exceed(double defect, const Scene& scene) { return most_growth * defect > most_defect(scene); }
 
 double tolerable_defect(MPI_Comm comm, Scene scene) {
-  scene.output.interval = steps_a_sample * *scene.time_step;
-  scene.most_defect = std::numeric_limits<double>::infinity();
+  scene.output.interval = steps_a_sample * *scene.model.step;
+  scene.model.most_defect = std::numeric_limits<double>::infinity();
   const auto run = [&](VehicleModel vehicles) {
-    scene.vehicle_model = vehicles;
+    scene.model.vehicles = vehicles;
     return peaks_of(comm, scene);
   };
   try {
@@ -35,7 +35,7 @@ double tolerable_defect(MPI_Comm comm, Scene scene) {
     for (std::size_t q = 0; q < quantities; ++q)
       if (asks_for(scene, q))
         error = std::max(
-            error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q), reach * *scene.time_step));
+            error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q), reach * *scene.model.step));
     const double allowed = most_defect(scene);
     if (error > allowed) return allowed;
     return std::max(allowed, linear.defect * (most_growth * error > allowed ? allowed / error : most_growth));

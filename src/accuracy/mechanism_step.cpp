@@ -70,7 +70,7 @@ class Runs {
   const std::optional<Curves>& run(double step) {
     const auto [place, is_new] = kept_.try_emplace(step);
     if (!is_new) return place->second;
-    scene_.time_step = step;
+    scene_.model.step = step;
     try {
       Curves curves;
       Passage passage(scene_, shared_, ignored_);
@@ -135,13 +135,13 @@ struct Search {
 }  // namespace
 
 bool chooses_step_alone(const Scene& scene) {
-  return !scene.beam && !scene.time_step && scene.end_time && !scene.vehicles.empty() && !scene.sweep &&
+  return !scene.beam && !scene.model.step && scene.end_time && !scene.vehicles.empty() && !scene.sweep &&
          scene.analysis == Analysis::transient;
 }
 
 double longest_step_alone(const Scene& scene) { return *scene.end_time / instants; }
 
-Accuracy choose_step_alone(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+Choice choose_step_alone(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("trial runs");
   const options::WithoutMonitors without_monitors;
   const auto begin = std::chrono::steady_clock::now();
@@ -164,12 +164,13 @@ Accuracy choose_step_alone(MPI_Comm comm, Scene& scene, std::vector<std::string>
     if (!refused(q) && searches[q].crawls < most_crawls)
       longer = std::min(longer, std::max(1.0, searches[q].law.room(wanted)));
 
-  Accuracy result;
+  Choice choice{scene.model, {}, {}};
+  Accuracy& result = choice.accuracy;
   result.measured = true;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  scene.time_step = longer * step;
+  choice.model.step = longer * step;
   notes.push_back(fmt::format("accuracy {:g}: steps of {:.3g} s; {} trial runs of the whole scene took {:.2g} s",
-                              scene.accuracy, *scene.time_step, runs.count(), result.seconds));
+                              scene.accuracy, *choice.model.step, runs.count(), result.seconds));
   std::string expected;
   for (std::size_t q = 0; q < alone_quantities; ++q) {
     Promise& promise = result.alone[q];
@@ -187,7 +188,7 @@ Accuracy choose_step_alone(MPI_Comm comm, Scene& scene, std::vector<std::string>
           refused(q) ? "contacts are lost and made again, by forces that are pulses"
                      : fmt::format("steps of {:.2g} s leave an error of {:.1g}{}", step, searches[q].law.value,
                                    searches[q].crawls > 0 ? ", which does not fall as they are halved" : "")));
-  return result;
+  return choice;
 }
 
 bool report_alone(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy) {
@@ -201,7 +202,7 @@ bool report_alone(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy) {
   for (std::size_t q = 0; q < alone_quantities; ++q) {
     const Promise& promise = accuracy.alone[q];
     if (!promise.present) continue;
-    const double error = runs.difference(*scene.time_step, 0.5 * *scene.time_step, static_cast<AloneQuantity>(q));
+    const double error = runs.difference(*scene.model.step, 0.5 * *scene.model.step, static_cast<AloneQuantity>(q));
     all_kept = report_row(alone_names[q], promise, scene.accuracy, error, rank == 0) && all_kept;
   }
   return all_kept;

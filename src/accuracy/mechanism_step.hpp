@@ -12,8 +12,8 @@ bool chooses_step_alone(const Scene& scene);
 /// The step that this begins with, s.
 double longest_step_alone(const Scene& scene);
 
-/// Collective. Fills in the scene's step and says so in `notes`. InputError as the scene's own run would throw it.
-Accuracy choose_step_alone(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
+/// Collective. The scene's model with its step, which `notes` names. InputError as the scene's own run would throw it.
+Choice choose_step_alone(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
 
 /// Collective. Prints promised errors and those against a run with half the step. False where a promise is broken.
 bool report_alone(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy);

@@ -71,10 +71,11 @@ bool chooses_mode_mesh(const Scene& scene) {
   return scene.analysis == Analysis::modes && scene.mesh_open && scene.beam && !scene.by_given_modes();
 }
 
-Accuracy choose_mode_mesh(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
   const results::Stage stage("search for the mesh of the modes");
   const auto begin = std::chrono::steady_clock::now();
-  Accuracy accuracy;
+  Choice choice{scene.model, {}, {}};
+  Accuracy& accuracy = choice.accuracy;
   Frequencies frequencies(comm, scene);
   int elements = scene.beam->track ? first_a_bay : first_a_span;
   while (!too_many(scene, 2 * elements) && frequencies.error(elements) > scene.accuracy) elements *= 2;
@@ -84,14 +85,14 @@ Accuracy choose_mode_mesh(MPI_Comm comm, Scene& scene, std::vector<std::string>&
   promise.kept = promise.expected <= scene.accuracy;
   accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   const char* of = scene.beam->track ? "sleeper bay" : "span";
-  set_mesh(scene, elements);
+  choice.model.elements = elements;
   if (promise.kept)
     notes.push_back(fmt::format("accuracy {:g}: {} elements a {}; expected error of the frequencies {:.1g}",
                                 scene.accuracy, elements, of, promise.expected));
   else
     notes.push_back(fmt::format("not promised: frequencies: {} elements a {} still leave an error of {:.1g}", elements,
                                 of, promise.expected));
-  return accuracy;
+  return choice;
 }
 
 }  // namespace traverse::app

@@ -16,6 +16,6 @@ bool chooses_mode_mesh(const Scene& scene);
 
 /// Collective. Halves elements until three meshes tell that every frequency asked for is right to the scene's accuracy,
 /// and says so in `notes`, or that it is not.
-Accuracy choose_mode_mesh(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes);
+Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/whole.hpp"
 #include "methods/one_step_methods.hpp"
 #include "results/stage.hpp"
 #include "run/deck_acceleration.hpp"
@@ -13,28 +12,15 @@
 namespace traverse::app {
 namespace {
 
-constexpr std::size_t margin_spans = 8;  // kept beyond what the train reaches: waves run ahead of it
-constexpr std::size_t few_spans = 24;    // are all kept
-constexpr double steps_a_check = 32.0;   // of the energies; peaks are looked for at every step
-constexpr double hopeless = 10.0;        // times what linear vehicles may be out of balance by
-constexpr double roughness = 1.3;        // times the work on vehicles on a rough track
-constexpr double same_node = 1e-9;
-constexpr double twice_as_long = 2.1;  // steps than a run may have, for comparison
-constexpr std::size_t few_stations = 10000;
-constexpr int least_elements = 4;
+constexpr std::size_t margin_spans = 8;         // kept beyond what the train reaches: waves run ahead of it
+constexpr std::size_t few_spans = 24;           // are all kept
+constexpr double steps_a_check = 32.0;          // of the energies; peaks are looked for at every step
+constexpr double hopeless = 10.0;               // times what linear vehicles may be out of balance by
+constexpr double roughness = 1.3;               // times the work on vehicles on a rough track
+constexpr double twice_as_long = 2.1;           // steps than a run may have, for comparison
 constexpr double solves_a_step = 5.0;           // of the beam, by the default method
 constexpr double steps_a_factorisation = 30.0;  // that would cost as much as a step of a new length
 constexpr double lead = 12.0;                   // bays before the bridge: the start has died away by then
-
-bool is_node(const beam::BeamModel& beam, double x) {
-  double left = 0.0;
-  for (std::size_t i = 0; i < beam.spans.size(); left += beam.spans[i++]) {
-    const double node = (x - left) / beam.spans[i] * beam.elements[i];
-    if (x <= left + beam.spans[i] * (1.0 + same_node))
-      return std::abs(node - std::round(node)) < same_node * beam.elements[i];
-  }
-  return false;
-}
 
 double foremost(const Scene& scene, std::size_t vehicle) {
   const std::vector<double> wheels = wheels_at_start(scene, vehicle);
@@ -83,42 +69,6 @@ bool keeps_accelerations(const Scene& scene, const Plan& plan) {
 
 }  // namespace
 
-void set_mesh(Scene& scene, int elements) {
-  beam::BeamModel& beam = *scene.beam;
-  if (beam.track) {
-    beam.track->elements_per_bay = elements;
-    return;
-  }
-  const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
-  for (std::size_t i = 0; i < beam.spans.size(); ++i)
-    beam.elements[i] = elements == 1
-                           ? 1
-                           : std::max(std::min(elements, least_elements),
-                                      2 * base::whole(std::ceil(0.5 * elements * beam.spans[i] / longest - 1e-9)));
-}
-
-bool aligned(const Scene& scene, int elements) {
-  std::vector<double> stations = scene.output.probes;
-  for_points(scene.beam->foundation, [&](const beam::FoundationKind&, const auto& points) {
-    for (const beam::PointFoundation& point : points) stations.push_back(point.x);
-  });
-  if (scene.beam->track || stations.size() > few_stations) return false;
-  Scene tried = scene;
-  set_mesh(tried, elements);
-  return std::all_of(stations.begin(), stations.end(), [&](double x) { return is_node(*tried.beam, x); });
-}
-
-int aligned_mesh(const Scene& scene, int elements, double most) {
-  for (int count = elements; count <= most * elements; count += 2)
-    if (aligned(scene, count)) return count;
-  return elements;
-}
-
-int mesh_of(const Scene& scene) {
-  return scene.beam->track ? scene.beam->track->elements_per_bay
-                           : *std::max_element(scene.beam->elements.begin(), scene.beam->elements.end());
-}
-
 Scene moved_up(const Scene& scene) {
   Scene part = scene;
   if (!scene.beam->track || scene.train.vehicles.empty() || !scene.load.forces.empty() || !scene.profile.level() ||
@@ -140,8 +90,8 @@ Scene shortened(const Scene& scene, double end) {
   Scene part = scene;
   part.end_time = end;
   part.quiet = true;
-  part.step_probes = true;
-  part.contact_seats = true;
+  part.model.step_probes = true;
+  part.model.contact_seats = true;
   leave_out_vehicles(part, end);
   leave_out_spans(part, end);
   return part;
@@ -170,7 +120,7 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
   passage.run(
       [&](const integrate::Instant& instant) {
         watch.sample(instant);
-        balanced = passage.system().defect() <= scene.most_defect;
+        balanced = passage.system().defect() <= scene.model.most_defect;
       },
       [&](double t, long) {
         watch.step(t);
@@ -210,7 +160,7 @@ double Trials::seconds(int elements, double step, const std::string& integrator)
 
 double Trials::seconds() const {
   double sum = 0.0;
-  for (const auto& [run, peaks] : kept_) sum += seconds(std::get<0>(run), std::get<1>(run), std::get<2>(run));
+  for (const Kept& run : kept_) sum += seconds(run.model.elements, *run.model.step, run.model.method);
   return sum;
 }
 
@@ -221,15 +171,17 @@ const Peaks& Trials::run(int elements, double step, const std::string& integrato
 double Trials::energy_missing(int elements, double step) { return kept_run(elements, step, {}).energy_missing; }
 
 const Trials::Kept& Trials::kept_run(int elements, double step, const std::string& integrator) {
-  if (const auto known = kept_.find({elements, step, integrator}); known != kept_.end()) return known->second;
-  Scene scene = scene_;
-  set_mesh(scene, elements);
-  scene.time_step = step;
-  scene.integrator = integrator;
+  NumericalModel model = scene_.model;
+  model.elements = elements;
+  model.step = step;
+  model.method = integrator;
+  for (const Kept& known : kept_)
+    if (known.model == model) return known;
+  Scene scene = with(scene_, model);
   scene.output.interval = steps_a_check * step;
-  if (scene.vehicle_model == VehicleModel::automatic) {
-    scene.vehicle_model = VehicleModel::linear;
-    scene.most_defect = most_defect_;
+  if (scene.model.vehicles == VehicleModel::automatic) {
+    scene.model.vehicles = VehicleModel::linear;
+    scene.model.most_defect = most_defect_;
   }
   const double a_step = seconds_a_step(elements), most_steps = (most_seconds - spent_) / a_step;
   RunPeaks result;
@@ -238,7 +190,7 @@ const Trials::Kept& Trials::kept_run(int elements, double step, const std::strin
     result = peaks_of(comm_, scene, most_steps);
     if (linear_is_in_doubt(result.defect)) {
       measure_linear(elements, step);
-      scene.most_defect = most_defect_;
+      scene.model.most_defect = most_defect_;
       if (result.defect <= most_defect_) result = peaks_of(comm_, scene, most_steps);
     }
   } catch (const SolverError&) {
@@ -246,26 +198,26 @@ const Trials::Kept& Trials::kept_run(int elements, double step, const std::strin
   }
   spent_ += result.steps * a_step;
   lost_contact_ = lost_contact_ || result.lost_contact;
-  if (scene_.vehicle_model == VehicleModel::automatic && result.defect > most_defect_)
+  if (scene_.model.vehicles == VehicleModel::automatic && result.defect > most_defect_)
     throw OutOfBalance{result.defect};
   if (!result.complete) throw TooMuchWork();
-  Kept kept{std::move(result.peaks), result.energy_missing};
-  return kept_.emplace(std::tuple{elements, step, integrator}, std::move(kept)).first->second;
+  return kept_.emplace_back(Kept{model, std::move(result.peaks), result.energy_missing});
 }
 
 bool Trials::linear_is_in_doubt(double defect) const {
-  return scene_.vehicle_model == VehicleModel::automatic && !measured_linear_ && defect > most_defect_ &&
+  return scene_.model.vehicles == VehicleModel::automatic && !measured_linear_ && defect > most_defect_ &&
          defect < hopeless * most_defect_;
 }
 
 // By twice the step: what linear vehicles neglect hardly depends on it.
 void Trials::measure_linear(int elements, double step) {
   measured_linear_ = true;
-  Scene scene = scene_;
-  set_mesh(scene, elements);
-  scene.time_step = 2.0 * step;
+  NumericalModel model = scene_.model;
+  model.elements = elements;
+  model.step = 2.0 * step;
+  const Scene scene = with(scene_, model);
   most_defect_ = tolerable_defect(comm_, scene);
-  spent_ += 2.0 * seconds(elements, *scene.time_step);
+  spent_ += 2.0 * seconds(elements, *scene.model.step);
 }
 
 }  // namespace traverse::app

@@ -3,25 +3,17 @@
 
 #include <mpi.h>
 
+#include <deque>
 #include <limits>
-#include <map>
 #include <string>
-#include <tuple>
 #include <utility>
 
+#include "accuracy/choice.hpp"
 #include "accuracy/linearisation_error.hpp"
 #include "run/peaks.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
-
-/// Elements of the longest span, the others in proportion and even; with a layered track elements of the rail a bay.
-void set_mesh(Scene& scene, int elements);
-int mesh_of(const Scene& scene);
-/// Whether nodes meet probes and the foundation's springs, inside of whose elements errors fall slowly.
-bool aligned(const Scene& scene, int elements);
-/// So many elements, or up to `most` times as many where these are aligned.
-int aligned_mesh(const Scene& scene, int elements, double most = 1.5);
 
 /// The scene with a train that comes over a level layered track some bays before the bridge, where it starts farther
 /// off, and with so much less of the track: what it does until then tells nothing new.
@@ -79,6 +71,7 @@ class Trials {
   bool linear_is_in_doubt(double defect) const;
   void measure_linear(int elements, double step);
   struct Kept {
+    NumericalModel model;
     Peaks peaks;
     double energy_missing = 0.0;
   };
@@ -86,7 +79,7 @@ class Trials {
 
   MPI_Comm comm_;
   Scene scene_;
-  std::map<std::tuple<int, double, std::string>, Kept> kept_;  // by elements, step and integrator
+  std::deque<Kept> kept_;  // references to its entries stay
   double most_defect_;
   bool measured_linear_ = false;  // against the mechanisms
   bool lost_contact_ = false;

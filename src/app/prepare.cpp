@@ -12,24 +12,28 @@
 namespace traverse::app {
 namespace {
 
-Accuracy try_models(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+Choice try_models(MPI_Comm comm, Scene scene, std::vector<std::string>& notes) {
   if (chooses_mode_mesh(scene)) return choose_mode_mesh(comm, scene, notes);
   if (chooses(scene)) settle_low_pass(comm, scene, notes);
-  return choose(comm, scene, notes);
+  Choice choice = choose(comm, scene, notes);
+  choice.low_pass = scene.output.low_pass;
+  return choice;
 }
 
 }  // namespace
 
 Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
   KeptChoice kept(comm, scene);
-  Accuracy accuracy;
+  Choice choice;
   std::vector<std::string> own;
-  if (!kept.read(own, accuracy, scene)) {
-    accuracy = try_models(comm, scene, own);
-    if (accuracy.measured) kept.write(own, accuracy, scene);
+  if (!kept.read(own, choice)) {
+    choice = try_models(comm, scene, own);
+    if (choice.accuracy.measured) kept.write(own, choice);
   }
   notes.insert(notes.end(), own.begin(), own.end());
-  return accuracy;
+  scene = with(scene, choice.model);
+  if (choice.low_pass) scene.output.low_pass = choice.low_pass;
+  return choice.accuracy;
 }
 
 double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::vector<std::string>& notes) {
@@ -37,7 +41,7 @@ double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::
   const beam::Beam* beam = shared.bridge();
   const bool cheap = beam != nullptr && frequencies_are_cheap(*beam);
   if (beam != nullptr)
-    shared.damp(scene, moves && (accuracy.measured || !scene.time_step || scene.model_modes > 0 || cheap), notes);
+    shared.damp(scene, moves && (accuracy.measured || !scene.model.step || scene.model.modes > 0 || cheap), notes);
   shared.prepare(scene, notes);
   const bool limited = scene.limits_deck_acceleration();
   const double counting =

@@ -31,7 +31,7 @@ ReadyRun::ReadyRun(Job& given)
       passage(scene, given.beam, given.notes, earlier ? &*earlier : nullptr),
       wheels(wheels_at_start(scene).size()) {
   MPI_Comm_rank(job.comm, &rank);
-  if (earlier && scene.time_step && earlier->time_step < *scene.time_step) accuracy.promise_nothing();
+  if (earlier && scene.model.step && earlier->time_step < *scene.model.step) accuracy.promise_nothing();
   if (goes_on() && !(passage.plan().end_time > job.earlier->time))
     throw InputError(fmt::format("restart: the run has come to {:g} s already, its end is at {:g} s", job.earlier->time,
                                  passage.plan().end_time));

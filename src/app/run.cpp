@@ -22,15 +22,15 @@ namespace {
 /// with the mechanisms.
 void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
   const bool viaduct = scene.beam && scene.beam->all_separate() && scene.beam->spans.size() > 1;
-  if (scene.vehicle_model != VehicleModel::automatic || scene.analysis != Analysis::transient || !viaduct ||
+  if (scene.model.vehicles != VehicleModel::automatic || scene.analysis != Analysis::transient || !viaduct ||
       scene.vehicles.empty() || !scene.train.steady() || scene.start != Start::equilibrium)
     return;
-  scene.vehicle_model = VehicleModel::linear;
-  scene.most_defect = most_defect(scene);
+  scene.model.vehicles = VehicleModel::linear;
+  scene.model.most_defect = most_defect(scene);
   notes.push_back(fmt::format(
       "vehicles are taken as linear as long as they are out of balance by less than {:.1g} of their weights; "
       "-model_vehicles full keeps the mechanisms",
-      scene.most_defect));
+      scene.model.most_defect));
 }
 
 /// A run that goes on has as many as it had, of as many.

@@ -20,7 +20,7 @@ int run_in_time(Job job) {
   std::optional<SharedBeam> own;
   if (repeated.with_mechanisms) {
     std::vector<std::string> ignored;
-    scene.vehicle_model = VehicleModel::full;  // in place of linear vehicles
+    scene.model.vehicles = VehicleModel::full;  // in place of linear vehicles
     own.emplace(job.comm, scene, ignored);
   }
   int halvings = goes_on || !scene.step_open ? 0 : most_halvings;
@@ -30,18 +30,18 @@ int run_in_time(Job job) {
   while (end.again != Retry::none) {
     std::vector<std::string> notes;
     if (end.again == Retry::mechanisms) {
-      scene.vehicle_model = VehicleModel::full;
+      scene.model.vehicles = VehicleModel::full;
       repeated.with_mechanisms = true;
       notes.push_back(fmt::format(
           "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
-          scene.most_defect));
+          scene.model.most_defect));
     } else {
       --halvings;
-      scene.time_step = 0.5 * end.step;
+      scene.model.step = 0.5 * end.step;
       accuracy.promise_nothing();
       notes.push_back(fmt::format("the run is repeated with steps of {:g} s, and nothing is promised: {}",
-                                  *scene.time_step, end.why));
+                                  *scene.model.step, end.why));
     }
     SharedBeam beam(job.comm, scene, notes);
     Job again{job.comm, scene, results::claim_place(job.comm, scene.output.file), accuracy, beam, std::move(notes)};

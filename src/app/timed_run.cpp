@@ -196,7 +196,7 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   const std::vector<std::string> withdrawn = withdraw();
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
-  const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.most_defect);
+  const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.model.most_defect);
   std::vector<results::Verdict> verdicts;
   std::optional<norm::NormCheck> check;
   if (reaches_end_ && counts) {
@@ -257,7 +257,7 @@ RunEnd WatchedRun::take() {
       checkpoints_.write(reached_, wall_seconds());
       by_signal = true;
     }
-    if (system_.defect() <= scene_.most_defect) check_balance(scene_, watch_.extremes());
+    if (system_.defect() <= scene_.model.most_defect) check_balance(scene_, watch_.extremes());
   } catch (const FileError& error) {
     leave_together(comm, error);
   } catch (const StepTooLong& error) {
@@ -282,7 +282,7 @@ RunEnd WatchedRun::take() {
   say_what_happened(by_signal);
   if (reaches_end_ && !passage_.stopped_at_limit()) checkpoints_.forget();
   noted_.reset();
-  if (reaches_end_ && summary.linear_defect > scene_.most_defect) return {0, Retry::mechanisms, {}, 0.0};
+  if (reaches_end_ && summary.linear_defect > scene_.model.most_defect) return {0, Retry::mechanisms, {}, 0.0};
   check_deflection(comm, scene_, summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, watch_.finished_peaks()))

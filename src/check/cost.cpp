@@ -71,14 +71,14 @@ void count_single(const Look& look, Cost& cost) {
 void count_runs(const Look& look, Cost& cost) {
   Scene scene = look.whole;
   scene.beam = look.scene.beam;
-  if (!scene.exact_in_time()) scene.time_step = look.passage->plan().time_step;
+  if (!scene.exact_in_time()) scene.model.step = look.passage->plan().time_step;
   // As trial runs mostly find.
-  if (scene.vehicle_model == VehicleModel::automatic) scene.vehicle_model = VehicleModel::linear;
+  if (scene.model.vehicles == VehicleModel::automatic) scene.model.vehicles = VehicleModel::linear;
   std::vector<std::string> ignored;
   const CaseRunner runner(scene, ignored);
   const double of_sweep = static_cast<double>(runner.speeds().size() * runner.trains());
   cost.seconds = runner.cost_of_all() * static_cast<double>(look.runs) / of_sweep;
-  if (!scene.exact_in_time()) cost.steps = runner.duration(0, runner.speeds().front()) / *scene.time_step;
+  if (!scene.exact_in_time()) cost.steps = runner.duration(0, runner.speeds().front()) / *scene.model.step;
   cost.stored =
       bytes_a_peak * static_cast<double>(look.runs * std::max<std::size_t>(1, look.scene.output.probes.size()));
   if (!scene.modes_open) return;

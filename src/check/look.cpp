@@ -49,7 +49,7 @@ Look::Look(const Scene& given) : whole(first_scene(given)), scene(one_run(whole)
   if (tried) set_first_mesh(scene);
   shared = std::make_unique<SharedBeam>(PETSC_COMM_SELF, scene, notes);
   const bool moves = scene.analysis != Analysis::modes;
-  if (shared->beam) shared->damp(scene, tried || scene.model_modes > 0 || (moves && !scene.time_step), notes);
+  if (shared->beam) shared->damp(scene, tried || scene.model.modes > 0 || (moves && !scene.model.step), notes);
   if (moves) shared->prepare(scene, notes);
   if (moves) choose_mesh_and_step();
   if (moves) {
@@ -64,21 +64,21 @@ Look::Look(const Scene& given) : whole(first_scene(given)), scene(one_run(whole)
 void Look::choose_mesh_and_step() {
   if (scene.analysis != Analysis::transient) return;
   if (chooses_step_alone(scene) && own_measure() == nullptr) {
-    scene.time_step = longest_step_alone(scene);
+    scene.model.step = longest_step_alone(scene);
     choice.push_back(
         fmt::format("steps of {:.3g} s to begin with; runs of the whole scene halve them until positions and "
                     "forces are right to accuracy {:g}",
-                    *scene.time_step, scene.accuracy));
+                    *scene.model.step, scene.accuracy));
     return;
   }
   if (!tried) {
-    if (scene.time_step) choice.push_back(fmt::format("steps of {:g} s, as given", *scene.time_step));
+    if (scene.model.step) choice.push_back(fmt::format("steps of {:g} s, as given", *scene.model.step));
     if (const options::Entry* option = own_measure(); option != nullptr && chooses(scene))
       choice.push_back(fmt::format("no trial runs for accuracy {:g}: {}", scene.accuracy, option->given()));
     return;
   }
   Scene timed = scene;
-  if (!timed.time_step) timed.time_step = some_step;
+  if (!timed.model.step) timed.model.step = some_step;
   std::vector<std::string> ignored;
   const double end = Passage(timed, *shared, ignored).plan().end_time;
   horizon = beginning(scene, end);
@@ -90,15 +90,15 @@ void Look::choose_mesh_and_step() {
                                scene.by_given_modes() ? mesh
                                : scene.mesh_open      ? mesh + " to begin with"
                                                       : mesh + ", as given",
-                               scene.time_step
-                                   ? fmt::format("steps of {:g} s, as given", *scene.time_step)
+                               scene.model.step
+                                   ? fmt::format("steps of {:g} s, as given", *scene.model.step)
                                    : fmt::format("steps of {:.3g} s to begin with: {}", steps.first, steps.why)));
   choice.push_back(
       fmt::format("trial runs of the first {:.3g} s refine or coarsen them until the peaks are right to accuracy {:g}",
                   horizon, scene.accuracy));
-  first_step = scene.time_step.value_or(steps.first);
-  longest_step = scene.time_step.value_or(steps.longest);
-  scene.time_step = first_step;
+  first_step = scene.model.step.value_or(steps.first);
+  longest_step = scene.model.step.value_or(steps.longest);
+  scene.model.step = first_step;
 }
 
 void Look::find_frequencies() {

@@ -34,9 +34,9 @@ std::vector<double> passages(const Scene& scene, const Plan& plan) {
 
 coupling::SystemInput system_input(const Scene& scene, bool still) {
   coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,         scene.profile,
-                                 scene.gravity,  scene.self_weight, scene.impact_steps, scene.contact_seats};
+                                 scene.gravity,  scene.self_weight, scene.impact_steps, scene.model.contact_seats};
   if (!still) {
-    const auto own = integrate::own_method(scene.integrator);
+    const auto own = integrate::own_method(scene.model.method);
     const double solves = own ? static_cast<double>(own->stages.size()) : usual_solves;
     input.impact_steps *= static_cast<int>(std::max(1.0, usual_solves / solves));
     return input;
@@ -75,13 +75,13 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
   } else {
     leave_out_rest(notes);
     integrate::Settings settings{plan_.end_time, plan_.time_step, plan_.interval,
-                                 system_.known_events(plan_.end_time, scene.step_kinks),
+                                 system_.known_events(plan_.end_time, scene.model.step_kinks),
                                  scene.contact_tolerance.value_or(1e-3 * plan_.time_step)};
-    if (scene.step_probes) settings.passages = passages(scene, plan_);
+    if (scene.model.step_probes) settings.passages = passages(scene, plan_);
     if (!still_) add_axle_passages(settings.passages);
     settings.stored = plan_.stored;
-    settings.type = scene.integrator;
-    settings.corners = scene.step_kinks && !still_;
+    settings.type = scene.model.method;
+    settings.corners = scene.model.step_kinks && !still_;
     stepper_.emplace(system_, std::move(settings));
     if (!still_) check_times(plan_);
     if (!still_ && stepper_->hides_long_steps())
@@ -105,15 +105,15 @@ void Passage::add_axle_passages(std::vector<double>& times) const {
 
 void Passage::leave_out_rest(std::vector<std::string>& notes) {
   const beam::Beam* beam = system_.beam();
-  if (still_ || beam == nullptr || scene_.model_modes > 0) return;
+  if (still_ || beam == nullptr || scene_.model.modes > 0) return;
   const bool apart = beam->parts().size() > 2;
-  const double tolerance = scene_.rest_tolerance >= 0.0 ? scene_.rest_tolerance
+  const double tolerance = scene_.model.rest_tolerance >= 0.0 ? scene_.model.rest_tolerance
                            : apart                      ? structure::RestWindow::quiet
                                                         : 0.0;
   if (tolerance == 0.0) return;
   system_.leave_out_rest(tolerance, scene_.output.probes);
   notes.push_back(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",
-                              tolerance, scene_.rest_tolerance >= 0.0 ? "" : "; -model_window 0 steps all"));
+                              tolerance, scene_.model.rest_tolerance >= 0.0 ? "" : "; -model_window 0 steps all"));
 }
 
 void Passage::start(std::vector<std::string>& notes) {
@@ -126,7 +126,7 @@ void Passage::start(std::vector<std::string>& notes) {
   double* y = stepper_->state();
   for (const std::string& line : system_.start(still_ || scene_.start == Start::equilibrium, y, still_))
     notes.push_back(line);
-  if (scene_.vehicle_model == VehicleModel::linear && !still_)
+  if (scene_.model.vehicles == VehicleModel::linear && !still_)
     for (const std::string& line : system_.linearise_vehicles(y)) notes.push_back(line);
   if (!still_ && stepper_->hides_long_steps()) check_contacts(scene_, plan_, system_.fleet(), notes);
   stepper_->restore_state(&y);

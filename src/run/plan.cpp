@@ -138,7 +138,7 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   Plan plan;
   plan.end_time = end_of(scene, system);
   if (!scene.exact_in_time())
-    plan.time_step = scene.time_step ? *scene.time_step : chosen_step(scene, first_period, notes);
+    plan.time_step = scene.model.step ? *scene.model.step : chosen_step(scene, first_period, notes);
   if (plan.end_time <= 0.0)
     throw InputError(
         "scene_tail is missing: every wheel and force has left the beam at the start; give scene_tail "
@@ -154,14 +154,14 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   if (scene.output.interval) {
     plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9))));
-    plan.stored = scene.step_probes ? steps : looks_among(steps, plan.interval / static_cast<double>(steps), looks);
+    plan.stored = scene.model.step_probes ? steps : looks_among(steps, plan.interval / static_cast<double>(steps), looks);
     plan.interval /= static_cast<double>(plan.stored);
     if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples)));
-    plan.stored = scene.step_probes ? steps : looks_among(steps, plan.time_step, looks);
+    plan.stored = scene.model.step_probes ? steps : looks_among(steps, plan.time_step, looks);
     plan.interval = plan.time_step * static_cast<double>(steps) / static_cast<double>(plan.stored);
   }
   move_end_to_sample(plan);

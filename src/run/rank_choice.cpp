@@ -47,9 +47,9 @@ StageWork stage_work(const Scene& scene) {
   work.unknowns = unknowns_of(scene);
   work.each = beam.track ? layered : spans_apart ? apart : continuous;
   // Every rank steps all vehicles that are linear.
-  work.vehicles = scene.vehicle_model == VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
-  work.cut = !(scene.rest_tolerance > 0.0 || (scene.rest_tolerance < 0.0 && spans_apart));
-  if (scene.model_modes > 0)
+  work.vehicles = scene.model.vehicles == VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
+  work.cut = !(scene.model.rest_tolerance > 0.0 || (scene.model.rest_tolerance < 0.0 && spans_apart));
+  if (scene.model.modes > 0)
     work.alone = "the modes' steps have no more in them than a message";
   else if (work.vehicles == 0.0 && !work.cut)
     work.alone = "the spans near linear vehicles have no more in them than a message";

@@ -118,7 +118,7 @@ void check_mesh(const Scene& scene, std::vector<std::string>& notes) {
   if (!scene.beam || scene.beam->track || !loaded(scene)) return;
   const beam::BeamModel& beam = *scene.beam;
   const bool moves = scene.analysis == Analysis::transient && greatest_speed(scene) > 0.0;
-  if (moves && scene.model_modes == 0 && *std::min_element(beam.elements.begin(), beam.elements.end()) == 1)
+  if (moves && scene.model.modes == 0 && *std::min_element(beam.elements.begin(), beam.elements.end()) == 1)
     notes.emplace_back(
         "one element a span: its first frequency is up to a tenth too high, and so may the response be wrong; "
         "-beam_elements_per_span 4 keeps a thousandth");
@@ -136,7 +136,7 @@ void check_times(const Plan& plan) {
 
 void check_steps(const Scene& scene, const Plan& plan, double first_period, bool high_order,
                  std::vector<std::string>& notes) {
-  if (!scene.time_step) return;
+  if (!scene.model.step) return;
   const double step = std::min(plan.time_step, plan.interval);
   check_waves(scene, step, notes);
   check_sleepers(scene, step, notes);

@@ -101,21 +101,21 @@ void SharedBeam::damp(const Scene& scene, bool frequencies_wanted, std::vector<s
 
 void SharedBeam::prepare(const Scene& scene, std::vector<std::string>& notes) {
   if (!beam) return;
-  const results::Stage stage(scene.model_modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
+  const results::Stage stage(scene.model.modes > 0 ? "computation of the bridge's modes" : "factorisation of the beam");
   statics = std::make_shared<structure::BeamOperator>(*beam);
-  if (scene.model_modes == 0) return;
+  if (scene.model.modes == 0) return;
   if (scene.by_given_modes())
-    modal.emplace(*beam, *statics, scene.model_modes);
+    modal.emplace(*beam, *statics, scene.model.modes);
   else
-    modal.emplace(*beam, *statics, modes::bending_basis(*beam, scene.model_modes), scene.damping_of_modes);
+    modal.emplace(*beam, *statics, modes::bending_basis(*beam, scene.model.modes), scene.damping_of_modes);
   if (scene.by_given_modes() && modal->modes() < scene.beam->given->omega.size())
     notes.push_back(fmt::format("of these modes the {} lowest", modal->modes()));
   if (scene.by_given_modes()) return;
   const auto hertz = [&](double value) { return value / (2.0 * std::numbers::pi); };
   notes.push_back(fmt::format("the bridge by {} modes up to {:.6g} Hz{}, the others static{}", modal->modes(),
                               hertz(modal->omega().back()), scene.exact_in_time() ? ", exact in time" : "",
-                              static_cast<int>(modal->modes()) > scene.model_modes
-                                  ? fmt::format(" ({} asked for: all copies of the last frequency)", scene.model_modes)
+                              static_cast<int>(modal->modes()) > scene.model.modes
+                                  ? fmt::format(" ({} asked for: all copies of the last frequency)", scene.model.modes)
                                   : ""));
 }
 

@@ -49,7 +49,7 @@ Watch::Watch(const Scene& scene, coupling::System& system, const beam::Beam* bea
     }
   }
   for (const train::Member& member : system.fleet().members) wheel_count_ += member.type->wheels.size();
-  const double lag = beam != nullptr && scene.model_modes == 0 ? beam->rayleigh().b : 0.0;
+  const double lag = beam != nullptr && scene.model.modes == 0 ? beam->rayleigh().b : 0.0;
   if (lag > 0.0) lag_.emplace(*recovery_, lag);
   peaks_ = peaks_for(scene, wheel_count_, lag);
   wheels_ = WheelExtremes(wheel_count_, system.corners());
@@ -154,7 +154,7 @@ void Watch::note_energy() {
   for (double term : {e.kinetic, e.strain, e.potential})
     summary_.largest_energy = std::max(summary_.largest_energy, std::abs(term));
   // Where steps do not end at kinks the drive's work is not known so well that it could be judged without.
-  const bool apart = scene_.train.drive == Drive::constant && scene_.step_kinks;
+  const bool apart = scene_.train.drive == Drive::constant && scene_.model.step_kinks;
   const double forward = apart ? start.kinetic : 0.0;
   for (double change :
        {e.kinetic - forward, e.strain - start.strain, e.potential - start.potential, e.dissipated, e.work})

@@ -70,7 +70,7 @@ Need mesh(const Scene& scene) {
 Need modes(const Scene& scene) {
   const bool wanted = scene.analysis == Analysis::modes;
   const double nodes = elements_of(*scene.beam), unknowns = nodes * (scene.beam->axial ? 3.0 : 2.0);
-  const double count = std::min<double>(wanted ? scene.mode_count : scene.model_modes, unknowns);
+  const double count = std::min<double>(wanted ? scene.mode_count : scene.model.modes, unknowns);
   const bool all = count > unknowns / few_modes;
   const double numbers = all ? lapack_copies * unknowns * unknowns : 6.0 * count * unknowns;
   return {8.0 * numbers, wanted ? "modes_count" : "model_modes",
@@ -121,7 +121,7 @@ std::vector<Need> needs_of(const Scene& scene) {
       {springs * a_spring, "foundation_vertical_x", fmt::format("{:g} springs of the foundation", springs)});
   needs.push_back({16.0 * (wheels + forces) * kinks, forces > wheels ? "load_forces" : "train_vehicles",
                    fmt::format("{:g} wheels and forces that pass {:g} kinks of their way", wheels + forces, kinks)});
-  if (scene.analysis == Analysis::modes || scene.model_modes > 0) needs.push_back(modes(scene));
+  if (scene.analysis == Analysis::modes || scene.model.modes > 0) needs.push_back(modes(scene));
   if (scene.sweep) needs.push_back(sweep(scene));
   return needs;
 }

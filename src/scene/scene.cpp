@@ -36,18 +36,18 @@ void read_run(const Options& o, Scene& scene) {
   scene.start = o.choice("scene_start") == "given" ? Start::given : Start::equilibrium;
   scene.tail = o.optional_number("scene_tail");
   scene.end_time = o.optional_number("ts_max_time");
-  scene.time_step = o.optional_number("ts_dt");
-  scene.step_open = !scene.time_step;
+  scene.model.step = o.optional_number("ts_dt");
+  scene.step_open = !scene.model.step;
   scene.mode_count = o.integer("modes_count");
   scene.contact_tolerance = o.optional_number("contact_tolerance");
   scene.impact_steps = o.integer("contact_impact_steps");
-  scene.contact_seats = o.flag("contact_seats");
-  scene.step_kinks = o.flag("step_kinks");
-  scene.step_probes = o.flag("step_probes");
+  scene.model.contact_seats = o.flag("contact_seats");
+  scene.model.step_kinks = o.flag("step_kinks");
+  scene.model.step_probes = o.flag("step_probes");
   scene.all_ranks = o.choice("step_ranks") == "all";
-  scene.rest_tolerance = read_window(o);
+  scene.model.rest_tolerance = read_window(o);
   const std::string vehicles = o.choice("model_vehicles");
-  scene.vehicle_model = vehicles == "linear" ? VehicleModel::linear
+  scene.model.vehicles = vehicles == "linear" ? VehicleModel::linear
                         : vehicles == "auto" ? VehicleModel::automatic
                                              : VehicleModel::full;
   scene.accuracy = o.number("accuracy");

@@ -50,8 +50,8 @@ void read_modes_of_given(const Options& o, Scene& scene) {
       wanted != std::floor(wanted))
     o.refuse("model_modes",
              fmt::format("allowed with bridge_modes_file: auto, or a number of the lowest modes up to {}", there));
-  if (scene.analysis == Analysis::transient) scene.model_modes = static_cast<int>(wanted);
-  if (scene.rest_tolerance > 0.0)
+  if (scene.analysis == Analysis::transient) scene.model.modes = static_cast<int>(wanted);
+  if (scene.model.rest_tolerance > 0.0)
     scene.notes.emplace_back("model_window has no effect: a bridge by its modes moves as a whole");
   for (const options::VerdictLimit& limit : scene.limits)
     if (limit.quantity == "deflection_over_span" ||

@@ -89,16 +89,16 @@ void read_modal(const Options& o, Scene& scene) {
   if (const options::Entry* type = o.entries().find("ts_type");
       scene.vehicles.empty() && type != nullptr && type->value != "modal")
     o.refuse("ts_type", "with model_modes and forces alone the motion is exact in time; allowed: modal, or left out");
-  scene.model_modes = static_cast<int>(modes);
-  if (scene.rest_tolerance > 0.0)
+  scene.model.modes = static_cast<int>(modes);
+  if (scene.model.rest_tolerance > 0.0)
     scene.notes.emplace_back("model_window has no effect: a bridge by its modes moves as a whole");
   if (!o.has("model_damping_ratios")) return;
   if (scene.damping.rayleigh || scene.damping.ratios)
     o.refuse("model_damping_ratios", "give either these or Rayleigh damping (beam_damping_ratios, beam_rayleigh)");
   scene.damping_of_modes = o.numbers("model_damping_ratios");
-  if (scene.damping_of_modes.size() > 1 && static_cast<int>(scene.damping_of_modes.size()) != scene.model_modes)
+  if (scene.damping_of_modes.size() > 1 && static_cast<int>(scene.damping_of_modes.size()) != scene.model.modes)
     o.refuse("model_damping_ratios", fmt::format("{} ratios for {} modes; wanted: one, or one a mode",
-                                                 scene.damping_of_modes.size(), scene.model_modes));
+                                                 scene.damping_of_modes.size(), scene.model.modes));
 }
 
 }  // namespace traverse::app

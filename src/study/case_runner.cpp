@@ -40,7 +40,7 @@ CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std:
   for (const double x : wheels_at_start(scene)) last_wheel_ = std::min(last_wheel_, x);
   if (beam_ == nullptr) {
     beam_ = std::make_shared<SharedBeam>(PETSC_COMM_SELF, scene_, notes);
-    beam_->damp(scene_, !scene_.time_step || scene_.model_modes > 0, notes);
+    beam_->damp(scene_, !scene_.model.step || scene_.model.modes > 0, notes);
     beam_->prepare(scene_, notes);
   }
   set_up_limits(notes);
@@ -134,7 +134,7 @@ std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<co
        SideBySide::ready(std::span<const SideBySide::Member>(beside), beside.front().lanes->steps()).run()) {
     if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
     const auto& [runner, one] = members[results.size()];
-    if (crossing.trouble != engine::none || runner->lanes_->defect(crossing) > runner->scene_.most_defect) {
+    if (crossing.trouble != engine::none || runner->lanes_->defect(crossing) > runner->scene_.model.most_defect) {
       ++runner->alone_;
       results.push_back(runner->run(train, one, reached));
     } else {
@@ -154,7 +154,7 @@ CaseResult CaseRunner::result_of(const engine::BatchResult& crossing, std::size_
   result.greatest_wheel_force = crossing.greatest_force;
   result.contact_losses = crossing.contact_losses;
   result.longest_loss = crossing.longest_loss;
-  result.unseen = crossing.contact_losses > 0.0 && !scene_.sweep->trials_lost_contact;
+  result.unseen = crossing.contact_losses > 0.0 && !scene_.model.trials_lost_contact;
   result.ended = true;
   return result;
 }
@@ -190,13 +190,13 @@ double CaseRunner::cost() const {
     const double a_stage = seconds_a_lane_vehicle * static_cast<double>(scene_.train.vehicles.size()) +
                            seconds_a_lane_element * beam_->beam->mesh().elements();
     const double rough = scene_.profile.level() ? 1.0 : rough_over_level;
-    return alone * rough * a_stage * static_cast<double>(method_of(scene_).stages.size()) / *scene_.time_step;
+    return alone * rough * a_stage * static_cast<double>(method_of(scene_).stages.size()) / *scene_.model.step;
   }
   double bodies = 0.0;
   for (const int type : scene_.train.vehicles)
     bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
   const double a_step = seconds_a_step + seconds_a_body * bodies + seconds_an_element * beam_->beam->mesh().elements();
-  return a_step / scene_.time_step.value_or(1.0);
+  return a_step / scene_.model.step.value_or(1.0);
 }
 
 double CaseRunner::cost_of_all() const {
@@ -228,7 +228,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
   if (filters_wheels(scene) && no_filter(out.wheel_low_pass, passage.plan(), wheels, "wheels").empty())
     watch.keep_wheel_forces({out.wheel_low_pass, out.unloading_level, passage.plan(), wheels});
   if (scene.judges_runs()) watch.judge();
-  const double seen_until = run.speed > 0.0 ? scene.sweep->trials_reach / run.speed : scene.sweep->trials_reach;
+  const double seen_until = run.speed > 0.0 ? scene.model.trials_reach / run.speed : scene.model.trials_reach;
   watch.tell_beyond_trials(seen_until);
   CaseResult result;
   result.peaks.resize(scene.output.probes.size());
@@ -241,7 +241,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
   passage.run(sample, step);
   result.ended = caught_signal() == 0;
   if (!result.ended) return result;
-  if (passage.system().defect() > scene.most_defect) return run_with_mechanisms(train, run, reached);
+  if (passage.system().defect() > scene.model.most_defect) return run_with_mechanisms(train, run, reached);
   check_balance(scene, watch.extremes());
   const Peaks& peaks = watch.finished_peaks();
   for (std::size_t p = 0; p < result.peaks.size(); ++p) {
@@ -258,7 +258,7 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
   result.greatest_wheel_force = extremes.greatest_wheel_force;
   result.contact_losses = extremes.contact_losses;
   result.longest_loss = extremes.longest_loss;
-  result.unseen = watch.met_unseen(scene.sweep->trials_lost_contact ? seen_until : 0.0);
+  result.unseen = watch.met_unseen(scene.model.trials_lost_contact ? seen_until : 0.0);
   std::vector<double>& at_rest = static_deflection_[train];
   if (at_rest.empty() || !passage.system().weights().pass_together(watch.paths())) {
     at_rest.clear();
@@ -275,9 +275,9 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
 // Linear vehicles have left out too much.
 CaseResult CaseRunner::run_with_mechanisms(std::size_t train, const CaseRun& run,
                                            const std::function<void(double)>& reached) {
-  scene_.vehicle_model = VehicleModel::full;
+  scene_.model.vehicles = VehicleModel::full;
   CaseResult result = run_by_elements(train, run, reached);
-  scene_.vehicle_model = VehicleModel::linear;
+  scene_.model.vehicles = VehicleModel::linear;
   return result;
 }
 

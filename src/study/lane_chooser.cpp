@@ -47,29 +47,29 @@ LaneChooser::LaneChooser(const Scene& scene, const TrialSpeeds& speeds) : scene_
   wholes_.emplace(scene, speeds.wholes, whole_, &*beginnings_);
 }
 
-LanesChoice LaneChooser::choose() {
+Choice LaneChooser::choose() {
   LaneSearch search(*beginnings_, mixed_ ? *mixed_ : *beginnings_, scene_.accuracy);
   take(search.run(search.first(whole_ / fastest_.train.speed)));
   if (lose_contact(beginnings_->run(model_))) throw NotChosen{"wheels lose contact"};
   const double defect = beginnings_->defect(model_);
   double most = most_defect(scene_);
-  if (scene_.vehicle_model == VehicleModel::automatic && may_exceed(defect, scene_))
+  if (scene_.model.vehicles == VehicleModel::automatic && may_exceed(defect, scene_))
     most = tolerable_defect(PETSC_COMM_SELF, tried());
-  if (scene_.vehicle_model == VehicleModel::automatic && defect > most)
+  if (scene_.model.vehicles == VehicleModel::automatic && defect > most)
     throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
   Errors errors = check_wholes(search);
   for (std::size_t q = 0; q < quantities; ++q)
     if (asks_for(scene_, q)) errors[q] += std::min(defect, most_defect(scene_));
-  LanesChoice choice;
-  choice.scene = with(scene_, model_);
+  Choice choice{model_, {}, {}};
+  choice.accuracy.measured = true;
   for (std::size_t q = 0; q < quantities; ++q) {
     const bool kept = asks_for(scene_, q);
     const bool present = !by_elements_alone(q) || q == shear_force;
-    choice.promises[q] = {present, kept, errors[q], kept ? "" : why_not_asked(scene_, q)};
+    choice.accuracy.promises[q] = {present, kept, errors[q], kept ? "" : why_not_asked(scene_, q)};
   }
-  if (scene_.vehicle_model == VehicleModel::automatic) choice.scene.most_defect = most;
-  choice.scene.step_probes = true;
-  choice.scene.contact_seats = true;
+  if (scene_.model.vehicles == VehicleModel::automatic) choice.model.most_defect = most;
+  choice.model.step_probes = true;
+  choice.model.contact_seats = true;
   return choice;
 }
 
@@ -77,12 +77,12 @@ LanesChoice LaneChooser::choose() {
 Scene LaneChooser::tried() const {
   Scene scene = shortened(fastest_, distance_ / fastest_.train.speed);
   scene.sweep.reset();
+  scene.model.step = model_.step;
   set_mesh(scene, model_.elements);
-  scene.time_step = model_.step;
   return scene;
 }
 
-void LaneChooser::take(const std::optional<LaneModel>& found) {
+void LaneChooser::take(const std::optional<NumericalModel>& found) {
   if (!found) throw NotChosen{"their peaks do not settle to the accuracy"};
   model_ = *found;
 }
@@ -90,9 +90,9 @@ void LaneChooser::take(const std::optional<LaneModel>& found) {
 LaneErrors LaneChooser::check_wholes(LaneSearch& search) {
   Errors errors{};
   for (int i = 0; i <= most_tries; ++i) {
-    LaneModel other = search.on_finer_mesh(model_);
-    other.method = structure::find_method("esdirk4");
-    other.step *= 0.5;
+    NumericalModel other = search.on_finer_mesh(model_);
+    other.method = "esdirk4";
+    *other.step *= 0.5;
     wholes_->run_at_once(std::array{other, model_});
     errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
     for (std::size_t q = 0; q < quantities; ++q)
@@ -106,12 +106,12 @@ LaneErrors LaneChooser::check_wholes(LaneSearch& search) {
   throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, errors))};
 }
 
-void LaneChooser::refine(const LaneModel& other) {
-  LaneModel same_mesh = other;
+void LaneChooser::refine(const NumericalModel& other) {
+  NumericalModel same_mesh = other;
   same_mesh.elements = model_.elements;
   const Errors by_mesh = difference(scene_, wholes_->run(same_mesh), wholes_->run(other));
   if (greatest(by_mesh) <= mesh_over_wholes * scene_.accuracy)
-    model_.step *= shorter;
+    *model_.step *= shorter;
   else
     model_.elements = other.elements;
 }

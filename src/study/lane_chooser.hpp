@@ -28,23 +28,22 @@ class LaneChooser {
     std::string why;
   };
   /// Throws NotChosen, and LaneTrials::Refused where passages cannot go in lanes.
-  LanesChoice choose();
-  const LaneModel& model() const { return model_; }
+  Choice choose();
 
  private:
-  void take(const std::optional<LaneModel>& found);
+  void take(const std::optional<NumericalModel>& found);
   Scene tried() const;
   /// Whole passages: errors add up while the train crosses. Against a finer mesh and half the step, by esdirk4:
   /// genalpha takes all vibration out of wheels in time, and two of its steps may agree on that.
   LaneErrors check_wholes(LaneSearch& search);
   /// By a finer mesh where it is that what the other one differs by, else by shorter steps.
-  void refine(const LaneModel& other);
+  void refine(const NumericalModel& other);
 
   const Scene& scene_;
   Scene fastest_;
   double whole_ = 0.0, distance_ = 0.0;  // m: of a passage, of its beginning
   std::optional<LaneTrials> beginnings_, mixed_, wholes_;
-  LaneModel model_;  // what was chosen
+  NumericalModel model_;  // what was chosen
 };
 
 /// The errors that a scene asks for, by their names.

@@ -29,7 +29,7 @@ constexpr int most_elements = 256;                         // of a span
 constexpr double surely_within = 0.8, clearly_over = 1.3;  // times what steps may leave
 constexpr double lowest_order = 0.5, highest_order = 4.0;  // of the steps
 
-LaneErrors change(LaneTrials& trials, const LaneModel& from, const LaneModel& to, double factor = 1.0) {
+LaneErrors change(LaneTrials& trials, const NumericalModel& from, const NumericalModel& to, double factor = 1.0) {
   trials.run_at_once(std::array{to, from});
   LaneErrors errors = difference(trials.scene(), trials.run(from), trials.run(to));
   for (double& error : errors) error *= factor;
@@ -42,10 +42,10 @@ double left_of(double change, double before, double most) {
   return change / (std::exp2(order) - 1.0);
 }
 
-LaneModel with_step(const LaneModel& model, double factor, const char* method = nullptr) {
-  LaneModel other = model;
-  other.step *= factor;
-  if (method != nullptr) other.method = structure::find_method(method);
+NumericalModel with_step(const NumericalModel& model, double factor, const char* method = nullptr) {
+  NumericalModel other = model;
+  *other.step *= factor;
+  if (method != nullptr) other.method = method;
   return other;
 }
 
@@ -55,13 +55,18 @@ bool hopeless(double over, const structure::MethodRow& method, double factor) {
 }
 
 /// Solves that a second of motion takes.
-double solves(const LaneModel& model) { return model.method->solves() / model.step; }
+const structure::MethodRow& row_of(const NumericalModel& model) { return *structure::find_method(model.method); }
+double solves(const NumericalModel& model) { return row_of(model).solves() / *model.step; }
 
 }  // namespace
 
-LaneModel LaneSearch::first(double duration) {
-  LaneModel model{aligned_mesh(trials_.scene(), first_mesh(trials_.scene())), structure::find_method("esdirk4"), 0.0};
-  if (!trials_.scene().mesh_open) model.elements = mesh_of(trials_.scene());
+NumericalModel LaneSearch::first(double duration) {
+  NumericalModel model = model_of(trials_.scene());
+  model.modes = 0;
+  model.method = "esdirk4";
+  model.step = 1.0;
+  model.vehicles = VehicleModel::linear;
+  if (trials_.scene().mesh_open) model.elements = aligned_mesh(trials_.scene(), first_mesh(trials_.scene()));
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
   longest_ = steps.longest;
   model.step = std::min(first_step_factor * steps.first, longest_);
@@ -70,44 +75,44 @@ LaneModel LaneSearch::first(double duration) {
 
 // Steps first, as meshes are told apart by what the contacts do to them; and again where a finer mesh wants shorter
 // ones.
-std::optional<LaneModel> LaneSearch::run(LaneModel model) {
+std::optional<NumericalModel> LaneSearch::run(NumericalModel model) {
   if (!foresee_step(model) || !refine_mesh(model) || !halve_step(model)) return std::nullopt;
   return cheaper(model);
 }
 
-LaneModel LaneSearch::on_finer_mesh(LaneModel model) const {
+NumericalModel LaneSearch::on_finer_mesh(NumericalModel model) const {
   if (trials_.scene().mesh_open) model.elements = aligned_mesh(trials_.scene(), 2 * model.elements);
   return model;
 }
 
 /// The step that the first mesh asks for, which the one that does is to confirm, and whether methods of one solve a
 /// step are worth a trial.
-bool LaneSearch::foresee_step(LaneModel& model) {
-  for (int i = 0; i < most_halvings; ++i, model.step *= 0.5) {
+bool LaneSearch::foresee_step(NumericalModel& model) {
+  for (int i = 0; i < most_halvings; ++i, *model.step *= 0.5) {
     measure_steps(model);
     const bool does = over(steps_) <= 1.0;
     if (!does && over(halved_) > surely_within) continue;
     // With one solve a step wheel forces are off where steps change their length.
-    const LaneModel one_solve =
+    const NumericalModel one_solve =
         with_step(model, does ? step_factors.front() : 0.5 * step_factors.front(), methods.front());
     one_solve_ = !asks_for_forces_alone(trials_.scene()) &&
-                 !hopeless(over(left_by(one_solve, model)), *one_solve.method, step_factors.front());
-    if (!does) model.step *= 0.5;
+                 !hopeless(over(left_by(one_solve, model)), row_of(one_solve), step_factors.front());
+    if (!does) *model.step *= 0.5;
     return true;
   }
   return false;
 }
 
-bool LaneSearch::halve_step(LaneModel& model) {
+bool LaneSearch::halve_step(NumericalModel& model) {
   for (int i = 0; i < most_halvings; ++i) {
     measure_steps(model);
     if (over(steps_) <= 1.0) return true;
-    model.step *= 0.5;
+    *model.step *= 0.5;
   }
   return false;
 }
 
-void LaneSearch::measure_steps(const LaneModel& model) {
+void LaneSearch::measure_steps(const NumericalModel& model) {
   trials_.run_at_once(std::array{with_step(model, 0.5), model, with_step(model, 2.0)});
   const LaneErrors before = change(trials_, with_step(model, 2.0), model);
   const LaneErrors now = change(trials_, model, with_step(model, 0.5));
@@ -120,7 +125,7 @@ void LaneSearch::measure_steps(const LaneModel& model) {
 }
 
 /// As what twice the elements change tells.
-bool LaneSearch::refine_mesh(LaneModel& model) {
+bool LaneSearch::refine_mesh(NumericalModel& model) {
   const Scene& scene = trials_.scene();
   if (!scene.mesh_open) return true;
   for (int i = 0; i < most_halvings && model.elements <= most_elements; ++i) {
@@ -135,19 +140,19 @@ bool LaneSearch::refine_mesh(LaneModel& model) {
 }
 
 /// A longer step, or the method of one solve a step, where that costs less.
-LaneModel LaneSearch::cheaper(const LaneModel& model) {
-  LaneModel best = model;
+NumericalModel LaneSearch::cheaper(const NumericalModel& model) {
+  NumericalModel best = model;
   const double of_model = over(steps_);
   for (const char* method : std::span(methods).subspan(one_solve_ ? 0 : 1)) {
     double of_longer = 0.0;
     for (const double factor : step_factors) {
-      const LaneModel tried = with_step(model, factor, method);
+      const NumericalModel tried = with_step(model, factor, method);
       if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
       // Between two steps of one method that are known: about the root of both.
       if (tried.method == model.method && std::sqrt(of_model * of_longer) > clearly_over) continue;
       const LaneErrors own = left_by(tried, model);
       of_longer = over(own);
-      if (hopeless(of_longer, *tried.method, factor)) break;
+      if (hopeless(of_longer, row_of(tried), factor)) break;
       if (of_longer > 1.0) continue;
       steps_ = own;
       best = tried;
@@ -157,9 +162,9 @@ LaneModel LaneSearch::cheaper(const LaneModel& model) {
 }
 
 /// The errors of such steps, told by half those of the model.
-LaneErrors LaneSearch::left_by(const LaneModel& tried, const LaneModel& model) {
+LaneErrors LaneSearch::left_by(const NumericalModel& tried, const NumericalModel& model) {
   LaneErrors own = change(trials_, tried, with_step(model, 0.5));
-  const double times = tried.method->solves() > 1.0 ? 1.0 : of_one_solve;
+  const double times = row_of(tried).solves() > 1.0 ? 1.0 : of_one_solve;
   if (times > 1.0) own[wheel_force] *= of_its_forces;
   for (std::size_t q = 0; q < quantities; ++q) own[q] = times * own[q] + halved_[q];
   return own;

@@ -15,21 +15,21 @@ class LaneSearch {
       : trials_(trials), mixed_(mixed), accuracy_(accuracy) {}
 
   /// The model that the search begins with, for passages that last so long, s.
-  LaneModel first(double duration);
+  NumericalModel first(double duration);
   /// The cheapest model within the accuracy; empty: none.
-  std::optional<LaneModel> run(LaneModel model);
+  std::optional<NumericalModel> run(NumericalModel model);
   double error_of_mesh(std::size_t q) const { return mesh_[q]; }
   double error_of_steps(std::size_t q) const { return steps_[q]; }
   /// What a mesh is compared with: one twice as fine.
-  LaneModel on_finer_mesh(LaneModel model) const;
+  NumericalModel on_finer_mesh(NumericalModel model) const;
 
  private:
-  bool foresee_step(LaneModel& model);
-  bool halve_step(LaneModel& model);
-  void measure_steps(const LaneModel& model);
-  bool refine_mesh(LaneModel& model);
-  LaneModel cheaper(const LaneModel& model);
-  LaneErrors left_by(const LaneModel& tried, const LaneModel& model);
+  bool foresee_step(NumericalModel& model);
+  bool halve_step(NumericalModel& model);
+  void measure_steps(const NumericalModel& model);
+  bool refine_mesh(NumericalModel& model);
+  NumericalModel cheaper(const NumericalModel& model);
+  LaneErrors left_by(const NumericalModel& tried, const NumericalModel& model);
   double over(const LaneErrors& errors) const;
 
   LaneTrials &trials_, &mixed_;

@@ -34,16 +34,6 @@ void filter_kept(BatchResult& result, std::size_t probes, double frequency, doub
 
 }  // namespace
 
-Scene with(const Scene& given, const LaneModel& model) {
-  Scene scene = given;
-  scene.model_modes = 0;
-  if (scene.mesh_open) set_mesh(scene, model.elements);
-  scene.time_step = model.step;
-  scene.sweep->method = model.method->name;
-  scene.vehicle_model = VehicleModel::linear;
-  return scene;
-}
-
 LaneErrors difference(const Scene& scene, const std::vector<BatchResult>& a, const std::vector<BatchResult>& b) {
   LaneErrors worst{};
   for (std::size_t run = 0; run < a.size(); ++run) {
@@ -88,15 +78,15 @@ LaneTrials::LaneTrials(Scene scene, const std::vector<std::vector<double>>& spee
   }
 }
 
-const std::vector<BatchResult>& LaneTrials::run(const LaneModel& model) {
+const std::vector<BatchResult>& LaneTrials::run(const NumericalModel& model) {
   run_at_once({&model, 1});
   return known(model)->results;
 }
 
-void LaneTrials::run_at_once(std::span<const LaneModel> models) {
+void LaneTrials::run_at_once(std::span<const NumericalModel> models) {
   std::vector<std::vector<SideBySide::Ready>> ready;
-  std::vector<LaneModel> own;
-  for (const LaneModel& model : models) {
+  std::vector<NumericalModel> own;
+  for (const NumericalModel& model : models) {
     if (known(model) != nullptr || std::find(own.begin(), own.end(), model) != own.end()) continue;
     own.push_back(model);
     check_memory(model);
@@ -114,7 +104,7 @@ void LaneTrials::run_at_once(std::span<const LaneModel> models) {
   }
 }
 
-void LaneTrials::check_memory(const LaneModel& model) const {
+void LaneTrials::check_memory(const NumericalModel& model) const {
   const SideBySide::Steps steps = steps_of(model);
   double numbers = 0.0;
   for (const std::vector<LaneRun>& runs : groups_) {
@@ -125,8 +115,9 @@ void LaneTrials::check_memory(const LaneModel& model) const {
     throw Refused{"the accelerations of so many probes would have to be kept"};
 }
 
-SideBySide::Steps LaneTrials::steps_of(const LaneModel& model) const {
-  return {model.method->make(model.method->parameter.value), model.step, true, asks_for(scene_, low_passed)};
+SideBySide::Steps LaneTrials::steps_of(const NumericalModel& model) const {
+  const structure::MethodRow& method = *structure::find_method(model.method);
+  return {method.make(method.parameter.value), *model.step, true, asks_for(scene_, low_passed)};
 }
 
 /// Of one model, whose accelerations are filtered run by run: a place each step is an instant each interval of its own.
@@ -144,14 +135,14 @@ std::vector<BatchResult> LaneTrials::run_all(const std::vector<SideBySide::Ready
   return results;
 }
 
-const LaneTrials::Kept* LaneTrials::known(const LaneModel& model) const {
+const LaneTrials::Kept* LaneTrials::known(const NumericalModel& model) const {
   const auto found = std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.model == model; });
   return found == kept_.end() ? nullptr : &*found;
 }
 
-double LaneTrials::defect(const LaneModel& model) const { return known(model)->defect; }
+double LaneTrials::defect(const NumericalModel& model) const { return known(model)->defect; }
 
-LaneTrials::Setup& LaneTrials::setup(const LaneModel& model) {
+LaneTrials::Setup& LaneTrials::setup(const NumericalModel& model) {
   std::unique_ptr<Setup>& place = setups_[model.elements];
   if (place) return *place;
   place = std::make_unique<Setup>();

@@ -11,21 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "accuracy/choice.hpp"
 #include "run/peaks.hpp"
 #include "study/side_by_side.hpp"
 
 namespace traverse::app {
-
-/// What the runs are computed with.
-struct LaneModel {
-  int elements = 0;  // of a span
-  const structure::MethodRow* method = nullptr;
-  double step = 0.0;  // s
-  bool operator==(const LaneModel&) const = default;
-};
-
-/// The scene by such a model, with linear vehicles.
-Scene with(const Scene& given, const LaneModel& model);
 
 /// Errors of each quantity's peaks.
 using LaneErrors = std::array<double, quantities>;
@@ -47,16 +37,16 @@ class LaneTrials {
              const LaneTrials* before = nullptr);
 
   /// Kept. Refused where runs cannot go side by side.
-  const std::vector<engine::BatchResult>& run(const LaneModel& model);
+  const std::vector<engine::BatchResult>& run(const NumericalModel& model);
   /// Those of several models that are not known yet, each in a thread of its own.
-  void run_at_once(std::span<const LaneModel> models);
+  void run_at_once(std::span<const NumericalModel> models);
   /// rad/s, of the bridge by that model or another one.
-  double first_omega(const LaneModel& model) {
+  double first_omega(const NumericalModel& model) {
     setup(model);
     return first_omega_;
   }
   /// The largest SideBySide::defect of a model's runs, which are known.
-  double defect(const LaneModel& model) const;
+  double defect(const NumericalModel& model) const;
   const Scene& scene() const { return scene_; }
 
   struct Refused {
@@ -70,16 +60,16 @@ class LaneTrials {
     std::optional<SideBySide> lanes;
   };
   struct Kept {
-    LaneModel model;
+    NumericalModel model;
     std::vector<engine::BatchResult> results;
     double defect = 0.0;
   };
-  const Kept* known(const LaneModel& model) const;
-  void check_memory(const LaneModel& model) const;
-  SideBySide::Steps steps_of(const LaneModel& model) const;
+  const Kept* known(const NumericalModel& model) const;
+  void check_memory(const NumericalModel& model) const;
+  SideBySide::Steps steps_of(const NumericalModel& model) const;
   std::vector<engine::BatchResult> run_all(const std::vector<SideBySide::Ready>& groups,
                                            const SideBySide::Steps& steps) const;
-  Setup& setup(const LaneModel& model);
+  Setup& setup(const NumericalModel& model);
   /// That of the first mesh, for all of them.
   std::optional<beam::Rayleigh> damping() const {
     return !damping_ && before_ != nullptr ? before_->damping_ : damping_;

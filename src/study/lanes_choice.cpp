@@ -19,8 +19,8 @@ namespace {
 constexpr std::size_t fewest_runs = 4, trial_lanes = 4;
 
 bool open(const Scene& scene) {
-  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.time_step && scene.model_modes == 0 &&
-         scene.mesh_open && scene.vehicle_model != VehicleModel::full && scene.beam &&
+  return !scene.vehicles.empty() && scene.train.courses.empty() && !scene.model.step && scene.model.modes == 0 &&
+         scene.mesh_open && scene.model.vehicles != VehicleModel::full && scene.beam &&
          options::in_force().find("ts_type") == nullptr;
 }
 
@@ -50,7 +50,7 @@ std::string words_of(const Scene& scene, const std::array<Promise, quantities>& 
 
 }  // namespace
 
-std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes) {
+std::optional<Choice> lanes_that_do(const Scene& given, std::vector<std::string>& notes) {
   const std::vector<double>& speeds = given.sweep->speeds;
   if (!open(given) || given.sweep->lanes == 0 || std::max(given.sweep->runs, speeds.size()) < fewest_runs)
     return std::nullopt;
@@ -65,11 +65,11 @@ std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::st
   if (n > 0) trials.mixed = {{speeds[0], speeds[n / 3], speeds[2 * n / 3], speeds[n]}};
   try {
     LaneChooser chooser(given, trials);
-    LanesChoice choice = chooser.choose();
+    Choice choice = chooser.choose();
     notes.push_back(
         fmt::format("runs side by side: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
-                    mesh_of(choice.scene), chooser.model().method->name, chooser.model().step));
-    notes.push_back("expected errors of the peaks: " + words_of(given, choice.promises));
+                    choice.model.elements, choice.model.method, *choice.model.step));
+    notes.push_back("expected errors of the peaks: " + words_of(given, choice.accuracy.promises));
     return choice;
   } catch (const LaneChooser::NotChosen& none) {
     return refuse(none.why);

@@ -1,24 +1,18 @@
 // How the runs of a sweep of trains go side by side: mesh, method and step, chosen from the accuracy.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "accuracy/accuracy.hpp"
+#include "accuracy/choice.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
 
-struct LanesChoice {
-  Scene scene;  // complete, with its mesh, method, step and linear vehicles
-  std::array<Promise, quantities> promises{};
-};
-
 /// Where the scene leaves them open: tries meshes, steps and methods on the beginning of the passages at slow and at
 /// fast speeds, each until a finer one changes the peaks by a part of the accuracy, and checks the choice on whole
 /// passages. `notes` says what was chosen, or why not. The same on every rank.
-std::optional<LanesChoice> lanes_that_do(const Scene& given, std::vector<std::string>& notes);
+std::optional<Choice> lanes_that_do(const Scene& given, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

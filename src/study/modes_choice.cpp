@@ -111,7 +111,7 @@ ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vec
     const std::vector<Sample> samples = some_runs(elements);
     Scene by_modes = scene;
     for (const int number : {2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64}) {
-      by_modes.model_modes = number;
+      by_modes.model.modes = number;
       CaseRunner modes(by_modes, ignored);
       if (modes.cost() > elements.cost()) return {};
       double worst = 0.0;
@@ -131,14 +131,14 @@ ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vec
 }
 
 std::optional<QuickerModes> quicker_modes(const Scene& scene) {
-  if (!allowed(scene) || scene.model_modes > 0) return std::nullopt;
+  if (!allowed(scene) || scene.model.modes > 0) return std::nullopt;
   try {
     std::vector<std::string> ignored;
     const SharedBeam shared(PETSC_COMM_SELF, scene, ignored);
     if (shared.beam->mesh().nodes() > nodes_for_a_question) return std::nullopt;
     const QuickerModes counted = counted_modes(*shared.beam);
     Scene by_modes = scene;
-    by_modes.model_modes = counted.modes;
+    by_modes.model.modes = counted.modes;
     const CaseRunner runner(by_modes, ignored);
     return QuickerModes{counted.modes, counted.frequency, runner.cost_of_all()};
   } catch (const Error&) {

@@ -97,11 +97,11 @@ SideBySide::Track SideBySide::track(const std::optional<std::uint64_t>& seed, do
 }
 
 structure::Method method_of(const Scene& scene) {
-  const structure::MethodRow* row = structure::find_method(scene.sweep->method);
+  const structure::MethodRow* row = structure::find_method(scene.model.method);
   return row != nullptr ? row->make(row->parameter.value) : *integrate::own_method();
 }
 
-SideBySide::Steps SideBySide::steps() const { return {method_of(scene_), *scene_.time_step}; }
+SideBySide::Steps SideBySide::steps() const { return {method_of(scene_), *scene_.model.step}; }
 
 double SideBySide::spacing(const Steps& steps, double speed) {
   return steps.longest * engine::speed_of_class(engine::speed_class(speed));

@@ -211,8 +211,9 @@ std::vector<double> next_speeds(MPI_Comm comm, const Round& round, std::size_t m
 /// Collective. Rounds of runs; the last one, with all runs of those before it, is left in `round`, its file in `file`.
 class Rounds {
  public:
-  Rounds(MPI_Comm comm, const SweepChoice& choice, results::StoredStudy stored, const std::vector<std::string>& notes)
-      : comm_(comm), choice_(choice), stored_(std::move(stored)), notes_(notes) {}
+  Rounds(MPI_Comm comm, const NumericalModel& model, const results::Sweep::Model& as_stored,
+         results::StoredStudy stored, const std::vector<std::string>& notes)
+      : comm_(comm), model_(model), as_stored_(as_stored), stored_(std::move(stored)), notes_(notes) {}
 
   RunFailure run(std::unique_ptr<Round>& round, std::vector<char> known, results::Place place,
                  std::optional<StudyFile>& file, StudyCourse& course) {
@@ -222,7 +223,7 @@ class Rounds {
     results::Refined refined;
     refined.wanted = round->scene.study->refine;
     while (true) {
-      file.emplace(comm_, std::move(place), round->scene, choice_.model, round->table, notes_);
+      file.emplace(comm_, std::move(place), round->scene, as_stored_, round->table, notes_);
       const std::size_t width = round->scenes.runner(0).runs->width();
       RunFailure failure =
           compute(comm_, round->scenes, unknown_of(round->scenes.groups(width), known), round->table, *file);
@@ -240,7 +241,7 @@ class Rounds {
       Scene scene = round->scene;
       scene.study = with_speeds(*scene.study, next);
       auto more = std::make_unique<Round>(std::move(scene));
-      more->scenes.choose(choice_.scene);
+      more->scenes.choose(model_);
       const std::vector<char> before = take_known(comm_, stored_of(round->table), more->table);
       known = take_known(comm_, stored_, more->table);
       course.known += std::count(known.begin(), known.end(), 1) - std::count(before.begin(), before.end(), 1);
@@ -252,7 +253,8 @@ class Rounds {
 
  private:
   MPI_Comm comm_;
-  const SweepChoice& choice_;
+  const NumericalModel& model_;
+  const results::Sweep::Model& as_stored_;
   results::StoredStudy stored_;  // by a run before this one
   const std::vector<std::string>& notes_;
 };
@@ -267,19 +269,21 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   StudyScenes& scenes = round->scenes;
   for (const std::size_t base : scenes.extreme_bases()) scenes.base(base);  // all input is checked first
   std::vector<std::string> notes;
-  SweepChoice choice{scenes.base(scenes.extreme_bases().front()), {}};
+  Choice choice;
   KeptChoice kept(comm, given);
-  if (!kept.read(notes, choice.model, choice.scene)) {
+  if (!kept.read(notes, choice)) {
     choice = choose_for_study(scenes, notes);
-    if (choice.model.accuracy > 0.0) kept.write(notes, choice.model, choice.scene);
+    if (choice.accuracy.measured) kept.write(notes, choice);
   }
-  scenes.choose(choice.scene);
+  scenes.choose(choice.model);
+  const results::Sweep::Model model =
+      stored_model(with(scenes.base(scenes.extreme_bases().front()), choice.model), choice.accuracy);
   const CaseRunner& first = *scenes.runner(0, &notes).runs;
   notes.insert(notes.end(), given.notes.begin(), given.notes.end());
   for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
-  results::StoredStudy stored = stored_of(comm, given, choice.model);
+  results::StoredStudy stored = stored_of(comm, given, model);
   const std::vector<char> known = take_known(comm, stored, round->table);
-  announce(scenes, first, choice.model, round->table.finished_runs(), ranks, notes);
+  announce(scenes, first, model, round->table.finished_runs(), ranks, notes);
   print_notes(comm, notes);
 
   const SignalsNoted noted;
@@ -287,7 +291,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   StudyCourse course;
   std::optional<StudyFile> file;
   const RunFailure failure =
-      Rounds(comm, choice, std::move(stored), notes).run(round, known, std::move(place), file, course);
+      Rounds(comm, choice.model, model, std::move(stored), notes).run(round, known, std::move(place), file, course);
   const int signal = signal_on_any(comm);
   MPI_Allreduce(MPI_IN_PLACE, &course.left_group, 1, MPI_LONG, MPI_SUM, comm);
   course.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -300,7 +304,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
     leave_together(comm, error);
   }
   const results::StudyTable& table = round->table;
-  if (rank == 0) print_study_course(table, choice.model, course, given);
+  if (rank == 0) print_study_course(table, model, course, given);
   if (failure.failed()) throw Error(failure.message, failure.status);
   double deflection = 0.0;
   if (results::StudyPlace largest; find_extreme(table, "peak_deflection", true, largest)) deflection = largest.value;

@@ -11,6 +11,6 @@ namespace traverse::app {
 
 /// The finest that the study's extreme scenes need, each as a sweep over all speeds of the study; the same on every
 /// rank.
-SweepChoice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes);
+Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes);
 
 }  // namespace traverse::app

@@ -41,7 +41,7 @@ void check_speeds(const Scene& scene) {
 
 }  // namespace
 
-StudyScenes::StudyScenes(const Scene& scene) : scene_(scene), chosen_(scene) {
+StudyScenes::StudyScenes(const Scene& scene) : scene_(scene) {
   check_speeds(scene);
   const Study& study = *scene.study;
   const double speed = scene.vehicles.empty() ? scene.load.speed : scene.train.speed;
@@ -118,16 +118,7 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
   // Every base of a bridge stands on the first one's, and goes beside it.
   const std::size_t first = first_of_bridge_[runs_[first_run_[wanted]].bridge];
   const std::shared_ptr<CaseRunner> model = wanted == first ? nullptr : runner(first).runs;
-  Scene scene = base(wanted);
-  if (scene.mesh_open) set_mesh(scene, mesh_of(chosen_));
-  if (!scene.time_step) scene.time_step = chosen_.time_step;
-  if (scene.modes_open) scene.model_modes = chosen_.model_modes;
-  scene.sweep->method = chosen_.sweep->method;
-  scene.rest_tolerance = chosen_.rest_tolerance;
-  scene.step_probes = chosen_.step_probes;
-  scene.contact_seats = chosen_.contact_seats;
-  scene.vehicle_model = chosen_.vehicle_model;
-  scene.most_defect = chosen_.most_defect;
+  const Scene scene = chosen_ ? completed(base(wanted), *chosen_) : base(wanted);
   if (runners_.size() == most_runners) {
     const auto oldest = std::find_if(runners_.begin(), runners_.end(), [&](const Runner& one) {
       return one.base != 0 && one.base != first;  // the first of all tells what runs take

@@ -34,7 +34,7 @@ class StudyScenes {
   std::vector<std::size_t> extreme_bases() const;
 
   /// What was chosen for the study: mesh, step, modes and so on, as far as a base leaves them open.
-  void choose(const Scene& chosen) { chosen_ = chosen; }
+  void choose(const NumericalModel& chosen) { chosen_ = chosen; }
   /// Ready to compute the runs of a base.
   struct Runner {
     std::size_t base = 0;
@@ -54,7 +54,7 @@ class StudyScenes {
 
  private:
   const Scene& scene_;
-  Scene chosen_;
+  std::optional<NumericalModel> chosen_;
   std::vector<double> speeds_;        // of all runs, ascending
   std::vector<std::uint64_t> seeds_;  // of some tracks
   std::vector<StudyRun> runs_;

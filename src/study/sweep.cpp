@@ -143,17 +143,18 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   MPI_Comm_rank(comm, &rank);
   MPI_Comm_size(comm, &ranks);
   std::vector<std::string> notes;
-  SweepChoice choice{given, {}};
+  Choice choice;
   KeptChoice kept(comm, given);
-  if (!kept.read(notes, choice.model, choice.scene)) {
+  if (!kept.read(notes, choice)) {
     choice = choose_for_sweep(given, notes);
-    if (choice.model.accuracy > 0.0) kept.write(notes, choice.model, choice.scene);
+    if (choice.accuracy.measured) kept.write(notes, choice);
   }
-  const Scene& scene = choice.scene;
+  const Scene scene = with(given, choice.model);
+  const results::Sweep::Model model = stored_model(scene, choice.accuracy);
   CaseRunner runner(scene, notes);
   notes.insert(notes.end(), scene.notes.begin(), scene.notes.end());
   for (const std::string& note : options::notes_on_unused(options::in_force())) notes.push_back(note);
-  announce(scene, runner, choice.model, ranks, notes);
+  announce(scene, runner, model, ranks, notes);
   print_notes(comm, notes);
 
   const double slowest = runner.speeds().front(), fastest = runner.speeds().back();
@@ -173,7 +174,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
     if (scene.sweep->refine != 0.0) add_speeds(comm, scene, runner, first_damping(*runner.beam(), frequencies), runs);
   }
   results::Sweep& sweep = runs.sweep;
-  sweep.model = choice.model;
+  sweep.model = model;
   find_peaks(sweep, resonances);
   const RunFailure& failure = runs.failure;
   const int signal = signal_on_any(comm);
@@ -211,7 +212,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
           "alone\n",
           alone);
     fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", runs.ended, whole.planned,
-               results::method_of(choice.model), whole.wall_seconds,
+               results::method_of(model), whole.wall_seconds,
                1e3 * whole.wall_seconds / static_cast<double>(std::max(runs.ended, 1L)), "the sweep", whole.ended,
                scene.output.file.empty() ? "none" : scene.output.file);
   }

@@ -3,27 +3,25 @@
 
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "accuracy/choice.hpp"
 #include "results/sweep.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
-
-struct SweepChoice {
-  Scene scene;  // complete
-  results::Sweep::Model model;
-};
 
 /// The scene of one run of a sweep, of its first train.
 Scene at_speed(const Scene& sweep, double speed);
 
 /// The finest mesh and step that the slowest, a middle and the fastest run need, or modes; the same on every rank.
 /// What was chosen, and the errors to expect, go into `notes`. InputError as the runs themselves would throw it.
-SweepChoice choose_for_sweep(const Scene& given, std::vector<std::string>& notes);
+Choice choose_for_sweep(const Scene& given, std::vector<std::string>& notes);
 /// The two ways that it tries: of trains side by side by modes, nothing where these do not do; else run by run.
-std::optional<SweepChoice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes);
-SweepChoice choose_one_by_one(const Scene& given, std::vector<std::string>& notes);
+std::optional<Choice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes);
+Choice choose_one_by_one(const Scene& given, std::vector<std::string>& notes);
+
+/// As it is stored: of a complete scene.
+results::Sweep::Model stored_model(const Scene& scene, const Accuracy& accuracy);
 
 }  // namespace traverse::app

@@ -24,7 +24,14 @@ const std::string coaches =
     "/options/vehicles/velaro.yml}}\n"
     "train: {vehicles: coach*2, speed: 64.0}\n";
 
-LaneModel model_with(double step) { return {40, structure::find_method("esdirk4"), step}; }
+NumericalModel model_with(double step) {
+  NumericalModel model;
+  model.elements = 40;
+  model.method = "esdirk4";
+  model.step = step;
+  model.vehicles = VehicleModel::linear;
+  return model;
+}
 
 engine::BatchResult trial(bool filtered, double step, double distance) {
   Scene scene = scene_of(coaches);

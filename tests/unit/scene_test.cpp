@@ -267,7 +267,7 @@ TEST(SceneModel, AxialOnlyWhereItMatters) {
 }
 
 TEST(SceneModel, ModesUnderVehicles) {
-  EXPECT_EQ(scene_with({{"model_modes", "5"}}).model_modes, 5);
+  EXPECT_EQ(scene_with({{"model_modes", "5"}}).model.modes, 5);
   EXPECT_FALSE(scene_with({{"model_modes", "5"}}).exact_in_time());
   const std::vector<std::string> notes = scene_with({{"model_modes", "5"}, {"model_window", "1e-3"}}).notes;
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
@@ -278,9 +278,9 @@ TEST(SceneModel, ModesUnderVehicles) {
 }
 
 TEST(SceneModel, Window) {
-  EXPECT_EQ(scene_with({}).rest_tolerance, -1.0);
-  EXPECT_EQ(scene_with({{"model_window", "0"}}).rest_tolerance, 0.0);
-  EXPECT_EQ(scene_with({{"model_window", "1e-4"}}).rest_tolerance, 1e-4);
+  EXPECT_EQ(scene_with({}).model.rest_tolerance, -1.0);
+  EXPECT_EQ(scene_with({{"model_window", "0"}}).model.rest_tolerance, 0.0);
+  EXPECT_EQ(scene_with({{"model_window", "1e-4"}}).model.rest_tolerance, 1e-4);
   for (const char* wrong : {"2", "-1e-3", "near", "1e-4x"})
     EXPECT_PRED2(contains, refused_with("model_window", wrong), "allowed: auto, 0, or a part of the largest motion");
 }
@@ -313,7 +313,7 @@ TEST(SceneSweep, SpeedsAndTrains) {
 
 TEST(SceneSweep, BridgesByModes) {
   const std::string moving = beam_yaml + "load: {forces: 1e5, speed: 30}\n";
-  EXPECT_EQ(scene_of(moving + "model_modes: 7\n").model_modes, 7);
+  EXPECT_EQ(scene_of(moving + "model_modes: 7\n").model.modes, 7);
   EXPECT_EQ(scene_of(moving + "model: {modes: 2, damping_ratios: [0.01, 0.02]}\n").damping_of_modes,
             (std::vector<double>{0.01, 0.02}));
   EXPECT_PRED2(contains, refused(moving + "model_modes: many\n"), "a number of modes");

@@ -89,7 +89,7 @@ long allocations_of_steps(const Words& scene_words, const std::string& type, con
   Stepper stepper(system, {0.1, 1e-3, 0.1, {}, 1e-6});
   double* y = stepper.state();
   (void)system.start(true, y);
-  if (scene.vehicle_model == app::VehicleModel::linear) (void)system.linearise_vehicles(y);
+  if (scene.model.vehicles == app::VehicleModel::linear) (void)system.linearise_vehicles(y);
   stepper.restore_state(&y);
   long before = 0, after = 0;
   stepper.run([](const Instant&) {},

@@ -17,6 +17,7 @@
 #include "traverse/options/rail_loads.hpp"
 #include "traverse/options/study.hpp"
 #include "traverse/options/verdict_limit.hpp"
+#include "traverse/scene/numerical_model.hpp"
 #include "traverse/track/profile.hpp"
 #include "traverse/train/vehicle.hpp"
 
@@ -78,17 +79,10 @@ struct Sweep {
   double refine = 0.0;            // of each peak over the speed, to which speeds are added; 0: none are; below 0:
                                   // where a limit may be broken between two of them
   std::size_t lanes = 8;          // runs side by side; 0: each by itself
-  std::string method;             // ts_type of those; empty: as TS takes it
   double instants = 20.0;         // looked at in a period of the fastest mode, where modes move exactly in time
-  double trials_reach = std::numeric_limits<double>::infinity();  // m of every run's way, that trial runs have seen
-  bool trials_lost_contact = false;                               // wheels did in them
   std::size_t runs = 0;              // of the study that these are a part of; 0: there are no others
   std::vector<std::uint64_t> seeds;  // of some tracks of the study, which differ in them; empty: the scene's own alone
 };
-
-/// Vehicles as mechanisms, or linear, those that can be; automatic: linear where a search for the accuracy finds that
-/// it does not matter, until then mechanisms.
-enum class VehicleModel { full, linear, automatic };
 
 struct Scene {
   std::string name;                     // of the options file, for messages and default file names
@@ -103,27 +97,18 @@ struct Scene {
   double gravity = 9.81;
   Analysis analysis = Analysis::transient;
   Start start = Start::equilibrium;
-  std::optional<double> tail;       // s after the last wheel has left
-  std::optional<double> end_time;   // -ts_max_time
-  std::optional<double> time_step;  // -ts_dt
-  std::string integrator;           // -ts_type that accuracy chose; empty: as the options say
+  std::optional<double> tail;      // s after the last wheel has left
+  std::optional<double> end_time;  // -ts_max_time
+  NumericalModel model;            // as far as it is said
   int mode_count = 10;
-  int model_modes = 0;                   // the bridge by so many modes; 0: by its elements
   bool modes_open = false;               // a sweep may take modes where these do as well
   std::vector<double> damping_of_modes;  // ratio of each mode, the last one for all further modes; empty: Rayleigh's
   std::optional<Sweep> sweep;
   std::optional<Study> study;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
-  bool contact_seats = false;                              // a bridge's elements bend between their nodes under wheels
-  bool step_kinks = true;                                  // steps end where wheels pass kinks
   double looks = std::numeric_limits<double>::infinity();  // s: longest between instants at which responses are seen
   bool all_ranks = false;                                  // take the steps, whether that is faster or not
-  bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
-  double rest_tolerance = -1.0;  // model_window; -1: auto
-  VehicleModel vehicle_model = VehicleModel::full;
-  /// What linear vehicles may be out of balance by over their weights; beyond, the run is repeated with the mechanisms.
-  double most_defect = std::numeric_limits<double>::infinity();
   double accuracy = 1e-3;
   std::vector<std::string> accuracy_of;  // peaks, as in the option's list; empty: all
   bool mesh_open = false;                // its elements are chosen from the accuracy
@@ -156,7 +141,7 @@ struct Scene {
   bool by_given_modes() const { return beam && beam->given; }
   /// Modes under moving forces alone, whose motion is known exactly; single runs of given modes are stepped.
   bool exact_in_time() const {
-    return model_modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep);
+    return model.modes > 0 && vehicles.empty() && load.courses.empty() && (!by_given_modes() || sweep);
   }
 };
 
