@@ -126,7 +126,7 @@ bool damps_all_modes(const Scene& scene) {
 }
 
 Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
-  Choice none{model_of(scene), {}, {}};
+  const Choice none{scene.model, {}, {}};
   const bool alone = chooses_step_alone(scene);
   if (!alone && !chooses(scene)) return none;
   if (const options::Entry* option = own_measure()) {
@@ -173,11 +173,6 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
 
 Scene refined(const Scene& scene) {
   Scene fine = scene;
-  if (scene.modes_open && scene.model.modes > 0) {  // chosen together with the steps, which do for modes
-    fine.model.modes = 0;
-    fine.model.vehicles = VehicleModel::full;
-    fine.model.method.clear();
-  }
   if (fine.beam->track)
     fine.beam->track->elements_per_bay *= 2;
   else if (!fine.by_given_modes())

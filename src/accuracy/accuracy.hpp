@@ -49,8 +49,7 @@ const options::Entry* own_measure();
 /// InputError as the scene's own run would throw it.
 Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes);
 
-/// The scene with twice the elements in every span (or sleeper bay) and half the step; where modes were chosen for it,
-/// by its elements and mechanisms.
+/// The scene with twice the elements in every span (or sleeper bay) and half the step.
 Scene refined(const Scene& scene);
 
 }  // namespace traverse::app

@@ -30,12 +30,6 @@ void Choice::keep(base::Bytes& bytes) {
         accuracy, low_pass);
 }
 
-NumericalModel model_of(const Scene& scene) {
-  NumericalModel model = scene.model;
-  model.elements = scene.beam ? mesh_of(scene) : 0;
-  return model;
-}
-
 Scene with(Scene scene, const NumericalModel& model) {
   scene.model = model;
   if (scene.beam && model.elements > 0 && (scene.mesh_open || model.elements != mesh_of(scene)))

@@ -17,8 +17,6 @@ struct Choice {
   void keep(base::Bytes& bytes);
 };
 
-/// What the scene is computed with, its mesh included.
-NumericalModel model_of(const Scene& scene);
 /// The scene by a model. A mesh that is given for each span stays where the model has as many elements in the longest.
 Scene with(Scene scene, const NumericalModel& model);
 /// The same by what was chosen for it or for others like it, as far as it leaves mesh, step and modes open.

@@ -305,7 +305,7 @@ std::vector<BatchResult> Batch::results() const {
     BatchResult& r = results[l];
     r.trouble = static_cast<Trouble>(static_cast<int>(task_.failed[l]));
     const auto peaks = [&](std::size_t first) {
-      std::vector<BatchPeak> own;
+      std::vector<base::Extreme> own;
       for (std::size_t p = 0; p < n; ++p)
         own.push_back({looks_.peak[rows(first + p) + l], looks_.peak_time[rows(first + p) + l]});
       return own;

@@ -82,16 +82,13 @@ struct BatchPlan {
   double level_until = 0.0;  // m: before it the track is level and the ground rigid, so that a vehicle stands still
 };
 
-struct BatchPeak {
-  double value = 0.0, time = 0.0;
-};
 struct BatchResult {
   Trouble trouble = none;
-  std::vector<BatchPeak> deflection, acceleration, moment;  // of each probe: magnitudes
-  std::vector<double> kept;                                 // accelerations, a row of probes at each place
-  std::vector<BatchPeak> low_passed;                        // of each probe, where somebody has filtered these
-  double least_force = 0.0, greatest_force = 0.0;           // N, of all wheels
-  double contact_losses = 0.0, longest_loss = 0.0;          // of all wheels; s, to a step
+  std::vector<base::Extreme> deflection, acceleration, moment;  // of each probe: magnitudes
+  std::vector<double> kept;                                     // accelerations, a row of probes at each place
+  std::vector<base::Extreme> low_passed;                        // of each probe, where somebody has filtered these
+  double least_force = 0.0, greatest_force = 0.0;               // N, of all wheels
+  double contact_losses = 0.0, longest_loss = 0.0;              // of all wheels; s, to a step
   std::vector<double> farthest;  // coordinates of every vehicle where it was farthest from linear
 };
 

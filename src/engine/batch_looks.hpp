@@ -1,15 +1,15 @@
 // What is seen of runs side by side (batch_task.hpp): peaks at the probes and extremes of wheel forces, between steps
-// too, lane by lane as app::Curve and app::WheelExtremes have them for one run.
+// too, lane by lane as app::Curve and app::WheelExtremes have them for one run (base/extremum.hpp).
 #pragma once
 
+#include "base/extremum.hpp"
 #include "engine/batch_task.hpp"
 #include "engine/train_vehicles.hpp"
 
 namespace traverse::engine {
 namespace {
 
-inline constexpr double near_peak = 0.9;    // of the largest magnitude so far: nothing that turns below is larger
-inline constexpr double most_uneven = 4.0;  // as in run/turn.hpp
+inline constexpr double near_peak = 0.9;  // of the largest magnitude so far: nothing that turns below is larger
 inline constexpr int latest = looks_kept - 1;
 
 inline RowMask runs_until(const BatchTask& t, double gone) {
@@ -93,51 +93,16 @@ inline void see(const BatchTask& t, double before) {
   failed = (sum - sum == Row{}) | (failed != Row{}) ? failed : Rows::fill(not_finite);
 }
 
-/// Which of the last instants tell where a curve turns about the one at m: app::turn_about.
-struct Stencil {
-  int left = 0, right = 0;
-  bool three = false, five = false;
+/// Which instants tell where a curve turns about the one at m; seen: so many instants without a kink.
+inline base::Stencil stencil(const double* at, int m, long seen) {
+  return {at, m, seen < looks_kept ? looks_kept - static_cast<int>(seen) : 0};
+}
 
-  /// seen: so many instants without a kink.
-  Stencil(const double* at, int m, long seen) : left(m - 1), right(m + 1) {
-    const int oldest = seen < looks_kept ? looks_kept - static_cast<int>(seen) : 0;
-    if (left < oldest) return;
-    const auto apart = [=](int a, int b) { return at[b] - at[a]; };
-    five = m == 2 && oldest == 0 && alike(apart(0, 1), apart(1, 2)) && alike(apart(1, 2), apart(2, 3)) &&
-           alike(apart(2, 3), apart(3, 4));
-    while (left > oldest && most_uneven * apart(left, m) < apart(m, m + 1)) --left;
-    while (right < latest && most_uneven * apart(m, right) < apart(m - 1, m)) ++right;
-    three = alike(apart(left, m), apart(m, right));
-  }
-  static bool alike(double a, double b) { return a <= most_uneven * b && b <= most_uneven * a; }
-};
-
-/// The value where the curve of row i turns about the instant m, by three instants or five, and how far behind m that
-/// is: app::turn_of_five, lane by lane.
-inline Row turn(const double* at, double* const* seen, int i, int m, const Stencil& by, bool five, Row& behind) {
-  constexpr int iterations = 3;
-  const auto y = [=](int k) { return rows(seen[k])[i]; };
-  const int l = five ? m - 1 : by.left, r = five ? m + 1 : by.right;
-  const double before = at[m] - at[l], after = at[r] - at[m];
-  const Row middle = y(m), up = (middle - y(l)) / before, down = (y(r) - middle) / after;
-  const Row slope = (up * after + down * before) / (before + after), bend = (down - up) / (before + after);
-  behind = -0.5 * slope / bend;
-  const Row of_three = middle + 0.5 * slope * behind;
-  if (!five) return of_three;
-  const double s0 = at[0] - at[2], s1 = -before, s3 = after, s4 = at[4] - at[2];
-  const auto missed = [&](double d, Row Y) {
-    return (Y - middle - d * (slope + bend * d)) / ((d - s1) * d * (d - s3));
-  };
-  const Row c = missed(s0, y(0)), fourth = (missed(s4, y(4)) - c) / (s4 - s0), e = c - fourth * s0;
-  const Row first = slope + e * (s1 * s3), second = bend - e * (s1 + s3) + fourth * (s1 * s3),
-            third = e - fourth * (s1 + s3);
-  Row d = behind;
-  for (int k = 0; k < iterations; ++k)
-    d -= (first + d * (2.0 * second + d * (3.0 * third + d * 4.0 * fourth))) /
-         (2.0 * second + d * (6.0 * third + d * 12.0 * fourth));
-  const RowMask inside = (d >= s1) & (d <= s3);
-  behind = inside ? d : behind;
-  return inside ? middle + d * (first + d * (second + d * (third + d * fourth))) : of_three;
+/// The value where the curve of row i turns about the instant m, and how far behind m that is.
+inline Row turn(const double* at, double* const* seen, int i, int m, const base::Stencil& by, bool five, Row& behind) {
+  Row y[looks_kept];
+  for (int k = 0; k < looks_kept; ++k) y[k] = rows(seen[k])[i];
+  return base::extreme_between(at, y, m, by, five, behind);
 }
 
 inline void note_peak(const BatchTask& t, int i, RowMask counts, Row value, Row time) {
@@ -157,7 +122,7 @@ inline void look_between(const BatchTask& t, int i, int m) {
   const RowMask large = (middle > near_peak * rows(s.peak)[i]) & (middle > Rows::magnitude(y(m + 1)));
   if (!Rows::any(large)) return;
   const double* at = s.gone;
-  const Stencil by(at, m, is_moment ? s.known : s.looks);
+  const base::Stencil by = stencil(at, m, is_moment ? s.known : s.looks);
   if (!by.three) return;
   const RowMask turns = large & runs_until(t, at[m + 1]) & ((y(m) - y(by.left)) * (y(by.right) - y(m)) <= Row{}) &
                         (middle >= Rows::magnitude(y(m - 1)));
@@ -167,10 +132,8 @@ inline void look_between(const BatchTask& t, int i, int m) {
   note_peak(t, i, turns, top, (at[m] + behind) / row(t.speed));
 }
 
-/// Between the last two instants a moment that lags is start + p t + q t^2 + k b (exp(-t/b) - 1), with both values and
-/// both rates, as app::RelaxingCurve has it.
+/// Between the last two instants of a moment that lags.
 inline void look_at_lagging(const BatchTask& t, int i, RowMask counts) {
-  constexpr int bisections = 30;
   const LookState& s = *t.look;
   const int rate = i + t.probes;
   const Row *last = rows(s.seen[latest]), *before_last = rows(s.seen[latest - 1]);
@@ -181,22 +144,13 @@ inline void look_at_lagging(const BatchTask& t, int i, RowMask counts) {
   const Row began = s.gone[latest - 1] / row(t.speed), h = s.gone[latest] / row(t.speed) - began;
   for (int l = 0; l < lanes; ++l) {
     if (!Rows::holds(turns, l)) continue;
-    const double step = Rows::numbers(h)[l], lag = s.lag < 100.0 * step ? s.lag : 100.0 * step;
-    const double decay = __builtin_exp(-step / lag), decayed = 1.0 - decay;
-    const double first = Rows::numbers(start)[l], before = Rows::numbers(rising)[l], after = Rows::numbers(falling)[l];
-    const double k = (Rows::numbers(last[i])[l] - first - 0.5 * step * (before + after)) /
-                     (0.5 * step * (1.0 + decay) - lag * decayed);
-    const double p = before + k, q = 0.5 * (after - before - k * decayed) / step;
-    double from = 0.0, to = step;
-    for (int bisection = 0; bisection < bisections; ++bisection) {
-      const double at = 0.5 * (from + to);
-      ((p + 2.0 * q * at - k * __builtin_exp(-at / lag)) * before > 0.0 ? from : to) = at;
-    }
-    const double top = first + from * (p + q * from) - k * lag * (1.0 - __builtin_exp(-from / lag));
+    double later = 0.0;
+    const double top = base::extreme_of_lagging(Rows::numbers(h)[l], Rows::numbers(start)[l], Rows::numbers(last[i])[l],
+                                                Rows::numbers(rising)[l], Rows::numbers(falling)[l], s.lag, later);
     const double size = top < 0.0 ? -top : top;
     if (size <= Rows::numbers(rows(s.peak)[i])[l]) continue;
     Rows::numbers(rows(s.peak)[i])[l] = size;
-    Rows::numbers(rows(s.peak_time)[i])[l] = Rows::numbers(began)[l] + from;
+    Rows::numbers(rows(s.peak_time)[i])[l] = Rows::numbers(began)[l] + later;
   }
 }
 
@@ -223,7 +177,7 @@ inline bool smooth(const BatchTask& t, double x, double from, double to) {
 inline void look_at_turns(const BatchTask& t, int m) {
   const LookState& s = *t.look;
   const double* at = s.gone;
-  const Stencil by(at, m, s.looks);
+  const base::Stencil by = stencil(at, m, s.looks);
   if (!by.three) return;
   const RowMask counts = runs_until(t, at[m + 1]);
   for (int j = 0; j < t.train->wheels; ++j) {

@@ -3,6 +3,7 @@
 // distance, so that wheels meet ends of spans, kinks and probes in the same step.
 #pragma once
 
+#include "base/extremum.hpp"
 #include "engine/beam_task.hpp"
 #include "engine/surface_table.hpp"
 
@@ -32,7 +33,7 @@ struct ProbeForms {
   double inside[2][2][2][powers] = {};
 };
 
-inline constexpr int looks_kept = 5;
+inline constexpr int looks_kept = base::samples_kept;
 
 /// What is seen of the runs from step to step: rows of the latest instants, peaks.
 struct LookState {

@@ -11,7 +11,7 @@ namespace {
 constexpr long instants_unasked = 4096;  // between two questions whether to go on
 
 /// The vertex of the parabola through three instants, where the middle one is the largest.
-Peak vertex(const std::array<double, 3>& t, const std::array<double, 3>& y) {
+base::Extreme vertex(const std::array<double, 3>& t, const std::array<double, 3>& y) {
   const double before = (y[1] - y[0]) / (t[1] - t[0]), after = (y[2] - y[1]) / (t[2] - t[1]);
   const double bend = (after - before) / (t[2] - t[0]);
   const double at = 0.5 * (t[0] + t[1]) - 0.5 * before / bend;
@@ -40,7 +40,7 @@ class Curves {
   }
   /// What comes has a kink with what was.
   void restart() { known_ = 1; }
-  const std::vector<Peak>& peaks() const { return peaks_; }
+  const std::vector<base::Extreme>& peaks() const { return peaks_; }
 
  private:
   static constexpr double near = 0.9;  // of the largest so far: no vertex of less can be larger
@@ -49,14 +49,14 @@ class Curves {
     const double sign = rows_[1][i] < 0.0 ? -1.0 : 1.0;
     const std::array<double, 3> y = {sign * rows_[0][i], sign * rows_[1][i], sign * rows_[2][i]};
     if (y[1] < y[0]) return;
-    const Peak top = vertex(t_, y);
+    const base::Extreme top = vertex(t_, y);
     if (top.value > peaks_[i].value) peaks_[i] = top;
   }
 
   std::size_t known_ = 0;  // instants without a kink between them
   std::array<double, 3> t_{};
   std::array<std::vector<double>, 3> rows_;  // of the last instants
-  std::vector<Peak> peaks_;
+  std::vector<base::Extreme> peaks_;
 };
 
 /// The deflections of all probes at one instant, their accelerations, their moments.

@@ -1,14 +1,13 @@
 // What a run of a sweep leaves of each probe's responses.
 #pragma once
 
+#include "base/extremum.hpp"
+
 namespace traverse::integrate {
 
-/// The largest magnitude of a response, and when.
-struct Peak {
-  double value = 0.0, time = 0.0;
-};
+/// Magnitudes.
 struct ProbePeaks {
-  Peak deflection, acceleration, moment;  // m, m/s2, N m
+  base::Extreme deflection, acceleration, moment;  // m, m/s2, N m
 };
 
 }  // namespace traverse::integrate

@@ -151,7 +151,7 @@ std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<c
     for (std::size_t p = 0; p < probes; ++p) {
       const auto of = [&](std::size_t response) {
         const std::size_t at = (response * probes + p) * width + lane;
-        return integrate::Peak{peak.data()[at], time.data()[at]};
+        return base::Extreme{peak.data()[at], time.data()[at]};
       };
       peaks[lane][p] = {of(0), of(1), of(2)};
     }

@@ -215,9 +215,16 @@ std::string Sweep::Model::not_promised(const std::vector<double>& unseen) const 
   if (expected_errors.empty() || count == 0) return {};
   return fmt::format(
       "nothing is promised of {} of the runs: they met what no trial run has seen, as wheels that lose contact or "
-      "stops "
-      "that are touched, or left the runs beside them; -accuracy_whole makes trial runs as long as these",
+      "stops that are touched; -accuracy_whole makes trial runs as long as these",
       count);
+}
+
+std::string computed_alone(long runs) {
+  if (runs == 0) return {};
+  return fmt::format(
+      "  {} of the runs left the others beside them, as their vehicles were too far from linear or a contact force did "
+      "not converge, and were computed alone\n",
+      runs);
 }
 
 std::string method_of(const Sweep::Model& model) {

@@ -96,5 +96,7 @@ void print_sweep(const Sweep& sweep);
 std::vector<Verdict> verdicts_of(const Sweep& sweep);
 /// "by 3 modes", "by 24 elements a span and steps of 0.00055 s".
 std::string method_of(const Sweep::Model& model);
+/// The line about runs that could not stay beside others; "" where there are none.
+std::string computed_alone(long runs);
 
 }  // namespace traverse::results

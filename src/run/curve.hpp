@@ -69,7 +69,7 @@ class Curve {
     const auto &t = seen_.time, &y = seen_.value;
     const bool outward = std::abs(y[i]) >= std::abs(y[i - 1]) && std::abs(y[i]) > std::abs(y[i + 1]);
     if (!outward && !((y[i] - y[i - 1]) * (y[i + 1] - y[i]) < 0.0)) return;
-    const Turn turn = turn_about(seen_, i, [&](std::size_t from, std::size_t to) {
+    const Extreme turn = turn_about(seen_, i, [&](std::size_t from, std::size_t to) {
       return !of_samples_ && y[from] * y[to] > 0.0 && !between(kinks, t[from], t[to]);
     });
     note(turn.value, turn.time, outward);
@@ -82,22 +82,15 @@ class Curve {
 /// The extremes of a curve M that follows a smooth one by M + b dM/dt, but for its kinks, which have samples.
 class RelaxingCurve {
  public:
-  /// b in s. Between samples of values and rates M is a second power and exp(-t/b).
+  /// b in s.
   template <class Note>
   void add(double t, double value, double rate, double b, Note&& note) {
     const double h = t - time_, before = rate_, start = value_;
     if (!known_) note(value, t, true);
     if (known_ && h > 0.0 && before * rate < 0.0) {
-      // start + p s + q s^2 + k b (exp(-s/b) - 1) with both values and both rates
-      const double lag = std::min(b, 100.0 * h), decay = std::exp(-h / lag), decayed = 1.0 - decay;
-      const double k = (value - start - 0.5 * h * (before + rate)) / (0.5 * h * (1.0 + decay) - lag * decayed);
-      const double p = before + k, q = 0.5 * (rate - before - k * decayed) / h;
-      double from = 0.0, to = h;
-      for (int i = 0; i < bisections; ++i) {
-        const double s = 0.5 * (from + to);
-        ((p + 2.0 * q * s - k * std::exp(-s / lag)) * before > 0.0 ? from : to) = s;
-      }
-      note(start + from * (p + q * from) - k * lag * (1.0 - std::exp(-from / lag)), time_ + from, before * start > 0.0);
+      double later = 0.0;
+      const double top = base::extreme_of_lagging(h, start, value, before, rate, b, later);
+      note(top, time_ + later, before * start > 0.0);
     }
     time_ = t;
     value_ = value;
@@ -110,7 +103,6 @@ class RelaxingCurve {
   }
 
  private:
-  static constexpr int bisections = 40;
   double time_ = 0.0, value_ = 0.0, rate_ = 0.0;  // the latest sample
   bool known_ = false;
 };

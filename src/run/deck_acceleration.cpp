@@ -126,7 +126,7 @@ void DeckAcceleration::finish(Peaks& peaks) {
 
 results::LowPassed peak_of(const std::vector<double>& rows, const std::vector<double>& stations, double frequency,
                            double interval) {
-  const Peak peak = largest_peak(rows, stations.size(), interval);
+  const Extreme peak = largest_peak(rows, stations.size(), interval);
   return {{peak.value, peak.time, stations[static_cast<std::size_t>(peak.place)]}, frequency, interval, low_pass_name};
 }
 

@@ -47,7 +47,7 @@ void CarAccelerations::add(double t) {
     const train::Member& member = fleet_.members[i];
     const auto body = member.first_body + static_cast<Eigen::Index>(heaviest_[i]);
     const Eigen::VectorXd& qdd = fleet_.vehicles[static_cast<std::size_t>(member.unit)].state.qdd;
-    largest_.note(std::abs(qdd[3 * body + 1]), t, i);
+    largest_.raise(std::abs(qdd[3 * body + 1]), t, i);
   }
 }
 

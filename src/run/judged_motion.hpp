@@ -7,22 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "base/extremum.hpp"
 #include "beam/beam.hpp"
 #include "train/fleet.hpp"
 
 namespace traverse::app {
 
-/// The largest magnitude that has been seen of something, when, and of which one.
-struct Largest {
-  double value = -1.0;  // below 0: nothing has been seen
-  double time = 0.0;    // s
-  std::size_t which = 0;
-
-  bool known() const { return value >= 0.0; }
-  void note(double magnitude, double t, std::size_t one) {
-    if (magnitude > value) *this = {magnitude, t, one};
-  }
-};
+using base::Extreme;
 
 /// Rotations of the deck at the two ends of the bridge, and between decks that meet at a joint or a hinge over a
 /// support.
@@ -33,14 +24,15 @@ class DeckRotations {
   void add(double t, const double* v);
   /// The same from rotations that are known, rad, in the order of unknowns().
   void note(double t, std::span<const double> slopes) {
-    for (std::size_t i = 0; i < 2; ++i) ends_.note(std::abs(slopes[i]), t, i);
-    for (std::size_t i = 0; i < x_.size(); ++i) joints_.note(std::abs(slopes[2 * i + 3] - slopes[2 * i + 2]), t, i);
+    for (std::size_t i = 0; i < 2; ++i) ends_.raise(std::abs(slopes[i]), t, i);
+    for (std::size_t i = 0; i < x_.size(); ++i) joints_.raise(std::abs(slopes[2 * i + 3] - slopes[2 * i + 2]), t, i);
   }
   /// Of the ends, then of the left and right side of each joint.
   const std::vector<int>& unknowns() const { return unknowns_; }
 
-  const Largest& at_ends() const { return ends_; }      // which: 0 left, 1 right
-  const Largest& at_joints() const { return joints_; }  // which: of joints()
+  // Magnitudes, rad; below 0: there are none.
+  const Extreme& at_ends() const { return ends_; }      // place: 0 left, 1 right
+  const Extreme& at_joints() const { return joints_; }  // place: of joints()
   const std::vector<double>& joints() const { return x_; }
   void keep(base::Bytes& bytes) { bytes(ends_, joints_); }
 
@@ -49,7 +41,7 @@ class DeckRotations {
   std::vector<int> unknowns_;
   std::vector<double> slopes_;  // rad, of these
   std::vector<double> x_;       // m
-  Largest ends_, joints_;
+  Extreme ends_{-1.0}, joints_{-1.0};
 };
 
 /// Vertical accelerations of the heaviest body of each vehicle.
@@ -58,14 +50,15 @@ class CarAccelerations {
   explicit CarAccelerations(const train::Fleet& fleet);
   void add(double t);
 
-  const Largest& largest() const { return largest_; }  // which: the vehicle
+  /// m/s2; place: the vehicle; below 0: there is none.
+  const Extreme& largest() const { return largest_; }
   const std::string& body(std::size_t vehicle) const;
   void keep(base::Bytes& bytes) { bytes(largest_); }
 
  private:
   const train::Fleet& fleet_;
   std::vector<std::size_t> heaviest_;  // of each vehicle's own bodies
-  Largest largest_;
+  Extreme largest_{-1.0};
 };
 
 }  // namespace traverse::app

@@ -51,9 +51,9 @@ norm::NormCheck norm_check(const Scene& scene, std::vector<norm::LoadModel> trai
 
 norm::Passed passed_once(const Scene& scene, const Peaks& peaks) {
   norm::Passed passed{{greatest_speed(scene)}, scene.output.probes, {{}}};
-  for (const Peak& peak : peaks.largest_of_each(deflection))
+  for (const Extreme& peak : peaks.largest_of_each(deflection))
     passed.trains[0].deflection.push_back(std::abs(peak.value));
-  for (const Peak& peak : peaks.largest_of_each(moment)) passed.trains[0].moment.push_back(std::abs(peak.value));
+  for (const Extreme& peak : peaks.largest_of_each(moment)) passed.trains[0].moment.push_back(std::abs(peak.value));
   return passed;
 }
 

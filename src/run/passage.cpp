@@ -108,8 +108,8 @@ void Passage::leave_out_rest(std::vector<std::string>& notes) {
   if (still_ || beam == nullptr || scene_.model.modes > 0) return;
   const bool apart = beam->parts().size() > 2;
   const double tolerance = scene_.model.rest_tolerance >= 0.0 ? scene_.model.rest_tolerance
-                           : apart                      ? structure::RestWindow::quiet
-                                                        : 0.0;
+                           : apart                            ? structure::RestWindow::quiet
+                                                              : 0.0;
   if (tolerance == 0.0) return;
   system_.leave_out_rest(tolerance, scene_.output.probes);
   notes.push_back(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",

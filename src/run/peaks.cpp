@@ -13,18 +13,18 @@ constexpr double likely = 2.0;         // times the root mean square: what an ex
 const std::vector<double> smooth;      // without kinks
 constexpr std::size_t most = 1 << 16;  // extremes of a quantity; then those below `compared` are let go
 
-bool earlier(const Peak& a, const Peak& b) { return a.place != b.place ? a.place < b.place : a.time < b.time; }
+bool earlier(const Extreme& a, const Extreme& b) { return a.place != b.place ? a.place < b.place : a.time < b.time; }
 
-std::vector<Peak> in_order(std::vector<Peak> peaks) {
+std::vector<Extreme> in_order(std::vector<Extreme> peaks) {
   std::sort(peaks.begin(), peaks.end(), earlier);
   return peaks;
 }
 
 /// The one of the same place and sign, of those in order, that is nearest in time; null: none is within reach, s.
-const Peak* nearest(const std::vector<Peak>& peaks, const Peak& to, double reach) {
-  const Peak* found = nullptr;
+const Extreme* nearest(const std::vector<Extreme>& peaks, const Extreme& to, double reach) {
+  const Extreme* found = nullptr;
   double apart = reach;
-  for (auto peak = std::lower_bound(peaks.begin(), peaks.end(), Peak{0.0, to.time - reach, to.place}, earlier);
+  for (auto peak = std::lower_bound(peaks.begin(), peaks.end(), Extreme{0.0, to.time - reach, to.place}, earlier);
        peak != peaks.end() && peak->place == to.place && peak->time <= to.time + reach; ++peak) {
     if (std::abs(peak->time - to.time) > apart || peak->value * to.value < 0.0) continue;
     apart = std::abs(peak->time - to.time);
@@ -53,14 +53,14 @@ Peaks Peaks::of_failure() {
 }
 
 void Peaks::note(Quantity q, std::size_t place, double value, double time) {
-  const Peak peak{value, time, static_cast<int>(place)};
+  const Extreme peak{value, time, place};
   if (std::abs(value) > std::abs(each_[q][place].value)) each_[q][place] = peak;
   if (std::abs(value) > std::abs(largest_[q].value)) largest_[q] = peak;
   if (std::abs(value) < kept * std::abs(largest_[q].value) || value == 0.0) return;
-  std::vector<Peak>& found = found_[q];
+  std::vector<Extreme>& found = found_[q];
   found.push_back(peak);
   if (found.size() < most) return;
-  std::erase_if(found, [&](const Peak& p) { return std::abs(p.value) < compared * std::abs(largest_[q].value); });
+  std::erase_if(found, [&](const Extreme& p) { return std::abs(p.value) < compared * std::abs(largest_[q].value); });
   if (found.size() > most / 2) found.erase(found.begin(), found.end() - most / 2);
 }
 
@@ -148,11 +148,11 @@ void Peaks::add_low_passed(std::span<const double> rows, double interval) {
   }
 }
 
-Peak largest_peak(std::span<const double> rows, std::size_t series, double interval) {
-  Peak largest;
+Extreme largest_peak(std::span<const double> rows, std::size_t series, double interval) {
+  Extreme largest;
   for (std::size_t i = 0; i < series; ++i) {
     const auto note = [&](double value, double time, bool) {
-      if (std::abs(value) > std::abs(largest.value)) largest = {value, time, static_cast<int>(i)};
+      if (std::abs(value) > std::abs(largest.value)) largest = {value, time, i};
     };
     follow(rows, series, i, interval, note).finish(smooth, note);
   }
@@ -171,12 +171,12 @@ double difference(const Peaks& rough, const Peaks& fine, Quantity q, double reac
   // Wheel forces vary about the weight: what is near the largest one is seen by that.
   const double rest = q == wheel_force && !fine.of(q).empty() ? std::abs(fine.of(q).front().value) : 0.0;
   const double least = rest < largest ? rest + compared * (largest - rest) : compared * largest;
-  const std::vector<Peak> others = in_order(rough.of(q)), all = in_order(fine.of(q));
+  const std::vector<Extreme> others = in_order(rough.of(q)), all = in_order(fine.of(q));
   double squares = 0.0;
   int count = 0;
-  for (const Peak& peak : all) {
+  for (const Extreme& peak : all) {
     if (std::abs(peak.value) < least) continue;
-    const Peak* other = nearest(others, peak, reach);
+    const Extreme* other = nearest(others, peak, reach);
     if (other == nullptr || nearest(all, *other, reach) != &peak) continue;
     squares += (other->value - peak.value) * (other->value - peak.value);
     ++count;

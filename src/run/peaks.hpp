@@ -19,19 +19,13 @@
 
 namespace traverse::app {
 
-struct Peak {
-  double value = 0.0;  // signed
-  double time = 0.0;   // s
-  int place = 0;       // probe or wheel
-};
-
 /// The least and the greatest of one quantity at one probe, and when.
 struct Range {
-  struct Extreme {
+  struct End {
     double value = 0.0, time = std::numeric_limits<double>::quiet_NaN();
     double other = 0.0;  // of a moment the shear that belongs to it, of a shear the moment
   };
-  Extreme least, greatest;
+  End least, greatest;
 };
 
 /// Of curves from sample to sample, over their largest value.
@@ -41,7 +35,7 @@ struct Bends {
   double times(const Bends& others) const;
 };
 
-/// The extremes of a run: those above half of the largest so far.
+/// The extremes of a run, signed: those above half of the largest so far. Places are probes or wheels.
 class Peaks {
  public:
   Peaks() = default;
@@ -58,14 +52,14 @@ class Peaks {
   static Peaks of_failure();
   bool failed() const { return failed_; }
 
-  const std::vector<Peak>& of(Quantity q) const { return found_[q]; }
-  const Peak& largest(Quantity q) const { return largest_[q]; }
+  const std::vector<Extreme>& of(Quantity q) const { return found_[q]; }
+  const Extreme& largest(Quantity q) const { return largest_[q]; }
   /// How much accelerations and wheel forces bend from sample to sample, at most, over their largest: since the start,
   /// or since they were forgotten.
   Bends bends() const;
   void forget_bends() { bend_ = {}; }
   /// The largest extreme of each probe or wheel.
-  const std::vector<Peak>& largest_of_each(Quantity q) const { return each_[q]; }
+  const std::vector<Extreme>& largest_of_each(Quantity q) const { return each_[q]; }
   /// Of a probe's deflection, acceleration, moment or shear.
   const Range& range(Quantity q, std::size_t probe) const { return ranges_[probe][q]; }
   std::size_t probes() const { return ranges_.size(); }
@@ -86,16 +80,16 @@ class Peaks {
   std::vector<std::array<Curve, motions.size()>> motions_;
   std::vector<Curve> wheels_;
   std::vector<std::array<Range, quantities>> ranges_;
-  std::array<std::vector<Peak>, quantities> found_;
-  std::array<Peak, quantities> largest_{};
+  std::array<std::vector<Extreme>, quantities> found_;
+  std::array<Extreme, quantities> largest_{};
   Bends bend_;  // in m/s2 and N
   bool failed_ = false;
-  std::array<std::vector<Peak>, quantities> each_;
+  std::array<std::vector<Extreme>, quantities> each_;
 };
 
 /// The extreme of largest magnitude of series side by side, rows of `series` at instants `interval` s apart from 0 on;
 /// place: which series.
-Peak largest_peak(std::span<const double> rows, std::size_t series, double interval);
+Extreme largest_peak(std::span<const double> rows, std::size_t series, double interval);
 
 /// The relative difference of the largest extremes of two runs, or, where that is larger, twice the root mean square of
 /// the differences of all extremes above 0.6 of the largest one that are each other's nearest in both runs, within

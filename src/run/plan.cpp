@@ -154,7 +154,8 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
   if (scene.output.interval) {
     plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9))));
-    plan.stored = scene.model.step_probes ? steps : looks_among(steps, plan.interval / static_cast<double>(steps), looks);
+    plan.stored =
+        scene.model.step_probes ? steps : looks_among(steps, plan.interval / static_cast<double>(steps), looks);
     plan.interval /= static_cast<double>(plan.stored);
     if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
       notes.push_back(

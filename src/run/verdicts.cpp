@@ -15,7 +15,7 @@ using results::Finding;
 struct Findings {
   const Judge& judge;
   const results::Summary& summary;
-  std::span<const Peak> deflections;  // the largest one of each probe
+  std::span<const Extreme> deflections;  // the largest one of each probe
 
   Finding deck_acceleration() const {
     if (!summary.probes) return no_bridge();
@@ -36,22 +36,22 @@ struct Findings {
   }
 
   Finding end_rotation() const {
-    if (!judge.rotations_ || !judge.rotations_->at_ends().known()) return no_bridge();
-    const Largest& largest = judge.rotations_->at_ends();
-    return at(largest.value, largest.time, largest.which == 0 ? 0.0 : judge.scene_.beam->length());
+    if (!judge.rotations_ || judge.rotations_->at_ends().value < 0.0) return no_bridge();
+    const Extreme& largest = judge.rotations_->at_ends();
+    return at(largest.value, largest.time, largest.place == 0 ? 0.0 : judge.scene_.beam->length());
   }
 
   Finding joint_rotation() const {
     if (!judge.rotations_) return no_bridge();
-    const Largest& largest = judge.rotations_->at_joints();
-    if (!largest.known()) return unknown("no two decks meet at a joint");
-    return at(largest.value, largest.time, judge.rotations_->joints()[largest.which]);
+    const Extreme& largest = judge.rotations_->at_joints();
+    if (largest.value < 0.0) return unknown("no two decks meet at a joint");
+    return at(largest.value, largest.time, judge.rotations_->joints()[largest.place]);
   }
 
   Finding car_acceleration() const {
-    const Largest& largest = judge.cars_.largest();
-    if (!largest.known()) return unknown("the scene has no vehicles");
-    return of(largest, fmt::format("vehicle {}, {}", largest.which, judge.cars_.body(largest.which)));
+    const Extreme& largest = judge.cars_.largest();
+    if (largest.value < 0.0) return unknown("the scene has no vehicles");
+    return of(largest, fmt::format("vehicle {}, {}", largest.place, judge.cars_.body(largest.place)));
   }
 
   Finding wheel_unloading() const {
@@ -92,7 +92,7 @@ struct Findings {
   static Finding at(const results::Extreme& extreme) {
     return at(std::abs(extreme.value), extreme.time, extreme.place);
   }
-  static Finding of(const Largest& largest, const std::string& thing) {
+  static Finding of(const Extreme& largest, const std::string& thing) {
     return {largest.value, largest.time, Finding::unknown, thing, ""};
   }
   static Finding unknown(const char* why) {
@@ -174,7 +174,7 @@ void Judge::sample(double t, const double* v) {
 }
 
 std::vector<results::Verdict> Judge::verdicts(const results::Summary& summary,
-                                              std::span<const Peak> deflections) const {
+                                              std::span<const Extreme> deflections) const {
   const Findings findings{*this, summary, deflections};
   std::vector<results::Verdict> list;
   for (const options::VerdictLimit& limit : scene_.limits)

@@ -24,7 +24,7 @@ class Judge {
   void rotations(double t, std::span<const double> slopes) { rotations_->note(t, slopes); }
 
   /// After the last instant. deflections: the largest one of each probe.
-  std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Peak> deflections) const;
+  std::vector<results::Verdict> verdicts(const results::Summary& summary, std::span<const Extreme> deflections) const;
 
   void keep(base::Bytes& bytes) {
     if (rotations_) rotations_->keep(bytes);

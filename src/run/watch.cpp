@@ -175,16 +175,16 @@ void Watch::step(double t) {
 
 void Watch::note_wheels() {
   const train::Fleet& fleet = system_.fleet();
-  summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.least().force;
+  summary_.least_wheel_force = wheel_count_ == 0 ? 0.0 : wheels_.least().value;
   summary_.greatest_wheel_force =
-      std::max({summary_.greatest_wheel_force, peaks_.largest(wheel_force).value, wheels_.greatest().force});
-  const WheelExtreme& least = wheels_.least();
-  if (least.wheel < 0) return;
+      std::max({summary_.greatest_wheel_force, peaks_.largest(wheel_force).value, wheels_.greatest().value});
+  const Extreme& least = wheels_.least();
+  if (std::isinf(least.value)) return;
   summary_.least_wheel_force_time = least.time;
-  summary_.least_wheel = wheel_name(fleet, static_cast<std::size_t>(least.wheel));
-  const Largest& lost = wheels_.unloading();
-  if (lost.known() && scene_.start == Start::equilibrium)
-    summary_.unloading = {lost.value, lost.time, wheel_name(fleet, lost.which)};
+  summary_.least_wheel = wheel_name(fleet, least.place);
+  const Extreme& lost = wheels_.unloading();
+  if (lost.value >= 0.0 && scene_.start == Start::equilibrium)
+    summary_.unloading = {lost.value, lost.time, wheel_name(fleet, lost.place)};
 }
 
 void Watch::note_separations() {
@@ -258,7 +258,7 @@ void Watch::keep(base::Archive& archive) {
 results::Summary Watch::finish() {
   const Peaks& peaks = finished_peaks();
   const auto extreme = [&](Quantity q) {
-    const Peak& peak = peaks.largest(q);
+    const Extreme& peak = peaks.largest(q);
     return results::Extreme{peak.value, peak.time, scene_.output.probes[static_cast<std::size_t>(peak.place)]};
   };
   if (!scene_.output.probes.empty()) {

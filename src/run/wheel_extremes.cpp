@@ -9,9 +9,9 @@ WheelExtremes::WheelExtremes(std::size_t wheels, std::vector<double> kinks)
     : seen_(wheels), at_start_(wheels, 0.0), kinks_(std::move(kinks)) {}
 
 void WheelExtremes::note(double force, double time, std::size_t wheel) {
-  if (force < least_.force) least_ = {force, time, static_cast<int>(wheel)};
-  if (force > greatest_.force) greatest_ = {force, time, static_cast<int>(wheel)};
-  if (at_start_[wheel] > 0.0) unloading_.note(std::max(0.0, 1.0 - force / at_start_[wheel]), time, wheel);
+  if (force < least_.value) least_ = {force, time, wheel};
+  greatest_.raise(force, time, wheel);
+  if (at_start_[wheel] > 0.0) unloading_.raise(std::max(0.0, 1.0 - force / at_start_[wheel]), time, wheel);
 }
 
 void WheelExtremes::add(std::size_t wheel, double t, double x, double force) {
@@ -42,7 +42,8 @@ bool WheelExtremes::smooth(const Seen& seen, std::size_t i, std::size_t j) const
 void WheelExtremes::look(const Seen& seen, std::size_t i, std::size_t wheel) {
   const auto& f = seen.force.value;
   if ((f[i] - f[i - 1]) * (f[i + 1] - f[i]) > 0.0 || f[i] == f[i + 1]) return;
-  const Turn turn = turn_about(seen.force, i, [&](std::size_t from, std::size_t to) { return smooth(seen, from, to); });
+  const Extreme turn =
+      turn_about(seen.force, i, [&](std::size_t from, std::size_t to) { return smooth(seen, from, to); });
   note(std::max(turn.value, 0.0), turn.time, wheel);
 }
 

@@ -8,16 +8,9 @@
 #include <vector>
 
 #include "base/bytes.hpp"
-#include "run/judged_motion.hpp"
 #include "run/turn.hpp"
 
 namespace traverse::app {
-
-struct WheelExtreme {
-  double force = 0.0;  // N
-  double time = 0.0;   // s
-  int wheel = -1;      // in the order of the fleet; -1: none has been seen
-};
 
 class WheelExtremes {
  public:
@@ -30,10 +23,11 @@ class WheelExtremes {
   /// After the last one.
   void finish();
 
-  const WheelExtreme& least() const { return least_; }
-  const WheelExtreme& greatest() const { return greatest_; }
-  /// Over the force at the start.
-  const Largest& unloading() const { return unloading_; }
+  /// N, of a wheel in the order of the fleet; infinite: none has been seen.
+  const Extreme& least() const { return least_; }
+  const Extreme& greatest() const { return greatest_; }
+  /// Over the force at the start; below 0: none has been seen.
+  const Extreme& unloading() const { return unloading_; }
   void keep(base::Bytes& bytes) { bytes(seen_, at_start_, least_, greatest_, unloading_); }
 
  private:
@@ -51,8 +45,8 @@ class WheelExtremes {
   std::vector<Seen> seen_;
   std::vector<double> at_start_;  // N, of every wheel
   std::vector<double> kinks_;
-  WheelExtreme least_{std::numeric_limits<double>::infinity()}, greatest_{-std::numeric_limits<double>::infinity()};
-  Largest unloading_;
+  Extreme least_{std::numeric_limits<double>::infinity()}, greatest_{-std::numeric_limits<double>::infinity()};
+  Extreme unloading_{-1.0};
 };
 
 }  // namespace traverse::app

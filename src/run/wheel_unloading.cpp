@@ -80,7 +80,7 @@ results::FilteredUnloading FilteredWheels::finish(const train::Fleet& fleet) {
     const double rest = at_start[i % wheels_];
     kept_[i] = rest > 0.0 ? std::max(0.0, 1.0 - kept_[i] / rest) : 0.0;
   }
-  const Peak largest = largest_peak(kept_, wheels_, interval_);
+  const Extreme largest = largest_peak(kept_, wheels_, interval_);
 
   results::FilteredUnloading found;
   found.extreme = {largest.value, largest.time, wheel_name(fleet, static_cast<std::size_t>(largest.place))};

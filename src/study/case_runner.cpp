@@ -146,7 +146,7 @@ std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<co
 
 CaseResult CaseRunner::result_of(const engine::BatchResult& crossing, std::size_t train) const {
   CaseResult result;
-  const auto peak = [](const engine::BatchPeak& p) { return integrate::Peak{p.value, p.time}; };
+  const auto peak = [](const base::Extreme& p) { return base::Extreme{p.value, p.time}; };
   for (std::size_t p = 0; p < crossing.deflection.size(); ++p)
     result.peaks.push_back({peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
   result.static_deflection = static_deflection_.at(train);
@@ -246,8 +246,8 @@ CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
   const Peaks& peaks = watch.finished_peaks();
   for (std::size_t p = 0; p < result.peaks.size(); ++p) {
     const auto peak = [&](Quantity q) {
-      const Peak& found = peaks.largest_of_each(q)[p];
-      return integrate::Peak{std::abs(found.value), found.time};
+      const Extreme& found = peaks.largest_of_each(q)[p];
+      return base::Extreme{std::abs(found.value), found.time};
     };
     result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
   }

@@ -27,14 +27,14 @@ std::vector<results::Finding> ForceFindings::of(std::size_t train, double end_ti
 
   results::Summary summary;
   summary.probes = !peaks.empty();
-  std::vector<Peak> deflections;
+  std::vector<Extreme> deflections;
   for (std::size_t p = 0; p < peaks.size(); ++p) {
-    const auto note = [&](const integrate::Peak& peak, results::Extreme& largest) {
+    const auto note = [&](const base::Extreme& peak, results::Extreme& largest) {
       if (peak.value <= largest.value) return false;
       largest = {peak.value, peak.time, scene_.output.probes[p]};
       return true;
     };
-    deflections.push_back({peaks[p].deflection.value, peaks[p].deflection.time, static_cast<int>(p)});
+    deflections.push_back({peaks[p].deflection.value, peaks[p].deflection.time, p});
     note(peaks[p].acceleration, summary.acceleration);
     if (note(peaks[p].deflection, summary.deflection))
       summary.amplification = static_deflection[p] > 0.0 ? peaks[p].deflection.value / static_deflection[p] : 0.0;

@@ -61,12 +61,13 @@ double solves(const NumericalModel& model) { return row_of(model).solves() / *mo
 }  // namespace
 
 NumericalModel LaneSearch::first(double duration) {
-  NumericalModel model = model_of(trials_.scene());
+  const Scene& scene = trials_.scene();
+  NumericalModel model = scene.model;
+  model.elements = scene.mesh_open ? aligned_mesh(scene, first_mesh(scene)) : mesh_of(scene);
   model.modes = 0;
   model.method = "esdirk4";
-  model.step = 1.0;
   model.vehicles = VehicleModel::linear;
-  if (trials_.scene().mesh_open) model.elements = aligned_mesh(trials_.scene(), first_mesh(trials_.scene()));
+  model.step = 1.0;  // until the first frequency is known
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
   longest_ = steps.longest;
   model.step = std::min(first_step_factor * steps.first, longest_);

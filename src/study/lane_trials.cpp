@@ -27,7 +27,7 @@ void filter_kept(BatchResult& result, std::size_t probes, double frequency, doub
   const std::size_t settled = filter(result.kept, probes, frequency, interval);
   Peaks peaks(std::vector<std::vector<double>>(probes), 0);
   peaks.add_low_passed(std::span<const double>(result.kept).first(settled * probes), interval);
-  for (const Peak& peak : peaks.largest_of_each(low_passed))
+  for (const Extreme& peak : peaks.largest_of_each(low_passed))
     result.low_passed.push_back({std::abs(peak.value), peak.time});
   result.kept = {};
 }
@@ -41,9 +41,9 @@ LaneErrors difference(const Scene& scene, const std::vector<BatchResult>& a, con
       worst.fill(1.0);  // too long a step, most likely
       continue;
     }
-    const auto compare = [&](std::vector<engine::BatchPeak> BatchResult::*peaks, Quantity q) {
+    const auto compare = [&](std::vector<base::Extreme> BatchResult::*peaks, Quantity q) {
       double largest = 0.0;
-      for (const engine::BatchPeak& peak : b[run].*peaks) largest = std::max(largest, peak.value);
+      for (const base::Extreme& peak : b[run].*peaks) largest = std::max(largest, peak.value);
       for (std::size_t p = 0; p < (b[run].*peaks).size(); ++p)
         note_difference((a[run].*peaks)[p].value, (b[run].*peaks)[p].value, largest, worst[q]);
     };

@@ -22,7 +22,7 @@ constexpr double code_frequency = 30.0, code_factor = 1.5;  // Hz; times the fir
 constexpr std::size_t code_modes = 3;
 constexpr int most_counted = 64, nodes_for_a_question = 1000;
 
-constexpr std::array<std::pair<Quantity, integrate::Peak integrate::ProbePeaks::*>, 3> of_probes = {
+constexpr std::array<std::pair<Quantity, base::Extreme integrate::ProbePeaks::*>, 3> of_probes = {
     {{deflection, &integrate::ProbePeaks::deflection},
      {acceleration, &integrate::ProbePeaks::acceleration},
      {moment, &integrate::ProbePeaks::moment}}};

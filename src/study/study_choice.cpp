@@ -9,7 +9,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr double tighter = 0.5;  // of the accuracy: modes that are too few by little at one scene
+constexpr double tighter = 0.5;  // of the accuracy: a second search settles where the first one just did not
 
 using Choose = std::optional<Choice> (*)(const Scene& scene, std::vector<std::string>& notes);
 

@@ -246,11 +246,7 @@ void print_study_course(const results::StudyTable& table, const results::Sweep::
   if (table.finished_runs() > 0) results::print_verdicts(table.verdicts(), scene.unusual);
   if (const std::string said = model.not_promised(table.find("unseen")->values); !said.empty())
     fmt::print("  note: {}\n", said);
-  if (course.left_group > 0)
-    fmt::print(
-        "  {} of the runs left the others beside them, as their vehicles were too far from linear, and were taken "
-        "alone\n",
-        course.left_group);
+  fmt::print("{}", results::computed_alone(course.left_group));
   const long done = static_cast<long>(table.finished_runs()) - course.known;
   fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each{}\n  {:<22}{}\nresults  {}\n", done,
              static_cast<long>(table.runs()) - course.known, results::method_of(model), course.wall_seconds,

@@ -206,11 +206,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
     if (runs.ended > 0) results::print_verdicts(verdicts, scene.unusual);
     if (const std::string said = sweep.model.not_promised(sweep.unseen); !said.empty())
       fmt::print("  note: {}\n", said);
-    if (alone > 0)
-      fmt::print(
-          "  {} of the runs left the others beside them, as their vehicles were too far from linear, and were taken "
-          "alone\n",
-          alone);
+    fmt::print("{}", results::computed_alone(alone));
     fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each\n  {:<22}{}\nresults  {}\n", runs.ended, whole.planned,
                results::method_of(model), whole.wall_seconds,
                1e3 * whole.wall_seconds / static_cast<double>(std::max(runs.ended, 1L)), "the sweep", whole.ended,

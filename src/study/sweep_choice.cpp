@@ -100,7 +100,7 @@ Choice choose_one_by_one(const Scene& given, std::vector<std::string>& notes) {
     notes.push_back(fmt::format(
         "no errors of the peaks are promised: model_modes = {} is given, and no trial runs show what it leaves out",
         given.model.modes));
-  if (!all) return {model_of(given), {}, {}};
+  if (!all) return {given.model, {}, {}};
   const Scene tried = with(by, all->model);
   say(tried, all->accuracy, notes);
   if (given.by_given_modes()) return *all;

@@ -59,7 +59,7 @@ void store(const CaseResult& result, std::size_t train, std::size_t speed, resul
   const std::size_t run = train * sweep.speed.size() + speed;
   for (std::size_t p = 0; p < sweep.probes.size(); ++p) {
     const std::size_t at = run * sweep.probes.size() + p;
-    const auto put = [&](const integrate::Peak& peak, results::Sweep::Peaks& into) {
+    const auto put = [&](const base::Extreme& peak, results::Sweep::Peaks& into) {
       into.value[at] = peak.value;
       into.time[at] = peak.time;
     };

@@ -16,7 +16,7 @@
 namespace traverse::test {
 namespace {
 
-using integrate::Peak;
+using Peak = base::Extreme;
 using integrate::ProbePeaks;
 using Peaks = std::vector<ProbePeaks>;
 
