@@ -48,8 +48,8 @@ void read_run(const Options& o, Scene& scene) {
   scene.model.rest_tolerance = read_window(o);
   const std::string vehicles = o.choice("model_vehicles");
   scene.model.vehicles = vehicles == "linear" ? VehicleModel::linear
-                        : vehicles == "auto" ? VehicleModel::automatic
-                                             : VehicleModel::full;
+                         : vehicles == "auto" ? VehicleModel::automatic
+                                              : VehicleModel::full;
   scene.accuracy = o.number("accuracy");
   if (o.has("accuracy_of")) scene.accuracy_of = o.texts("accuracy_of");
   scene.accuracy_report = o.flag("accuracy_report");

@@ -73,13 +73,13 @@ struct Roughness {
 
 /// Runs of one scene at many speeds, with many trains of forces, or both.
 struct Sweep {
-  std::vector<double> speeds;     // m/s; empty: that of the scene
-  std::vector<int> trains;        // HSLM-A, 1 to 10; empty: what the scene holds
-  std::vector<MovingLoad> loads;  // of each of these trains, at the scene's speed
-  double refine = 0.0;            // of each peak over the speed, to which speeds are added; 0: none are; below 0:
-                                  // where a limit may be broken between two of them
-  std::size_t lanes = 8;          // runs side by side; 0: each by itself
-  double instants = 20.0;         // looked at in a period of the fastest mode, where modes move exactly in time
+  std::vector<double> speeds;        // m/s; empty: that of the scene
+  std::vector<int> trains;           // HSLM-A, 1 to 10; empty: what the scene holds
+  std::vector<MovingLoad> loads;     // of each of these trains, at the scene's speed
+  double refine = 0.0;               // of each peak over the speed, to which speeds are added; 0: none are; below 0:
+                                     // where a limit may be broken between two of them
+  std::size_t lanes = 8;             // runs side by side; 0: each by itself
+  double instants = 20.0;            // looked at in a period of the fastest mode, where modes move exactly in time
   std::size_t runs = 0;              // of the study that these are a part of; 0: there are no others
   std::vector<std::uint64_t> seeds;  // of some tracks of the study, which differ in them; empty: the scene's own alone
 };
