@@ -304,18 +304,13 @@ std::vector<BatchResult> Batch::results() const {
   for (std::size_t l = 0; l < count_; ++l) {
     BatchResult& r = results[l];
     r.trouble = static_cast<Trouble>(static_cast<int>(task_.failed[l]));
-    const auto peaks = [&](std::size_t first) {
-      std::vector<base::Extreme> own;
-      for (std::size_t p = 0; p < n; ++p)
-        own.push_back({looks_.peak[rows(first + p) + l], looks_.peak_time[rows(first + p) + l]});
-      return own;
+    const auto peak = [&](std::size_t row) {
+      return base::Extreme{looks_.peak[rows(row) + l], looks_.peak_time[rows(row) + l]};
     };
-    r.deflection = peaks(0);
-    r.acceleration = peaks(n);
-    r.moment = peaks(2 * n);
+    for (std::size_t p = 0; p < n; ++p) r.peaks.push_back({peak(p), peak(n + p), peak(2 * n + p)});
     r.kept = kept_[l];
-    r.least_force = looks_.least[l];
-    r.greatest_force = looks_.greatest[l];
+    r.least_wheel_force = looks_.least[l];
+    r.greatest_wheel_force = looks_.greatest[l];
     r.contact_losses = looks_.losses[l];
     r.longest_loss = looks_.longest[l];
     for (const VehicleBlock& b : arrays_.blocks)

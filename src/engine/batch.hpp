@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/passage_peaks.hpp"
 #include "beam/beam.hpp"
 #include "engine/batch_task.hpp"
 #include "engine/surfaces.hpp"
@@ -82,13 +83,9 @@ struct BatchPlan {
   double level_until = 0.0;  // m: before it the track is level and the ground rigid, so that a vehicle stands still
 };
 
-struct BatchResult {
+struct BatchResult : base::PassagePeaks {
   Trouble trouble = none;
-  std::vector<base::Extreme> deflection, acceleration, moment;  // of each probe: magnitudes
-  std::vector<double> kept;                                     // accelerations, a row of probes at each place
-  std::vector<base::Extreme> low_passed;                        // of each probe, where somebody has filtered these
-  double least_force = 0.0, greatest_force = 0.0;               // N, of all wheels
-  double contact_losses = 0.0, longest_loss = 0.0;              // of all wheels; s, to a step
+  std::vector<double> kept;      // accelerations, a row of probes at each place
   std::vector<double> farthest;  // coordinates of every vehicle where it was farthest from linear
 };
 

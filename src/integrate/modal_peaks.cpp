@@ -85,9 +85,9 @@ void see(const structure::ModalBridge& bridge, const ModalMotion& motion, std::v
 
 }  // namespace
 
-std::vector<ProbePeaks> modal_peaks(const structure::ModalBridge& bridge, const ForceHistory& history, double speed,
-                                    bool equilibrium, double end_time, double instants,
-                                    const std::function<bool()>& going) {
+std::vector<base::ProbePeaks> modal_peaks(const structure::ModalBridge& bridge, const ForceHistory& history,
+                                          double speed, bool equilibrium, double end_time, double instants,
+                                          const std::function<bool()>& going) {
   ModalMotion motion(bridge, history, speed, equilibrium);
   const double fastest = *std::max_element(bridge.omega().begin(), bridge.omega().end());
   const double interval = 2.0 * std::numbers::pi / fastest / instants;
@@ -113,7 +113,7 @@ std::vector<ProbePeaks> modal_peaks(const structure::ModalBridge& bridge, const 
     motion.pass_event();
     curves.restart();
   }
-  std::vector<ProbePeaks> peaks;
+  std::vector<base::ProbePeaks> peaks;
   for (std::size_t p = 0; p < n; ++p)
     peaks.push_back({curves.peaks()[p], curves.peaks()[n + p], curves.peaks()[2 * n + p]});
   return peaks;

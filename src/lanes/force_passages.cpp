@@ -97,9 +97,9 @@ void ForcePassages::find_kinks() {
   }
 }
 
-std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<const double> speeds,
-                                                                     std::span<const double> end_times, double instants,
-                                                                     const std::function<bool()>& going) const {
+std::vector<std::vector<base::ProbePeaks>> ForcePassages::peaks(std::span<const double> speeds,
+                                                                std::span<const double> end_times, double instants,
+                                                                const std::function<bool()>& going) const {
   const std::size_t width = speeds.size() > 4 ? 8 : speeds.size() > 2 ? 4 : 2, probes = bridge_.probes().count;
   engine::Aligned speed(width), end(width), peak(3 * probes * width), time(3 * probes * width);
   for (std::size_t lane = 0; lane < width; ++lane) {
@@ -146,7 +146,7 @@ std::vector<std::vector<integrate::ProbePeaks>> ForcePassages::peaks(std::span<c
   task.work = work.data();
   TRAVERSE_LANES_CALL(cross(task));
   if (stopped) return {};
-  std::vector<std::vector<integrate::ProbePeaks>> peaks(speeds.size(), std::vector<integrate::ProbePeaks>(probes));
+  std::vector<std::vector<base::ProbePeaks>> peaks(speeds.size(), std::vector<base::ProbePeaks>(probes));
   for (std::size_t lane = 0; lane < speeds.size(); ++lane)
     for (std::size_t p = 0; p < probes; ++p) {
       const auto of = [&](std::size_t response) {

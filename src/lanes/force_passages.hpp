@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "base/passage_peaks.hpp"
 #include "integrate/force_history.hpp"
-#include "integrate/probe_peaks.hpp"
 #include "lanes/force_task.hpp"
 #include "structure/modal_bridge.hpp"
 
@@ -24,9 +24,8 @@ class ForcePassages {
   /// of one class (speed_class.hpp): [run][probe]. Looked for at `instants` a period of the fastest mode or somewhat
   /// more, wherever a response has a kink, and between them by parabolas. `going` is asked now and then; once it
   /// returns false the search stops, and there are no peaks.
-  std::vector<std::vector<integrate::ProbePeaks>> peaks(std::span<const double> speeds,
-                                                        std::span<const double> end_times, double instants,
-                                                        const std::function<bool()>& going) const;
+  std::vector<std::vector<base::ProbePeaks>> peaks(std::span<const double> speeds, std::span<const double> end_times,
+                                                   double instants, const std::function<bool()>& going) const;
 
   const integrate::ForceHistory& history() const { return history_; }
   /// The largest static deflection of each probe while the forces pass, m.

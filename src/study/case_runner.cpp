@@ -119,7 +119,7 @@ std::vector<CaseResult> CaseRunner::run_together(std::size_t train, std::span<co
   }
   if (first.scene_.by_given_modes())
     for (CaseResult& result : results)
-      for (integrate::ProbePeaks& peak : result.peaks) peak.moment = {not_known, not_known};
+      for (base::ProbePeaks& peak : result.peaks) peak.moment = {not_known, not_known};
   for (CaseResult& result : results) result.findings.resize(first.scene_.limits.size());  // unknown where not judged
   return results;
 }
@@ -146,14 +146,8 @@ std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<co
 
 CaseResult CaseRunner::result_of(const engine::BatchResult& crossing, std::size_t train) const {
   CaseResult result;
-  const auto peak = [](const base::Extreme& p) { return base::Extreme{p.value, p.time}; };
-  for (std::size_t p = 0; p < crossing.deflection.size(); ++p)
-    result.peaks.push_back({peak(crossing.deflection[p]), peak(crossing.acceleration[p]), peak(crossing.moment[p])});
+  static_cast<base::PassagePeaks&>(result) = crossing;
   result.static_deflection = static_deflection_.at(train);
-  result.least_wheel_force = crossing.least_force;
-  result.greatest_wheel_force = crossing.greatest_force;
-  result.contact_losses = crossing.contact_losses;
-  result.longest_loss = crossing.longest_loss;
   result.unseen = crossing.contact_losses > 0.0 && !scene_.model.trials_lost_contact;
   result.ended = true;
   return result;
@@ -295,7 +289,7 @@ std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<co
   }
   std::vector<CaseResult> results(speeds.size());
   const auto going = [] { return caught_signal() == 0; };
-  std::vector<std::vector<integrate::ProbePeaks>> peaks;
+  std::vector<std::vector<base::ProbePeaks>> peaks;
   if (beam_->modal->dampers_couple())
     for (std::size_t i = 0; i < speeds.size(); ++i)
       peaks.push_back(integrate::modal_peaks(*beam_->modal, place->second.history(), speeds[i],

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "integrate/probe_peaks.hpp"
+#include "base/passage_peaks.hpp"
 #include "lanes/force_passages.hpp"
 #include "results/verdict.hpp"
 #include "run/passage.hpp"
@@ -20,11 +20,8 @@
 namespace traverse::app {
 
 /// What is left of a run.
-struct CaseResult {
-  std::vector<integrate::ProbePeaks> peaks;
-  std::vector<double> static_deflection;                       // m, of each probe; 0: unknown
-  double least_wheel_force = 0.0, greatest_wheel_force = 0.0;  // N
-  double contact_losses = 0.0, longest_loss = 0.0;             // of all wheels; s
+struct CaseResult : base::PassagePeaks {
+  std::vector<double> static_deflection;   // m, of each probe; 0: unknown
   bool unseen = false;                     // it has met what no trial run has seen, or was not taken as these were
   std::vector<results::Finding> findings;  // of each limit of the scene; none where no run is judged
   bool ended = false;                      // false: a signal came first

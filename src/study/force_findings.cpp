@@ -18,7 +18,7 @@ ForceFindings::ForceFindings(const Scene& scene, SharedBeam& shared, double coun
       slopes_(shared.modal->slopes(DeckRotations(*shared.beam).unknowns(), scene.self_weight ? scene.gravity : 0.0)) {}
 
 std::vector<results::Finding> ForceFindings::of(std::size_t train, double end_time,
-                                                std::span<const integrate::ProbePeaks> peaks,
+                                                std::span<const base::ProbePeaks> peaks,
                                                 std::span<const double> static_deflection) {
   std::vector<std::string> ignored;
   const Plan plan = plan_exact_in_time(scene_, end_time, shared_.first_period(), ignored);

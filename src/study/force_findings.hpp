@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "base/passage_peaks.hpp"
 #include "integrate/force_history.hpp"
-#include "integrate/probe_peaks.hpp"
 #include "results/verdict.hpp"
 #include "run/plan.hpp"
 #include "run/shared_beam.hpp"
@@ -25,7 +25,7 @@ class ForceFindings {
 
   /// One for each limit of the scene as it is now, with its train of forces, which is number `train`, and its speed.
   /// peaks, static_deflection (m): of each probe.
-  std::vector<results::Finding> of(std::size_t train, double end_time, std::span<const integrate::ProbePeaks> peaks,
+  std::vector<results::Finding> of(std::size_t train, double end_time, std::span<const base::ProbePeaks> peaks,
                                    std::span<const double> static_deflection);
 
  private:

@@ -14,7 +14,7 @@
 
 namespace traverse::app {
 
-using Errors = LaneErrors;
+using Errors = PeakErrors;
 
 namespace {
 
@@ -87,7 +87,7 @@ void LaneChooser::take(const std::optional<NumericalModel>& found) {
   model_ = *found;
 }
 
-LaneErrors LaneChooser::check_wholes(LaneSearch& search) {
+PeakErrors LaneChooser::check_wholes(LaneSearch& search) {
   Errors errors{};
   for (int i = 0; i <= most_tries; ++i) {
     NumericalModel other = search.on_finer_mesh(model_);

@@ -35,7 +35,7 @@ class LaneChooser {
   Scene tried() const;
   /// Whole passages: errors add up while the train crosses. Against a finer mesh and half the step, by esdirk4:
   /// genalpha takes all vibration out of wheels in time, and two of its steps may agree on that.
-  LaneErrors check_wholes(LaneSearch& search);
+  PeakErrors check_wholes(LaneSearch& search);
   /// By a finer mesh where it is that what the other one differs by, else by shorter steps.
   void refine(const NumericalModel& other);
 
@@ -47,6 +47,6 @@ class LaneChooser {
 };
 
 /// The errors that a scene asks for, by their names.
-std::string words_of(const Scene& scene, const LaneErrors& errors);
+std::string words_of(const Scene& scene, const PeakErrors& errors);
 
 }  // namespace traverse::app

@@ -29,9 +29,9 @@ constexpr int most_elements = 256;                         // of a span
 constexpr double surely_within = 0.8, clearly_over = 1.3;  // times what steps may leave
 constexpr double lowest_order = 0.5, highest_order = 4.0;  // of the steps
 
-LaneErrors change(LaneTrials& trials, const NumericalModel& from, const NumericalModel& to, double factor = 1.0) {
+PeakErrors change(LaneTrials& trials, const NumericalModel& from, const NumericalModel& to, double factor = 1.0) {
   trials.run_at_once(std::array{to, from});
-  LaneErrors errors = difference(trials.scene(), trials.run(from), trials.run(to));
+  PeakErrors errors = difference(trials.scene(), trials.run(from), trials.run(to));
   for (double& error : errors) error *= factor;
   return errors;
 }
@@ -115,8 +115,8 @@ bool LaneSearch::halve_step(NumericalModel& model) {
 
 void LaneSearch::measure_steps(const NumericalModel& model) {
   trials_.run_at_once(std::array{with_step(model, 0.5), model, with_step(model, 2.0)});
-  const LaneErrors before = change(trials_, with_step(model, 2.0), model);
-  const LaneErrors now = change(trials_, model, with_step(model, 0.5));
+  const PeakErrors before = change(trials_, with_step(model, 2.0), model);
+  const PeakErrors now = change(trials_, model, with_step(model, 0.5));
   for (std::size_t q = 0; q < quantities; ++q) {
     // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
     const bool follows = q != moment || damps_high_modes(trials_.scene());
@@ -151,7 +151,7 @@ NumericalModel LaneSearch::cheaper(const NumericalModel& model) {
       if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
       // Between two steps of one method that are known: about the root of both.
       if (tried.method == model.method && std::sqrt(of_model * of_longer) > clearly_over) continue;
-      const LaneErrors own = left_by(tried, model);
+      const PeakErrors own = left_by(tried, model);
       of_longer = over(own);
       if (hopeless(of_longer, row_of(tried), factor)) break;
       if (of_longer > 1.0) continue;
@@ -163,8 +163,8 @@ NumericalModel LaneSearch::cheaper(const NumericalModel& model) {
 }
 
 /// The errors of such steps, told by half those of the model.
-LaneErrors LaneSearch::left_by(const NumericalModel& tried, const NumericalModel& model) {
-  LaneErrors own = change(trials_, tried, with_step(model, 0.5));
+PeakErrors LaneSearch::left_by(const NumericalModel& tried, const NumericalModel& model) {
+  PeakErrors own = change(trials_, tried, with_step(model, 0.5));
   const double times = row_of(tried).solves() > 1.0 ? 1.0 : of_one_solve;
   if (times > 1.0) own[wheel_force] *= of_its_forces;
   for (std::size_t q = 0; q < quantities; ++q) own[q] = times * own[q] + halved_[q];
@@ -172,6 +172,6 @@ LaneErrors LaneSearch::left_by(const NumericalModel& tried, const NumericalModel
 }
 
 /// Times what steps may leave.
-double LaneSearch::over(const LaneErrors& errors) const { return greatest(errors) / (part_of_steps * accuracy_); }
+double LaneSearch::over(const PeakErrors& errors) const { return greatest(errors) / (part_of_steps * accuracy_); }
 
 }  // namespace traverse::app

@@ -29,15 +29,15 @@ class LaneSearch {
   void measure_steps(const NumericalModel& model);
   bool refine_mesh(NumericalModel& model);
   NumericalModel cheaper(const NumericalModel& model);
-  LaneErrors left_by(const NumericalModel& tried, const NumericalModel& model);
-  double over(const LaneErrors& errors) const;
+  PeakErrors left_by(const NumericalModel& tried, const NumericalModel& model);
+  double over(const PeakErrors& errors) const;
 
   LaneTrials &trials_, &mixed_;
   double accuracy_;
   double longest_ = 0.0;    // s: no step is longer
   bool one_solve_ = false;  // methods of one solve a step are tried
-  LaneErrors mesh_{}, steps_{};
-  LaneErrors halved_{};  // what half the step leaves
+  PeakErrors mesh_{}, steps_{};
+  PeakErrors halved_{};  // what half the step leaves
 };
 
 }  // namespace traverse::app

@@ -17,49 +17,31 @@ using engine::BatchResult;
 
 namespace {
 
-void note_difference(double a, double b, double scale, double& worst) {
-  if (scale > 0.0) worst = std::max(worst, std::abs(a - b) / scale);
-}
-
 /// Puts the peaks before the unsettled end into the result.
 void filter_kept(BatchResult& result, std::size_t probes, double frequency, double interval) {
   if (result.trouble != engine::none) return;
   const std::size_t settled = filter(result.kept, probes, frequency, interval);
   Peaks peaks(std::vector<std::vector<double>>(probes), 0);
   peaks.add_low_passed(std::span<const double>(result.kept).first(settled * probes), interval);
-  for (const Extreme& peak : peaks.largest_of_each(low_passed))
-    result.low_passed.push_back({std::abs(peak.value), peak.time});
+  for (std::size_t p = 0; p < probes; ++p) {
+    const Extreme& peak = peaks.largest_of_each(low_passed)[p];
+    result.peaks[p].low_passed = {std::abs(peak.value), peak.time};
+  }
   result.kept = {};
 }
 
 }  // namespace
 
-LaneErrors difference(const Scene& scene, const std::vector<BatchResult>& a, const std::vector<BatchResult>& b) {
-  LaneErrors worst{};
-  for (std::size_t run = 0; run < a.size(); ++run) {
-    if (a[run].trouble != engine::none || b[run].trouble != engine::none) {
-      worst.fill(1.0);  // too long a step, most likely
-      continue;
-    }
-    const auto compare = [&](std::vector<base::Extreme> BatchResult::*peaks, Quantity q) {
-      double largest = 0.0;
-      for (const base::Extreme& peak : b[run].*peaks) largest = std::max(largest, peak.value);
-      for (std::size_t p = 0; p < (b[run].*peaks).size(); ++p)
-        note_difference((a[run].*peaks)[p].value, (b[run].*peaks)[p].value, largest, worst[q]);
-    };
-    compare(&BatchResult::deflection, deflection);
-    compare(&BatchResult::acceleration, acceleration);
-    compare(&BatchResult::moment, moment);
-    compare(&BatchResult::low_passed, low_passed);
-    note_difference(a[run].greatest_force, b[run].greatest_force, b[run].greatest_force, worst[wheel_force]);
-    note_difference(a[run].least_force, b[run].least_force, b[run].greatest_force, worst[wheel_force]);
+PeakErrors difference(const Scene& scene, const std::vector<BatchResult>& rough, const std::vector<BatchResult>& fine) {
+  PeakErrors worst{};
+  for (std::size_t run = 0; run < rough.size(); ++run) {
+    const bool failed = rough[run].trouble != engine::none || fine[run].trouble != engine::none;
+    const PeakErrors own = failed ? PeakErrors{} : difference(scene, rough[run], fine[run]);
+    for (std::size_t q = 0; q < quantities; ++q)
+      if (asks_for(scene, q)) worst[q] = std::max(worst[q], failed ? 1.0 : own[q]);  // too long a step, most likely
   }
-  for (std::size_t q = 0; q < quantities; ++q)
-    if (!asks_for(scene, q)) worst[q] = 0.0;
   return worst;
 }
-
-double greatest(const LaneErrors& errors) { return *std::max_element(errors.begin(), errors.end()); }
 
 bool lose_contact(const std::vector<BatchResult>& runs) {
   return std::any_of(runs.begin(), runs.end(), [](const BatchResult& run) { return run.contact_losses > 0.0; });

@@ -13,18 +13,14 @@
 
 #include "accuracy/choice.hpp"
 #include "run/peaks.hpp"
+#include "study/peak_errors.hpp"
 #include "study/side_by_side.hpp"
 
 namespace traverse::app {
 
-/// Errors of each quantity's peaks.
-using LaneErrors = std::array<double, quantities>;
-
-/// The largest differences of the peaks of runs, of the scene's accuracy_of, relative to the largest of their kind in
-/// the run; 1 where one of them has found no end.
-LaneErrors difference(const Scene& scene, const std::vector<engine::BatchResult>& a,
-                      const std::vector<engine::BatchResult>& b);
-double greatest(const LaneErrors& errors);
+/// The largest of all runs; 1 where one of them has found no end.
+PeakErrors difference(const Scene& scene, const std::vector<engine::BatchResult>& rough,
+                      const std::vector<engine::BatchResult>& fine);
 bool lose_contact(const std::vector<engine::BatchResult>& runs);
 
 /// Passages of one scene at some speeds.

@@ -43,7 +43,7 @@ std::vector<std::vector<double>> some_speeds(const std::vector<double>& speeds, 
 }
 
 std::string words_of(const Scene& scene, const std::array<Promise, quantities>& promises) {
-  LaneErrors errors{};
+  PeakErrors errors{};
   for (std::size_t q = 0; q < quantities; ++q) errors[q] = promises[q].expected;
   return words_of(scene, errors);
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -11,6 +10,7 @@
 #include "case_runner.hpp"
 #include "modes/modes.hpp"
 #include "results/stage.hpp"
+#include "study/peak_errors.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
@@ -22,12 +22,7 @@ constexpr double code_frequency = 30.0, code_factor = 1.5;  // Hz; times the fir
 constexpr std::size_t code_modes = 3;
 constexpr int most_counted = 64, nodes_for_a_question = 1000;
 
-constexpr std::array<std::pair<Quantity, base::Extreme integrate::ProbePeaks::*>, 3> of_probes = {
-    {{deflection, &integrate::ProbePeaks::deflection},
-     {acceleration, &integrate::ProbePeaks::acceleration},
-     {moment, &integrate::ProbePeaks::moment}}};
-
-/// The same of the low-passed accelerations, as limits have them.
+/// Of low-passed accelerations, as limits have them.
 double difference_low_passed(const Scene& scene, const CaseResult& modes, const CaseResult& elements) {
   double worst = 0.0;
   for (std::size_t i = 0; i < scene.limits.size(); ++i) {
@@ -38,20 +33,10 @@ double difference_low_passed(const Scene& scene, const CaseResult& modes, const 
   return worst;
 }
 
-/// The largest difference of a peak at any probe of what the scene asks for, relative to the largest peak of its kind.
-double difference(const Scene& scene, const CaseResult& modes, const CaseResult& elements) {
-  double worst = asks_for(scene, low_passed) ? difference_low_passed(scene, modes, elements) : 0.0;
-  for (const auto& [q, quantity] : of_probes) {
-    if (!asks_for(scene, q)) continue;
-    double apart = 0.0, largest = 0.0;
-    for (std::size_t p = 0; p < elements.peaks.size(); ++p) {
-      const double value = (elements.peaks[p].*quantity).value;
-      apart = std::max(apart, std::abs((modes.peaks[p].*quantity).value - value));
-      largest = std::max(largest, value);
-    }
-    if (largest > 0.0) worst = std::max(worst, apart / largest);
-  }
-  return worst;
+/// Of all peaks that the scene asks for.
+double greatest_difference(const Scene& scene, const CaseResult& modes, const CaseResult& elements) {
+  const double filtered = asks_for(scene, low_passed) ? difference_low_passed(scene, modes, elements) : 0.0;
+  return std::max(filtered, greatest(difference(scene, modes, elements)));
 }
 
 /// As read_modal has it.
@@ -116,7 +101,7 @@ ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vec
       if (modes.cost() > elements.cost()) return {};
       double worst = 0.0;
       for (const Sample& s : samples)
-        worst = std::max(worst, difference(scene, modes.run(s.train, {s.speed, {}}), s.result));
+        worst = std::max(worst, greatest_difference(scene, modes.run(s.train, {s.speed, {}}), s.result));
       if (worst > share_of_modes * scene.accuracy) continue;
       notes.push_back(fmt::format(
           "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "

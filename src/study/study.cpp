@@ -81,7 +81,7 @@ std::vector<double> row_of(std::size_t run, const CaseResult& result, const std:
   const auto or_unknown = [](double value) { return value > 0.0 ? value : results::StudyTable::not_run; };
   add([&](std::size_t p) { return probes[p]; });
   for (const auto quantity :
-       {&integrate::ProbePeaks::deflection, &integrate::ProbePeaks::acceleration, &integrate::ProbePeaks::moment}) {
+       {&base::ProbePeaks::deflection, &base::ProbePeaks::acceleration, &base::ProbePeaks::moment}) {
     add([&](std::size_t p) { return (result.peaks[p].*quantity).value; });
     add([&](std::size_t p) { return (result.peaks[p].*quantity).time; });
   }

@@ -17,7 +17,7 @@ namespace traverse::test {
 namespace {
 
 using Peak = base::Extreme;
-using integrate::ProbePeaks;
+using base::ProbePeaks;
 using Peaks = std::vector<ProbePeaks>;
 
 const std::vector<double> speeds = {38.1, 39.0, 40.25, 41.0, 42.0, 43.0, 44.5, 45.2};  // m/s, of one class
