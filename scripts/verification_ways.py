@@ -60,6 +60,8 @@ WAYS = [
             "SideBySide.OneVehicleOfManyCars", [Check('"60,72,4", "2e-3", "5e-4", {});', "articulated_train")]),
         Row("a coach on a rough track at three speeds: all peaks", "the same runs, each driven by TS",
             "SideBySide.RoughTrack", [Check('"76,84,4", "8e-4", "2e-4", {});', "three_span_train")]),
+        Row("a coach on rail, sleepers and ballast at three speeds: all peaks", "the same runs, each driven by TS",
+            "SideBySide.LayeredTrack", [Check('"60,66,3", "2e-3", "5e-4", {});', "r8_ballasted_bridge")]),
         Row("one solve a step: greatest wheel force", "a fine step of esdirk4", "SideBySide.OneSolveAStep",
             [Check("EXPECT_LT(errors[1], {});", "error")]),
         Row("mesh, step and method found by `accuracy` 5e-3: all peaks", "fine elements, mechanisms",
