@@ -126,7 +126,7 @@ bool damps_all_modes(const Scene& scene) {
 }
 
 Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
-  const Choice none{scene.model, {}, {}};
+  Choice none{scene.model, {}, {}};
   const bool alone = chooses_step_alone(scene);
   if (!alone && !chooses(scene)) return none;
   if (const options::Entry* option = own_measure()) {
