@@ -85,9 +85,8 @@ struct BeamRows {
     inwards(t.first, t.last, t.middle, t.middle,
             [&](int pair, int further, int nearer) { subtract(factor(pair), x + further * b, x + nearer * b); });
     for (int c = t.first; c <= t.last; ++c) multiply(pivot(c), x + c * b, x + c * b);
-    outwards(t.first, t.last, t.middle, t.middle, [&](int pair, int further, int nearer) {
-      subtract_transposed(factor(pair), x + nearer * b, x + further * b);
-    });
+    outwards(t.first, t.last, t.middle, t.middle,
+             [&](int pair, int further, int nearer) { subtract<true>(factor(pair), x + nearer * b, x + further * b); });
     for (int i = t.first * b; i < (t.last + 1) * b; ++i) {
       solution[i] = open ? x[i] : solution[i];
       v[i] = rows(t.v_predicted)[i] + displacement * solution[i];
@@ -98,7 +97,7 @@ struct BeamRows {
     Row* x = rows(t.solution);
     outwards(0, t.columns - 1, t.first, t.last, [&](int pair, int further, int nearer) {
       multiply(pivot(further), rows(t.residual) + further * b, x + further * b);
-      subtract_transposed(factor(pair), x + nearer * b, x + further * b);
+      subtract<true>(factor(pair), x + nearer * b, x + further * b);
     });
   }
 
@@ -134,23 +133,17 @@ struct BeamRows {
  private:
   Row shift(Row rate) const { return t.by_mass / (1.0 + rate * t.by_mass); }
 
-  /// y -= A x, y -= A^T x, y = A x, for one block by rows.
+  /// y -= A x, or A^T x, for one block by rows.
+  template <bool transposed = false>
   void subtract(const Row* A, const Row* x, Row* y) const {
     Row sum[most_block];
     for (int i = 0; i < b; ++i) {
       sum[i] = y[i];
-      for (int k = 0; k < b; ++k) sum[i] -= A[i * b + k] * x[k];
+      for (int k = 0; k < b; ++k) sum[i] -= A[transposed ? k * b + i : i * b + k] * x[k];
     }
     for (int i = 0; i < b; ++i) y[i] = sum[i];
   }
-  void subtract_transposed(const Row* A, const Row* x, Row* y) const {
-    Row sum[most_block];
-    for (int i = 0; i < b; ++i) {
-      sum[i] = y[i];
-      for (int k = 0; k < b; ++k) sum[i] -= A[k * b + i] * x[k];
-    }
-    for (int i = 0; i < b; ++i) y[i] = sum[i];
-  }
+  /// y = A x.
   void multiply(const Row* A, const Row* x, Row* y) const {
     Row of[most_block];
     for (int i = 0; i < b; ++i) of[i] = x[i];
