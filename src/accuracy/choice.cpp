@@ -1,3 +1,4 @@
+// How a scene takes a model over, how two models are joined, and the meshes that models name by one number.
 #include "accuracy/choice.hpp"
 
 #include <algorithm>

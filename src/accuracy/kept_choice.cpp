@@ -71,14 +71,14 @@ bool is_possible(const Choice& choice, const Scene& scene) {
          within(model.rest_tolerance, -1.0, largest) && within(choice.low_pass.value_or(0.0), 0.0, largest);
 }
 
-bool KeptChoice::read(std::vector<std::string>& notes, Choice& choice) const {
+bool KeptChoice::read(const Scene& scene, std::vector<std::string>& notes, Choice& choice) const {
   if (known_.empty()) return false;
   Choice found;
   std::vector<std::string> said;
   try {
     base::Bytes bytes{std::span<const char>(known_)};
     bytes(found, said);
-    if (!bytes.at_end() || !is_possible(found, scene_)) return false;
+    if (!bytes.at_end() || !is_possible(found, scene)) return false;
   } catch (const FileError&) {  // not what was written
     return false;
   }
@@ -94,7 +94,7 @@ void KeptChoice::write(std::vector<std::string>& notes, Choice& choice) {
   write_file(bytes.written());
 }
 
-KeptChoice::KeptChoice(MPI_Comm comm, const Scene& scene) : scene_(scene) {
+KeptChoice::KeptChoice(MPI_Comm comm, const Scene& scene) {
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   writes_ = rank == 0;

@@ -22,7 +22,7 @@ class KeptChoice {
   KeptChoice(MPI_Comm comm, const Scene& scene);
 
   /// Whether a choice was kept that the scene can have; then it is read, and `notes` says so.
-  bool read(std::vector<std::string>& notes, Choice& choice) const;
+  bool read(const Scene& scene, std::vector<std::string>& notes, Choice& choice) const;
   /// Keeps it with its notes; what cannot be written is not kept.
   void write(std::vector<std::string>& notes, Choice& choice);
 
@@ -33,7 +33,6 @@ class KeptChoice {
   /// What is kept in the file at path_; empty where it is not there, or not whole.
   std::string read_file() const;
 
-  const Scene scene_;
   std::string path_;   // empty: nothing is kept
   std::string bound_;  // what the digest binds a choice to
   bool writes_;        // on this rank

@@ -1,3 +1,4 @@
+// What is said of promised errors: reports, and reasons for which a promise is withdrawn after the run.
 #include "accuracy/promise.hpp"
 
 #include <fmt/format.h>

@@ -26,7 +26,7 @@ Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& not
   KeptChoice kept(comm, scene);
   Choice choice;
   std::vector<std::string> own;
-  if (!kept.read(own, choice)) {
+  if (!kept.read(scene, own, choice)) {
     choice = try_models(comm, scene, own);
     if (choice.accuracy.measured) kept.write(own, choice);
   }

@@ -1,3 +1,4 @@
+// Halves steps and elements until what that changes is within the accuracy, then looks for what costs less.
 #include "study/lane_search.hpp"
 
 #include <algorithm>

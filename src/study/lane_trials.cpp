@@ -1,3 +1,4 @@
+// Sets up and runs batches of trial passages, and compares their peaks.
 #include "study/lane_trials.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Relative differences of the peaks of two runs, one a quantity.
 #include "study/peak_errors.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// What runs side by side are set up from: the train at its start, the stretches of equal steps, tracks.
 #include "study/side_by_side.hpp"
 
 #include <algorithm>

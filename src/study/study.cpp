@@ -271,7 +271,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   std::vector<std::string> notes;
   Choice choice;
   KeptChoice kept(comm, given);
-  if (!kept.read(notes, choice)) {
+  if (!kept.read(given, notes, choice)) {
     choice = choose_for_study(scenes, notes);
     if (choice.accuracy.measured) kept.write(notes, choice);
   }

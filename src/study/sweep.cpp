@@ -145,7 +145,7 @@ int run_sweep(MPI_Comm comm, const Scene& given, results::Place place) {
   std::vector<std::string> notes;
   Choice choice;
   KeptChoice kept(comm, given);
-  if (!kept.read(notes, choice)) {
+  if (!kept.read(given, notes, choice)) {
     choice = choose_for_sweep(given, notes);
     if (choice.accuracy.measured) kept.write(notes, choice);
   }
