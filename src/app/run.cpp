@@ -11,7 +11,6 @@
 #include "run/checkpoints.hpp"
 #include "run/rank_choice.hpp"
 #include "study/study.hpp"
-#include "study/sweep.hpp"
 
 namespace traverse::app {
 
@@ -54,8 +53,7 @@ int run(MPI_Comm comm, const Scene& given) {
   Scene asked = given;
   const std::optional<results::Checkpoint> earlier = earlier_of(comm, asked);
   results::Place place = claim_outputs(comm, asked);
-  if (given.study) return run_study(comm, given, std::move(place));
-  if (given.sweep) return run_sweep(comm, given, std::move(place));
+  if (given.study || given.sweep) return run_study(comm, given, std::move(place));
   // Chosen before trial runs, which are runs as well, and again when these have chosen the model.
   const RankChoice at_first = ranks_for(comm, given, earlier);
   return run_on_first(comm, at_first.ranks, [&](MPI_Comm some) {

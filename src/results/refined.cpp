@@ -1,10 +1,10 @@
 // What is said of speeds that were added near the peaks.
+#include "results/refined.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdio>
-
-#include "results/sweep.hpp"
 
 namespace traverse::results {
 namespace {

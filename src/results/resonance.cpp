@@ -2,12 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
 
 namespace traverse::results {
-void record(const Sweep& sweep, const std::vector<Resonance>& resonances,
+void record(const std::vector<int>& trains, const std::vector<Resonance>& resonances,
             const std::vector<Cancellation>& cancellations, Recorder& recorder) {
   std::vector<Recorder::Dataset> sets;
   const auto add = [&sets](const char* name, const char* unit, const auto& list, auto get) {
@@ -15,9 +16,9 @@ void record(const Sweep& sweep, const std::vector<Resonance>& resonances,
     for (const auto& one : list) values.push_back(get(one));
     if (!values.empty()) sets.push_back({name, {values.size()}, values, unit});
   };
-  if (!sweep.trains.empty())
+  if (!trains.empty())
     add("/resonances/hslm_a", "1", resonances,
-        [&](const Resonance& r) { return static_cast<double>(sweep.trains[r.train]); });
+        [&](const Resonance& r) { return static_cast<double>(trains[r.train]); });
   add("/resonances/mode", "1", resonances, [](const Resonance& r) { return static_cast<double>(r.mode); });
   add("/resonances/order", "1", resonances, [](const Resonance& r) { return static_cast<double>(r.order); });
   add("/resonances/frequency", "Hz", resonances, [](const Resonance& r) { return r.frequency; });
@@ -32,21 +33,21 @@ void record(const Sweep& sweep, const std::vector<Resonance>& resonances,
   recorder.datasets(sets);
 }
 
-void print(const Sweep& sweep, const std::vector<Resonance>& resonances,
+void print(const std::vector<int>& trains, const std::vector<Resonance>& resonances,
            const std::vector<Cancellation>& cancellations) {
-  std::size_t last = sweep.rows();
+  const std::size_t none = std::max<std::size_t>(1, trains.size());
+  std::size_t last = none;
   for (const Resonance& r : resonances) {
     if (r.mode != 1) continue;
-    if (last == sweep.rows()) fmt::print("resonances v = f1 d/i of f1 {:.4g} Hz, km/h", r.frequency);
+    if (last == none) fmt::print("resonances v = f1 d/i of f1 {:.4g} Hz, km/h", r.frequency);
     if (r.train != last)
-      fmt::print("\n  {}d {:.4g} m",
-                 sweep.trains.empty() ? "" : fmt::format("{:>5}  ", fmt::format("A{}", sweep.trains[r.train])),
+      fmt::print("\n  {}d {:.4g} m", trains.empty() ? "" : fmt::format("{:>5}  ", fmt::format("A{}", trains[r.train])),
                  r.distance);
     last = r.train;
     fmt::print("; i {} predicted {:.4g}, {}", r.order, 3.6 * r.speed,
                std::isnan(r.of_deflection) ? "no peak there" : fmt::format("found {:.4g}", 3.6 * r.of_deflection));
   }
-  if (last < sweep.rows()) fmt::print("\n");
+  if (last < none) fmt::print("\n");
   std::string speeds;
   for (const Cancellation& c : cancellations)
     if (c.mode == 1) speeds += fmt::format("{}{:.4g}", speeds.empty() ? "" : ", ", 3.6 * c.speed);

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "results/sweep.hpp"
+#include "results/recorder.hpp"
 
 namespace traverse::results {
 
@@ -17,8 +17,8 @@ struct Resonance {
   double distance = 0.0;    // m
   double speed = 0.0;       // m/s, predicted
   double width = 0.0;       // m/s: so far beside it the first axle and the last are out of step by a whole swing
-  /// m/s, of the peaks that the sweep has there; Sweep::not_run: none.
-  double of_deflection = Sweep::not_run, of_acceleration = Sweep::not_run;
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  double of_deflection = none, of_acceleration = none;  // m/s, of the peaks that the sweep has there
 };
 
 /// A speed at which a force leaves a simple span without motion in one mode.
@@ -27,11 +27,12 @@ struct Cancellation {
   double speed = 0.0;            // m/s
 };
 
-void record(const Sweep& sweep, const std::vector<Resonance>& resonances,
+/// trains: numbers of HSLM-A; empty: one train, whatever it is.
+void record(const std::vector<int>& trains, const std::vector<Resonance>& resonances,
             const std::vector<Cancellation>& cancellations, Recorder& recorder);
 /// One line for each resonance of the first frequency and for those of others at which the sweep has a peak, and one
 /// for the cancellations of the first mode.
-void print(const Sweep& sweep, const std::vector<Resonance>& resonances,
+void print(const std::vector<int>& trains, const std::vector<Resonance>& resonances,
            const std::vector<Cancellation>& cancellations);
 
 }  // namespace traverse::results

@@ -5,11 +5,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "results/sweep.hpp"
+
 namespace traverse::results {
 
 StudyTable::StudyTable(const options::Study& study, std::size_t probes, bool wheels,
                        const std::vector<options::VerdictLimit>& limits)
-    : study_(study), runs_(study.runs()), probes_(probes), limits_(limits), finished_(runs_, 0.0) {
+    : study_(study),
+      runs_(study.runs()),
+      probes_(probes),
+      limits_(limits),
+      finished_(runs_, 0.0),
+      reasons_(limits.size()) {
   for (const StudyColumn& column : study_columns) {
     if ((column.of_wheels && !wheels) || (column.each == StudyColumn::limit && limits.empty())) continue;
     const std::size_t width = column.each == StudyColumn::probe   ? probes
@@ -68,52 +75,89 @@ std::vector<Verdict> StudyTable::verdicts() const {
   Judged judged(limits_, 0);
   judged.value = find("judged")->values;
   judged.x = find("judged_x")->values;
+  judged.why = reasons_;
   return worst_of(judged, [this](std::size_t run) { return point_text(study_, run); });
 }
 
 bool find_extreme(const StudyTable& table, const std::string& name, bool largest, StudyPlace& place) {
+  return find_extreme(table, name, largest, place, 0, table.runs());
+}
+
+bool find_extreme(const StudyTable& table, const std::string& name, bool largest, StudyPlace& place, std::size_t first,
+                  std::size_t past) {
   const StudyTable::Column* column = table.find(name);
   if (column == nullptr) return false;
-  std::size_t at = column->values.size();
-  for (std::size_t i = 0; i < column->values.size(); ++i) {
+  const std::size_t none = past * column->width;
+  std::size_t at = none;
+  for (std::size_t i = first * column->width; i < none; ++i) {
     const double value = column->values[i];
     if (std::isnan(value)) continue;
-    if (at == column->values.size() || (largest ? value > column->values[at] : value < column->values[at])) at = i;
+    if (at == none || (largest ? value > column->values[at] : value < column->values[at])) at = i;
   }
-  if (at == column->values.size()) return false;
+  if (at == none) return false;
   place = {at / column->width, at % column->width, column->values[at]};
   return true;
 }
 
 std::string point_text(const options::Study& study, std::size_t run) {
+  if (study.sweep) {
+    const std::string train = train_name(study, study.place(run, 0));
+    const double speed = study.value(run, study.dimensions[study.speeds]);
+    return fmt::format("{}{}at {:.5g} m/s ({:.4g} km/h)", train, train.empty() ? "" : " ", speed, 3.6 * speed);
+  }
   std::string text;
   for (const options::StudyDimension& d : study.dimensions)
     text += fmt::format("{}{} {:.6g}", text.empty() ? "" : ", ", d.name(), study.value(run, d));
   return text;
 }
 
+namespace {
+
+/// Which run it is.
+void add_point(const options::Study& study, const std::string& name, std::size_t run, std::vector<Attribute>& list) {
+  if (!study.sweep) return list.push_back({name + "_run", static_cast<long>(run)});
+  for (const options::StudyDimension& d : study.dimensions) {
+    const double value = study.value(run, d);
+    if (d.whole)
+      list.push_back({name + "_train", std::lround(value)});
+    else
+      list.push_back({name + "_speed", value});
+  }
+}
+
+/// The largest (or least) number of a column, where it is known: with its time, place and run.
+void add_extreme(const StudyTable& table, const std::string& name, const std::string& column, bool largest,
+                 std::vector<Attribute>& list) {
+  StudyPlace place;
+  if (!find_extreme(table, column, largest, place)) return;
+  list.push_back({name, place.value});
+  const std::size_t at = place.run * table.probes() + place.probe;
+  if (const StudyTable::Column* time = table.find(column + "_time")) list.push_back({name + "_time", time->values[at]});
+  if (table.find(column)->what->each == StudyColumn::probe)
+    list.push_back({name + "_place", table.find("probes_x")->values[at]});
+  add_point(table.study(), name, place.run, list);
+}
+
+}  // namespace
+
 std::vector<Attribute> summary_of(const StudyTable& table) {
   std::vector<Attribute> list;
-  StudyPlace place;
-  const StudyTable::Column& x = *table.find("probes_x");
-  const auto add = [&](const std::string& name, const std::string& column, bool largest) {
-    if (!find_extreme(table, column, largest, place)) return;
-    list.push_back({name, place.value});
-    list.push_back({name + "_run", static_cast<long>(place.run)});
-    if (table.find(column)->what->each == StudyColumn::probe)
-      list.push_back({name + "_place", x.values[place.run * table.probes() + place.probe]});
-  };
-  add("deflection", "peak_deflection", true);
-  add("acceleration", "peak_acceleration", true);
-  add("moment", "peak_moment", true);
-  add("greatest_amplification", "amplification", true);
-  add("least_wheel_force", "least_wheel_force", false);
-  add("greatest_wheel_force", "greatest_wheel_force", true);
-  if (const StudyTable::Column* losses = table.find("contact_losses")) {
-    double sum = 0.0;
-    for (const double count : losses->values) sum += std::isnan(count) ? 0.0 : count;
-    list.push_back({"contact_losses", std::lround(sum)});
-  }
+  add_extreme(table, "deflection", "peak_deflection", true, list);
+  add_extreme(table, "acceleration", "peak_acceleration", true, list);
+  add_extreme(table, "moment", "peak_moment", true, list);
+  if (StudyPlace place; find_extreme(table, "peak_deflection", true, place))
+    for (const char* beside : {"static_deflection", "amplification"})
+      if (const double value = table.find(beside)->values[place.run * table.probes() + place.probe]; !std::isnan(value))
+        list.push_back({beside, value});
+  add_extreme(table, "greatest_amplification", "amplification", true, list);
+  add_extreme(table, "least_wheel_force", "least_wheel_force", false, list);
+  add_extreme(table, "greatest_wheel_force", "greatest_wheel_force", true, list);
+  StudyPlace longest;
+  if (!find_extreme(table, "longest_loss", true, longest)) return list;
+  double sum = 0.0;
+  for (const double count : table.find("contact_losses")->values) sum += std::isnan(count) ? 0.0 : count;
+  list.push_back({"contact_losses", std::lround(sum)});
+  list.push_back({"longest_loss", longest.value});
   return list;
 }
 

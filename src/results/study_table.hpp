@@ -46,6 +46,7 @@ class StudyTable {
              const std::vector<options::VerdictLimit>& limits = {});
 
   const options::Study& study() const { return study_; }
+  const std::vector<options::VerdictLimit>& limits() const { return limits_; }
   /// A verdict on each limit, of all runs that have ended.
   std::vector<Verdict> verdicts() const;
   std::size_t runs() const { return runs_; }
@@ -53,6 +54,8 @@ class StudyTable {
   /// Numbers in a row: those of each column, per probe or one, in the columns' order.
   std::size_t width() const { return width_; }
   void put(std::size_t run, const double* row);
+  /// Why runs do not know the value of a limit, in words.
+  void give_reason(std::size_t limit, const std::string& why) { reasons_[limit] = why; }
   bool finished(std::size_t run) const { return finished_[run] != 0.0; }
   std::size_t finished_runs() const;
 
@@ -81,6 +84,7 @@ class StudyTable {
   std::vector<options::VerdictLimit> limits_;
   std::vector<Column> columns_;
   std::vector<double> finished_;
+  std::vector<std::string> reasons_;  // of each limit
 };
 
 /// The run and probe with the largest (or least) value of a column; false where no run has ended.
@@ -89,10 +93,13 @@ struct StudyPlace {
   double value = 0.0;
 };
 bool find_extreme(const StudyTable& table, const std::string& column, bool largest, StudyPlace& place);
+/// The same among some of the runs.
+bool find_extreme(const StudyTable& table, const std::string& column, bool largest, StudyPlace& place,
+                  std::size_t first, std::size_t past);
 
-/// "track_seed 5, train_speed 83.3".
+/// "track_seed 5, train_speed 83.3"; of a sweep "A3 at 83.3 m/s (300 km/h)".
 std::string point_text(const options::Study& study, std::size_t run);
-/// Peaks of all runs, each with its run.
+/// Peaks of all runs, each with its run, of a sweep with its train and speed; what is not known is left out.
 std::vector<Attribute> summary_of(const StudyTable& table);
 void print_study(const StudyTable& table);
 

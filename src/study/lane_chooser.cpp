@@ -83,7 +83,7 @@ Scene LaneChooser::tried() const {
 }
 
 void LaneChooser::take(const std::optional<NumericalModel>& found) {
-  if (!found) throw NotChosen{"their peaks do not settle to the accuracy"};
+  if (!found) throw NotChosen{"their peaks do not settle to the accuracy", true};
   model_ = *found;
 }
 
@@ -103,7 +103,7 @@ PeakErrors LaneChooser::check_wholes(LaneSearch& search) {
     }
     refine(other);
   }
-  throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, errors))};
+  throw NotChosen{fmt::format("over whole passages errors add up to {}", words_of(scene_, errors)), true};
 }
 
 void LaneChooser::refine(const NumericalModel& other) {

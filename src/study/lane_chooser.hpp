@@ -23,9 +23,10 @@ class LaneChooser {
   /// Of a scene with a sweep, which must outlive it.
   LaneChooser(const Scene& scene, const TrialSpeeds& speeds);
 
-  /// Why nothing is chosen.
+  /// Why nothing is chosen; unsettled: a search for less may settle.
   struct NotChosen {
     std::string why;
+    bool unsettled = false;
   };
   /// Throws NotChosen, and LaneTrials::Refused where passages cannot go in lanes.
   Choice choose();

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "results/sweep.hpp"
 #include "run/deck_acceleration.hpp"
-#include "study/sweep_curves.hpp"
 
 namespace traverse::app {
 namespace {
@@ -53,9 +53,21 @@ bool simple_spans(const beam::BeamModel& beam) {
          std::all_of(beam.spans.begin(), beam.spans.end(), [&](double span) { return span == beam.spans.front(); });
 }
 
-/// The highest local peak near a resonance; not_run: none.
+/// A train's largest values at each speed; NaN where its run has not ended.
+std::vector<double> worst_of_probes(const results::StudyTable& sweep, const char* column, std::size_t train) {
+  const std::vector<double>& values = sweep.find(column)->values;
+  const std::size_t speeds = results::speeds_of_sweep(sweep.study()).size(), probes = sweep.probes();
+  std::vector<double> worst;
+  for (std::size_t i = 0; i < speeds; ++i) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>((train * speeds + i) * probes);
+    worst.push_back(*std::max_element(begin, begin + static_cast<std::ptrdiff_t>(probes)));
+  }
+  return worst;
+}
+
+/// The highest local peak near a resonance; Resonance::none: there is none.
 double peak_near(const std::vector<double>& speed, const std::vector<double>& value, const results::Resonance& r) {
-  double found = results::Sweep::not_run, highest = 0.0;
+  double found = results::Resonance::none, highest = 0.0;
   for (std::size_t i = 1; i + 1 < speed.size(); ++i) {
     const bool close =
         std::abs(speed[i] - r.speed) <= near * r.width || (speed[i - 1] < r.speed && r.speed < speed[i + 1]);
@@ -129,11 +141,12 @@ std::vector<results::Cancellation> cancellations_of(const beam::BeamModel& beam,
   return found;
 }
 
-void find_peaks(const results::Sweep& sweep, std::vector<results::Resonance>& resonances) {
-  if (sweep.probes.empty()) return;
+void find_peaks(const results::StudyTable& sweep, std::vector<results::Resonance>& resonances) {
+  if (sweep.probes() == 0) return;
+  const std::vector<double>& speeds = results::speeds_of_sweep(sweep.study());
   for (results::Resonance& r : resonances) {
-    r.of_deflection = peak_near(sweep.speed, worst_of_probes(sweep, sweep.deflection.value, r.train), r);
-    r.of_acceleration = peak_near(sweep.speed, worst_of_probes(sweep, sweep.acceleration.value, r.train), r);
+    r.of_deflection = peak_near(speeds, worst_of_probes(sweep, "peak_deflection", r.train), r);
+    r.of_acceleration = peak_near(speeds, worst_of_probes(sweep, "peak_acceleration", r.train), r);
   }
 }
 

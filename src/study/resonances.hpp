@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "results/resonance.hpp"
+#include "results/study_table.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -31,7 +32,7 @@ std::vector<results::Cancellation> cancellations_of(const beam::BeamModel& beam,
                                                     double slowest, double fastest);
 
 /// Fills in where the sweep's own curves have their peaks near each resonance.
-void find_peaks(const results::Sweep& sweep, std::vector<results::Resonance>& resonances);
+void find_peaks(const results::StudyTable& sweep, std::vector<results::Resonance>& resonances);
 
 /// Those of the speeds of resonance that stand so far from all of `speeds` (ascending) that their peaks may lie unseen
 /// between two of these.

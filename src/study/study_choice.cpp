@@ -9,18 +9,7 @@
 namespace traverse::app {
 namespace {
 
-constexpr double tighter = 0.5;  // of the accuracy: a second search settles where the first one just did not
-
 using Choose = std::optional<Choice> (*)(const Scene& scene, std::vector<std::string>& notes);
-
-std::optional<Choice> side_by_side(const Scene& scene, std::vector<std::string>& notes) {
-  if (std::optional<Choice> choice = choose_side_by_side(scene, notes)) return choice;
-  if (notes.empty()) return {};  // the scene does not leave it open
-  Scene strict = scene;
-  strict.accuracy *= tighter;
-  notes.push_back(fmt::format("once more, with an accuracy of {:g}:", strict.accuracy));
-  return choose_side_by_side(strict, notes);
-}
 
 std::optional<Choice> one_by_one(const Scene& scene, std::vector<std::string>& notes) {
   return choose_one_by_one(scene, notes);
@@ -49,7 +38,7 @@ std::optional<Choice> choose_at_extremes(const StudyScenes& scenes, Choose choos
 }  // namespace
 
 Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes) {
-  if (std::optional<Choice> choice = choose_at_extremes(scenes, side_by_side, notes)) return *choice;
+  if (std::optional<Choice> choice = choose_at_extremes(scenes, choose_side_by_side, notes)) return *choice;
   return *choose_at_extremes(scenes, one_by_one, notes);
 }
 

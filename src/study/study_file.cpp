@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "results/study_statistics.hpp"
+#include "results/sweep.hpp"
 #include "run/model_record.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
@@ -17,15 +18,6 @@ namespace traverse::app {
 namespace {
 
 constexpr double write_every = 5.0, cost_factor = 20.0;  // s, and times what writing takes
-
-std::vector<results::Attribute> attributes_of(const results::Sweep::Model& model) {
-  std::vector<results::Attribute> list = {{"modes", static_cast<long>(model.modes)}};
-  list.push_back({model.in_bays ? "elements_per_bay" : "elements_per_span", static_cast<long>(model.elements)});
-  if (model.time_step > 0.0) list.push_back({"time_step", model.time_step});
-  if (!model.method.empty()) list.push_back({"method", model.method});
-  if (model.accuracy > 0.0) list.push_back({"accuracy", model.accuracy});
-  return list;
-}
 
 /// Options that change no run.
 bool of_study_alone(const std::string& name, const Study& study) {
@@ -38,7 +30,7 @@ bool of_study_alone(const std::string& name, const Study& study) {
 }
 
 /// Why runs of the file are not those of this study; empty: they are.
-std::string contradiction(const results::StoredStudy& stored, const Scene& scene, const results::Sweep::Model& model) {
+std::string contradiction(const results::StoredStudy& stored, const Scene& scene, const results::RunModel& model) {
   std::map<std::string, std::string> now(scene.options.begin(), scene.options.end());
   for (const auto& [name, value] : stored.options) {
     if (of_study_alone(name, *scene.study)) continue;
@@ -50,7 +42,7 @@ std::string contradiction(const results::StoredStudy& stored, const Scene& scene
       return fmt::format("it was computed without {} = {}", name, value);
   for (const StudyDimension& d : scene.study->dimensions)
     if (!stored.datasets.contains(d.name())) return fmt::format("{} was not varied in it", d.name());
-  for (const results::Attribute& attribute : attributes_of(model)) {
+  for (const results::Attribute& attribute : results::attributes_of(model)) {
     const double* number = std::get_if<double>(&attribute.value);
     const long* whole = std::get_if<long>(&attribute.value);
     const auto known = stored.numbers.find(attribute.name);
@@ -95,9 +87,9 @@ void take_over(const results::StoredStudy& stored, results::StudyTable& table) {
 
 }  // namespace
 
-results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results::Sweep::Model& model) {
+results::StoredStudy stored_of(MPI_Comm comm, const Scene& scene, const results::RunModel& model) {
   results::StoredStudy stored;
-  if (!scene.study->resume) return stored;
+  if (!scene.study || !scene.study->resume) return stored;
   int rank = 0;
   MPI_Comm_rank(comm, &rank);
   std::string why;
@@ -175,7 +167,7 @@ class Copy {
 
 }  // namespace
 
-StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::Sweep::Model& model,
+StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, const results::RunModel& model,
                      const results::StudyTable& table, const std::vector<std::string>& notes)
     : comm_(comm), table_(table), model_(model), recorder_([&] {
         int rank = 0;
@@ -183,29 +175,40 @@ StudyFile::StudyFile(MPI_Comm comm, results::Place place, const Scene& scene, co
         const Copy copy(place, rank == 0 && table.finished_runs() > 0);
         results::Recorder made(comm, std::move(place), layout_of(scene), attributes(comm, scene), scene.options);
         record_model(scene, notes, made);
-        made.datasets(table.coordinates());
-        made.datasets(table.results());
-        made.datasets({digests_of(table)});
-        made.datasets({table.finished()});
+        if (!table.study().sweep) made.datasets(table.coordinates());
+        made.datasets(results());
         copy.remove();
         return made;
       }()) {
-  std::string dimensions, axes;
-  for (const StudyDimension& d : table.study().dimensions) {
-    dimensions += (dimensions.empty() ? "" : ",") + d.name();
-    recorder_.attributes("/study/" + d.name(), {{"axis", static_cast<long>(d.axis)}, {"law", d.law}});
+  const std::string folder = table.study().sweep ? "/sweep" : "/study";
+  if (!table.study().sweep) {
+    std::string dimensions, axes;
+    for (const StudyDimension& d : table.study().dimensions) {
+      dimensions += (dimensions.empty() ? "" : ",") + d.name();
+      recorder_.attributes(folder + "/" + d.name(), {{"axis", static_cast<long>(d.axis)}, {"law", d.law}});
+    }
+    for (const Study::Axis& axis : table.study().axes) axes += (axes.empty() ? "" : ",") + axis.name;
+    recorder_.attributes(folder, {{"dimensions", dimensions}, {"axes", axes}});
   }
-  for (const Study::Axis& axis : table.study().axes) axes += (axes.empty() ? "" : ",") + axis.name;
-  recorder_.attributes("/study", {{"dimensions", dimensions}, {"axes", axes}});
-  recorder_.attributes("/study", attributes_of(model));
-  recorder_.rewrite({table.finished()});  // on the disk, with all that stands above
+  recorder_.attributes(folder, results::attributes_of(model));
+  recorder_.rewrite({results().back()});  // on the disk, with all that stands above
+}
+
+std::vector<results::Recorder::Dataset> StudyFile::results() const {
+  if (table_.study().sweep) return results::sweep_datasets(table_, !model_.expected_errors.empty());
+  std::vector<results::Recorder::Dataset> sets = table_.results();
+  sets.push_back(digests_of(table_));
+  sets.push_back(table_.finished());
+  return sets;
 }
 
 void StudyFile::write() {
   const auto begin = std::chrono::steady_clock::now();
-  recorder_.rewrite(table_.results());
-  recorder_.rewrite({digests_of(table_)});
-  recorder_.rewrite({table_.finished()});  // once the rest is on the disk
+  std::vector<results::Recorder::Dataset> sets = results();
+  const results::Recorder::Dataset last = std::move(sets.back());
+  sets.pop_back();
+  recorder_.rewrite(sets);
+  recorder_.rewrite({last});  // once the rest is on the disk
   written_ = std::chrono::steady_clock::now();
   cost_ = std::chrono::duration<double>(written_ - begin).count();
 }
@@ -220,39 +223,48 @@ void StudyFile::update() {
   }
 }
 
-void StudyFile::finish(const StudyCourse& course) {
+void StudyFile::finish(const StudyCourse& course, const std::vector<results::Verdict>& verdicts,
+                       const SweepFindings* findings) {
   if (!recorder_.writes()) return;
   write();
   const results::StudyStatistics statistics(table_);
   recorder_.datasets(statistics.datasets());
   if (statistics.groups() > 0) recorder_.attributes("/study/statistics", {{"confidence", table_.study().confidence}});
-  results::record_verdicts(recorder_, table_.verdicts());
+  if (course.refined && table_.study().sweep)
+    recorder_.datasets({{"/sweep/added", {course.refined->added.size()}, course.refined->added, "1"}});
+  if (findings != nullptr) findings->record(recorder_);
+  results::record_verdicts(recorder_, verdicts);
   std::vector<results::Attribute> summary = results::summary_of(table_);
   for (const auto& [quantity, error] : model_.expected_errors) summary.push_back({"expected_error_" + quantity, error});
   if (course.refined) results::add_to(summary, *course.refined);
   summary.push_back({"runs", static_cast<long>(table_.finished_runs())});
   summary.push_back({"runs_planned", static_cast<long>(table_.runs())});
-  summary.push_back({"runs_known", course.known});
+  if (!table_.study().sweep) summary.push_back({"runs_known", course.known});
   summary.push_back({"wall_seconds", course.wall_seconds});
   summary.push_back({"ended", course.ended});
   recorder_.finish_with(summary, {"runs", "wall_seconds"});
 }
 
-void print_study_course(const results::StudyTable& table, const results::Sweep::Model& model, const StudyCourse& course,
+void print_study_course(const results::StudyTable& table, const results::RunModel& model, const StudyCourse& course,
+                        const std::vector<results::Verdict>& verdicts, const SweepFindings* findings,
                         const Scene& scene) {
-  if (table.finished_runs() > 0) results::print_study(table);
-  if (course.refined) results::print(*course.refined);
-  results::StudyStatistics(table).print();
-  if (table.finished_runs() > 0) results::print_verdicts(table.verdicts(), scene.unusual);
-  if (const std::string said = model.not_promised(table.find("unseen")->values); !said.empty())
+  const bool sweep = table.study().sweep;
+  if (table.finished_runs() > 0) {
+    sweep ? results::print_sweep(table) : results::print_study(table);
+    if (course.refined) results::print(*course.refined);
+    if (findings != nullptr) findings->print();
+    results::StudyStatistics(table).print();
+    results::print_verdicts(verdicts, scene.unusual);
+  }
+  if (const std::string said = results::not_promised(model, table.find("unseen")->values); !said.empty())
     fmt::print("  note: {}\n", said);
   fmt::print("{}", results::computed_alone(course.left_group));
   const long done = static_cast<long>(table.finished_runs()) - course.known;
   fmt::print("  {} of {} runs {} in {:.3g} s, {:.3g} ms each{}\n  {:<22}{}\nresults  {}\n", done,
              static_cast<long>(table.runs()) - course.known, results::method_of(model), course.wall_seconds,
              1e3 * course.wall_seconds / static_cast<double>(std::max(done, 1L)),
-             course.known > 0 ? fmt::format(", and {} known before", course.known) : "", "the study", course.ended,
-             scene.output.file.empty() ? "none" : scene.output.file);
+             course.known > 0 ? fmt::format(", and {} known before", course.known) : "",
+             sweep ? "the sweep" : "the study", course.ended, scene.output.file.empty() ? "none" : scene.output.file);
 }
 
 }  // namespace traverse::app

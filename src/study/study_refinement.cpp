@@ -10,6 +10,8 @@
 #include <set>
 #include <string>
 
+#include "results/sweep.hpp"
+
 namespace traverse::app {
 namespace {
 
@@ -24,38 +26,71 @@ double number_of(const StudyTable::Column& column, std::size_t run) {
   return *std::max_element(begin, begin + static_cast<std::ptrdiff_t>(column.width));
 }
 
-/// Runs of one curve: its name, and where a run stands in it.
+/// Which curve a run belongs to, and where it stands in it.
 struct Curves {
   std::vector<std::string> names;
   std::vector<std::size_t> curve, place;  // of each run
 };
 
+/// Whether runs at different places of an axis belong to different curves.
+bool tells_apart(const Study& study, std::size_t axis) {
+  return axis != study.dimensions[study.speeds].axis &&
+         std::find(study.over.begin(), study.over.end(), axis) == study.over.end();
+}
+
+/// " of A3" of a sweep, " at track_seed 5" of a study.
+std::string name_of(const Study& study, std::size_t run) {
+  std::string name;
+  if (study.sweep) {
+    name = results::train_name(study, study.place(run, 0));
+    return name.empty() ? name : " of " + name;
+  }
+  for (const options::StudyDimension& d : study.dimensions)
+    if (tells_apart(study, d.axis))
+      name += fmt::format("{} {} {:.6g}", name.empty() ? " at" : ",", d.name(), study.value(run, d));
+  return name;
+}
+
 Curves sorted(const Study& study) {
   Curves curves;
   const options::StudyDimension& speeds = study.dimensions[study.speeds];
   const std::vector<double> ascending = speeds_of(study);
-  const auto apart = [&](std::size_t axis) {
-    return axis != speeds.axis && std::find(study.over.begin(), study.over.end(), axis) == study.over.end();
-  };
   std::map<std::vector<std::size_t>, std::size_t> known;
   for (std::size_t run = 0; run < study.runs(); ++run) {
     std::vector<std::size_t> at;
     for (std::size_t axis = 0; axis < study.axes.size(); ++axis)
-      if (apart(axis)) at.push_back(study.place(run, axis));
+      if (tells_apart(study, axis)) at.push_back(study.place(run, axis));
     const auto [found, is_new] = known.try_emplace(at, curves.names.size());
-    if (is_new) {
-      std::string name;
-      for (const options::StudyDimension& d : study.dimensions)
-        if (apart(d.axis))
-          name += fmt::format("{} {} {:.6g}", name.empty() ? " at" : ",", d.name(), study.value(run, d));
-      curves.names.push_back(name);
-    }
+    if (is_new) curves.names.push_back(name_of(study, run));
     curves.curve.push_back(found->second);
     const double speed = study.value(run, speeds);
     curves.place.push_back(
         static_cast<std::size_t>(std::lower_bound(ascending.begin(), ascending.end(), speed) - ascending.begin()));
   }
   return curves;
+}
+
+/// Of a quantity, the greatest number(run) of the runs of each curve at each speed.
+template <class Number>
+std::vector<SpeedCurve> curves_of_quantity(const Study& study, std::string quantity, Number number) {
+  const Curves runs = sorted(study);
+  std::vector<SpeedCurve> curves;
+  std::replace(quantity.begin(), quantity.end(), '_', ' ');
+  const std::size_t speeds = study.dimensions[study.speeds].values.size();
+  for (const std::string& name : runs.names)
+    curves.push_back({quantity + name, std::vector<double>(speeds, std::numeric_limits<double>::quiet_NaN())});
+  for (std::size_t run = 0; run < study.runs(); ++run) {
+    double& greatest = curves[runs.curve[run]].value[runs.place[run]];
+    greatest = std::fmax(greatest, number(run));
+  }
+  return curves;
+}
+
+/// Of what limit number `l` is on.
+std::vector<SpeedCurve> judged_curves(const StudyTable& table, std::size_t l) {
+  const StudyTable::Column& judged = *table.find("judged");
+  return curves_of_quantity(table.study(), table.limits()[l].quantity,
+                            [&](std::size_t run) { return judged.values[run * judged.width + l]; });
 }
 
 }  // namespace
@@ -67,32 +102,41 @@ std::vector<double> speeds_of(const Study& study) {
 }
 
 std::vector<SpeedCurve> curves_of(const StudyTable& table) {
-  const Study& study = table.study();
-  const Curves runs = sorted(study);
-  const std::size_t speeds = study.dimensions[study.speeds].values.size();
   std::vector<SpeedCurve> curves;
-  const auto add = [&](std::string quantity, auto number) {
-    const std::size_t first = curves.size();
-    std::replace(quantity.begin(), quantity.end(), '_', ' ');
-    for (const std::string& name : runs.names)
-      curves.push_back({quantity + name, std::vector<double>(speeds, std::numeric_limits<double>::quiet_NaN())});
-    for (std::size_t run = 0; run < table.runs(); ++run) {
-      double& greatest = curves[first + runs.curve[run]].value[runs.place[run]];
-      greatest = std::fmax(greatest, number(run));
-    }
+  const auto add = [&curves](const std::vector<SpeedCurve>& more) {
+    curves.insert(curves.end(), more.begin(), more.end());
   };
   for (const char* peak : peaks)
     if (const StudyTable::Column* column = table.find(peak))
-      if (column->width > 0) add(peak, [column](std::size_t run) { return number_of(*column, run); });
+      if (column->width > 0)
+        add(curves_of_quantity(table.study(), peak, [column](std::size_t run) { return number_of(*column, run); }));
   std::set<std::string> known;
-  const StudyTable::Column* judged = table.find("judged");
-  const std::vector<results::Verdict> verdicts = table.verdicts();
-  for (std::size_t l = 0; l < verdicts.size(); ++l) {
-    const std::string& quantity = verdicts[l].limit.quantity;
-    if (quantity == "contact_loss" || !known.insert(quantity).second) continue;
-    add(quantity, [&](std::size_t run) { return judged->values[run * judged->width + l]; });
+  for (std::size_t l = 0; l < table.limits().size(); ++l) {
+    const std::string& quantity = table.limits()[l].quantity;
+    if (quantity != "contact_loss" && known.insert(quantity).second) add(judged_curves(table, l));
   }
   return curves;
+}
+
+std::vector<LimitedCurve> curves_in_doubt(const StudyTable& table) {
+  std::vector<LimitedCurve> in_doubt;
+  for (std::size_t l = 0; l < table.limits().size(); ++l) {
+    const options::VerdictLimit& limit = table.limits()[l];
+    if (limit.quantity == "contact_loss") continue;
+    const std::vector<SpeedCurve> curves = judged_curves(table, l);
+    const auto breaks = [&](double value) { return value > limit.value; };
+    if (std::any_of(curves.begin(), curves.end(),
+                    [&](const SpeedCurve& curve) { return std::ranges::any_of(curve.value, breaks); }))
+      continue;
+    for (const SpeedCurve& curve : curves) in_doubt.push_back({curve, limit.value});
+  }
+  return in_doubt;
+}
+
+Refinement next_speeds(const StudyTable& table, double width) {
+  const std::vector<double> speeds = speeds_of(table.study());
+  return table.study().refine < 0.0 ? refine_for_limits(speeds, curves_in_doubt(table), width)
+                                    : refine(speeds, curves_of(table), table.study().refine);
 }
 
 Study with_speeds(Study study, const std::vector<double>& added) {

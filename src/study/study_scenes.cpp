@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
 
-#include "accuracy/trials.hpp"
+#include "results/sweep.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
@@ -18,11 +19,21 @@ constexpr std::size_t most_runners = 12, some_seeds = 8;
 bool names(const StudyDimension& dimension, const char* option) {
   return std::find(dimension.options.begin(), dimension.options.end(), option) != dimension.options.end();
 }
-bool is_speed(const StudyDimension& d) { return names(d, "train_speed") || names(d, "load_speed"); }
+bool is_speed(const StudyDimension& d) {
+  return names(d, "train_speed") || names(d, "load_speed") || names(d, results::speed_of_sweep);
+}
 bool is_seed(const StudyDimension& d) { return names(d, "track_seed"); }
 bool is_of_vehicles(const StudyDimension& d) {
   return std::all_of(d.options.begin(), d.options.end(),
                      [](const std::string& option) { return option.starts_with("vehicle_"); });
+}
+
+Study study_of_sweep(const Scene& scene) {
+  std::vector<double> speeds = scene.sweep->speeds;
+  if (speeds.empty()) speeds = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
+  Study study = results::sweep_study(scene.sweep->trains, std::move(speeds));
+  study.refine = scene.sweep->refine;
+  return study;
 }
 
 /// Train and forces that run together have one speed.
@@ -42,13 +53,20 @@ void check_speeds(const Scene& scene) {
 }  // namespace
 
 StudyScenes::StudyScenes(const Scene& scene) : scene_(scene) {
-  check_speeds(scene);
-  const Study& study = *scene.study;
-  const double speed = scene.vehicles.empty() ? scene.load.speed : scene.train.speed;
+  if (scene.study) check_speeds(scene);
+  enumerate(scene.study ? *scene.study : study_of_sweep(scene));
+}
+
+void StudyScenes::enumerate(const Study& study) {
+  study_ = study;
+  runs_.clear();
+  first_run_.clear();
+  first_of_bridge_.clear();
+  const double speed = scene_.vehicles.empty() ? scene_.load.speed : scene_.train.speed;
   std::map<std::vector<double>, std::size_t> known, bridges;  // bases and bridges by what tells them apart
   std::set<double> speeds;
   for (std::size_t run = 0; run < study.runs(); ++run) {
-    StudyRun one{0, 0, {speed, {}}};
+    StudyRun one{0, study.sweep ? study.place(run, 0) : 0, 0, {speed, {}}};
     std::vector<double> rest, of_bridge;
     for (const StudyDimension& d : study.dimensions) {
       const double value = study.value(run, d);
@@ -56,9 +74,9 @@ StudyScenes::StudyScenes(const Scene& scene) : scene_(scene) {
         one.own.speed = value;
       else if (is_seed(d))
         one.own.seed = static_cast<std::uint64_t>(value);
-      else
+      else if (!study.sweep)
         rest.push_back(value);
-      if (!is_speed(d) && !is_seed(d) && !is_of_vehicles(d)) of_bridge.push_back(value);
+      if (!study.sweep && !is_speed(d) && !is_seed(d) && !is_of_vehicles(d)) of_bridge.push_back(value);
     }
     if (!(one.own.speed > 0.0))
       throw InputError(fmt::format("study_vary: run {} has the speed {:g} m/s; allowed: above 0", run, one.own.speed));
@@ -78,6 +96,7 @@ StudyScenes::StudyScenes(const Scene& scene) : scene_(scene) {
 }
 
 Scene StudyScenes::base(std::size_t base) const {
+  if (study_.sweep) return scene_;
   Scene scene = read_scene_of_study(options::Options(options::in_force()), values_of_run(study(), first_run_[base]));
   if (scene.output.probes.size() != scene_.output.probes.size())
     throw InputError(fmt::format("output_probes: a run has {} probes, others have {}; name as many for all",
@@ -146,13 +165,14 @@ bool StudyScenes::mixes(std::size_t width) const {
 
 std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width) const {
   // So many tracks go together, so that each is made once and those in use fit into memory.
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> blocks;  // by scene and block of seeds
+  using Block = std::array<std::size_t, 3>;  // scene, train, block of seeds
+  std::map<Block, std::vector<std::size_t>> blocks;
   std::map<std::uint64_t, std::size_t> seeds;
   const bool mixed = mixes(width);
   for (std::size_t i = 0; i < runs_.size(); ++i) {
     const StudyRun& run = runs_[i];
     const std::size_t seed = run.own.seed ? seeds.try_emplace(*run.own.seed, seeds.size()).first->second : 0;
-    blocks[{mixed ? run.bridge : run.base, seed / width}].push_back(i);
+    blocks[{mixed ? run.bridge : run.base, run.train, seed / width}].push_back(i);
   }
   std::vector<std::vector<std::size_t>> groups;
   for (const auto& block : blocks) {
@@ -164,6 +184,12 @@ std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width) con
     }
   }
   return groups;
+}
+
+double StudyScenes::duration(const std::vector<std::size_t>& group) {
+  double sum = 0.0;
+  for (const std::size_t run : group) sum += runner(0).runs->duration(runs_[run].train, runs_[run].own.speed);
+  return sum;
 }
 
 }  // namespace traverse::app

@@ -1,4 +1,4 @@
-// The scenes behind the runs of a study: which runs share a bridge and a train, and what computes them.
+// The scenes behind the runs of a study or a sweep: which runs share a bridge and a train, and what computes them.
 #pragma once
 
 #include <deque>
@@ -14,6 +14,7 @@ namespace traverse::app {
 /// A run of a study.
 struct StudyRun {
   std::size_t base = 0;    // the scene that it is a run of
+  std::size_t train = 0;   // of forces, of a sweep
   std::size_t bridge = 0;  // scenes with the same one differ in their vehicles' numbers alone
   CaseRun own;             // its speed and the seed of its track
 };
@@ -21,10 +22,12 @@ struct StudyRun {
 /// Runs that differ in speed and in the track's seed alone are runs of one scene, a base; bases differ in all else.
 class StudyScenes {
  public:
-  /// Of a scene with a study. InputError where speeds contradict one another.
+  /// Of a scene with a study or a sweep, which must outlive it. InputError where speeds contradict one another.
   explicit StudyScenes(const Scene& scene);
+  /// The same with more speeds between its slowest and its fastest.
+  void enumerate(const Study& study);
 
-  const Study& study() const { return *scene_.study; }
+  const Study& study() const { return study_; }
   bool quiet() const { return scene_.quiet; }
   const std::vector<StudyRun>& runs() const { return runs_; }
   std::size_t bases() const { return first_run_.size(); }
@@ -50,10 +53,13 @@ class StudyScenes {
   bool mixes(std::size_t width) const;
   /// Indices of runs that go together, those of a bridge one after another.
   std::vector<std::vector<std::size_t>> groups(std::size_t width) const;
+  /// s of motion, of all runs of a group, by the first base.
+  double duration(const std::vector<std::size_t>& group);
   long alone() const;  // runs that had to leave their group, on this rank
 
  private:
   const Scene& scene_;
+  Study study_;
   std::optional<NumericalModel> chosen_;
   std::vector<double> speeds_;        // of all runs, ascending
   std::vector<std::uint64_t> seeds_;  // of some tracks

@@ -88,11 +88,6 @@ std::optional<Choice> choose_side_by_side(const Scene& given, std::vector<std::s
   return lanes_that_do(judged(given, notes), notes);
 }
 
-Choice choose_for_sweep(const Scene& given, std::vector<std::string>& notes) {
-  if (std::optional<Choice> lanes = choose_side_by_side(given, notes)) return *lanes;
-  return choose_one_by_one(given, notes);
-}
-
 Choice choose_one_by_one(const Scene& given, std::vector<std::string>& notes) {
   const Scene by = judged(given, notes);
   std::optional<Choice> all = choose_at_speeds(by, notes);
@@ -110,8 +105,8 @@ Choice choose_one_by_one(const Scene& given, std::vector<std::string>& notes) {
   return *all;
 }
 
-results::Sweep::Model stored_model(const Scene& scene, const Accuracy& accuracy) {
-  results::Sweep::Model model;
+results::RunModel stored_model(const Scene& scene, const Accuracy& accuracy) {
+  results::RunModel model;
   model.modes = scene.model.modes;
   model.elements = mesh_of(scene);
   model.in_bays = scene.beam->track.has_value();

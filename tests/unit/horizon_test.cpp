@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "accuracy/accuracy.hpp"
-#include "results/sweep.hpp"
+#include "results/run_model.hpp"
 #include "traverse/options/options.hpp"
 
 namespace traverse::app {
@@ -97,12 +97,12 @@ TEST(Accuracy, IsWithdrawnWhereMoreComesThanTrialsSaw) {
   EXPECT_TRUE(accuracy.expected().empty());
 }
 
-TEST(SweepModel, PromisesNothingOfRunsThatMeetWhatNoTrialHasSeen) {
-  results::Sweep::Model model;
+TEST(RunModel, PromisesNothingOfRunsThatMeetWhatNoTrialHasSeen) {
+  results::RunModel model;
   model.expected_errors = {{"deflection", 1e-3}};
-  const std::vector<double> unseen = {0.0, 1.0, results::Sweep::not_run, 1.0};
-  EXPECT_EQ(model.not_promised({0.0, 0.0}), "");
-  EXPECT_NE(model.not_promised(unseen).find("nothing is promised of 2 of the runs"), std::string::npos);
+  const std::vector<double> unseen = {0.0, 1.0, std::numeric_limits<double>::quiet_NaN(), 1.0};
+  EXPECT_EQ(results::not_promised(model, {0.0, 0.0}), "");
+  EXPECT_NE(results::not_promised(model, unseen).find("nothing is promised of 2 of the runs"), std::string::npos);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "results/sweep.hpp"
 #include "scene/load_models.hpp"
 #include "study/resonances.hpp"
 #include "traverse/scene/scene.hpp"

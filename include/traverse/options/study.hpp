@@ -34,6 +34,7 @@ struct Study {
   double refine = 0.0;            // of each peak over the speed, to which speeds are added; 0: none are
   std::size_t speeds = 0;         // the dimension that these are added to
   bool resume = false;            // the results file holds runs of it that need not be run again
+  bool sweep = false;             // its axes are the trains and the speeds of a sweep (results/sweep.hpp)
 
   std::size_t runs() const {
     std::size_t product = 1;

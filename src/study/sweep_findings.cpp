@@ -1,0 +1,79 @@
+// Finds resonances in the table of a sweep, and passes its peaks on to the rules of EN 1991-2.
+#include "study/sweep_findings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "results/sweep.hpp"
+#include "run/norm_run.hpp"
+#include "study/resonances.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double least_width = 0.01;  // of the speed: no train is so long that a resonance of it is narrower
+
+/// Static effects and the verdict of EN 1991-2 where the scene wants them.
+std::optional<norm::NormCheck> check_by_norm(const Scene& scene, const CaseRunner& runner,
+                                             const results::StudyTable& table) {
+  if (!scene.norm) return {};
+  norm::NormCheck check = norm_check(scene, trains_at_rest(scene, *runner.beam()));
+  if (!compares_with_lm71(scene)) return check;
+  const std::vector<double>& speeds = results::speeds_of_sweep(table.study());
+  norm::Passed passed{speeds, runner.probes(), {}};
+  const std::size_t trains = results::trains_of(table.study()), size = speeds.size() * table.probes();
+  for (std::size_t train = 0; train < trains; ++train) {
+    const auto of_train = [&](const char* column) {
+      const auto from = table.find(column)->values.begin() + static_cast<std::ptrdiff_t>(train * size);
+      return std::vector<double>(from, from + static_cast<std::ptrdiff_t>(size));
+    };
+    passed.trains.push_back({of_train("peak_deflection"), of_train("peak_moment")});
+  }
+  check.judge(passed);
+  return check;
+}
+
+}  // namespace
+
+SweepFindings::SweepFindings(const Scene& scene, const CaseRunner& runner)
+    : scene_(scene), runner_(runner), frequencies_(resonant_frequencies(*runner.beam())) {
+  const double slowest = runner.speeds().front(), fastest = runner.speeds().back();
+  resonances_ = resonances_of(scene, frequencies_, slowest, fastest);
+  cancellations_ = cancellations_of(*scene.beam, frequencies_, slowest, fastest);
+}
+
+std::vector<double> SweepFindings::unseen_speeds() const { return unseen(resonances_, runner_.speeds()); }
+
+double SweepFindings::width_of_resonance() const {
+  const SharedBeam& shared = *runner_.beam();
+  double damping = 0.0;  // ratio
+  if (shared.modal) {
+    damping = shared.modal->sigma().front() / shared.modal->omega().front();
+  } else if (!frequencies_.empty()) {
+    const double omega = 2.0 * std::numbers::pi * frequencies_.front();
+    damping = 0.5 * (shared.rayleigh.a / omega + shared.rayleigh.b * omega);
+  }
+  return std::max(2.0 * damping, least_width);
+}
+
+void SweepFindings::finish(const results::StudyTable& table) {
+  find_peaks(table, resonances_);
+  if (table.finished_runs() == table.runs()) check_ = check_by_norm(scene_, runner_, table);
+}
+
+void SweepFindings::add_to(std::vector<results::Verdict>& verdicts) const {
+  if (check_) check_->find(verdicts);
+}
+
+void SweepFindings::record(results::Recorder& recorder) const {
+  results::record(scene_.sweep->trains, resonances_, cancellations_, recorder);
+  if (check_) check_->record(recorder);
+}
+
+void SweepFindings::print() const {
+  results::print(scene_.sweep->trains, resonances_, cancellations_);
+  if (check_) check_->print();
+}
+
+}  // namespace traverse::app
