@@ -6,6 +6,7 @@
 #include <chrono>
 #include <optional>
 
+#include "accuracy/search_constants.hpp"
 #include "accuracy/trials.hpp"
 #include "error_search.hpp"
 #include "first_guess.hpp"
@@ -21,12 +22,11 @@ namespace {
 
 constexpr double some_step = 1e-6;             // s, to look at a scene before it has a step
 constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
-constexpr double part_for_rest = 0.02;         // of the wanted error: curves of accelerations lose more than that
 
 void leave_out_rest(const Scene& scene, NumericalModel& model) {
   const beam::BeamModel& beam = *scene.beam;
   if (model.rest_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= continuous_spans)
-    model.rest_tolerance = part_for_rest * scene.accuracy;
+    model.rest_tolerance = search::share_of_rest * scene.accuracy;
 }
 
 void say(const Scene& scene, const ErrorSearch& search, const Choice& choice, std::vector<std::string>& notes) {

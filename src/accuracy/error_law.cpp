@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/search_constants.hpp"
+
 namespace traverse::app {
 namespace {
 
-constexpr double refining_order = 3.0;
-constexpr double unsettled = 0.5, supposed_order = 1.0;  // after the one, not more than the other is believed
 constexpr double no_limit = 1e3;
 
 }  // namespace
 
-double ErrorLaw::power() const { return std::clamp(order, 1.0, full_order); }
+double ErrorLaw::power() const { return std::clamp(order, 1.0, search::full_order); }
 
-double ErrorLaw::power_refining() const { return std::min(power(), refining_order); }
+double ErrorLaw::power_refining() const { return std::min(power(), search::refining_order); }
 
 double ErrorLaw::room(double wanted) const {
   if (value <= 0.0) return no_limit;
@@ -29,9 +29,9 @@ ErrorLaw error_from(double change, double size, const ErrorLaw& before, double m
   if (before.size > 1.5 * size) {
     const double halvings = std::log2(before.size / size);
     error.known = true;
-    error.order = change > 0.0 ? std::log2(before.change / change) / halvings : full_order;
-    if (before.known && before.order < unsettled) error.order = std::min(error.order, supposed_order);
-    change = std::max(change, before.change / std::exp2((refining_order + 1.0) * halvings));
+    error.order = change > 0.0 ? std::log2(before.change / change) / halvings : search::full_order;
+    if (before.known && before.order < search::least_order) error.order = std::min(error.order, 1.0);
+    change = std::max(change, before.change / std::exp2((search::refining_order + 1.0) * halvings));
   }
   error.order = std::min(error.order, most);
   error.value = change / (std::exp2(error.power_refining()) - 1.0);

@@ -3,9 +3,9 @@
 
 #include <cstddef>
 
-namespace traverse::app {
+#include "accuracy/search_constants.hpp"
 
-inline constexpr double full_order = 4.0;  // of the default integrator and of the elements
+namespace traverse::app {
 
 /// The error of a run, relative to the peak: value * (size/size_of_run)^power.
 struct ErrorLaw {
@@ -29,6 +29,6 @@ struct ErrorLaw {
 
 /// From what halving the size to `size` changed, and what was known before of another size. Where the change is so much
 /// smaller than before that it must be chance, less is believed. most: the highest order there can be.
-ErrorLaw error_from(double change, double size, const ErrorLaw& before, double most = full_order);
+ErrorLaw error_from(double change, double size, const ErrorLaw& before, double most = search::full_order);
 
 }  // namespace traverse::app

@@ -2,22 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/search_constants.hpp"
 #include "base/whole.hpp"
 #include "error_search.hpp"
 #include "run/plan.hpp"
 
 namespace traverse::app {
 namespace {
-
-constexpr double supposed = 1.5;  // times a measured size that an error is extrapolated to by a supposed order
-constexpr double trials_of_run = 0.7, whole_trials_of_run = 8.0;  // for trial runs
-constexpr double farthest_guess = 8.0;                            // of the run's mesh and step, for that
-constexpr double by_nodes_below = 2e-4;                           // wanted accuracy
-constexpr double square = 2.0;
-constexpr double of_a_sum = 2.0;    // times its change
-constexpr double elsewhere = 0.93;  // times a step: one that ends at other places
-constexpr double unknown_order = 0.5;
-constexpr double share_between = 0.5;  // of the wanted error, where it is only known for shorter and longer steps
 
 /// Whether there are supports whose dampers act only while they are touched: then accelerations jump.
 bool dampers_let_go(const beam::Foundation& foundation) {
@@ -37,7 +28,8 @@ int mesh_between(const Scene& scene, int mesh) {
 
 /// What half the elements would change, times what a mesh between changes, where errors fall with the square.
 double as_if_halved(int mesh, int between) {
-  return (std::exp2(square) - 1.0) / (std::pow(static_cast<double>(mesh) / between, square) - 1.0);
+  return (std::exp2(search::mesh_order) - 1.0) /
+         (std::pow(static_cast<double>(mesh) / between, search::mesh_order) - 1.0);
 }
 
 }  // namespace
@@ -66,7 +58,7 @@ void ErrorSearch::measure() {
 void ErrorSearch::count_alike() {
   const auto alike = [&](Quantity q) { return !promised(q) || time_[q].change <= scene_.accuracy; };
   if (!trials_.lost_contact() || !open_step_)
-    strikes_alike_ = enough_alike;
+    strikes_alike_ = search::enough_alike;
   else
     strikes_alike_ = alike(acceleration) && alike(wheel_force) && alike(low_passed) ? strikes_alike_ + 1 : 0;
 }
@@ -76,9 +68,9 @@ ErrorLaw ErrorSearch::error_in_time(Quantity q) {
   // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency: two
   // may agree on what they both leave.
   const bool sums = q == moment && undamped_;
-  double most = !sums ? full_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
+  double most = !sums ? search::full_order : time_[q].known && time_[q].order > 1.5 ? 2.0 : 1.0;
   if ((q == acceleration || q == low_passed) && dampers_let_go(scene_.beam->foundation)) most = 1.0;
-  return error_from((sums ? of_a_sum : 1.0) * growth_ * change, step_, time_[q], most);
+  return error_from((sums ? search::undamped_sum : 1.0) * growth_ * change, step_, time_[q], most);
 }
 
 double ErrorSearch::changed_by_mesh(int other, double step, Quantity q, const std::string& integrator) {
@@ -94,8 +86,8 @@ ErrorLaw ErrorSearch::error_in_space(Quantity q) {
   // Without damping the contact's vibration meets one mode of the elements or another: nothing falls regularly.
   // At fine accuracies what a mesh leaves of an acceleration and of a wheel's force comes and goes with where its nodes
   // are: the square is believed at most, and a mesh between tells whether the two agree by chance.
-  const bool comes_and_goes = (q == acceleration || q == wheel_force) && scene_.accuracy < by_nodes_below;
-  const double by_nodes = comes_and_goes ? square : full_order;
+  const bool comes_and_goes = (q == acceleration || q == wheel_force) && scene_.accuracy <= search::small_error;
+  const double by_nodes = comes_and_goes ? search::mesh_order : search::full_order;
   const int between = comes_and_goes && promised(q) ? mesh_between(scene_, mesh_) : mesh_ / 2;
   const auto change = [&](double step) {
     const double halved = changed_by_mesh(mesh_ / 2, step, q);
@@ -118,7 +110,7 @@ double ErrorSearch::allowed(const Errors& errors, std::size_t q) const {
 
 /// Times the step (or the element) at which all that is promised keeps its share.
 double ErrorSearch::room(const Errors& errors) const {
-  double least = at_most * farthest_guess;
+  double least = search::farthest_left * search::farthest_guess;
   for (std::size_t q = 0; q < quantities; ++q)
     if (promised(q)) least = std::min(least, errors[q].room(allowed(errors, q)));
   return least;
@@ -133,7 +125,7 @@ double ErrorSearch::room_to_coarsen(const Errors& errors) const {
 }
 
 bool ErrorSearch::costs_next_to_nothing() const {
-  return trials_.seconds() + 2.0 * trials_.seconds(2 * mesh_, 0.5 * step_) < next_to_nothing;
+  return trials_.seconds() + 2.0 * trials_.seconds(2 * mesh_, 0.5 * step_) < search::free_seconds;
 }
 
 /// How far the peaks of a step are from those of the finest one. Where it costs next to nothing, the larger one of this
@@ -142,7 +134,7 @@ double ErrorSearch::changed_by_step(double step, double finest, Quantity q) {
   const Peaks& fine = trials_.run(mesh_, finest);
   double change = step == finest ? 0.0 : difference(trials_.run(mesh_, step), fine, q, 3.0 * step);
   if (costs_next_to_nothing())
-    change = std::max(change, difference(trials_.run(mesh_, elsewhere * step), fine, q, 3.0 * step));
+    change = std::max(change, difference(trials_.run(mesh_, search::elsewhere * step), fine, q, 3.0 * step));
   return growth_ * change;
 }
 
@@ -153,7 +145,7 @@ void ErrorSearch::measure_elsewhere() {
     const double change = changed_by_step(step_, step_, static_cast<Quantity>(q));
     if (change <= std::max(wanted_, time_[q].value)) continue;
     time_[q].value = change;
-    time_[q].order = unknown_order;
+    time_[q].order = search::least_order;
     time_[q].known = true;
   }
 }
@@ -167,26 +159,29 @@ bool ErrorSearch::within_reach(const Errors& errors) const {
     if (cheap && promised(q) && !e.confirmed && !told) return false;
     const double room = e.room(allowed(errors, q));
     if (!promised(q) || room >= 1.0) continue;
-    if ((e.known && e.order < 1.0) || room < 1.0 / (e.known ? farthest : supposed)) return false;
+    if ((e.known && e.order < 1.0) || room < 1.0 / (e.known ? search::farthest : search::farthest_supposed))
+      return false;
   }
   return true;
 }
 
 // Longer steps only between two that are measured.
 double ErrorSearch::factor_of_step() const {
-  const double factor = std::clamp(room(time_), 1.0 / at_most, 1.0);
+  const double factor = std::clamp(room(time_), 1.0 / search::farthest_left, 1.0);
   if (factor < 1.0 || !coarser_) return factor;
   double least = std::min(2.0, room_to_coarsen(time_));
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!promised(q) || time_[q].value == 0.0) continue;
-    const double growth = (*coarser_)[q].value / time_[q].value, allowed = share_between * wanted_ / time_[q].value;
+    const double growth = (*coarser_)[q].value / time_[q].value,
+                 allowed = search::share_between * wanted_ / time_[q].value;
     if (growth > allowed) least = std::min(least, std::exp2(std::log(allowed) / std::log(growth)));
   }
   return std::max(least, 1.0);
 }
 
 double ErrorSearch::factor_of_elements() const {
-  return std::clamp(room(space_) < 1.0 ? room(space_) : room_to_coarsen(space_), 1.0 / at_most, most_coarsening_);
+  return std::clamp(room(space_) < 1.0 ? room(space_) : room_to_coarsen(space_), 1.0 / search::farthest_left,
+                    most_coarsening_);
 }
 
 /// Times the step (or the element) that the run will need, as far as is known: what would need still less by the order
@@ -195,7 +190,8 @@ double ErrorSearch::guess(const Errors& errors) const {
   double least = 1.0;
   for (std::size_t q = 0; q < quantities; ++q) {
     const double room = promised(q) ? errors[q].room(allowed(errors, q)) : 1.0;
-    if (room >= 1.0 / farthest_guess || !errors[q].known) least = std::min(least, std::max(room, 1.0 / farthest_guess));
+    if (room >= 1.0 / search::farthest_guess || !errors[q].known)
+      least = std::min(least, std::max(room, 1.0 / search::farthest_guess));
   }
   return least;
 }
@@ -204,7 +200,8 @@ double ErrorSearch::guess(const Errors& errors) const {
 bool ErrorSearch::worth_it(double step, int mesh) const {
   const double run = trials_.seconds(base::whole(mesh_ / guess(space_)), guess(time_) * step_) * end_ / horizon_;
   return trials_.seconds() + 2.0 * trials_.seconds(mesh, step) <
-         std::max(hardly_anything, (scene_.accuracy_whole ? whole_trials_of_run : trials_of_run) * run);
+         std::max(search::cheap_seconds,
+                  (scene_.accuracy_whole ? search::part_of_run_whole : search::part_of_run) * run);
 }
 
 }  // namespace traverse::app

@@ -3,16 +3,10 @@
 
 #include <utility>
 
+#include "accuracy/search_constants.hpp"
 #include "error_search.hpp"
 
 namespace traverse::app {
-namespace {
-
-constexpr double unsettled_order = 0.5, slow = 0.75;  // orders below which an error does not fall
-constexpr double finest_factor = 32.0;                // times the first step
-
-}  // namespace
-
 void ErrorSearch::refuse(std::size_t q, std::string why) {
   if (!promised(q)) return;
   promises_[q].kept = false;
@@ -24,15 +18,15 @@ void ErrorSearch::refuse_what_does_not_settle() {
     if (!promised(q)) continue;
     const ErrorLaw &t = time_[q], &s = space_[q];
     const bool long_step = open_step_ && t.room(wanted_) < 1.0, long_element = open_mesh_ && s.room(wanted_) < 1.0;
-    crawls_[q] = t.known && t.order < slow && 4.0 * step_ <= first_step_ ? crawls_[q] + 1 : 0;
-    if (long_step && step_ <= first_step_ / finest_factor)
+    crawls_[q] = t.known && t.order < search::slow_order && 4.0 * step_ <= first_step_ ? crawls_[q] + 1 : 0;
+    if (long_step && step_ <= search::finest_step * first_step_)
       refuse(q, fmt::format("steps of {:.2g} s still leave an error of {:.1g}", step_, t.value));
-    else if (long_step && crawls_[q] > 1)
+    else if (long_step && crawls_[q] >= search::most_crawls)
       refuse(q, fmt::format("it does not settle as steps are halved ({:.1g} with {:.2g} s)", t.value, step_));
-    else if (long_element && s.known && s.order < unsettled_order && 4 * mesh_ > most_elements_)
+    else if (long_element && s.known && s.order < search::least_order && 4 * mesh_ > most_elements_)
       refuse(q, fmt::format("it does not settle as elements are halved ({:.1g} with {} a {})", s.value, mesh_,
                             unit_of_mesh()));
-    else if (long_element && s.room(wanted_) < 1.0 / farthest && 2 * mesh_ > most_elements_)
+    else if (long_element && s.room(wanted_) < 1.0 / search::farthest && 2 * mesh_ > most_elements_)
       refuse(q, fmt::format("{} elements a {} still leave an error of {:.1g}", mesh_, unit_of_mesh(), s.value));
     tried_[q] = !promises_[q].kept;
   }
@@ -41,11 +35,11 @@ void ErrorSearch::refuse_what_does_not_settle() {
 // Errors farther off than can be told from what was measured, where no more is measured.
 void ErrorSearch::refuse_what_is_far() {
   const auto far = [&](const ErrorLaw& e) {
-    return e.room(wanted_) < (e.known && e.order < 1.0 ? 1.0 : 1.0 / at_most);
+    return e.room(wanted_) < (e.known && e.order < 1.0 ? 1.0 : 1.0 / search::farthest_left);
   };
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!promised(q)) continue;
-    if ((q == acceleration || q == wheel_force || q == low_passed) && strikes_alike_ < enough_alike)
+    if ((q == acceleration || q == wheel_force || q == low_passed) && strikes_alike_ < search::enough_alike)
       refuse(q, fmt::format("wheels strike, and steps of {:.2g} s do not agree with the next two longer ones", step_));
     else if (open_step_ && far(time_[q]))
       refuse(q, fmt::format(

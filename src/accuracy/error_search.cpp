@@ -7,6 +7,7 @@
 #include <numbers>
 #include <tuple>
 
+#include "accuracy/search_constants.hpp"
 #include "base/whole.hpp"
 #include "first_guess.hpp"
 #include "horizon.hpp"
@@ -18,18 +19,7 @@
 namespace traverse::app {
 namespace {
 
-// Of the wanted error, for the step and for the mesh each; less where errors fall too slowly to be told well.
-constexpr double usual_share = 0.4, small_share = 0.25, small_error = 1e-4;
-constexpr int most_rounds = 14;
-constexpr double most_growth = 4.0;
-constexpr std::array fewer_solves_steps = {1.0, 0.7, 0.5};  // times the step of the usual method
-constexpr double trials_that_save = 0.5;                    // of the run, for trying them
-constexpr int most_elements_a_bay = 8, most_elements_in_all = 1200;
-constexpr double track_order = 3.0;       // of a track's mesh, supposed
-constexpr double most_beginnings = 10.0;  // that trial runs may last, to see what comes later
-constexpr double usual_trials = 4.0;
-constexpr double surely_taken = 1.5;         // trials of the first mesh and step, or as long as these
-constexpr double part_for_vibration = 0.25;  // of the wanted error
+constexpr double most_beginnings = 10.0;     // that trial runs may last, to see what comes later
 constexpr double less_of_the_energy = 0.25;  // times a step that loses too much of it
 constexpr double most_of_the_run = 0.8;      // from there trial runs go on to see what a vehicle does behind the bridge
 
@@ -42,8 +32,9 @@ double two_digits(double x) {
 double first_omega(const SharedBeam& shared) { return shared.omega ? shared.omega->first : 0.0; }
 
 int most_trial_elements(const Scene& scene) {
-  const int dense = most_elements_in_all / static_cast<int>(std::min<std::size_t>(scene.beam->spans.size(), 1000));
-  return std::max(scene.beam->track ? most_elements_a_bay : std::clamp(dense, 32, 256), 4 * mesh_of(scene));
+  const int dense = search::most_in_all / static_cast<int>(std::min<std::size_t>(scene.beam->spans.size(), 1000));
+  return std::max(scene.beam->track ? search::most_in_a_bay : std::clamp(dense, 32, search::most_in_a_span),
+                  4 * mesh_of(scene));
 }
 
 }  // namespace
@@ -57,12 +48,12 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
       open_mesh_(scene.mesh_open),
       open_step_(!scene.model.step),
       open_integrator_(!integrate::type_is_given() && !scene.sweep && !scene.study),
-      wanted_((scene.accuracy > small_error ? usual_share : small_share) * scene.accuracy),
+      wanted_((scene.accuracy > search::small_error ? search::share : search::small_share) * scene.accuracy),
       mesh_(mesh_of(scene)),
       most_elements_(most_trial_elements(scene)) {
   for (Promise& p : promises_) p.present = p.kept = true;
   for (ErrorLaw& e : space_)
-    if (scene.beam->track) e.order = track_order;
+    if (scene.beam->track) e.order = search::track_order;
   const double omega = first_omega(shared);
   const FirstSteps steps = first_steps(scene, omega, horizon_);
   longest_step_ = steps.longest;
@@ -72,7 +63,7 @@ ErrorSearch::ErrorSearch(MPI_Comm comm, const Scene& scene, const SharedBeam& sh
   const double decay = scene.by_given_modes() ? scene.beam->given->ratio.front() * omega
                                               : 0.5 * (shared.rayleigh.a + shared.rayleigh.b * omega * omega);
   const double left = end - moved_by();
-  growth_ = std::clamp(std::min(left, decay > 0.0 ? 1.0 / decay : left) / horizon_, 1.0, most_growth);
+  growth_ = std::clamp(std::min(left, decay > 0.0 ? 1.0 / decay : left) / horizon_, 1.0, search::most_growth);
   for (std::size_t q = 0; q < quantities; ++q)
     if (!asks_for(scene, q)) refuse(q, why_not_asked(scene, q));
   if (!follows_contacts(scene, step_))
@@ -95,14 +86,14 @@ double ErrorSearch::until_all_is_met(const SharedBeam& shared) {
   for (const Meeting& meeting : met_later(scene, first, end_ - moved_by())) {
     const Trials longer(comm_, shortened(scene, meeting.until));
     if (meeting.until <= most_beginnings * first ||
-        usual_trials * longer.seconds(mesh_of(scene_), step) < hardly_anything) {
+        search::usual_trials * longer.seconds(mesh_of(scene_), step) < search::cheap_seconds) {
       until = meeting.until;
     } else if (unseen_.empty()) {
       unseen_ = meeting.what;
     }
   }
-  if (scene_.accuracy <= small_error && asks_for(scene_, wheel_force))
-    until = scene_.accuracy < small_error && vibrates_on(scene) ? end_ : with_swing_behind(scene, until);
+  if (scene_.accuracy <= search::small_error && asks_for(scene_, wheel_force))
+    until = scene_.accuracy < search::small_error && vibrates_on(scene) ? end_ : with_swing_behind(scene, until);
   if (asks_for(scene_, low_passed)) until += unsettled_end(*scene_.output.low_pass);
   const double whole = end_ - moved_by();
   return until < most_of_the_run * whole ? until : whole;
@@ -118,7 +109,7 @@ void ErrorSearch::run() {
 // Where trial runs become too many, what was measured has to do.
 void ErrorSearch::search() {
   try {
-    if (surely_taken * trials_.seconds(mesh_, step_) > Trials::most_seconds) throw TooMuchWork();
+    if (search::surely_taken * trials_.seconds(mesh_, step_) > search::most_seconds) throw TooMuchWork();
     leave_out_vibration();
     refine();
     coarsen();
@@ -139,7 +130,7 @@ void ErrorSearch::search() {
 // damps out at once. The energy that goes so tells its amplitude: its square, of that of the static response.
 void ErrorSearch::leave_out_vibration() {
   if (step_of_period_ == 0.0) return;
-  const double amplitude = part_for_vibration * wanted_;
+  const double amplitude = search::share_of_vibration * wanted_;
   while (step_ > step_of_period_ && trials_.energy_missing(mesh_, step_) > amplitude * amplitude)
     step_ = two_digits(std::max(less_of_the_energy * step_, step_of_period_));
   first_step_ = step_;
@@ -161,10 +152,10 @@ void ErrorSearch::refuse_scene() const {
 }
 
 void ErrorSearch::refine() {
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < search::most_halvings; ++round) {
     measure();
     refuse_what_does_not_settle();
-    const auto settles = [&] { return within_reach(time_) && strikes_alike_ >= enough_alike; };
+    const auto settles = [&] { return within_reach(time_) && strikes_alike_ >= search::enough_alike; };
     const bool denser = open_mesh_ && !within_reach(space_);
     if (!denser && settles()) measure_elsewhere();
     const bool finer = open_step_ && !settles();
@@ -222,10 +213,10 @@ void ErrorSearch::take_fewer_solves() {
   const double run = trials_.seconds(base::whole(mesh_ / factor_of_elements()), usual) * end_ / horizon_;
   double spent = 0.0;
   for (const structure::MethodRow& method : structure::methods().subspan(1))
-    for (const double factor : fewer_solves_steps) {
+    for (const double factor : search::shorter_steps) {
       const double step = factor * usual;
       spent += trials_.seconds(mesh_, step, method.name);
-      if (spent > trials_that_save * run) return;
+      if (spent > search::part_that_saves * run) return;
       Errors errors = finest_;
       for (std::size_t q = 0; q < quantities; ++q)
         errors[q].value += growth_ * difference(trials_.run(mesh_, step, method.name), trials_.run(mesh_, finest_step_),
@@ -233,7 +224,7 @@ void ErrorSearch::take_fewer_solves() {
       double most = 0.0;  // of what the mesh leaves
       for (std::size_t q = 0; q < quantities; ++q)
         if (promised(q)) most = std::max(most, errors[q].value / (2.0 * wanted_ - std::min(space_[q].value, wanted_)));
-      if (most * std::pow(fewer_solves_steps.back() / factor, method.order) > 1.0)
+      if (most * std::pow(search::shorter_steps.back() / factor, method.order) > 1.0)
         break;  // not with the shortest either
       if (most > 1.0 || excess(errors, finest_, space_) > 2.0) continue;
       integrator_ = method.name;

@@ -10,6 +10,7 @@
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/choice.hpp"
+#include "accuracy/search_constants.hpp"
 #include "accuracy/trials.hpp"
 #include "error_law.hpp"
 #include "run/shared_beam.hpp"
@@ -32,14 +33,6 @@ class ErrorSearch {
 
  private:
   using Errors = std::array<ErrorLaw, quantities>;
-  // Times a measured size that an error is extrapolated to: by a measured order, and where measuring would cost more
-  // than it is worth.
-  static constexpr double farthest = 2.2, at_most = 2.5;
-  // Of what is refused: times the wanted error, and what it keeps at least where that could be had.
-  static constexpr double best_effort = 10.0, least_effort = 1e-3;
-  static constexpr double hardly_anything = 1.5, next_to_nothing = 0.1;  // s of trial runs, estimated
-  static constexpr int enough_alike = 2;
-
   double moved_by() const;
   double until_all_is_met(const SharedBeam& shared);
   void refine();
@@ -60,7 +53,7 @@ class ErrorSearch {
   void measure_elsewhere();
   void measure();
   void count_alike();
-  double effort() const { return std::max(best_effort * wanted_, least_effort); }
+  double effort() const { return std::max(search::refusal * wanted_, search::least_refusal); }
   double excess(const Errors& errors, const Errors& finest, const Errors& other) const;
   ErrorLaw error_in_time(Quantity q);
   ErrorLaw error_in_space(Quantity q);

@@ -5,22 +5,21 @@
 #include <limits>
 
 #include "accuracy/accuracy.hpp"
+#include "accuracy/search_constants.hpp"
 #include "accuracy/trials.hpp"
 #include "traverse/base/error.hpp"
 
 namespace traverse::app {
 namespace {
 
-constexpr double part_for_linear = 0.1;  // of the wanted error
-constexpr double most_growth = 4.0;      // of what is out of balance, from a trial run to others
 constexpr double steps_a_sample = 32.0;  // of the energies; peaks are looked for at every step
 constexpr double reach = 3.0;            // steps between peaks of both runs that are the same one
 
 }  // namespace
 
-double most_defect(const Scene& scene) { return part_for_linear * scene.accuracy; }
+double most_defect(const Scene& scene) { return search::share_of_linear * scene.accuracy; }
 
-bool may_exceed(double defect, const Scene& scene) { return most_growth * defect > most_defect(scene); }
+bool may_exceed(double defect, const Scene& scene) { return search::most_growth * defect > most_defect(scene); }
 
 double tolerable_defect(MPI_Comm comm, Scene scene) {
   scene.output.interval = steps_a_sample * *scene.model.step;
@@ -38,7 +37,8 @@ double tolerable_defect(MPI_Comm comm, Scene scene) {
             error, difference(linear.peaks, mechanisms.peaks, static_cast<Quantity>(q), reach * *scene.model.step));
     const double allowed = most_defect(scene);
     if (error > allowed) return allowed;
-    return std::max(allowed, linear.defect * (most_growth * error > allowed ? allowed / error : most_growth));
+    return std::max(allowed,
+                    linear.defect * (search::most_growth * error > allowed ? allowed / error : search::most_growth));
   } catch (const SolverError&) {  // too long a step, most likely
     return most_defect(scene);
   }

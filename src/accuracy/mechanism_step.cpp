@@ -8,21 +8,17 @@
 #include <map>
 #include <optional>
 
+#include "accuracy/search_constants.hpp"
 #include "error_law.hpp"
 #include "results/stage.hpp"
 #include "run/passage.hpp"
+#include "run/step_cost.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
 namespace {
 
 constexpr double instants = 400.0;  // of a run, at which runs are compared
-constexpr int most_halvings = 20;
-constexpr int most_crawls = 3;                    // halvings in a row after which an error counts as one that stays
-constexpr double crawling = 0.75;                 // order below which an error hardly falls
-constexpr double share = 0.5, most_longer = 2.0;  // of the wanted error; times the last step, where less does
-constexpr double most_seconds = 60.0;             // of all runs, by counting
-constexpr double seconds_a_body = 2.5e-5;         // and step
 
 /// What is compared, of all instants: each kind of numbers by its own size.
 enum Kind : std::size_t { places, angles, forces, moments, contacts, kinds };
@@ -59,11 +55,9 @@ class Runs {
   Runs(MPI_Comm comm, const Scene& scene) : scene_(scene), shared_(comm, scene, ignored_) {
     scene_.quiet = true;
     scene_.output.interval = longest_step_alone(scene);
-    for (const int type : scene.train.vehicles)
-      bodies_ += static_cast<double>(scene.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
   }
 
-  double seconds(double step) const { return *scene_.end_time / step * seconds_a_body * bodies_; }
+  double seconds(double step) const { return *scene_.end_time / step * step_seconds(scene_); }
   std::size_t count() const { return kept_.size(); }
 
   /// Collective. None where the run failed.
@@ -115,7 +109,6 @@ class Runs {
   std::vector<std::string> ignored_;
   Scene scene_;
   SharedBeam shared_;
-  double bodies_ = 0.0;
   std::map<double, std::optional<Curves>> kept_;  // by their steps
   bool lost_contact_ = false;
 };
@@ -127,9 +120,9 @@ struct Search {
 
   void add(double change, double step, bool both_ended) {
     law = error_from(change, step, law);
-    crawls = both_ended && law.known && law.order < crawling ? crawls + 1 : 0;
+    crawls = both_ended && law.known && law.order < search::slow_order ? crawls + 1 : 0;
   }
-  bool done(double wanted) const { return crawls >= most_crawls || (law.known && law.value <= wanted); }
+  bool done(double wanted) const { return crawls >= search::most_crawls || (law.known && law.value <= wanted); }
 };
 
 }  // namespace
@@ -147,21 +140,21 @@ Choice choose_step_alone(MPI_Comm comm, const Scene& scene, std::vector<std::str
   const auto begin = std::chrono::steady_clock::now();
   Runs runs(comm, scene);
   std::array<Search, alone_quantities> searches;
-  const double wanted = share * scene.accuracy;
+  const double wanted = search::share * scene.accuracy;
   const auto refused = [&](std::size_t q) { return q == contact_force && runs.lost_contact(); };
   const auto done = [&](std::size_t q) { return refused(q) || searches[q].done(wanted); };
   double step = longest_step_alone(scene), spent = runs.seconds(step);
-  for (int i = 0; i < most_halvings && !(done(position) && done(joint_force) && done(contact_force)); ++i) {
+  for (int i = 0; i < search::most_halvings && !(done(position) && done(joint_force) && done(contact_force)); ++i) {
     step *= 0.5;
     spent += runs.seconds(step);
     const bool both_ended = runs.run(2.0 * step) && runs.run(step);
     for (std::size_t q = 0; q < alone_quantities; ++q)
       searches[q].add(runs.difference(2.0 * step, step, static_cast<AloneQuantity>(q)), step, both_ended);
-    if (spent + runs.seconds(0.5 * step) > most_seconds) break;
+    if (spent + runs.seconds(0.5 * step) > search::most_seconds) break;
   }
-  double longer = most_longer;
+  double longer = search::farthest;
   for (std::size_t q = 0; q < alone_quantities; ++q)
-    if (!refused(q) && searches[q].crawls < most_crawls)
+    if (!refused(q) && searches[q].crawls < search::most_crawls)
       longer = std::min(longer, std::max(1.0, searches[q].law.room(wanted)));
 
   Choice choice{scene.model, {}, {}};

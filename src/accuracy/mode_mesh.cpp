@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "accuracy/search_constants.hpp"
 #include "accuracy/trials.hpp"
 #include "error_law.hpp"
 #include "modes/modes.hpp"
@@ -20,7 +21,6 @@ namespace {
 constexpr int first_a_span = 16, first_a_bay = 4, most_a_bay = 16;
 constexpr double most_in_all = 5e4;  // elements: beyond, eigenvalues take minutes, and rounding hides what is left
 constexpr int most_a_span = 1024;
-constexpr double supposed_order = 2.0;  // of elements of first order along x, where a coarse mesh has fewer modes
 constexpr double least_order = 1.0;
 
 class Frequencies {
@@ -46,9 +46,10 @@ class Frequencies {
       if (fine[i] == 0.0) continue;
       if (i >= middle.size()) return 1.0;
       const double change = std::abs(middle[i] / fine[i] - 1.0);
-      double order = supposed_order;
+      double order = search::mesh_order;
       if (i < first.size() && change > 0.0)
-        order = std::clamp(std::log2(std::abs(first[i] / fine[i] - 1.0) / change - 1.0), least_order, full_order);
+        order =
+            std::clamp(std::log2(std::abs(first[i] / fine[i] - 1.0) / change - 1.0), least_order, search::full_order);
       most = std::max(most, change / (std::exp2(std::isnan(order) ? least_order : order) - 1.0));
     }
     return most;

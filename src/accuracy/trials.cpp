@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "accuracy/search_constants.hpp"
 #include "methods/one_step_methods.hpp"
 #include "results/stage.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/passage.hpp"
+#include "run/step_cost.hpp"
 #include "run/watch.hpp"
 
 namespace traverse::app {
@@ -16,7 +18,6 @@ constexpr std::size_t margin_spans = 8;         // kept beyond what the train re
 constexpr std::size_t few_spans = 24;           // are all kept
 constexpr double steps_a_check = 32.0;          // of the energies; peaks are looked for at every step
 constexpr double hopeless = 10.0;               // times what linear vehicles may be out of balance by
-constexpr double roughness = 1.3;               // times the work on vehicles on a rough track
 constexpr double twice_as_long = 2.1;           // steps than a run may have, for comparison
 constexpr double solves_a_step = 5.0;           // of the beam, by the default method
 constexpr double steps_a_factorisation = 30.0;  // that would cost as much as a step of a new length
@@ -138,24 +139,8 @@ RunPeaks peaks_of(MPI_Comm comm, const Scene& scene, double most_steps) {
   return result;
 }
 
-// A step with every part of the scene; where contacts change, steps are many more than the run's length asks for.
-double Trials::seconds_a_step(int elements) const {
-  const beam::BeamModel& beam = *scene_.beam;
-  const double longest = *std::max_element(beam.spans.begin(), beam.spans.end());
-  double bodies = 0.0;
-  for (const int type : scene_.train.vehicles)
-    bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
-  if (std::isfinite(scene_.profile.shortest_wave())) bodies *= roughness;
-  const double along = beam.track ? (beam.length() + 2.0 * beam.track->approach) / beam.track->spacing * elements
-                                  : beam.length() / longest * elements;
-  const double probes = static_cast<double>(scene_.output.probes.size());
-  return 5e-6 + 5e-6 * bodies + 1e-7 * probes + along * (beam.track ? 1e-6 : 1e-7);
-}
-
 double Trials::seconds(int elements, double step, const std::string& integrator) const {
-  const structure::MethodRow* method = structure::find_method(integrator);
-  const double solves = method == nullptr ? 1.0 : method->solves() / structure::methods().front().solves();
-  return *scene_.end_time / step * seconds_a_step(elements) * solves;
+  return *scene_.end_time / step * step_seconds(scene_, integrator, elements);
 }
 
 double Trials::seconds() const {
@@ -183,7 +168,7 @@ const Trials::Kept& Trials::kept_run(int elements, double step, const std::strin
     scene.model.vehicles = VehicleModel::linear;
     scene.model.most_defect = most_defect_;
   }
-  const double a_step = seconds_a_step(elements), most_steps = (most_seconds - spent_) / a_step;
+  const double a_step = step_seconds(scene_, {}, elements), most_steps = (search::most_seconds - spent_) / a_step;
   RunPeaks result;
   try {
     if (*scene_.end_time / step > most_steps) throw TooMuchWork();

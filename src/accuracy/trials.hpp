@@ -49,8 +49,6 @@ class Trials {
  public:
   Trials(MPI_Comm comm, Scene scene) : comm_(comm), scene_(std::move(scene)), most_defect_(app::most_defect(scene_)) {}
 
-  static constexpr double most_seconds = 150.0;  // of all trial runs of a scene, as `seconds` estimates them
-
   /// Collective. The peaks of a run, by the scene's integrator or another; kept. TooMuchWork where it would exceed what
   /// all runs may take. Vehicles that the scene leaves open are taken as linear: OutOfBalance where that leaves out too
   /// much.
@@ -67,7 +65,6 @@ class Trials {
   double seconds() const;
 
  private:
-  double seconds_a_step(int elements) const;
   bool linear_is_in_doubt(double defect) const;
   void measure_linear(int elements, double step);
   struct Kept {

@@ -10,6 +10,7 @@
 #include "results/terminal.hpp"
 #include "run/outputs.hpp"
 #include "run/rank_choice.hpp"
+#include "run/step_cost.hpp"
 #include "scene/limits.hpp"
 #include "study/case_runner.hpp"
 #include "study/modes_choice.hpp"
@@ -20,11 +21,9 @@ namespace {
 
 // As measured; benchmarks/check_estimates.py has how near estimates come.
 constexpr double program = 6.5e7;               // bytes, of the program with its libraries
-constexpr double a_step = 5e-6, a_body = 4e-6;  // s, of a step besides what the structure takes
 constexpr double moving_spans = 24.0;           // of a bridge whose other spans rest
-constexpr double a_mode_and_probe = 4e-10;      // s, of an instant that modes tell
 constexpr double of_petsc = 2.0;                // times the time of the program's own integrators
-constexpr double trial_runs = 6.0;              // with steps of the first length, that take as long as all trial runs
+constexpr double trial_runs = 8.0;              // with steps of the first length, that take as long as all trial runs
 // Times the modes that EN 1990 counts: those that runs take where accelerations are low-passed, and where they are not.
 constexpr double modes_low_passed = 4.0, modes_of_all = 10.0;
 constexpr double bytes_a_number = 8.0;
@@ -36,27 +35,18 @@ double refinement(const Look& look) {
   return look.tried ? std::max(1.0, std::sqrt(begins_well / look.scene.accuracy)) : 1.0;
 }
 
-/// How many stages a step has, times what they cost more where PETSc takes them.
-double stages() {
-  const options::Entry* asked = options::in_force().find("ts_type");
-  const structure::MethodRow* own = asked == nullptr ? nullptr : structure::find_method(asked->value);
-  const structure::MethodRow& row = own == nullptr ? structure::methods().front() : *own;
-  const bool by_petsc = asked != nullptr && own == nullptr;
-  return (by_petsc ? of_petsc : 1.0) * static_cast<double>(row.make(row.parameter.value).stages.size());
-}
-
 double step_seconds(const Look& look) {
-  if (look.scene.exact_in_time())
-    return a_mode_and_probe * static_cast<double>(look.shared->modal->modes()) *
-           static_cast<double>(look.scene.output.probes.size() + 1);
-  double bodies = 0.0;
-  for (const int type : look.scene.train.vehicles)
-    bodies += static_cast<double>(look.scene.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
-  StageWork structure = stage_work(look.scene);
-  structure.vehicles = 0.0;
-  const double moving =
-      structure.cut ? 1.0 : std::min(1.0, moving_spans / static_cast<double>(look.scene.beam->spans.size()));
-  return a_step + a_body * bodies + stages() * moving * stage_seconds(structure, 1, 0.0);
+  const Scene& scene = look.scene;
+  if (scene.exact_in_time())
+    return modal_instant_seconds(scene, static_cast<double>(look.shared->modal->modes()),
+                                 look.shared->modal->dampers_couple());
+  const options::Entry* asked = options::in_force().find("ts_type");
+  const std::string method = asked == nullptr ? scene.model.method : asked->value;
+  const bool by_petsc = asked != nullptr && structure::find_method(method) == nullptr;
+  const double moving = scene.beam && !stage_work(scene).cut
+                            ? std::min(1.0, moving_spans / static_cast<double>(scene.beam->spans.size()))
+                            : 1.0;
+  return (by_petsc ? of_petsc : 1.0) * step_seconds(scene, method, 0, moving);
 }
 
 void count_single(const Look& look, Cost& cost) {

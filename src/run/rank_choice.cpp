@@ -8,31 +8,19 @@
 #include <cmath>
 #include <limits>
 
+#include "run/step_cost.hpp"
+
 namespace traverse::app {
 namespace {
 
-// s, of an unknown in a stage of esdirk4 with its part of the step's end (doc/performance.md): of a continuous bridge,
-// of spans apart, under a layered track.
-constexpr double continuous = 7.2e-9, apart = 3.8e-9, layered = 16.6e-9;
 // s, of a coach's stage: what its rank does alone, and its contacts, which every rank solves with all others.
 constexpr double vehicle_alone = 3.0e-6, vehicle_contacts = 1.7e-6;
 constexpr double messages = 9.0;           // in a stage, as counted on two ranks (doc/scaling.md)
 constexpr double late = 0.5e-6;            // s, by which ranks come late to a message
-constexpr double layered_unknowns = 5.0;   // of a column of a layered track
-constexpr double elements_of_span = 20.0;  // where they are not chosen yet
 constexpr double worth = 0.85;             // more ranks have to take less than that part of what fewer take
 constexpr int most_told = 1024;            // ranks
 constexpr int batches = 7, batch = 100;    // of messages that tell their latency
 constexpr double pause = 2e-5;             // s, from one of these to the next, in which ranks compute
-
-double unknowns_of(const Scene& scene) {
-  const beam::BeamModel& beam = *scene.beam;
-  if (beam.track) return layered_unknowns * rail_mesh(beam).elements;
-  if (scene.mesh_open) return 2.0 * elements_of_span * static_cast<double>(beam.spans.size());
-  double elements = 0.0;
-  for (const int count : beam.elements) elements += count;
-  return (beam.axial ? 3.0 : 2.0) * (elements + static_cast<double>(beam.spans.size()));
-}
 
 }  // namespace
 
@@ -45,7 +33,7 @@ StageWork stage_work(const Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   const bool spans_apart = beam.all_separate() && beam.spans.size() > 1;
   work.unknowns = unknowns_of(scene);
-  work.each = beam.track ? layered : spans_apart ? apart : continuous;
+  work.each = unknown_seconds(scene);
   // Every rank steps all vehicles that are linear.
   work.vehicles = scene.model.vehicles == VehicleModel::linear ? 0.0 : static_cast<double>(scene.train.vehicles.size());
   work.cut = !(scene.model.rest_tolerance > 0.0 || (scene.model.rest_tolerance < 0.0 && spans_apart));

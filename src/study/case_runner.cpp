@@ -12,6 +12,7 @@
 #include "engine/speed_class.hpp"
 #include "integrate/modal_peaks.hpp"
 #include "run/signals.hpp"
+#include "run/step_cost.hpp"
 #include "run/watch.hpp"
 #include "study/lanes_obstacle.hpp"
 
@@ -20,16 +21,9 @@ namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 
-// As measured. Peaks by modes take that much at each instant for every mode, and for every mode and probe;
-// with modes that dampers couple, whose runs go one by one, several times that.
-constexpr double seconds_a_mode = 2e-9, seconds_a_probe = 4e-10;
-// Of a run side by side with others, a stage.
-constexpr double seconds_a_lane_vehicle = 1e-7, seconds_a_lane_element = 5e-9;
+// Of a run by the kernel of batches that goes alone, times what it takes beside others.
 constexpr double alone_over_beside = 20.0;
-constexpr double rough_over_level = 3.5;  // no vehicle rests, and contacts take more iterations
-constexpr double coupled_over_uncoupled = 8.0;
 constexpr double seconds_a_look = 1e-7;  // of limits at a run by modes
-constexpr double seconds_a_step = 5e-6, seconds_a_body = 5e-6, seconds_an_element = 1e-7;
 
 }  // namespace
 
@@ -173,24 +167,14 @@ double CaseRunner::cost() const {
   if (scene_.exact_in_time()) {
     const std::vector<double>& omega = beam_->modal->omega();
     const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
-    const double an_instant = seconds_a_mode + seconds_a_probe * static_cast<double>(scene_.output.probes.size());
-    const double coupled = beam_->modal->dampers_couple() ? coupled_over_uncoupled : 1.0;
-    const double looks = force_findings_ ? 1.0 / scene_.looks : 0.0;
-    return coupled * instants * static_cast<double>(omega.size()) * an_instant +
-           (std::isfinite(looks) ? looks * seconds_a_look : 0.0);
+    const double looks = force_findings_ && std::isfinite(scene_.looks) ? seconds_a_look / scene_.looks : 0.0;
+    return instants * modal_instant_seconds(scene_, static_cast<double>(omega.size()), beam_->modal->dampers_couple()) +
+           looks;
   }
-  if (by_kernel_) {
-    const double alone = lanes_ ? 1.0 : alone_over_beside;
-    const double a_stage = seconds_a_lane_vehicle * static_cast<double>(scene_.train.vehicles.size()) +
-                           seconds_a_lane_element * beam_->beam->mesh().elements();
-    const double rough = scene_.profile.level() ? 1.0 : rough_over_level;
-    return alone * rough * a_stage * static_cast<double>(method_of(scene_).stages.size()) / *scene_.model.step;
-  }
-  double bodies = 0.0;
-  for (const int type : scene_.train.vehicles)
-    bodies += static_cast<double>(scene_.vehicles[static_cast<std::size_t>(type)].mechanism.bodies.size());
-  const double a_step = seconds_a_step + seconds_a_body * bodies + seconds_an_element * beam_->beam->mesh().elements();
-  return a_step / scene_.model.step.value_or(1.0);
+  const double step = scene_.model.step.value_or(1.0);
+  if (!by_kernel_) return step_seconds(scene_, scene_.model.method) / step;
+  return (lanes_ ? 1.0 : alone_over_beside) * batch_stage_seconds(scene_, beam_->beam->mesh().elements()) *
+         static_cast<double>(method_of(scene_).stages.size()) / step;
 }
 
 double CaseRunner::cost_of_all() const {

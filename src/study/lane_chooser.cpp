@@ -9,6 +9,7 @@
 #include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
 #include "accuracy/horizon.hpp"
+#include "accuracy/search_constants.hpp"
 #include "accuracy/trials.hpp"
 #include "run/deck_acceleration.hpp"
 
@@ -18,10 +19,8 @@ using Errors = PeakErrors;
 
 namespace {
 
-constexpr double part_of_all = 0.95;  // of the wanted error
 constexpr int most_tries = 6;
-constexpr double mesh_over_wholes = 0.5;  // of the wanted error
-constexpr double shorter = 0.7;           // a quarter of an error of fourth order
+constexpr double shorter = 0.7;  // a quarter of an error of fourth order
 
 }  // namespace
 
@@ -97,7 +96,7 @@ PeakErrors LaneChooser::check_wholes(LaneSearch& search) {
     errors = difference(scene_, wholes_->run(model_), wholes_->run(other));
     for (std::size_t q = 0; q < quantities; ++q)
       errors[q] = std::max(errors[q], search.error_of_mesh(q) + search.error_of_steps(q));
-    if (greatest(errors) <= part_of_all * scene_.accuracy) {
+    if (greatest(errors) <= search::share_of_whole * scene_.accuracy) {
       if (lose_contact(wholes_->run(model_))) throw NotChosen{"wheels lose contact"};
       return errors;
     }
@@ -110,7 +109,7 @@ void LaneChooser::refine(const NumericalModel& other) {
   NumericalModel same_mesh = other;
   same_mesh.elements = model_.elements;
   const Errors by_mesh = difference(scene_, wholes_->run(same_mesh), wholes_->run(other));
-  if (greatest(by_mesh) <= mesh_over_wholes * scene_.accuracy)
+  if (greatest(by_mesh) <= search::share_of_wholes_mesh * scene_.accuracy)
     *model_.step *= shorter;
   else
     model_.elements = other.elements;

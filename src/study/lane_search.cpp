@@ -8,27 +8,14 @@
 
 #include "accuracy/accuracy.hpp"
 #include "accuracy/first_guess.hpp"
+#include "accuracy/search_constants.hpp"
 #include "accuracy/trials.hpp"
 
 namespace traverse::app {
 namespace {
 
-constexpr double part_of_mesh = 0.4, part_of_steps = 0.4;  // of the wanted error
-constexpr int most_halvings = 8;
-constexpr double first_step_factor = 4.0;  // times the step that the search by single runs would begin with
 constexpr std::array methods = {"genalpha", "esdirk4"};
-// Times the errors of genalpha's steps, which come and go with where these end; forces are off where a run of its own
-// changes their length, too.
-constexpr double of_one_solve = 1.5, of_its_forces = 2.0;
-constexpr std::array step_factors = {2.0, 1.4, 1.0, 0.7, 0.5};  // times the step of esdirk4, of what may cost less
-// Times what half the elements' length changes: accelerations fall with about its third power. Without damping that
-// grows with the frequency errors of moments fall with the first power.
-constexpr double of_the_change = 1.2, of_an_undamped_moment = 2.0;
-constexpr double order_of_mesh = 2.0;                      // that a finer mesh is foreseen by
-constexpr double least_finer = 1.25, most_finer = 2.0;     // times the elements, from mesh to mesh
-constexpr int most_elements = 256;                         // of a span
-constexpr double surely_within = 0.8, clearly_over = 1.3;  // times what steps may leave
-constexpr double lowest_order = 0.5, highest_order = 4.0;  // of the steps
+constexpr double least_finer = 1.25, most_finer = 2.0;  // times the elements, from mesh to mesh
 
 PeakErrors change(LaneTrials& trials, const NumericalModel& from, const NumericalModel& to, double factor = 1.0) {
   trials.run_at_once(std::array{to, from});
@@ -39,7 +26,7 @@ PeakErrors change(LaneTrials& trials, const NumericalModel& from, const Numerica
 
 /// The error that half the step leaves, by what halving it has changed now and the time before, which tell the order.
 double left_of(double change, double before, double most) {
-  const double order = std::clamp(before > change ? std::log2(before / change) : 0.0, lowest_order, most);
+  const double order = std::clamp(before > change ? std::log2(before / change) : 0.0, search::least_order, most);
   return change / (std::exp2(order) - 1.0);
 }
 
@@ -52,7 +39,7 @@ NumericalModel with_step(const NumericalModel& model, double factor, const char*
 
 /// Whether not even the shortest step of a method will do, where this one leaves so many times what it may.
 bool hopeless(double over, const structure::MethodRow& method, double factor) {
-  return over > std::pow(factor / step_factors.back(), method.order);
+  return over > std::pow(factor / search::batch_steps.back(), method.order);
 }
 
 /// Solves that a second of motion takes.
@@ -71,7 +58,7 @@ NumericalModel LaneSearch::first(double duration) {
   model.step = 1.0;  // until the first frequency is known
   const FirstSteps steps = first_steps(trials_.scene(), trials_.first_omega(model), duration);
   longest_ = steps.longest;
-  model.step = std::min(first_step_factor * steps.first, longest_);
+  model.step = std::min(search::first_batch_step * steps.first, longest_);
   return model;
 }
 
@@ -90,15 +77,15 @@ NumericalModel LaneSearch::on_finer_mesh(NumericalModel model) const {
 /// The step that the first mesh asks for, which the one that does is to confirm, and whether methods of one solve a
 /// step are worth a trial.
 bool LaneSearch::foresee_step(NumericalModel& model) {
-  for (int i = 0; i < most_halvings; ++i, *model.step *= 0.5) {
+  for (int i = 0; i < search::most_halvings; ++i, *model.step *= 0.5) {
     measure_steps(model);
     const bool does = over(steps_) <= 1.0;
-    if (!does && over(halved_) > surely_within) continue;
+    if (!does && over(halved_) > search::surely_within) continue;
     // With one solve a step wheel forces are off where steps change their length.
     const NumericalModel one_solve =
-        with_step(model, does ? step_factors.front() : 0.5 * step_factors.front(), methods.front());
+        with_step(model, does ? search::batch_steps.front() : 0.5 * search::batch_steps.front(), methods.front());
     one_solve_ = !asks_for_forces_alone(trials_.scene()) &&
-                 !hopeless(over(left_by(one_solve, model)), row_of(one_solve), step_factors.front());
+                 !hopeless(over(left_by(one_solve, model)), row_of(one_solve), search::batch_steps.front());
     if (!does) *model.step *= 0.5;
     return true;
   }
@@ -106,7 +93,7 @@ bool LaneSearch::foresee_step(NumericalModel& model) {
 }
 
 bool LaneSearch::halve_step(NumericalModel& model) {
-  for (int i = 0; i < most_halvings; ++i) {
+  for (int i = 0; i < search::most_halvings; ++i) {
     measure_steps(model);
     if (over(steps_) <= 1.0) return true;
     *model.step *= 0.5;
@@ -121,7 +108,7 @@ void LaneSearch::measure_steps(const NumericalModel& model) {
   for (std::size_t q = 0; q < quantities; ++q) {
     // Without damping a moment is a sum of 1/n^2 over all modes, of which a step follows those below a frequency.
     const bool follows = q != moment || damps_high_modes(trials_.scene());
-    halved_[q] = left_of(now[q], before[q], follows ? highest_order : 1.0);
+    halved_[q] = left_of(now[q], before[q], follows ? search::full_order : 1.0);
     steps_[q] = now[q] + halved_[q];
   }
 }
@@ -130,12 +117,12 @@ void LaneSearch::measure_steps(const NumericalModel& model) {
 bool LaneSearch::refine_mesh(NumericalModel& model) {
   const Scene& scene = trials_.scene();
   if (!scene.mesh_open) return true;
-  for (int i = 0; i < most_halvings && model.elements <= most_elements; ++i) {
-    mesh_ = change(mixed_, model, on_finer_mesh(model), of_the_change);
-    if (!damps_high_modes(scene)) mesh_[moment] *= of_an_undamped_moment / of_the_change;
-    const double times = greatest(mesh_) / (part_of_mesh * accuracy_);
+  for (int i = 0; i < search::most_halvings && model.elements <= search::most_in_a_span; ++i) {
+    mesh_ = change(mixed_, model, on_finer_mesh(model), search::finer_mesh);
+    if (!damps_high_modes(scene)) mesh_[moment] *= search::undamped_sum / search::finer_mesh;
+    const double times = greatest(mesh_) / (search::share * accuracy_);
     if (times <= 1.0) return true;
-    const double finer = std::clamp(std::pow(times, 1.0 / order_of_mesh), least_finer, most_finer);
+    const double finer = std::clamp(std::pow(times, 1.0 / search::mesh_order), least_finer, most_finer);
     model.elements = aligned_mesh(scene, 2 * static_cast<int>(std::ceil(0.5 * finer * model.elements)));
   }
   return false;
@@ -147,11 +134,11 @@ NumericalModel LaneSearch::cheaper(const NumericalModel& model) {
   const double of_model = over(steps_);
   for (const char* method : std::span(methods).subspan(one_solve_ ? 0 : 1)) {
     double of_longer = 0.0;
-    for (const double factor : step_factors) {
+    for (const double factor : search::batch_steps) {
       const NumericalModel tried = with_step(model, factor, method);
       if (tried.step > longest_ || solves(tried) >= solves(best)) continue;
       // Between two steps of one method that are known: about the root of both.
-      if (tried.method == model.method && std::sqrt(of_model * of_longer) > clearly_over) continue;
+      if (tried.method == model.method && std::sqrt(of_model * of_longer) > search::surely_beyond) continue;
       const PeakErrors own = left_by(tried, model);
       of_longer = over(own);
       if (hopeless(of_longer, row_of(tried), factor)) break;
@@ -166,13 +153,13 @@ NumericalModel LaneSearch::cheaper(const NumericalModel& model) {
 /// The errors of such steps, told by half those of the model.
 PeakErrors LaneSearch::left_by(const NumericalModel& tried, const NumericalModel& model) {
   PeakErrors own = change(trials_, tried, with_step(model, 0.5));
-  const double times = row_of(tried).solves() > 1.0 ? 1.0 : of_one_solve;
-  if (times > 1.0) own[wheel_force] *= of_its_forces;
+  const double times = row_of(tried).solves() > 1.0 ? 1.0 : search::one_solve;
+  if (times > 1.0) own[wheel_force] *= search::one_solve_force;
   for (std::size_t q = 0; q < quantities; ++q) own[q] = times * own[q] + halved_[q];
   return own;
 }
 
 /// Times what steps may leave.
-double LaneSearch::over(const PeakErrors& errors) const { return greatest(errors) / (part_of_steps * accuracy_); }
+double LaneSearch::over(const PeakErrors& errors) const { return greatest(errors) / (search::share * accuracy_); }
 
 }  // namespace traverse::app

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "accuracy/search_constants.hpp"
 #include "case_runner.hpp"
 #include "modes/modes.hpp"
 #include "results/stage.hpp"
@@ -17,7 +18,6 @@ namespace traverse::app {
 namespace {
 
 constexpr std::size_t runs_a_sample = 10, most_sampled_runs = 9, least_runs = 2 * runs_a_sample;
-constexpr double share_of_modes = 0.25;                     // of the wanted error: other runs may be off by more
 constexpr double code_frequency = 30.0, code_factor = 1.5;  // Hz; times the first one
 constexpr std::size_t code_modes = 3;
 constexpr int most_counted = 64, nodes_for_a_question = 1000;
@@ -102,7 +102,7 @@ ModesChoice modes_that_do(const Scene& scene, const Accuracy& accuracy, std::vec
       double worst = 0.0;
       for (const Sample& s : samples)
         worst = std::max(worst, greatest_difference(scene, modes.run(s.train, {s.speed, {}}), s.result));
-      if (worst > share_of_modes * scene.accuracy) continue;
+      if (worst > search::share_of_modes * scene.accuracy) continue;
       notes.push_back(fmt::format(
           "{} modes instead of the elements: what is left out changes the peaks of {} runs by at most {:.1g}; "
           "-model_modes 0 keeps the elements",
