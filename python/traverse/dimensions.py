@@ -44,6 +44,7 @@ _ROWS = [(re.compile(pattern + "$"), tuple(dimensions.split())) for pattern, dim
     (r"study/statistics/quantiles", "quantile"),
     (r"study/\w+", "run"),
     (r"verdicts/\w+", "limit word"),
+    (r"quantities/(peaks|limits)", r"quantity_of_\1 word"),
     (r"(separations|passages|resonances|cancellations)/\w+", r"\1 word"),
     (r"static/load", "static_load word"),
     (r"static/(\w+rotation|reaction)", r"static_load static_\1_x extreme"),

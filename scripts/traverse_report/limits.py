@@ -8,12 +8,6 @@ import yaml
 
 from .source import ReportError
 
-UNITS = {"deck_acceleration": "m/s²", "unfiltered_deck_acceleration": "m/s²", "deflection_over_span": "",
-         "end_rotation": "rad", "joint_rotation": "rad", "car_acceleration": "m/s²", "wheel_unloading": "",
-         "filtered_wheel_unloading": "", "unloading_time": "s", "contact_loss": "s", "amplification": "",
-         "rail_tension": "Pa", "rail_compression": "Pa", "rail_slip": "m", "deck_displacement": "m",
-         "deck_end_displacement": "m", "rail_device_opening": "m",
-         "lm71_deflection_over_span": "", "lm71_end_rotation": "rad", "lm71_joint_rotation": "rad", "train_over_lm71": ""}
 # Of static effects of EN 1991-2: no run knows them, the computation judges them once.
 OF_NORM = {"lm71_deflection_over_span", "lm71_end_rotation", "lm71_joint_rotation", "train_over_lm71"}
 # Quantities of limits that a table of runs has under another name.
@@ -25,10 +19,7 @@ class Limit(NamedTuple):
     quantity: str
     value: float
     text: str
-
-    @property
-    def unit(self):
-        return UNITS.get(self.quantity, "")
+    unit: str = ""
 
 
 class Verdict(NamedTuple):
@@ -60,7 +51,14 @@ def read_limits(path):
 
 
 def limits_of(source, given, folder):
-    """Those given, those of the stored verdicts, or those of the file that the run's options name."""
+    """Those given, those of the stored verdicts, or those of the file that the run's options name; with their units."""
+    units = dict(row for name in ("verdicts/quantity", "quantities/limits") if name in source.file
+                 for row in source.file[name].asstr()[:])
+    return [limit._replace(unit=units.get(limit.quantity, "1").replace("2", "²").replace("1", ""))
+            for limit in _limits_of(source, given, folder)]
+
+
+def _limits_of(source, given, folder):
     if given:
         return read_limits(given)
     if "verdicts/limit" in source.file:

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "run/quantity.hpp"
+#include "traverse/options/verdict_limit.hpp"
+
 namespace traverse::app {
 namespace {
 
@@ -147,12 +150,21 @@ void record_train(const Scene& scene, Recorder& recorder) {
     record_load(scene.sweep->loads[i], fmt::format("A{}", scene.sweep->trains[i]), recorder);
 }
 
+/// /quantities: what peaks and limits are of, each with its unit.
+void record_quantities(Recorder& recorder) {
+  Pairs peaks, limits;
+  for (std::size_t q = 0; q < quantities; ++q) peaks.emplace_back(stored_names[q], quantity_units[q]);
+  for (const options::LimitQuantity& row : options::limit_quantities) limits.emplace_back(row.name, row.unit);
+  recorder.tables({{"/quantities/peaks", peaks}, {"/quantities/limits", limits}});
+}
+
 }  // namespace
 
 void record_model(const Scene& scene, const std::vector<std::string>& notes, results::Recorder& recorder) {
   Pairs said;
   for (const std::string& note : notes) said.emplace_back(std::to_string(said.size() + 1), note);
   if (!said.empty()) recorder.tables({{"/model/notes", said}});
+  record_quantities(recorder);
   if (scene.beam) record_bridge(*scene.beam, recorder);
   record_train(scene, recorder);
 }

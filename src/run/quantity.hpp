@@ -25,6 +25,8 @@ inline constexpr std::array<const char*, quantities> stored_names = {
     "deflection", "acceleration",       "moment",     "wheel_force", "acceleration_lowpass",
     "shear",      "axial_displacement", "axial_force"};
 
+inline constexpr std::array<const char*, quantities> quantity_units = {"m", "m/s2", "N m", "N", "m/s2", "N", "m", "N"};
+
 /// Whether only runs by elements look for its peaks: those by modes and side by side do not.
 inline constexpr bool by_elements_alone(std::size_t q) { return q >= shear_force; }
 
