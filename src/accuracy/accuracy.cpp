@@ -1,3 +1,5 @@
+// Chooses mesh and time step for a wanted error of the peaks: prepares beam, damping and filter frequency, runs the
+// error search, and repeats it with full mechanisms where linear vehicles are not accurate enough.
 #include "accuracy/accuracy.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Richardson extrapolation: order and size of a discretisation error from the changes that two successive halvings of
+// step or element have caused.
 #include "error_law.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// The search itself: step and elements are halved until the estimated errors are small enough, then steps, meshes and
+// integrators of less cost are compared with the finest run.
 #include "error_search.hpp"
 
 #include <fmt/format.h>

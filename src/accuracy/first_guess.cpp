@@ -1,3 +1,5 @@
+// Initial mesh from the characteristic length (4 EI/k)^(1/4) of a beam on an elastic foundation; initial step from the
+// first period, the crossing of a span, waves of the track and the contact frequency of the wheels.
 #include "first_guess.hpp"
 
 #include <fmt/format.h>

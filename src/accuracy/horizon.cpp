@@ -1,3 +1,5 @@
+// Duration of a trial run: until the first vehicle has crossed the first spans, and until every later span, vehicle or
+// stretch of track with other properties has been crossed, which is decided by comparing their numbers.
 #include "horizon.hpp"
 
 #include <fmt/format.h>

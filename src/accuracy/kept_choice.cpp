@@ -1,3 +1,5 @@
+// Cache of chosen models: one file per scene in the folder .traverse_choices, named by a digest of options, input files
+// and program build, and checked against a digest of its own when it is read.
 #include "kept_choice.hpp"
 
 #include <dlfcn.h>

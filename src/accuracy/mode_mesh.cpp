@@ -1,3 +1,5 @@
+// Doubles the number of elements until Richardson extrapolation of the natural frequencies estimates an error within
+// the accuracy.
 #include "mode_mesh.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Trial runs of a shortened scene: distant spans and later vehicles are left out, every combination of mesh, step and
+// integrator is computed once, and a limit on the total cost ends the series.
 #include "accuracy/trials.hpp"
 
 #include <algorithm>

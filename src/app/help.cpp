@@ -1,3 +1,4 @@
+// Assembles help texts, the manual page and the shell completion from the tables of options and of integrators.
 #include "help.hpp"
 
 #include <vector>

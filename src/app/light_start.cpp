@@ -1,3 +1,4 @@
+// Sets environment variables of Open MPI and hwloc that shorten MPI_Init for a single process.
 #include "light_start.hpp"
 
 #include <cstdlib>

@@ -1,3 +1,5 @@
+// Chooses the model by trial runs, or reads an earlier choice from the cache, then computes the bridge's damping,
+// factorisation and modes and the frequency of the low-pass filter.
 #include "prepare.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Brings a run to its initial state: passage and static equilibrium, the state of a checkpoint where the run continues
+// an earlier one, and the checks whether low-pass filters can be applied.
 #include "ready_run.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Entry point of the program's analyses: claims the output files, chooses the numerical model and the number of MPI
+// ranks, and calls the analysis that the scene asks for, the check of the scene, or the study.
 #include "traverse/app/run.hpp"
 
 #include <fmt/format.h>

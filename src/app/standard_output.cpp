@@ -1,3 +1,5 @@
+// Replaces stdout by a stream of its own (fopencookie) that discards all output after the first failed write and keeps
+// the error code.
 #include "standard_output.hpp"
 
 #include <fcntl.h>

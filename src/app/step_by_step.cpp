@@ -1,3 +1,5 @@
+// Advances a passage to a requested time in whole sample intervals, and checks the forces that the calling program
+// applies to bodies and to the beam.
 #include "step_by_step.hpp"
 
 #include <fmt/format.h>

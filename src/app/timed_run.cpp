@@ -1,3 +1,5 @@
+// One run in time from its first step to its summary: steps with recording, checkpoints and signals, then the energy
+// check, the verdicts on limits and the comparison with EN 1991-2.
 #include "timed_run.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Writes each part of the state as its length and its bytes. On another number of ranks, slices of a vector are joined
+// and divided anew, and contributions to a sum are added up on rank 0.
 #include "base/archive.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Replaces control characters and bytes that are not valid UTF-8 by escape sequences, so that a message stays on one
+// line.
 #include "traverse/base/error.hpp"
 
 #include "base/utf8.hpp"

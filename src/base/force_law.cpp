@@ -1,3 +1,5 @@
+// Piecewise linear characteristics of springs and dampers with slope, integral and inverse, and the tension of a spring
+// with a gap or with one-sided action.
 #include "traverse/base/force_law.hpp"
 
 #include <algorithm>

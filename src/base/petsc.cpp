@@ -1,3 +1,5 @@
+// Converts PETSc's error codes to C++ exceptions; an exception thrown inside a callback is kept and rethrown once PETSc
+// has returned.
 #include "base/petsc.hpp"
 
 #include <new>

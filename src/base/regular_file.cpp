@@ -1,3 +1,5 @@
+// Opens a file without blocking, refuses everything that fstat does not report as a regular file, and reads it up to a
+// limit of bytes.
 #include "base/regular_file.hpp"
 
 #include <fcntl.h>

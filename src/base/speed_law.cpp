@@ -1,3 +1,5 @@
+// Speed tables over time or over distance as motion with piecewise constant acceleration (v^2 is linear in x between
+// two rows over distance), and the time at which a distance is covered.
 #include "traverse/base/speed_law.hpp"
 
 #include <algorithm>

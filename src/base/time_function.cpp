@@ -1,3 +1,5 @@
+// Tables over time as natural cubic splines, as piecewise linear functions or as integrals of piecewise linear rates,
+// with first and second derivatives.
 #include "traverse/base/time_function.hpp"
 
 #include <algorithm>

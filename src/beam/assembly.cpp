@@ -1,3 +1,5 @@
+// Assembles element matrices, crack springs, point foundations and beds into a rank's rows (sections 2 and 3 of the
+// paper); equal neighbouring elements share one computed matrix.
 #include "assembly.hpp"
 
 #include "beam/point_shape.hpp"

@@ -1,3 +1,5 @@
+// Shear between two ballast masses as n springs and n dampers in series, each with n times the coefficient, where a bay
+// has n rail elements.
 #include "beam/ballast_shear.hpp"
 
 namespace traverse::beam {

@@ -1,3 +1,5 @@
+// Distributes the unknowns over ranks, separates free from held ones (equations 16 and 17 of the paper), assembles M,
+// C* and K*, and computes the nodal forces of temperature and of support settlements.
 #include "beam/beam.hpp"
 
 #include <malloc.h>

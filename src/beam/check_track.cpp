@@ -1,3 +1,5 @@
+// Checks the properties of a layered track sleeper by sleeper, the positions of rail joints and expansion devices, and
+// whether the sleepers hold the rail vertically and along x.
 #include "check_track.hpp"
 
 #include <algorithm>

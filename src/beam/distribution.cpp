@@ -1,3 +1,5 @@
+// Evaluates a piecewise linear table along the beam, which has a step where a station occurs twice, and checks its
+// rows.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,5 @@
+// The integrals of equations 8 to 10 and of beds (equations 27, 29, 36 and 38 of the paper) in closed form or by Gauss
+// quadrature, and mass terms for fourth-order accurate frequencies of Timoshenko elements.
 #include "beam/element.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// End forces of each element from the relative displacement and rotation of its ends, in loops over neighbouring nodes.
 #include "beam/element_rows.hpp"
 
 namespace traverse::beam {

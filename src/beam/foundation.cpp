@@ -1,3 +1,5 @@
+// Properties of a foundation: whether it is nonlinear, which kinds and directions it has, and how fast bending decays
+// on a bed, such as (k/(4 EI))^(1/4) on a vertical one.
 #include "traverse/beam/foundation.hpp"
 
 #include <algorithm>

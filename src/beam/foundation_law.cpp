@@ -1,3 +1,5 @@
+// Force, tangents, energy and dissipation of a foundation with a gap, one-sided action or a cubic term, and of an
+// elastic-perfectly plastic spring.
 #include "traverse/beam/foundation_law.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Green's function of an element clamped at both ends: polynomial without a bed, decaying waves on a Winkler bed. The
+// forces of springs inside the element follow from a small linear system.
 #include "held_element.hpp"
 
 #include <Eigen/LU>

@@ -1,3 +1,5 @@
+// End forces of the elements from left to right, in double or extended precision: the left ones from the stiffness, the
+// right ones from equilibrium of the element.
 #include "beam/internal_forces.hpp"
 
 #include <iterator>

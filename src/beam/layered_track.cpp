@@ -1,3 +1,5 @@
+// Assembles the masses of sleepers and ballast, and the springs and dampers between rail, sleeper, ballast, the bridge
+// element below the sleeper, and the ground.
 #include "layered_track.hpp"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// The order of the unknowns within a column, and the unknowns of each element, the vector {v}_e of equation 11 of the
+// paper.
 #include "beam/line.hpp"
 
 #include <algorithm>

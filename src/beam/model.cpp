@@ -1,3 +1,5 @@
+// Checks of a beam model's spans, properties, joints, cracks, supports and foundation, which supports hold which
+// displacement (section 3.1 of the paper), and the linearised model.
 #include "traverse/beam/model.hpp"
 
 #include <fmt/format.h>

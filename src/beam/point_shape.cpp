@@ -1,3 +1,5 @@
+// Shape functions (equations 4 and 5 of the paper) and unknowns of an element for foundations in the vertical,
+// longitudinal and rotational direction.
 #include "beam/point_shape.hpp"
 
 #include "beam/shape.hpp"

@@ -1,3 +1,5 @@
+// Section forces by equilibrium of the part of the element left of the section, and the deflection of an element
+// clamped at both ends under a point force or moment.
 #include "section.hpp"
 
 #include "beam/shape.hpp"

@@ -1,3 +1,5 @@
+// Hermite cubics with their derivatives; where the beam shears, the element's constant shear strain is added to the
+// rotations at both ends (Friedman and Kosmatka 1993).
 #include "beam/shape.hpp"
 
 namespace traverse::beam {

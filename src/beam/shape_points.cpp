@@ -1,3 +1,5 @@
+// Divides the elements evenly, into at least 24 intervals a span and about 200 on a bridge of few spans, and inserts
+// the requested stations.
 #include "beam/shape_points.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Collects the entries of a rank's block tridiagonal rows and creates PETSc AIJ matrices from them, in which rows and
+// columns of held unknowns are empty.
 #include "slice.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// A character grid with its legend; UTF-8, colour and width follow from the locale, TERM, NO_COLOR and the size of the
+// terminal window.
 #include "canvas.hpp"
 
 #include <fmt/format.h>

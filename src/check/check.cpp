@@ -1,3 +1,5 @@
+// Prints the page of -check section by section: drawing, bridge, vehicles, loads, support reactions, planned runs,
+// estimated cost and unusual input.
 #include "check.hpp"
 
 #include <fmt/format.h>

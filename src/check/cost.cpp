@@ -1,3 +1,5 @@
+// Estimates run time, memory and file size: the number of steps times the measured time of a step, with factors for the
+// trial runs.
 #include "cost.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Draws the side view of bridge and train, or the plane view of a mechanism, by mapping coordinates to rows and columns
+// of characters.
 #include "drawing.hpp"
 
 #include <fmt/format.h>

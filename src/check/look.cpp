@@ -1,3 +1,5 @@
+// Assembles beam, modes and passage of the first run of a scene or study, with the mesh and step that trial runs would
+// begin with, and computes the first natural frequencies.
 #include "look.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Compares input with usual ranges, among them the bounds of the first natural frequency of railway bridges in figure
+// 6.10 of EN 1991-2, and suggests which unit may have been confused.
 #include "unusual.hpp"
 
 #include <fmt/format.h>

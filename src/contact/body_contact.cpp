@@ -1,3 +1,5 @@
+// Penetration, its rate, sliding speed and generalized force directions for arc-arc and arc-line contact (equations 46,
+// 47 and 50 of the paper as corrected in doc/theory.md).
 #include "traverse/contact/body_contact.hpp"
 
 #include <algorithm>

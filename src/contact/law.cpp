@@ -1,3 +1,5 @@
+// Normal force and friction with their derivatives (equations 45, 48 and 49), the penetration of a contact in series
+// with a spring by Newton's method, and hysteresis damping for a given restitution by bisection.
 #include "traverse/contact/law.hpp"
 
 #include <algorithm>

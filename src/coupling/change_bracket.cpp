@@ -1,3 +1,5 @@
+// Narrows the interval that contains a change of contact by trial steps: the next trial time is interpolated from
+// penetration and penetration rate, and bisection replaces it where it converges slowly.
 #include "coupling/change_bracket.hpp"
 
 #include <algorithm>

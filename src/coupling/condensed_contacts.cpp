@@ -1,3 +1,5 @@
+// Newton's method for the condensed contact forces with a banded LU factorisation of P + A D, D the tangent of the
+// contact laws; the bandwidth follows from the couplings that are not negligible.
 #include "coupling/condensed_contacts.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Limits the step length by the estimated duration of each impact, sets the tolerance for the time of a change of
+// contact, and accounts for the elastic energy that is lost where a damped contact opens while it is still compressed.
 #include "coupling/contact_events.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// The Newton iteration of a stage: residuals of the vehicles, condensation onto the contacts, update of coordinates and
+// forces, and convergence tests based on the measured contraction rate.
 #include "coupling/contact_newton.hpp"
 
 #include <algorithm>

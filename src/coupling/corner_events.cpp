@@ -1,3 +1,5 @@
+// Times at which each wheel begins and ends to turn about a corner, predicted from its position and speed and from the
+// slopes of the surface on both sides.
 #include "coupling/corner_events.hpp"
 
 #include <algorithm>

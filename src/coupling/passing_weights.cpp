@@ -1,3 +1,5 @@
+// Largest static deflection at a station by superposition of its influence line, which is computed by the theorem of
+// Maxwell and Betti, over many positions of wheels and moving forces.
 #include "coupling/passing_weights.hpp"
 
 #include <algorithm>

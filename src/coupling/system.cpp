@@ -1,3 +1,5 @@
+// Evaluates the right-hand side of the combined equations of motion (equations 51 to 53 of the paper) and solves their
+// implicit stages, the structure and the vehicles coupled by the contact forces alone.
 #include "coupling/system.hpp"
 
 #include <algorithm>

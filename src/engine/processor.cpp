@@ -1,3 +1,5 @@
+// Detects AVX-512 and AVX2 at run time, and derives from that which build of a kernel is called and how many lanes its
+// vectors have.
 #include "engine/processor.hpp"
 
 namespace traverse::engine {

@@ -1,3 +1,5 @@
+// Multiplies each complex modal coordinate by exp(lambda dt), in real arithmetic on real and imaginary parts, and
+// transforms between complex and real modal coordinates.
 #include "integrate/coupled_oscillation.hpp"
 
 namespace traverse::integrate {

@@ -1,3 +1,5 @@
+// Modal forces and static corrections as cubic polynomials of the distance travelled: the influence lines of all moving
+// forces, shifted to their positions and added interval by interval.
 #include "integrate/force_history.hpp"
 
 #include <algorithm>

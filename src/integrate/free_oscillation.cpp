@@ -1,3 +1,5 @@
+// Closed-form solution of q'' + 2 sigma q' + omega^2 q = 0 after a time dt, for underdamped, critically damped and
+// overdamped modes without loss of digits.
 #include "integrate/free_oscillation.hpp"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// The table of PETSc's integrators that are allowed, each with its order, and the help text on all integrators.
 #include "integrate/integrators.hpp"
 
 #include <fmt/format.h>

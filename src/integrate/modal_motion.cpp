@@ -1,3 +1,5 @@
+// Exact solution of the modal equations between two breaks of the force: a cubic particular solution by comparison of
+// coefficients plus the free oscillation; dissipated energy and work by Gauss quadrature.
 #include "integrate/modal_motion.hpp"
 
 #include <algorithm>
@@ -35,7 +37,7 @@ ModalMotion::ModalMotion(const structure::ModalBridge& bridge, const ForceHistor
   see();
 }
 
-/// e^(-sigma t) (cos, sin) of the damped frequency, or the hyperbolic functions of an overdamped mode.
+// Tabulates the propagators of all modes for steps of this length.
 void ModalMotion::expect(double dt) {
   expected_dt_ = dt;
   if (coupled_) {

@@ -1,3 +1,5 @@
+// Samples the exact modal solution several times per period of the highest mode, and interpolates each extreme by the
+// parabola through three neighbouring samples.
 #include "integrate/modal_peaks.hpp"
 
 #include <algorithm>

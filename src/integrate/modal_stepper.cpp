@@ -1,3 +1,5 @@
+// Superposes the modes to nodal displacements, velocities and accelerations at each sample, and adds the static
+// correction, the static response of all modes that are not included.
 #include "integrate/modal_stepper.hpp"
 
 #include <algorithm>

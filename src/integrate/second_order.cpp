@@ -1,3 +1,5 @@
+// Implements the functions that PETSc calls of a TS type: one step with its repetitions, the error estimate, the
+// options, and the TSAdapt that selects steps from the ladder.
 #include "integrate/second_order.hpp"
 
 #include <petsc/private/tsimpl.h>  // types of TS and TSAdapt; how many monitors there are

@@ -1,3 +1,5 @@
+// Selects the next step length longest/2^k from the local error estimate of an embedded method: at once shorter where
+// the error is too large, twice as long after two accurate steps.
 #include "integrate/step_ladder.hpp"
 
 #include <algorithm>

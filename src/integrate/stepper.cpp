@@ -1,3 +1,5 @@
+// Creates and configures the PETSc TS, and runs the loop over steps up to the next sample or known event, with the
+// choice of each step length and the check for unbounded motion.
 #include "integrate/stepper.hpp"
 
 #include <Eigen/Core>

@@ -1,3 +1,5 @@
+// Registers the TS type with PETSc and copies the exact modal coordinates and velocities into its solution vector after
+// each step.
 #include "ts_modal.hpp"
 
 #include <petsc/private/tsimpl.h>  // a type of TS

@@ -1,3 +1,5 @@
+// Prepares the tables of the vectorised kernel: modal forces over the distance, modal coefficients and the breaks where
+// a response has a kink or a jump. Static peaks follow from the extremes of cubic polynomials.
 #include "lanes/force_passages.hpp"
 
 #include <algorithm>

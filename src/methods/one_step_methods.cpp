@@ -1,3 +1,5 @@
+// Converts the implicit tableau of ARK4(3)6L[2]SA (Kennedy and Carpenter 2003) and the generalised-alpha method with
+// all forces at the end of the step (Wood, Bossak and Zienkiewicz) to coefficients of accelerations.
 #include "methods/one_step_methods.hpp"
 
 #include <algorithm>

@@ -46,7 +46,7 @@ struct Method {
 /// Additive Runge-Kutta ARK4(3)6L[2]SA's implicit part (Kennedy and Carpenter 2003): order 4, L-stable, five implicit
 /// stages. The same numbers as PETSc's ARKIMEX 4, fully implicit.
 Method esdirk4();
-/// Generalised-alpha with all forces at the end of the step (Wood, Bossak and Zienkiewicz 1981): order 2, one stage;
+/// Generalised-alpha with all forces at the end of the step (Wood, Bossak and Zienkiewicz 1980): order 2, one stage;
 /// what oscillates fast within a step shrinks by `radius` (0..1) each step. 1: the trapezoidal rule.
 Method generalised_alpha(double radius);
 

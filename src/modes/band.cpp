@@ -1,3 +1,5 @@
+// Banded L D L^T factorisation, the count of eigenvalues below a shift by the signs of the pivots (Sylvester's law of
+// inertia), and brackets of eigenvalues by bisection.
 #include "band.hpp"
 
 #include <bit>

@@ -1,3 +1,5 @@
+// Damped modes of the whole beam from those of its segments: with proportional damping from the natural modes, by
+// lambda^2 + (a + b omega^2) lambda + omega^2 = 0, else from the quadratic eigenvalue problem.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,5 @@
+// A few modes at a time by SLEPc's Krylov-Schur method with shifts from counted brackets, so that no repeated frequency
+// is missed; all modes of small segments by LAPACK.
 #include "eigen.hpp"
 
 #include <fmt/format.h>

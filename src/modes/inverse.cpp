@@ -1,3 +1,5 @@
+// Applies the inverse of the linearised quadratic eigenvalue problem by one banded solve with K, with rigid-body
+// motions treated separately by their mass and damping.
 #include <cmath>
 #include <limits>
 

@@ -1,3 +1,5 @@
+// Merges the modes of all segments in ascending order, scales and orthonormalises their shapes, and computes Rayleigh
+// coefficients from two distinct frequencies (equation 20 of the paper).
 #include "modes/modes.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Solves the quadratic eigenvalue problem by SLEPc on its inverse operator and refines each eigenvalue by Newton's
+// method on x^T (lambda^2 M + lambda C + K) x = 0.
 #include "quadratic.hpp"
 
 #include <slepceps.h>

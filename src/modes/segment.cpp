@@ -1,3 +1,5 @@
+// Gathers the global matrices, splits them where neighbouring columns do not couple, groups equal segments, and adds
+// the rigid-body motions of each.
 #include "segment.hpp"
 
 #include <cmath>

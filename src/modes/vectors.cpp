@@ -1,3 +1,4 @@
+// Sequential PETSc vectors from arrays, and a reproducible pseudo-random start vector for the eigensolvers.
 #include "vectors.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Eliminates one column from the remaining sparse rows by merging their sorted entries, and counts the non-zeros of
+// every column.
 #include "active_rows.hpp"
 
 #include <algorithm>

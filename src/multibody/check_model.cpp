@@ -1,3 +1,5 @@
+// Checks bodies, joints, drivers, springs and actuators in turn: finite numbers, positive masses and inertias, existing
+// bodies, consistent force laws.
 #include "check_model.hpp"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Tension of a spring from its elongation and elongation rate, its generalized forces on both bodies, and their
+// analytical derivatives by coordinates and velocities.
 #include "multibody/force_element.hpp"
 
 #include <cmath>

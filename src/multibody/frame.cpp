@@ -1,3 +1,4 @@
+// Sine and cosine of a body's angle, by power series for angles below 0.1 rad.
 #include "traverse/multibody/frame.hpp"
 
 #include <cmath>

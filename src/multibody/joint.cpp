@@ -1,3 +1,5 @@
+// Geometry of a joint in the body-fixed frames of its two bodies, and first and second derivatives of the displacement
+// along its sliding direction.
 #include "multibody/joint.hpp"
 
 #include "equations/normal.hpp"

@@ -1,3 +1,5 @@
+// Sparse LU factorisation of the Jacobian's dependent columns with Markowitz pivoting, the matrix B of dependent on
+// independent coordinates, and the reduced mass matrix B^T N B.
 #include "multibody/reduction.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Minimum-degree ordering and symbolic factorisation, then numerical factorisation and solution on the planned
+// non-zeros.
 #include "multibody/sparse_ldl.hpp"
 
 #include <algorithm>

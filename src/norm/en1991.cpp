@@ -1,3 +1,5 @@
+// Determinant lengths, dynamic factors Phi, phi' and phi'', frequency bounds and damping ratios of clause 6.4 and annex
+// C of EN 1991-2 in closed form.
 #include "norm/en1991.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Splits the cubics at their zeros and integrates them; between two breaks a load model's effect is a quartic, whose
+// maxima are found by bisection between the zeros of its derivatives.
 #include "norm/influence_line.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Load Model 71 (EN 1991-2, 6.3.2), Load Models SW/0 and SW/2 (6.3.3), and trains as a row of axle forces.
 #include "norm/load_models.hpp"
 
 namespace traverse::norm {

@@ -1,3 +1,5 @@
+// Influence lines as deflection curves: under nodal forces for deflection, moment, shear and rotation (Maxwell and
+// Betti), under a unit support displacement for reactions (Mueller-Breslau).
 #include "norm/static_bridge.hpp"
 
 #include <algorithm>
@@ -117,7 +119,7 @@ std::array<InfluenceLine, 3> StaticBridge::lines_at(double x) {
   return lines;
 }
 
-// The deflection of the bridge when the support is lowered by one (Mueller-Breslau).
+// The deflection of the bridge when the support is raised by one (Mueller-Breslau).
 InfluenceLine StaticBridge::reaction(const Bearing& bearing) {
   if (bearing.span_end < 0) return lines_at(bearing.x)[0].times(-bearing.stiffness);
   std::vector<double> nodal(static_cast<std::size_t>(beam_.local_unknowns()), 0.0);

@@ -1,3 +1,5 @@
+// Places sections along every span and evaluates the least and the greatest effect of every load from each influence
+// line and its negative.
 #include "norm/static_effects.hpp"
 
 #include <algorithm>

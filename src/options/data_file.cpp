@@ -1,3 +1,5 @@
+// Parses numbers and speeds in m/s or km/h, and reads tables line by line with limits on line length, number of lines
+// and magnitude.
 #include "options/data_file.hpp"
 
 #include <fmt/format.h>

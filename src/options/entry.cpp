@@ -1,3 +1,4 @@
+// An ordered list of options with an index by name; a later entry of the same name replaces the earlier one.
 #include "traverse/options/entry.hpp"
 
 namespace traverse::options {

@@ -1,3 +1,5 @@
+// Merges command line, options files and .petscrc by precedence, sets the permitted options in PETSc's table, and names
+// the options that PETSc refuses or does not use.
 #include "traverse/options/input.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Reads texts from disk or from a results file, checks that they are UTF-8 without control characters, and keeps a copy
+// of each.
 #include "options/input_texts.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Greatest lengths of lists: one million entries in general, fewer for probes, vehicles, moving forces and named parts
+// of a vehicle.
 #include "options/limits.hpp"
 
 #include <array>

@@ -1,3 +1,4 @@
+// Parses a text with yaml-cpp twice: by document events, to detect a second document, and then as a tree.
 #include "options/one_document.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Conversion of option texts to numbers, flags, choices, lists and paths, checked for range, count and magnitude
+// against the table of options.
 #include "traverse/options/options.hpp"
 
 #include <fmt/format.h>
@@ -16,8 +18,6 @@
 namespace traverse::options {
 namespace {
 
-constexpr double least_number = 1e-50,
-                 greatest_number = 1e50;  // products and powers of SI units stay far from overflow
 
 std::string trim(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";  // YAML's text blocks end with a line break

@@ -1,3 +1,4 @@
+// Converts option names between the older and the newer ones of PETSc by the table of renamed options.
 #include "options/other_names.hpp"
 
 #include <fmt/format.h>

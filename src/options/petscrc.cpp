@@ -1,3 +1,5 @@
+// Collects options from the files and environment variables of PETSc, and adds those meant for Traverse with the lowest
+// precedence and a message on each.
 #include "options/petscrc.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Flattens YAML blocks and merge keys to option names, parses PETSc's classic lines, includes nested options files, and
+// finds files by their path.
 #include "options/read_file.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Parses a YAML list of limits entry by entry; a value may be a fraction such as 1/600, and an unknown quantity is
+// refused with the most similar name.
 #include "options/read_verdict_limits.hpp"
 
 #include <fmt/format.h>

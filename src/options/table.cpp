@@ -1,3 +1,4 @@
+// Descriptions of an option's allowed values in words, and the most similar option name by a weighted edit distance.
 #include "traverse/options/table.hpp"
 
 #include <fmt/format.h>

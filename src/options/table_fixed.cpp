@@ -51,7 +51,7 @@ constexpr Words text_of_analyses = [] {
 constexpr Row beam_rows[] = {
   {"options_file", text, "", "", any, "", 0, "a YAML (.yml, .yaml) or classic options file, which may name further ones"},
 
-  {"bridge_modes_file", file, "", "", any, "", 0, "the bridge by natural modes from elsewhere, instead of beam_spans: results of -scene_analysis modes or other HDF5, or text (doc/guide.md)"},
+  {"bridge_modes_file", file, "", "", any, "", 0, "the bridge by natural modes from elsewhere, instead of beam_spans: results of -scene_analysis modes or other HDF5, or text (doc/guide/given_modes.md)"},
   {"bridge_track", integer, "", "1", {1, 1000}, "", 0, "which of the tracks in bridge_modes_file the train runs on"},
   {"beam_spans", numbers, "m", "", beam_length, "", 0, "length of each span; left out: no bridge"},
   {"beam_elements_per_span", integers, "", "(from accuracy)", {1, 100000}, "", 0, "elements a span, one number or one per span"},

@@ -1,3 +1,5 @@
+// Nodal forces of loads on the rail, nonlinear statics by repeated linearisation of the sleepers' force laws, and rail
+// stresses, relative displacements and bearing forces of the equilibrium.
 #include "rail/rail_bridge.hpp"
 
 #include <fmt/format.h>

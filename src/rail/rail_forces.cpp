@@ -1,3 +1,5 @@
+// Load cases of UIC 774-3 (temperature, bending, braking, traction and their combinations) for every position of the
+// train, with envelopes of stresses and displacements.
 #include "rail/rail_forces.hpp"
 
 #include <algorithm>

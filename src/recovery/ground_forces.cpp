@@ -1,3 +1,5 @@
+// Sums of foundation, ground and inertia forces as products of precomputed coefficients with nodal displacements,
+// velocities and accelerations, added up over ranks.
 #include "recovery/ground_forces.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Opening of each expansion device as the difference of the rail's two longitudinal displacements at its node.
 #include "recovery/rail_devices.hpp"
 
 #include "beam/assembly.hpp"

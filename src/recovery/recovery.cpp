@@ -1,3 +1,5 @@
+// Gathers the nodal values of the stations' elements over ranks, applies the precomputed forms of each section, and
+// adds the loads and sleepers inside the element.
 #include "recovery/recovery.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Linear forms of one section from the element's stiffness, mass, foundation and temperature, and from the deflection
+// of the element clamped at both ends.
 #include "recovery/recovery_section.hpp"
 
 #include "beam/assembly.hpp"

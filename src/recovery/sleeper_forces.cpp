@@ -1,3 +1,5 @@
+// Pad and ballast forces as linear forms of the displacements and velocities above and below each spring, added up over
+// ranks.
 #include "recovery/sleeper_forces.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Integrates m + b dm/dt = c exactly from call to call, with c piecewise linear in time and discontinuous where a load
+// passes the station.
 #include "recovery/viscous_lag.hpp"
 
 #include <algorithm>

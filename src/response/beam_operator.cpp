@@ -1,3 +1,5 @@
+// Products with M, C* and K* (equation 51 of the paper), factorisations of s^2 M + s C* + K* kept for the latest
+// shifts, and static solutions with iterative refinement in extended precision.
 #include "response/beam_operator.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Extracts the non-zero entries of block tridiagonal rows, stores repeated rows once, and multiplies several nodes at a
+// time with sums in registers.
 #include "response/block_rows.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Solves for unit loads on one element's unknowns within a window that is doubled until the response at its ends is
+// negligible; statics are solved on the whole beam or a separate part of it.
 #include "response/compliance.hpp"
 
 #include <Eigen/Core>

@@ -1,3 +1,5 @@
+// Gathers the states of all ranks, writes them with a digest to a temporary file, and renames that atomically; a
+// damaged file or one of another version is refused when it is read.
 #include "results/checkpoint_file.hpp"
 
 #include <unistd.h>

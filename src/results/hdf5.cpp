@@ -1,3 +1,5 @@
+// Creates, extends and closes datasets through the HDF5 C API; disk space is reserved before every flush, so that a
+// full disk leaves a readable file.
 #include "hdf5.hpp"
 
 #include <fcntl.h>

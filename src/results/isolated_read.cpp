@@ -1,3 +1,5 @@
+// Forks a process with limits on processor time and memory, which reads the file and returns the data or the error
+// through a pipe.
 #include "results/isolated_read.hpp"
 
 #include <fcntl.h>

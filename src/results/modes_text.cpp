@@ -1,3 +1,5 @@
+// Reads frequencies, modal masses, damping ratios, shapes and outputs of the group /modes, checks their sizes, and
+// writes the bending modes as comma-separated text.
 #include "results/modes_text.hpp"
 
 #include <fmt/format.h>

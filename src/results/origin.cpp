@@ -1,3 +1,5 @@
+// Stores options and input texts in the tables of /input with a digest, and restores the options of a run from an
+// existing results file.
 #include "results/origin.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// File operations without race conditions: files are created with O_EXCL and O_NOFOLLOW, identified by device and
+// inode, and renamed without replacing an existing file.
 #include "results/own_file.hpp"
 
 #include <fcntl.h>
@@ -17,7 +19,7 @@ namespace {
 
 FileId id_of_status(const struct stat& status) { return {true, status.st_dev, status.st_ino}; }
 
-/// In a copy of the process: HDF5 may end by a signal in a file that is damaged.
+/// To be called in a guarded process: HDF5 may end by a signal in a file that is damaged.
 bool names_traverse(const std::string& path) {
   return hdf5::text_of(hdf5::open_to_read(path), "/", "program") == "traverse";
 }

@@ -1,3 +1,5 @@
+// Collects samples in blocks and appends them to the extendible datasets, /time last, so that every other dataset has
+// at least as many rows; continues the file of an earlier run after comparing digests.
 #include "results/recorder.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes the datasets of resonance speeds v = f d/i and cancellation speeds, and prints those of the first mode in
+// km/h.
 #include "results/resonance.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Keeps the names of the current stages in atomic variables, from which a background thread prints progress at growing
+// intervals.
 #include "results/stage.hpp"
 
 #include <fmt/format.h>

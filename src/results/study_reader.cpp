@@ -1,3 +1,4 @@
+// Reads options, datasets and attributes of /study, and compares the digest of every finished run with the stored one.
 #include "results/study_reader.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Sample mean, standard deviation and quantiles over the chosen axes; the confidence intervals of quantiles are
+// distribution-free, from order statistics and the binomial distribution.
 #include "results/study_statistics.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Keeps one row of numbers per run in columns, and determines the extremes of a column with their run and probe for the
+// datasets, the summary and the terminal.
 #include "results/study_table.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Converts the extremes, wheel unloading, energies and step counts of a run to named attributes.
 #include "summary.hpp"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Formats and prints progress with the remaining time, the summary of a run, and tables of natural frequencies with
+// damping ratios.
 #include "results/terminal.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Selects the most unfavourable run of a study for every limit, prints one line per verdict, and writes the datasets of
+// /verdicts.
 #include "results/verdict.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Splits the communicator; the ranks without work wait in a non-blocking barrier that they test between sleeps of
+// growing length.
 #include "run/active_ranks.hpp"
 
 #include <algorithm>

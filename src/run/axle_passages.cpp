@@ -1,3 +1,4 @@
+// Computes the passage times of all wheels from the speed law, and stores time, speed and normal force at each of them.
 #include "run/axle_passages.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Records for every kind of one-sided spring, support and sleeper whether it has been unloaded, compressed or in
+// tension, and reports the first of these states that occurs only after the end of the trial runs.
 #include "run/beyond_trials.hpp"
 
 #include <fmt/format.h>

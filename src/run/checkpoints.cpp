@@ -1,3 +1,5 @@
+// Checks the names of output files and checkpoint, validates a restart against the digest of the scene, and writes
+// checkpoints so rarely that they cost at most a twentieth of the run time.
 #include "run/checkpoints.hpp"
 
 #include <fmt/format.h>

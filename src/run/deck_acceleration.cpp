@@ -1,3 +1,5 @@
+// The cut-off frequency of EN 1990, A2.4.4.2.1, the greatest of 30 Hz, 1.5 times the first and the third distinct
+// natural frequency, and the low-pass filtering of the stored accelerations.
 #include "run/deck_acceleration.hpp"
 
 #include <fmt/format.h>

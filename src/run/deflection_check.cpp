@@ -1,3 +1,5 @@
+// Prints a warning for deflections above a tenth of the longest span, and stops the run with an error above a hundred
+// spans.
 #include "run/deflection_check.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Writes least and greatest deflections, accelerations, moments and shear forces of all probes with their times as the
+// datasets of /envelope.
 #include "run/envelope.hpp"
 
 #include <string>

@@ -1,3 +1,5 @@
+// Rotations of the nodes at the bridge's ends and at joints between decks, and vertical accelerations of the heaviest
+// body of every vehicle.
 #include "run/judged_motion.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Two second-order sections of a Butterworth filter by the bilinear transform, applied forward and backward to series
+// that are continued by point reflection at both ends.
 #include "run/low_pass.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Writes the datasets of /model: spans, supports, stiffness and mass along the bridge, foundations, vehicles with their
+// bodies, wheels, springs and joints, and moving forces.
 #include "run/model_record.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Converts the static wheel loads of a scene to load models for the rules of EN 1991-2, and passes the peaks of its
+// runs on to them.
 #include "run/norm_run.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Assembles the outputs of a scene from the groups of bridge and train, with the stored energies: kinetic, strain,
+// potential, dissipated, work and residual.
 #include "run/outputs.hpp"
 
 #include "output_groups.hpp"

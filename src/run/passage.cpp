@@ -1,3 +1,5 @@
+// Builds the coupled system and its time integrator from a scene: by elements or by modes, with the known events at
+// which steps end, and with the checks of mesh and step.
 #include "run/passage.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Extremes of all probes and wheels, and the difference of two runs: peaks are paired by place, sign and time, and the
+// largest and the root mean square deviation are compared.
 #include "run/peaks.hpp"
 
 #include <algorithm>

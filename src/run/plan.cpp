@@ -1,3 +1,5 @@
+// Derives the time step from the first period, the crossing of a span and the shortest wave of track and wheels,
+// rounded to 1, 2 or 5 times a power of ten, and the sampling interval from that.
 #include "run/plan.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// File attributes with versions and ranks, the exit of all MPI ranks after a failed write, and the conversion of C++
+// exceptions to error messages with an exit status.
 #include "run/process.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Measures the latency of MPI_Allreduce, estimates the time of a stage on every number of ranks from unknowns, vehicles
+// and messages, and selects the number beyond which more ranks gain too little.
 #include "run/rank_choice.hpp"
 
 #include <fmt/format.h>

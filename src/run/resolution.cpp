@@ -1,3 +1,5 @@
+// Bounds on the step by the first period, waves of the track, sleepers and contact oscillation, and on the element
+// length by 1/lambda = (4 EI/k)^(1/4) of a beam on an elastic foundation.
 #include "run/resolution.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// A digest of the sorted options and the texts of all input files, without options that leave the results unchanged.
 #include "run/scene_digest.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Assembles the beam, determines Rayleigh damping from its first two distinct natural frequencies (equations 19 and 20
+// of the paper), and computes factorisation and modes.
 #include "run/shared_beam.hpp"
 
 #include <fmt/format.h>

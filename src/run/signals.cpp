@@ -1,3 +1,5 @@
+// Installs POSIX signal handlers that end the process or set a flag, and a timer that raises SIGXCPU shortly before the
+// limit on processor time.
 #include "run/signals.hpp"
 
 #include <signal.h>

@@ -1,3 +1,5 @@
+// One function for each quantity of a limit, listed in a table by its name: it returns the extreme with time and place,
+// or the reason why it is unknown.
 #include "run/verdicts.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Evaluates responses at the probes, reactions, peaks and the energy balance at every sample, and stops a run whose
+// energy residual is too large for a valid result.
 #include "run/watch.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Unloading 1 - F/F_0 of each wheel after a Butterworth low-pass filter, and the longest time above a chosen level by
+// linear interpolation between samples.
 #include "run/wheel_unloading.hpp"
 
 #include <fmt/format.h>

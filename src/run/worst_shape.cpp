@@ -1,3 +1,5 @@
+// Deflections at the nodes from the stored displacement vector, and those inside elements by recovery with the loads of
+// that instant.
 #include "run/worst_shape.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Parses frequencies, modal masses, damping ratios, outputs and mode shapes line by line, sorts modes by frequency and
+// scales their shapes to a modal mass of 1 kg.
 #include "given_modes.hpp"
 
 #include <fmt/format.h>

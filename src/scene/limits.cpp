@@ -1,3 +1,5 @@
+// Estimates the memory of a scene from measured bytes per node, unknown, vehicle, force and probe, and compares it with
+// the memory of the machine or of the control group.
 #include "limits.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Axle forces and positions of the trains HSLM-A and HSLM-B (EN 1991-2, 6.4.6.1.1), of the reference wagons of EN
+// 15528, annex A, and of lists in files.
 #include "load_models.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Reads the general options of a scene, calls the readers of beam, trains, loads, track and output in order, and checks
+// that the scene has a motion and an end.
 #include "traverse/scene/scene.hpp"
 
 #include <fmt/format.h>

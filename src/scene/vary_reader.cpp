@@ -1,3 +1,5 @@
+// Expands lists and ranges of values, and draws samples of uniform, normal and lognormal distributions from a
+// reproducible random stream.
 #include "vary_reader.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Column-wise Gaussian elimination with row exchanges within a band of three half-bandwidths, and forward and back
+// substitution.
 #include "solve/band_lu.hpp"
 
 #include <algorithm>

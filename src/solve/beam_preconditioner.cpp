@@ -1,3 +1,4 @@
+// A PCSHELL that factors the matrix by SubstructuredCholesky in its set-up and solves with it when applied.
 #include "solve/beam_preconditioner.hpp"
 
 #include <exception>

@@ -1,3 +1,5 @@
+// Copies the diagonal and upper blocks of a symmetric PETSc matrix, and forms linear combinations of three block
+// tridiagonal matrices.
 #include "solve/block_tridiagonal.hpp"
 
 #include <stdexcept>

@@ -1,3 +1,4 @@
+// Explicit template instantiations of the block factorisations for 2, 3 and 4 unknowns per node.
 #include "blocks.hpp"
 
 namespace traverse::solve {

@@ -1,3 +1,4 @@
+// Explicit template instantiations of the block factorisations for 5, 6 and 7 unknowns per node.
 #include "blocks.hpp"
 
 namespace traverse::solve {

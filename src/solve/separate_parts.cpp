@@ -1,3 +1,5 @@
+// Finds parts with equal matrices, factors each kind once, and solves up to eight neighbouring equal parts as
+// right-hand sides of one factor.
 #include "solve/separate_parts.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Each rank eliminates its inner nodes; the Schur complements of the separators are gathered and solved on every rank,
+// and inner nodes follow by back substitution.
 #include "substructure.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Selects the factorisation compiled for the block size, from 2 to 7 unknowns per node or the general one, and forwards
+// all calls to it.
 #include <stdexcept>
 #include <string>
 #include <utility>

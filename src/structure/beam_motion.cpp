@@ -1,3 +1,5 @@
+// Expresses every stage and the end of a step as linear combinations of v, w and the stages' accelerations, and
+// evaluates right-hand sides tile by tile as the solver's forward elimination reaches them.
 #include "structure/beam_motion.hpp"
 
 #include <algorithm>

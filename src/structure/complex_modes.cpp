@@ -1,3 +1,5 @@
+// Solves the eigenvalue problem of the first-order system in (Omega u, u'), keeps one of each conjugate pair, and
+// perturbs the damping slightly where no complete set of eigenvectors exists.
 #include "structure/complex_modes.hpp"
 
 #include <Eigen/Dense>

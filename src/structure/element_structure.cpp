@@ -1,3 +1,5 @@
+// The finite element equations of the beam (equation 51 of the paper): loads on nodes, free response and compliance in
+// an implicit stage, energies and dissipated power.
 #include "structure/element_structure.hpp"
 
 #include <algorithm>

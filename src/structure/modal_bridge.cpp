@@ -1,3 +1,5 @@
+// Modal damping from Rayleigh's damping and discrete dampers, and influence lines of modes and probes as piecewise
+// cubic functions, by the theorem of Maxwell and Betti.
 #include "structure/modal_bridge.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Modal forces, accelerations, energies and nodal values by superposition of the modes; nodal displacements include the
+// static correction for the modes that are left out.
 #include "structure/modal_structure.hpp"
 
 #include <algorithm>

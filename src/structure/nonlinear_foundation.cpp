@@ -1,3 +1,5 @@
+// Forces, energy and dissipation of each non-linear foundation point from its displacement and rate, the history of
+// points that slide with friction, and the sum of forces over all ranks.
 #include "structure/nonlinear_foundation.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Extends the moving ranges of nodes by the reach of waves within a step, and removes nodes whose displacement and
+// velocity are below a tolerance relative to their largest values.
 #include "structure/rest_window.hpp"
 
 #include <algorithm>

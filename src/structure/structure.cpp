@@ -1,3 +1,5 @@
+// Static equilibrium under own weight, imposed strains and settlements, and the transfer of forces to nodal values of
+// an element by the shape vectors S and T (equations 13 to 15 of the paper).
 #include "structure/structure.hpp"
 
 #include <algorithm>

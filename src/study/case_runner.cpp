@@ -1,3 +1,5 @@
+// Computes the runs of a study by the fastest admissible way: exact modal solutions, vectorised batches by elements, or
+// single runs, also with full mechanisms where linear vehicles are not accurate enough.
 #include "case_runner.hpp"
 
 #include <algorithm>

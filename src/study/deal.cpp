@@ -1,3 +1,5 @@
+// Distributes pieces of work by an atomic counter in MPI shared memory of each computer; the computers divide the
+// pieces in turn.
 #include "deal.hpp"
 
 #include <algorithm>

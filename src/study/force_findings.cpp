@@ -1,3 +1,5 @@
+// Evaluates the exact modal solution at equal intervals, filters the accelerations, and determines rotations,
+// amplification and the other quantities of limits.
 #include "study/force_findings.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Searches mesh and step on the beginnings of passages, compares whole passages with a finer mesh and half the step,
+// and refines the mesh where that causes the difference, else the step.
 #include "study/lane_chooser.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Selects the speeds of trial passages, and repeats the search with half the accuracy where the errors of the first one
+// were too large.
 #include "study/lanes_choice.hpp"
 
 #include <fmt/format.h>

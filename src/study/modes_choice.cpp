@@ -1,3 +1,5 @@
+// Increases the number of modes until the peaks of sample runs agree with those by elements; the modes that EN 1990,
+// A2.4.4.2.1 requires serve for an estimate of the time.
 #include "modes_choice.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Regular axle distance d from the pairs of axles, resonance speeds v = f d/i, and speeds v = 2 f L/m at which a force
+// leaves a mode of a simply supported span without vibration.
 #include "study/resonances.hpp"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// Sends rows of results by non-blocking MPI messages, which the first rank receives between its own runs.
 #include "study/returns.hpp"
 
 #include <utility>

@@ -1,3 +1,5 @@
+// Executes dealt pieces until none is left, an error occurs or a signal arrives, and estimates progress from the
+// durations of the runs.
 #include "study/share_runs.hpp"
 
 #include <algorithm>

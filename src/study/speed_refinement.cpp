@@ -1,3 +1,5 @@
+// Bounds the peak between two neighbouring speeds by the curvature of the parabola through three samples, or near a
+// limit by the width of a resonance curve, and halves intervals that are too uncertain.
 #include "study/speed_refinement.hpp"
 
 #include <algorithm>

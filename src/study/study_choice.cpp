@@ -1,3 +1,5 @@
+// Chooses the model at the scenes with the extreme values of every varied option, and combines the choices into the
+// finest of each.
 #include "study/study_choice.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Writes the table of runs at intervals that keep the cost small, checks whether an earlier file belongs to the same
+// study, and copies its finished runs by their coordinates.
 #include "study/study_file.hpp"
 
 #include <fmt/format.h>

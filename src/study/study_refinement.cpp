@@ -1,3 +1,5 @@
+// Arranges the peaks in the table of a study as curves over the speed, one for each combination of the other axes, and
+// inserts the new speeds into the study.
 #include "study/study_refinement.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,4 @@
+// Groups runs by scene or bridge, train, seed and speed class, and keeps a limited number of assembled models for them.
 #include "study/study_scenes.hpp"
 
 #include <fmt/format.h>

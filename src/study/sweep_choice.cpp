@@ -1,3 +1,5 @@
+// Trial runs at the lowest, the middle and the highest speed, of which the finest mesh and step are used for all runs;
+// also whether low-passed accelerations can be promised.
 #include "sweep_choice.hpp"
 
 #include <fmt/format.h>

@@ -1,3 +1,5 @@
+// Halves the distance of stations until cubic Hermite interpolation deviates from the profile by at most 2 nm at kinks
+// and sample places, and tabulates heights and slopes.
 #include "track/height_table.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Profiles as a cosine bump, a table with rounded corners or a spline, or random roughness of a spectrum, with
+// additional dips, and bounds of their slope and curvature.
 #include "traverse/track/profile.hpp"
 
 #include <algorithm>

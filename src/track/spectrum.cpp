@@ -1,3 +1,5 @@
+// Power of a displacement spectrum within a band in closed form, and the parameters of ISO 8608 classes, German
+// railways and FRA track classes.
 #include "traverse/track/spectrum.hpp"
 
 #include <array>

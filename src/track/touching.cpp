@@ -1,3 +1,5 @@
+// Scans the profile within reach of the wheel for zeros of g(s) by linear interpolation, and maximises e(s) by Newton's
+// method.
 #include "track/touching.hpp"
 
 #include <algorithm>

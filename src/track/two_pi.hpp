@@ -1,3 +1,4 @@
+// The constant 2 pi, for angles of a full turn and for wavenumbers.
 #pragma once
 
 #include <numbers>

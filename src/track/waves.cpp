@@ -1,3 +1,5 @@
+// Sums cosines at stations that are cached, interpolates between them by quintic Hermite polynomials, and advances
+// evenly spaced series by the angle addition formulas.
 #include "traverse/track/waves.hpp"
 
 #include <Eigen/Core>

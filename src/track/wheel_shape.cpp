@@ -1,3 +1,5 @@
+// Deviation of the radius by polygonal harmonics and by a flat of cosine shape, with derivatives by the angle, and the
+// angles at which a flat begins and ends.
 #include "traverse/track/wheel_shape.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Creates mechanisms, wheel contacts and pairs of bodies from the train, numbers the independent coordinates of all
+// vehicles, and sets their positions and velocities.
 #include "train/fleet.hpp"
 
 #include <algorithm>

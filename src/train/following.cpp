@@ -1,3 +1,5 @@
+// Minimises p'^T K p' (lasting slopes) or p'^T M p' (short slopes) subject to G p' = v h', by a complete orthogonal
+// decomposition of the Lagrange multiplier equations.
 #include "train/following.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Mass, damping and stiffness matrices of the projected equations of motion (equation 42 of the paper) by linearisation
+// about the initial state, and the residual of the non-linear mechanism as a measure of their error.
 #include "linear_dynamics.hpp"
 
 #include <fmt/format.h>

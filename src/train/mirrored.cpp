@@ -1,3 +1,5 @@
+// Reverses the signs of x coordinates, angles, moments and asymmetric laws of torsion springs for all parts of a
+// vehicle or coupler.
 #include "mirrored.hpp"
 
 #include <utility>

@@ -1,3 +1,5 @@
+// Residual B^T (N q'' - g - Q) of a mechanism in its independent coordinates (equation 42 of the paper) and its Newton
+// matrix, with and without joint friction.
 #include "multibody_dynamics.hpp"
 
 #include <cmath>

@@ -1,3 +1,5 @@
+// Explicit inverse up to 24 degrees of freedom, banded or dense LU factorisation above, and the pseudo-inverse for
+// matrices that may be singular (statics).
 #include "newton_inverse.hpp"
 
 namespace traverse::train {

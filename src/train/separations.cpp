@@ -1,3 +1,5 @@
+// Cubic Hermite interpolation of the penetration between two accepted states, whose roots are the times at which a
+// contact opens or closes and whose maximum yields the force of an impact.
 #include "train/separations.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Joins the bodies, joints and springs of coupled vehicles in one mechanism, and adds the driving constraint of a
+// prescribed speed (a rheonomic constraint of equation 43 of the paper).
 #include "train/train_unit.hpp"
 
 #include <algorithm>

@@ -1,3 +1,5 @@
+// Flexibility H = G J^-1 G^T of a vehicle at its contacts, G the contact directions projected onto the independent
+// coordinates, and back-substitution of the contact forces.
 #include "vehicle_newton.hpp"
 
 #include <algorithm>

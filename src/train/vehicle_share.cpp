@@ -1,3 +1,5 @@
+// Distributes vehicles among ranks by their numbers of coordinates, and exchanges wheel positions, contact kinematics
+// and states by MPI_Allgatherv.
 #include "train/vehicle_share.hpp"
 
 #include <algorithm>

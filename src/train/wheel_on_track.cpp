@@ -1,3 +1,5 @@
+// Newton's method for the point of the deflected surface closest to the wheel's centre; penetration R - |d| (equation
+// 47 of the paper, as corrected), its rate and the sliding speed follow from that point.
 #include "train/wheel_on_track.hpp"
 
 #include <algorithm>

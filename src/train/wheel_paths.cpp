@@ -1,3 +1,5 @@
+// Stores wheel positions at a limited number of instants; when these are full every second one is removed and the
+// stride is doubled.
 #include "train/wheel_paths.hpp"
 
 #include <algorithm>

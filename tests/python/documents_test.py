@@ -9,7 +9,10 @@ import unittest
 
 SOURCE = pathlib.Path(os.environ.get("TRAVERSE_SOURCE_DIR", pathlib.Path(__file__).parents[2])).resolve()
 SKIPPED = {".git", ".ccache", "results"}
-LONGEST_README = 8000  # bytes
+LONGEST_README = 6000  # bytes
+LONGEST_PAGE = 150  # lines, of the guide
+FIRST_COMMAND = 12  # lines of a page of the guide, its first command among them
+COMMAND = r"(build/traverse|\./run\.sh|scripts/\S+|mpirun|(/usr/bin/)?python3|cmake) "
 FOLDERS = "include|src|tests|scripts|benchmarks|options|doc"
 
 
@@ -47,6 +50,17 @@ def anchors(text):
         times[slug] = count + 1
         found.add(slug if count == 0 else f"{slug}-{count}")
     return found | set(re.findall(r"<a (?:id|name)=\"([^\"]+)\"", text))
+
+
+def commands(lines):
+    """Those in fenced blocks that a reader can type in the root of the repository."""
+    found, fenced = [], False
+    for line in lines:
+        if line.startswith("```"):
+            fenced = not fenced
+        elif fenced and re.match(COMMAND, line):
+            found.append(line)
+    return found
 
 
 def broken_links(path):
@@ -96,6 +110,15 @@ class DocumentsTest(unittest.TestCase):
     def test_readme_is_short(self):
         self.assertLessEqual((SOURCE / "README.md").stat().st_size, LONGEST_README)
 
+    def test_pages_of_the_guide_are_short_and_begin_with_a_command(self):
+        pages = sorted((SOURCE / "doc/guide").glob("*.md"))
+        self.assertNotEqual(pages, [])
+        for path in pages:
+            with self.subTest(path.name):
+                lines = path.read_text(encoding="utf-8").splitlines()
+                self.assertLessEqual(len(lines), LONGEST_PAGE)
+                self.assertNotEqual(commands(lines[:FIRST_COMMAND]), [], "no command at its beginning")
+
     def test_every_page_is_reached_from_readme(self):
         reached, ahead = set(), [SOURCE / "README.md"]
         while ahead:
@@ -113,6 +136,7 @@ class DocumentsTest(unittest.TestCase):
         text = "# A `b`, c\n[x](#a-b-c) [y](nowhere.md) ![z](none.png)\n```\n[not](a link)\n```\n    [nor](this)\n"
         self.assertEqual(links(text), ["#a-b-c", "nowhere.md", "none.png"])
         self.assertEqual(anchors(text), {"a-b-c"})
+        self.assertEqual(commands(["build/traverse a", "```sh", "beam: 1", "mpirun -n 2 b", "```", "cmake c"]), ["mpirun -n 2 b"])
 
 
 if __name__ == "__main__":

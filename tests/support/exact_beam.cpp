@@ -1,3 +1,5 @@
+// Assembles dynamic stiffness matrices, counts natural frequencies by the Wittrick-Williams algorithm and bisects for
+// them, and finds damped eigenvalues by the secant method on the determinant.
 #include "support/exact_beam.hpp"
 
 #include <Eigen/Dense>

@@ -1,3 +1,4 @@
+// Writes the options of N four-bar linkages: rods, pins and initial velocities.
 #include "support/four_bars.hpp"
 
 namespace traverse::test {

@@ -1,3 +1,5 @@
+// Adds up gravity, joint reactions, springs, actuators and wheel forces on every body and compares the sum with mass
+// times acceleration at every stored instant.
 #include "support/newton_law.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Starts the program in a process group of its own with a clean MPI environment and a limit of processor time, collects
+// its output, and checks exit status and messages.
 #include "support/program.hpp"
 
 #include <fcntl.h>

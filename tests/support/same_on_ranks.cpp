@@ -1,3 +1,4 @@
+// Compares every floating-point dataset of two results files relative to its peak; mode shapes may differ in sign.
 #include "support/same_on_ranks.hpp"
 
 #include <gtest/gtest.h>

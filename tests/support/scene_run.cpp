@@ -1,3 +1,5 @@
+// Runs a scene within the test's process by temporary files, reads datasets and attributes from HDF5, and computes
+// peaks and relative differences.
 #include "support/scene_run.hpp"
 
 #include <hdf5.h>

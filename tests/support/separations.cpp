@@ -1,3 +1,4 @@
+// Reads the datasets of the HDF5 group /separations as one entry for each loss of contact.
 #include "support/separations.hpp"
 
 #include <hdf5.h>

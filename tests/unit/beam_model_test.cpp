@@ -1,3 +1,5 @@
+// Shape functions (equation 3 of the paper), tables along the beam, element matrices against fine quadrature (equations
+// 8 and 9), meshes, checks of input, and rigid-body motions.
 #include "support/beam_model.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// Assembled matrices of beams and foundations against shape functions and rigid-body mass, and reactions against rows
+// of the unconstrained matrices (equation 18 of the paper as corrected in doc/theory.md).
 #include "beam/beam.hpp"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// A digest of numbers changes with every bit and sign, and continues from an earlier value.
 #include <gtest/gtest.h>
 
 #include <bit>

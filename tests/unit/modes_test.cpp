@@ -1,3 +1,5 @@
+// Natural frequencies of uniform spans against closed-form values, with repeated, crowded and rigid-body modes, and
+// Rayleigh coefficients against equation 20 of the paper.
 #include "modes/modes.hpp"
 
 #include <gtest/gtest.h>

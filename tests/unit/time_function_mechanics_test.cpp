@@ -1,3 +1,5 @@
+// Functions of time that are straight lines, splines or piecewise linear tables: values, derivatives, extrapolation,
+// order of convergence and refused tables.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// One run of a scene: builds the model, integrates, records.
+// Runs a scene: its check, its analysis in time or at rest, its modes, or the runs of its sweep or study.
 #pragma once
 
 #include <mpi.h>
