@@ -134,8 +134,8 @@ class Ride {
   bool advance(double& newton_time, double& stage_time) {
     const double shift = 2.0 / step_;
     t_ += step_;
-    still(beam_motion_);
-    still(train_motion_);
+    predicted(beam_motion_);
+    predicted(train_motion_);
     Motion& b = beam_motion_;
     Motion& p = train_motion_;
     operator_->multiply(-1.0, nullptr, b.rate.data(), b.value.data(), z_.data());
@@ -174,7 +174,7 @@ class Ride {
   };
 
   /// To where it is at the end of the step at zero acceleration.
-  void still(Motion& m) const {
+  void predicted(Motion& m) const {
     for (std::size_t i = 0; i < m.value.size(); ++i) {
       m.value[i] += step_ * m.rate[i] + 0.25 * step_ * step_ * m.acceleration[i];
       m.rate[i] += 0.5 * step_ * m.acceleration[i];

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <utility>
 
-#include "methods/one_step_methods.hpp"
+#include "base/one_step_methods.hpp"
 #include "step_scene.hpp"
 #include "structure/beam_motion.hpp"
 

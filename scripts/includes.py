@@ -15,8 +15,8 @@ import sys
 
 # From the top layer down: a room includes headers of rooms that stand behind it, never before it.
 # The options stand above what they describe: their tables take the names of joints and foundations from there.
-LAYERS = ["app", "check", "study", "accuracy", "run", "scene", "norm", "rail", "results", "lanes", "integrate", "coupling", "engine", "structure", "response",
-          "train", "options", "contact", "multibody", "track", "modes", "recovery", "beam", "solve", "methods", "base"]
+LAYERS = ["app", "check", "study", "error_control", "ensemble", "run", "scene", "norm", "rail", "results", "modal_engine", "integrate", "coupling", "engine", "structure",
+          "train", "options", "contact", "multibody", "track", "modes", "recovery", "beam", "solve", "base"]
 WITHOUT_PETSC = {"multibody", "contact", "track"}
 GREATEST_SHARE = 0.10  # of all lines, in one room
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "accuracy/accuracy.hpp"
+#include "error_control/accuracy.hpp"
 #include "results/checkpoint_file.hpp"
 #include "results/place.hpp"
 #include "run/shared_beam.hpp"

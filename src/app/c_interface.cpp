@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "light_start.hpp"
+#include "fast_mpi_init.hpp"
 #include "run/process.hpp"
 #include "step_by_step.hpp"
 #include "traverse/options/input.hpp"

@@ -3,8 +3,8 @@
 
 #include <vector>
 
+#include "base/one_step_methods.hpp"
 #include "integrate/integrators.hpp"
-#include "methods/one_step_methods.hpp"
 #include "options/help_groups.hpp"
 #include "traverse/options/table.hpp"
 

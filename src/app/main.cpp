@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "fast_mpi_init.hpp"
 #include "help.hpp"
-#include "light_start.hpp"
 #include "results/origin.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
@@ -78,7 +78,7 @@ int after_output(int status) {
 
 int main(int argc, char** argv) {
   traverse::app::guard_standard_output();
-  traverse::app::take_signals();
+  traverse::app::install_handlers();
   traverse::app::heed_cpu_limit();
   traverse::app::speak_of_signals(first_rank());
   traverse::app::start_lightly();
@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
     if (SlepcInitialize(words.argc(), words.argv(), nullptr, nullptr) != 0) return EXIT_FAILURE;
     traverse::app::started();
     (void)PetscPushErrorHandler(PetscReturnErrorHandler, nullptr);
-    traverse::app::take_signals();  // from PETSc
+    traverse::app::install_handlers();  // from PETSc
     traverse::app::speak_of_signals(first_rank());
     const int status = run(input);
     (void)SlepcFinalize();

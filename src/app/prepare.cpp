@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
-#include "accuracy/kept_choice.hpp"
-#include "accuracy/mode_mesh.hpp"
-#include "accuracy/trials.hpp"
+#include "error_control/choice_cache.hpp"
+#include "error_control/mode_mesh.hpp"
+#include "error_control/trial_runs.hpp"
 #include "run/deck_acceleration.hpp"
 #include "run/wheel_unloading.hpp"
 
@@ -16,7 +16,7 @@ namespace {
 
 Choice try_models(MPI_Comm comm, Scene scene, std::vector<std::string>& notes) {
   if (chooses_mode_mesh(scene)) return choose_mode_mesh(comm, scene, notes);
-  if (chooses(scene)) settle_low_pass(comm, scene, notes);
+  if (chooses(scene)) fix_low_pass(comm, scene, notes);
   Choice choice = choose(comm, scene, notes);
   choice.low_pass = scene.output.low_pass;
   return choice;
@@ -25,7 +25,7 @@ Choice try_models(MPI_Comm comm, Scene scene, std::vector<std::string>& notes) {
 }  // namespace
 
 Accuracy choose_model(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
-  KeptChoice kept(comm, scene);
+  ChoiceCache kept(comm, scene);
   Choice choice;
   std::vector<std::string> own;
   if (!kept.read(scene, own, choice)) {
@@ -48,8 +48,9 @@ double prepare(Scene& scene, const Accuracy& accuracy, SharedBeam& shared, std::
   const bool limited = scene.limits_deck_acceleration();
   const double counting =
       limited || scene.output.low_pass_asked ? frequency_that_counts(scene, shared, cheap || limited, notes) : 0.0;
-  if (counting > 0.0) scene.looks = spacing_for(counting);
-  if (filters_wheels(scene)) scene.looks = std::min(scene.looks, spacing_for(scene.output.wheel_low_pass));
+  if (counting > 0.0) scene.sampling_interval = spacing_for(counting);
+  if (filters_wheels(scene))
+    scene.sampling_interval = std::min(scene.sampling_interval, spacing_for(scene.output.wheel_low_pass));
   return counting;
 }
 

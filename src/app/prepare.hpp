@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "accuracy/accuracy.hpp"
+#include "error_control/accuracy.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 

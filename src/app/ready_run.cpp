@@ -39,7 +39,7 @@ ReadyRun::ReadyRun(Job& given)
                                  passage.plan().end_time));
   for (const std::string& note : options::notes_on_unused(options::in_force())) job.notes.push_back(note);
   passage.start(job.notes);
-  note_rounding();
+  record_rounding();
   choose_filters();
   if (goes_on()) {
     archive.emplace(job.comm, job.earlier->of_ranks);
@@ -54,7 +54,7 @@ ReadyRun::ReadyRun(Job& given)
   print_notes(job.comm, job.notes);
 }
 
-void ReadyRun::note_rounding() {
+void ReadyRun::record_rounding() {
   const double error = passage.system().static_error();
   if (error > rounding_worth_a_note)
     job.notes.push_back(
@@ -67,7 +67,7 @@ void ReadyRun::choose_filters() {
   if (counting > 0.0) {
     const std::string trouble = no_filter(counting, passage.plan(), scene.output.probes.size());
     filters_deck = trouble.empty();
-    if (!filters_deck) accuracy.promises[low_passed].kept = false;
+    if (!filters_deck) accuracy.estimates[low_passed].kept = false;
     if (!filters_deck) job.notes.push_back("deck accelerations are not low-passed: " + trouble);
   }
   if (filters_wheels(scene)) {

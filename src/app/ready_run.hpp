@@ -3,9 +3,9 @@
 
 #include <optional>
 
-#include "accuracy/accuracy.hpp"
 #include "analyses.hpp"
 #include "base/archive.hpp"
+#include "error_control/accuracy.hpp"
 #include "run/passage.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -30,7 +30,7 @@ struct ReadyRun {
   std::optional<base::Archive> archive;  // the rest of what the run knew that it goes on from
 
  private:
-  void note_rounding();
+  void record_rounding();
   void choose_filters();
 };
 

@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include "accuracy/trials.hpp"
 #include "analyses.hpp"
 #include "check/check.hpp"
+#include "error_control/trial_runs.hpp"
 #include "prepare.hpp"
 #include "results/stage.hpp"
 #include "run/active_ranks.hpp"
@@ -27,11 +27,11 @@ void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
       scene.vehicles.empty() || !scene.train.steady() || scene.start != Start::equilibrium)
     return;
   scene.model.vehicles = VehicleModel::linear;
-  scene.model.most_defect = most_defect(scene);
+  scene.model.most_residual = most_residual(scene);
   notes.push_back(fmt::format(
       "vehicles are taken as linear as long as they are out of balance by less than {:.1g} of their weights; "
       "-model_vehicles full keeps the mechanisms",
-      scene.model.most_defect));
+      scene.model.most_residual));
 }
 
 /// A run that goes on has as many as it had, of as many.

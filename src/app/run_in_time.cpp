@@ -35,7 +35,7 @@ int run_in_time(Job job) {
       notes.push_back(fmt::format(
           "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
-          scene.model.most_defect));
+          scene.model.most_residual));
     } else {
       --halvings;
       scene.model.step = 0.5 * end.step;

@@ -1,6 +1,6 @@
 // Forces between rail and bridge along the track, UIC 774-3.
 #include "analyses.hpp"
-#include "rail/rail_forces.hpp"
+#include "rail/track_bridge_interaction.hpp"
 #include "static_report.hpp"
 #include "traverse/options/input.hpp"
 

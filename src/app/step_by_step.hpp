@@ -9,7 +9,7 @@
 #include "results/recorder.hpp"
 #include "run/outputs.hpp"
 #include "run/passage.hpp"
-#include "run/watch.hpp"
+#include "run/run_observer.hpp"
 
 namespace traverse::app {
 
@@ -49,7 +49,7 @@ class StepByStep {
   results::Recorder recorder_;  // of nothing
   std::optional<Passage> passage_;
   std::optional<Outputs> outputs_;
-  std::optional<Watch> watch_;
+  std::optional<RunObserver> watch_;
   double time_ = 0.0;
   std::vector<double> values_;
   bool failed_ = false;

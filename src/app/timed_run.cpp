@@ -10,8 +10,8 @@
 #include <cmath>
 #include <optional>
 
-#include "accuracy/mechanism_step.hpp"
-#include "accuracy/trials.hpp"
+#include "error_control/multibody_step_search.hpp"
+#include "error_control/trial_runs.hpp"
 #include "modes/modes.hpp"
 #include "ready_run.hpp"
 #include "results/recorder.hpp"
@@ -24,8 +24,8 @@
 #include "run/outputs.hpp"
 #include "run/passage.hpp"
 #include "run/process.hpp"
+#include "run/run_observer.hpp"
 #include "run/signals.hpp"
-#include "run/watch.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
@@ -51,10 +51,10 @@ double total(MPI_Comm comm, double share) {
 }
 
 /// The promise against what a refined run gives. False where it is broken.
-bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const Peaks& peaks) {
+bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const ResponseExtremes& peaks) {
   if (!scene.beam) return report_alone(comm, scene, accuracy);
   const Scene fine = refined(scene);
-  const Peaks truth = [&] {
+  const ResponseExtremes truth = [&] {
     const results::Stage stage("the refined run of -accuracy_report");
     const options::WithoutMonitors without_monitors;
     return peaks_of(comm, fine).peaks;
@@ -67,7 +67,7 @@ bool report(MPI_Comm comm, const Scene& scene, const Accuracy& accuracy, const P
     const auto q = static_cast<Quantity>(i);
     if (truth.largest(q).value == 0.0) continue;
     const double error = peak_difference(peaks, truth, q);
-    const bool kept = report_row(quantity_names[i], accuracy.promises[i], scene.accuracy, error, rank == 0);
+    const bool kept = report_row(quantity_names[i], accuracy.estimates[i], scene.accuracy, error, rank == 0);
     all_kept = kept ? all_kept : 0;
   }
   MPI_Bcast(&all_kept, 1, MPI_INT, 0, comm);  // low-passed accelerations are known on the first rank alone
@@ -126,7 +126,7 @@ class WatchedRun {
   std::optional<SignalsNoted> noted_{std::in_place};  // from here on what is stored is to stay readable
   Outputs outputs_;
   results::Recorder recorder_;
-  Watch watch_;
+  RunObserver watch_;
   Checkpoints checkpoints_;
   double before_, reached_;  // s: of wall time and of motion, of the run that this one goes on from, and so far
   results::Progress progress_;
@@ -154,7 +154,7 @@ WatchedRun::WatchedRun(ReadyRun& ready, results::Repeated repeated, bool may_sho
   if (ready.filters_deck && prints()) watch_.keep_accelerations({ready.counting, plan, scene_.output.probes});
   if (ready.filters_forces && prints())
     watch_.keep_wheel_forces({scene_.output.wheel_low_pass, scene_.output.unloading_level, plan, ready.wheels});
-  if (!scene_.output.passages.empty()) watch_.note_axle_passages({scene_, plan.time_step});
+  if (!scene_.output.passages.empty()) watch_.record_axle_passages({scene_, plan.time_step});
   if (!scene_.limits.empty()) watch_.judge();
   watch_.tell_beyond_trials(ready.accuracy.seen_until);
   if (ready.archive) watch_.keep(*ready.archive);
@@ -198,7 +198,7 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
   const std::vector<std::string> withdrawn = withdraw();
   summary.expected_errors = ready_.accuracy.expected();
   summary.ended = ended;
-  const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.model.most_defect);
+  const bool counts = !repeated_ && (!reaches_end_ || summary.linear_defect <= scene_.model.most_residual);
   std::vector<results::Verdict> verdicts;
   std::optional<norm::NormCheck> check;
   if (reaches_end_ && counts) {
@@ -219,9 +219,9 @@ results::Summary WatchedRun::summarise(const std::string& ended) {
 /// The promises that do not hold, in words.
 std::vector<std::string> WatchedRun::withdraw() {
   Accuracy& accuracy = ready_.accuracy;
-  return {accuracy.withdrawn(watch_.losses()), accuracy.withdrawn_by_surprise(watch_.beyond_trials().surprise()),
-          accuracy.withdrawn_by_bends(watch_.bends_beyond_trials(), scene_.accuracy),
-          accuracy.withdrawn_at_end(watch_.ends_unsettled())};
+  return {accuracy.withdrawn(watch_.losses()), accuracy.invalidate_by_new_event(watch_.beyond_trials().new_event()),
+          accuracy.invalidate_if_rougher(watch_.bends_beyond_trials(), scene_.accuracy),
+          accuracy.invalidate_at_end(watch_.ends_unsettled())};
 }
 
 /// Where the scene asks for it; with its own verdicts.
@@ -259,7 +259,7 @@ RunEnd WatchedRun::take() {
       checkpoints_.write(reached_, wall_seconds());
       by_signal = true;
     }
-    if (system_.defect() <= scene_.model.most_defect) check_balance(scene_, watch_.extremes());
+    if (system_.defect() <= scene_.model.most_residual) check_balance(scene_, watch_.extremes());
   } catch (const FileError& error) {
     leave_together(comm, error);
   } catch (const StepTooLong& error) {
@@ -284,7 +284,7 @@ RunEnd WatchedRun::take() {
   say_what_happened(by_signal);
   if (reaches_end_ && !passage_.stopped_at_limit()) checkpoints_.forget();
   noted_.reset();
-  if (reaches_end_ && summary.linear_defect > scene_.model.most_defect) return {0, Retry::mechanisms, {}, 0.0};
+  if (reaches_end_ && summary.linear_defect > scene_.model.most_residual) return {0, Retry::mechanisms, {}, 0.0};
   check_deflection(comm, scene_, summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, watch_.finished_peaks()))

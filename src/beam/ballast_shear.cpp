@@ -32,16 +32,16 @@ void add_shear(const Line& bridge, const Layout& layout, const Slice& slice, Row
   const auto between = [](double k) { return std::array{k, -k, -k, k}; };
   for (const auto& [left, right] : sheared(bridge, layout, slice.first - 1, slice.first + slice.local + 1)) {
     int before = left.ballast_unknown(layout);
-    const auto join = [&](int unknown) {
+    const auto merge = [&](int unknown) {
       stiffness.add(std::array{before, unknown}, between(n * track.shear.k));
       damping.add(std::array{before, unknown}, between(n * track.shear.c));
       before = unknown;
     };
     visit_links(left, right, layout, [&](int unknown, double its_mass) {
       mass.add(std::array{unknown}, std::array{its_mass});
-      join(unknown);
+      merge(unknown);
     });
-    join(right.ballast_unknown(layout));
+    merge(right.ballast_unknown(layout));
   }
 }
 

@@ -153,8 +153,8 @@ void Beam::assemble(const Slice& slice) {
   for (auto& [handle, rows] : own) *handle = rows.matrix(comm_, rows);
   const Rows springs = stiffness;
   stiffness.add(1.0, beams);
-  if (model().strained()) note_strains(slice, springs);
-  note_reactions(slice, beams, mass, beam_mass, beam_stiffness, stiffness, damping);
+  if (model().strained()) record_strains(slice, springs);
+  record_reactions(slice, beams, mass, beam_mass, beam_stiffness, stiffness, damping);
   const auto falls = [&](int unknown) { return Layout::falls(layout_.kind[index(unknown % block())]); };
   for (int i = begin; i < end; ++i) weight_.push_back(mass.times(i, [&](int j) { return falls(j) ? -1.0 : 0.0; }));
 
@@ -187,7 +187,7 @@ double Beam::settlement_of(int unknown) const {
   return found != settled_.end() && found->first == unknown ? found->second : 0.0;
 }
 
-void Beam::note_strains(const Slice& slice, const Rows& springs) {
+void Beam::record_strains(const Slice& slice, const Rows& springs) {
   strain_forces_.assign(index(local_unknowns()), 0.0);
   const std::vector<double>& settlement = model().settlement;
   for (std::size_t end = 0; end < settlement.size(); ++end) {
@@ -200,11 +200,11 @@ void Beam::note_strains(const Slice& slice, const Rows& springs) {
     imposed_.push_back(settlement_of(unknown));
     strain_forces_[index(i)] -= springs.times(unknown, [&](int j) { return settlement_of(j); });
   }
-  note_temperature(slice, bridge_);
-  if (rail_) note_temperature(slice, *rail_);
+  record_temperature(slice, bridge_);
+  if (rail_) record_temperature(slice, *rail_);
 }
 
-void Beam::note_temperature(const Slice& slice, const Line& line) {
+void Beam::record_temperature(const Slice& slice, const Line& line) {
   if (!line.model.temperature) return;
   const auto [first, past] = line.elements_at(slice.first, slice.local);
   const auto add = [&](int unknown, double force) {

@@ -128,10 +128,10 @@ class Beam {
   void add_foundation(const Slice& slice, Rows& stiffness, Rows& damping,
                       std::vector<std::pair<base::Handle<Mat>*, Rows>>& own);
   double settlement_of(int unknown) const;
-  void note_strains(const Slice& slice, const Rows& springs);
-  void note_temperature(const Slice& slice, const Line& line);
-  void note_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
-                      const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping);
+  void record_strains(const Slice& slice, const Rows& springs);
+  void record_temperature(const Slice& slice, const Line& line);
+  void record_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
+                        const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping);
 
   MPI_Comm comm_;
   Layout layout_;

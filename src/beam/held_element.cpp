@@ -59,17 +59,17 @@ HeldElement::HeldElement(double xi, double h, double EI, double bed, const std::
   }
   // The springs' forces under a unit load at xi: (1 + G k) f = k g.
   const auto n = static_cast<Eigen::Index>(held.size());
-  Eigen::MatrixXd yield(n, n);
+  Eigen::MatrixXd compliance(n, n);
   Eigen::VectorXd force(n);
   for (Eigen::Index i = 0; i < n; ++i) {
     const double k = stiffness[static_cast<std::size_t>(i)];
     for (Eigen::Index j = 0; j < n; ++j) {
       const Line& other = held[static_cast<std::size_t>(j)];
-      yield(i, j) = k * value(held[static_cast<std::size_t>(i)], other.xi, other.rotation) + (i == j ? 1.0 : 0.0);
+      compliance(i, j) = k * value(held[static_cast<std::size_t>(i)], other.xi, other.rotation) + (i == j ? 1.0 : 0.0);
     }
     force[i] = k * value(lines_[0], held[static_cast<std::size_t>(i)].xi, held[static_cast<std::size_t>(i)].rotation);
   }
-  if (n > 0) force = yield.partialPivLu().solve(force).eval();
+  if (n > 0) force = compliance.partialPivLu().solve(force).eval();
   for (Eigen::Index i = 0; i < n; ++i) {
     held[static_cast<std::size_t>(i)].factor = -force[i];
     lines_.push_back(held[static_cast<std::size_t>(i)]);

@@ -107,15 +107,15 @@ void add_track(const Line& bridge, const Layout& layout, const Slice& slice, Row
                   [&](double k, Rows& rows) { rows.add(std::array{unknown}, std::array{k}); });
       });
     }
-    const auto join = [&](const Spring& spring, int above, int below) {
+    const auto merge = [&](const Spring& spring, int above, int below) {
       add_layer(spring, stiffness, damping, [&](double k, Rows& rows) {
         rows.add(std::array{above, below}, between(k));
       });
     };
-    if (s.ballast_moves && s.sleeper_moves) join(s.linear_ballast(), s.unknown(layout), s.ballast_unknown(layout));
+    if (s.ballast_moves && s.sleeper_moves) merge(s.linear_ballast(), s.unknown(layout), s.ballast_unknown(layout));
     for (const auto& [unknown, its_mass] : masses_of(s, layout)) mass.add(std::array{unknown}, std::array{its_mass});
     // Without a sleeper of its own the pad stands on the next layer.
-    if (s.sleeper_moves) join(s.values.pad, s.rail_node * layout.block + layout.place[rail_v], s.unknown(layout));
+    if (s.sleeper_moves) merge(s.values.pad, s.rail_node * layout.block + layout.place[rail_v], s.unknown(layout));
   }
 }
 

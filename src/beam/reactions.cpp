@@ -7,10 +7,10 @@
 
 namespace traverse::beam {
 
-void Beam::note_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
-                          const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping) {
+void Beam::record_reactions(const Slice& slice, const Rows& beams, const Rows& mass, const Rows& beam_mass,
+                            const Rows& beam_stiffness, const Rows& stiffness, const Rows& foundation_damping) {
   // By symmetry the entry of the held row in a free column is that of the free row in the held column.
-  const auto note_column = [&](std::size_t slot, int unknown, int held) {
+  const auto record_column = [&](std::size_t slot, int unknown, int held) {
     if (!slice.owns(unknown) || slice.held(unknown)) return;
     const ReactionTerm term{slot,
                             index(local(unknown)),
@@ -30,7 +30,7 @@ void Beam::note_reactions(const Slice& slice, const Rows& beams, const Rows& mas
       if (!settled_.empty())
         held_loads_.back().by_settlement = beams.times(held, [&](int j) { return settlement_of(j); });
     }
-    for (int i = (held / b - 1) * b; i < (held / b + 2) * b; ++i) note_column(slot, i, held);
+    for (int i = (held / b - 1) * b; i < (held / b + 2) * b; ++i) record_column(slot, i, held);
   };
   for (int end = 0; end <= mesh().spans(); ++end) {
     const auto [left, right] = mesh().nodes_at(end);

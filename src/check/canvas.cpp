@@ -34,16 +34,16 @@ bool is_dumb() {
 }  // namespace
 
 Looks looks_of_output() {
-  Looks looks;
+  Looks sampling_interval;
   // Ranks of Open MPI's mpirun write to a terminal of its own, wherever it passes that on to.
   const bool under_mpirun = std::getenv("OMPI_COMM_WORLD_SIZE") != nullptr;
-  if (isatty(STDOUT_FILENO) != 1 || under_mpirun) return looks;
-  looks.utf8 = speaks_utf8();
-  looks.colour = std::getenv("NO_COLOR") == nullptr && !is_dumb();
+  if (isatty(STDOUT_FILENO) != 1 || under_mpirun) return sampling_interval;
+  sampling_interval.utf8 = speaks_utf8();
+  sampling_interval.colour = std::getenv("NO_COLOR") == nullptr && !is_dumb();
   winsize size{};
   if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-    looks.width = std::clamp(static_cast<int>(size.ws_col) - 1, narrowest, widest);
-  return looks;
+    sampling_interval.width = std::clamp(static_cast<int>(size.ws_col) - 1, narrowest, widest);
+  return sampling_interval;
 }
 
 Canvas::Canvas(int columns, int rows, bool utf8)

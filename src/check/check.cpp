@@ -28,7 +28,7 @@ constexpr double least_told = 1e-2;    // s
 /// Sections of lines, each line a label and its text.
 class Page {
  public:
-  explicit Page(const Looks& looks) : looks_(looks) {}
+  explicit Page(const Looks& sampling_interval) : looks_(sampling_interval) {}
   void heading(const std::string& text) const {
     fmt::print("{}\n", looks_.colour ? "\033[1m" + text + "\033[0m" : text);
   }
@@ -219,10 +219,10 @@ void print_cost(const Page& page, const Scene& given, const Look& look) {
 
 void print_page(const Scene& given, const Look& look, const std::vector<std::string>& unusual,
                 const std::vector<Axle>& axles, const Rest& rest) {
-  const Looks looks = looks_of_output();
-  const Page page(looks);
+  const Looks sampling_interval = looks_of_output();
+  const Page page(sampling_interval);
   page.heading(fmt::format("{}: nothing is computed in time (-check)", given.name));
-  for (const std::string& line : drawing_of(look.scene, looks)) fmt::print("{}\n", line);
+  for (const std::string& line : drawing_of(look.scene, sampling_interval)) fmt::print("{}\n", line);
   if (look.scene.beam) print_bridge(page, look);
   if (look.passage) print_vehicles(page, look, axles);
   print_loads(page, look);

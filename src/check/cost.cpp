@@ -7,25 +7,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "accuracy/accuracy.hpp"
-#include "methods/one_step_methods.hpp"
+#include "base/one_step_methods.hpp"
+#include "ensemble/case_runner.hpp"
+#include "error_control/accuracy.hpp"
+#include "error_control/mode_choice.hpp"
 #include "results/terminal.hpp"
 #include "run/outputs.hpp"
 #include "run/rank_choice.hpp"
 #include "run/step_cost.hpp"
 #include "scene/limits.hpp"
-#include "study/case_runner.hpp"
-#include "study/modes_choice.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
 namespace {
 
 // As measured; benchmarks/check_estimates.py has how near estimates come.
-constexpr double program = 6.5e7;               // bytes, of the program with its libraries
-constexpr double moving_spans = 24.0;           // of a bridge whose other spans rest
-constexpr double of_petsc = 2.0;                // times the time of the program's own integrators
-constexpr double trial_runs = 8.0;              // with steps of the first length, that take as long as all trial runs
+constexpr double program = 6.5e7;      // bytes, of the program with its libraries
+constexpr double moving_spans = 24.0;  // of a bridge whose other spans rest
+constexpr double of_petsc = 2.0;       // times the time of the program's own integrators
+constexpr double trial_runs = 8.0;     // with steps of the first length, that take as long as all trial runs
 // Times the modes that EN 1990 counts: those that runs take where accelerations are low-passed, and where they are not.
 constexpr double modes_low_passed = 4.0, modes_of_all = 10.0;
 constexpr double bytes_a_number = 8.0;

@@ -42,8 +42,8 @@ Extent extent_of(const Scene& scene, std::size_t i) {
 
 class SideView {
  public:
-  SideView(const Scene& scene, const Looks& looks)
-      : scene_(scene), beam_(*scene.beam), canvas_(looks.width - 2, rows, looks.utf8) {
+  SideView(const Scene& scene, const Looks& sampling_interval)
+      : scene_(scene), beam_(*scene.beam), canvas_(sampling_interval.width - 2, rows, sampling_interval.utf8) {
     extent_.hold(beam_.start);
     extent_.hold(beam_.end());
     if (beam_.track) {
@@ -150,7 +150,8 @@ class SideView {
 /// Bodies with their joints and springs in their plane.
 class Plane {
  public:
-  Plane(const Scene& scene, const Looks& looks) : scene_(scene), columns_(looks.width - 2), utf8_(looks.utf8) {
+  Plane(const Scene& scene, const Looks& sampling_interval)
+      : scene_(scene), columns_(sampling_interval.width - 2), utf8_(sampling_interval.utf8) {
     each([&](const Vehicle& vehicle, double origin) {
       const auto hold = [&](const Eigen::Vector2d& point) {
         x_.hold(origin + point.x());
@@ -239,8 +240,8 @@ class Plane {
 
 }  // namespace
 
-std::vector<std::string> drawing_of(const Scene& scene, const Looks& looks) {
-  return scene.beam ? SideView(scene, looks).draw() : Plane(scene, looks).draw();
+std::vector<std::string> drawing_of(const Scene& scene, const Looks& sampling_interval) {
+  return scene.beam ? SideView(scene, sampling_interval).draw() : Plane(scene, sampling_interval).draw();
 }
 
 }  // namespace traverse::app

@@ -10,6 +10,6 @@
 namespace traverse::app {
 
 /// Lines of at most looks.width columns; the last two are the legend and the scale.
-std::vector<std::string> drawing_of(const Scene& scene, const Looks& looks);
+std::vector<std::string> drawing_of(const Scene& scene, const Looks& sampling_interval);
 
 }  // namespace traverse::app

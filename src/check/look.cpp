@@ -7,14 +7,14 @@
 #include <algorithm>
 #include <numbers>
 
-#include "accuracy/accuracy.hpp"
-#include "accuracy/first_guess.hpp"
-#include "accuracy/horizon.hpp"
-#include "accuracy/mechanism_step.hpp"
-#include "accuracy/trials.hpp"
+#include "error_control/accuracy.hpp"
+#include "error_control/initial_guess.hpp"
+#include "error_control/multibody_step_search.hpp"
+#include "error_control/sweep_model.hpp"
+#include "error_control/trial_runs.hpp"
+#include "error_control/trial_window.hpp"
 #include "modes/modes.hpp"
 #include "study/study_scenes.hpp"
-#include "study/sweep_choice.hpp"
 #include "traverse/options/input.hpp"
 
 namespace traverse::app {
@@ -83,7 +83,7 @@ void Look::choose_mesh_and_step() {
   if (!timed.model.step) timed.model.step = some_step;
   std::vector<std::string> ignored;
   const double end = Passage(timed, *shared, ignored).plan().end_time;
-  horizon = beginning(scene, end);
+  horizon = initial_window(scene, end);
   const FirstSteps steps = first_steps(scene, shared->omega ? shared->omega->first : 0.0, horizon);
   const std::string mesh = scene.by_given_modes() ? "given modes"
                                                   : fmt::format("{} elements a {}", mesh_of(scene),

@@ -29,7 +29,7 @@ struct Look {
 
   const beam::Beam* bridge() const { return shared->bridge(); }
   /// Of wheels at rest, then of moving forces.
-  const std::vector<coupling::PassingWeight>& weights() const { return passage->system().weights().all(); }
+  const std::vector<coupling::StaticLoad>& weights() const { return passage->system().weights().all(); }
   /// s; 0 where there is no motion.
   double end_time() const { return passage ? passage->plan().end_time : 0.0; }
 

@@ -90,7 +90,7 @@ std::vector<Axle> axles_of(const Look& look) {
   std::vector<Axle> axles;
   if (!look.passage) return axles;
   const train::Fleet& fleet = look.passage->system().fleet();
-  const std::vector<coupling::PassingWeight>& weights = look.weights();
+  const std::vector<coupling::StaticLoad>& weights = look.weights();
   for (std::size_t i = 0; i < weights.size(); ++i) {
     Axle axle;
     axle.x = weights[i].x;

@@ -59,7 +59,7 @@ PairGeometry pair_geometry(const BodyContact& contact, const Frame& first, const
   return pair;
 }
 
-void note_side(PairGeometry& pair, const Frame& first, const Frame& second) {
+void record_side(PairGeometry& pair, const Frame& first, const Frame& second) {
   if (pair.type != PairType::arc_line) return;
   const Gap g = gap(pair, first, second);
   if (!g.between_ends) pair.side = g.signed_side < 0.0 ? -1.0 : 1.0;

@@ -103,7 +103,7 @@ void CondensedContacts::couple(const structure::ElementCompliance* compliance, i
   responses_.clear();
   if (compliance != nullptr) per_node == 2 ? respond<4>(*compliance) : respond<6>(*compliance);
   const bool plain =
-      std::all_of(yield_.begin(), yield_.end(), [](const train::VehicleYield& y) { return y.P.size() == 0; });
+      std::all_of(yield_.begin(), yield_.end(), [](const train::ContactCompliance& y) { return y.P.size() == 0; });
   find_band(!plain);
   fill();
   factored_ = false;
@@ -162,7 +162,7 @@ void CondensedContacts::factor(double shift) {
     for (int i = top(j); i <= bottom(j); ++i) lu_.entry(i, j) = A(i, j) * D_(j, 1);
     if (j + 1 < size() && !rows_[j + 1].normal)
       for (int i = std::max(top(j), top(j + 1)); i <= bottom(j); ++i) lu_.entry(i, j) += A(i, j + 1) * D_(j + 1, 0);
-    const train::VehicleYield& y = yield_[rows_[j].vehicle];
+    const train::ContactCompliance& y = yield_[rows_[j].vehicle];
     if (y.P.size() == 0) {
       lu_.entry(j, j) += 1.0;
     } else {
@@ -214,7 +214,7 @@ double CondensedContacts::solve(double shift, bool loaded, int most_iterations) 
   beam_.setZero();
   if (!loaded) deflect(held_);
   for (std::size_t k = 0; k < yield_.size(); ++k) {
-    const train::VehicleYield& y = yield_[k];
+    const train::ContactCompliance& y = yield_[k];
     const auto beam = beam_.segment(first_[k], rows(static_cast<int>(k)));
     auto right = right_.segment(first_[k], rows(static_cast<int>(k)));
     right = y.c;

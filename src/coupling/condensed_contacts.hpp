@@ -12,8 +12,8 @@
 #include <Eigen/Dense>
 #include <vector>
 
-#include "response/compliance.hpp"
 #include "solve/band_lu.hpp"
+#include "structure/compliance.hpp"
 #include "train/fleet.hpp"
 #include "train/vehicle_dynamics.hpp"
 
@@ -37,7 +37,7 @@ class CondensedContacts {
   /// Whether some contact has gone over to another element since it was listed or asked last.
   bool moved();
 
-  train::VehicleYield& yield(int vehicle) { return yield_[vehicle]; }
+  train::ContactCompliance& compliance(int vehicle) { return yield_[vehicle]; }
   void keep(base::Bytes& bytes) { bytes(yield_); }
   /// A from the vehicles' H and P and from the beam (null: none).
   void couple(const structure::ElementCompliance* compliance, int per_node);
@@ -73,7 +73,7 @@ class CondensedContacts {
   std::vector<train::ContactRow> rows_;
   std::vector<int> first_;                 // row of every vehicle, and one past the last
   std::vector<int> on_slot_, slot_begin_;  // rows by the slot that carries them
-  std::vector<train::VehicleYield> yield_;
+  std::vector<train::ContactCompliance> yield_;
   std::vector<Response> responses_;
   int band_ = 0;
   Eigen::MatrixXd A_;    // entry (i, j) at (band + i - j, j)

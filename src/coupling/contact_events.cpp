@@ -23,7 +23,7 @@ double refined(const train::Separations& separations, int contact, const contact
 }  // namespace
 
 // Where a damper has let go of a surface not yet back, and where that has come back: the energy that goes, J.
-double ContactEvents::note_released() {
+double ContactEvents::record_released() {
   double lost = 0.0;
   for (int i = 0; i < static_cast<int>(impacts_.size()); ++i) {
     if (fleet_.has_points(i)) continue;
@@ -42,14 +42,14 @@ double ContactEvents::note_released() {
 }
 
 double ContactEvents::accept(double t) {
-  const double lost = note_released();
+  const double lost = record_released();
   separations_.accept(fleet_, t);
-  fleet_.note_sides();
-  note_impacts(t);
+  fleet_.record_sides();
+  record_impacts(t);
   return lost;
 }
 
-void ContactEvents::note_impacts(double t) {
+void ContactEvents::record_impacts(double t) {
   impacts_.resize(static_cast<std::size_t>(fleet_.contacts()));
   impact_durations_.assign(impacts_.size(), 0.0);
   bool any = false;

@@ -42,8 +42,8 @@ class ContactEvents {
     double end = 0.0;                                       // s; past: none
     double step = std::numeric_limits<double>::infinity();  // s, the longest while it goes on
   };
-  double note_released();
-  void note_impacts(double t);
+  double record_released();
+  void record_impacts(double t);
 
   MPI_Comm comm_;
   train::Fleet& fleet_;

@@ -96,20 +96,20 @@ unsigned ContactNewton::condense_own(train::Fleet& fleet, const StageData& s, in
   unsigned signs = 0;
   for (int k = fleet.first_own(); k < fleet.past_own(); ++k) {
     train::MovingVehicle& vehicle = fleet.vehicles[k];
-    train::VehicleYield& yield = contacts_.yield(k);
-    const double before = yield.residual;
+    train::ContactCompliance& compliance = contacts_.compliance(k);
+    const double before = compliance.residual;
     if (vehicle.rests)
       rest(fleet, k);
     else if (!find_residual(vehicle, k))
       return train::VehicleShare::failed;
     const bool poor = i >= kept_iterations || (i > 1 && !vehicle.rests && contraction_ > poor_ratio) ||
-                      (i > 1 && yield.residual > poor_ratio * before && yield.residual > tolerance_);
-    if (poor || !yield.known || !vehicle.dynamics->serves(vehicle, s.shifts(), i > 0)) {
+                      (i > 1 && compliance.residual > poor_ratio * before && compliance.residual > tolerance_);
+    if (poor || !compliance.known || !vehicle.dynamics->serves(vehicle, s.shifts(), i > 0)) {
       renew(vehicle, k, s, s.shifts().statics() || i > 0);
-      yield.known = true;
+      compliance.known = true;
       signs |= train::VehicleShare::renewed;
     }
-    vehicle.dynamics->go_by_itself(yield);
+    vehicle.dynamics->go_by_itself(compliance);
   }
   return signs;
 }
@@ -173,7 +173,7 @@ bool ContactNewton::evaluate(train::Fleet& fleet, const StageData& s, const doub
 // The last iteration has put the vehicle where it belongs: it goes there.
 void ContactNewton::rest(train::Fleet& fleet, int k) {
   fleet.vehicles[k].dynamics->rest();
-  contacts_.yield(k).residual = 0.0;
+  contacts_.compliance(k).residual = 0.0;
   for (const train::ContactRow& row : contacts_.rows_of(k)) row.contact->touch.kinematics = row.contact->kinematics;
 }
 
@@ -184,27 +184,27 @@ bool ContactNewton::find_residual(train::MovingVehicle& vehicle, int k) {
     const train::Contact& c = *row.contact;
     if (row.normal) train::Fleet::add_load(c, c.force.normal, c.force.tangential, vehicle.Q);
   }
-  return vehicle.dynamics->find_residual(vehicle, pdd_.data() + vehicle.offset, contacts_.yield(k));
+  return vehicle.dynamics->find_residual(vehicle, pdd_.data() + vehicle.offset, contacts_.compliance(k));
 }
 
 // In statics the contacts' tangent is part of the vehicle's matrix, which may be singular without it.
 void ContactNewton::renew(train::MovingVehicle& vehicle, int k, const StageData& s, bool curved) {
   const train::ContactRows rows = contacts_.rows_of(k);
   const auto count = static_cast<Eigen::Index>(rows.size());
-  train::VehicleYield& yield = contacts_.yield(k);
-  yield.P.resize(0, 0);
+  train::ContactCompliance& compliance = contacts_.compliance(k);
+  compliance.P.resize(0, 0);
   if (!s.shifts().statics()) {
-    yield.D.resize(0, 2);
-    vehicle.dynamics->renew(vehicle, s.shifts(), curved, rows, yield);
+    compliance.D.resize(0, 2);
+    vehicle.dynamics->renew(vehicle, s.shifts(), curved, rows, compliance);
     return;
   }
-  yield.D.resize(count, 2);
-  for (Eigen::Index i = 0; i < count; ++i) yield.D.row(i) = row_tangent(rows[static_cast<std::size_t>(i)], 0.0);
-  vehicle.dynamics->renew(vehicle, s.shifts(), curved, rows, yield);
-  yield.P.setIdentity(count, count);
+  compliance.D.resize(count, 2);
+  for (Eigen::Index i = 0; i < count; ++i) compliance.D.row(i) = row_tangent(rows[static_cast<std::size_t>(i)], 0.0);
+  vehicle.dynamics->renew(vehicle, s.shifts(), curved, rows, compliance);
+  compliance.P.setIdentity(count, count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    yield.P.col(i) -= yield.H.col(i) * yield.D(i, 1);
-    if (yield.D(i, 0) != 0.0) yield.P.col(i - 1) -= yield.H.col(i) * yield.D(i, 0);
+    compliance.P.col(i) -= compliance.H.col(i) * compliance.D(i, 1);
+    if (compliance.D(i, 0) != 0.0) compliance.P.col(i - 1) -= compliance.H.col(i) * compliance.D(i, 0);
   }
 }
 
@@ -213,14 +213,14 @@ double ContactNewton::update(train::Fleet& fleet, double* x) {
   double change = 0.0;
   for (int k = 0; k < static_cast<int>(work_.size()); ++k) {
     VehicleWork& w = work_[k];
-    w.change = contacts_.yield(k).residual;
+    w.change = contacts_.compliance(k).residual;
     for (int i = contacts_.first(k); i < contacts_.first(k + 1); ++i)
       w.change = std::max(w.change, std::abs(contacts_.change(i)) / fleet.vehicles[k].scale);
     change = std::max(change, w.change);
   }
   for (int k = fleet.first_own(); k < fleet.past_own(); ++k) {
     train::MovingVehicle& vehicle = fleet.vehicles[k];
-    const train::RowTangent& D = contacts_.yield(k).D;
+    const train::RowTangent& D = contacts_.compliance(k).D;
     Eigen::VectorXd& forces = work_[k].forces;
     const int from = contacts_.first(k);
     forces.resize(contacts_.rows(k));

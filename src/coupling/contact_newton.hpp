@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "coupling/condensed_contacts.hpp"
-#include "response/compliance.hpp"
+#include "structure/compliance.hpp"
 #include "train/fleet.hpp"
 #include "train/vehicle_share.hpp"
 

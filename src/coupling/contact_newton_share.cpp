@@ -11,8 +11,8 @@ unsigned ContactNewton::share_contacts(const StageData& s, train::Fleet& fleet, 
   const int m = s.compliance != nullptr ? 2 * s.per_node : 0;
   const auto numbers = [m](const train::Contact& c) { return 7 + (c.law.friction > 0.0 ? 2 * m : m); };
   const auto each = [&](int k, auto number) {
-    number(contacts_.yield(k).residual);
-    Eigen::VectorXd& own = contacts_.yield(k).c;
+    number(contacts_.compliance(k).residual);
+    Eigen::VectorXd& own = contacts_.compliance(k).c;
     own.resize(contacts_.rows(k));
     for (int i = 0; i < own.size(); ++i) number(own[i]);
     for (const int i : fleet.vehicles[k].touching) {
@@ -44,10 +44,10 @@ void ContactNewton::share_matrices(const StageData& s) {
   const auto rows = [this](int k) { return contacts_.rows(k); };
   (void)s.share->exchange(
       0, [&](int k) { return rows(k) * rows(k); },
-      [&](int k, double* to) { std::copy_n(contacts_.yield(k).H.data(), rows(k) * rows(k), to); },
+      [&](int k, double* to) { std::copy_n(contacts_.compliance(k).H.data(), rows(k) * rows(k), to); },
       [&](int k, const double* from) {
-        contacts_.yield(k).H = Eigen::Map<const Eigen::MatrixXd>(from, rows(k), rows(k));
-        contacts_.yield(k).P.resize(0, 0);
+        contacts_.compliance(k).H = Eigen::Map<const Eigen::MatrixXd>(from, rows(k), rows(k));
+        contacts_.compliance(k).P.resize(0, 0);
       });
 }
 

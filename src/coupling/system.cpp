@@ -152,7 +152,7 @@ void System::evaluate_fleet(double t, const double* y) {
   fleet_.observe(pdd_.data());
   share_.states(fleet_);
   share_.coordinates(fleet_, pdd_);
-  note_touched();
+  record_touched();
 }
 
 // Rates of D and W for the state that fleet and structure were last set to.
@@ -191,11 +191,11 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Ter
     c_p_.resize(2 * static_cast<std::size_t>(f));
     if (rank_ == 0) std::copy_n(c + 2 * n_, 2 * f, c_p_.begin());
     MPI_Bcast(c_p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
-    for (std::vector<double>* still : {&p_still_, &pd_still_, &x_}) still->assign(f, 0.0);
+    for (std::vector<double>* predicted : {&p_predicted_, &pd_still_, &x_}) predicted->assign(f, 0.0);
     for (int i = 0; i < f; ++i) {
       if (shift > 0.0) {
         pd_still_[i] = -c_p_[f + i] / shift;
-        p_still_[i] = (pd_still_[i] - c_p_[i]) / shift;
+        p_predicted_[i] = (pd_still_[i] - c_p_[i]) / shift;
         // The guess moves on with its velocity, so that wheels are looked for where they will be.
         x_[i] = (p_[f + i] - pd_still_[i]) / shift;
       } else {
@@ -249,7 +249,7 @@ bool System::stage_of_fleet(const StageTime& at) {
   pdd_.resize(f);
   p_.resize(2 * f);
   for (int i = first; i < past; ++i) {
-    p_[i] = p_still_[i] + x_[i];
+    p_[i] = p_predicted_[i] + x_[i];
     pd_[i] = pd_still_[i] + at.shift * x_[i];
   }
   const bool set = fleet_.set(at.t, p_.data(), pd_.data());
@@ -259,18 +259,18 @@ bool System::stage_of_fleet(const StageTime& at) {
     const structure::ElementCompliance* compliance = nullptr;
     if (structure_) {
       structure_->gather_free(fleet_.elements(), v_, w_);
-      compliance = &structure_->yield(fleet_.elements());
+      compliance = &structure_->compliance(fleet_.elements());
     }
-    const StageData stage{at.t, at.shift, at.shift2,  p_still_.data(), pd_still_.data(),
-                          &v_,  &w_,      compliance, per_node(),      &share_};
+    const StageData stage{at.t, at.shift, at.shift2,  p_predicted_.data(), pd_still_.data(),
+                          &v_,  &w_,      compliance, per_node(),          &share_};
     if (!newton_.solve(fleet_, stage, x_.data())) return false;
     if (newton_.in_place()) break;  // else a wheel has left its element: once more from there
   }
   for (int i = first; i < past; ++i) {
-    p_[i] = p_still_[i] + x_[i];
+    p_[i] = p_predicted_[i] + x_[i];
     pdd_[i] = at.shift2 * x_[i];
   }
-  note_touched();
+  record_touched();
   fleet_.contact_loads();
   for (train::MovingVehicle& vehicle : fleet_.own()) vehicle.dynamics->recover(vehicle, pdd_.data() + vehicle.offset);
   return true;

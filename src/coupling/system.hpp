@@ -33,11 +33,11 @@
 #include <string>
 #include <vector>
 
+#include "base/one_step_methods.hpp"
 #include "coupling/contact_events.hpp"
 #include "coupling/contact_newton.hpp"
-#include "coupling/corner_events.hpp"
-#include "coupling/passing_weights.hpp"
-#include "methods/one_step_methods.hpp"
+#include "coupling/kink_events.hpp"
+#include "coupling/quasi_static_response.hpp"
 #include "recovery/recovery.hpp"
 #include "structure/structure.hpp"
 #include "train/fleet.hpp"
@@ -141,9 +141,9 @@ class System {
 
   // In second-order form, without a PETSc stage: what an own integrator takes steps with.
 
-  /// Structure::leave_out_rest, before begin_motion.
-  void leave_out_rest(double tolerance, const std::vector<double>& probes) {
-    if (structure_) structure_->leave_out_rest(tolerance, probes);
+  /// Structure::limit_to_active_window, before begin_motion.
+  void limit_to_active_window(double tolerance, const std::vector<double>& probes) {
+    if (structure_) structure_->limit_to_active_window(tolerance, probes);
   }
   /// Collective. The method of the steps to come, for steps of 1 s.
   void begin_motion(const structure::Method& method);
@@ -170,7 +170,7 @@ class System {
   /// w' of the structure in the state that the last step led to; null without a structure.
   const double* acceleration() const { return structure_ ? structure_->acceleration() : nullptr; }
   /// Puts y back to where the last step began; a restart has to follow.
-  void take_back_step(double* y);
+  void reject_step(double* y);
 
   /// Collective. Fills `out` for a state with the structure's w' = a, and the fleet with accelerations, reactions,
   /// wheel forces; where not all is wanted, the fleet only with its wheels' places and forces where that is quicker,
@@ -215,11 +215,11 @@ class System {
       if (is_driven(static_cast<int>(i))) laws[i] = law_of_wheel(static_cast<int>(i));
     corners_.expect(laws, end, step);
   }
-  /// CornerEvents::next and time_of at a state y.
-  std::optional<CornerEvents::Turn> next_turn(double t, double h, const double* y) {
+  /// KinkEvents::next and time_of at a state y.
+  std::optional<KinkEvents::KinkPassage> next_kink(double t, double h, const double* y) {
     return corners_.next(t, h, y, y + n_);
   }
-  double time_of(const CornerEvents::Turn& turn, double t, const double* y) {
+  double time_of(const KinkEvents::KinkPassage& turn, double t, const double* y) {
     return corners_.time_of(turn, t, y, y + n_);
   }
 
@@ -266,7 +266,7 @@ class System {
   int per_node() const { return structure_ ? structure_->per_node() : 2; }
   void expect_weights();
   void find_equilibrium(double* y);
-  bool weigh_at_rest();
+  bool static_wheel_loads();
   void stand_still(const train::Train& train);
   void go_with_the_train(double* w);
   void follow_surface(const double* y);
@@ -279,10 +279,10 @@ class System {
   double surface_height() const;
   double moment_about_axis(const train::WheelContact& c) const;
   bool yields_inside() const;
-  void note_weights();
+  void record_weights();
   void share_coordinates(const double* y);
-  Solution settle(Terms terms, double tie = 0.0);
-  Solution settle_slowly();
+  Solution solve_statics(Terms terms, double tie = 0.0);
+  Solution solve_statics_slowly();
   Solution solve_coupled(const StageTime& at, Terms terms);
   bool stage_of_fleet(const StageTime& at);
   bool stage_by_passes(const StageTime& at);
@@ -295,13 +295,13 @@ class System {
   void finish_step(double* y);
   double structure_error(const double* y);
   void load_structure(double t);
-  void note_braking();
+  void record_braking();
   bool brakes_track(int wheel) const;
   bool take_braking(double t);
   structure::ElementLoads contact_loads();
   void evaluate_fleet(double t, const double* y);
   void share_step();
-  void note_touched();
+  void record_touched();
   bool contacts_are_known(double t) const;
   void powers(const double* w, Terms terms, double& dissipation, double& work);
   Powers fleet_powers() const;
@@ -316,21 +316,21 @@ class System {
   train::Fleet fleet_;
   train::VehicleShare share_;
   ContactEvents events_;
-  CornerEvents corners_;
+  KinkEvents corners_;
   PassingWeights weights_;
   ContactNewton newton_;
 
-  std::vector<beam::ElementLoad> loads_;        // of the moving forces now on the beam
-  std::vector<BrakingWheel> braking_;           // of trains whose speed is prescribed and changes
-  std::vector<double> braking_force_;           // N along x on the line, during the step under way
-  std::map<double, double> applied_;            // N by the station, m: the forces of apply_to_beam
-  bool applied_anew_ = false;                   // since the last step
-  std::vector<char> on_beam_;                   // of each moving force, during the step under way
-  std::string nothing_holds_;                   // why there is no static equilibrium, where that is known
-  std::vector<double> p_, c_p_, pdd_;           // p, p' and their c, p'', the same on all ranks
-  std::vector<double> pd_;                      // p' that a stage begins its Newton iteration with
-  std::vector<double> p_still_, pd_still_, x_;  // p and p' at zero acceleration, and the stage's change of p
-  std::vector<double> evaluated_;               // p of the state that the fleet was last set to
+  std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
+  std::vector<BrakingWheel> braking_;               // of trains whose speed is prescribed and changes
+  std::vector<double> braking_force_;               // N along x on the line, during the step under way
+  std::map<double, double> applied_;                // N by the station, m: the forces of apply_to_beam
+  bool applied_anew_ = false;                       // since the last step
+  std::vector<char> on_beam_;                       // of each moving force, during the step under way
+  std::string nothing_holds_;                       // why there is no static equilibrium, where that is known
+  std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
+  std::vector<double> pd_;                          // p' that a stage begins its Newton iteration with
+  std::vector<double> p_predicted_, pd_still_, x_;  // p and p' at zero acceleration, and the stage's change of p
+  std::vector<double> evaluated_;                   // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
   unsigned signs_ = 0;         // VehicleShare's of that state or, after a step, of its end
   std::vector<double> v_, w_;  // of elements, 2*per_node each

@@ -17,7 +17,7 @@ void System::begin_trial() {
   for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).touched = false;
 }
 
-void System::note_touched() {
+void System::record_touched() {
   for (int i = 0; i < fleet_.contacts(); ++i)
     if (fleet_.contact(i).force.normal > 0.0) fleet_.contact(i).touched = true;
 }
@@ -35,7 +35,7 @@ void System::arrive(double t, const double* y) {
 
 bool System::accept(double t, double* y) {
   if (structure_ && motion_) structure_->complete_step(y, y + n_);
-  if (structure_ && !motion_) structure_->settle(y, loaded(t, 0.0));
+  if (structure_ && !motion_) structure_->update_slip(y, loaded(t, 0.0));
   if (fleet_.vehicles.empty()) return false;
   arrive(t, y);
   const double lost = events_.accept(t);

@@ -59,7 +59,7 @@ bool System::brakes_track(int wheel) const {
 }
 
 // The mass of each vehicle on its wheels, by what they carry at rest.
-void System::note_braking() {
+void System::record_braking() {
   braking_.clear();
   std::vector<double> carried(input_.train.vehicles.size(), 0.0);
   const auto wheels = static_cast<int>(fleet_.wheels.size());
@@ -67,7 +67,7 @@ void System::note_braking() {
   const auto& weights = weights_.all();
   for (int i = 0; i < wheels; ++i) carried[member(i)] += weights[static_cast<std::size_t>(i)].force;
   for (int i = 0; i < wheels; ++i) {
-    const PassingWeight& weight = weights[static_cast<std::size_t>(i)];
+    const StaticLoad& weight = weights[static_cast<std::size_t>(i)];
     if (!brakes_track(i) || weight.force == 0.0) continue;
     const auto& bodies = input_.types[static_cast<std::size_t>(input_.train.vehicles[member(i)])].mechanism.bodies;
     const double mass = std::accumulate(bodies.begin(), bodies.end(), 0.0,

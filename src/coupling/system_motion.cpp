@@ -67,11 +67,11 @@ void System::restart_motion(double t, double* y) {
   if (structure_) structure_->restart(loaded(t, 0.0), y, y + n_, m.rate.data() + n_);
 }
 
-void System::take_back_step(double* y) {
+void System::reject_step(double* y) {
   Motion& m = *motion_;
   m.dissipated = m.before.dissipated;
   m.worked = m.before.worked;
-  if (structure_) structure_->take_back_step(y, y + n_);
+  if (structure_) structure_->reject_step(y, y + n_);
   std::copy(m.before.p.begin(), m.before.p.end(), y + 2 * n_);
 }
 
@@ -124,12 +124,12 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   stage_ = stage;
   const auto [first, past] = fleet_.own_coordinates();
   if (!by_passes_) {
-    for (std::vector<double>* x : {&p_still_, &pd_still_, &x_}) x->resize(m.p.size());
+    for (std::vector<double>* x : {&p_predicted_, &pd_still_, &x_}) x->resize(m.p.size());
     for (int i = first; i < past; ++i) {
-      p_still_[i] = m.p[i] + rule.w_in_v * m.pd[i];
+      p_predicted_[i] = m.p[i] + rule.w_in_v * m.pd[i];
       pd_still_[i] = m.pd[i];
       for (int j = 0; j < rule.known; ++j) {
-        p_still_[i] += rule.a_in_v[j] * m.pdd[j][i];
+        p_predicted_[i] += rule.a_in_v[j] * m.pdd[j][i];
         pd_still_[i] += rule.a_in_w[j] * m.pdd[j][i];
       }
       x_[i] = rule.displacement * m.pdd[rule.known - 1][i];

@@ -26,10 +26,10 @@ void System::find_equilibrium(double* y) {
   train::Fleet moving = std::move(fleet_);
   stand_still(input_.train);
   if (structure_) load_structure(0.0);
-  Solution found = settle(Terms::all);
+  Solution found = solve_statics(Terms::all);
   if (found == Solution::fleet_unsettled) {
     stand_still(input_.train);
-    found = settle_slowly();
+    found = solve_statics_slowly();
   }
   if (found != Solution::found) refuse_start(found);
   if (structure_) structure_->end_stage(y, y + n_);
@@ -56,9 +56,9 @@ void System::go_with_the_train(double* w) {
     fleet_.rest_where(moving);
     for (train::MovingVehicle& vehicle : fleet_.vehicles)
       for (Eigen::Index i = 0; i < vehicle.state.q.size(); i += 3) vehicle.state.q[i] += ahead;
-    fleet_.coordinates_of_state(0.0, p_still_.data(), pd_still_.data());
+    fleet_.coordinates_of_state(0.0, p_predicted_.data(), pd_still_.data());
     load_structure(ahead / speed);
-    found = found && settle(Terms::all, held_fast) == Solution::found;
+    found = found && solve_statics(Terms::all, held_fast) == Solution::found;
     v[after].resize(static_cast<std::size_t>(n_));
     structure_->end_stage(v[after].data(), w);
   }
@@ -81,28 +81,28 @@ void System::stand_still(const train::Train& train) {
   fleet_.partition(0.0);
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
-  for (std::vector<double>* still : {&p_still_, &pd_still_, &x_}) still->assign(f, 0.0);
+  for (std::vector<double>* predicted : {&p_predicted_, &pd_still_, &x_}) predicted->assign(f, 0.0);
   if (structure_) fleet_.place_wheels();
 }
 
 // Statics, from p_still_. `tie`: what holds all masses where they are, 1/s2.
-System::Solution System::settle(Terms terms, double tie) {
+System::Solution System::solve_statics(Terms terms, double tie) {
   if (structure_) structure_->begin_statics(structure_->bent_at_rest() || !loads_.empty());
   return solve_coupled({0.0, 0.0, tie}, terms);
 }
 
 // Newton does not come from a spring that is loose, or a contact that is apart, to where it carries: the force has no
 // slope to follow.
-System::Solution System::settle_slowly() {
+System::Solution System::solve_statics_slowly() {
   const train::Fleet start = fleet_;
   Solution found = Solution::fleet_unsettled;
   double tie = first_tie;
   for (int i = 0; i < most_ties && tie >= last_tie; ++i) {
-    found = settle(Terms::all, tie);
+    found = solve_statics(Terms::all, tie);
     if (found == Solution::structure_unsettled) return found;
     if (found == Solution::fleet_unsettled) {
       if ((tie *= stiffer) > first_tie * stiffer) return found;
-      go_on_from(p_still_);
+      go_on_from(p_predicted_);
       continue;
     }
     double held = 0.0;
@@ -112,8 +112,8 @@ System::Solution System::settle_slowly() {
     if (!nothing_holds_.empty()) return Solution::fleet_unsettled;
     tie *= softer;
     if (held > nearly_at_rest * std::max(input_.gravity, 1.0)) continue;
-    const std::vector<double> here = p_still_;
-    if (settle(Terms::all) == Solution::found) return Solution::found;
+    const std::vector<double> here = p_predicted_;
+    if (solve_statics(Terms::all) == Solution::found) return Solution::found;
     go_on_from(here);
   }
   return Solution::fleet_unsettled;
@@ -122,11 +122,11 @@ System::Solution System::settle_slowly() {
 // The fleet to the positions p, by coordinates that serve there.
 void System::go_on_from(std::vector<double> p) {
   const auto f = static_cast<std::ptrdiff_t>(fleet_.freedom());
-  std::copy_n(p.begin(), f, p_still_.begin());
+  std::copy_n(p.begin(), f, p_predicted_.begin());
   std::fill(x_.begin(), x_.end(), 0.0);
-  if (!fleet_.set(0.0, p_still_.data(), pd_still_.data()) || !fleet_.worn() || !fleet_.accept()) return;
+  if (!fleet_.set(0.0, p_predicted_.data(), pd_still_.data()) || !fleet_.worn() || !fleet_.accept()) return;
   fleet_.number(0.0);
-  std::fill(p_still_.begin(), p_still_.end(), 0.0);
+  std::fill(p_predicted_.begin(), p_predicted_.end(), 0.0);
 }
 
 void System::refuse_start(Solution found) const {

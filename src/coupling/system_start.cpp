@@ -12,15 +12,15 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 
 std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) {
   std::fill_n(y, local_size(), 0.0);
-  const bool weighed = !equilibrium && weigh_at_rest();
+  const bool weighed = !equilibrium && static_wheel_loads();
   if (equilibrium) {
     find_equilibrium(y);
   } else if (structure_ && structure_->bent_at_rest()) {
     structure_->load({});
-    if (const Solution found = settle(Terms::beam); found != Solution::found) refuse_start(found);
+    if (const Solution found = solve_statics(Terms::beam); found != Solution::found) refuse_start(found);
     structure_->end_stage(y, y + n_);
   }
-  if (structure_) structure_->settle(y, loaded(0.0, 0.0));
+  if (structure_) structure_->update_slip(y, loaded(0.0, 0.0));
   fleet_.start_moving();
   if (equilibrium) {
     fleet_.let_wheels_roll();
@@ -30,19 +30,19 @@ std::vector<std::string> System::start(bool equilibrium, double* y, bool stays) 
   if (equilibrium && !stays) follow_surface(y);
   fleet_.start_rolling();
   if (rank_ == 0) fleet_.coordinates_of_state(0.0, y + 2 * n_, y + 2 * n_ + fleet_.freedom());
-  if (!weighed) note_weights();
+  if (!weighed) record_weights();
   return notes;
 }
 
 // What the wheels weigh, whatever state the scene gives them to start with. False where they find no rest.
-bool System::weigh_at_rest() {
+bool System::static_wheel_loads() {
   if (!structure_ || fleet_.wheels.empty()) return false;
   train::Fleet given = fleet_;
   std::vector<double> at_rest(2 * static_cast<std::size_t>(n_));
   bool found = true;
   try {
     find_equilibrium(at_rest.data());
-    note_weights();
+    record_weights();
   } catch (const SolverError&) {
     found = false;
     nothing_holds_.clear();
@@ -51,8 +51,8 @@ bool System::weigh_at_rest() {
   return found;
 }
 
-void System::note_weights() {
-  std::vector<PassingWeight> weights;
+void System::record_weights() {
+  std::vector<StaticLoad> weights;
   fleet_.contact_forces();
   for (int i = 0; i < static_cast<int>(fleet_.wheels.size()); ++i) {
     const train::WheelContact& c = fleet_.wheels[static_cast<std::size_t>(i)];
@@ -61,7 +61,7 @@ void System::note_weights() {
   for (std::size_t i = 0; i < input_.load.forces.size(); ++i)
     weights.push_back({input_.load.positions[i], input_.load.forces[i], train::law_of(input_.load, i)});
   weights_.set(std::move(weights), fleet_.wheels.size());
-  note_braking();
+  record_braking();
 }
 
 base::SpeedLaw System::law_of_wheel(int wheel) const {
@@ -130,11 +130,11 @@ double System::leaving_time() const {
   bool moves = false, stands = false;
   const auto leave = [&](double x, const base::SpeedLaw& law) {
     const bool to_the_left = law.direction() < 0.0;
-    const double still = law.standstill();
-    moves = moves || still > 0.0;
+    const double predicted = law.standstill();
+    moves = moves || predicted > 0.0;
     if (to_the_left ? x <= 0.0 : x >= length) return;
-    stands = stands || still == 0.0;
-    last = std::max(last, std::min(law.time_of(to_the_left ? -x : length - x), still));
+    stands = stands || predicted == 0.0;
+    last = std::max(last, std::min(law.time_of(to_the_left ? -x : length - x), predicted));
   };
   for (int i = 0; i < static_cast<int>(fleet_.wheels.size()); ++i)
     leave(fleet_.coordinates(fleet_.wheels[static_cast<std::size_t>(i)]).x(), law_of_wheel(i));

@@ -50,7 +50,7 @@ class Batch {
   TrainTask& train_ = arrays_.task;
   BeamTask beam_;
   BatchTask task_;
-  LookState looks_;
+  PeakState looks_;
   std::vector<int> table_, there_;
   std::vector<char> under_wheels_;
   std::vector<double> rests_until_;  // m, of every block
@@ -251,7 +251,7 @@ void Batch::set_step(double ds) {
 }
 
 void Batch::wake(double gone) {
-  for (std::size_t v = 0; v < arrays_.awake.size(); ++v) arrays_.awake[v] = gone > rests_until_[v] ? 1 : 0;
+  for (std::size_t v = 0; v < arrays_.active.size(); ++v) arrays_.active[v] = gone > rests_until_[v] ? 1 : 0;
 }
 
 void Batch::keep_accelerations() {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "base/one_step_methods.hpp"
 #include "base/passage_peaks.hpp"
 #include "beam/beam.hpp"
 #include "engine/batch_task.hpp"
 #include "engine/surfaces.hpp"
-#include "methods/one_step_methods.hpp"
 #include "recovery/recovery.hpp"
 #include "structure/modal_bridge.hpp"
 #include "track/height_table.hpp"

@@ -2,7 +2,7 @@
 // (train_kernel.hpp), and so on until none changes any more, lane by lane.
 #pragma once
 
-#include "engine/batch_looks.hpp"
+#include "engine/batch_peaks.hpp"
 #include "engine/beam_kernel.hpp"
 #include "engine/modal_kernel.hpp"
 #include "engine/train_kernel.hpp"

@@ -36,8 +36,8 @@ struct ProbeForms {
 inline constexpr int looks_kept = base::samples_kept;
 
 /// What is seen of the runs from step to step: rows of the latest instants, peaks.
-struct LookState {
-  long known = 0, looks = 0;                     // instants since the last kink of moments, and since the start
+struct PeakState {
+  long known = 0, sampling_interval = 0;         // instants since the last kink of moments, and since the start
   double gone[looks_kept] = {};                  // m: travelled
   double* seen[looks_kept] = {};                 // [deflections, accelerations, moments, rates of moments]
   double* force[looks_kept] = {};                // normal, of all wheels
@@ -72,7 +72,7 @@ struct BatchTask {
   const ProbeForms* probe = nullptr;
   const double* kink = nullptr;   // m: stations at which the surface has a corner, ascending
   const double* roots = nullptr;  // of every coordinate, a row: what it departs by
-  LookState* look = nullptr;
+  PeakState* look = nullptr;
 };
 
 }  // namespace traverse::engine

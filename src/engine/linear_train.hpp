@@ -10,7 +10,7 @@
 #include "base/bytes.hpp"
 #include "engine/surfaces.hpp"
 #include "engine/train_arrays.hpp"
-#include "response/compliance.hpp"
+#include "structure/compliance.hpp"
 #include "structure/contact_field.hpp"
 
 namespace traverse::engine {

@@ -8,8 +8,8 @@ namespace traverse::engine {
 /// The patches under a wheel whose centre is between two stations.
 struct PatchesThere {
   struct Patch {
-    int element = -1;                                                                // -1: rigid ground
-    double x = 0.0, length = 1.0, shear = 0.0, yield = 0.0, low = 1.0, high = -1.0;  // SurfacePatch
+    int element = -1;                                                                      // -1: rigid ground
+    double x = 0.0, length = 1.0, shear = 0.0, flexibility = 0.0, low = 1.0, high = -1.0;  // SurfacePatch
   };
   double from = 0.0, to = 0.0;  // m
   int candidates = 0;
@@ -52,7 +52,7 @@ inline void put_on(TrainTask& train, int at, const PatchesThere& there) {
     p.length[at] = from.length;
     p.per_length[at] = 1.0 / from.length;
     p.shear[at] = from.shear;
-    p.yield[at] = from.yield;
+    p.flexibility[at] = from.flexibility;
     p.low[at] = from.low;
     p.high[at] = from.high;
   }

@@ -18,8 +18,9 @@ PatchesThere patches_of(const train::WheelContact& c) {
   if (c.candidates == 0) there.patch[0] = {-1, 0.0, 1.0, 0.0, 0.0, -infinite, infinite};
   for (int k = 0; k < c.candidates; ++k) {
     const train::Patch& p = c.patches[static_cast<std::size_t>(k)];
-    there.patch[k] = p.element < 0 ? PatchesThere::Patch{-1, 0.0, 1.0, 0.0, 0.0, p.low, p.high}
-                                   : PatchesThere::Patch{p.element, p.x, p.length, p.shear, p.yield, p.low, p.high};
+    there.patch[k] = p.element < 0
+                         ? PatchesThere::Patch{-1, 0.0, 1.0, 0.0, 0.0, p.low, p.high}
+                         : PatchesThere::Patch{p.element, p.x, p.length, p.shear, p.compliance, p.low, p.high};
   }
   return there;
 }
@@ -33,7 +34,7 @@ void put_patches(const PatchesThere& there, train::WheelContact& c) {
     p.x = from.x;
     p.length = from.length;
     p.shear = from.shear;
-    p.yield = from.yield;
+    p.compliance = from.flexibility;
     p.low = from.low;
     p.high = from.high;
     p.start = c.touch.station;

@@ -259,7 +259,7 @@ void TrainArrays::fill_block(std::size_t number, const std::vector<const train::
   b.drive = drive;
   distance.push_back(add(1));
   b.distance = distance.back();
-  b.awake = &awake.emplace_back(1);
+  b.active = &active.emplace_back(1);
   const auto its = blocks.begin() + static_cast<std::ptrdiff_t>(number);
   const auto other = std::find_if(blocks.begin(), its, [&](const VehicleBlock& before) { return is_alike(before, b); });
   if (other != its) {
@@ -332,7 +332,7 @@ void TrainArrays::make_rows(std::span<const std::vector<const train::MovingVehic
   for (SurfacePatch& p : task.patch) {
     p.slot = add_integers(wheels * lanes);
     p.together = add_integers(wheels);
-    for (double** of : {&p.x, &p.length, &p.per_length, &p.shear, &p.yield, &p.low, &p.high}) *of = add(wheels);
+    for (double** of : {&p.x, &p.length, &p.per_length, &p.shear, &p.flexibility, &p.low, &p.high}) *of = add(wheels);
     for (double*& entry : p.compliance) entry = add(wheels);
     for (double* of : {p.length, p.per_length}) std::fill_n(of, wheels * lanes, 1.0);
     const bool first = &p == task.patch;

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "base/one_step_methods.hpp"
 #include "engine/processor.hpp"
 #include "engine/train_task.hpp"
-#include "methods/one_step_methods.hpp"
 #include "train/fleet.hpp"
 
 namespace traverse::engine {
@@ -49,7 +49,7 @@ class TrainArrays {
   std::vector<double*> distance;    // m, of every block's lanes: travelled
   std::vector<double*> speed;       // m/s, of every block's lanes
   std::vector<char> second, level;  // one a row of wheels, as the TrainTask's
-  std::deque<char> awake;           // one a block: VehicleBlock::awake
+  std::deque<char> active;          // one a block: VehicleBlock::awake
 
  private:
   void fill_block(std::size_t block, const std::vector<const train::MovingVehicle*>& vehicles);

@@ -107,7 +107,7 @@ TRAVERSE_INLINE ContactRow on_patch(const SurfacePatch& p, int i, const Touched&
     for (int b = a; b < 4; ++b, ++k) sum += rows(p.compliance[k])[i] * s.value[b];
     structure += sum * s.value[a];
   }
-  const Seat seat = seat_at<kind>(at.xi, length, shear, rows(p.yield)[i]);
+  const Seat seat = seat_at<kind>(at.xi, length, shear, rows(p.flexibility)[i]);
   return {at, structure, seat.value, seat.by_x};
 }
 
@@ -178,7 +178,7 @@ TRAVERSE_INLINE void own_forces(const TrainTask& task, RowMask open, int i, int 
 /// what its wheels yield to the new forces of each other tells.
 inline RowMask settles(const TrainTask& task, const VehicleBlock& b, const Row* force) {
   const int m = b.wheels, first = b.first_wheel;
-  RowMask still = ~RowMask{};
+  RowMask predicted = ~RowMask{};
   for (int j = 0; j < m; ++j) {
     const int i = first + j;
     if (task.level[i] == 0 || task.second[i] != 0 || task.patch[0].together[i] != grounded) return RowMask{};
@@ -187,9 +187,9 @@ inline RowMask settles(const TrainTask& task, const VehicleBlock& b, const Row* 
       if (l != j) moved += Rows::magnitude(rows(b.H)[j * m + l] * (force[l] - rows(task.normal)[first + l]));
     const Row stiffness = rows(task.stiffness)[i],
               tangent = task.hertz[i] == 0 ? stiffness : 1.5 * stiffness * rows(task.root)[i];
-    still &= tangent * moved * rows(task.per_scale)[i] <= task.tolerance;
+    predicted &= tangent * moved * rows(task.per_scale)[i] <= task.tolerance;
   }
-  return still;
+  return predicted;
 }
 
 /// What a pass has changed, lane by lane.
@@ -206,7 +206,7 @@ Changes update_forces(const TrainTask& task, RowMask of_runs) {
   RowMask fallen{};
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
-    if (*b.awake == 0) continue;
+    if (*b.active == 0) continue;
     const RowMask open = task.settled == nullptr ? of_runs : of_runs & (rows(task.settled)[k] == 0.0);
     if (!Rows::any(open)) continue;
     const int m = b.wheels, first = b.first_wheel;
@@ -311,7 +311,7 @@ void end_stage_of_train(const TrainTask& task, int stage, bool kinematics) {
   Row lost{}, given{};
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
-    if (*b.awake == 0) continue;
+    if (*b.active == 0) continue;
     const int f = b.freedom, m = b.wheels, first = b.first_coordinate;
     const Row *up = rows(task.force_up) + b.first_wheel, *along = rows(task.force_along) + b.first_wheel;
     Row *a = rows(task.a[stage + 1]) + first, *w = rows(task.w_predicted) + first;

@@ -152,14 +152,16 @@ struct Seat {
 };
 
 template <Surface kind>
-TRAVERSE_INLINE Seat seat_at(Row xi, Row length, Row shear, Row yield) {
+TRAVERSE_INLINE Seat seat_at(Row xi, Row length, Row shear, Row flexibility) {
   const Row hump = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / length;
-  if constexpr (kind == Surface::flat) return {yield * hump * hump * hump, yield * 3.0 * hump * hump * by_x};
-  const Row quarter = 0.25 * yield, s = shear;
+  if constexpr (kind == Surface::flat)
+    return {flexibility * hump * hump * hump, flexibility * 3.0 * hump * hump * by_x};
+  const Row quarter = 0.25 * flexibility, s = shear;
   const Row sheared = quarter * hump * ((4.0 * hump + s) * hump / (1.0 + s) + s);
   const Row sheared_by_x = quarter * ((12.0 * hump + 2.0 * s) * hump / (1.0 + s) + s) * by_x;
   const RowMask stiff = s == 0.0;
-  return {stiff ? yield * hump * hump * hump : sheared, stiff ? yield * 3.0 * hump * hump * by_x : sheared_by_x};
+  return {stiff ? flexibility * hump * hump * hump : sheared,
+          stiff ? flexibility * 3.0 * hump * hump * by_x : sheared_by_x};
 }
 }  // namespace
 }  // namespace traverse::engine

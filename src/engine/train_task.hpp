@@ -41,7 +41,7 @@ struct VehicleBlock {
   const double* drive = nullptr;     // a row: the same where the speed is prescribed, else 0
   const double* distance = nullptr;  // a row: m, travelled at the stage's time
   int alike = -1;                    // an earlier block of the same numbers, whose matrices below are used; -1: none
-  const char* awake = nullptr;       // whether it moves: else it stands still, and nothing of it is computed
+  const char* active = nullptr;      // whether it moves: else it stands still, and nothing of it is computed
   double* inverse = nullptr;         // (M + rate C + displacement K)^-1
   double *Y = nullptr, *Y_along = nullptr;  // freedom x wheels: inverse G^T, inverse G_along^T
   double* H =
@@ -57,7 +57,7 @@ struct SurfacePatch {
   int* together = nullptr;                                        // one a row: Together
   double *x = nullptr, *length = nullptr, *per_length = nullptr;  // of the element, m, m, 1/m
   double* shear = nullptr;                                        // 12 EI/(GA length^2)
-  double* yield = nullptr;                 // length^3/(3 EI), m/N, where the element bends between its nodes
+  double* flexibility = nullptr;           // length^3/(3 EI), m/N, where the element bends between its nodes
   double *low = nullptr, *high = nullptr;  // m: stations between which the piece reaches
   // Displacement of (v, theta) of the element's nodes per force and moment on them: the upper half of a symmetric
   // matrix, row by row; those beside the diagonal twice.

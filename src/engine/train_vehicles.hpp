@@ -212,7 +212,7 @@ inline void predict(const TrainTask& task, int stage, double* work) {
   Row *at = rows(work), *force = at + task.coordinates;
   for (int k = 0; k < task.blocks; ++k) {
     const VehicleBlock& b = task.block[k];
-    if (*b.awake == 0) continue;
+    if (*b.active == 0) continue;
     const int first = b.first_coordinate, f = b.freedom;
     Row *rate = rows(task.w_predicted) + first, *free = rows(task.a_free) + first;
     combine(stage + 1, rule, first, f, task.x, task.w, task.a, at, rate);

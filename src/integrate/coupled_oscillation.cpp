@@ -39,7 +39,7 @@ void CoupledOscillation::see(Eigen::VectorXd& u, Eigen::VectorXd& w) {
   w = state_.tail(omega_.size());
 }
 
-void CoupledOscillation::see_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w) {
+void CoupledOscillation::observe_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w) {
   later_ = y_;
   turn(propagator, y_);
   see(u, w);

@@ -22,7 +22,7 @@ class CoupledOscillation {
   /// u and w, now or after a propagator's time.
   void see(Eigen::VectorXd& u, Eigen::VectorXd& w);
   void keep(base::Bytes& bytes) { bytes(y_); }
-  void see_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w);
+  void observe_after(const Eigen::VectorXcd& propagator, Eigen::VectorXd& u, Eigen::VectorXd& w);
 
  private:
   const structure::ComplexModes& modes_;

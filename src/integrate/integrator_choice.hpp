@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "methods/one_step_methods.hpp"
+#include "base/one_step_methods.hpp"
 
 namespace traverse::integrate {
 

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "methods/one_step_methods.hpp"
+#include "base/one_step_methods.hpp"
 
 namespace traverse::integrate {
 namespace {

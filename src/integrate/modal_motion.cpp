@@ -89,10 +89,10 @@ void ModalMotion::enter_coupled() {
   u_ = Eigen::Map<const Eigen::VectorXd>(q_.data(), m) - p[0];
   w_ = Eigen::Map<const Eigen::VectorXd>(rate_.data(), m) - p[1];
   coupled_->start(u_, w_);
-  note_free();
+  record_free();
 }
 
-void ModalMotion::note_free() {
+void ModalMotion::record_free() {
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     modes_[i].u = u_[static_cast<Eigen::Index>(i)];
     modes_[i].w = w_[static_cast<Eigen::Index>(i)];
@@ -128,7 +128,7 @@ void ModalMotion::move(double dt) {
   if (coupled_) {
     coupled_->move(expected ? expected_coupled_ : coupled_->propagator(dt));
     coupled_->see(u_, w_);
-    return note_free();
+    return record_free();
   }
   for (std::size_t i = 0; i < modes_.size(); ++i) {
     const FreeOscillation a = expected ? expected_[i] : free_oscillation(bridge_.omega()[i], bridge_.sigma()[i], dt);
@@ -179,7 +179,7 @@ void ModalMotion::move_coupled_counting(double dt) {
   for (long part = 0; part < parts; ++part) {
     for (std::size_t k = 0; k < points.size(); ++k) {
       const double t = time_ - begin + (static_cast<double>(part) + points[k]) * h;
-      coupled_->see_after(inner[k], u_, w_);
+      coupled_->observe_after(inner[k], u_, w_);
       force.assign(modes_.size(), 0.0);
       add_channels_at(speed_ * t, 0, modes_.size(), force.data());
       for (Eigen::Index i = 0; i < m; ++i) rate[i] = first(modes_[static_cast<std::size_t>(i)].particular, t) + w_[i];
@@ -193,7 +193,7 @@ void ModalMotion::move_coupled_counting(double dt) {
     coupled_->move(step);
   }
   coupled_->see(u_, w_);
-  note_free();
+  record_free();
 }
 
 void ModalMotion::see() {

@@ -57,7 +57,7 @@ class ModalMotion {
   void move(double dt);
   void move_counting(double dt);
   void move_coupled_counting(double dt);
-  void note_free();
+  void record_free();
   void add_channels_at(double s, std::size_t first, std::size_t count, double* sum) const;
   void see();
 

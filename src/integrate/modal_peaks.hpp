@@ -1,5 +1,5 @@
 // The peaks of a passage of moving forces by modes where dampers couple these or the ones left out: other passages go
-// side by side (lanes/force_passages.hpp).
+// side by side (modal_engine/moving_force_batch.hpp).
 #pragma once
 
 #include <functional>

@@ -60,7 +60,7 @@ double shorter_step(TS ts, const Verdict& verdict) {
   if (verdict.next > 0.0) return verdict.next;
   const double next = shorter * ts->time_step;
   if (!is_ladder(ts->adapt)) return next;
-  StepLadder& ladder = *static_cast<StepLadder*>(ts->adapt->data);
+  StepSizeControl& ladder = *static_cast<StepSizeControl*>(ts->adapt->data);
   ladder.judge(ts->time_step, std::numeric_limits<double>::infinity());
   return std::min(next, ladder.wanted());
 }
@@ -147,7 +147,7 @@ PetscErrorCode choose(TSAdapt adapt, TS ts, PetscReal h, PetscInt* scheme, Petsc
   return guard([&] {
     PetscInt order = PETSC_DECIDE;
     check(TSEvaluateWLTE(ts, adapt->wnormtype, &order, error));
-    StepLadder& ladder = *static_cast<StepLadder*>(adapt->data);
+    StepSizeControl& ladder = *static_cast<StepSizeControl*>(adapt->data);
     *scheme = 0;
     *absolute = *relative = -1.0;  // not told apart
     *accept = ladder.judge(h, *error) ? PETSC_TRUE : PETSC_FALSE;
@@ -173,6 +173,6 @@ bool has_monitors(TS ts) { return ts->numbermonitors > 0; }
 
 bool& has_started(TS ts) { return data_of(ts).started; }
 
-void set_ladder(TS ts, StepLadder& ladder) { ts->adapt->data = &ladder; }
+void set_ladder(TS ts, StepSizeControl& ladder) { ts->adapt->data = &ladder; }
 
 }  // namespace traverse::integrate

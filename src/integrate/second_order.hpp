@@ -7,7 +7,7 @@
 #include <petscts.h>
 
 #include "coupling/system.hpp"
-#include "integrate/step_ladder.hpp"
+#include "integrate/step_size_control.hpp"
 
 namespace traverse::integrate {
 
@@ -19,7 +19,7 @@ void register_second_order();
 void set_system(TS ts, coupling::System& system);
 /// What such a TS with the ladder for its TSAdapt takes its steps from: those with an error above TS's relative
 /// tolerance are taken again, shorter.
-void set_ladder(TS ts, StepLadder& ladder);
+void set_ladder(TS ts, StepSizeControl& ladder);
 /// Whether anybody watches the steps of a TS of any type.
 bool has_monitors(TS ts);
 /// Whether such a TS has taken a step, so that the next one goes on from it.

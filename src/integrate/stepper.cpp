@@ -230,7 +230,7 @@ double Stepper::next_step(double from, double left) const {
 
 // One step from where TS is, no longer than what is left to the next target. Returns the time reached.
 double Stepper::take_step(double from, double left) {
-  const auto turn = next_turn(from, left);
+  const auto turn = next_kink(from, left);
   if (turn) left = turn->time - from;
   const double h = next_step(from, left);
   // generalised-alpha carries on an acceleration of a part of a step elsewhere, as multistep methods do
@@ -250,7 +250,7 @@ double Stepper::take_step(double from, double left) {
   PetscReal next = 0.0;
   check(TSGetTimeStep(ts_, &next));
   if (locating) t = locate_contact_change(from, t);
-  if (turns && std::abs(t - turn->time) < turn->tolerance) t = end_at_turn(from, t, *turn);
+  if (turns && std::abs(t - turn->time) < turn->tolerance) t = end_at_kink(from, t, *turn);
   last_step_ = t - from;
   if (adaptive_) next_step_ = h < left || next < next_step_ ? next : std::max(next_step_, next);
   next_step_ = std::min(next_step_, settings_.time_step);

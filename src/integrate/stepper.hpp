@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "base/petsc.hpp"
-#include "coupling/change_bracket.hpp"
+#include "coupling/contact_event_locator.hpp"
 #include "coupling/system.hpp"
-#include "integrate/step_ladder.hpp"
+#include "integrate/step_size_control.hpp"
 
 namespace traverse::integrate {
 
@@ -97,11 +97,11 @@ class Stepper {
   void show_to_monitors(double t);
   double take_step(double from, double left);
   double step_to(double from, double end);
-  std::optional<coupling::CornerEvents::Turn> next_turn(double from, double left);
+  std::optional<coupling::KinkEvents::KinkPassage> next_kink(double from, double left);
   void arrive(double t);
   double step_again(double from, double end);
   double locate_contact_change(double from, double full);
-  double end_at_turn(double from, double at, const coupling::CornerEvents::Turn& turn);
+  double end_at_kink(double from, double at, const coupling::KinkEvents::KinkPassage& turn);
   void sample_now(const std::function<void(const Instant&)>& sample, Purpose purpose);
   void check_bounds(double t, const double* y) const;
   void rate(double t, Vec y, Vec ydot, coupling::Terms terms);
@@ -123,8 +123,8 @@ class Stepper {
   Request request_;
   coupling::Terms implicit_terms_ = coupling::Terms::all;
   bool second_order_ = false, implicit_ = true, adaptive_ = false, multistep_ = false, high_order_ = false;
-  bool monitored_ = false;            // by -ts_monitor and its like
-  std::optional<StepLadder> ladder_;  // of adaptive steps of an own type
+  bool monitored_ = false;                 // by -ts_monitor and its like
+  std::optional<StepSizeControl> ladder_;  // of adaptive steps of an own type
   Way way_;
   double next_step_ = 0.0;  // what the step control wants
   double last_step_ = 0.0;

@@ -18,10 +18,10 @@ constexpr int most_turn_trials = 3;  // and where a wheel turns about a corner
 // When the next wheel turns about a corner of the surface, if it does so within `left` s. A multistep method is started
 // anew by a short step, which costs it more; the ladder sees the corner's error, and keeps to the steps it has factors
 // of.
-std::optional<coupling::CornerEvents::Turn> Stepper::next_turn(double from, double left) {
+std::optional<coupling::KinkEvents::KinkPassage> Stepper::next_kink(double from, double left) {
   if (!settings_.corners || multistep_ || ladder_) return std::nullopt;
   ReadArray y(y_);
-  return system_.next_turn(from, left, y.data);
+  return system_.next_kink(from, left, y.data);
 }
 
 // Sets the vehicles to where the step has led.
@@ -34,7 +34,7 @@ void Stepper::arrive(double t) {
 double Stepper::step_again(double from, double end) {
   if (second_order_) {
     Array y(y_);
-    system_.take_back_step(y.data);
+    system_.reject_step(y.data);
   } else {
     check(VecCopy(before_, y_));
   }
@@ -53,7 +53,7 @@ double Stepper::locate_contact_change(double from, double full) {
   arrive(full);
   auto change = system_.contacts().change(full, settings_.contact_tolerance);
   if (!change) return full;
-  coupling::ChangeBracket bracket(system_, *change, from, full, settings_.contact_tolerance);
+  coupling::ContactEventLocator bracket(system_, *change, from, full, settings_.contact_tolerance);
   double at = full;
   for (int i = 0; i < most_trials && !bracket.found(); ++i) {
     at = step_again(from, bracket.trial());
@@ -63,7 +63,7 @@ double Stepper::locate_contact_change(double from, double full) {
 }
 
 // Takes the step from `from` to `at` again where the wheel turns about its corner at another time than was expected.
-double Stepper::end_at_turn(double from, double at, const coupling::CornerEvents::Turn& turn) {
+double Stepper::end_at_kink(double from, double at, const coupling::KinkEvents::KinkPassage& turn) {
   arrive(at);
   for (int i = 0; i < most_turn_trials; ++i) {
     double found = 0.0;

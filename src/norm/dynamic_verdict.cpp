@@ -103,8 +103,8 @@ void NormCheck::judge(const Passed& passed) {
   }
 }
 
-results::Finding NormCheck::of_lm71(Effect effect, bool over_span) const {
-  results::Finding found;
+results::EvaluatedQuantity NormCheck::of_lm71(Effect effect, bool over_span) const {
+  results::EvaluatedQuantity found;
   if (effects_.places[static_cast<std::size_t>(effect)].empty()) {
     found.why = "no two decks meet at a joint";
     return found;
@@ -116,7 +116,7 @@ results::Finding NormCheck::of_lm71(Effect effect, bool over_span) const {
     const Place& place = effects_.places[static_cast<std::size_t>(effect)][worst];
     const double value = effects_.at(effect, load, worst).size() * whole(place);
     if (value <= found.value) continue;  // of none yet it is not
-    found = {value, results::Finding::unknown, place.x,
+    found = {value, results::EvaluatedQuantity::unknown, place.x,
              fmt::format("{} with alpha = {:g} and Phi{} = {:.4g}", effects_.loads[load].name, rules_.alpha,
                          rules_.careful ? 2 : 3, phi_at(place)),
              ""};
@@ -125,11 +125,11 @@ results::Finding NormCheck::of_lm71(Effect effect, bool over_span) const {
   return found;
 }
 
-results::Finding NormCheck::of_trains() const {
-  results::Finding found;
+results::EvaluatedQuantity NormCheck::of_trains() const {
+  results::EvaluatedQuantity found;
   for (const Row& row : rows_) {
     if (row.ratio() <= found.value) continue;
-    found = {row.ratio(), results::Finding::unknown, row.train_x,
+    found = {row.ratio(), results::EvaluatedQuantity::unknown, row.train_x,
              fmt::format("{} of {} at {:.4g} km/h", effect_rows[static_cast<std::size_t>(row.effect)].words,
                          effects_.loads[row.train].name, 3.6 * row.dynamic.speed),
              ""};

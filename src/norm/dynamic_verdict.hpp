@@ -62,8 +62,8 @@ class NormCheck {
   double phi_at(const Place& place) const;
   double factor(std::size_t load, const Place& place) const;
   DynamicFactor dynamic_factor(const Passed& passed, std::size_t train, Effect effect) const;
-  results::Finding of_lm71(Effect effect, bool over_span) const;
-  results::Finding of_trains() const;
+  results::EvaluatedQuantity of_lm71(Effect effect, bool over_span) const;
+  results::EvaluatedQuantity of_trains() const;
   std::string length_text() const;
   void print_static() const;
   void print_rows() const;

@@ -11,7 +11,7 @@
 
 #include "norm/influence_line.hpp"
 #include "recovery/recovery.hpp"
-#include "response/beam_operator.hpp"
+#include "structure/beam_operator.hpp"
 
 namespace traverse::norm {
 

@@ -75,7 +75,7 @@ std::string read_text(const std::string& path, const TextKind& kind) {
   return text;
 }
 
-void note_text(const std::string& path, const std::string& text) { note(path, text, true); }
+void record_text(const std::string& path, const std::string& text) { note(path, text, true); }
 
 const std::vector<InputText>& inputs_read() { return noted; }
 

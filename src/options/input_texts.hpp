@@ -31,7 +31,7 @@ std::string read_text(const std::string& path, const TextKind& kind);
 void check_characters(std::string_view text, const std::string& name);
 
 /// Keeps the text of a table that is not its file's own; once is enough.
-void note_text(const std::string& path, const std::string& text);
+void record_text(const std::string& path, const std::string& text);
 
 /// All that were noted, in their order.
 const std::vector<InputText>& inputs_read();

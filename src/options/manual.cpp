@@ -41,7 +41,7 @@ traverse \- predicts how trains, lorries and mechanisms cross flexible beams
 .RI [ group | option ]
 .SH DESCRIPTION
 A scene, its bridge, track, train and what is asked about them, is put together from options. They come from YAML files,
-in which nested keys join with underscores (beam: {spans: [25.0, 30.0]} is \-beam_spans 25.0,30.0), from classic options
+in which nested keys merge with underscores (beam: {spans: [25.0, 30.0]} is \-beam_spans 25.0,30.0), from classic options
 files of PETSc and from the command line; later ones win. SI units; x along the track from the bridge's left end, y
 upward. In lists value*count repeats.
 .PP

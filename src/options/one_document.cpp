@@ -35,10 +35,10 @@ class Beginning : public YAML::EventHandler {
 YAML::Node one_document(const std::string& text, const std::string& file, const std::string& said) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
-  Beginning beginning;
-  if (parser.HandleNextDocument(beginning) && parser.HandleNextDocument(beginning))
+  Beginning initial_window;
+  if (parser.HandleNextDocument(initial_window) && parser.HandleNextDocument(initial_window))
     throw InputError(fmt::format("{}:{}: {}holds more than one YAML document (a line of ---), or what is none", file,
-                                 beginning.line(), said));
+                                 initial_window.line(), said));
   return YAML::Load(text);
 }
 

@@ -18,7 +18,6 @@
 namespace traverse::options {
 namespace {
 
-
 std::string trim(std::string_view text) {
   constexpr std::string_view blanks = " \t\r\n";  // YAML's text blocks end with a line break
   const std::size_t first = text.find_first_not_of(blanks);

@@ -32,10 +32,10 @@ RailBridge::RailBridge(const beam::BeamModel& model, double rail_area, double gr
       ground_(beam_),
       devices_(beam_),
       area_(rail_area) {
-  note_stations();
+  record_stations();
 }
 
-void RailBridge::note_stations() {
+void RailBridge::record_stations() {
   const beam::Line& rail = *beam_.rail();
   const double strain = rail.model.temperature ? rail.model.temperature->strain() : 0.0;
   for (int e = 0; e < rail.mesh.elements(); ++e) {
@@ -81,15 +81,15 @@ State RailBridge::rest(const Loads& loads, const State* before) {
   const std::vector<double> P = nodal_forces(loads);
   const std::vector<double>& imposed = beam_.imposed();
   const bool settled = loads.strains && !imposed.empty();
-  std::vector<double> still(P.size(), 0.0), free = P;
+  std::vector<double> predicted(P.size(), 0.0), free = P;
   if (settled) {
-    still = imposed;
-    op_.multiply(-1.0, nullptr, nullptr, still.data(), free.data());
+    predicted = imposed;
+    op_.multiply(-1.0, nullptr, nullptr, predicted.data(), free.data());
     for (std::size_t i = 0; i < P.size(); ++i) free[i] += P[i];
   }
   nonlinear_.set_history(before != nullptr ? before->slid : structure::NonlinearFoundation::History{});
   nonlinear_.stand(loads.from, loads.to > loads.from ? loads.to : -HUGE_VAL);
-  nonlinear_.begin(0.0, still.data(), nullptr, nullptr);
+  nonlinear_.begin(0.0, predicted.data(), nullptr, nullptr);
   using Verdict = structure::NonlinearFoundation::Verdict;
   State state;
   Verdict verdict = Verdict::again;
@@ -107,8 +107,8 @@ State RailBridge::rest(const Loads& loads, const State* before) {
         fmt::format("rail and bridge find no rest, worst {}: can the track hold the forces along x "
                     "(track_longitudinal_limit, uic774_braking), or does it slide as a whole?",
                     nonlinear_.worst_point()));
-  for (std::size_t i = 0; i < P.size(); ++i) state.v[i] += still[i];
-  nonlinear_.settle(state.v.data());
+  for (std::size_t i = 0; i < P.size(); ++i) state.v[i] += predicted[i];
+  nonlinear_.update_slip(state.v.data());
   state.slid = nonlinear_.history();
   recover(P, state);
   return state;
@@ -144,30 +144,30 @@ void RailBridge::recover(const std::vector<double>& P, State& state) {
   for (const beam::Station& end : end_stations_) state.ends.push_back(surface(v, end));
   devices_.evaluate(v.data());
   state.openings = devices_.openings();
-  const std::vector<double> still(v.size(), 0.0);
+  const std::vector<double> predicted(v.size(), 0.0);
   std::vector<std::array<double, 3>> reactions;
-  beam_.reactions(v.data(), still.data(), still.data(), P.data(), reactions);
+  beam_.reactions(v.data(), predicted.data(), predicted.data(), P.data(), reactions);
   if (reactions.size() > beam_.mesh().span_ends().size()) state.rail_ends = reactions.back()[0];
   for (const int end : held_ends_) state.bearings.push_back(reactions[static_cast<std::size_t>(end)][0]);
   structure::NonlinearForces other;
   std::vector<beam::ElementLoad> loads;
-  nonlinear_.evaluate(v.data(), still.data());
+  nonlinear_.evaluate(v.data(), predicted.data());
   nonlinear_.report(other, loads);
-  ground_.evaluate(v.data(), still.data(), still.data());
+  ground_.evaluate(v.data(), predicted.data(), predicted.data());
   const std::size_t kind = beam::foundation_kind("longitudinal");
   for (std::size_t i = 0; i < other.of_kind[kind].size(); ++i)
     state.bearings.push_back(ground_.of_kind(kind)[i] + other.of_kind[kind][i]);
 }
 
 double RailBridge::residual(const Loads& loads, const State& state) {
-  const std::vector<double> still(state.v.size(), 0.0);
+  const std::vector<double> predicted(state.v.size(), 0.0);
   structure::NonlinearForces other;
   std::vector<beam::ElementLoad> on_bridge;
   nonlinear_.set_history(state.slid);
   nonlinear_.stand(loads.from, loads.to > loads.from ? loads.to : -HUGE_VAL);
-  nonlinear_.evaluate(state.v.data(), still.data());
+  nonlinear_.evaluate(state.v.data(), predicted.data());
   nonlinear_.report(other, on_bridge);
-  ground_.evaluate(state.v.data(), still.data(), still.data());
+  ground_.evaluate(state.v.data(), predicted.data(), predicted.data());
   const double supports = std::accumulate(state.bearings.begin(),
                                           state.bearings.begin() + static_cast<std::ptrdiff_t>(held_ends_.size()), 0.0);
   const std::size_t kind = beam::foundation_kind("longitudinal");

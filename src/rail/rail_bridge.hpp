@@ -9,7 +9,7 @@
 
 #include "recovery/ground_forces.hpp"
 #include "recovery/rail_devices.hpp"
-#include "response/beam_operator.hpp"
+#include "structure/beam_operator.hpp"
 #include "structure/nonlinear_foundation.hpp"
 
 namespace traverse::rail {
@@ -58,7 +58,7 @@ class RailBridge {
 
  private:
   std::vector<double> nodal_forces(const Loads& loads) const;
-  void note_stations();
+  void record_stations();
   void recover(const std::vector<double>& P, State& state);
   double surface(const std::vector<double>& v, const beam::Station& at) const;
 

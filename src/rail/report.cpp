@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "rail/rail_forces.hpp"
+#include "rail/track_bridge_interaction.hpp"
 #include "results/terminal.hpp"
 
 namespace traverse::rail {

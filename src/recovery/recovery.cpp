@@ -28,7 +28,7 @@ Recovery::Recovery(const Beam& beam, const Line& line, std::vector<double> stati
     }
     sections_.emplace_back(line, x);
     sections_.back().add_weight(line.model, self_weight);
-    if (&line == &beam.bridge()) sections_.back().note_riders(beam);
+    if (&line == &beam.bridge()) sections_.back().record_riders(beam);
     size += 18 + 4 * sections_.back().riders.size();
   }
   gathered_.resize(size);

@@ -46,7 +46,7 @@ void RecoverySection::add_strains(const BeamModel& model) {
   weight.axial_force += axial_strain_load(model, element)[0];
 }
 
-void RecoverySection::note_riders(const Beam& beam) {
+void RecoverySection::record_riders(const Beam& beam) {
   if (beam.rail() == nullptr) return;
   const int column = beam.bridge().first_column + element.left;
   for (const Sleeper& s : sleepers_of(beam.bridge(), column - 1, column + 3)) {
@@ -74,14 +74,14 @@ void RecoverySection::add_foundation(const Line& line) {
       dampers.push_back({s.xi, p.c, kind.direction == Direction::rotational});
     }
   });
-  bool bends = !springs.empty();
+  bool roughness = !springs.empty();
   for_beds(f, [&](const FoundationKind& kind, const Bed& bed) {
     if (!acts(kind, model) || bed.law.nonlinear()) return;
     stiffness.add_bed(kind.direction, bed.k);
     damping.add_bed(kind.direction, bed.c);
-    bends = bends || kind.direction != Direction::longitudinal;
+    roughness = roughness || kind.direction != Direction::longitudinal;
   });
-  if (bends) hold(model, springs, dampers);
+  if (roughness) hold(model, springs, dampers);
 }
 
 /// Integrates over the held element: calls sum(s, weight*density(s), G(s)), where G is its line under a force, or under

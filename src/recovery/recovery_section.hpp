@@ -22,7 +22,7 @@ struct RecoverySection {
   /// The beam's dead weight, `gravity` in m/s2, whose response is `weight`.
   void add_weight(const BeamModel& model, double gravity);
   /// The sleepers that stand on this element of the bridge.
-  void note_riders(const Beam& beam);
+  void record_riders(const Beam& beam);
   /// Adds what a load on this element does to the response, but for the element's end forces, which follow from the
   /// nodal values.
   void add_load(const ElementLoad& load, Response& r) const;

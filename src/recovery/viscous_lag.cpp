@@ -23,7 +23,7 @@ ElementLoad between(const ElementLoad& from, const ElementLoad& to, double part)
 
 /// Loads come in the same order from call to call, but for those that come onto the beam or leave it: the search goes
 /// on behind the load that was found last.
-void ViscousLag::note_moved(const std::vector<ElementLoad>& loads) {
+void ViscousLag::record_moved(const std::vector<ElementLoad>& loads) {
   moved_.clear();
   found_.assign(loads_.size(), 0);
   std::size_t next = 0;
@@ -113,7 +113,7 @@ void ViscousLag::follow(std::size_t station, const Forces& c) {
 void ViscousLag::apply(double t, const std::vector<ElementLoad>& loads, std::vector<Response>& responses) {
   interval_ = t - time_;
   const bool goes_on = !first_ && interval_ > 0.0;
-  if (goes_on) note_moved(loads);
+  if (goes_on) record_moved(loads);
   for (std::size_t i = 0; i < responses.size(); ++i) {
     Response& r = responses[i];
     Inner& inner = inner_[i];

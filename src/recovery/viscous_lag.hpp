@@ -42,7 +42,7 @@ class ViscousLag {
     double ago;
   };
 
-  void note_moved(const std::vector<ElementLoad>& loads);
+  void record_moved(const std::vector<ElementLoad>& loads);
   bool passing(std::size_t station, History& by_loads);
   void follow(std::size_t station, const Forces& c);
 

@@ -89,7 +89,7 @@ std::string train_name(const options::Study& sweep, std::size_t train) {
   return fmt::format("A{:g}", sweep.dimensions.front().values[train]);
 }
 
-std::vector<Recorder::Dataset> sweep_datasets(const StudyTable& table, bool promises) {
+std::vector<Recorder::Dataset> sweep_datasets(const StudyTable& table, bool estimates) {
   const options::Study& study = table.study();
   std::vector<Recorder::Dataset> sets;
   for (const options::StudyDimension& d : study.dimensions)
@@ -97,7 +97,7 @@ std::vector<Recorder::Dataset> sweep_datasets(const StudyTable& table, bool prom
   const std::size_t trains = trains_of(study), speeds = speeds_of_sweep(study).size();
   for (const StudyTable::Column& column : table.columns()) {
     const std::string_view name = column.what->name;
-    if (name == "probes_x" || (name == "unseen" && !promises)) continue;
+    if (name == "probes_x" || (name == "unseen" && !estimates)) continue;
     Recorder::Dataset set{fmt::format("/sweep/{}", name), {trains, speeds}, column.values, column.what->unit};
     for (const std::size_t size : column.shape()) set.shape.push_back(size);
     if (name == "static_deflection") {

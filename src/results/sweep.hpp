@@ -19,7 +19,7 @@ std::string train_name(const options::Study& sweep, std::size_t train);
 
 /// Datasets [trains, speeds] or [trains, speeds, probes] under /sweep; NaN where a run has not ended. promises: the
 /// runs' errors are promised, but for those that have met what no trial run has seen.
-std::vector<Recorder::Dataset> sweep_datasets(const StudyTable& table, bool promises);
+std::vector<Recorder::Dataset> sweep_datasets(const StudyTable& table, bool estimates);
 /// Peaks of each train over all speeds and probes, each with its own speed and probe, and the amplification of the
 /// largest deflection beside it.
 void print_sweep(const StudyTable& table);

@@ -32,7 +32,7 @@ std::string verdict_line(const Verdict& v) {
 
 }  // namespace
 
-std::string Finding::place() const {
+std::string EvaluatedQuantity::place() const {
   if (std::isnan(x)) return thing;
   return fmt::format("{}{}x = {:.6g} m", thing, thing.empty() ? "" : ", ", x);
 }
@@ -49,7 +49,7 @@ std::vector<Verdict> worst_of(const Judged& judged, const std::function<std::str
       ++verdict.runs;
       if (judged.value[i] > verdict.limit.value) ++verdict.broken_in;
       if (judged.value[i] <= verdict.found.value) continue;
-      verdict.found = {judged.value[i], Finding::unknown, judged.x[i], run_text(i / count), ""};
+      verdict.found = {judged.value[i], EvaluatedQuantity::unknown, judged.x[i], run_text(i / count), ""};
     }
     if (std::isnan(verdict.found.value))
       verdict.found.why =

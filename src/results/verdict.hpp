@@ -12,7 +12,7 @@
 namespace traverse::results {
 
 /// The greatest value that a run has seen of a quantity, or why there is none.
-struct Finding {
+struct EvaluatedQuantity {
   static constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   double value = unknown;  // a magnitude
   double time = unknown;   // s
@@ -27,7 +27,7 @@ struct Finding {
 struct Verdict {
   options::VerdictLimit limit;
   std::string unit;
-  Finding found;
+  EvaluatedQuantity found;
   std::size_t runs = 1, broken_in = 0;  // runs that know the quantity, and those that break the limit
 
   bool judged() const { return found.why.empty(); }
@@ -49,7 +49,7 @@ struct Judged {
 
   Judged() = default;
   Judged(const std::vector<options::VerdictLimit>& by, std::size_t runs)
-      : limits(by), value(runs * by.size(), Finding::unknown), x(value), why(by.size()) {}
+      : limits(by), value(runs * by.size(), EvaluatedQuantity::unknown), x(value), why(by.size()) {}
 };
 /// A verdict on each limit by the run with the greatest value; run_text(i) names run i.
 std::vector<Verdict> worst_of(const Judged& judged, const std::function<std::string(std::size_t)>& run_text);

@@ -119,8 +119,8 @@ std::optional<results::Checkpoint> earlier_of(MPI_Comm comm, Scene& scene) {
   return earlier;
 }
 
-Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, Watch& watch, results::Recorder& recorder,
-                         results::Checkpoint so_far)
+Checkpoints::Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& watch,
+                         results::Recorder& recorder, results::Checkpoint so_far)
     : comm_(comm),
       passage_(passage),
       watch_(watch),

@@ -10,7 +10,7 @@
 
 #include "results/checkpoint_file.hpp"
 #include "run/passage.hpp"
-#include "run/watch.hpp"
+#include "run/run_observer.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {
@@ -31,7 +31,7 @@ results::Place claim_outputs(MPI_Comm comm, const Scene& scene);
 class Checkpoints {
  public:
   /// Those of a run whose parts must outlive it. `so_far`: all that follows from neither.
-  Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, Watch& watch, results::Recorder& recorder,
+  Checkpoints(MPI_Comm comm, const Scene& scene, Passage& passage, RunObserver& watch, results::Recorder& recorder,
               results::Checkpoint so_far);
 
   /// Whether one is wanted now, as this rank sees it. It costs no more than a look at the clock now and then.
@@ -51,7 +51,7 @@ class Checkpoints {
 
   MPI_Comm comm_;
   Passage& passage_;
-  Watch& watch_;
+  RunObserver& watch_;
   results::Recorder& recorder_;
   results::Checkpoint so_far_;
   std::string path_, trouble_;

@@ -10,7 +10,7 @@
 
 #include "modes/modes.hpp"
 #include "run/low_pass.hpp"
-#include "run/peaks.hpp"
+#include "run/response_extremes.hpp"
 
 namespace traverse::app {
 namespace {
@@ -120,7 +120,7 @@ std::size_t filter(std::vector<double>& rows, std::size_t count, double frequenc
   return static_cast<std::size_t>(std::max(0.0, std::ceil(settled)));
 }
 
-void DeckAcceleration::finish(Peaks& peaks) {
+void DeckAcceleration::finish(ResponseExtremes& peaks) {
   const std::size_t settled = filter(kept_, stations_.size(), frequency_, interval_);
   settled_until_ = (static_cast<double>(settled) - extremes_behind) * interval_;
   peaks.add_low_passed(std::span<const double>(kept_).first(settled * stations_.size()), interval_);

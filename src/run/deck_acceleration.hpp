@@ -9,8 +9,8 @@
 
 #include "base/bytes.hpp"
 #include "results/recorder.hpp"
-#include "run/peaks.hpp"
 #include "run/plan.hpp"
+#include "run/response_extremes.hpp"
 #include "run/shared_beam.hpp"
 #include "traverse/scene/scene.hpp"
 
@@ -63,7 +63,7 @@ class DeckAcceleration {
   /// Takes an instant at a multiple of the plan's interval, and leaves out the others.
   void add(double t, std::span<const beam::Response> probes);
   /// After the last instant, once: filters all series, and adds the extremes before their unsettled ends to the peaks.
-  void finish(Peaks& peaks);
+  void finish(ResponseExtremes& peaks);
   /// After finish. The peak of the whole series.
   results::LowPassed peak() const { return peak_of(kept_, stations_, frequency_, interval_); }
   /// Whether that is within the unsettled end.

@@ -7,7 +7,7 @@
 
 namespace traverse::app {
 
-std::vector<results::Recorder::Dataset> envelopes(const Peaks& peaks, bool forces) {
+std::vector<results::Recorder::Dataset> envelopes(const ResponseExtremes& peaks, bool forces) {
   std::vector<results::Recorder::Dataset> sets;
   if (peaks.probes() == 0) return sets;
   const auto add = [&](const std::string& name, Quantity q, double Range::End::*number, const char* unit) {

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "results/recorder.hpp"
-#include "run/peaks.hpp"
+#include "run/response_extremes.hpp"
 
 namespace traverse::app {
 
 /// /envelope/deflection, acceleration, moment, shear, each [p,2]: least and greatest, between samples as peaks are;
 /// each with _time (s); moment_shear and shear_moment: the shear, and the moment, at these instants. forces: whether
 /// moments and shears are known.
-std::vector<results::Recorder::Dataset> envelopes(const Peaks& peaks, bool forces);
+std::vector<results::Recorder::Dataset> envelopes(const ResponseExtremes& peaks, bool forces);
 
 }  // namespace traverse::app

@@ -13,9 +13,9 @@
 
 namespace traverse::app {
 
-norm::LoadModel train_at_rest(std::string name, const std::vector<coupling::PassingWeight>& weights) {
+norm::LoadModel train_at_rest(std::string name, const std::vector<coupling::StaticLoad>& weights) {
   std::vector<double> forces, x;
-  for (const coupling::PassingWeight& weight : weights) {
+  for (const coupling::StaticLoad& weight : weights) {
     forces.push_back(weight.force);
     x.push_back(weight.x);
   }
@@ -51,7 +51,7 @@ norm::NormCheck norm_check(const Scene& scene, std::vector<norm::LoadModel> trai
   return {*scene.beam, *scene.norm, std::move(trains), scene.output.probes};
 }
 
-norm::Passed passed_once(const Scene& scene, const Peaks& peaks) {
+norm::Passed passed_once(const Scene& scene, const ResponseExtremes& peaks) {
   norm::Passed passed{{greatest_speed(scene)}, scene.output.probes, {{}}};
   for (const Extreme& peak : peaks.largest_of_each(deflection))
     passed.trains[0].deflection.push_back(std::abs(peak.value));

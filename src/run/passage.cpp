@@ -8,11 +8,11 @@
 
 #include "integrate/integrator_choice.hpp"
 #include "results/stage.hpp"
-#include "run/axle_passages.hpp"
-#include "run/peaks.hpp"
+#include "run/axle_load_records.hpp"
 #include "run/resolution.hpp"
+#include "run/response_extremes.hpp"
+#include "structure/active_window.hpp"
 #include "structure/modal_structure.hpp"
-#include "structure/rest_window.hpp"
 
 namespace traverse::app {
 namespace {
@@ -34,10 +34,10 @@ std::vector<double> passages(const Scene& scene, const Plan& plan) {
 
 }  // namespace
 
-coupling::SystemInput system_input(const Scene& scene, bool still) {
+coupling::SystemInput system_input(const Scene& scene, bool predicted) {
   coupling::SystemInput input = {scene.vehicles, scene.train,       scene.load,         scene.profile,
-                                 scene.gravity,  scene.self_weight, scene.impact_steps, scene.model.contact_seats};
-  if (!still) {
+                                 scene.gravity,  scene.self_weight, scene.impact_steps, scene.model.local_compliance};
+  if (!predicted) {
     const auto own = integrate::own_method(scene.model.method);
     const double solves = own ? static_cast<double>(own->stages.size()) : usual_solves;
     input.impact_steps *= static_cast<int>(std::max(1.0, usual_solves / solves));
@@ -75,7 +75,7 @@ Passage::Passage(const Scene& scene, const SharedBeam& shared, std::vector<std::
                    plan_.interval, plan_.stored);
     method = modal_->method();
   } else {
-    leave_out_rest(notes);
+    limit_to_active_window(notes);
     integrate::Settings settings{plan_.end_time, plan_.time_step, plan_.interval,
                                  system_.known_events(plan_.end_time, scene.model.step_kinks),
                                  scene.contact_tolerance.value_or(1e-3 * plan_.time_step)};
@@ -105,15 +105,15 @@ void Passage::add_axle_passages(std::vector<double>& times) const {
   times.erase(std::unique(times.begin(), times.end()), times.end());
 }
 
-void Passage::leave_out_rest(std::vector<std::string>& notes) {
+void Passage::limit_to_active_window(std::vector<std::string>& notes) {
   const beam::Beam* beam = system_.beam();
   if (still_ || beam == nullptr || scene_.model.modes > 0) return;
   const bool apart = beam->parts().size() > 2;
   const double tolerance = scene_.model.rest_tolerance >= 0.0 ? scene_.model.rest_tolerance
-                           : apart                            ? structure::RestWindow::quiet
+                           : apart                            ? structure::ActiveWindow::quiet
                                                               : 0.0;
   if (tolerance == 0.0) return;
-  system_.leave_out_rest(tolerance, scene_.output.probes);
+  system_.limit_to_active_window(tolerance, scene_.output.probes);
   notes.push_back(fmt::format("what moves less than {:g} of the largest motion rests and is left out of the steps{}",
                               tolerance, scene_.model.rest_tolerance >= 0.0 ? "" : "; -model_window 0 steps all"));
 }

@@ -15,7 +15,7 @@
 namespace traverse::app {
 
 /// What a scene puts on its structure. still: it stands where it starts.
-coupling::SystemInput system_input(const Scene& scene, bool still);
+coupling::SystemInput system_input(const Scene& scene, bool predicted);
 
 /// The bridge by its modes where vehicles run on these; else by its elements, or none.
 std::unique_ptr<structure::Structure> carrier(const Scene& scene, const SharedBeam& shared,
@@ -51,7 +51,7 @@ class Passage {
 
  private:
   void add_axle_passages(std::vector<double>& times) const;
-  void leave_out_rest(std::vector<std::string>& notes);
+  void limit_to_active_window(std::vector<std::string>& notes);
 
   const Scene& scene_;
   const SharedBeam& shared_;

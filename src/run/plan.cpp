@@ -108,7 +108,7 @@ void plan_modal(const Scene& scene, double first_period, Plan& plan, std::vector
         fmt::format("samples every {:g} s: from the first period; output_interval changes it, which "
                     "changes nothing in the motion",
                     plan.interval));
-  plan.stored = static_cast<long>(std::max(1.0, std::ceil(plan.interval / scene.looks * (1.0 - 1e-9))));
+  plan.stored = static_cast<long>(std::max(1.0, std::ceil(plan.interval / scene.sampling_interval * (1.0 - 1e-9))));
   plan.interval /= static_cast<double>(plan.stored);
 }
 
@@ -151,20 +151,22 @@ Plan make_plan(const Scene& scene, const coupling::System& system, double first_
     notes.push_back(fmt::format("output_interval {:g} s is longer than the run: of its series only the start is stored",
                                 *scene.output.interval));
   // Peaks are looked for between stored samples, too, where these are further apart.
-  const double looks =
-      scene.beam ? std::min(scene.looks, shortest_scale(scene, first_period) / looks_a_period) : scene.looks;
+  const double sampling_interval =
+      scene.beam ? std::min(scene.sampling_interval, shortest_scale(scene, first_period) / looks_a_period)
+                 : scene.sampling_interval;
   if (scene.output.interval) {
     plan.interval = std::min(*scene.output.interval, most_steps * plan.time_step);  // which is beyond the run, too
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.interval / plan.time_step * (1.0 - 1e-9))));
-    plan.stored =
-        scene.model.step_probes ? steps : looks_among(steps, plan.interval / static_cast<double>(steps), looks);
+    plan.stored = scene.model.step_probes
+                      ? steps
+                      : looks_among(steps, plan.interval / static_cast<double>(steps), sampling_interval);
     plan.interval /= static_cast<double>(plan.stored);
     if (plan.interval * static_cast<double>(plan.stored) < plan.time_step * (1.0 - 1e-9))
       notes.push_back(
           fmt::format("steps end at every stored sample: output_interval {:g} s limits the step", plan.interval));
   } else {
     const long steps = static_cast<long>(std::max(1.0, std::ceil(plan.end_time / plan.time_step / stored_samples)));
-    plan.stored = scene.model.step_probes ? steps : looks_among(steps, plan.time_step, looks);
+    plan.stored = scene.model.step_probes ? steps : looks_among(steps, plan.time_step, sampling_interval);
     plan.interval = plan.time_step * static_cast<double>(steps) / static_cast<double>(plan.stored);
   }
   move_end_to_sample(plan);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "recovery/recovery.hpp"
-#include "run/curve.hpp"
+#include "run/extremum_tracker.hpp"
 #include "run/quantity.hpp"
 
 namespace traverse::app {
@@ -107,7 +107,7 @@ class ProbeForces {
   /// An instant on one side of all passages, of the piece that has begun or of the next one.
   template <class Note>
   void go_on(const Forces& now, const beam::Response& r, double lag, Note& note) {
-    if (has_ahead_ && instants_ == 1) note_sides(latest_[0].at(ahead_.time, now), now, lag, note);
+    if (has_ahead_ && instants_ == 1) record_sides(latest_[0].at(ahead_.time, now), now, lag, note);
     shear_.add(now.time, now.shear, r.shear - now.shear, lag, of_shear(note));
     if (has_axial_) axial_.add(now.time, now.axial, r.axial_force - now.axial, lag, of_axial(note));
     latest_ = {now, latest_[0]};
@@ -123,7 +123,7 @@ class ProbeForces {
   // Where the moment, which does not jump, is not the same from both sides, instants are too far apart for straight
   // lines.
   template <class Note>
-  void note_sides(const Forces& behind, const Forces& now, double lag, Note& note) {
+  void record_sides(const Forces& behind, const Forces& now, double lag, Note& note) {
     has_ahead_ = false;
     const double allowed = same_moment * largest_moment_ + hinged * std::abs(behind.shear);
     if (std::abs(behind.moment - ahead_.moment) > allowed) return;
@@ -156,8 +156,8 @@ class ProbeForces {
   }
 
   static constexpr std::array<double, 2> none{};
-  Curve moment_;
-  RelaxingCurve lagging_;
+  ExtremumTracker moment_;
+  LaggedMomentTracker lagging_;
   JumpingCurve shear_, axial_;
   std::array<Forces, 2> latest_{};         // of the piece between two passages, relaxed, the last one first
   std::size_t instants_ = 0, passed_ = 0;  // in this piece; of the passages

@@ -17,12 +17,12 @@ namespace {
 
 // s, of a coach's stage: what its rank does alone, and its contacts, which every rank solves with all others.
 constexpr double vehicle_alone = 3.0e-6, vehicle_contacts = 1.7e-6;
-constexpr double messages = 9.0;           // in a stage, as counted on two ranks (doc/scaling.md)
-constexpr double late = 0.5e-6;            // s, by which ranks come late to a message
-constexpr double worth = 0.85;             // more ranks have to take less than that part of what fewer take
-constexpr int most_told = 1024;            // ranks
-constexpr int batches = 7, batch = 100;    // of messages that tell their latency
-constexpr double pause = 2e-5;             // s, from one of these to the next, in which ranks compute
+constexpr double messages = 9.0;         // in a stage, as counted on two ranks (doc/scaling.md)
+constexpr double late = 0.5e-6;          // s, by which ranks come late to a message
+constexpr double worth = 0.85;           // more ranks have to take less than that part of what fewer take
+constexpr int most_told = 1024;          // ranks
+constexpr int batches = 7, batch = 100;  // of messages that tell their latency
+constexpr double pause = 2e-5;           // s, from one of these to the next, in which ranks compute
 
 }  // namespace
 

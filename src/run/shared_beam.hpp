@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "response/beam_operator.hpp"
+#include "structure/beam_operator.hpp"
 #include "structure/modal_bridge.hpp"
 #include "traverse/scene/scene.hpp"
 

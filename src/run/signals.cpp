@@ -70,7 +70,7 @@ void look_at_ignored_signals() {
   }
 }
 
-void take_signals() {
+void install_handlers() {
   for (const Taken& taken : signals) {
     struct sigaction action = {};
     action.sa_handler = taken.ignored ? SIG_IGN : take;

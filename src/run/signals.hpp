@@ -10,7 +10,7 @@ namespace traverse::app {
 void look_at_ignored_signals();
 /// Takes over SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE and SIGXCPU, and SIGUSR1, which ends nothing: at the start, and
 /// again after a library has set handlers of its own. SIGXFSZ is ignored: the file that may not grow says so.
-void take_signals();
+void install_handlers();
 /// A limit of the processor's time may kill without a word (ulimit -t): SIGXCPU comes a little before it.
 void heed_cpu_limit();
 /// Only one rank of several tells the user of a signal.

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "base/one_step_methods.hpp"
 #include "beam/layered_track.hpp"
-#include "methods/one_step_methods.hpp"
 
 namespace traverse::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "run/low_pass.hpp"
-#include "run/peaks.hpp"
+#include "run/response_extremes.hpp"
 
 namespace traverse::app {
 namespace {

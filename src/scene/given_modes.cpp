@@ -230,7 +230,7 @@ class ModesText {
 beam::GivenModes read_given_modes(const std::string& path, int track) {
   if (!options::is_mounted(path) && results::is_hdf5(path)) {
     const std::string text = results::modes_as_text(path);
-    options::note_text(path, text);
+    options::record_text(path, text);
     std::istringstream stream(text);
     return ModesText(path, track).read(stream);
   }

@@ -67,9 +67,9 @@ std::string in_words(const train::Course& course) {
   const base::SpeedLaw& law = course.speed;
   if (law.direction() == 0.0) return course.name + " stands";
   if (law.constant()) return fmt::format("{} at {:g} m/s {}", course.name, law.fastest(), side(law.direction()));
-  const double still = law.standstill();
+  const double predicted = law.standstill();
   return fmt::format("{} at up to {:g} m/s {}{}", course.name, law.fastest(), side(law.direction()),
-                     std::isfinite(still) ? fmt::format(", at rest after {:.6g} s", still) : "");
+                     std::isfinite(predicted) ? fmt::format(", at rest after {:.6g} s", predicted) : "");
 }
 
 }  // namespace

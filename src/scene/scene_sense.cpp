@@ -99,7 +99,7 @@ double overlap(const Options& o, const Scene& scene, std::size_t front, std::siz
   return deepest;
 }
 
-void note_overlaps(const Options& o, Scene& scene) {
+void record_overlaps(const Options& o, Scene& scene) {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
     if (!wheels_at_start(scene, i).empty()) order.push_back(i);
@@ -140,7 +140,7 @@ void check_ground(const Options& o, const Scene& scene) {
   }
 }
 
-void note_speeds(const Options& o, Scene& scene) {
+void record_speeds(const Options& o, Scene& scene) {
   const bool swept = scene.sweep && !scene.sweep->speeds.empty();
   const double speed = swept ? scene.sweep->speeds.back() : greatest_speed(scene);
   if (!(speed > fastest_train)) return;
@@ -150,7 +150,7 @@ void note_speeds(const Options& o, Scene& scene) {
 }
 
 /// A table that does not reach the ends of the beam is continued by its end values.
-void note_table(const std::string& option, const beam::Distribution& table, double length, Scene& scene) {
+void record_table(const std::string& option, const beam::Distribution& table, double length, Scene& scene) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const std::vector<double> x = table.breaks(-infinity, infinity);
   if (x.empty()) return;
@@ -170,23 +170,23 @@ void note_table(const std::string& option, const beam::Distribution& table, doub
   }
 }
 
-void note_tables(Scene& scene) {
+void record_tables(Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   const double length = std::accumulate(beam.spans.begin(), beam.spans.end(), 0.0);
-  if (beam.cuts.empty()) note_table("beam_EI", beam.EI, length, scene);
-  note_table("beam_EA", beam.EA, length, scene);
-  if (beam.GA) note_table("beam_GA", *beam.GA, length, scene);
-  note_table("beam_mass", beam.mass, length, scene);
-  note_table("beam_rotary_inertia", beam.rotary_inertia, length, scene);
+  if (beam.cuts.empty()) record_table("beam_EI", beam.EI, length, scene);
+  record_table("beam_EA", beam.EA, length, scene);
+  if (beam.GA) record_table("beam_GA", *beam.GA, length, scene);
+  record_table("beam_mass", beam.mass, length, scene);
+  record_table("beam_rotary_inertia", beam.rotary_inertia, length, scene);
   for_beds(beam.foundation, [&](const beam::FoundationKind& kind, const beam::Bed& bed) {
     const std::string option = "foundation_" + std::string(kind.name);
-    note_table(option + "_k", bed.k, length, scene);
-    note_table(option + "_c", bed.c, length, scene);
+    record_table(option + "_k", bed.k, length, scene);
+    record_table(option + "_c", bed.c, length, scene);
   });
 }
 
 /// Neither the bridge nor what it stands on takes energy out of its motion.
-void note_damping(Scene& scene) {
+void record_damping(Scene& scene) {
   const beam::BeamModel& beam = *scene.beam;
   if (scene.analysis != Analysis::transient || scene.damping.rayleigh || scene.damping.ratios || beam.given ||
       beam.track || !scene.damping_of_modes.empty() || beam.foundation.nonlinear())
@@ -205,7 +205,7 @@ void note_damping(Scene& scene) {
 
 /// Roughness begins at the first wheel and grows to its height over some way: wheels that start at the bridge meet
 /// little of it in the first span.
-void note_rough_start(Scene& scene) {
+void record_rough_start(Scene& scene) {
   if (scene.analysis != Analysis::transient || !scene.roughness || scene.train.vehicles.empty() ||
       scene.train.courses.size() > 1)
     return;
@@ -222,7 +222,7 @@ void note_rough_start(Scene& scene) {
 }
 
 /// Rows of a file of axles whose x grows lie ahead of each other.
-void note_axles(const Options& o, Scene& scene) {
+void record_axles(const Options& o, Scene& scene) {
   for (const Block& block : blocks_of(o, "loads")) {
     const std::string file = block.option("file");
     if (!o.has(file) || o.has(block.option("file_x")) || load_option(o, block.name) != file) continue;
@@ -235,18 +235,18 @@ void note_axles(const Options& o, Scene& scene) {
   }
 }
 
-void note_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
+void record_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   if (!vehicles.unused.empty())
     scene.notes.push_back(
         fmt::format("defined, but not in the train (train_vehicles): {}", fmt::join(vehicles.unused, ", ")));
-  note_overlaps(o, scene);
-  note_speeds(o, scene);
+  record_overlaps(o, scene);
+  record_speeds(o, scene);
   if (!scene.beam) return;
   check_ground(o, scene);
-  note_tables(scene);
-  note_damping(scene);
-  note_rough_start(scene);
-  note_axles(o, scene);
+  record_tables(scene);
+  record_damping(scene);
+  record_rough_start(scene);
+  record_axles(o, scene);
   if (scene.analysis == Analysis::modes) return;
   for (const Moving& moving : moving_things(scene)) check_start(o, moving, scene);
 }
@@ -255,7 +255,7 @@ void note_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
 
 void check_sense(const Options& o, const NamedVehicles& vehicles, Scene& scene) {
   const std::size_t before = scene.notes.size();
-  note_sense(o, vehicles, scene);
+  record_sense(o, vehicles, scene);
   scene.unusual.assign(scene.notes.begin() + static_cast<std::ptrdiff_t>(before), scene.notes.end());
 }
 

@@ -123,11 +123,11 @@ class Axes {
       runs_ *= count;
       sizes_ += fmt::format("{}{:g} of {}", sizes_.empty() ? "" : " times ", count, dimension.name());
     } else if (combine_ == "together") {
-      join("row", static_cast<std::size_t>(count), dimension);
+      merge("row", static_cast<std::size_t>(count), dimension);
       runs_ = count;
     } else {
       draw_from_list(dimension);
-      join("draw", draws(dimension.name()), dimension);
+      merge("draw", draws(dimension.name()), dimension);
       runs_ = static_cast<double>(draws_);
     }
     study_.dimensions.push_back(std::move(dimension));
@@ -143,7 +143,7 @@ class Axes {
       runs_ = static_cast<double>(count);
     }
     if (runs_ <= most_runs) dimension.values = reader.draws(seed_, count);
-    join(combine_ == "together" ? "row" : "draw", count, dimension);
+    merge(combine_ == "together" ? "row" : "draw", count, dimension);
     study_.dimensions.push_back(std::move(dimension));
   }
   double runs() const { return runs_; }
@@ -159,7 +159,7 @@ class Axes {
     return draws_;
   }
   /// Puts a dimension on the axis that several share.
-  void join(const char* name, std::size_t length, StudyDimension& dimension) {
+  void merge(const char* name, std::size_t length, StudyDimension& dimension) {
     if (!joint_) {
       joint_ = study_.axes.size();
       study_.axes.push_back({name, length});
@@ -292,7 +292,7 @@ double named_damping(const Scene& scene) {
 }
 
 /// Limits that are judged at a list of speeds farther apart than a resonance is wide at half its power, 2 zeta v.
-void note_coarse_speeds(Scene& scene) {
+void record_coarse_speeds(Scene& scene) {
   const Study& study = *scene.study;
   const auto speeds = std::find_if(study.dimensions.begin(), study.dimensions.end(), is_speed);
   if (speeds == study.dimensions.end() || speeds->law != "list" || study.refine > 0.0 || !scene.judges_runs()) return;
@@ -318,7 +318,7 @@ void check_study(const Options& o, Scene& scene) {
   for (const StudyDimension& d : study.dimensions)
     if (d.name() == "track_seed" && !scene.roughness)
       o.refuse(first, fmt::format("track_seed has no effect: track_profile is {}", o.text("track_profile")));
-  note_coarse_speeds(scene);
+  record_coarse_speeds(scene);
   const double peaks = static_cast<double>(study.runs()) * static_cast<double>(scene.output.probes.size());
   if (peaks > most_study_peaks)
     o.refuse(first, fmt::format("{} runs with {} probes each; allowed: at most {:g} of both multiplied", study.runs(),

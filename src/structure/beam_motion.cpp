@@ -46,16 +46,16 @@ void BeamMotion::begin(const Method& method) {
     Stage stage;
     stage.rate = rule.rate;
     stage.displacement = rule.displacement;
-    v_and_w(rule.w_in_v, rule.a_in_v, rule.a_in_w, stage.v_still, stage.w_still);
+    v_and_w(rule.w_in_v, rule.a_in_v, rule.a_in_w, stage.v_predicted, stage.w_predicted);
     const double c = a / (1.0 + a * rule.rate);
     stage.a.kept[stages_.size() + 1] = 1.0;
-    stage.a.add(-c, stage.w_still);
-    stage.v = stage.v_still;
+    stage.a.add(-c, stage.w_predicted);
+    stage.v = stage.v_predicted;
     stage.v.add(rule.displacement, stage.a);
-    stage.w = stage.w_still;
+    stage.w = stage.w_predicted;
     stage.w.add(rule.rate, stage.a);
-    stage.e = stage.v_still;
-    stage.e.add(b - c * (b * rule.rate + rule.displacement), stage.w_still);
+    stage.e = stage.v_predicted;
+    stage.e.add(b - c * (b * rule.rate + rule.displacement), stage.w_predicted);
     stages_.push_back(stage);
     accelerations[stages_.size()] = stage.a;
   }
@@ -89,7 +89,7 @@ void BeamMotion::solve(std::size_t stage, const double* v, const double* w, cons
   measuring_ = stage == 0 && measure_;
   if (stage == 0) dissipation_ = {};
   const Sum rate{0.0, 1.0, {}};
-  exchange_borders({&stage_->e, &rate, &stage_->w_still});
+  exchange_borders({&stage_->e, &rate, &stage_->w_predicted});
   target_ = kept(stage);
   const BeamFactor& factor = operator_.factored(stage_->rate / stage_->displacement, 1.0 / stage_->displacement);
   if (!ranged_) factor.solve(target_, *this);
@@ -187,7 +187,7 @@ void BeamMotion::fill_tile(int first, int past) {
   Tile elastic, rate, force;
   if (measuring_) measure_dissipation(first, past, ghosts_[1], rate, force);
   force.clear(block_, nodes);
-  const Summand of_e{stage_->e, ghosts_[0], elastic}, of_w{stage_->w_still, ghosts_[2], rate};
+  const Summand of_e{stage_->e, ghosts_[0], elastic}, of_w{stage_->w_predicted, ghosts_[2], rate};
   if (proportional_) {
     combine(std::array{of_e}, first, past);
     add_elastic(first, past, elastic, nullptr, force);
@@ -228,9 +228,10 @@ void BeamMotion::states(std::size_t stage, const double* v, const double* w, std
   terms_of<2>({&stages_[stage].v, &stages_[stage].w}, view_of(v, w)).evaluate(from, size, {v_stage, w_stage});
 }
 
-void BeamMotion::still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const {
+void BeamMotion::predicted(std::size_t stage, const double* v, const double* w, double* v_predicted,
+                           double* w_predicted) const {
   const Stage& s = stages_[stage];
-  terms_of<2>({&s.v_still, &s.w_still}, view_of(v, w)).evaluate(0, n_, {v_still, w_still});
+  terms_of<2>({&s.v_predicted, &s.w_predicted}, view_of(v, w)).evaluate(0, n_, {v_predicted, w_predicted});
 }
 
 void BeamMotion::error(const double* v, const double* w, double* error_of_v, double* error_of_w) const {

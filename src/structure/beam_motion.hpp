@@ -20,11 +20,11 @@
 #include <utility>
 #include <vector>
 
+#include "base/one_step_methods.hpp"
 #include "beam/element_rows.hpp"
-#include "methods/one_step_methods.hpp"
-#include "response/beam_operator.hpp"
-#include "response/tile.hpp"
+#include "structure/beam_operator.hpp"
 #include "structure/ranges.hpp"
+#include "structure/tile.hpp"
 
 namespace traverse::structure {
 
@@ -72,7 +72,7 @@ class BeamMotion final : private solve::NodeFiller {
   double power(std::size_t stage, const double* v, const double* w);
 
   /// v~ and w~ of this rank's unknowns.
-  void still(std::size_t stage, const double* v, const double* w, double* v_still, double* w_still) const;
+  void predicted(std::size_t stage, const double* v, const double* w, double* v_predicted, double* w_predicted) const;
   /// v and w of a solved stage at the unknowns [from, from + size), and at one of them.
   void states(std::size_t stage, const double* v, const double* w, std::ptrdiff_t from, int size, double* v_stage,
               double* w_stage) const;
@@ -111,7 +111,7 @@ class BeamMotion final : private solve::NodeFiller {
     void add(double by, const Sum& other);
   };
   struct Stage {
-    Sum v_still, w_still, a, e;
+    Sum v_predicted, w_predicted, a, e;
     Sum v, w;                               // once it is solved
     double rate = 0.0, displacement = 0.0;  // k1, k2
   };

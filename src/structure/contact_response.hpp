@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "response/beam_operator.hpp"
+#include "structure/beam_operator.hpp"
 #include "structure/contact_field.hpp"
 #include "structure/ranges.hpp"
 

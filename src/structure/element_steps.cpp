@@ -10,7 +10,7 @@ constexpr double measured_steps = 2.0;  // of one stage, from one look at what i
 
 }  // namespace
 
-void ElementStructure::leave_out_rest(double tolerance, const std::vector<double>& probes) {
+void ElementStructure::limit_to_active_window(double tolerance, const std::vector<double>& probes) {
   rest_tolerance_ = tolerance;
   watched_.clear();
   for (double x : probes)
@@ -164,11 +164,11 @@ void ElementStructure::complete_step(double* v, double* w) {
     }
     unmeasured_ += length_;
   }
-  if (nonlinear_) nonlinear_->settle(v);
+  if (nonlinear_) nonlinear_->update_slip(v);
   if (window_) window_->close(*motion_, v, w);
 }
 
-void ElementStructure::take_back_step(double* v, double* w) {
+void ElementStructure::reject_step(double* v, double* w) {
   dissipated_ = before_.dissipated;
   worked_ = before_.worked;
   stepped_ = incomplete_ = false;

@@ -106,7 +106,7 @@ void ElementStructure::add_values(const std::vector<int>& elements, const double
 void ElementStructure::begin_statics(bool loaded) {
   stage_ = {};
   stage_.loaded = loaded;
-  for (std::vector<double>* still : {&v_still_, &w_still_}) std::fill(still->begin(), still->end(), 0.0);
+  for (std::vector<double>* predicted : {&v_still_, &w_still_}) std::fill(predicted->begin(), predicted->end(), 0.0);
   const bool settled = !beam_.imposed().empty();
   if (settled) v_still_ = beam_.imposed();
   if (nonlinear_) nonlinear_->begin(0.0, settled ? v_still_.data() : nullptr, nullptr, nullptr);
@@ -121,8 +121,8 @@ void ElementStructure::begin_stage(double shift, const double* c_v, const double
   stage_.kind = Kind::state;
   stage_.shift = shift;
   stage_.shift2 = shift * shift;
-  for (std::vector<double>* still : {&v_still_, &w_still_})
-    if (!(shift > 0.0)) std::fill(still->begin(), still->end(), 0.0);
+  for (std::vector<double>* predicted : {&v_still_, &w_still_})
+    if (!(shift > 0.0)) std::fill(predicted->begin(), predicted->end(), 0.0);
   if (shift > 0.0) {
     for (int i = 0; i < n_; ++i) w_still_[i] = -c_w[i] / shift;
     for (int i = 0; i < n_; ++i) v_still_[i] = (w_still_[i] - c_v[i]) / shift;
@@ -141,7 +141,7 @@ void ElementStructure::begin_stage(std::size_t i, const double* v, const double*
   stage_.v = v;
   stage_.w = w;
   if (fused()) return;
-  motion_->still(i, v, w, v_still_.data(), w_still_.data());
+  motion_->predicted(i, v, w, v_still_.data(), w_still_.data());
   if (nonlinear_) nonlinear_->begin(stage_.shift, v_still_.data(), w_still_.data(), w);
   load_of_stills();
 }
@@ -170,7 +170,7 @@ void ElementStructure::solve_free() {
   ++statics_->solves;
 }
 
-const ElementCompliance& ElementStructure::yield(const std::vector<int>& elements) {
+const ElementCompliance& ElementStructure::compliance(const std::vector<int>& elements) {
   if (!elements.empty()) compliance_.prepare(stage_.shift, stage_.shift2, stage_.added, elements);
   return compliance_;
 }
@@ -244,9 +244,9 @@ void ElementStructure::end_stage(double* v, double* w) {
   }
 }
 
-void ElementStructure::settle(const double* v, const std::vector<Reach>& loaded) {
+void ElementStructure::update_slip(const double* v, const std::vector<Reach>& loaded) {
   if (!nonlinear_) return;
-  nonlinear_->settle(v);
+  nonlinear_->update_slip(v);
   stand(loaded);
 }
 

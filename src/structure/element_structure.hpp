@@ -9,7 +9,7 @@
 //
 // Stages of steps of a beam without hinges whose foundations are linear are fused with the solver's sweep (BeamMotion).
 // Where it has Rayleigh's damping alone, spans that do not touch those under the loads go through all stages of a step
-// at once, and what is at rest stays out of the steps (RestWindow).
+// at once, and what is at rest stays out of the steps (ActiveWindow).
 #pragma once
 
 #include <array>
@@ -19,10 +19,10 @@
 #include <utility>
 #include <vector>
 
-#include "response/compliance.hpp"
+#include "structure/active_window.hpp"
 #include "structure/beam_motion.hpp"
+#include "structure/compliance.hpp"
 #include "structure/contact_response.hpp"
-#include "structure/rest_window.hpp"
 #include "structure/structure.hpp"
 
 namespace traverse::structure {
@@ -43,7 +43,7 @@ class ElementStructure final : public Structure {
   void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) override;
   void begin_stage(std::size_t i, const double* v, const double* w) override;
   void solve_free() override;
-  const ElementCompliance& yield(const std::vector<int>& elements) override;
+  const ElementCompliance& compliance(const std::vector<int>& elements) override;
   void take(const std::vector<double>& loads) override;
   const ContactField& begin_passes(const std::vector<int>& elements) override;
   const ElementCompliance& own_compliance() const override;
@@ -53,11 +53,11 @@ class ElementStructure final : public Structure {
   void take_loads() override;
   Verdict judge() override;
   void end_stage(double* v, double* w) override;
-  void settle(const double* v, const std::vector<Reach>& loaded) override;
+  void update_slip(const double* v, const std::vector<Reach>& loaded) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
   std::string trouble() const override;
 
-  void leave_out_rest(double tolerance, const std::vector<double>& probes) override;
+  void limit_to_active_window(double tolerance, const std::vector<double>& probes) override;
   std::optional<double> energy_left() const override {
     return window_ ? std::optional(window_->energy_left()) : std::nullopt;
   }
@@ -68,7 +68,7 @@ class ElementStructure final : public Structure {
   void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) override;
   void finish_step(double* v, double* w) override;
   void complete_step(double* v, double* w) override;
-  void take_back_step(double* v, double* w) override;
+  void reject_step(double* v, double* w) override;
   const double* acceleration() const override { return motion_->start_acceleration(); }
   double error_energy(const double* v, const double* w) override;
 
@@ -121,7 +121,7 @@ class ElementStructure final : public Structure {
   Method method_;
   double length_ = 0.0;  // s, of a step
   std::optional<BeamMotion> motion_;
-  std::optional<RestWindow> window_;
+  std::optional<ActiveWindow> window_;
   double longest_span_ = 0.0;    // m
   double rest_tolerance_ = 0.0;  // 0: everything is stepped
   std::vector<int> watched_;     // columns of probes

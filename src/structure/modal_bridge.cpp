@@ -139,10 +139,10 @@ void ModalBridge::add_probes(const std::vector<double>& stations, double gravity
   probes_.count = stations.size();
   if (given()) return add_given_probes(stations);
   beam::Recovery recovery(beam_, stations, 0.0);
-  note_forms(recovery);
-  if (forces_on_others_.cols() > 0) note_others(recovery);
+  record_forms(recovery);
+  if (forces_on_others_.cols() > 0) record_others(recovery);
   beam::Recovery heavy(beam_, stations, gravity);
-  note_weight(heavy, gravity);
+  record_weight(heavy, gravity);
   std::vector<Line> lines = lines_of_modes();
   for (const auto quantity : {&beam::Response::deflection, &beam::Response::moment})
     for (std::size_t p = 0; p < stations.size(); ++p) lines.push_back(correction_of(recovery, p, quantity));
@@ -187,7 +187,7 @@ ModalSlopes ModalBridge::slopes(const std::vector<int>& unknowns, double gravity
   return slopes;
 }
 
-void ModalBridge::note_forms(beam::Recovery& recovery) {
+void ModalBridge::record_forms(beam::Recovery& recovery) {
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
   std::vector<beam::Response> seen;
   for (std::size_t i = 0; i < modes(); ++i) {
@@ -211,7 +211,7 @@ void ModalBridge::note_forms(beam::Recovery& recovery) {
 }
 
 /// Of each mode's rate: what its forces on the others deflect these by.
-void ModalBridge::note_others(beam::Recovery& recovery) {
+void ModalBridge::record_others(beam::Recovery& recovery) {
   const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
   const std::vector<double> zero(beam_.local_unknowns(), 0.0);
   std::vector<beam::Response> seen;
@@ -235,7 +235,7 @@ std::vector<double> ModalBridge::sagging(double gravity) {
   return static_solution(weight);
 }
 
-void ModalBridge::note_weight(beam::Recovery& recovery, double gravity) {
+void ModalBridge::record_weight(beam::Recovery& recovery, double gravity) {
   const auto begin = static_cast<std::ptrdiff_t>(beam_.first_column()) * beam_.block();
   const std::vector<double> sagged = sagging(gravity), zero(beam_.local_unknowns(), 0.0);
   std::vector<beam::Response> seen;

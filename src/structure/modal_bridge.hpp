@@ -18,7 +18,7 @@
 
 #include "modes/modes.hpp"
 #include "recovery/recovery.hpp"
-#include "response/beam_operator.hpp"
+#include "structure/beam_operator.hpp"
 #include "structure/complex_modes.hpp"
 
 namespace traverse::structure {
@@ -111,9 +111,9 @@ class ModalBridge {
   void set_damping(const std::vector<double>& ratios);
   void set_forces_on_others(const Eigen::MatrixXd& forces, const Eigen::MatrixXd& share);
   void add_given_probes(const std::vector<double>& stations);
-  void note_forms(beam::Recovery& recovery);
-  void note_others(beam::Recovery& recovery);
-  void note_weight(beam::Recovery& recovery, double gravity);
+  void record_forms(beam::Recovery& recovery);
+  void record_others(beam::Recovery& recovery);
+  void record_weight(beam::Recovery& recovery, double gravity);
   Line correction_of(beam::Recovery& recovery, std::size_t probe, double beam::Response::*quantity);
   std::vector<Line> lines_of_modes() const;
   Line line_of(const std::vector<double>& load, const std::function<double(std::size_t)>& form);

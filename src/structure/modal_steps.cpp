@@ -74,7 +74,7 @@ void ModalStructure::solve_free() {
   divide(q_.data(), z_.data());
 }
 
-const ElementCompliance& ModalStructure::yield(const std::vector<int>& elements) {
+const ElementCompliance& ModalStructure::compliance(const std::vector<int>& elements) {
   elements_ = elements;
   yield_.prepare(elements);
   return yield_;
@@ -194,7 +194,7 @@ void ModalStructure::finish_step(double* v, double* w) {
   powers_[0] = powers_[rule.known - 1];
 }
 
-void ModalStructure::take_back_step(double* v, double* w) {
+void ModalStructure::reject_step(double* v, double* w) {
   dissipated_ = before_.dissipated;
   worked_ = before_.worked;
   std::copy(before_.v.begin(), before_.v.end(), v);

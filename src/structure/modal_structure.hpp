@@ -33,7 +33,7 @@ class ModalStructure final : public Structure {
   void begin_stage(double shift, const double* c_v, const double* c_w, const double* w_guess) override;
   void begin_stage(std::size_t i, const double* v, const double* w) override;
   void solve_free() override;
-  const ElementCompliance& yield(const std::vector<int>& elements) override;
+  const ElementCompliance& compliance(const std::vector<int>& elements) override;
   void take(const std::vector<double>& loads) override;
   void end_stage(double* v, double* w) override;
   void end_stage(std::size_t i, const double* v, const double* w) override;
@@ -43,7 +43,7 @@ class ModalStructure final : public Structure {
   void restart(const std::vector<Reach>& loaded, double* v, double* w, const double* a) override;
   void begin_step(const std::vector<Reach>& loaded, const double* v, const double* w, bool keep) override;
   void finish_step(double* v, double* w) override;
-  void take_back_step(double* v, double* w) override;
+  void reject_step(double* v, double* w) override;
   const double* acceleration() const override { return kept_[0].data(); }
   double error_energy(const double* v, const double* w) override;
 

@@ -31,7 +31,7 @@ NonlinearFoundation::NonlinearFoundation(const beam::Beam& beam, const BeamOpera
   }
   for (const beam::NonlinearPoint& its : beam::sliding_sleepers(beam.bridge(), beam.layout(), 0, beam.columns()))
     add_point(beam, its, load);
-  note_terms(beam);
+  record_terms(beam);
   wanted_k_.resize(points_.size());
   wanted_c_.resize(points_.size());
   for (AddedSprings& springs : kept_) {
@@ -62,7 +62,7 @@ void NonlinearFoundation::add_point(const beam::Beam& beam, const beam::Nonlinea
   points_.push_back(p);
 }
 
-void NonlinearFoundation::note_terms(const beam::Beam& beam) {
+void NonlinearFoundation::record_terms(const beam::Beam& beam) {
   const int b = block_;
   for (std::size_t n = 0; n < points_.size(); ++n) {
     const beam::NonlinearShape s = beam::shape_of(beam.bridge(), points_[n].its);
@@ -99,10 +99,10 @@ beam::FoundationForce NonlinearFoundation::force_of(const Point& p, double displ
 }
 
 void NonlinearFoundation::evaluate(const double* v, const double* w) {
-  gather(v, &Point::still);
+  gather(v, &Point::predicted);
   gather(w, &Point::still_rate);
   for (Point& p : points_) {
-    p.state = force_of(p, p.still, p.still_rate);
+    p.state = force_of(p, p.predicted, p.still_rate);
   }
 }
 
@@ -141,7 +141,7 @@ void NonlinearFoundation::report(NonlinearForces& forces, std::vector<beam::Elem
     if (!p.counted) continue;
     if (p.its.kind == beam::below_a_sleeper) {
       forces.below_sleepers[static_cast<std::size_t>(p.its.index)] = p.state.force;
-      forces.open_gaps[static_cast<std::size_t>(p.its.index)] = p.still + p.its.law.gap;
+      forces.open_gaps[static_cast<std::size_t>(p.its.index)] = p.predicted + p.its.law.gap;
       if (!p.its.on_bridge && p.its.below < 0) forces.of_ground += p.state.force;
       if (p.its.on_bridge && p.state.force != 0.0) mine.push_back({p.its.at.element, p.its.at.xi, 0.0, -p.state.force});
       continue;
@@ -188,18 +188,18 @@ void NonlinearFoundation::stand(double from, double to) {
   for (Point& p : points_) p.loaded = p.slides() && p.its.x >= from - same_station && p.its.x <= to + same_station;
 }
 
-void NonlinearFoundation::settle(const double* v) {
-  gather(v, &Point::still);
+void NonlinearFoundation::update_slip(const double* v) {
+  gather(v, &Point::predicted);
   for (Point& p : points_) {
     if (!p.slides()) continue;
     const double k = p.its.sliding.k_of(p.loaded), limit = p.its.sliding.limit_of(p.loaded);
-    p.state = force_of(p, p.still, 0.0);
+    p.state = force_of(p, p.predicted, 0.0);
     const double start = std::clamp(p.settled_force, -limit, limit), force = p.state.force;
-    const double slide = std::abs(p.still - p.settled) - std::abs(force - start) / k;
+    const double slide = std::abs(p.predicted - p.settled) - std::abs(force - start) / k;
     const double work = 0.5 * (force * force - start * start) / k + std::abs(force) * slide;
     if (p.counted) slid_ += p.settled_energy + work - p.state.energy;
     p.settled_force = force;
-    p.settled = p.still;
+    p.settled = p.predicted;
     p.settled_energy = p.state.energy;
   }
 }

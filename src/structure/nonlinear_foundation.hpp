@@ -24,7 +24,7 @@
 
 #include "beam/nonlinear_points.hpp"
 #include "recovery/recovery.hpp"
-#include "response/beam_operator.hpp"
+#include "structure/beam_operator.hpp"
 
 namespace traverse::structure {
 
@@ -62,7 +62,7 @@ class NonlinearFoundation {
   /// Where trains stand from here on, m: between these stations sleepers are loaded. An empty stretch: none are.
   void stand(double from, double to);
   /// Collective. What has slid by v stays where it is: the forces of what follows start from those at v.
-  void settle(const double* v);
+  void update_slip(const double* v);
   /// Of every point that slides, on this rank: the force that it has settled at (N), and where (m).
   struct History {
     std::vector<double> force, displacement;
@@ -73,7 +73,7 @@ class NonlinearFoundation {
 
   // Within a stage ---------------------------------------------------------------------------------------------------
   /// Collective. w_guess: rates to begin from. Null pointers, shift 0: statics from scratch.
-  void begin(double shift, const double* v_still, const double* w_still, const double* w_guess);
+  void begin(double shift, const double* v_predicted, const double* w_predicted, const double* w_guess);
   /// Collective. The tangents to solve with; kept as long as they are near enough.
   const AddedSprings& linearise();
   /// The right-hand side that belongs to them.
@@ -97,7 +97,7 @@ class NonlinearFoundation {
     std::array<double, beam::NonlinearShape::most> shape{};
     bool counted = false;    // by this rank, in sums
     double reference = 0.0;  // N/m, at a displacement of the order of that under the load
-    double still = 0.0;      // displacement and rate at z = 0
+    double predicted = 0.0;  // displacement and rate at z = 0
     double still_rate = 0.0;
     double zeta0 = 0.0;
     double force0 = 0.0;
@@ -113,13 +113,13 @@ class NonlinearFoundation {
 
     bool slides() const { return its.sliding.limit > 0.0; }
     void keep(base::Bytes& bytes) {
-      bytes(still, still_rate, zeta0, force0, zeta, linear_force, balanced_force, misfit, state);
+      bytes(predicted, still_rate, zeta0, force0, zeta, linear_force, balanced_force, misfit, state);
       bytes(loaded, settled_force, settled, settled_energy);
     }
   };
 
   void add_point(const beam::Beam& beam, const beam::NonlinearPoint& its, double load);
-  void note_terms(const beam::Beam& beam);
+  void record_terms(const beam::Beam& beam);
   void gather(const double* x, double Point::*into);
   static beam::FoundationForce force_of(const Point& p, double displacement, double rate);
   beam::FoundationForce force_at(const Point& p, double zeta) const;

@@ -29,19 +29,20 @@ bool near(double kept, double wanted, double share) {
 }  // namespace
 
 beam::FoundationForce NonlinearFoundation::force_at(const Point& p, double zeta) const {
-  return force_of(p, p.still + zeta, p.still_rate + shift_ * zeta);
+  return force_of(p, p.predicted + zeta, p.still_rate + shift_ * zeta);
 }
 
-void NonlinearFoundation::begin(double shift, const double* v_still, const double* w_still, const double* w_guess) {
+void NonlinearFoundation::begin(double shift, const double* v_predicted, const double* w_predicted,
+                                const double* w_guess) {
   shift_ = shift;
   iteration_ = 0;
   if (shift == 0.0) {
-    for (Point& p : points_) p.still = p.still_rate = 0.0;
-    if (v_still != nullptr) gather(v_still, &Point::still);
+    for (Point& p : points_) p.predicted = p.still_rate = 0.0;
+    if (v_predicted != nullptr) gather(v_predicted, &Point::predicted);
     return;
   }
-  gather(v_still, &Point::still);
-  gather(w_still, &Point::still_rate);
+  gather(v_predicted, &Point::predicted);
+  gather(w_predicted, &Point::still_rate);
   gather(w_guess, &Point::zeta0);
   for (Point& p : points_) p.zeta0 = (p.zeta0 - p.still_rate) / shift;
 }
@@ -49,13 +50,13 @@ void NonlinearFoundation::begin(double shift, const double* v_still, const doubl
 // Statics begins as if whatever can carry weight did, from where it first touches, and as if nothing slid.
 void NonlinearFoundation::start_statics(Point& p) const {
   if (p.slides()) {
-    p.zeta0 = p.settled - p.still;
+    p.zeta0 = p.settled - p.predicted;
     p.state = force_of(p, p.settled, 0.0);
     p.state.by_displacement = p.its.sliding.k_of(p.loaded);
     return;
   }
   const bool carries = p.its.direction == Direction::vertical;
-  p.zeta0 = (carries ? -p.its.law.gap : 0.0) - p.still;
+  p.zeta0 = (carries ? -p.its.law.gap : 0.0) - p.predicted;
   p.state = {};
   p.state.by_displacement = carries || p.its.law.gap == 0.0 ? p.reference : 0.0;
 }
@@ -119,7 +120,7 @@ NonlinearFoundation::Verdict NonlinearFoundation::judge(const double* z) {
     const double T = tangent.k[n] + shift_ * tangent.c[n];
     p.linear_force = p.force0 - T * (p.zeta - p.zeta0);
     p.state = force_at(p, p.zeta);
-    const double size = std::abs(p.still) + std::abs(p.zeta) + std::abs(p.zeta0) + p.its.law.gap;
+    const double size = std::abs(p.predicted) + std::abs(p.zeta) + std::abs(p.zeta0) + p.its.law.gap;
     const double rate = std::abs(p.still_rate) + shift_ * (std::abs(p.zeta) + std::abs(p.zeta0));
     const double floor = unit_rounding * ((std::abs(p.state.by_displacement) + std::abs(tangent.k[n])) * size +
                                           (p.state.by_rate + tangent.c[n]) * rate);

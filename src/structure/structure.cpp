@@ -79,7 +79,7 @@ void Structure::gather_free(const std::vector<int>& elements, std::vector<double
 const ContactField& Structure::begin_passes(const std::vector<int>& elements) {
   const std::size_t m = 2 * static_cast<std::size_t>(per_node()), size = elements.size() * m;
   gather_free(elements, v_free_, w_free_);
-  own_ = &yield(elements);
+  own_ = &compliance(elements);
   for (std::vector<double>* x : {&v_passed_, &w_passed_}) x->assign(size + m, 0.0);
   loads_.resize(size);
   field_.slot.resize(elements.size());

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "base/archive.hpp"
-#include "methods/one_step_methods.hpp"
+#include "base/one_step_methods.hpp"
 #include "recovery/recovery.hpp"
-#include "response/beam_operator.hpp"
-#include "response/compliance.hpp"
+#include "structure/beam_operator.hpp"
+#include "structure/compliance.hpp"
 #include "structure/contact_field.hpp"
 #include "structure/nonlinear_foundation.hpp"
 
@@ -120,7 +120,7 @@ class Structure {
   /// v and w of elements there, on all ranks.
   void gather_free(const std::vector<int>& elements, std::vector<double>& v, std::vector<double>& w);
   /// How these elements yield to forces on them in this stage.
-  virtual const ElementCompliance& yield(const std::vector<int>& elements) = 0;
+  virtual const ElementCompliance& compliance(const std::vector<int>& elements) = 0;
   /// The contacts' forces on these elements, 2 per_node values each, N and N m.
   virtual void take(const std::vector<double>& loads) = 0;
   /// Whether the stage is solved, or has to be solved once more from solve_free on.
@@ -147,7 +147,7 @@ class Structure {
   /// v and w of a stage that is not one of a step.
   virtual void end_stage(double* v, double* w) = 0;
   /// What slides has slid to v, from which the motion goes on with wheels and forces there.
-  virtual void settle(const double* /*v*/, const std::vector<Reach>& /*loaded*/) {}
+  virtual void update_slip(const double* /*v*/, const std::vector<Reach>& /*loaded*/) {}
   /// Keeps what the step needs of its stage i.
   virtual void end_stage(std::size_t i, const double* v, const double* w) = 0;
   /// Why a stage has no solution, for messages.
@@ -155,9 +155,9 @@ class Structure {
 
   // --- steps -------------------------------------------------------------------------------------------------------
 
-  /// Leaves out of the steps what moves less than `tolerance` of the largest motion (rest_window.hpp); before
+  /// Leaves out of the steps what moves less than `tolerance` of the largest motion (active_window.hpp); before
   /// begin_motion. Probes' stations rest only when really quiet.
-  virtual void leave_out_rest(double /*tolerance*/, const std::vector<double>& /*probes*/) {}
+  virtual void limit_to_active_window(double /*tolerance*/, const std::vector<double>& /*probes*/) {}
   /// J, put to rest so far, this rank's share; none where everything is stepped.
   virtual std::optional<double> energy_left() const { return std::nullopt; }
   /// The method of all steps to come, for steps of 1 s.
@@ -174,7 +174,7 @@ class Structure {
   virtual void finish_step(double* v, double* w) = 0;
   /// What may be done once no step will be taken back.
   virtual void complete_step(double* /*v*/, double* /*w*/) {}
-  virtual void take_back_step(double* v, double* w) = 0;
+  virtual void reject_step(double* v, double* w) = 0;
   /// w' at the state that the last step led to.
   virtual const double* acceleration() const = 0;
   /// Energy of the step's error as the method's embedded one estimates it, J: this rank's share. Once all stages are

@@ -9,20 +9,20 @@
 #include <optional>
 #include <utility>
 
-#include "accuracy/kept_choice.hpp"
 #include "engine/processor.hpp"
+#include "error_control/choice_cache.hpp"
+#include "error_control/mode_choice.hpp"
+#include "error_control/sweep_model.hpp"
 #include "results/sweep.hpp"
 #include "results/terminal.hpp"
 #include "run/deflection_check.hpp"
 #include "run/outputs.hpp"
 #include "run/process.hpp"
 #include "run/signals.hpp"
-#include "study/modes_choice.hpp"
-#include "study/study_choice.hpp"
 #include "study/study_file.hpp"
+#include "study/study_model.hpp"
 #include "study/study_refinement.hpp"
 #include "study/study_runs.hpp"
-#include "study/sweep_choice.hpp"
 #include "study/sweep_findings.hpp"
 #include "traverse/options/input.hpp"
 
@@ -226,7 +226,7 @@ int run_study(MPI_Comm comm, const Scene& given, results::Place place) {
   for (const std::size_t base : scenes.extreme_bases()) scenes.base(base);  // all input is checked first
   std::vector<std::string> notes;
   Choice choice;
-  KeptChoice kept(comm, given);
+  ChoiceCache kept(comm, given);
   if (!kept.read(given, notes, choice)) {
     choice = choose_for_study(scenes, notes);
     if (choice.accuracy.measured) kept.write(notes, choice);

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "ensemble/result_gather.hpp"
 #include "results/stage.hpp"
 #include "results/sweep.hpp"
-#include "study/returns.hpp"
 
 namespace traverse::app {
 namespace {
@@ -35,8 +35,8 @@ std::vector<double> row_of(std::size_t run, const CaseResult& result, const std:
     row.insert(row.end(),
                {result.least_wheel_force, result.greatest_wheel_force, result.contact_losses, result.longest_loss});
   row.push_back(result.unseen ? 1.0 : 0.0);
-  for (const results::Finding& finding : result.findings) row.push_back(finding.value);
-  for (const results::Finding& finding : result.findings) row.push_back(finding.x);
+  for (const results::EvaluatedQuantity& finding : result.findings) row.push_back(finding.value);
+  for (const results::EvaluatedQuantity& finding : result.findings) row.push_back(finding.x);
   return row;
 }
 
@@ -92,7 +92,7 @@ Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
   return groups;
 }
 
-SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTable& table, Returns& returns) {
+SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTable& table, ResultGather& returns) {
   SharedWork work;
   for (const std::vector<std::size_t>& group : groups) work.pieces.push_back({group.size(), scenes.duration(group)});
   const bool wheels = table.find("least_wheel_force") != nullptr;
@@ -120,12 +120,12 @@ SharedWork work_of(StudyScenes& scenes, const Groups& groups, results::StudyTabl
 RunFailure compute_runs(MPI_Comm comm, StudyScenes& scenes, const std::vector<char>& known, results::StudyTable& table,
                         StudyFile& file) {
   const results::Stage stage(scenes.study().sweep ? "runs of the sweep" : "runs of the study");
-  Returns returns(comm, [&](const std::vector<double>& row) {
+  ResultGather returns(comm, [&](const std::vector<double>& row) {
     table.put(static_cast<std::size_t>(row.front()), row.data() + 1);
     file.update();
   });
   const Groups groups = groups_of(scenes, known);
-  RunFailure failure = share_runs(comm, work_of(scenes, groups, table, returns), scenes.quiet());
+  RunFailure failure = run_cases_in_parallel(comm, work_of(scenes, groups, table, returns), scenes.quiet());
   returns.finish();
   return first_of(comm, std::move(failure));
 }

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "ensemble/parallel_cases.hpp"
 #include "results/study_table.hpp"
-#include "study/share_runs.hpp"
 #include "study/study_file.hpp"
 #include "study/study_scenes.hpp"
 

@@ -150,7 +150,7 @@ StudyScenes::Runner StudyScenes::runner(std::size_t wanted, std::vector<std::str
   const bool same_beam = model != nullptr && scene.beam->axial == model->axial();
   auto made =
       std::make_shared<CaseRunner>(scene, notes != nullptr ? *notes : ignored, same_beam ? model->beam() : nullptr);
-  const bool joined = model == nullptr || (same_beam && made->join(*model));
+  const bool joined = model == nullptr || (same_beam && made->merge(*model));
   return runners_.emplace_back(Runner{wanted, joined, std::move(made)});
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "study/case_runner.hpp"
+#include "ensemble/case_runner.hpp"
 #include "traverse/scene/scene.hpp"
 
 namespace traverse::app {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "ensemble/case_runner.hpp"
 #include "norm/dynamic_verdict.hpp"
 #include "results/resonance.hpp"
 #include "results/study_table.hpp"
-#include "study/case_runner.hpp"
 
 namespace traverse::app {
 

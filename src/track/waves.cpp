@@ -24,7 +24,7 @@ using Lanes = Eigen::Array<double, Waves::lanes, 1>;
 using Places = Eigen::Array<double, places_at_once, 1>;
 
 /// What turns a wave on from some places to the next ones, and its wavenumber with its square.
-struct Turn {
+struct KinkPassage {
   double cosine, sine, k, kk;
 };
 /// A wave at neighbouring places, times its amplitude.
@@ -85,7 +85,7 @@ Height Waves::sum(double s) const {
 std::vector<Height> Waves::sums(double s, double distance, std::size_t count) const {
   std::vector<Height> heights(count);
   const std::size_t waves = amplitude_.size();
-  std::vector<Turn> turns;
+  std::vector<KinkPassage> turns;
   for (const double f : frequency_) {
     const double cycles = f * static_cast<double>(places_at_once) * distance, k = two_pi * f;
     const double angle = two_pi * (cycles - std::rint(cycles));
@@ -105,7 +105,7 @@ std::vector<Height> Waves::sums(double s, double distance, std::size_t count) co
     }
     Places value = Places::Zero(), slope = Places::Zero(), curvature = Places::Zero();
     for (std::size_t i = 0; i < waves; ++i) {
-      const Turn& turn = turns[i];
+      const KinkPassage& turn = turns[i];
       Turned& wave = turned[i];
       value += wave.cosine;
       slope -= turn.k * wave.sine;

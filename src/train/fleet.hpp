@@ -219,7 +219,7 @@ class Fleet {
   void coordinates_of_state(double t, double* p, double* pd) const;
 
   /// Arcs that have gone round the end of a line are on its other side from then on.
-  void note_sides();
+  void record_sides();
 
   /// Finds the patches under the wheels and the list of beam elements in touch.
   void place_wheels();

@@ -102,10 +102,10 @@ WheelLoad Fleet::load(const WheelContact& c) const {
   return sum;
 }
 
-void Fleet::note_sides() {
+void Fleet::record_sides() {
   for (PairContact& c : pairs) {
     const std::vector<multibody::Frame>& frames = vehicles[c.vehicle].state.frames;
-    contact::note_side(c.geometry, frames[c.body + 1], frames[c.other_body + 1]);
+    contact::record_side(c.geometry, frames[c.body + 1], frames[c.other_body + 1]);
   }
 }
 

@@ -27,7 +27,7 @@ void Fleet::add_patch(WheelContact& c, int element, double start, double low, do
   patch.x = e.x;
   patch.length = e.length;
   patch.shear = e.shear;
-  if (yields_inside_) patch.yield = e.length * e.length * e.length / (3.0 * e.EI);
+  if (yields_inside_) patch.compliance = e.length * e.length * e.length / (3.0 * e.EI);
 }
 
 void Fleet::add_ground(WheelContact& c, bool before, double x, double low, double high) {

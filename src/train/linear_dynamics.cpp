@@ -181,11 +181,11 @@ bool LinearDynamics::observe(MovingVehicle& vehicle, const double* pdd) {
   return true;
 }
 
-bool LinearDynamics::find_residual(MovingVehicle& vehicle, const double* pdd, VehicleYield& yield) {
+bool LinearDynamics::find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) {
   find_force(vehicle);
   R_ = -force_;
   R_.noalias() += M_ * Eigen::Map<const Eigen::VectorXd>(pdd, x_.size());
-  yield.residual = R_.size() > 0 ? R_.lpNorm<Eigen::Infinity>() / vehicle.scale : 0.0;
+  compliance.residual = R_.size() > 0 ? R_.lpNorm<Eigen::Infinity>() / vehicle.scale : 0.0;
   return true;
 }
 
@@ -193,10 +193,11 @@ bool LinearDynamics::serves(const MovingVehicle&, const StageShifts& shifts, boo
   return !shifts.statics() && shifts_.like(shifts);
 }
 
-void LinearDynamics::renew(MovingVehicle&, const StageShifts& shifts, bool, ContactRows rows, VehicleYield& yield) {
+void LinearDynamics::renew(MovingVehicle&, const StageShifts& shifts, bool, ContactRows rows,
+                           ContactCompliance& compliance) {
   shifts_ = shifts;
   J_ = shifts.acceleration * M_ + shifts.rate * C_ + K_;
-  newton_.renew(rows, columns_, B_, nullptr, shifts.statics(), J_, yield);
+  newton_.renew(rows, columns_, B_, nullptr, shifts.statics(), J_, compliance);
 }
 
 }  // namespace traverse::train

@@ -45,11 +45,11 @@ class LinearDynamics : public VehicleDynamics {
   bool worn(const MovingVehicle&) const override { return false; }
   bool accept(MovingVehicle&) override { return false; }
 
-  bool find_residual(MovingVehicle& vehicle, const double* pdd, VehicleYield& yield) override;
+  bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;
   bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
   void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
-             VehicleYield& yield) override;
-  void go_by_itself(VehicleYield& yield) override { newton_.go_by_itself(R_, yield); }
+             ContactCompliance& compliance) override;
+  void go_by_itself(ContactCompliance& compliance) override { newton_.go_by_itself(R_, compliance); }
   void rest() override { R_.setZero(); }
   const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override { return newton_.take(forces); }
   void keep(base::Bytes& bytes) override { bytes(newton_, shifts_, time_, defect_, x_, xd_, xdd_, force_, R_); }

@@ -31,7 +31,7 @@ bool MultibodyDynamics::accept(MovingVehicle& vehicle) {
 }
 
 // R = B^T (N q'' - g - Q).
-bool MultibodyDynamics::find_residual(MovingVehicle& vehicle, const double* pdd, VehicleYield& yield) {
+bool MultibodyDynamics::find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) {
   multibody::MechanismState& state = vehicle.state;
   const multibody::Mechanism& mechanism = vehicle.mechanism;
   pdd_ = Eigen::Map<const Eigen::VectorXd>(pdd, mechanism.freedom());
@@ -44,7 +44,7 @@ bool MultibodyDynamics::find_residual(MovingVehicle& vehicle, const double* pdd,
   }
   R_.resize(mechanism.freedom());
   state.dependent_block.project(r_, R_);
-  yield.residual = R_.size() > 0 ? R_.lpNorm<Eigen::Infinity>() / vehicle.scale : 0.0;
+  compliance.residual = R_.size() > 0 ? R_.lpNorm<Eigen::Infinity>() / vehicle.scale : 0.0;
   return !state.friction.jammed;
 }
 
@@ -79,7 +79,7 @@ void MultibodyDynamics::find_J(MovingVehicle& vehicle, const StageShifts& shifts
 }
 
 void MultibodyDynamics::renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
-                              VehicleYield& yield) {
+                              ContactCompliance& compliance) {
   const multibody::MechanismState& state = vehicle.state;
   const bool rubs = vehicle.mechanism.rubs(), constrained = vehicle.mechanism.constraints() > 0;
   find_J(vehicle, shifts, (curved || rubs) && constrained);
@@ -91,7 +91,7 @@ void MultibodyDynamics::renew(MovingVehicle& vehicle, const StageShifts& shifts,
     everything_.assign(state.columns.size(), {0, vehicle.freedom()});
     VehicleNewton::multiply_directions(rows, everything_, projector_, projected_);
   }
-  newton_.renew(rows, state.columns, state.B, rubs ? &projected_ : nullptr, shifts.statics(), J_, yield);
+  newton_.renew(rows, state.columns, state.B, rubs ? &projected_ : nullptr, shifts.statics(), J_, compliance);
 }
 
 }  // namespace traverse::train

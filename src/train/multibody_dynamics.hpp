@@ -25,11 +25,11 @@ class MultibodyDynamics : public VehicleDynamics {
   bool worn(const MovingVehicle& vehicle) const override { return vehicle.mechanism.worn(vehicle.state); }
   bool accept(MovingVehicle& vehicle) override;
 
-  bool find_residual(MovingVehicle& vehicle, const double* pdd, VehicleYield& yield) override;
+  bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) override;
   bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const override;
   void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
-             VehicleYield& yield) override;
-  void go_by_itself(VehicleYield& yield) override { newton_.go_by_itself(R_, yield); }
+             ContactCompliance& compliance) override;
+  void go_by_itself(ContactCompliance& compliance) override { newton_.go_by_itself(R_, compliance); }
   void rest() override { R_.setZero(); }
   const Eigen::VectorXd& take(const Eigen::VectorXd& forces) override { return newton_.take(forces); }
   void keep(base::Bytes& bytes) override { bytes(newton_, shifts_, partition_version_, curved_, R_, pdd_); }

@@ -102,7 +102,7 @@ void Separations::accept(const Fleet& fleet, double t) {
     const contact::Kinematics& now = fleet.kinematics(i);
     const bool touching = fleet.touches(i);
     seen.met = !first && touching && !seen.touching;
-    if (seen.compressed_by >= 0) note_impact(fleet, i, t, seen);
+    if (seen.compressed_by >= 0) record_impact(fleet, i, t, seen);
     if (!touching && (first || seen.touching)) {
       seen.open = static_cast<int>(list_.size());
       const double start = first ? t : change_between(fleet, i, time_, seen.kinematics, t, now);
@@ -124,7 +124,7 @@ void Separations::accept(const Fleet& fleet, double t) {
 }
 
 /// The compression ends where the rate changes its sign: there the force is that of the penetration alone.
-void Separations::note_impact(const Fleet& fleet, int contact, double t, Seen& seen) {
+void Separations::record_impact(const Fleet& fleet, int contact, double t, Seen& seen) {
   const Contact& c = fleet.contact(contact);
   const contact::Kinematics& now = fleet.kinematics(contact);
   double& greatest = list_[seen.compressed_by].impact_force;

@@ -60,7 +60,7 @@ class Separations {
     int open = -1;           // entry of the list: apart since
     int compressed_by = -1;  // entry of the list: the impact whose compression goes on
   };
-  void note_impact(const Fleet& fleet, int contact, double t, Seen& seen);
+  void record_impact(const Fleet& fleet, int contact, double t, Seen& seen);
 
   double time_ = 0.0;
   std::vector<Seen> seen_;

@@ -72,7 +72,7 @@ class NumberList {
 
 /// What a vehicle makes of its contact rows, r of them: a unit force on row j moves row i by -H(i, j), by itself the
 /// vehicle moves row i by c(i).
-struct VehicleYield {
+struct ContactCompliance {
   Eigen::MatrixXd H;      // r x r
   Eigen::MatrixXd P;      // r x r: 1 - H D, of size 0 where D is 0
   RowTangent D;           // the tangent that H includes; of size 0 where it includes none, as in a step
@@ -119,15 +119,15 @@ class VehicleDynamics {
   // An iteration of a stage's Newton method, with J the derivative of the residual by p:
 
   /// The residual of the equations of motion under Q with a given p'', to yield.residual. False where friction jams.
-  virtual bool find_residual(MovingVehicle& vehicle, const double* pdd, VehicleYield& yield) = 0;
+  virtual bool find_residual(MovingVehicle& vehicle, const double* pdd, ContactCompliance& compliance) = 0;
   /// Whether J and what follows from it, as they are kept, belong to such a stage. `curved`: with the constraints'
   /// curvature.
   virtual bool serves(const MovingVehicle& vehicle, const StageShifts& shifts, bool curved) const = 0;
   /// Computes them anew at the state it is in, and yield.H with the contacts' tangent yield.D in J.
   virtual void renew(MovingVehicle& vehicle, const StageShifts& shifts, bool curved, ContactRows rows,
-                     VehicleYield& yield) = 0;
+                     ContactCompliance& compliance) = 0;
   /// yield.c from the last residual.
-  virtual void go_by_itself(VehicleYield& yield) = 0;
+  virtual void go_by_itself(ContactCompliance& compliance) = 0;
   /// No residual: the vehicle stays where the last iteration has put it.
   virtual void rest() = 0;
   /// The change of p (freedom values) by itself and under changes of the rows' forces.

@@ -26,7 +26,7 @@ void VehicleNewton::multiply_directions(ContactRows rows, const ColumnRanges& co
 }
 
 void VehicleNewton::renew(ContactRows rows, const ColumnRanges& columns, const Eigen::MatrixXd& B,
-                          const RowMatrix* projected, bool statics, Eigen::MatrixXd& J, VehicleYield& yield) {
+                          const RowMatrix* projected, bool statics, Eigen::MatrixXd& J, ContactCompliance& compliance) {
   const auto f = J.rows();
   const auto r = static_cast<int>(rows.size());
   multiply_directions(rows, columns, B, G_);
@@ -39,7 +39,7 @@ void VehicleNewton::renew(ContactRows rows, const ColumnRanges& columns, const E
     range_[i] = {std::min(range_[i].first, other.first), std::max(range_[i].last, other.last)};
   }
   const RowMatrix& left = projected != nullptr ? *projected : G_;
-  if (statics) add_contacts(left, yield.D, J);
+  if (statics) add_contacts(left, compliance.D, J);
   inverse_.compute(J, statics);
   Y_.resize(f, r);
   for (int i = 0; i < r; ++i) {
@@ -47,11 +47,11 @@ void VehicleNewton::renew(ContactRows rows, const ColumnRanges& columns, const E
     inverse_.apply(s_, dx_);
     Y_.col(i) = dx_;
   }
-  yield.H.resize(r, r);
-  yield.c.resize(r);
+  compliance.H.resize(r, r);
+  compliance.c.resize(r);
   for (int i = 0; i < r; ++i) {
     const auto [first, last] = range_[i];
-    yield.H.row(i).noalias() = G_.row(i).segment(first, last - first) * Y_.middleRows(first, last - first);
+    compliance.H.row(i).noalias() = G_.row(i).segment(first, last - first) * Y_.middleRows(first, last - first);
   }
 }
 
@@ -65,12 +65,12 @@ void VehicleNewton::add_contacts(const RowMatrix& left, const RowTangent& D, Eig
   J.noalias() += left.transpose() * DG_;
 }
 
-void VehicleNewton::go_by_itself(const Eigen::VectorXd& R, VehicleYield& yield) {
+void VehicleNewton::go_by_itself(const Eigen::VectorXd& R, ContactCompliance& compliance) {
   inverse_.apply(R, dx_);
   dx_ = -dx_;
-  for (int i = 0; i < yield.c.size(); ++i) {
+  for (int i = 0; i < compliance.c.size(); ++i) {
     const auto [first, last] = range_[i];
-    yield.c[i] = G_.row(i).segment(first, last - first).dot(dx_.segment(first, last - first));
+    compliance.c[i] = G_.row(i).segment(first, last - first).dot(dx_.segment(first, last - first));
   }
 }
 

@@ -19,9 +19,9 @@ class VehicleNewton {
   /// G = (contact directions) B, of r rows and f columns, and yield.H = G J^-1 left^T, where `left` is G too but where
   /// joints rub. In statics J, of which some coordinates may be neutral, takes the contacts' tangent yield.D.
   void renew(ContactRows rows, const ColumnRanges& columns, const Eigen::MatrixXd& B, const RowMatrix* left,
-             bool statics, Eigen::MatrixXd& J, VehicleYield& yield);
+             bool statics, Eigen::MatrixXd& J, ContactCompliance& compliance);
   /// yield.c = -G J^-1 R.
-  void go_by_itself(const Eigen::VectorXd& R, VehicleYield& yield);
+  void go_by_itself(const Eigen::VectorXd& R, ContactCompliance& compliance);
   /// -J^-1 (R + left^T forces), with the R of the last go_by_itself.
   const Eigen::VectorXd& take(const Eigen::VectorXd& forces);
 

@@ -70,8 +70,8 @@ struct Surface {
 /// and s = 12 EI/(GA h^2) it is h^3/(12 EI) ((4 u^3 + s u^2)/(1 + s) + s u).
 std::pair<double, double> seat_of(const Patch& patch, double xi) {
   const double hump = xi * (1.0 - xi), by_x = (1.0 - 2.0 * xi) / patch.length;
-  if (patch.shear == 0.0) return {patch.yield * hump * hump * hump, patch.yield * 3.0 * hump * hump * by_x};
-  const double s = patch.shear, quarter = 0.25 * patch.yield;
+  if (patch.shear == 0.0) return {patch.compliance * hump * hump * hump, patch.compliance * 3.0 * hump * hump * by_x};
+  const double s = patch.shear, quarter = 0.25 * patch.compliance;
   return {quarter * hump * ((4.0 * hump + s) * hump / (1.0 + s) + s),
           quarter * ((12.0 * hump + 2.0 * s) * hump / (1.0 + s) + s) * by_x};
 }

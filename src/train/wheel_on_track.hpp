@@ -25,7 +25,7 @@ struct Patch {
   double x = 0.0, length = 0.0;  // of the element, m
   double shear = 0.0;            // 12 EI/(GA length^2)
   double height = 0.0;           // of the surface above the beam's neutral axis, m
-  double yield = 0.0;            // length^3/(3 EI), m/N, where the element's inner shape counts
+  double compliance = 0.0;       // length^3/(3 EI), m/N, where the element's inner shape counts
   double low = 0.0, high = 0.0;  // stations between which the piece reaches; a wheel beyond touches its corner
   double start = 0.0;            // where Find::closest_within and farthest_within begin to look
 };

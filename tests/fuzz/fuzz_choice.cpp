@@ -14,10 +14,12 @@ struct Kept {
   std::string method;
   std::vector<std::string> notes;
   std::vector<std::pair<std::string, double>> errors;
-  std::array<std::optional<std::string>, 3> promises;
+  std::array<std::optional<std::string>, 3> estimates;
   Eigen::MatrixXd matrix;
   bool lost = false;
-  void keep(traverse::base::Bytes& bytes) { bytes(elements, time_step, method, notes, errors, promises, matrix, lost); }
+  void keep(traverse::base::Bytes& bytes) {
+    bytes(elements, time_step, method, notes, errors, estimates, matrix, lost);
+  }
 };
 
 }  // namespace

@@ -184,12 +184,12 @@ TEST(Standing, IsTheStaticAnalysis) {
                         {"track_bump_start", "28"},           {"track_bump_length", "4"},
                         {"track_bump_height", "0.02"}};
   Results standing = run_yaml(standing_wheel, where);
-  Results still = run_yaml(standing_wheel, where + Values{{"scene_analysis", "static"}});
-  ASSERT_EQ(still.time().size(), 1u);
+  Results predicted = run_yaml(standing_wheel, where + Values{{"scene_analysis", "static"}});
+  ASSERT_EQ(predicted.time().size(), 1u);
   std::vector<std::string> names = {"/probes/deflection", "/probes/moment", "/probes/shear", "/supports/reaction"};
   for (const char* k : {"0", "1", "2"}) names.push_back(std::string("/vehicles/") + k + "/wheel/normal_force");
   for (const std::string& name : names) {
-    const std::vector<double> expected = still(name), all = standing(name);
+    const std::vector<double> expected = predicted(name), all = standing(name);
     ASSERT_EQ(all.size() % expected.size(), 0u);
     std::vector<double> repeated;
     while (repeated.size() < all.size()) repeated.insert(repeated.end(), expected.begin(), expected.end());

@@ -98,7 +98,7 @@ class HandRailModel {
     for (const Sleeper& s : sleepers_) add_energy(s.along, t_.k, entries);
     m.v = Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix(entries, true)).solve(on_rail(forces));
     m.w = m.a = Eigen::VectorXd::Zero(n_);
-    settle(m, {}, std::vector<int>(sleepers_.size(), 0));
+    update_slip(m, {}, std::vector<int>(sleepers_.size(), 0));
     return m;
   }
 
@@ -135,7 +135,7 @@ class HandRailModel {
     m.v = next.v;
     m.w = next.w;
     m.a = next.a;
-    settle(m, loads, slides);
+    update_slip(m, loads, slides);
   }
   double opening(const Eigen::VectorXd& v) const { return t_.device < 0 ? 0.0 : v[n_ - 1] - v[3 * t_.device]; }
   double rail_u(const HandMotion& m, int node) const { return m.v[3 * node]; }
@@ -223,7 +223,7 @@ class HandRailModel {
     for (const auto& [a, x] : sleepers_[i].along) d += x * v[a];
     return d;
   }
-  void settle(HandMotion& m, const HandLoads& loads, const std::vector<int>& slides) const {
+  void update_slip(HandMotion& m, const HandLoads& loads, const std::vector<int>& slides) const {
     for (std::size_t i = 0; i < sleepers_.size(); ++i) {
       const auto [k, limit, then, at] = law(i, loads, &m.settled);
       const double d = along(i, m.v);

@@ -129,9 +129,9 @@ TEST(BodyContact, TangentsAreTheDerivativesOfTheSlidingSpeed) {
     EXPECT_NEAR(out.kinematics.sliding_speed, sliding(c.first, c.second), 1e-8) << c.name;
     for (std::size_t body = 0; body < 2; ++body)
       for (int i = 0; i < 3; ++i) {
-        std::array<Motion, 2> still = {at(c.first.q), at(c.second.q)};
-        still[body].qd[i] = 1.0;
-        EXPECT_NEAR(out.tangent[body][i], sliding(still[0], still[1]), 1e-8) << c.name << ' ' << body << i;
+        std::array<Motion, 2> predicted = {at(c.first.q), at(c.second.q)};
+        predicted[body].qd[i] = 1.0;
+        EXPECT_NEAR(out.tangent[body][i], sliding(predicted[0], predicted[1]), 1e-8) << c.name << ' ' << body << i;
       }
   }
 }
@@ -175,10 +175,10 @@ TEST(BodyContact, AnArcDrivenThroughItsLineIsRefused) {
   EXPECT_NEAR(out.kinematics.penetration, 0.34, 1e-15);
   EXPECT_FALSE(touch(pair, moved(0.0, -0.31), ground, out));
   // round the end it may go, and then it is on the other side
-  note_side(pair, moved(0.0, -0.31), ground);
+  record_side(pair, moved(0.0, -0.31), ground);
   EXPECT_EQ(pair.side, 1.0);
   EXPECT_TRUE(touch(pair, moved(0.6, -0.31), ground, out));
-  note_side(pair, moved(0.6, -0.31), ground);
+  record_side(pair, moved(0.6, -0.31), ground);
   EXPECT_EQ(pair.side, -1.0);
   EXPECT_TRUE(touch(pair, moved(0.0, -0.6), ground, out));
   EXPECT_NEAR(out.kinematics.penetration, 0.05, 1e-15);

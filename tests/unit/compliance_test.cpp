@@ -1,5 +1,5 @@
 // Compliance against the dense inverse of the beam's matrix.
-#include "response/compliance.hpp"
+#include "structure/compliance.hpp"
 
 #include <gtest/gtest.h>
 

@@ -77,17 +77,17 @@ class Contacts : public testing::Test {
     on_beam_ = on_beam;
     for (std::size_t k = 0; k < with_P_.size(); ++k) {
       const int n = contacts_.rows(static_cast<int>(k));
-      train::VehicleYield& yield = contacts_.yield(static_cast<int>(k));
-      yield.H.resize(n, n);
-      for (int i = 0; i < n * n; ++i) yield.H.data()[i] = number();
-      yield.H = 2e-9 * (yield.H * yield.H.transpose() + Eigen::MatrixXd::Identity(n, n)).eval();
-      yield.P.resize(0, 0);
+      train::ContactCompliance& compliance = contacts_.compliance(static_cast<int>(k));
+      compliance.H.resize(n, n);
+      for (int i = 0; i < n * n; ++i) compliance.H.data()[i] = number();
+      compliance.H = 2e-9 * (compliance.H * compliance.H.transpose() + Eigen::MatrixXd::Identity(n, n)).eval();
+      compliance.P.resize(0, 0);
       if (with_P_[k]) {
-        yield.P = Eigen::MatrixXd::Identity(n, n);
-        for (int i = 0; i < n * n; ++i) yield.P.data()[i] += 0.2 * number();
+        compliance.P = Eigen::MatrixXd::Identity(n, n);
+        for (int i = 0; i < n * n; ++i) compliance.P.data()[i] += 0.2 * number();
       }
-      yield.c.resize(n);
-      for (int i = 0; i < n; ++i) yield.c[i] = 2e-5 * number();
+      compliance.c.resize(n);
+      for (int i = 0; i < n; ++i) compliance.c[i] = 2e-5 * number();
     }
     contacts_.couple(on_beam ? &compliance_ : nullptr, 3);
   }
@@ -104,10 +104,10 @@ class Contacts : public testing::Test {
             Eigen::VectorXd::Zero(n)};
     for (int k = 0; k < static_cast<int>(with_P_.size()); ++k) {
       const int from = contacts_.first(k), count = contacts_.rows(k);
-      const train::VehicleYield& yield = contacts_.yield(k);
-      d.H.block(from, from, count, count) = yield.H;
-      if (yield.P.size() != 0) d.P.block(from, from, count, count) = yield.P;
-      d.c.segment(from, count) = yield.c;
+      const train::ContactCompliance& compliance = contacts_.compliance(k);
+      d.H.block(from, from, count, count) = compliance.H;
+      if (compliance.P.size() != 0) d.P.block(from, from, count, count) = compliance.P;
+      d.c.segment(from, count) = compliance.c;
     }
     Eigen::MatrixXd directions = Eigen::MatrixXd::Zero(inverse_.rows(), n);
     for (int i = 0; i < n && on_beam_; ++i) {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "response/beam_operator.hpp"
-#include "response/block_rows.hpp"
+#include "structure/beam_operator.hpp"
+#include "structure/block_rows.hpp"
 
 namespace traverse {
 namespace {

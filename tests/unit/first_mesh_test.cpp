@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "accuracy/accuracy.hpp"
-#include "accuracy/trials.hpp"
+#include "error_control/accuracy.hpp"
+#include "error_control/trial_runs.hpp"
 #include "scene_helpers.hpp"
 
 namespace traverse::app {

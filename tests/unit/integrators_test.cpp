@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "methods/one_step_methods.hpp"
+#include "base/one_step_methods.hpp"
 #include "support/message.hpp"
 #include "support/paths.hpp"
 #include "support/scene_run.hpp"

@@ -48,7 +48,7 @@ beam::BeamModel lying() {
 
 struct Stage {
   double shift = 0.0, shift2 = 0.0;
-  Eigen::VectorXd v_still, w_still, load;
+  Eigen::VectorXd v_predicted, w_predicted, load;
 };
 
 class Founded {
@@ -96,13 +96,13 @@ class Founded {
   Eigen::VectorXd newton(const Stage& stage) const {
     const Eigen::MatrixXd A = test::dense_operator(beam, stage.shift, stage.shift2);
     const auto residual = [&](const Eigen::VectorXd& z) -> Eigen::VectorXd {
-      return free_part(A * z - stage.load - forces(stage.v_still + z, stage.w_still + stage.shift * z));
+      return free_part(A * z - stage.load - forces(stage.v_predicted + z, stage.w_predicted + stage.shift * z));
     };
     Eigen::VectorXd z = zero();
     for (int i = 0; i < 200; ++i) {
       Eigen::MatrixXd J = A;
       for (std::size_t p = 0; p < points(); ++p) {
-        const beam::FoundationForce f = at(p, stage.v_still + z, stage.w_still + stage.shift * z);
+        const beam::FoundationForce f = at(p, stage.v_predicted + z, stage.w_predicted + stage.shift * z);
         // What touches nothing gets a little, so that J has an inverse; the solution does not depend on it.
         const double k = std::max(f.by_displacement + stage.shift * f.by_rate, i < 100 ? 1e-6 * points_[p].k : 0.0);
         J += k * shapes_[p] * shapes_[p].transpose();
@@ -127,7 +127,7 @@ class Founded {
     if (stage.shift == 0.0)
       foundation.begin(0.0, nullptr, nullptr, nullptr);
     else
-      foundation.begin(stage.shift, stage.v_still.data(), stage.w_still.data(), stage.w_still.data());
+      foundation.begin(stage.shift, stage.v_predicted.data(), stage.w_predicted.data(), stage.w_predicted.data());
     for (iterations = 1;; ++iterations) {
       const AddedSprings& added = foundation.linearise();
       z = stage.load;
@@ -152,7 +152,7 @@ class Founded {
       for (Eigen::Index i = kind; i < z.size(); i += block) greatest = std::max(greatest, std::abs(right[i]));
       for (Eigen::Index i = kind; i < z.size(); i += block) ASSERT_NEAR(z[i], right[i], precision * greatest) << i;
     }
-    expect_forces(stage.v_still + right, stage.w_still + stage.shift * right);
+    expect_forces(stage.v_predicted + right, stage.w_predicted + stage.shift * right);
   }
 
   /// What the class reports of this state.
@@ -225,8 +225,8 @@ TEST(NonlinearFoundation, StagesOfEveryLaw) {
     Stage stage;
     stage.shift = i % 3 == 2 ? 60.0 : 400.0;
     stage.shift2 = stage.shift * stage.shift;
-    stage.v_still = random_state(founded, 2e-3, random);
-    stage.w_still = random_state(founded, 2e-2, random);
+    stage.v_predicted = random_state(founded, 2e-3, random);
+    stage.w_predicted = random_state(founded, 2e-2, random);
     stage.load = founded.force(3.0 + i, beam::Direction::vertical, (i % 4 == 0 ? 1.0 : -1.0) * 4e5) +
                  founded.force(10.0, beam::Direction::longitudinal, 2e5) +
                  founded.force(18.0, beam::Direction::rotational, 3e5);

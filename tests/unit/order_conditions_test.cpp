@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "methods/one_step_methods.hpp"
+#include "base/one_step_methods.hpp"
 
 namespace traverse::structure {
 namespace {
@@ -139,8 +139,8 @@ Eigen::Matrix3d amplification(const Method& method, double omega2) {
   Eigen::Matrix3d to;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d from = Eigen::Vector3d::Unit(k);
-    const double still = from[0] + stage.w_in_v * from[1] + stage.a_in_v[0] * from[2];
-    const double a = -omega2 * still / (1.0 + omega2 * stage.displacement);
+    const double predicted = from[0] + stage.w_in_v * from[1] + stage.a_in_v[0] * from[2];
+    const double a = -omega2 * predicted / (1.0 + omega2 * stage.displacement);
     to.col(k) << from[0] + step.w_in_v * from[1] + step.a_in_v[0] * from[2] + step.a_in_v[1] * a,
         from[1] + step.a_in_w[0] * from[2] + step.a_in_w[1] * a, step.a_next[0] * from[2] + step.a_next[1] * a;
   }

@@ -25,8 +25,8 @@ struct Refined {
   double uncertainty = 0.0;
 };
 
-template <class Curve>
-Refined refined(std::vector<double> speed, double tolerance, const Curve& curve) {
+template <class ExtremumTracker>
+Refined refined(std::vector<double> speed, double tolerance, const ExtremumTracker& curve) {
   for (int round = 0; round < 60; ++round) {
     std::vector<double> value;
     for (const double v : speed) value.push_back(curve(v));

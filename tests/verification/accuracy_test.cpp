@@ -45,9 +45,9 @@ const std::string mass_on_stiff_wheel =
     "train: {vehicles: mass, positions: 0.0, speed: 59.7}\n";
 const std::string forces = "load: {forces: 2.0e5*4, positions: [0.0, -3.0, -11.0, -14.0], speed: 60.0}\n";
 
-class Promise : public testing::TestWithParam<Case> {};
+class ErrorEstimate : public testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(
-    Accuracy, Promise,
+    Accuracy, ErrorEstimate,
     testing::Values(Case{"tyre", one_span + car_on_tyre}, Case{"steel_wheel", one_span + car_on_steel},
                     Case{"three_spans_and_forces",
                          "beam: {spans: [30.0, 36.0, 30.0], EI: 2.0e10, mass: 1.0e4, damping_ratios: 0.02}\n"
@@ -63,7 +63,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      "track: {profile: bump, bump: {start: 10.0, length: 1.5, height: 0.01}}\n"}),
     [](const auto& which) { return which.param.name; });
 
-TEST_P(Promise, IsKeptAtEveryAccuracy) {
+TEST_P(ErrorEstimate, IsKeptAtEveryAccuracy) {
   const Case& c = GetParam();
   const Results truth =
       run_yaml(c.scene, {{"ts_dt", "1e-4"}, {"beam_elements_per_span", "160"}, {"step_probes", "true"}});

@@ -290,7 +290,7 @@ TEST(CoupledModes, UnderVehicles) {
 
 // Passages side by side, by elements with the same dampers, against passages one after the other, which look at their
 // samples alone.
-TEST(CoupledModes, SideBySide) {
+TEST(CoupledModes, CaseBatch) {
   const Values options = {{"beam_elements_per_span", "16"}, {"model_vehicles", "linear"},
                           {"sweep_speed", "80,90,10"},      {"ts_dt", "5e-4"},
                           {"output_interval", "5e-4"},      {"beam_damping_ratios", "0.05"}};

@@ -209,21 +209,21 @@ TEST(Trains, FarApartAreTheSumOfEach) {
 TEST(Trains, StopsInItsStaticState) {
   const TemporaryFolder folder;
   const std::string stop = folder.write("stop.csv", "0,20\n25,0\n");
-  const Values still = {{"beam_damping_ratios", "0.2"},
-                        {"vehicle_car_push_table", folder.write("none.csv", "0,0,0\n1,0,0\n")}};
+  const Values predicted = {{"beam_damping_ratios", "0.2"},
+                            {"vehicle_car_push_table", folder.write("none.csv", "0,0,0\n1,0,0\n")}};
   std::string round = car(folder, false);
   for (const char* shape : {", flat_length: 0.03", ", flat_angle: 0.400000", ", polygon_order: 3",
                             ", polygon_amplitude: 1.0e-4", ", polygon_phase: 0.800000"})
     round.erase(round.find(shape), std::string(shape).size());
-  Results run = run_yaml(bridge + round, still + Values{{"train_vehicles", "car"},
-                                                        {"train_speed_file", stop},
-                                                        {"train_speed_over", "position"},
-                                                        {"scene_tail", "30"},
-                                                        {"output_interval", "0.5"}});
+  Results run = run_yaml(bridge + round, predicted + Values{{"train_vehicles", "car"},
+                                                            {"train_speed_file", stop},
+                                                            {"train_speed_over", "position"},
+                                                            {"scene_tail", "30"},
+                                                            {"output_interval", "0.5"}});
   EXPECT_NEAR(run.time().back(), 2.5 + 30.0, 0.5) << "the run ends so long after the standstill";
   Results rest =
       run_yaml(bridge + round,
-               still + Values{{"train_vehicles", "car"}, {"train_positions", "23"}, {"scene_analysis", "static"}});
+               predicted + Values{{"train_vehicles", "car"}, {"train_positions", "23"}, {"scene_analysis", "static"}});
   EXPECT_NEAR(run.column("/vehicles/0/front_axle/position", 0).back(), 25.0, 1e-12);
   for (const std::size_t p : {0, 1, 2})
     EXPECT_NEAR(run.column("/probes/deflection", p).back(), rest.column("/probes/deflection", p).back(), 1e-9);

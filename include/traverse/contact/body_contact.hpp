@@ -57,6 +57,6 @@ struct PairTouch {
 bool touch(const PairGeometry& pair, const multibody::Frame& first, const multibody::Frame& second, PairTouch& out);
 
 /// An arc that has gone round the end of a line is on its other side from then on.
-void note_side(PairGeometry& pair, const multibody::Frame& first, const multibody::Frame& second);
+void record_side(PairGeometry& pair, const multibody::Frame& first, const multibody::Frame& second);
 
 }  // namespace traverse::contact

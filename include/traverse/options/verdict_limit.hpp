@@ -24,7 +24,7 @@ struct LimitQuantity {
   LimitFinder finder = LimitFinder::run;
 };
 
-/// How each follows from a run stands in src/run/verdicts.cpp.
+/// How each follows from a run stands in src/run/limit_check.cpp.
 inline constexpr LimitQuantity limit_quantities[] = {
     {"deck_acceleration", "m/s2", "largest vertical acceleration of the probes, low-passed (output_lowpass)"},
     {"unfiltered_deck_acceleration", "m/s2", "the same without a filter"},

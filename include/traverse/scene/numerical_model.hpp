@@ -18,14 +18,14 @@ struct NumericalModel {
   std::string method;          // of integration, as -ts_type names it; empty: as the options say
   VehicleModel vehicles = VehicleModel::full;
   /// What linear vehicles may be out of balance by over their weights; beyond, the run is repeated with the mechanisms.
-  double most_defect = std::numeric_limits<double>::infinity();
+  double most_residual = std::numeric_limits<double>::infinity();
   /// m of every run's way that trial runs have seen, and whether wheels lost contact in them.
   double trials_reach = std::numeric_limits<double>::infinity();
   bool trials_lost_contact = false;
-  double rest_tolerance = -1.0;  // below which motion far from the train is left out, of the largest one; -1: auto
-  bool contact_seats = false;    // a bridge's elements bend between their nodes under wheels
-  bool step_kinks = true;        // steps end where wheels pass kinks
-  bool step_probes = false;      // they end where wheels pass probes, and peaks are looked for at every step
+  double rest_tolerance = -1.0;   // below which motion far from the train is left out, of the largest one; -1: auto
+  bool local_compliance = false;  // a bridge's elements bend between their nodes under wheels
+  bool step_kinks = true;         // steps end where wheels pass kinks
+  bool step_probes = false;       // they end where wheels pass probes, and peaks are looked for at every step
 
   bool operator==(const NumericalModel&) const = default;
 };

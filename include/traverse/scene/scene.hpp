@@ -107,8 +107,9 @@ struct Scene {
   std::optional<Study> study;
   std::optional<double> contact_tolerance;  // s
   int impact_steps = 20;
-  double looks = std::numeric_limits<double>::infinity();  // s: longest between instants at which responses are seen
-  bool all_ranks = false;                                  // take the steps, whether that is faster or not
+  double sampling_interval =
+      std::numeric_limits<double>::infinity();  // s: longest between instants at which responses are seen
+  bool all_ranks = false;                       // take the steps, whether that is faster or not
   double accuracy = 1e-3;
   std::vector<std::string> accuracy_of;  // peaks, as in the option's list; empty: all
   bool mesh_open = false;                // its elements are chosen from the accuracy

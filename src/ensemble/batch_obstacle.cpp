@@ -1,0 +1,24 @@
+// What of a scene keeps its runs from going side by side.
+#include "ensemble/batch_obstacle.hpp"
+
+#include <array>
+
+#include "engine/batch.hpp"
+#include "integrate/integrator_choice.hpp"
+
+namespace traverse::app {
+std::string batch_obstacle(const Scene& scene, const SharedBeam& shared) {
+  if (scene.vehicles.empty()) return "no vehicles run";
+  if (!scene.load.forces.empty()) return "forces move beside the vehicles";
+  if (scene.model.vehicles != VehicleModel::linear) return "vehicles are mechanisms, not linear";
+  if (scene.train.drive != Drive::constant) return "the train's speed is not prescribed";
+  if (!scene.train.courses.empty()) return "several trains run, or one whose speed changes or is below 0";
+  if (scene.start != Start::equilibrium) return "runs do not start in equilibrium";
+  if (!integrate::own_method(scene.model.method)) return "ts_type is one of PETSc's own";
+  if (!scene.model.step) return "the step is not known";
+  if (!scene.output.passages.empty()) return "steps end where wheels pass the places of output_passages";
+  if (scene.beam->ground != std::array{true, true}) return "the running surface ends with the bridge";
+  return engine::BatchStructure::obstacle(*shared.beam, shared.modal ? &*shared.modal : nullptr);
+}
+
+}  // namespace traverse::app

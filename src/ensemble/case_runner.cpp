@@ -1,0 +1,298 @@
+// Computes the runs of a study by the fastest admissible way: exact modal solutions, vectorised batches by elements, or
+// single runs, also with full mechanisms where linear vehicles are not accurate enough.
+#include "case_runner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+#include "engine/processor.hpp"
+#include "engine/speed_class.hpp"
+#include "ensemble/batch_obstacle.hpp"
+#include "integrate/modal_peaks.hpp"
+#include "run/run_observer.hpp"
+#include "run/signals.hpp"
+#include "run/step_cost.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+
+// Of a run by the kernel of batches that goes alone, times what it takes beside others.
+constexpr double alone_over_beside = 20.0;
+constexpr double seconds_a_look = 1e-7;  // of limits at a run by modes
+
+}  // namespace
+
+CaseRunner::CaseRunner(const Scene& scene, std::vector<std::string>& notes, std::shared_ptr<SharedBeam> beam)
+    : scene_(scene), speeds_(scene.sweep->speeds), loads_(scene.sweep->loads), beam_(std::move(beam)) {
+  if (speeds_.empty()) speeds_ = {scene.vehicles.empty() ? scene.load.speed : scene.train.speed};
+  if (loads_.empty()) loads_ = {scene.load};
+  for (const double x : wheels_at_start(scene)) last_wheel_ = std::min(last_wheel_, x);
+  if (beam_ == nullptr) {
+    beam_ = std::make_shared<SharedBeam>(PETSC_COMM_SELF, scene_, notes);
+    beam_->damp(scene_, !scene_.model.step || scene_.model.modes > 0, notes);
+    beam_->prepare(scene_, notes);
+  }
+  set_up_limits(notes);
+  if (scene_.exact_in_time()) beam_->modal->add_probes(scene_.output.probes, scene_.self_weight ? scene_.gravity : 0.0);
+  if (scene_.exact_in_time() && scene_.judges_runs() && !beam_->modal->dampers_couple())
+    force_findings_.emplace(scene_, *beam_, counting_);
+  std::vector<std::string> ignored;
+  for (std::size_t train = 0; train < trains(); ++train) {
+    for (const double speed : std::set{speeds_.front(), speeds_.back()})
+      const Passage checked(scene_of(train, {speed, {}}), *beam_,
+                            train == 0 && speed == speeds_.front() ? notes : ignored);
+  }
+  set_up_lanes();
+}
+
+void CaseRunner::set_up_limits(std::vector<std::string>& notes) {
+  if (filters_wheels(scene_)) scene_.sampling_interval = spacing_for(scene_.output.wheel_low_pass);
+  if (!scene_.limits_deck_acceleration()) return;
+  counting_ = frequency_that_counts(scene_, *beam_, true, notes);
+  if (counting_ > 0.0) scene_.sampling_interval = std::min(scene_.sampling_interval, spacing_for(counting_));
+}
+
+void CaseRunner::set_up_lanes() {
+  if (scene_.exact_in_time()) return;
+  why_no_lanes_ = batch_obstacle(scene_, *beam_);
+  by_kernel_ = why_no_lanes_.empty();
+  if (scene_.judges_runs()) why_no_lanes_ = "limits are judged by whole runs";
+  if (scene_.sweep->lanes == 0) why_no_lanes_ = "sweep_lanes 0 asks for that";
+  if (!why_no_lanes_.empty()) return;
+  scene_of(0, {speeds_.front(), {}});
+  lanes_.emplace(scene_, *beam_);
+  why_no_lanes_ = lanes_->obstacle();
+  if (!why_no_lanes_.empty()) return lanes_.reset();
+  static_deflection_[0] = lanes_->static_deflection();
+  double past = 0.0;
+  for (const double speed : speeds_) past = std::max(past, speed * (duration(0, speed) + lanes_->steps().longest));
+  why_no_lanes_ = lanes_->expect(past);
+  if (!why_no_lanes_.empty()) lanes_.reset();
+}
+
+std::vector<std::vector<std::size_t>> group_runs(const std::vector<CaseRun>& runs, std::size_t most) {
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto key = [&](std::size_t i) {
+    return std::tuple(engine::speed_class(runs[i].speed), runs[i].seed, runs[i].speed);
+  };
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return key(a) < key(b); });
+  std::vector<std::vector<std::size_t>> groups;
+  for (const std::size_t i : order) {
+    const bool joins = !groups.empty() && groups.back().size() < most &&
+                       engine::speed_class(runs[groups.back().front()].speed) == engine::speed_class(runs[i].speed);
+    if (!joins) groups.emplace_back();
+    groups.back().push_back(i);
+  }
+  return groups;
+}
+
+std::size_t CaseRunner::width() const {
+  if (by_modes_alone() && !beam_->modal->dampers_couple())
+    return std::clamp<std::size_t>(scene_.sweep->lanes, 1, engine::best_width());
+  return lanes_ ? scene_.sweep->lanes : 1;
+}
+
+std::vector<CaseResult> CaseRunner::run_together(std::size_t train, std::span<const Member> members,
+                                                 const std::function<void(double)>& reached) {
+  CaseRunner& first = *members.front().runner;
+  std::vector<CaseResult> results;
+  if (first.by_modes_alone()) {
+    std::vector<CaseRun> runs;
+    for (const Member& member : members) runs.push_back(member.run);
+    results = first.run_by_modes(train, runs);
+  } else if (first.lanes_) {
+    results = run_in_lanes(train, members, reached);
+  } else {
+    for (const auto& [runner, one] : members) results.push_back(runner->run(train, one, reached));
+  }
+  if (first.scene_.by_given_modes())
+    for (CaseResult& result : results)
+      for (base::ProbePeaks& peak : result.peaks) peak.moment = {not_known, not_known};
+  for (CaseResult& result : results) result.findings.resize(first.scene_.limits.size());  // unknown where not judged
+  return results;
+}
+
+std::vector<CaseResult> CaseRunner::run_in_lanes(std::size_t train, std::span<const Member> members,
+                                                 const std::function<void(double)>& reached) {
+  std::vector<CaseBatch::Member> beside;
+  for (const auto& [runner, one] : members)
+    beside.push_back({&*runner->lanes_, {one.speed, runner->duration(train, one.speed), one.seed}});
+  std::vector<CaseResult> results;
+  for (const engine::BatchResult& crossing :
+       CaseBatch::ready(std::span<const CaseBatch::Member>(beside), beside.front().lanes->steps()).run()) {
+    if (caught_signal() != 0) return std::vector<CaseResult>(members.size());
+    const auto& [runner, one] = members[results.size()];
+    if (crossing.trouble != engine::none || runner->lanes_->defect(crossing) > runner->scene_.model.most_residual) {
+      ++runner->alone_;
+      results.push_back(runner->run(train, one, reached));
+    } else {
+      results.push_back(runner->result_of(crossing, train));
+    }
+  }
+  return results;
+}
+
+CaseResult CaseRunner::result_of(const engine::BatchResult& crossing, std::size_t train) const {
+  CaseResult result;
+  static_cast<base::PassagePeaks&>(result) = crossing;
+  result.static_deflection = static_deflection_.at(train);
+  result.unseen = crossing.contact_losses > 0.0 && !scene_.model.trials_lost_contact;
+  result.ended = true;
+  return result;
+}
+
+const Scene& CaseRunner::scene_of(std::size_t train, const CaseRun& run) {
+  scene_.load.forces = loads_[train].forces;
+  scene_.load.positions = loads_[train].positions;
+  if (scene_.load.courses.empty()) scene_.load.speed = scene_.load.forces.empty() ? 0.0 : run.speed;
+  if (scene_.train.courses.empty()) scene_.train.speed = scene_.vehicles.empty() ? 0.0 : run.speed;
+  if (run.seed) scene_.profile = scene_.roughness->profile(*run.seed);
+  return scene_;
+}
+
+double CaseRunner::duration(std::size_t train, double speed) const {
+  if (scene_.end_time) return *scene_.end_time;
+  double last = last_wheel_;
+  for (const double x : loads_[train].positions) last = std::min(last, x);
+  return (scene_.beam->length() - last) / speed + scene_.tail.value_or(0.0);
+}
+
+double CaseRunner::cost() const {
+  if (scene_.exact_in_time()) {
+    const std::vector<double>& omega = beam_->modal->omega();
+    const double instants = scene_.sweep->instants * omega.back() / (2.0 * std::numbers::pi);
+    const double sampling_interval =
+        force_findings_ && std::isfinite(scene_.sampling_interval) ? seconds_a_look / scene_.sampling_interval : 0.0;
+    return instants * modal_instant_seconds(scene_, static_cast<double>(omega.size()), beam_->modal->dampers_couple()) +
+           sampling_interval;
+  }
+  const double step = scene_.model.step.value_or(1.0);
+  if (!by_kernel_) return step_seconds(scene_, scene_.model.method) / step;
+  return (lanes_ ? 1.0 : alone_over_beside) * batch_stage_seconds(scene_, beam_->beam->mesh().elements()) *
+         static_cast<double>(method_of(scene_).stages.size()) / step;
+}
+
+double CaseRunner::cost_of_all() const {
+  double motion = 0.0;
+  for (std::size_t train = 0; train < trains(); ++train)
+    for (const double speed : speeds_) motion += duration(train, speed);
+  return cost() * motion;
+}
+
+CaseResult CaseRunner::run(std::size_t train, const CaseRun& run, const std::function<void(double)>& reached) {
+  return by_modes_alone() ? run_by_modes(train, {&run, 1}).front() : run_by_elements(train, run, reached);
+}
+
+CaseResult CaseRunner::run_by_elements(std::size_t train, const CaseRun& run,
+                                       const std::function<void(double)>& reached) {
+  std::vector<std::string> ignored;
+  const Scene& scene = scene_of(train, run);
+  // Factorisations of other runs would serve shifts that are equal but for rounding: results would depend on which runs
+  // this rank has had.
+  beam_->statics->forget_steps();
+  Passage passage(scene, *beam_, ignored);
+  passage.start(ignored);
+  results::Recorder none(PETSC_COMM_SELF, "", {}, {}, {});
+  RunObserver watch(scene, passage.system(), beam_->bridge(), none);
+  if (counting_ > 0.0 && no_filter(counting_, passage.plan(), scene.output.probes.size()).empty())
+    watch.keep_accelerations({counting_, passage.plan(), scene.output.probes});
+  const Output& out = scene.output;
+  const std::size_t wheels = wheels_at_start(scene).size();
+  if (filters_wheels(scene) && no_filter(out.wheel_low_pass, passage.plan(), wheels, "wheels").empty())
+    watch.keep_wheel_forces({out.wheel_low_pass, out.unloading_level, passage.plan(), wheels});
+  if (scene.judges_runs()) watch.judge();
+  const double seen_until = run.speed > 0.0 ? scene.model.trials_reach / run.speed : scene.model.trials_reach;
+  watch.tell_beyond_trials(seen_until);
+  CaseResult result;
+  result.peaks.resize(scene.output.probes.size());
+  const auto sample = [&](const integrate::Instant& instant) { watch.sample(instant); };
+  const auto step = [&](double t, long) {
+    watch.step(t);
+    if (reached) reached(t);
+    return caught_signal() == 0;
+  };
+  passage.run(sample, step);
+  result.ended = caught_signal() == 0;
+  if (!result.ended) return result;
+  if (passage.system().defect() > scene.model.most_residual) return run_with_mechanisms(train, run, reached);
+  check_balance(scene, watch.extremes());
+  const ResponseExtremes& peaks = watch.finished_peaks();
+  for (std::size_t p = 0; p < result.peaks.size(); ++p) {
+    const auto peak = [&](Quantity q) {
+      const Extreme& found = peaks.largest_of_each(q)[p];
+      return base::Extreme{std::abs(found.value), found.time};
+    };
+    result.peaks[p] = {peak(deflection), peak(acceleration), peak(moment)};
+  }
+  if (scene.judges_runs())
+    for (const results::Verdict& verdict : watch.verdicts(watch.finish())) result.findings.push_back(verdict.found);
+  const results::Summary& extremes = watch.finished_extremes();
+  result.least_wheel_force = extremes.least_wheel_force;
+  result.greatest_wheel_force = extremes.greatest_wheel_force;
+  result.contact_losses = extremes.contact_losses;
+  result.longest_loss = extremes.longest_loss;
+  result.unseen = watch.met_unseen(scene.model.trials_lost_contact ? seen_until : 0.0);
+  std::vector<double>& at_rest = static_deflection_[train];
+  if (at_rest.empty() || !passage.system().weights().pass_together(watch.paths())) {
+    at_rest.clear();
+    for (const double x : scene.output.probes) {
+      if (caught_signal() != 0) break;
+      at_rest.push_back(passage.system().weights().static_peak(x, watch.paths(), watch.last_time()));
+    }
+  }
+  result.ended = caught_signal() == 0;
+  result.static_deflection = at_rest;
+  return result;
+}
+
+// Linear vehicles have left out too much.
+CaseResult CaseRunner::run_with_mechanisms(std::size_t train, const CaseRun& run,
+                                           const std::function<void(double)>& reached) {
+  scene_.model.vehicles = VehicleModel::full;
+  CaseResult result = run_by_elements(train, run, reached);
+  scene_.model.vehicles = VehicleModel::linear;
+  return result;
+}
+
+std::vector<CaseResult> CaseRunner::run_by_modes(std::size_t train, std::span<const CaseRun> runs) {
+  auto place = passages_.find(train);
+  if (place == passages_.end()) {
+    const train::MovingLoad& load = scene_of(train, runs.front()).load;
+    place = passages_.try_emplace(train, *beam_->modal, load, scene_.start == Start::equilibrium).first;
+    static_deflection_[train] = place->second.static_peaks();
+  }
+  std::vector<double> speeds, ends;
+  for (const CaseRun& one : runs) {
+    speeds.push_back(one.speed);
+    ends.push_back(duration(train, one.speed));
+  }
+  std::vector<CaseResult> results(speeds.size());
+  const auto going = [] { return caught_signal() == 0; };
+  std::vector<std::vector<base::ProbePeaks>> peaks;
+  if (beam_->modal->dampers_couple())
+    for (std::size_t i = 0; i < speeds.size(); ++i)
+      peaks.push_back(integrate::modal_peaks(*beam_->modal, place->second.history(), speeds[i],
+                                             scene_.start == Start::equilibrium, ends[i], scene_.sweep->instants,
+                                             going));
+  else
+    peaks = place->second.peaks(speeds, ends, scene_.sweep->instants, going);
+  for (std::size_t i = 0; i < peaks.size(); ++i) {
+    results[i].peaks = peaks[i];
+    results[i].static_deflection = static_deflection_[train];
+    results[i].ended = caught_signal() == 0;
+    if (!force_findings_ || !results[i].ended) continue;
+    scene_of(train, runs[i]);
+    results[i].findings = force_findings_->of(train, ends[i], results[i].peaks, results[i].static_deflection);
+  }
+  return results;
+}
+
+}  // namespace traverse::app

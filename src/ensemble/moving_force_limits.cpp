@@ -1,0 +1,104 @@
+// Evaluates the exact modal solution at equal intervals, filters the accelerations, and determines rotations,
+// amplification and the other quantities of limits.
+#include "ensemble/moving_force_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/modal_motion.hpp"
+#include "run/deck_acceleration.hpp"
+#include "run/low_pass.hpp"
+
+namespace traverse::app {
+
+MovingForceLimits::MovingForceLimits(const Scene& scene, SharedBeam& shared, double counting)
+    : scene_(scene),
+      shared_(shared),
+      counting_(counting),
+      by_modes_(shared.modal->modes() < shared.modal->probes().count),
+      count_(by_modes_ ? shared.modal->modes() : shared.modal->probes().count),
+      slopes_(shared.modal->slopes(DeckRotations(*shared.beam).unknowns(), scene.self_weight ? scene.gravity : 0.0)) {}
+
+std::vector<results::EvaluatedQuantity> MovingForceLimits::of(std::size_t train, double end_time,
+                                                              std::span<const base::ProbePeaks> peaks,
+                                                              std::span<const double> static_deflection) {
+  std::vector<std::string> ignored;
+  const Plan plan = plan_exact_in_time(scene_, end_time, shared_.first_period(), ignored);
+  LimitCheck judge(scene_, no_fleet_, &*shared_.beam);
+  pass(train, plan, judge);
+
+  results::Summary summary;
+  summary.probes = !peaks.empty();
+  std::vector<Extreme> deflections;
+  for (std::size_t p = 0; p < peaks.size(); ++p) {
+    const auto note = [&](const base::Extreme& peak, results::Extreme& largest) {
+      if (peak.value <= largest.value) return false;
+      largest = {peak.value, peak.time, scene_.output.probes[p]};
+      return true;
+    };
+    deflections.push_back({peaks[p].deflection.value, peaks[p].deflection.time, p});
+    note(peaks[p].acceleration, summary.acceleration);
+    if (note(peaks[p].deflection, summary.deflection))
+      summary.amplification = static_deflection[p] > 0.0 ? peaks[p].deflection.value / static_deflection[p] : 0.0;
+  }
+  if (counting_ > 0.0 && no_filter(counting_, plan, peaks.size()).empty()) summary.low_passed = filtered(plan.interval);
+  std::vector<results::EvaluatedQuantity> findings;
+  for (const results::Verdict& verdict : judge.verdicts(summary, deflections)) findings.push_back(verdict.found);
+  return findings;
+}
+
+/// Looks at the run as a run by itself is looked at.
+void MovingForceLimits::pass(std::size_t train, const Plan& plan, LimitCheck& judge) {
+  const integrate::ForceHistory& history = histories_.try_emplace(train, slopes_.influence, scene_.load).first->second;
+  const structure::ModalBridge& bridge = *shared_.modal;
+  integrate::ModalMotion motion(bridge, history, scene_.load.speed, scene_.start == Start::equilibrium);
+  motion.expect(plan.interval);
+  const std::size_t modes = bridge.modes();
+  std::vector<double> slopes(slopes_.count);
+  const auto look = [&] {
+    std::copy(slopes_.weight.begin(), slopes_.weight.end(), slopes.begin());
+    motion.add_channels(modes, slopes_.count, slopes.data());
+    for (std::size_t i = 0; i < modes; ++i)
+      for (std::size_t k = 0; k < slopes_.count; ++k) slopes[k] += slopes_.of_q[i * slopes_.count + k] * motion.q()[i];
+    judge.rotations(motion.time(), slopes);
+  };
+  const double slack = 1e-3 * std::min(plan.interval, plan.end_time);
+  const auto instants = static_cast<std::size_t>(std::floor((plan.end_time + slack) / plan.interval)) + 1;
+  series_.resize(instants * count_);
+  for (std::size_t k = 0; k < instants; ++k) {
+    const double t = static_cast<double>(k) * plan.interval;
+    motion.advance(t > plan.end_time - slack ? plan.end_time : t);
+    look();
+    double* row = &series_[k * count_];
+    if (by_modes_)
+      std::copy_n(motion.acceleration().data(), modes, row);
+    else
+      at_probes(motion.acceleration().data(), row);
+  }
+  if (motion.time() >= plan.end_time) return;
+  motion.advance(plan.end_time);
+  look();
+}
+
+void MovingForceLimits::at_probes(const double* of_modes, double* row) const {
+  const structure::ModalProbes& probes = shared_.modal->probes();
+  const std::size_t modes = shared_.modal->modes(), count = probes.count;
+  const double* shape = probes.deflection.data();
+  for (std::size_t p = 0; p < count; ++p, ++shape) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < modes; ++i) sum += shape[i * count] * of_modes[i];
+    row[p] = sum;
+  }
+}
+
+results::LowPassed MovingForceLimits::filtered(double interval) {
+  const LowPass filter(counting_, interval);
+  filter.apply(series_, count_);
+  if (!by_modes_) return peak_of(series_, scene_.output.probes, counting_, interval);
+  const std::size_t probes = shared_.modal->probes().count, instants = series_.size() / count_;
+  rows_.resize(instants * probes);
+  for (std::size_t k = 0; k < instants; ++k) at_probes(&series_[k * count_], &rows_[k * probes]);
+  return peak_of(rows_, scene_.output.probes, counting_, interval);
+}
+
+}  // namespace traverse::app

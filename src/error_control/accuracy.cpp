@@ -1,0 +1,186 @@
+// Chooses mesh and time step for a wanted error of the peaks: prepares beam, damping and filter frequency, runs the
+// error search, and repeats it with full mechanisms where linear vehicles are not accurate enough.
+#include "error_control/accuracy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "error_control/initial_guess.hpp"
+#include "error_control/model_search.hpp"
+#include "error_control/multibody_step_search.hpp"
+#include "error_control/search_constants.hpp"
+#include "error_control/trial_runs.hpp"
+#include "results/stage.hpp"
+#include "run/deck_acceleration.hpp"
+#include "run/extrapolation_check.hpp"
+#include "run/passage.hpp"
+#include "traverse/options/input.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr double some_step = 1e-6;             // s, to look at a scene before it has a step
+constexpr std::size_t continuous_spans = 200;  // from which on what rests is left out, where spans touch
+
+void limit_to_active_window(const Scene& scene, NumericalModel& model) {
+  const beam::BeamModel& beam = *scene.beam;
+  if (model.rest_tolerance < 0.0 && !beam.track && !beam.all_separate() && beam.spans.size() >= continuous_spans)
+    model.rest_tolerance = search::share_of_rest * scene.accuracy;
+}
+
+void say(const Scene& scene, const ModelSearch& search, const Choice& choice, std::vector<std::string>& notes) {
+  const Accuracy& result = choice.accuracy;
+  const std::string mesh = scene.by_given_modes() ? ""
+                                                  : fmt::format("{} elements a {}, ", choice.model.elements,
+                                                                scene.beam->track ? "sleeper bay" : "span");
+  notes.push_back(fmt::format("accuracy {:g}: {}{}steps of {:g} s; {} trial runs of {:.3g} s took {:.2g} s",
+                              scene.accuracy, mesh, choice.model.method.empty() ? "" : choice.model.method + " with ",
+                              *choice.model.step, search.trials(), search.horizon(), result.seconds));
+  std::string expected;
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (result.estimates[q].present && result.estimates[q].kept)
+      expected +=
+          fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity_names[q], result.estimates[q].expected);
+  if (!expected.empty()) notes.push_back("expected errors of the peaks: " + expected);
+  for (std::size_t q = 0; q < quantities; ++q)
+    if (result.estimates[q].present && !result.estimates[q].kept)
+      notes.push_back(not_promised(static_cast<Quantity>(q), result.estimates[q]));
+}
+
+}  // namespace
+
+bool chooses(const Scene& scene) {
+  const bool open = scene.mesh_open || !scene.model.step;
+  const bool moves = !scene.train.vehicles.empty() || !scene.load.forces.empty();
+  return open && moves && scene.beam && scene.analysis == Analysis::transient &&
+         (scene.model.modes == 0 || (scene.by_given_modes() && !scene.exact_in_time()));
+}
+
+void set_first_mesh(Scene& scene) {
+  if (!scene.mesh_open) return;
+  const int elements = first_mesh(scene), half = aligned_mesh(scene, elements / 2);
+  set_mesh(scene, 2 * half > elements ? 2 * half : aligned_mesh(scene, elements, 2.0));
+}
+
+void fix_low_pass(MPI_Comm comm, Scene& scene, std::vector<std::string>& notes) {
+  if (!filters_deck(scene) || scene.output.low_pass) return;
+  Scene known = scene;
+  set_first_mesh(known);
+  std::vector<std::string> ignored;
+  SharedBeam shared(comm, known, ignored);
+  shared.damp(known, false, ignored);
+  if (known.model.modes > 0) shared.prepare(known, ignored);
+  const bool affordable = scene.limits_deck_acceleration() || frequencies_are_cheap(*shared.beam);
+  scene.output.low_pass = frequency_that_counts(known, shared, affordable, notes);
+}
+
+const options::Entry* own_measure() {
+  const options::Entry* control = options::in_force().find("ts_adapt_type");
+  if (control != nullptr && control->value != "none") return control;
+  return options::in_force().find("ts_arkimex_fully_implicit");
+}
+
+namespace {
+
+/// Whether the whole acceleration, for which far more modes and shorter steps are needed, is judged by nothing.
+bool judged_low_passed(const Scene& scene) { return scene.limits_deck_acceleration() && filters_deck(scene); }
+
+}  // namespace
+
+bool asks_for(const Scene& scene, std::size_t quantity) {
+  if (quantity == low_passed && !filters_deck(scene)) return false;
+  const std::vector<std::string>& asked = scene.accuracy_of;
+  if (!asked.empty()) return std::find(asked.begin(), asked.end(), stored_names[quantity]) != asked.end();
+  if (quantity == acceleration) return !judged_low_passed(scene);
+  return !by_elements_alone(quantity) || (quantity != shear_force && pushes_along(scene));
+}
+
+bool is_welcome(const Scene& scene, std::size_t quantity) {
+  return scene.accuracy_of.empty() && quantity == shear_force;
+}
+
+std::string why_not_asked(const Scene& scene, std::size_t quantity) {
+  return quantity == acceleration && scene.accuracy_of.empty()
+             ? "limits judge the low-passed one; accuracy_of asks for both"
+             : "accuracy_of does not ask for it";
+}
+
+bool asks_for_forces_alone(const Scene& scene) {
+  return asks_for(scene, wheel_force) && !asks_for(scene, acceleration);
+}
+
+bool damps_high_modes(const Scene& scene) {
+  const Damping& damping = scene.damping;
+  return (damping.ratios && damping.ratios->second > 0.0) || (damping.rayleigh && damping.rayleigh->second > 0.0);
+}
+
+bool damps_all_modes(const Scene& scene) {
+  const Damping& damping = scene.damping;
+  if (scene.by_given_modes()) {
+    const std::vector<double>& ratio = scene.beam->given->ratio;
+    return std::all_of(ratio.begin(), ratio.end(), [](double one) { return one > 0.0; });
+  }
+  return (damping.ratios && damping.ratios->first > 0.0) ||
+         (damping.rayleigh && std::max(damping.rayleigh->first, damping.rayleigh->second) > 0.0);
+}
+
+Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
+  Choice none{scene.model, {}, {}};
+  const bool alone = chooses_step_alone(scene);
+  if (!alone && !chooses(scene)) return none;
+  if (const options::Entry* option = own_measure()) {
+    notes.push_back(fmt::format("accuracy {:g} is not searched for by trial runs and nothing is promised: {}",
+                                scene.accuracy, option->given()));
+    return none;
+  }
+  if (alone) return choose_step_alone(comm, scene, notes);
+  const results::Stage stage("trial runs");
+  const options::WithoutMonitors without_monitors;
+  const auto begin = std::chrono::steady_clock::now();
+  std::vector<std::string> ignored;
+  Scene known = scene;
+  set_first_mesh(known);
+  SharedBeam shared(comm, known, ignored);
+  shared.damp(known, true, ignored);
+  shared.prepare(known, ignored);
+  known.damping.ratios.reset();
+  known.damping.rayleigh = {shared.rayleigh.a, shared.rayleigh.b};
+  fix_low_pass(comm, known, ignored);
+  Scene timed = known;
+  if (!timed.model.step) timed.model.step = some_step;
+  const double end = Passage(timed, shared, ignored).plan().end_time;
+  std::optional<ModelSearch> search(std::in_place, comm, known, shared, end);
+  try {
+    search->run();
+  } catch (const NotLinear& linear) {
+    notes.push_back(fmt::format("vehicles stay mechanisms: linear ones are out of balance by {:.1g} of their weights",
+                                linear.defect));
+    known.model.vehicles = VehicleModel::full;
+    search.emplace(comm, known, shared, end);
+    search->run();
+  }
+  Choice choice = search->choice();
+  if (choice.model.vehicles == VehicleModel::automatic) {
+    choice.model.vehicles = VehicleModel::linear;
+    choice.model.most_residual = search->most_residual();
+  }
+  limit_to_active_window(scene, choice.model);
+  choice.accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  say(scene, *search, choice, notes);
+  return choice;
+}
+
+Scene refined(const Scene& scene) {
+  Scene fine = scene;
+  if (fine.beam->track)
+    fine.beam->track->elements_per_bay *= 2;
+  else if (!fine.by_given_modes())
+    for (int& elements : fine.beam->elements) elements *= 2;
+  fine.model.step = 0.5 * *scene.model.step;
+  return fine;
+}
+
+}  // namespace traverse::app

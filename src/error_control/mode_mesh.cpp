@@ -1,0 +1,101 @@
+// Doubles the number of elements until Richardson extrapolation of the natural frequencies estimates an error within
+// the accuracy.
+#include "mode_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "error_control/error_model.hpp"
+#include "error_control/search_constants.hpp"
+#include "error_control/trial_runs.hpp"
+#include "modes/modes.hpp"
+#include "results/stage.hpp"
+#include "run/shared_beam.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr int first_a_span = 16, first_a_bay = 4, most_a_bay = 16;
+constexpr double most_in_all = 5e4;  // elements: beyond, eigenvalues take minutes, and rounding hides what is left
+constexpr int most_a_span = 1024;
+constexpr double least_order = 1.0;
+
+class Frequencies {
+ public:
+  Frequencies(MPI_Comm comm, const Scene& scene) : comm_(comm), scene_(scene) {}
+
+  /// rad/s, of a mesh of so many elements a span (or sleeper bay).
+  const std::vector<double>& of(int elements) {
+    const auto known = found_.find(elements);
+    if (known != found_.end()) return known->second;
+    Scene scene = scene_;
+    set_mesh(scene, elements);
+    std::vector<std::string> ignored;
+    const SharedBeam shared(comm_, scene, ignored);
+    return found_[elements] = modes::natural_modes(*shared.beam, scene.mode_count, false).omega;
+  }
+
+  /// The largest relative error that a mesh leaves, by what halving its elements twice has changed.
+  double error(int elements) {
+    const std::vector<double>&fine = of(elements), &middle = of(elements / 2), &first = of(elements / 4);
+    double most = 0.0;
+    for (std::size_t i = 0; i < fine.size(); ++i) {
+      if (fine[i] == 0.0) continue;
+      if (i >= middle.size()) return 1.0;
+      const double change = std::abs(middle[i] / fine[i] - 1.0);
+      double order = search::mesh_order;
+      if (i < first.size() && change > 0.0)
+        order =
+            std::clamp(std::log2(std::abs(first[i] / fine[i] - 1.0) / change - 1.0), least_order, search::full_order);
+      most = std::max(most, change / (std::exp2(std::isnan(order) ? least_order : order) - 1.0));
+    }
+    return most;
+  }
+
+ private:
+  MPI_Comm comm_;
+  const Scene& scene_;
+  std::map<int, std::vector<double>> found_;
+};
+
+bool too_many(const Scene& scene, int elements) {
+  if (scene.beam->track) return elements > most_a_bay;
+  return elements > most_a_span || elements * static_cast<double>(scene.beam->spans.size()) > most_in_all;
+}
+
+}  // namespace
+
+bool chooses_mode_mesh(const Scene& scene) {
+  return scene.analysis == Analysis::modes && scene.mesh_open && scene.beam && !scene.by_given_modes();
+}
+
+Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes) {
+  const results::Stage stage("search for the mesh of the modes");
+  const auto begin = std::chrono::steady_clock::now();
+  Choice choice{scene.model, {}, {}};
+  Accuracy& accuracy = choice.accuracy;
+  Frequencies frequencies(comm, scene);
+  int elements = scene.beam->track ? first_a_bay : first_a_span;
+  while (!too_many(scene, 2 * elements) && frequencies.error(elements) > scene.accuracy) elements *= 2;
+  accuracy.measured = true;
+  ErrorEstimate& promise = accuracy.frequencies;
+  promise = {true, true, frequencies.error(elements), {}};
+  promise.kept = promise.expected <= scene.accuracy;
+  accuracy.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const char* of = scene.beam->track ? "sleeper bay" : "span";
+  choice.model.elements = elements;
+  if (promise.kept)
+    notes.push_back(fmt::format("accuracy {:g}: {} elements a {}; expected error of the frequencies {:.1g}",
+                                scene.accuracy, elements, of, promise.expected));
+  else
+    notes.push_back(fmt::format("not promised: frequencies: {} elements a {} still leave an error of {:.1g}", elements,
+                                of, promise.expected));
+  return choice;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,122 @@
+// Trial runs at the lowest, the middle and the highest speed, of which the finest mesh and step are used for all runs;
+// also whether low-passed accelerations can be promised.
+#include "error_control/sweep_model.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "error_control/accuracy.hpp"
+#include "error_control/batch_model.hpp"
+#include "error_control/mode_choice.hpp"
+#include "error_control/trial_runs.hpp"
+#include "run/deck_acceleration.hpp"
+
+namespace traverse::app {
+namespace {
+
+void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& notes) {
+  const std::string mesh = scene.by_given_modes() ? "given modes"
+                                                  : fmt::format("{} elements a {}", mesh_of(scene),
+                                                                scene.beam->track ? "sleeper bay" : "span");
+  notes.push_back(fmt::format("all runs: {}, steps of {:g} s", mesh, *scene.model.step));
+  if (scene.model.vehicles == VehicleModel::linear && !scene.vehicles.empty())
+    notes.emplace_back("vehicles are taken as linear; a run in which that shows is repeated with the mechanisms");
+  std::string expected;
+  for (const auto& [quantity, error] : all.expected())
+    expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity, error);
+  std::replace(expected.begin(), expected.end(), '_', ' ');
+  notes.push_back("expected errors of the peaks of all runs: " + (expected.empty() ? "none promised" : expected));
+}
+
+/// The finest of what some speeds need; nothing where no accuracy was to be chosen by.
+std::optional<Choice> choose_at_speeds(const Scene& given, std::vector<std::string>& notes) {
+  std::vector<double> speeds = given.sweep->speeds;
+  if (speeds.empty()) speeds = {given.vehicles.empty() ? given.load.speed : given.train.speed};
+  std::optional<Choice> all;
+  for (const double speed : std::set{speeds.front(), speeds[speeds.size() / 2], speeds.back()}) {
+    std::vector<std::string> own;
+    Choice one = choose(PETSC_COMM_SELF, at_speed(given, speed), own);
+    if (!one.accuracy.measured) return std::nullopt;
+    notes.push_back(fmt::format("at {:g} m/s:", speed));
+    notes.insert(notes.end(), own.begin(), own.end());
+    one.model.trials_reach = one.accuracy.seen_until * speed;
+    one.model.trials_lost_contact = one.accuracy.lost_contact;
+    if (all) one.accuracy.merge(all->accuracy);
+    all = Choice{all ? finer(all->model, one.model) : one.model, one.accuracy, {}};
+  }
+  return all;
+}
+
+/// What trials of a sweep judge by. Low-passed accelerations only where no run has its peak within the unsettled end:
+/// it goes on until the last wheel has left and the filter has settled behind it, and the bridge does not ring on.
+Scene judged(const Scene& given, std::vector<std::string>& notes) {
+  Scene scene = given;
+  if (!chooses(at_speed(given, 1.0))) return scene;  // nothing is tried, whatever the speed
+  std::vector<std::string> ignored;                  // the runs say so themselves
+  fix_low_pass(PETSC_COMM_SELF, scene, ignored);
+  if (!asks_for(scene, low_passed)) return scene;
+  const double end = unsettled_end(*scene.output.low_pass);
+  if (damps_all_modes(scene) && !scene.end_time && scene.tail.value_or(0.0) >= end) return scene;
+  std::vector<std::string> others;
+  for (std::size_t q = 0; q < low_passed; ++q)
+    if (asks_for(scene, q) || (q == acceleration && scene.accuracy_of.empty())) others.emplace_back(stored_names[q]);
+  const ErrorEstimate promise{
+      true, false, 0.0,
+      fmt::format("in sweeps and studies it takes a bridge with damping and scene_tail {:.3g} or more, "
+                  "until the filter has settled behind the train",
+                  end)};
+  const std::string note = not_promised(low_passed, promise);
+  if (std::find(notes.begin(), notes.end(), note) == notes.end()) notes.push_back(note);
+  if (!others.empty()) scene.accuracy_of = others;
+  if (others.empty()) scene.output.low_pass = 0.0;
+  return scene;
+}
+
+}  // namespace
+
+Scene at_speed(const Scene& sweep, double speed) {
+  Scene scene = sweep;
+  if (!sweep.sweep->loads.empty()) scene.load = sweep.sweep->loads.front();
+  if (scene.train.courses.empty()) scene.train.speed = scene.vehicles.empty() ? 0.0 : speed;
+  if (scene.load.courses.empty()) scene.load.speed = scene.load.forces.empty() ? 0.0 : speed;
+  return scene;
+}
+
+std::optional<Choice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes) {
+  if (given.vehicles.empty()) return {};
+  return choose_batch_model(judged(given, notes), notes);
+}
+
+Choice choose_one_by_one(const Scene& given, std::vector<std::string>& notes) {
+  const Scene by = judged(given, notes);
+  std::optional<Choice> all = choose_at_speeds(by, notes);
+  if (!all && given.model.modes > 0 && !given.by_given_modes())
+    notes.push_back(fmt::format(
+        "no errors of the peaks are promised: model_modes = {} is given, and no trial runs show what it leaves out",
+        given.model.modes));
+  if (!all) return {given.model, {}, {}};
+  const Scene tried = with(by, all->model);
+  say(tried, all->accuracy, notes);
+  if (given.by_given_modes()) return *all;
+  const ModesChoice modes = choose_mode_count(tried, all->accuracy, notes);
+  all->model.modes = modes.modes;
+  for (ErrorEstimate& promise : all->accuracy.estimates) promise.expected += modes.error;
+  return *all;
+}
+
+results::RunModel stored_model(const Scene& scene, const Accuracy& accuracy) {
+  results::RunModel model;
+  model.modes = scene.model.modes;
+  model.elements = mesh_of(scene);
+  model.in_bays = scene.beam->track.has_value();
+  model.method = scene.model.method;
+  if (!scene.exact_in_time()) model.time_step = scene.model.step.value_or(0.0);
+  if (accuracy.measured) model.accuracy = scene.accuracy;
+  model.expected_errors = accuracy.expected();
+  return model;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,219 @@
+// The modes' motion under the same moving forces at several speeds, one in each lane of the processor's vectors. All
+// runs step by distance: the modal forces are then the same number in every lane.
+//
+//   q'' + 2 sigma q' + omega^2 q = g,    g a cubic polynomial of the distance between two events
+//
+// The motion is exact in time. With O(t) the response to a unit impulse, O(0) = 0, O'(0) = 1, and Q_k the response to
+// the force t^k/k!, Q_0 = int O, Q_k = int Q_(k-1), a state q, q', q'' moves to
+//
+//   q  (t) = q  + t    q'  + Q_0 q'' + Q_1 j   + Q_2 g'' + Q_3 g'''       j = g' - omega^2 q'
+//   q' (t) = q' + O(t) q'' + Q_0 j   + Q_1 g'' + Q_2 g'''
+//
+// Q_3 and Q_2 are power series, which also hold for overdamped modes; the others follow by
+// Q_(k-2) = t^k/k! - 2 sigma Q_(k-1) - omega^2 Q_k.
+#pragma once
+
+#include "engine/lane.hpp"
+#include "modal_engine/moving_force_task.hpp"
+
+namespace traverse::modal_engine {
+namespace {
+
+using engine::Lanes;
+using engine::run_as_wide;
+using engine::size_of_work;
+using engine::take_from;
+
+template <int W>
+class ForcedModes : Lanes<W> {
+  using Own = Lanes<W>;
+  using Own::fill;
+
+ public:
+  using typename Own::Lane;
+
+  explicit ForcedModes(const ForceTask& task) : task_(task), modes_(task.modes) {}
+
+  void lay_out(double* work, long& used) {
+    Lane** const of_modes[] = {&q, &r, &a, &q_kept_, &r_kept_, &a_kept_};
+    for (Lane** own : of_modes) *own = take_from<Lane>(work, used, W, modes_);
+    regular_ = take_from<Advance>(work, used, W, modes_);
+    series_ = take_from<Series>(work, used, W, modes_);
+    for (double*& power : g_) power = take_from<double>(work, used, W, modes_);
+  }
+
+  void begin() {
+    speed_ = *Own::lanes(task_.speed);
+    set_series();
+    const Lane part = fill(task_.ds / parts_) / speed_;
+    for (int i = 0; i < modes_; ++i) {
+      regular_[i] = advance_by(i, part);
+      q[i] = fill(task_.q[i]);
+      r[i] = Lane{};
+    }
+    place(0.0);
+  }
+
+  /// m travelled; infinite after the last one.
+  double next_event() const { return interval + 1 < task_.intervals ? task_.start[interval + 1] : 1e300; }
+
+  /// At an event: the modal forces become those after it.
+  void enter_next() {
+    ++interval;
+    if (interval + 1 < task_.intervals) {
+      const double* next = task_.coefficients + 4 * task_.channels * (interval + 1);
+      for (int i = 0; i < 4 * task_.channels; i += 8) __builtin_prefetch(next + i);
+    }
+    place(s);
+  }
+
+  /// From an instant to the next one, without an event between.
+  void move_regularly(double to) {
+    const double from = s;
+    for (double k = 1.0; k <= parts_; k += 1.0) {
+      for (int i = 0; i < modes_; ++i) move(i, regular_[i], g_[1][i], g_[2][i], g_[3][i]);
+      place(part_of(from, to, k));
+    }
+  }
+
+  /// To a distance at most an instant away, at the next event at the latest.
+  void move_to(double to) {
+    const double from = s;
+    const Lane part = fill((to - from) / parts_) / speed_;
+    for (double k = 1.0; k <= parts_; k += 1.0) {
+      for (int i = 0; i < modes_; ++i) move(i, advance_by(i, part), g_[1][i], g_[2][i], g_[3][i]);
+      place(part_of(from, to, k));
+    }
+  }
+
+  /// So does every lane to a distance of its own; move_back() undoes it.
+  void move_apart(Lane to) {
+    const Lane step = (to - s) / parts_, part = step / speed_;
+    for (int i = 0; i < modes_; ++i) {
+      q_kept_[i] = q[i];
+      r_kept_[i] = r[i];
+      a_kept_[i] = a[i];
+      const Advance by = advance_by(i, part);
+      const double* c = task_.coefficients + 4 * task_.channels * interval + i;
+      const double c0 = c[0], c1 = c[task_.channels], c2 = c[2 * task_.channels], c3 = c[3 * task_.channels];
+      Lane d = fill(s - task_.start[interval]);
+      for (double k = 1.0; k <= parts_; k += 1.0) {
+        move(i, by, c1 + d * (2.0 * c2 + 3.0 * d * c3), c2 + 3.0 * d * c3, c3);
+        d += step;
+        a[i] = c0 + d * (c1 + d * (c2 + d * c3)) - task_.omega2[i] * q[i] - task_.damping[i] * r[i];
+      }
+    }
+  }
+  void move_back() {
+    for (int i = 0; i < modes_; ++i) {
+      q[i] = q_kept_[i];
+      r[i] = r_kept_[i];
+      a[i] = a_kept_[i];
+    }
+  }
+
+  double s = 0.0;                                 // m travelled
+  long interval = 0;                              // between two events
+  Lane *q = nullptr, *r = nullptr, *a = nullptr;  // of the modes: coordinates, rates, accelerations
+
+ private:
+  static constexpr double most_phase = 2.0;   // of a part of an instant: series are short up to there
+  static constexpr int most_terms = 32;       // of a series
+  static constexpr double last_term = 1e-19;  // of a series, over the first
+
+  /// What one step adds to a mode's q and q', by q', q'', j, and the second and third powers of the distance in g.
+  struct Advance {
+    Lane time, impulse, Q0, Q1, q_by_2, q_by_3, rate_by_2, rate_by_3;
+  };
+  struct Series {
+    int terms;
+    double by_2[most_terms], by_3[most_terms];  // of Q_2 and Q_3
+  };
+
+  /// As many coefficients as the longest part of an instant needs; and how many parts it has.
+  void set_series() {
+    for (int i = 0; i < modes_; ++i) {
+      const double least = __builtin_ceil(rate_of(i) * task_.instant / most_phase);
+      if (least > parts_) parts_ = least;
+    }
+    for (int i = 0; i < modes_; ++i) {
+      Series& own = series_[i];
+      const double phase = rate_of(i) * task_.instant / parts_;
+      double before = 0.0, impulse = 1.0;  // derivatives of O at t = 0
+      double by_2 = 1.0 / 24.0, by_3 = 1.0 / 120.0, size = 1.0;
+      for (own.terms = 0; own.terms < most_terms && (own.terms < 2 || size > last_term); ++own.terms) {
+        own.by_2[own.terms] = impulse * by_2;
+        own.by_3[own.terms] = impulse * by_3;
+        const double k = own.terms;
+        by_2 /= k + 5.0;
+        by_3 /= k + 6.0;
+        size *= phase / (k + 5.0) * (k + 2.0) / (k + 1.0);
+        const double next = -task_.damping[i] * impulse - task_.omega2[i] * before;
+        before = impulse;
+        impulse = next;
+      }
+    }
+  }
+
+  /// How fast a mode changes, 1/s.
+  double rate_of(int i) const {
+    const double sigma = 0.5 * task_.damping[i], square = sigma * sigma - task_.omega2[i];
+    return square > 0.0 ? sigma + __builtin_sqrt(square) : __builtin_sqrt(task_.omega2[i]);
+  }
+
+  Advance advance_by(int i, Lane time) const {
+    const Series& own = series_[i];
+    Lane Q2{}, Q3{};
+    for (int k = own.terms - 1; k >= 0; --k) {
+      Q2 = Q2 * time + own.by_2[k];
+      Q3 = Q3 * time + own.by_3[k];
+    }
+    const Lane square = time * time;
+    Q2 *= square * square;
+    Q3 *= square * square * time;
+    const double c = task_.damping[i], w = task_.omega2[i];
+    const Lane Q1 = time * square * (1.0 / 6.0) - c * Q2 - w * Q3;
+    const Lane Q0 = 0.5 * square - c * Q1 - w * Q2;
+    const Lane impulse = time - c * Q0 - w * Q1;
+    const Lane by_2 = 2.0 * speed_ * speed_, by_3 = 3.0 * by_2 * speed_;
+    return {time, impulse, Q0, Q1, by_2 * Q2, by_3 * Q3, by_2 * Q1, by_3 * Q2};
+  }
+
+  /// With the powers of the distance in g from where the step begins; of one lane's distance, or of all.
+  template <class Number>
+  void move(int i, const Advance& by, Number first, Number second, double third) {
+    const Lane rate = r[i], acceleration = a[i], jerk = first * speed_ - task_.omega2[i] * rate;
+    q[i] = q[i] + (by.time * rate + (by.Q1 * jerk + (by.q_by_2 * second + by.q_by_3 * third))) + by.Q0 * acceleration;
+    r[i] = rate + (by.Q0 * jerk + (by.rate_by_2 * second + by.rate_by_3 * third)) + by.impulse * acceleration;
+  }
+
+  /// Where the k-th of the parts of a step ends.
+  double part_of(double from, double to, double k) const { return k < parts_ ? from + (to - from) * (k / parts_) : to; }
+
+  /// At a distance within this interval: the modal forces, and the accelerations by them.
+  void place(double at) {
+    s = at;
+    const double d = s - task_.start[interval];
+    const double* c = task_.coefficients + 4 * task_.channels * interval;
+    for (int i = 0; i < modes_; ++i) {
+      const double c1 = c[task_.channels + i], c2 = c[2 * task_.channels + i], c3 = c[3 * task_.channels + i];
+      const double force = c[i] + d * (c1 + d * (c2 + d * c3));
+      g_[1][i] = c1 + d * (2.0 * c2 + 3.0 * d * c3);
+      g_[2][i] = c2 + 3.0 * d * c3;
+      g_[3][i] = c3;
+      a[i] = force - task_.omega2[i] * q[i] - task_.damping[i] * r[i];
+    }
+  }
+
+  const ForceTask& task_;
+  const int modes_;
+  Lane speed_{};
+  double parts_ = 1.0;  // of an instant
+  Lane *q_kept_ = nullptr, *r_kept_ = nullptr, *a_kept_ = nullptr;
+  Advance* regular_ = nullptr;  // from instant to instant
+  Series* series_ = nullptr;
+  double* g_[4] = {};  // of the modes: coefficients of g by powers of the distance from here; the force itself is in a
+};
+
+}  // namespace
+}  // namespace traverse::modal_engine

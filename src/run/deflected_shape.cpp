@@ -1,0 +1,55 @@
+// Deflections at the nodes from the stored displacement vector, and those inside elements by recovery with the loads of
+// that instant.
+#include "run/deflected_shape.hpp"
+
+#include <algorithm>
+
+#include "beam/shape_points.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr std::size_t at_once = 4000;  // points inside elements, which take a kilobyte each
+
+using Point = beam::ShapePoints::Point;
+
+/// Collective. What this rank knows of the nodes, summed up over all.
+void add_nodes(const beam::Beam& beam, const std::vector<double>& v, const std::vector<Point>& points,
+               std::vector<double>& deflection) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const int local = points[i].node < 0 ? -1 : beam.local(beam.bridge().unknown(points[i].node, 1));
+    if (local >= 0) deflection[i] = v[static_cast<std::size_t>(local)];
+  }
+  MPI_Allreduce(MPI_IN_PLACE, deflection.data(), static_cast<int>(deflection.size()), MPI_DOUBLE, MPI_SUM, beam.comm());
+}
+
+/// Collective. Of points[which[0]], points[which[1]], ...
+void fill_inside(const beam::Beam& beam, double self_weight, const LargestDeflection& worst,
+                 const std::vector<Point>& points, const std::vector<std::size_t>& which,
+                 std::vector<double>& deflection) {
+  std::vector<double> stations;
+  for (const std::size_t i : which) stations.push_back(points[i].x);
+  beam::Recovery recovery(beam, std::move(stations), self_weight);
+  std::vector<beam::Response> found;
+  recovery.evaluate(worst.v.data(), worst.w.data(), worst.a.data(), worst.loads, found);
+  for (std::size_t k = 0; k < which.size(); ++k) deflection[which[k]] = found[k].deflection;
+}
+
+}  // namespace
+
+results::Shape shape_of(const beam::Beam& beam, const Scene& scene, const LargestDeflection& worst) {
+  const beam::ShapePoints shape(beam.mesh(), scene.output.probes);
+  const std::vector<Point>& points = shape.points();
+  results::Shape out{worst.time, shape.x(), std::vector<double>(points.size(), 0.0)};
+  add_nodes(beam, worst.v, points, out.deflection);
+  std::vector<std::size_t> which;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].node < 0) which.push_back(i);
+    if (which.size() < at_once && (i + 1 < points.size() || which.empty())) continue;
+    fill_inside(beam, scene.self_weight ? scene.gravity : 0.0, worst, points, which, out.deflection);
+    which.clear();
+  }
+  return out;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,103 @@
+// Records for every kind of one-sided spring, support and sleeper whether it has been unloaded, compressed or in
+// tension, and reports the first of these states that occurs only after the end of the trial runs.
+#include "run/extrapolation_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "traverse/train/vehicle.hpp"
+
+namespace traverse::app {
+namespace {
+
+constexpr unsigned char loose = 1, pressed = 2, pulled = 4;
+
+bool lets_go(const beam::FoundationLaw& law) { return law.one_sided || law.gap > 0.0; }
+
+}  // namespace
+
+ExtrapolationCheck::ExtrapolationCheck(double until, const train::Fleet& fleet, const beam::BeamModel* beam)
+    : until_(until) {
+  if (until == std::numeric_limits<double>::infinity()) return;
+  add_springs(fleet);
+  if (beam != nullptr) add_supports(*beam);
+  sleepers_ = {seen_.size(), "a sleeper over a gap"};
+  seen_.push_back(0);
+}
+
+void ExtrapolationCheck::add_springs(const train::Fleet& fleet) {
+  std::map<std::tuple<const Vehicle*, bool, std::size_t>, std::size_t> kinds;
+  for (std::size_t vehicle = 0; vehicle < fleet.members.size(); ++vehicle) {
+    const train::Member& member = fleet.members[vehicle];
+    const auto add = [&](const auto& springs, int first, bool torsion) {
+      for (std::size_t i = 0; i < springs.size(); ++i) {
+        if (!springs[i].law || !springs[i].law->lets_go()) continue;
+        const auto [kind, is_new] = kinds.try_emplace({member.type, torsion, i}, seen_.size());
+        if (is_new) seen_.push_back(0);
+        springs_.push_back({member.unit,
+                            first + static_cast<int>(i),
+                            torsion,
+                            {kind->second, fmt::format("spring '{}' of vehicle {}", springs[i].name, vehicle)}});
+      }
+    };
+    add(member.type->mechanism.springs, member.first_spring, false);
+    add(member.type->mechanism.torsion_springs, member.first_torsion_spring, true);
+  }
+}
+
+void ExtrapolationCheck::add_supports(const beam::BeamModel& beam) {
+  for (std::size_t row = 0; row < beam::foundation_kind_count; ++row) {
+    const beam::FoundationKind& kind = beam::foundation_kinds[row];
+    std::map<std::tuple<double, double, double, bool>, std::size_t> kinds;
+    const auto add = [&](std::size_t place, const auto& numbers, std::string name) {
+      const auto [found, is_new] = kinds.try_emplace(numbers, seen_.size());
+      if (is_new) seen_.push_back(0);
+      supports_.push_back({row, place, {found->second, std::move(name)}});
+    };
+    if (kind.points != nullptr) {
+      const std::vector<beam::PointFoundation>& points = beam.foundation.*kind.points;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        const beam::PointFoundation& p = points[i];
+        if (lets_go(p.law))
+          add(i, std::tuple{p.k, p.c, p.law.gap, p.law.one_sided},
+              fmt::format("the {} foundation at {:g} m", kind.name, p.x));
+      }
+    } else if (beam.foundation.*kind.bed && lets_go((beam.foundation.*kind.bed)->law)) {
+      for (std::size_t span = 0; span < beam.spans.size(); ++span)
+        add(span, std::tuple{0.0, 0.0, 0.0, true}, fmt::format("the {} in span {}", kind.name, span));
+    }
+  }
+}
+
+void ExtrapolationCheck::see(double t, const Part& part, double force) {
+  const unsigned char now = force == 0.0 ? loose : force < 0.0 ? pressed : pulled;
+  unsigned char& seen = seen_[part.kind];
+  if (t > until_ && (seen & now) == 0 && surprise_.empty())
+    surprise_ = fmt::format("{} {} at {:.3g} s", part.name, now == loose ? "lets go" : "touches", t);
+  seen |= now;
+}
+
+void ExtrapolationCheck::add(double t, const train::Fleet& fleet, const structure::NonlinearForces& foundation,
+                             ResponseExtremes& peaks) {
+  if (t > until_ && !bends_before_) {
+    bends_before_ = peaks.roughness();
+    peaks.forget_roughness();
+  }
+  for (const Spring& s : springs_) {
+    const train::MovingVehicle& vehicle = fleet.vehicles[static_cast<std::size_t>(s.vehicle)];
+    see(t, s.part,
+        s.torsion ? vehicle.mechanism.torsion_spring_moment(vehicle.state, s.spring)
+                  : vehicle.mechanism.spring_force(vehicle.state, s.spring));
+  }
+  for (const Support& s : supports_)
+    if (const std::vector<double>& forces = foundation.of_kind[s.row]; s.place < forces.size())
+      see(t, s.part, forces[s.place]);
+  if (until_ < std::numeric_limits<double>::infinity())
+    for (const double force : foundation.below_sleepers) see(t, sleepers_, force);
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,191 @@
+// One function for each quantity of a limit, listed in a table by its name: it returns the extreme with time and place,
+// or the reason why it is unknown.
+#include "run/limit_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace traverse::app {
+
+using results::EvaluatedQuantity;
+
+/// One function for each quantity that a limit may be of.
+struct Findings {
+  const LimitCheck& judge;
+  const results::Summary& summary;
+  std::span<const Extreme> deflections;  // the largest one of each probe
+
+  EvaluatedQuantity deck_acceleration() const {
+    if (!summary.probes) return no_bridge();
+    if (!summary.low_passed) return unknown("deck accelerations are not low-passed in this run");
+    return at(summary.low_passed->extreme);
+  }
+
+  EvaluatedQuantity unfiltered_deck_acceleration() const {
+    return summary.probes ? at(summary.acceleration) : no_bridge();
+  }
+
+  EvaluatedQuantity deflection_over_span() const {
+    if (!summary.probes) return no_bridge();
+    EvaluatedQuantity found;
+    for (std::size_t p = 0; p < deflections.size(); ++p) {
+      const double ratio = std::abs(deflections[p].value) / span_of(judge.scene_.output.probes[p]);
+      if (p == 0 || ratio > found.value) found = at(ratio, deflections[p].time, judge.scene_.output.probes[p]);
+    }
+    return found;
+  }
+
+  EvaluatedQuantity end_rotation() const {
+    if (!judge.rotations_ || judge.rotations_->at_ends().value < 0.0) return no_bridge();
+    const Extreme& largest = judge.rotations_->at_ends();
+    return at(largest.value, largest.time, largest.place == 0 ? 0.0 : judge.scene_.beam->length());
+  }
+
+  EvaluatedQuantity joint_rotation() const {
+    if (!judge.rotations_) return no_bridge();
+    const Extreme& largest = judge.rotations_->at_joints();
+    if (largest.value < 0.0) return unknown("no two decks meet at a joint");
+    return at(largest.value, largest.time, judge.rotations_->joints()[largest.place]);
+  }
+
+  EvaluatedQuantity car_acceleration() const {
+    const Extreme& largest = judge.cars_.largest();
+    if (largest.value < 0.0) return unknown("the scene has no vehicles");
+    return of(largest, fmt::format("vehicle {}, {}", largest.place, judge.cars_.body(largest.place)));
+  }
+
+  EvaluatedQuantity wheel_unloading() const {
+    if (!summary.unloading) return no_wheels();
+    return {summary.unloading->value, summary.unloading->time, EvaluatedQuantity::unknown, summary.unloading->wheel,
+            ""};
+  }
+
+  EvaluatedQuantity filtered_wheel_unloading() const {
+    if (!summary.filtered_unloading) return not_filtered();
+    const results::Unloading& found = summary.filtered_unloading->extreme;
+    return {found.value, found.time, EvaluatedQuantity::unknown, found.wheel, ""};
+  }
+
+  EvaluatedQuantity unloading_time() const {
+    if (!summary.filtered_unloading) return not_filtered();
+    const results::FilteredUnloading& found = *summary.filtered_unloading;
+    const double from = found.longest > 0.0 ? found.longest_from : EvaluatedQuantity::unknown;
+    return {found.longest, from, EvaluatedQuantity::unknown, found.longest_wheel, ""};
+  }
+
+  EvaluatedQuantity contact_loss() const {
+    if (summary.least_wheel.empty()) return unknown("the scene has no wheels");
+    return of({summary.longest_loss, EvaluatedQuantity::unknown, 0}, "");
+  }
+
+  EvaluatedQuantity amplification() const {
+    if (!summary.probes) return no_bridge();
+    if (summary.amplification <= 0.0) return unknown("the static deflection is not known");
+    return at(summary.amplification, summary.deflection.time, summary.deflection.place);
+  }
+
+  /// Found by norm::NormCheck, where there is one.
+  EvaluatedQuantity of_norm() const { return unknown("static effects of EN 1991-2 are not computed here"); }
+  EvaluatedQuantity of_rail() const { return unknown("scene_analysis rail finds it"); }
+
+ private:
+  static EvaluatedQuantity at(double value, double time, double x) { return {value, time, x, "", ""}; }
+  static EvaluatedQuantity at(const results::Extreme& extreme) {
+    return at(std::abs(extreme.value), extreme.time, extreme.place);
+  }
+  static EvaluatedQuantity of(const Extreme& largest, const std::string& thing) {
+    return {largest.value, largest.time, EvaluatedQuantity::unknown, thing, ""};
+  }
+  static EvaluatedQuantity unknown(const char* why) {
+    EvaluatedQuantity found;
+    found.why = why;
+    return found;
+  }
+  EvaluatedQuantity no_wheels() const {
+    return unknown(judge.scene_.start == Start::given ? "with scene_start given no wheel force at rest is known"
+                                                      : "the scene has no wheels");
+  }
+  EvaluatedQuantity not_filtered() const {
+    return summary.unloading ? unknown("wheel forces are not low-passed in this run") : no_wheels();
+  }
+  static EvaluatedQuantity no_bridge() { return unknown("the scene has no bridge with probes"); }
+
+  /// Of the span that holds x; at a support the shorter one.
+  double span_of(double x) const {
+    double left = 0.0, length = std::numeric_limits<double>::infinity();
+    for (const double span : judge.scene_.beam->spans) {
+      if (x >= left && x <= left + span) length = std::min(length, span);
+      left += span;
+    }
+    return std::isfinite(length) ? length : judge.scene_.beam->spans.back();
+  }
+};
+
+namespace {
+
+struct FindingRow {
+  std::string_view quantity;
+  EvaluatedQuantity (Findings::*find)() const;
+};
+
+constexpr FindingRow finding_rows[] = {
+    {"deck_acceleration", &Findings::deck_acceleration},
+    {"unfiltered_deck_acceleration", &Findings::unfiltered_deck_acceleration},
+    {"deflection_over_span", &Findings::deflection_over_span},
+    {"end_rotation", &Findings::end_rotation},
+    {"joint_rotation", &Findings::joint_rotation},
+    {"car_acceleration", &Findings::car_acceleration},
+    {"wheel_unloading", &Findings::wheel_unloading},
+    {"filtered_wheel_unloading", &Findings::filtered_wheel_unloading},
+    {"unloading_time", &Findings::unloading_time},
+    {"contact_loss", &Findings::contact_loss},
+    {"amplification", &Findings::amplification},
+    {"lm71_deflection_over_span", &Findings::of_norm},
+    {"lm71_end_rotation", &Findings::of_norm},
+    {"lm71_joint_rotation", &Findings::of_norm},
+    {"train_over_lm71", &Findings::of_norm},
+    {"rail_tension", &Findings::of_rail},
+    {"rail_compression", &Findings::of_rail},
+    {"rail_slip", &Findings::of_rail},
+    {"deck_displacement", &Findings::of_rail},
+    {"deck_end_displacement", &Findings::of_rail},
+    {"rail_device_opening", &Findings::of_rail},
+};
+
+constexpr const FindingRow* row_of(std::string_view quantity) {
+  for (const FindingRow& row : finding_rows)
+    if (row.quantity == quantity) return &row;
+  return nullptr;
+}
+
+static_assert(std::all_of(std::begin(options::limit_quantities), std::end(options::limit_quantities),
+                          [](const options::LimitQuantity& row) { return row_of(row.name) != nullptr; }),
+              "every quantity that a limit may be of has its line in finding_rows");
+
+}  // namespace
+
+LimitCheck::LimitCheck(const Scene& scene, const train::Fleet& fleet, const beam::Beam* beam)
+    : scene_(scene), fleet_(fleet), cars_(fleet) {
+  if (beam != nullptr) rotations_.emplace(*beam);
+}
+
+void LimitCheck::sample(double t, const double* v) {
+  if (rotations_) rotations_->add(t, v);
+  cars_.add(t);
+}
+
+std::vector<results::Verdict> LimitCheck::verdicts(const results::Summary& summary,
+                                                   std::span<const Extreme> deflections) const {
+  const Findings findings{*this, summary, deflections};
+  std::vector<results::Verdict> list;
+  for (const options::VerdictLimit& limit : scene_.limits)
+    list.push_back({limit, std::string(options::limit_quantity(limit.quantity)->unit),
+                    (findings.*row_of(limit.quantity)->find)(), 1, 0});
+  return list;
+}
+
+}  // namespace traverse::app

@@ -1,0 +1,16 @@
+// What all runs of a study are computed with: mesh, step and modes, as far as the scene leaves them open.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "error_control/sweep_model.hpp"
+#include "study/study_scenes.hpp"
+
+namespace traverse::app {
+
+/// The finest that the study's extreme scenes need, each as a sweep over all speeds of the study; the same on every
+/// rank.
+Choice choose_for_study(const StudyScenes& scenes, std::vector<std::string>& notes);
+
+}  // namespace traverse::app
