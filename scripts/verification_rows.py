@@ -83,7 +83,7 @@ EQUATIONS = [
     ]),
     ("Accuracy, orders and what is left out", [
         Row("the promise of `accuracy` at 1e-2, 1e-3 and 1e-4, five scenes: error over what was asked",
-            "runs refined far beyond", "Promise.IsKeptAtEveryAccuracy",
+            "runs refined far beyond", "ErrorEstimate.IsKeptAtEveryAccuracy",
             [Check("EXPECT_LE(error, wanted) << quantity;", over_accuracy, "", "1", instance="/(?!undamped)"),
              Check("EXPECT_LE(error, wanted) << quantity;", over_accuracy_but_acceleration,
                    "without damping, where accelerations are not promised", "1", instance="/undamped")]),
@@ -127,11 +127,11 @@ EQUATIONS = [
         Row("axial unknowns left out where nothing acts along the beam", "the same with them", "LeftOut.AxialUnknowns",
             [Check("EXPECT_LT(difference, {}) << name;", "probes/.*")]),
         Row("steps of the ladder: error of deflections over the tolerance", "a run with much shorter steps",
-            "StepLadder.ErrorsFallWithTheTolerance",
+            "StepSizeControl.ErrorsFallWithTheTolerance",
             [Check("EXPECT_LT(of_deflection, {} * std::stod(tolerance)) << tolerance;",
                    over_tolerance("deflection", ["1e-2", "1e-3", "1e-5", "1e-6"]))]),
         Row("a smooth crossing by the ladder: deflection and moment", "a fine run",
-            "StepLadder.ASmoothCrossingHasThePeaksOfAFineRun",
+            "StepSizeControl.ASmoothCrossingHasThePeaksOfAFineRun",
             [Check("EXPECT_LT(difference, {}) << curve;", "probes/.*")]),
     ]),
     ("Balances", [
