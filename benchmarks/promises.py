@@ -180,7 +180,7 @@ def judge(build, name, text, accuracies, longest=LONGEST):
 
 
 def show(row):
-    notes = [f"not promised: {', '.join(row['not promised'])}"] if row["not promised"] else []
+    notes = [f"error not estimated: {', '.join(row['not promised'])}"] if row["not promised"] else []
     notes += [f"in doubt: {', '.join(row['in doubt'])}"] if row["in doubt"] else []
     print(f"{row['scene']:42}{row['accuracy']:7.0e}{row['worst']:8.2f} {row['of']:13}{row['trials']:8.2f}{row['loop']:8.2f}"
           f"{row['process']:8.2f}  {row['chosen']}; {'; '.join(notes)}", flush=True)

@@ -87,7 +87,7 @@ def judge(build, name, text, accuracies):
 
 def show(name, accuracy, worst, of, speed, judged, broken, refused, chosen):
     print(f"{name:42}{accuracy:7.0e}{worst:8.2f} {of:13}{speed:7.1f} m/s {judged:4} judged{broken:4} broken  {chosen}"
-          + (f"; not promised: {refused}" if refused else ""), flush=True)
+          + (f"; error not estimated: {refused}" if refused else ""), flush=True)
 
 
 def main():

@@ -145,7 +145,7 @@ class Case:
         self.sure = {wanted: self.find_sure(wanted) for wanted in self.scene.wanted}
 
     def refused(self, wanted):
-        return re.findall(r"not promised: (.*?): (.*)", self.chosen[wanted].text)
+        return re.findall(r"error not estimated: (.*?): (.*)", self.chosen[wanted].text)
 
     def promised(self, wanted):
         refused = [q for q, _ in self.refused(wanted)]

@@ -28,10 +28,10 @@ void take_linear_vehicles(Scene& scene, std::vector<std::string>& notes) {
     return;
   scene.model.vehicles = VehicleModel::linear;
   scene.model.most_residual = most_residual(scene);
-  notes.push_back(fmt::format(
-      "vehicles are taken as linear as long as they are out of balance by less than {:.1g} of their weights; "
-      "-model_vehicles full keeps the mechanisms",
-      scene.model.most_residual));
+  notes.push_back(
+      fmt::format("vehicles are linearised as long as the residual is below {:.1g} of their weights; "
+                  "-model_vehicles full keeps the mechanisms",
+                  scene.model.most_residual));
 }
 
 /// A run that goes on has as many as it had, of as many.

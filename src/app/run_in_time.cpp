@@ -33,14 +33,14 @@ int run_in_time(Job job) {
       scene.model.vehicles = VehicleModel::full;
       repeated.with_mechanisms = true;
       notes.push_back(fmt::format(
-          "linear vehicles were out of balance by more than {:.1g} of their weights: the run is repeated with "
+          "the residual of the linearised vehicles exceeded {:.1g} of their weights: the run is repeated with "
           "the mechanisms",
           scene.model.most_residual));
     } else {
       --halvings;
       scene.model.step = 0.5 * end.step;
       accuracy.promise_nothing();
-      notes.push_back(fmt::format("the run is repeated with steps of {:g} s, and nothing is promised: {}",
+      notes.push_back(fmt::format("the run is repeated with steps of {:g} s, without error estimates: {}",
                                   *scene.model.step, end.why));
     }
     SharedBeam beam(job.comm, scene, notes);

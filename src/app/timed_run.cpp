@@ -288,9 +288,9 @@ RunEnd WatchedRun::take() {
   check_deflection(comm, scene_, summary.deflection.value);
   if (reaches_end_ && scene_.accuracy_report && ready_.accuracy.measured &&
       !report(comm, scene_, ready_.accuracy, watch_.finished_peaks()))
-    throw SolverError(
-        fmt::format("the accuracy of {:g} was not kept (above); take a smaller -accuracy, and please report the scene",
-                    scene_.accuracy));
+    throw SolverError(fmt::format(
+        "the error exceeds the accuracy of {:g} (above); use a smaller -accuracy, and please report the scene",
+        scene_.accuracy));
   return {reaches_end_ ? 0 : 128 + signal, Retry::none, {}, 0.0};
 }
 

@@ -105,7 +105,7 @@ void print_bridge(const Page& page, const Look& look) {
 void print_vehicles(const Page& page, const Look& look, const std::vector<Axle>& axles) {
   const Scene& scene = look.scene;
   if (scene.train.vehicles.empty()) return;
-  page.heading("vehicles, and what their wheels carry at rest");
+  page.heading("vehicles and their static wheel loads");
   double all = 0.0;
   for (std::size_t type = 0; type < scene.vehicles.size(); ++type) {
     const Vehicle& vehicle = scene.vehicles[type];
@@ -149,8 +149,7 @@ void print_loads(const Page& page, const Look& look) {
 }
 
 void print_rest(const Page& page, const Rest& rest) {
-  page.heading(
-      "supports at rest, kN upward: the bridge's own weight; what passes, wherever it stands, least and greatest");
+  page.heading("support reactions, kN upward: dead load; passing loads, least and greatest over all positions");
   if (!rest.why_not.empty()) return page.line("", rest.why_not);
   for (std::size_t i = 0; i < std::min(most_rows, rest.supports.size()); ++i) {
     const Borne& one = rest.supports[i];
@@ -165,7 +164,7 @@ void print_rest(const Page& page, const Rest& rest) {
 }
 
 void print_runs(const Page& page, const Scene& given, const Look& look) {
-  page.heading("what would be computed");
+  page.heading("analysis");
   std::string what(std::find_if(std::begin(options::analyses), std::end(options::analyses), [&](const auto& row) {
                      return row.analysis == given.analysis;
                    })->words);
@@ -174,9 +173,9 @@ void print_runs(const Page& page, const Scene& given, const Look& look) {
     std::string axes;
     for (const Study::Axis& axis : given.study->axes)
       axes += fmt::format("{}{} of {}", axes.empty() ? "" : " times ", axis.length, axis.name);
-    page.line("study", fmt::format("{} runs: {}; what stands here is of the first", look.runs, axes));
+    page.line("study", fmt::format("{} runs: {}; the values below are those of the first", look.runs, axes));
   } else if (given.sweep) {
-    page.line("sweep", fmt::format("{} runs{}; what stands here is of the first", look.runs,
+    page.line("sweep", fmt::format("{} runs{}; the values below are those of the first", look.runs,
                                    given.sweep->speeds.empty()
                                        ? ""
                                        : fmt::format(", {} from {:g} to {:g} m/s",
@@ -188,13 +187,13 @@ void print_runs(const Page& page, const Scene& given, const Look& look) {
 }
 
 void print_notes(const Page& page, const std::vector<std::string>& notes) {
-  page.heading("what is modelled");
+  page.heading("model");
   for (const std::string& note : notes) fmt::print("  {}\n", note);
 }
 
 void print_cost(const Page& page, const Scene& given, const Look& look) {
   const Cost cost = cost_of(look);
-  page.heading("what it takes, estimated by counting: most times are right to a factor of three, few to ten");
+  page.heading("cost, estimated by counting: most times are within a factor of 3, some are off by up to 10");
   if (cost.unknowns > 0.0) page.line("unknowns", fmt::format("{:g}", cost.unknowns));
   if (cost.steps > 0.0)
     page.line(look.runs > 1 ? "steps of one run" : "steps",
@@ -230,7 +229,7 @@ void print_page(const Scene& given, const Look& look, const std::vector<std::str
   print_notes(page, look.notes);
   print_runs(page, given, look);
   print_cost(page, given, look);
-  page.heading("what looks unusual");
+  page.heading("unusual input");
   if (unusual.empty()) page.line("nothing", "");
   for (const std::string& line : unusual) page.warning(line);
 }

@@ -1,4 +1,4 @@
-// -check: what a scene is, what it would take and what looks unusual in it, without a run.
+// -check: what a scene is, what it would take and unusual input in it, without a run.
 #pragma once
 
 #include <mpi.h>
@@ -7,7 +7,7 @@
 
 namespace traverse::app {
 
-/// Collective. Prints on the first rank; with -output_quiet only what looks unusual. Throws what the run itself would
+/// Collective. Prints on the first rank; with -output_quiet only unusual input. Throws what the run itself would
 /// throw before its first step. Returns the exit status, 0.
 int run_check(MPI_Comm comm, const Scene& given);
 

@@ -18,7 +18,7 @@ struct Look {
 
   Scene whole;                      // as given; of a study its first scene, with all speeds in its sweep
   Scene scene;                      // one run of it: the first one
-  std::vector<std::string> notes;   // what is modelled
+  std::vector<std::string> notes;   // model
   std::vector<std::string> choice;  // of mesh and step
   bool tried = false;               // trial runs choose these, from the mesh in `scene` and this step on
   double first_step = 0.0, longest_step = 0.0, horizon = 0.0;  // s; of a trial run

@@ -156,12 +156,13 @@ int ContactNewton::carrying(const train::Fleet& fleet) {
   return count;
 }
 
-// Vehicles at p_still + x, the beam under the forces of the kinematics held, the geometry at all of it. At first where
-// these forces act is not known quite; but without them the beam's slope would turn the forces on the vehicles by 1e-6.
+// Vehicles at p_predicted + x, the beam under the forces of the kinematics held, the geometry at all of it. At first
+// where these forces act is not known quite; but without them the beam's slope would turn the forces on the vehicles by
+// 1e-6.
 bool ContactNewton::evaluate(train::Fleet& fleet, const StageData& s, const double* x, Loads loads) {
   const auto [first, past] = fleet.own_coordinates();
   for (int i = first; i < past; ++i) {
-    p_[i] = s.p_still[i] + x[i];
+    p_[i] = s.p_predicted[i] + x[i];
     pd_[i] = s.pd_still[i] + s.shift * x[i];
     pdd_[i] = s.shift2 * x[i];
   }

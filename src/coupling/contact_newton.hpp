@@ -22,7 +22,7 @@
 
 namespace traverse::coupling {
 
-/// The stage's data. The unknown is the change x of p against p at zero acceleration: p = p_still + x,
+/// The stage's data. The unknown is the change x of p against p at zero acceleration: p = p_predicted + x,
 /// p' = pd_still + shift*x, p'' = shift2*x. Being small it keeps the digits that p itself would lose in p''. The
 /// elements' unknowns are v = v0 + z, w = w0 + shift*z with z = (compliance) loads. Shifts of 0: the static problem.
 struct StageData {
@@ -30,7 +30,7 @@ struct StageData {
   double shift = 0.0;   // dp'/dp, 1/s
   double shift2 = 0.0;  // dp''/dp, 1/s2: shift*shift for Runge-Kutta types
   train::StageShifts shifts() const { return {shift, shift2}; }
-  const double* p_still = nullptr;
+  const double* p_predicted = nullptr;
   const double* pd_still = nullptr;
   const std::vector<double>* v0 = nullptr;                   // free response at the elements in touch, 2*per_node each
   const std::vector<double>* w0 = nullptr;                   // its rate

@@ -22,7 +22,7 @@ constexpr double together = 0.5;  // m: weights whose distances change by less p
 // The deflection of a station under a unit downward force on the line that wheels run on, over the force's place. What
 // the nodal values of the station's element give is a load on the structure, whose deflections are that line (Maxwell
 // and Betti); a force on that element deflects it between its nodes besides.
-struct PassingWeights::InfluenceLine {
+struct QuasiStaticResponse::InfluenceLine {
   double station = 0.0;
   std::vector<double> nodal;             // deflection and rotation at both ends of every element, on every rank
   std::optional<beam::Recovery> inside;  // of the station; none where wheels run on a rail
@@ -39,7 +39,7 @@ struct PassingWeights::InfluenceLine {
   }
 };
 
-PassingWeights::InfluenceLine PassingWeights::influence_line(double station) {
+QuasiStaticResponse::InfluenceLine QuasiStaticResponse::influence_line(double station) {
   const beam::Beam& beam = structure_->beam();
   InfluenceLine line{
       station, std::vector<double>(4 * static_cast<std::size_t>(structure_->line().mesh.elements()), 0.0), {}, 0.0};
@@ -70,7 +70,7 @@ PassingWeights::InfluenceLine PassingWeights::influence_line(double station) {
 }
 
 // The deflection of a station under the dead load, the beam's strains and settlements.
-double PassingWeights::rest_at(double station) {
+double QuasiStaticResponse::rest_at(double station) {
   const std::vector<double> rest = structure_->rest(), none(rest.size(), 0.0);
   beam::Recovery recovery(structure_->beam(), {station}, gravity_);
   std::vector<beam::Response> found;
@@ -78,23 +78,23 @@ double PassingWeights::rest_at(double station) {
   return found.front().deflection;
 }
 
-bool PassingWeights::pass_together(const train::WheelPaths& paths) const {
+bool QuasiStaticResponse::pass_together(const train::WheelPaths& paths) const {
   const auto otherwise = [this](const StaticLoad& w) { return w.law.speed(0.0) != weights_.front().law.speed(0.0); };
   return steady() && std::none_of(weights_.begin(), weights_.end(), otherwise) && paths.drift() < together;
 }
 
 // Whether no speed changes.
-bool PassingWeights::steady() const {
+bool QuasiStaticResponse::steady() const {
   return std::all_of(weights_.begin(), weights_.end(), [](const StaticLoad& w) { return w.law.constant(); });
 }
 
-double PassingWeights::static_peak(double station, const train::WheelPaths& paths, double end) {
+double QuasiStaticResponse::static_peak(double station, const train::WheelPaths& paths, double end) {
   if (!superpose()) return 0.0;
   const InfluenceLine line = influence_line(station);
   return pass_together(paths) ? peak_of_train(line, line.of_weight) : peak_on_the_way(line, paths, end);
 }
 
-double PassingWeights::static_energy(double station) {
+double QuasiStaticResponse::static_energy(double station) {
   if (!superpose() || !pass_together({})) return 0.0;
   const InfluenceLine line = influence_line(station);
   const double deflection = peak_of_train(line, 0.0), compliance = std::abs(line.at(structure_->line().mesh, station));
@@ -102,7 +102,7 @@ double PassingWeights::static_energy(double station) {
 }
 
 // Every weight over the station in turn (where the line peaks), and evenly along the whole way; the constant added.
-double PassingWeights::peak_of_train(const InfluenceLine& line, double constant) const {
+double QuasiStaticResponse::peak_of_train(const InfluenceLine& line, double constant) const {
   const beam::Mesh& mesh = structure_->line().mesh;
   double front = -infinite, rear = infinite;
   for (const auto& [x, force, law] : weights_) {
@@ -122,7 +122,8 @@ double PassingWeights::peak_of_train(const InfluenceLine& line, double constant)
 }
 
 // Where the weights are at the same time, from t = 0 to the end: whenever one is over the station, and evenly.
-double PassingWeights::peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths, double end) const {
+double QuasiStaticResponse::peak_on_the_way(const InfluenceLine& line, const train::WheelPaths& paths,
+                                            double end) const {
   const std::size_t known = paths.instants();
   const auto place = [&](std::size_t i, std::size_t instant, double t) {
     return i < wheels_ && known > 1 ? paths.x(instant, i) : weights_[i].x + weights_[i].law.distance(t);

@@ -19,10 +19,10 @@ struct StaticLoad {
   base::SpeedLaw law;
 };
 
-class PassingWeights {
+class QuasiStaticResponse {
  public:
   /// structure: null where there is none, and then no deflections. gravity: on its own mass, m/s2; 0: none.
-  PassingWeights(MPI_Comm comm, structure::Structure* structure, double gravity)
+  QuasiStaticResponse(MPI_Comm comm, structure::Structure* structure, double gravity)
       : comm_(comm), structure_(structure), gravity_(gravity) {}
 
   /// weights: of the fleet's wheels, in its order, then of moving forces.

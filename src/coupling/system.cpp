@@ -133,7 +133,7 @@ void System::evaluate_fleet(double t, const double* y) {
   if ((share_.exchange(touched ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0)
     throw StepTooLong("a wheel has fallen below the running surface, or a body been driven through another, at t = " +
                       std::to_string(t) +
-                      " s: the step is too long (take a smaller -ts_dt or an implicit -ts_type), or the contact too "
+                      " s: the step is too long (use a smaller -ts_dt or an implicit -ts_type), or the contact too "
                       "soft");
   for (int i = 0; i < fleet_.contacts(); ++i) fleet_.contact(i).kinematics = fleet_.contact(i).touch.kinematics;
   fleet_.contact_forces();
@@ -191,13 +191,13 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Ter
     c_p_.resize(2 * static_cast<std::size_t>(f));
     if (rank_ == 0) std::copy_n(c + 2 * n_, 2 * f, c_p_.begin());
     MPI_Bcast(c_p_.data(), 2 * f, MPI_DOUBLE, 0, comm_);
-    for (std::vector<double>* predicted : {&p_predicted_, &pd_still_, &x_}) predicted->assign(f, 0.0);
+    for (std::vector<double>* predicted : {&p_predicted_, &pd_predicted_, &x_}) predicted->assign(f, 0.0);
     for (int i = 0; i < f; ++i) {
       if (shift > 0.0) {
-        pd_still_[i] = -c_p_[f + i] / shift;
-        p_predicted_[i] = (pd_still_[i] - c_p_[i]) / shift;
+        pd_predicted_[i] = -c_p_[f + i] / shift;
+        p_predicted_[i] = (pd_predicted_[i] - c_p_[i]) / shift;
         // The guess moves on with its velocity, so that wheels are looked for where they will be.
-        x_[i] = (p_[f + i] - pd_still_[i]) / shift;
+        x_[i] = (p_[f + i] - pd_predicted_[i]) / shift;
       } else {
         x_[i] = p_[i];
       }
@@ -215,7 +215,7 @@ bool System::solve_stage(double t, double shift, const double* c, double* y, Ter
   double* p = y + 2 * n_;
   for (int i = 0; i < f; ++i) {
     p[i] = terms == Terms::all ? p_[i] : -c[2 * n_ + i] / shift;
-    p[f + i] = terms == Terms::all ? pd_still_[i] + shift * x_[i] : -c[2 * n_ + f + i] / shift;
+    p[f + i] = terms == Terms::all ? pd_predicted_[i] + shift * x_[i] : -c[2 * n_ + f + i] / shift;
   }
   p[2 * f] = (dissipation - c[2 * (n_ + f)]) / shift;
   p[2 * f + 1] = (work - c[2 * (n_ + f) + 1]) / shift;
@@ -240,7 +240,7 @@ System::Solution System::solve_coupled(const StageTime& at, Terms terms) {
   }
 }
 
-// From p_still_, pd_still_ and a guess in x_ to x_.
+// From p_predicted_, pd_predicted_ and a guess in x_ to x_.
 bool System::stage_of_fleet(const StageTime& at) {
   const std::size_t f = static_cast<std::size_t>(fleet_.freedom());
   const auto [first, past] = fleet_.own_coordinates();
@@ -250,7 +250,7 @@ bool System::stage_of_fleet(const StageTime& at) {
   p_.resize(2 * f);
   for (int i = first; i < past; ++i) {
     p_[i] = p_predicted_[i] + x_[i];
-    pd_[i] = pd_still_[i] + at.shift * x_[i];
+    pd_[i] = pd_predicted_[i] + at.shift * x_[i];
   }
   const bool set = fleet_.set(at.t, p_.data(), pd_.data());
   if ((share_.places(fleet_, set ? 0U : train::VehicleShare::failed) & train::VehicleShare::failed) != 0) return false;
@@ -261,7 +261,7 @@ bool System::stage_of_fleet(const StageTime& at) {
       structure_->gather_free(fleet_.elements(), v_, w_);
       compliance = &structure_->compliance(fleet_.elements());
     }
-    const StageData stage{at.t, at.shift, at.shift2,  p_predicted_.data(), pd_still_.data(),
+    const StageData stage{at.t, at.shift, at.shift2,  p_predicted_.data(), pd_predicted_.data(),
                           &v_,  &w_,      compliance, per_node(),          &share_};
     if (!newton_.solve(fleet_, stage, x_.data())) return false;
     if (newton_.in_place()) break;  // else a wheel has left its element: once more from there

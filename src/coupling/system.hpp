@@ -13,7 +13,7 @@
 //   step_motion            load_structure, Structure::begin_step
 //     stage_of_motion      once a stage: what v, w and p would be at zero acceleration
 //       solve_coupled      Structure::solve_free, stage_of_fleet, Structure::take; again until Structure::judge agrees
-//         stage_of_fleet   wheels placed on elements, Structure::gather_free and yield, ContactNewton::solve
+//         stage_of_fleet   wheels placed on elements, Structure::gather_free and compliance, ContactNewton::solve
 //       Structure::end_stage
 //     (stage_by_passes in place of stage_of_fleet where all vehicles are linear: engine/linear_train.hpp)
 //     finish_step          Structure::finish_step, p and p' of all vehicles on all ranks
@@ -224,7 +224,7 @@ class System {
   }
 
   /// The weights of wheels, as the start has found them, and moving forces.
-  PassingWeights& weights() { return weights_; }
+  QuasiStaticResponse& weights() { return weights_; }
 
   /// Estimated relative error of static solutions so far, from rounding.
   double static_error() const { return structure_ ? structure_->statics().static_error() : 0.0; }
@@ -317,20 +317,20 @@ class System {
   train::VehicleShare share_;
   ContactEvents events_;
   KinkEvents corners_;
-  PassingWeights weights_;
+  QuasiStaticResponse weights_;
   ContactNewton newton_;
 
-  std::vector<beam::ElementLoad> loads_;            // of the moving forces now on the beam
-  std::vector<BrakingWheel> braking_;               // of trains whose speed is prescribed and changes
-  std::vector<double> braking_force_;               // N along x on the line, during the step under way
-  std::map<double, double> applied_;                // N by the station, m: the forces of apply_to_beam
-  bool applied_anew_ = false;                       // since the last step
-  std::vector<char> on_beam_;                       // of each moving force, during the step under way
-  std::string nothing_holds_;                       // why there is no static equilibrium, where that is known
-  std::vector<double> p_, c_p_, pdd_;               // p, p' and their c, p'', the same on all ranks
-  std::vector<double> pd_;                          // p' that a stage begins its Newton iteration with
-  std::vector<double> p_predicted_, pd_still_, x_;  // p and p' at zero acceleration, and the stage's change of p
-  std::vector<double> evaluated_;                   // p of the state that the fleet was last set to
+  std::vector<beam::ElementLoad> loads_;                // of the moving forces now on the beam
+  std::vector<BrakingWheel> braking_;                   // of trains whose speed is prescribed and changes
+  std::vector<double> braking_force_;                   // N along x on the line, during the step under way
+  std::map<double, double> applied_;                    // N by the station, m: the forces of apply_to_beam
+  bool applied_anew_ = false;                           // since the last step
+  std::vector<char> on_beam_;                           // of each moving force, during the step under way
+  std::string nothing_holds_;                           // why there is no static equilibrium, where that is known
+  std::vector<double> p_, c_p_, pdd_;                   // p, p' and their c, p'', the same on all ranks
+  std::vector<double> pd_;                              // p' that a stage begins its Newton iteration with
+  std::vector<double> p_predicted_, pd_predicted_, x_;  // p and p' at zero acceleration, and the stage's change of p
+  std::vector<double> evaluated_;                       // p of the state that the fleet was last set to
   double evaluated_time_ = 0.0;
   unsigned signs_ = 0;         // VehicleShare's of that state or, after a step, of its end
   std::vector<double> v_, w_;  // of elements, 2*per_node each

@@ -124,13 +124,13 @@ bool System::stage_of_motion(double t, std::size_t stage, const double* v, const
   stage_ = stage;
   const auto [first, past] = fleet_.own_coordinates();
   if (!by_passes_) {
-    for (std::vector<double>* x : {&p_predicted_, &pd_still_, &x_}) x->resize(m.p.size());
+    for (std::vector<double>* x : {&p_predicted_, &pd_predicted_, &x_}) x->resize(m.p.size());
     for (int i = first; i < past; ++i) {
       p_predicted_[i] = m.p[i] + rule.w_in_v * m.pd[i];
-      pd_still_[i] = m.pd[i];
+      pd_predicted_[i] = m.pd[i];
       for (int j = 0; j < rule.known; ++j) {
         p_predicted_[i] += rule.a_in_v[j] * m.pdd[j][i];
-        pd_still_[i] += rule.a_in_w[j] * m.pdd[j][i];
+        pd_predicted_[i] += rule.a_in_w[j] * m.pdd[j][i];
       }
       x_[i] = rule.displacement * m.pdd[rule.known - 1][i];
     }

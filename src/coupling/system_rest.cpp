@@ -33,7 +33,7 @@ void System::find_equilibrium(double* y) {
   }
   if (found != Solution::found) refuse_start(found);
   if (structure_) structure_->end_stage(y, y + n_);
-  fleet_.set(0.0, p_.data(), pd_still_.data());
+  fleet_.set(0.0, p_.data(), pd_predicted_.data());
   moving.rest_where(fleet_);
   fleet_ = std::move(moving);
 }
@@ -56,7 +56,7 @@ void System::go_with_the_train(double* w) {
     fleet_.rest_where(moving);
     for (train::MovingVehicle& vehicle : fleet_.vehicles)
       for (Eigen::Index i = 0; i < vehicle.state.q.size(); i += 3) vehicle.state.q[i] += ahead;
-    fleet_.coordinates_of_state(0.0, p_predicted_.data(), pd_still_.data());
+    fleet_.coordinates_of_state(0.0, p_predicted_.data(), pd_predicted_.data());
     load_structure(ahead / speed);
     found = found && solve_statics(Terms::all, held_fast) == Solution::found;
     v[after].resize(static_cast<std::size_t>(n_));
@@ -81,7 +81,7 @@ void System::stand_still(const train::Train& train) {
   fleet_.partition(0.0);
   const int f = fleet_.freedom();
   p_.assign(2 * static_cast<std::size_t>(f), 0.0);
-  for (std::vector<double>* predicted : {&p_predicted_, &pd_still_, &x_}) predicted->assign(f, 0.0);
+  for (std::vector<double>* predicted : {&p_predicted_, &pd_predicted_, &x_}) predicted->assign(f, 0.0);
   if (structure_) fleet_.place_wheels();
 }
 
@@ -124,7 +124,7 @@ void System::go_on_from(std::vector<double> p) {
   const auto f = static_cast<std::ptrdiff_t>(fleet_.freedom());
   std::copy_n(p.begin(), f, p_predicted_.begin());
   std::fill(x_.begin(), x_.end(), 0.0);
-  if (!fleet_.set(0.0, p_predicted_.data(), pd_still_.data()) || !fleet_.worn() || !fleet_.accept()) return;
+  if (!fleet_.set(0.0, p_predicted_.data(), pd_predicted_.data()) || !fleet_.worn() || !fleet_.accept()) return;
   fleet_.number(0.0);
   std::fill(p_predicted_.begin(), p_predicted_.end(), 0.0);
 }

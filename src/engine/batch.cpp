@@ -61,7 +61,7 @@ class Batch {
 };
 
 std::vector<BatchRun> Batch::filled(std::span<const BatchRun> runs) {
-  if (runs.empty() || runs.size() > best_width()) throw std::logic_error("so many runs do not go side by side");
+  if (runs.empty() || runs.size() > best_width()) throw std::logic_error("so many runs do not fit into one batch");
   std::vector<BatchRun> all(runs.begin(), runs.end());
   all.resize(best_width(), runs.back());
   return all;
@@ -209,7 +209,7 @@ void Batch::set_track() {
   for (const BatchRun& run : runs_)
     if (run.track == nullptr || run.track->values.size() != track->values.size() || run.track->start != track->start ||
         run.track->distance != track->distance)
-      throw std::logic_error("runs side by side over tracks with other stations");
+      throw std::logic_error("batched runs over tracks with other stations");
   if (shared) return;
   double* values = arrays_.add(track->values.size());
   for (std::size_t i = 0; i < track->values.size(); ++i)

@@ -73,7 +73,7 @@ std::string TrainArrays::obstacle(const train::Fleet& fleet) {
   if (!fleet.pairs.empty()) return "bodies of its vehicles touch each other";
   for (const train::MovingVehicle& vehicle : fleet.vehicles) {
     const auto no = [&](const std::string& why) { return fmt::format("vehicle '{}': {}", vehicle.name(), why); };
-    if (vehicle.dynamics->linear() == nullptr) return no("it is not taken as linear");
+    if (vehicle.dynamics->linear() == nullptr) return no("it is not linearised");
     if (!vehicle.mechanism.model().actuators.empty()) return no("actuators act on it");
     if (vehicle.freedom() > most_freedom || vehicle.wheels.size() > most_wheels) return no("it has too many parts");
     for (const train::Wheel& wheel : vehicle.wheels) {

@@ -70,7 +70,7 @@ std::string CaseBatch::expect(double past) {
     if (step > rear && step < front)
       return "wheels meet steps of the surface, where ends or joints of what carries them yield";
   const std::optional<double> distance = track::table_distance(scene_.profile, rear, front);
-  if (!distance) return "the track has corners that runs side by side cannot follow";
+  if (!distance) return "the track has corners that batched runs cannot follow";
   track_distance_ = *distance;
   return {};
 }

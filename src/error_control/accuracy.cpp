@@ -44,7 +44,7 @@ void say(const Scene& scene, const ModelSearch& search, const Choice& choice, st
     if (result.estimates[q].present && result.estimates[q].kept)
       expected +=
           fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity_names[q], result.estimates[q].expected);
-  if (!expected.empty()) notes.push_back("expected errors of the peaks: " + expected);
+  if (!expected.empty()) notes.push_back("estimated errors of the peaks: " + expected);
   for (std::size_t q = 0; q < quantities; ++q)
     if (result.estimates[q].present && !result.estimates[q].kept)
       notes.push_back(not_promised(static_cast<Quantity>(q), result.estimates[q]));
@@ -132,8 +132,9 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   const bool alone = chooses_step_alone(scene);
   if (!alone && !chooses(scene)) return none;
   if (const options::Entry* option = own_measure()) {
-    notes.push_back(fmt::format("accuracy {:g} is not searched for by trial runs and nothing is promised: {}",
-                                scene.accuracy, option->given()));
+    notes.push_back(fmt::format(
+        "accuracy {:g} has no effect: trial runs do not choose mesh and step, and errors are not estimated: {}",
+        scene.accuracy, option->given()));
     return none;
   }
   if (alone) return choose_step_alone(comm, scene, notes);
@@ -156,8 +157,8 @@ Choice choose(MPI_Comm comm, const Scene& scene, std::vector<std::string>& notes
   try {
     search->run();
   } catch (const NotLinear& linear) {
-    notes.push_back(fmt::format("vehicles stay mechanisms: linear ones are out of balance by {:.1g} of their weights",
-                                linear.defect));
+    notes.push_back(
+        fmt::format("vehicles are not linearised: the residual would be {:.1g} of their weights", linear.defect));
     known.model.vehicles = VehicleModel::full;
     search.emplace(comm, known, shared, end);
     search->run();

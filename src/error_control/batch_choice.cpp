@@ -57,7 +57,7 @@ Choice BatchChoice::choose() {
   if (scene_.model.vehicles == VehicleModel::automatic && may_exceed(defect, scene_))
     most = tolerable_defect(PETSC_COMM_SELF, tried());
   if (scene_.model.vehicles == VehicleModel::automatic && defect > most)
-    throw NotChosen{fmt::format("linear vehicles are out of balance by {:.1g} of their weights", defect)};
+    throw NotChosen{fmt::format("the residual of linearised vehicles is {:.1g} of their weights", defect)};
   Errors errors = check_wholes(search);
   for (std::size_t q = 0; q < quantities; ++q)
     if (asks_for(scene_, q)) errors[q] += std::min(defect, most_residual(scene_));

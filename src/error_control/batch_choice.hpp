@@ -1,4 +1,4 @@
-// The choice of what passages in lanes are computed with (lanes_choice.hpp): a search on their beginnings, checked on
+// The choice of what passages in lanes are computed with (batch_model.hpp): a search on their beginnings, checked on
 // whole ones.
 #pragma once
 

@@ -65,10 +65,10 @@ std::optional<Choice> choose_batch_model(const Scene& given, std::vector<std::st
   const std::vector<double>& speeds = given.sweep->speeds;
   if (!open(given) || given.sweep->lanes == 0 || std::max(given.sweep->runs, speeds.size()) < fewest_runs)
     return std::nullopt;
-  const results::Stage stage("trial runs side by side");
+  const results::Stage stage("batched trial runs");
   const options::WithoutMonitors without_monitors;
   const auto refuse = [&](const std::string& why) {
-    notes.push_back("mesh and step are not those of trial runs side by side: " + why);
+    notes.push_back("batched trial runs found no common mesh and step: " + why);
   };
   Scene scene = given;
   for (const double share : shares) {
@@ -77,10 +77,9 @@ std::optional<Choice> choose_batch_model(const Scene& given, std::vector<std::st
     try {
       BatchChoice chooser(scene, trial_speeds(speeds));
       Choice choice = chooser.choose();
-      notes.push_back(
-          fmt::format("runs side by side: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
-                      choice.model.elements, choice.model.method, *choice.model.step));
-      notes.push_back("expected errors of the peaks: " + words_of(given, choice.accuracy.estimates));
+      notes.push_back(fmt::format("batched runs: {} elements a span, linear vehicles, {} with steps of {:g} s or less",
+                                  choice.model.elements, choice.model.method, *choice.model.step));
+      notes.push_back("estimated errors of the peaks: " + words_of(given, choice.accuracy.estimates));
       return choice;
     } catch (const BatchChoice::NotChosen& none) {
       refuse(none.why);

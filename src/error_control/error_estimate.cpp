@@ -36,7 +36,7 @@ bool report_row(const std::string& name, const ErrorEstimate& promise, double wa
 }
 
 std::string not_promised(Quantity quantity, const ErrorEstimate& promise) {
-  return fmt::format("not promised: {}: {}", quantity_names[quantity], promise.why_not);
+  return fmt::format("error not estimated: {}: {}", quantity_names[quantity], promise.why_not);
 }
 
 void Accuracy::promise_nothing() {
@@ -62,14 +62,14 @@ std::string Accuracy::withdrawn(const std::vector<double>& losses) {
       std::count_if(losses.begin(), losses.end(), [&](double t) { return !lost_contact || t > seen_until; });
   if (unseen == 0 || !promises_something()) return {};
   promise_nothing();
-  return fmt::format("nothing is promised after all: wheels lost contact {} times{}, which no trial run has seen; {}",
+  return fmt::format("error estimates withdrawn: wheels lost contact {} times{}, which happened in no trial run; {}",
                      unseen, lost_contact ? fmt::format(" after {:.3g} s", seen_until) : "", what_to_do);
 }
 
 std::string Accuracy::invalidate_by_new_event(const std::string& what) {
   if (what.empty() || !promises_something()) return {};
   promise_nothing();
-  return fmt::format("nothing is promised after all: {}, which no trial run has seen, as these ended at {:.3g} s; {}",
+  return fmt::format("error estimates withdrawn: {}, which happened in no trial run, as these ended at {:.3g} s; {}",
                      what, seen_until, what_to_do);
 }
 
@@ -86,7 +86,8 @@ std::string Accuracy::invalidate_if_rougher(double times, double wanted) {
   }
   if (names.empty()) return {};
   return fmt::format(
-      "not promised after all: {}: after {:.3g} s, where trial runs ended, accelerations or wheel forces change within "
+      "error estimates withdrawn: {}: after {:.3g} s, where trial runs ended, accelerations or wheel forces change "
+      "within "
       "steps {:.2g} times as much as before; {}",
       names, seen_until, times, what_to_do);
 }
@@ -95,7 +96,7 @@ std::string Accuracy::invalidate_at_end(bool unsettled) {
   ErrorEstimate& promise = estimates[low_passed];
   if (!unsettled || !measured || !promise.present || !promise.kept) return {};
   promise.kept = false;
-  return "the low-passed acceleration is not promised after all: it is largest at the end of the run, where the filter "
+  return "error estimate withdrawn: low-passed acceleration: its peak is at the end of the run, where the filter "
          "does not know what follows; a longer scene_tail may show it";
 }
 

@@ -93,8 +93,8 @@ Choice choose_mode_mesh(MPI_Comm comm, const Scene& scene, std::vector<std::stri
     notes.push_back(fmt::format("accuracy {:g}: {} elements a {}; expected error of the frequencies {:.1g}",
                                 scene.accuracy, elements, of, promise.expected));
   else
-    notes.push_back(fmt::format("not promised: frequencies: {} elements a {} still leave an error of {:.1g}", elements,
-                                of, promise.expected));
+    notes.push_back(fmt::format("error not estimated: frequencies: {} elements a {} still leave an error of {:.1g}",
+                                elements, of, promise.expected));
   return choice;
 }
 

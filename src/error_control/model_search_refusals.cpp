@@ -40,7 +40,7 @@ void ModelSearch::refuse_what_is_far() {
   for (std::size_t q = 0; q < quantities; ++q) {
     if (!promised(q)) continue;
     if ((q == acceleration || q == wheel_force || q == low_passed) && impact_agreement_ < search::enough_alike)
-      refuse(q, fmt::format("wheels strike, and steps of {:.2g} s do not agree with the next two longer ones", step_));
+      refuse(q, fmt::format("wheels impact, and steps of {:.2g} s do not agree with the next two longer ones", step_));
     else if (open_step_ && far(time_[q]))
       refuse(q, fmt::format(
                     "steps of {:.2g} s leave an error of {:.1g} and trying shorter ones would cost more than the run",

@@ -175,11 +175,11 @@ Choice choose_step_alone(MPI_Comm comm, const Scene& scene, std::vector<std::str
     if (promise.present && promise.kept)
       expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", alone_names[q], promise.expected);
   }
-  if (!expected.empty()) notes.push_back("expected errors: " + expected);
+  if (!expected.empty()) notes.push_back("estimated errors: " + expected);
   for (std::size_t q = 0; q < alone_quantities; ++q)
     if (result.alone[q].present && !result.alone[q].kept)
       notes.push_back(fmt::format(
-          "not promised: {}: {}", alone_names[q],
+          "error not estimated: {}: {}", alone_names[q],
           refused(q) ? "contacts are lost and made again, by forces that are pulses"
                      : fmt::format("steps of {:.2g} s leave an error of {:.1g}{}", step, searches[q].law.value,
                                    searches[q].crawls > 0 ? ", which does not fall as they are halved" : "")));

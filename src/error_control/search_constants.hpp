@@ -3,8 +3,8 @@
 //   P  benchmarks/promises.py: promises kept, and what is refused, of scenes on their own
 //   S  benchmarks/sweep_promises.py: the same of sweeps
 //   W  benchmarks/work_precision.py: what a run costs at an accuracy, with its search
-// What the search begins with, and how much of a run trial runs see, has its numbers where it is: first_guess.cpp,
-// horizon.cpp and trials.cpp.
+// What the search begins with, and how much of a run trial runs see, has its numbers where it is: initial_guess.cpp,
+// trial_window.cpp and trial_runs.cpp.
 #pragma once
 
 #include <array>

@@ -23,12 +23,13 @@ void say(const Scene& scene, const Accuracy& all, std::vector<std::string>& note
                                                                 scene.beam->track ? "sleeper bay" : "span");
   notes.push_back(fmt::format("all runs: {}, steps of {:g} s", mesh, *scene.model.step));
   if (scene.model.vehicles == VehicleModel::linear && !scene.vehicles.empty())
-    notes.emplace_back("vehicles are taken as linear; a run in which that shows is repeated with the mechanisms");
+    notes.emplace_back(
+        "vehicles are linearised; a run whose residual exceeds its limit is repeated with the mechanisms");
   std::string expected;
   for (const auto& [quantity, error] : all.expected())
     expected += fmt::format("{}{} {:.1g}", expected.empty() ? "" : ", ", quantity, error);
   std::replace(expected.begin(), expected.end(), '_', ' ');
-  notes.push_back("expected errors of the peaks of all runs: " + (expected.empty() ? "none promised" : expected));
+  notes.push_back("estimated errors of the peaks of all runs: " + (expected.empty() ? "none" : expected));
 }
 
 /// The finest of what some speeds need; nothing where no accuracy was to be chosen by.
@@ -95,7 +96,7 @@ Choice choose_one_by_one(const Scene& given, std::vector<std::string>& notes) {
   std::optional<Choice> all = choose_at_speeds(by, notes);
   if (!all && given.model.modes > 0 && !given.by_given_modes())
     notes.push_back(fmt::format(
-        "no errors of the peaks are promised: model_modes = {} is given, and no trial runs show what it leaves out",
+        "errors are not estimated: model_modes = {} is given, and trial runs do not determine the truncation error",
         given.model.modes));
   if (!all) return {given.model, {}, {}};
   const Scene tried = with(by, all->model);

@@ -15,7 +15,7 @@ namespace traverse::app {
 Scene at_speed(const Scene& sweep, double speed);
 
 /// What all runs of a sweep are computed with, the same on every rank, in one of two ways: by trial runs of trains side
-/// by side (lanes_choice.hpp), nothing where these cannot; else the finest mesh and step that the slowest, a middle and
+/// by side (batch_model.hpp), nothing where these cannot; else the finest mesh and step that the slowest, a middle and
 /// the fastest run need, or modes of moving forces. What was chosen, and the errors to expect, go into `notes`.
 /// InputError as the runs themselves would throw it.
 std::optional<Choice> choose_side_by_side(const Scene& given, std::vector<std::string>& notes);

@@ -38,21 +38,21 @@ bool StepSizeControl::judge(double h, double error) {
     int level = rung_within(h * (1.0 - same_step));
     const int last = std::min(lowest, level + most_fallen - 1);
     while (level < last && !(error * std::pow(length(level) / h, std::log2(growth)) <= aim)) ++level;
-    rung_ = std::max(level, rung_);
+    level_ = std::max(level, level_);
     calm_ = 0;
     return false;
   }
   if (h < wanted() * (1.0 - same_step)) return true;  // it says little of longer ones
   calm_ = error * growth <= aim ? calm_ + 1 : 0;
-  if (rung_ > 0 && calm_ >= calm_steps) {
-    --rung_;
+  if (level_ > 0 && calm_ >= calm_steps) {
+    --level_;
     calm_ = 0;
   }
   return true;
 }
 
 double StepSizeControl::towards(double left, double most) const {
-  const int first = std::max(rung_, rung_within(most));
+  const int first = std::max(level_, rung_within(most));
   for (int level = first; level <= std::max(first, lowest); ++level) {
     const double count = std::round(left / length(level));
     if (count >= 1.0 && std::abs(left - count * length(level)) <= same_step * length(level))

@@ -12,7 +12,7 @@ class StepSizeControl {
   explicit StepSizeControl(double longest) : longest_(longest) {}
 
   /// The longest step that the errors so far allow, s.
-  double wanted() const { return length(rung_); }
+  double wanted() const { return length(level_); }
   double length(int level) const;
 
   /// Whether a step of h (s) with this error, as part of the tolerance, is good enough; `wanted` is shorter than h
@@ -26,8 +26,8 @@ class StepSizeControl {
   int rung_within(double most) const;
 
   double longest_;
-  int rung_ = 0;  // 0: the longest
-  int calm_ = 0;  // steps on this rung after each other that would have been good enough on the next one
+  int level_ = 0;  // 0: the longest
+  int calm_ = 0;   // steps on this rung after each other that would have been good enough on the next one
 };
 
 }  // namespace traverse::integrate

@@ -298,7 +298,7 @@ void Stepper::check_bounds(double t, const double* y) const {
         "units of beam_EI, the foundation's k and the loads");
   if (!std::isfinite(bounds[0]) || off)
     throw StepTooLong("the motion has grown beyond all bounds by t = " + std::to_string(t) +
-                      " s: the step is too long for this integrator; take a smaller -ts_dt or an implicit -ts_type");
+                      " s: the step is too long for this integrator; use a smaller -ts_dt or an implicit -ts_type");
 }
 
 }  // namespace traverse::integrate

@@ -12,7 +12,7 @@
 
 namespace traverse::modal_engine {
 
-// Compiled from force_kernel.cpp, once for each.
+// Compiled from moving_force_kernel.cpp, once for each.
 TRAVERSE_LANES_DECLARE(long work_size(const ForceTask& task); void cross(const ForceTask& task);)
 
 namespace {

@@ -1,5 +1,5 @@
 // What a group of passages of moving forces side by side is computed from, as plain arrays: the only thing that the
-// kernels see of the rest of the program (crossing_task.hpp).
+// kernels see of the rest of the program (moving_force_batch.hpp).
 #pragma once
 
 namespace traverse::modal_engine {

@@ -33,7 +33,7 @@ void NormCheck::print() const {
 }
 
 void NormCheck::print_static() const {
-  fmt::print("largest static effects wherever the load stands, each @ x in m{}\n",
+  fmt::print("largest static effects over all positions of the load, each @ x in m{}\n",
              models_.empty() ? "" : ", without alpha and Phi");
   std::vector<std::vector<std::string>> rows = {{"load"}};
   for (std::size_t e = 0; e < effect_count; ++e)

@@ -164,7 +164,7 @@ constexpr Row later_rows[] = {
   {"step_probes", flag, "", "false", any, "", 0, "steps end where wheels pass probes, and peaks are looked for at every step, not among stored samples; so it is where accuracy chooses mesh or step"},
   {"step_lanes", flag, "", "true", any, "", 0, "has no effect any more: spans that do not touch go by their elements, as all others do"},
   {"step_ranks", choice, "", "auto", any, "auto all", 0, "ranks that take the steps of a single run: auto: as many of those at hand as make it faster, the others wait; all: all"},
-  {"local_compliance", flag, "", "false", any, "", 0, "under wheels a bridge's elements bend between their nodes too, as those of rails and of beams that shear do; so it is where accuracy chooses mesh or step"},
+  {"contact_seats", flag, "", "false", any, "", 0, "under wheels a bridge's elements bend between their nodes too, as those of rails and of beams that shear do; so it is where accuracy chooses mesh or step"},
   {"contact_impact_steps", integer, "", "20", {0, 100000}, "", 0, "steps that an impact after a separation takes at least; 0: as the step is"},
   {"accuracy", number, "1", "1e-3", tolerance, "", 0, "wanted relative error of the response; sets mesh, step and tolerance where left open"},
   {"accuracy_of", choice_list, "", "(all)", any, "deflection acceleration moment wheel_force acceleration_lowpass shear axial_displacement axial_force", 0, "peaks that the accuracy is wanted of; of others nothing is promised; acceleration_lowpass: of the acceleration low-passed as output_lowpass says; left out: all but shear, which is promised where the rest asks for as much, and of axial ones only where trains brake or are driven"},
@@ -228,7 +228,7 @@ constexpr Row later_rows[] = {
   {"study_refine", number, "1", "(only the speeds given)", tolerance_or_none, "", 0, "as sweep_refine: of every combination of the other options, and the greatest of what statistics go over; wants train_speed or load_speed among the lists of study_vary"},
   {"study_resume", flag, "", "false", any, "", 0, "takes finished runs of the same study from the results file that is there"},
 
-  {"check", flag, "", "false", any, "", 0, "reads everything, shows the model, its loads at rest, what is chosen, what it costs and what looks unusual, and stops without a run"},
+  {"check", flag, "", "false", any, "", 0, "reads everything, shows the model, its loads at rest, what is chosen, what it costs and unusual input, and stops without a run"},
   {"help", text, "", "", any, "", 0, "prints this list; -help beam, -help wheel, ...: a part of it; -help beam_EI: one option"},
 
   {"log_view", flag, "", "false", any, "", 0, "PETSc's account of time, calls and messages, printed at the end"},

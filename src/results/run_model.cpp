@@ -26,16 +26,16 @@ std::string not_promised(const RunModel& model, const std::vector<double>& unsee
   const auto count = std::count(unseen.begin(), unseen.end(), 1.0);
   if (model.expected_errors.empty() || count == 0) return {};
   return fmt::format(
-      "nothing is promised of {} of the runs: they met what no trial run has seen, as wheels that lose contact or "
-      "stops that are touched; -accuracy_whole makes trial runs as long as these",
+      "error estimates do not hold for {} of the runs, in which wheels lost contact, stops closed or the like as in no "
+      "trial run; -accuracy_whole makes trial runs as long as these",
       count);
 }
 
 std::string computed_alone(long runs) {
   if (runs == 0) return {};
   return fmt::format(
-      "  {} of the runs left the others beside them, as their vehicles were too far from linear or a contact force did "
-      "not converge, and were computed alone\n",
+      "  {} of the runs were computed on their own, not in a batch: the residual of their linearised vehicles was too "
+      "large, or a contact force did not converge\n",
       runs);
 }
 

@@ -52,10 +52,9 @@ std::vector<Verdict> worst_of(const Judged& judged, const std::function<std::str
       verdict.found = {judged.value[i], EvaluatedQuantity::unknown, judged.x[i], run_text(i / count), ""};
     }
     if (std::isnan(verdict.found.value))
-      verdict.found.why =
-          judged.why[l].empty()
-              ? "none of the runs can tell; a single one, with the options of one of them, gives the reason"
-              : judged.why[l];
+      verdict.found.why = judged.why[l].empty()
+                              ? "no run determines it; a single run with the options of one of them reports the reason"
+                              : judged.why[l];
     verdicts.push_back(verdict);
   }
   return verdicts;

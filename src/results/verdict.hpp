@@ -44,7 +44,7 @@ void print_verdicts(const std::vector<Verdict>& verdicts, const std::vector<std:
 /// What many runs have found of each limit.
 struct Judged {
   std::vector<options::VerdictLimit> limits;
-  std::vector<double> value, x;  // [runs][limits], Finding::unknown where a run does not know; m
+  std::vector<double> value, x;  // [runs][limits], EvaluatedQuantity::unknown where a run does not know; m
   std::vector<std::string> why;  // [limits], of runs that do not know
 
   Judged() = default;

@@ -19,7 +19,7 @@ std::vector<const train::WheelContact*> first_points(const train::Fleet& fleet) 
 
 }  // namespace
 
-std::vector<AxlePassages::Due> AxlePassages::due_of(const Scene& scene) {
+std::vector<AxleLoadRecords::Due> AxleLoadRecords::due_of(const Scene& scene) {
   std::vector<Due> due;
   std::size_t wheel = 0;
   for (std::size_t i = 0; i < scene.train.vehicles.size(); ++i) {
@@ -37,15 +37,15 @@ std::vector<AxlePassages::Due> AxlePassages::due_of(const Scene& scene) {
 
 std::vector<double> axle_passage_times(const Scene& scene) {
   std::vector<double> times;
-  for (const AxlePassages::Due& due : AxlePassages::due_of(scene)) times.push_back(due.time);
+  for (const AxleLoadRecords::Due& due : AxleLoadRecords::due_of(scene)) times.push_back(due.time);
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
 }
 
-AxlePassages::AxlePassages(const Scene& scene, double time_step)
+AxleLoadRecords::AxleLoadRecords(const Scene& scene, double time_step)
     : due_(due_of(scene)), tolerance_(shared_end * time_step) {}
 
-void AxlePassages::add(double t, const train::Fleet& fleet) {
+void AxleLoadRecords::add(double t, const train::Fleet& fleet) {
   if (due_.empty()) return;
   const auto wheels = first_points(fleet);
   if (at_start_.empty())
@@ -59,7 +59,7 @@ void AxlePassages::add(double t, const train::Fleet& fleet) {
   }
 }
 
-std::vector<results::Recorder::Dataset> AxlePassages::datasets() const {
+std::vector<results::Recorder::Dataset> AxleLoadRecords::datasets() const {
   std::vector<results::Recorder::Dataset> sets;
   const auto column = [&](const char* name, double Found::*member, const char* unit) {
     std::vector<double> values;
@@ -74,7 +74,7 @@ std::vector<results::Recorder::Dataset> AxlePassages::datasets() const {
   return sets;
 }
 
-std::vector<std::pair<std::string, std::string>> AxlePassages::wheels(const train::Fleet& fleet) const {
+std::vector<std::pair<std::string, std::string>> AxleLoadRecords::wheels(const train::Fleet& fleet) const {
   std::vector<std::pair<std::string, std::string>> names, rows;
   for (const train::Member& member : fleet.members)
     for (const train::Wheel& wheel : member.type->wheels)

@@ -18,11 +18,11 @@ namespace traverse::app {
 /// Times at which wheels pass the places of output_passages, ascending, s; as far as these are ahead of them.
 std::vector<double> axle_passage_times(const Scene& scene);
 
-class AxlePassages {
+class AxleLoadRecords {
  public:
-  AxlePassages() = default;
+  AxleLoadRecords() = default;
   /// time_step: the longest, s.
-  AxlePassages(const Scene& scene, double time_step);
+  AxleLoadRecords(const Scene& scene, double time_step);
 
   /// The next instant that was observed; the first one tells the forces at rest.
   void add(double t, const train::Fleet& fleet);

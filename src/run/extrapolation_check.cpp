@@ -76,8 +76,8 @@ void ExtrapolationCheck::add_supports(const beam::BeamModel& beam) {
 void ExtrapolationCheck::see(double t, const Part& part, double force) {
   const unsigned char now = force == 0.0 ? loose : force < 0.0 ? pressed : pulled;
   unsigned char& seen = seen_[part.kind];
-  if (t > until_ && (seen & now) == 0 && surprise_.empty())
-    surprise_ = fmt::format("{} {} at {:.3g} s", part.name, now == loose ? "lets go" : "touches", t);
+  if (t > until_ && (seen & now) == 0 && new_event_.empty())
+    new_event_ = fmt::format("{} {} at {:.3g} s", part.name, now == loose ? "lets go" : "touches", t);
   seen |= now;
 }
 

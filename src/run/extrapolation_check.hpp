@@ -31,13 +31,13 @@ class ExtrapolationCheck {
   void add(double t, const train::Fleet& fleet, const structure::NonlinearForces& foundation, ResponseExtremes& peaks);
 
   /// What was first to touch or to let go as it had not done before, and when, in words; "" where nothing was.
-  const std::string& new_event() const { return surprise_; }
+  const std::string& new_event() const { return new_event_; }
   /// How many times as much as before curves bend, Bends::times; 0 where nothing came after.
   double roughness(const ResponseExtremes& peaks) const {
     return bends_before_ ? peaks.roughness().times(*bends_before_) : 0.0;
   }
 
-  void keep(base::Bytes& bytes) { bytes(seen_, bends_before_, surprise_); }
+  void keep(base::Bytes& bytes) { bytes(seen_, bends_before_, new_event_); }
 
  private:
   /// What lets go: parts of a kind, as the springs of all vehicles of a type are, count as one.
@@ -64,7 +64,7 @@ class ExtrapolationCheck {
   Part sleepers_;                    // those over a gap
   std::vector<unsigned char> seen_;  // of each kind, one bit each: loose, pressed, pulled
   std::optional<SecondDifference> bends_before_;
-  std::string surprise_;
+  std::string new_event_;
 };
 
 }  // namespace traverse::app

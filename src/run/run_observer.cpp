@@ -28,7 +28,7 @@ void check_balance(const Scene& scene, const results::Summary& summary) {
   if (summary.energy_residual > allowed * summary.energy_scale + rounding * summary.largest_energy)
     throw StepTooLong(fmt::format(
         "the energy does not balance: {:g} J are missing where the energies change by {:g} J; the step is "
-        "too long for this integrator, take a smaller -ts_dt or an implicit -ts_type, and where contacts are lost "
+        "too long for this integrator, use a smaller -ts_dt or an implicit -ts_type, and where contacts are lost "
         "and gained a greater -contact_impact_steps",
         summary.energy_residual, summary.energy_scale));
 }
@@ -101,7 +101,7 @@ void RunObserver::store(bool end) {
   if (summary_.energy_residual > diverged * summary_.energy_scale + rounding * summary_.largest_energy)
     throw StepTooLong(
         fmt::format("the motion diverges: {:g} J have come from nowhere by t = {:g} s; the step is too long for this "
-                    "integrator, take a smaller -ts_dt or an implicit -ts_type",
+                    "integrator, use a smaller -ts_dt or an implicit -ts_type",
                     now_.energy.residual, sample_.time));
 }
 

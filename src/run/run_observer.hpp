@@ -42,7 +42,7 @@ class RunObserver {
   void keep_wheel_forces(FilteredWheels wheels) { filtered_wheels_ = std::move(wheels); }
 
   /// The passages of wheels over places of the track are noted.
-  void record_axle_passages(AxlePassages passages) { axle_passages_ = std::move(passages); }
+  void record_axle_passages(AxleLoadRecords passages) { axle_passages_ = std::move(passages); }
 
   /// The run is judged by the scene's limits when it has ended.
   void judge() { judge_.emplace(scene_, system_.fleet(), beam_); }
@@ -104,7 +104,7 @@ class RunObserver {
   std::optional<LimitCheck> judge_;
   WheelExtremes wheels_;
   std::optional<FilteredWheels> filtered_wheels_;
-  AxlePassages axle_passages_;
+  AxleLoadRecords axle_passages_;
   train::WheelPaths paths_;  // where wheels are free to change their distances
   std::vector<double> wheel_forces_;
   std::size_t wheel_count_ = 0;

@@ -43,7 +43,7 @@ void read_run(const Options& o, Scene& scene) {
   scene.mode_count = o.integer("modes_count");
   scene.contact_tolerance = o.optional_number("contact_tolerance");
   scene.impact_steps = o.integer("contact_impact_steps");
-  scene.model.local_compliance = o.flag("local_compliance");
+  scene.model.local_compliance = o.flag("contact_seats");
   scene.model.step_kinks = o.flag("step_kinks");
   scene.model.step_probes = o.flag("step_probes");
   scene.all_ranks = o.choice("step_ranks") == "all";

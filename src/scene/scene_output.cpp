@@ -198,8 +198,9 @@ void promise_what_many_runs_find(Scene& scene) {
   scene.output.low_pass_asked = false;
   const auto leave_out = [&](const char* name, const char* why) {
     if (std::erase(scene.accuracy_of, name) == 0) return;
-    scene.notes.push_back(fmt::format("accuracy_of {} is not promised: the runs of sweeps and studies {}{}", name, why,
-                                      scene.accuracy_of.empty() ? "; all other peaks are promised instead" : ""));
+    scene.notes.push_back(
+        fmt::format("accuracy_of {}: its error is not estimated: the runs of sweeps and studies {}{}", name, why,
+                    scene.accuracy_of.empty() ? "; the errors of all other peaks are estimated instead" : ""));
   };
   if (!scene.limits_deck_acceleration())
     leave_out(low_passed_peak, "low-pass deck accelerations only where limits ask for deck_acceleration");

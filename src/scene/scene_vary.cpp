@@ -165,7 +165,7 @@ class Axes {
       study_.axes.push_back({name, length});
     }
     if (study_.axes[*joint_].length != length)
-      o_.refuse("study_combine", fmt::format("{} has {} values, those before it have {}; together they have as many",
+      o_.refuse("study_combine", fmt::format("needs lists of equal length; {} has {} values, those before it have {}",
                                              dimension.name(), length, study_.axes[*joint_].length));
     dimension.axis = *joint_;
   }

@@ -132,8 +132,8 @@ void ElementStructure::end_stage(std::size_t i, const double* v, const double* w
   if (!fused()) {
     double* a = motion_->kept(i);
     for (int k = 0; k < n_; ++k) a[k] = stage_.shift2 * z_[k];
-    for (int k = 0; k < n_; ++k) w_still_[k] += method_.stages[i].rate * a[k];
-    powers.beam = dissipation(w_still_.data());
+    for (int k = 0; k < n_; ++k) w_predicted_[k] += method_.stages[i].rate * a[k];
+    powers.beam = dissipation(w_predicted_.data());
   } else if (!measured_between_steps() && statics_->damped()) {
     powers.beam = motion_->power(i, v, w);
   }
@@ -228,8 +228,8 @@ void ElementStructure::keep(base::Archive& archive) {
 
 double ElementStructure::error_energy(const double* v, const double* w) {
   if (fused()) return motion_->error_energy();
-  double* const v_off = v_still_.data();
-  double* const w_off = w_still_.data();
+  double* const v_off = v_predicted_.data();
+  double* const w_off = w_predicted_.data();
   motion_->error(v, w, v_off, w_off);
   double energy = 0.0;
   statics_->multiply(1.0, nullptr, nullptr, v_off, work_.data());

@@ -17,7 +17,7 @@ ElementStructure::ElementStructure(const beam::Beam& beam, double gravity, std::
       response_(beam, *statics_),
       longest_span_(*std::max_element(beam.model().spans.begin(), beam.model().spans.end())) {
   all_ = {{0, beam.local_columns()}};
-  for (std::vector<double>* x : {&z_, &v_still_, &w_still_, &work_}) x->resize(static_cast<std::size_t>(n_));
+  for (std::vector<double>* x : {&z_, &v_predicted_, &w_predicted_, &work_}) x->resize(static_cast<std::size_t>(n_));
 }
 
 void ElementStructure::expect_weights(double sum, double greatest) {
@@ -90,7 +90,7 @@ void ElementStructure::add_values(const std::vector<int>& elements, const double
   const auto value_at = [&](int i) -> std::pair<double, double> {
     if (v != nullptr) return {v[i], w[i]};
     if (stage_.kind == Kind::fused) return motion_->state(stage_.number, stage_.v, stage_.w, i);
-    return {v_still_[i] + z_[i], w_still_[i] + stage_.shift * z_[i]};
+    return {v_predicted_[i] + z_[i], w_predicted_[i] + stage_.shift * z_[i]};
   };
   for (std::size_t a = 0; a < elements.size(); ++a) {
     const auto unknowns = line_.unknowns(elements[a]);
@@ -106,10 +106,11 @@ void ElementStructure::add_values(const std::vector<int>& elements, const double
 void ElementStructure::begin_statics(bool loaded) {
   stage_ = {};
   stage_.loaded = loaded;
-  for (std::vector<double>* predicted : {&v_still_, &w_still_}) std::fill(predicted->begin(), predicted->end(), 0.0);
+  for (std::vector<double>* predicted : {&v_predicted_, &w_predicted_})
+    std::fill(predicted->begin(), predicted->end(), 0.0);
   const bool settled = !beam_.imposed().empty();
-  if (settled) v_still_ = beam_.imposed();
-  if (nonlinear_) nonlinear_->begin(0.0, settled ? v_still_.data() : nullptr, nullptr, nullptr);
+  if (settled) v_predicted_ = beam_.imposed();
+  if (nonlinear_) nonlinear_->begin(0.0, settled ? v_predicted_.data() : nullptr, nullptr, nullptr);
   if (settled) return load_of_stills();
   external_load(z_.data());
   release_held(z_.data());
@@ -121,13 +122,13 @@ void ElementStructure::begin_stage(double shift, const double* c_v, const double
   stage_.kind = Kind::state;
   stage_.shift = shift;
   stage_.shift2 = shift * shift;
-  for (std::vector<double>* predicted : {&v_still_, &w_still_})
+  for (std::vector<double>* predicted : {&v_predicted_, &w_predicted_})
     if (!(shift > 0.0)) std::fill(predicted->begin(), predicted->end(), 0.0);
   if (shift > 0.0) {
-    for (int i = 0; i < n_; ++i) w_still_[i] = -c_w[i] / shift;
-    for (int i = 0; i < n_; ++i) v_still_[i] = (w_still_[i] - c_v[i]) / shift;
+    for (int i = 0; i < n_; ++i) w_predicted_[i] = -c_w[i] / shift;
+    for (int i = 0; i < n_; ++i) v_predicted_[i] = (w_predicted_[i] - c_v[i]) / shift;
   }
-  if (nonlinear_) nonlinear_->begin(shift, v_still_.data(), w_still_.data(), w_guess);
+  if (nonlinear_) nonlinear_->begin(shift, v_predicted_.data(), w_predicted_.data(), w_guess);
   load_of_stills();
 }
 
@@ -141,15 +142,15 @@ void ElementStructure::begin_stage(std::size_t i, const double* v, const double*
   stage_.v = v;
   stage_.w = w;
   if (fused()) return;
-  motion_->predicted(i, v, w, v_still_.data(), w_still_.data());
-  if (nonlinear_) nonlinear_->begin(stage_.shift, v_still_.data(), w_still_.data(), w);
+  motion_->predicted(i, v, w, v_predicted_.data(), w_predicted_.data());
+  if (nonlinear_) nonlinear_->begin(stage_.shift, v_predicted_.data(), w_predicted_.data(), w);
   load_of_stills();
 }
 
 // The load at zero acceleration, into z_.
 void ElementStructure::load_of_stills() {
   stage_.loaded = true;
-  statics_->multiply(-1.0, nullptr, w_still_.data(), v_still_.data(), z_.data());
+  statics_->multiply(-1.0, nullptr, w_predicted_.data(), v_predicted_.data(), z_.data());
   external_load(work_.data());
   for (int i = 0; i < n_; ++i) z_[i] += work_[i];
   release_held(z_.data());
@@ -195,8 +196,8 @@ const ContactField& ElementStructure::begin_passes(const std::vector<int>& eleme
   } else {
     response_.set_free([&](std::ptrdiff_t from, int size, double* v, double* w) {
       for (int i = 0; i < size; ++i) {
-        v[i] = v_still_[from + i] + z_[from + i];
-        w[i] = w_still_[from + i] + stage_.shift * z_[from + i];
+        v[i] = v_predicted_[from + i] + z_[from + i];
+        w[i] = w_predicted_[from + i] + stage_.shift * z_[from + i];
       }
     });
   }
@@ -239,8 +240,8 @@ Structure::Verdict ElementStructure::judge() {
 void ElementStructure::end_stage(double* v, double* w) {
   const double shift = stage_.shift;  // no store to w changes it: the loop goes in vectors
   for (int i = 0; i < n_; ++i) {
-    v[i] = v_still_[i] + z_[i];
-    w[i] = w_still_[i] + shift * z_[i];
+    v[i] = v_predicted_[i] + z_[i];
+    w[i] = w_predicted_[i] + shift * z_[i];
   }
 }
 

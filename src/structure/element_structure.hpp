@@ -114,7 +114,7 @@ class ElementStructure final : public Structure {
   std::vector<NodalLoad> nodal_forces_;           // the moving ones, of ascending unknowns
   Stage stage_;
   // This rank's unknowns: z of the stage under way, v~ and w~, its load where there is a Newton iteration.
-  std::vector<double> z_, v_still_, w_still_, stage_load_, work_;
+  std::vector<double> z_, v_predicted_, w_predicted_, stage_load_, work_;
   std::vector<double> element_work_;
 
   // Steps

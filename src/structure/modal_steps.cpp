@@ -39,15 +39,15 @@ void ModalStructure::divide(const double* force, double* displacement) const {
 
 void ModalStructure::begin_statics(bool /*loaded*/) {
   set_stage(0.0, 0.0);
-  std::fill(v_still_.begin(), v_still_.end(), 0.0);
-  std::fill(w_still_.begin(), w_still_.end(), 0.0);
+  std::fill(v_predicted_.begin(), v_predicted_.end(), 0.0);
+  std::fill(w_predicted_.begin(), w_predicted_.end(), 0.0);
 }
 
 void ModalStructure::begin_stage(double shift, const double* c_v, const double* c_w, const double* /*w_guess*/) {
   set_stage(shift, shift * shift);
   for (int i = 0; i < n_; ++i) {
-    w_still_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
-    v_still_[i] = shift > 0.0 ? (w_still_[i] - c_v[i]) / shift : 0.0;
+    w_predicted_[i] = shift > 0.0 ? -c_w[i] / shift : 0.0;
+    v_predicted_[i] = shift > 0.0 ? (w_predicted_[i] - c_v[i]) / shift : 0.0;
   }
 }
 
@@ -55,11 +55,11 @@ void ModalStructure::begin_stage(std::size_t stage, const double* v, const doubl
   const StageRule& rule = method_.stages[stage];
   set_stage(rule.rate / rule.displacement, 1.0 / rule.displacement);
   for (int i = 0; i < n_; ++i) {
-    v_still_[i] = v[i] + rule.w_in_v * w[i];
-    w_still_[i] = w[i];
+    v_predicted_[i] = v[i] + rule.w_in_v * w[i];
+    w_predicted_[i] = w[i];
     for (int j = 0; j < rule.known; ++j) {
-      v_still_[i] += rule.a_in_v[j] * kept_[j][i];
-      w_still_[i] += rule.a_in_w[j] * kept_[j][i];
+      v_predicted_[i] += rule.a_in_v[j] * kept_[j][i];
+      w_predicted_[i] += rule.a_in_w[j] * kept_[j][i];
     }
   }
 }
@@ -68,9 +68,9 @@ void ModalStructure::solve_free() {
   if (n_ == 0) return;
   for (int i = 0; i < n_; ++i) {
     const double omega = bridge_.omega()[i];
-    q_[i] = modal_force_[i] - 2.0 * bridge_.sigma()[i] * w_still_[i] - omega * omega * v_still_[i];
+    q_[i] = modal_force_[i] - 2.0 * bridge_.sigma()[i] * w_predicted_[i] - omega * omega * v_predicted_[i];
   }
-  subtract_cross_damping(w_still_.data(), q_.data());
+  subtract_cross_damping(w_predicted_.data(), q_.data());
   divide(q_.data(), z_.data());
 }
 
@@ -138,17 +138,17 @@ void ModalStructure::take(const std::vector<double>& loads) {
 
 void ModalStructure::end_stage(double* v, double* w) {
   for (int i = 0; i < n_; ++i) {
-    v[i] = v_still_[i] + z_[i];
-    w[i] = w_still_[i] + shift_ * z_[i];
+    v[i] = v_predicted_[i] + z_[i];
+    w[i] = w_predicted_[i] + shift_ * z_[i];
   }
 }
 
 void ModalStructure::end_stage(std::size_t stage, const double* /*v*/, const double* /*w*/) {
   for (int i = 0; i < n_; ++i) {
     kept_[stage + 1][i] = shift2_ * z_[i];
-    w_still_[i] += shift_ * z_[i];
+    w_predicted_[i] += shift_ * z_[i];
   }
-  powers_[stage + 1] = {damping(w_still_.data()), work_rate(w_still_.data())};
+  powers_[stage + 1] = {damping(w_predicted_.data()), work_rate(w_predicted_.data())};
 }
 
 // --- steps ---------------------------------------------------------------------------------------------------------

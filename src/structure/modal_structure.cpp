@@ -43,7 +43,7 @@ ModalStructure::ModalStructure(const ModalBridge& bridge, double gravity, std::s
     add_up(weight_.data(), modes_);
     add_up(&sag_work_, 1);
   }
-  for (std::vector<double>* x : {&modal_force_, &stiffness_, &v_still_, &w_still_, &z_, &q_, &moved_})
+  for (std::vector<double>* x : {&modal_force_, &stiffness_, &v_predicted_, &w_predicted_, &z_, &q_, &moved_})
     x->assign(modes_, 0.0);
   if (bridge_.coupled()) {
     const auto m = static_cast<Eigen::Index>(modes_);
@@ -126,8 +126,8 @@ void ModalStructure::add_values(const std::vector<int>& elements, const double* 
       const double* phi = shapes(unknowns[k]);
       double value = sag_[static_cast<std::size_t>(unknowns[k])], rate = 0.0;
       for (std::size_t i = 0; i < modes_; ++i) {
-        value += phi[i] * (v != nullptr ? v[i] : v_still_[i] + z_[i]);
-        rate += phi[i] * (v != nullptr ? w[i] : w_still_[i] + shift_ * z_[i]);
+        value += phi[i] * (v != nullptr ? v[i] : v_predicted_[i] + z_[i]);
+        rate += phi[i] * (v != nullptr ? w[i] : w_predicted_[i] + shift_ * z_[i]);
       }
       v_elements[a * m + k] = value;
       w_elements[a * m + k] = rate;

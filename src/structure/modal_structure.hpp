@@ -100,8 +100,8 @@ class ModalStructure final : public Structure {
   std::vector<double> stiffness_;
   Eigen::LLT<Eigen::MatrixXd> factor_;
   Eigen::MatrixXd inverse_;
-  std::vector<double> v_still_, w_still_, z_;  // as in ElementStructure
-  std::vector<int> elements_;                  // of the last yield
+  std::vector<double> v_predicted_, w_predicted_, z_;  // as in ElementStructure
+  std::vector<int> elements_;                          // of the last yield
   Yield yield_;
   Method method_;
   std::array<std::vector<double>, most_accelerations> kept_;  // q'' at the start of the step and at its stages

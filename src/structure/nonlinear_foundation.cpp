@@ -100,9 +100,9 @@ beam::FoundationForce NonlinearFoundation::force_of(const Point& p, double displ
 
 void NonlinearFoundation::evaluate(const double* v, const double* w) {
   gather(v, &Point::predicted);
-  gather(w, &Point::still_rate);
+  gather(w, &Point::predicted_rate);
   for (Point& p : points_) {
-    p.state = force_of(p, p.predicted, p.still_rate);
+    p.state = force_of(p, p.predicted, p.predicted_rate);
   }
 }
 

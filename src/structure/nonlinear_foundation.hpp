@@ -98,7 +98,7 @@ class NonlinearFoundation {
     bool counted = false;    // by this rank, in sums
     double reference = 0.0;  // N/m, at a displacement of the order of that under the load
     double predicted = 0.0;  // displacement and rate at z = 0
-    double still_rate = 0.0;
+    double predicted_rate = 0.0;
     double zeta0 = 0.0;
     double force0 = 0.0;
     double zeta = 0.0;            // the solution last judged
@@ -113,7 +113,7 @@ class NonlinearFoundation {
 
     bool slides() const { return its.sliding.limit > 0.0; }
     void keep(base::Bytes& bytes) {
-      bytes(predicted, still_rate, zeta0, force0, zeta, linear_force, balanced_force, misfit, state);
+      bytes(predicted, predicted_rate, zeta0, force0, zeta, linear_force, balanced_force, misfit, state);
       bytes(loaded, settled_force, settled, settled_energy);
     }
   };

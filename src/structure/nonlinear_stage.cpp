@@ -29,7 +29,7 @@ bool near(double kept, double wanted, double share) {
 }  // namespace
 
 beam::FoundationForce NonlinearFoundation::force_at(const Point& p, double zeta) const {
-  return force_of(p, p.predicted + zeta, p.still_rate + shift_ * zeta);
+  return force_of(p, p.predicted + zeta, p.predicted_rate + shift_ * zeta);
 }
 
 void NonlinearFoundation::begin(double shift, const double* v_predicted, const double* w_predicted,
@@ -37,14 +37,14 @@ void NonlinearFoundation::begin(double shift, const double* v_predicted, const d
   shift_ = shift;
   iteration_ = 0;
   if (shift == 0.0) {
-    for (Point& p : points_) p.predicted = p.still_rate = 0.0;
+    for (Point& p : points_) p.predicted = p.predicted_rate = 0.0;
     if (v_predicted != nullptr) gather(v_predicted, &Point::predicted);
     return;
   }
   gather(v_predicted, &Point::predicted);
-  gather(w_predicted, &Point::still_rate);
+  gather(w_predicted, &Point::predicted_rate);
   gather(w_guess, &Point::zeta0);
-  for (Point& p : points_) p.zeta0 = (p.zeta0 - p.still_rate) / shift;
+  for (Point& p : points_) p.zeta0 = (p.zeta0 - p.predicted_rate) / shift;
 }
 
 // Statics begins as if whatever can carry weight did, from where it first touches, and as if nothing slid.
@@ -121,7 +121,7 @@ NonlinearFoundation::Verdict NonlinearFoundation::judge(const double* z) {
     p.linear_force = p.force0 - T * (p.zeta - p.zeta0);
     p.state = force_at(p, p.zeta);
     const double size = std::abs(p.predicted) + std::abs(p.zeta) + std::abs(p.zeta0) + p.its.law.gap;
-    const double rate = std::abs(p.still_rate) + shift_ * (std::abs(p.zeta) + std::abs(p.zeta0));
+    const double rate = std::abs(p.predicted_rate) + shift_ * (std::abs(p.zeta) + std::abs(p.zeta0));
     const double floor = unit_rounding * ((std::abs(p.state.by_displacement) + std::abs(tangent.k[n])) * size +
                                           (p.state.by_rate + tangent.c[n]) * rate);
     p.misfit = std::abs(p.state.force - p.linear_force) - floor;

@@ -81,14 +81,14 @@ void announce(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
   if (known > 0) notes.push_back(fmt::format("{} of them are known from the results file that was there", known));
   if (first.has_lanes())
     notes.push_back(fmt::format(
-        "up to {} runs{} go side by side, in the lanes of {} vectors", first.width(),
+        "up to {} runs{} are advanced together, one in each lane of {} vectors", first.width(),
         study.sweep
             ? ""
             : fmt::format(" that differ in {} alone",
                           scenes.mixes(first.width()) ? "speed, track and vehicles' numbers" : "speed and track"),
         engine::instructions()));
   else if (!first.why_no_lanes().empty() && !scene.vehicles.empty())
-    notes.push_back("runs go one by one: " + first.why_no_lanes());
+    notes.push_back("runs are computed one by one: " + first.why_no_lanes());
   if (study.refine > 0.0)
     notes.push_back(fmt::format("speeds are added until the peaks over the speed are known to {:g}", study.refine));
   if (study.refine < 0.0)
@@ -102,8 +102,7 @@ void announce(const Scene& scene, StudyScenes& scenes, const results::RunModel& 
   const bool told = model.modes > 0 || model.time_step > 0.0;
   notes.push_back(fmt::format("the {} is {}{}", study.sweep ? "sweep" : "study", results::method_of(model),
                               told ? ", which will take about " + results::duration_text(seconds) : ""));
-  if (ranks > 1)
-    notes.push_back(fmt::format("{} ranks share the runs, each takes the next one when it is free", ranks));
+  if (ranks > 1) notes.push_back(fmt::format("{} ranks share the runs by a common queue", ranks));
   if (study.sweep && told && seconds >= worth_a_word) suggest_modes(scene, seconds, ranks, model.accuracy > 0.0, notes);
 }
 

@@ -106,13 +106,13 @@ std::vector<std::string> Fleet::linearise() {
     if (obstacle.empty()) {
       ++taken;
       vehicle.dynamics = AnyDynamics(std::make_unique<LinearDynamics>(vehicle, cruise_.data() + vehicle.offset));
-    } else if (std::string note = fmt::format("vehicle '{}' is not taken as linear: {}", vehicle.name(), obstacle);
+    } else if (std::string note = fmt::format("vehicle '{}' is not linearised: {}", vehicle.name(), obstacle);
                std::find(notes.begin(), notes.end(), note) == notes.end()) {
       notes.push_back(std::move(note));
     }
   }
   if (taken > 0)
-    notes.insert(notes.begin(), fmt::format("{} taken as linear about their start",
+    notes.insert(notes.begin(), fmt::format("{} linearised about their initial state",
                                             taken == own().size() ? "vehicles are" : "some vehicles are"));
   return notes;
 }

@@ -82,7 +82,7 @@ TEST(Ranks, SharedVehiclesThatLoseContact) {
   for (const char* seats : {"false", "true"})
     expect_same_on_all_ranks("three_span_half_car",
                              with(five_half_cars, {{"vehicle_half_car_rear_wheel_friction", "0"},
-                                                   {"local_compliance", seats},
+                                                   {"contact_seats", seats},
                                                    {"ts_dt", "1e-3"},
                                                    {"track_profile", "bump"},
                                                    {"track_bump_start", "20"},

@@ -25,7 +25,7 @@ TEST(AccuracyOption, ReportShowsThePromiseKept) {
   const Outcome outcome = workplace.run({"-accuracy", "1e-3", "-accuracy_report"});
   expect_success(outcome);
   for (const char* text :
-       {"accuracy 0.001: ", "trial runs", "expected errors of the peaks: deflection", "wanted", "kept"})
+       {"accuracy 0.001: ", "trial runs", "estimated errors of the peaks: deflection", "wanted", "kept"})
     EXPECT_TRUE(says(outcome, text)) << text << "\n" << outcome.out;
   EXPECT_FALSE(says(outcome, "broken")) << outcome.out;
 }
@@ -34,7 +34,7 @@ TEST(AccuracyOption, NamesWhatItCannotPromise) {
   const Workplace workplace(damped_span);
   const Outcome undamped = workplace.run({"-beam_damping_ratios", "0"});
   expect_success(undamped);
-  EXPECT_TRUE(says(undamped, "not promised: acceleration: without damping")) << undamped.out;
+  EXPECT_TRUE(says(undamped, "error not estimated: acceleration: without damping")) << undamped.out;
   const Outcome coarse = workplace.run({"-beam_elements_per_span", "2"});
   expect_success(coarse);
   EXPECT_TRUE(says(coarse, "the 2 elements a span, which are given, leave an error")) << coarse.out;
@@ -49,7 +49,7 @@ TEST(AccuracyOption, OfSomePeaks) {
   EXPECT_LT(deflection.attribute("/", "steps"), 0.7 * all.attribute("/", "steps"));
   const Outcome outcome = workplace.run({"-accuracy_of", "deflection,moment", "-accuracy_report"});
   expect_success(outcome);
-  EXPECT_TRUE(says(outcome, "not promised: acceleration: accuracy_of does not ask for it")) << outcome.out;
+  EXPECT_TRUE(says(outcome, "error not estimated: acceleration: accuracy_of does not ask for it")) << outcome.out;
   const Workplace fresh(damped_span);
   expect_refusal(fresh, fresh.run({"-accuracy_of", "speed"}), {"accuracy_of", "'speed' is not allowed"});
   expect_refusal(fresh, fresh.run({"-accuracy_of", "deflection,acceleration_lowpass", "-output_lowpass", "none"}),
@@ -67,13 +67,14 @@ TEST(AccuracyOption, OfLowPassedAccelerations) {
     return outcome;
   };
   const Outcome reported = run({"-accuracy_report", "-scene_tail", "0.5"});
-  EXPECT_TRUE(says(reported, "expected errors of the peaks: deflection")) << reported.out;
+  EXPECT_TRUE(says(reported, "estimated errors of the peaks: deflection")) << reported.out;
   EXPECT_TRUE(says(reported, ", low-passed acceleration ")) << reported.out;
   EXPECT_TRUE(says(reported, "\n  low-passed acceleration")) << reported.out;
   EXPECT_FALSE(says(reported, "broken")) << reported.out;
   EXPECT_TRUE(says(run({"-scene_tail", "0.5", "-accuracy_report"}), "chosen as before")) << reported.out;
   const Outcome sweep = run({"-sweep_speed", "20,60,10"});
-  EXPECT_TRUE(says(sweep, "accuracy_of acceleration_lowpass is not promised: the runs of sweeps")) << sweep.out;
+  EXPECT_TRUE(says(sweep, "accuracy_of acceleration_lowpass: its error is not estimated: the runs of sweeps"))
+      << sweep.out;
 }
 
 // Sweeps promise low-passed accelerations where the bridge is damped and the filter settles behind the train; with a
@@ -86,7 +87,7 @@ TEST(AccuracyOption, OfLowPassedAccelerationsInSweeps) {
       words.emplace_back(word);
     return workplace.run(words);
   };
-  const std::string refused = "not promised: low-passed acceleration", given = "model_modes = 6 is given";
+  const std::string refused = "error not estimated: low-passed acceleration", given = "model_modes = 6 is given";
   const Outcome chosen = run({}), modes = run({"-model_modes", "6"}), undamped = run({"-beam_damping_ratios", "0"});
   EXPECT_TRUE(says(chosen, "low-passed acceleration 0.0") || says(chosen, "acceleration lowpass ")) << chosen.out;
   EXPECT_FALSE(says(chosen, refused)) << chosen.out;
@@ -110,7 +111,7 @@ TEST(AccuracyOption, WholeAccelerationsWhereTheyAreJudged) {
   const Workplace workplace(damped_span);
   const Outcome judged = workplace.run({"-limits", TRAVERSE_SOURCE_DIR "/options/limits/en1990.yml", "-scene_tail",
                                         "0.2", "-accuracy", "1e-2", "-model_modes", "0"});
-  EXPECT_TRUE(says(judged, "not promised: acceleration: limits judge the low-passed one")) << judged.out;
+  EXPECT_TRUE(says(judged, "error not estimated: acceleration: limits judge the low-passed one")) << judged.out;
   EXPECT_TRUE(says(judged, ", low-passed acceleration ")) << judged.out;
 }
 
@@ -177,7 +178,7 @@ output: {file: r2.h5, interval: 1.0e-3}
   };
   const Outcome again = run({});
   expect_success(again);
-  EXPECT_TRUE(says(again, "the run is repeated with steps of 0.00025 s, and nothing is promised: ")) << again.out;
+  EXPECT_TRUE(says(again, "the run is repeated with steps of 0.00025 s, without error estimates: ")) << again.out;
   const Results results(workplace.path("r2.h5"));
   EXPECT_NEAR(results.attribute("/summary", "deflection"), -2.40731635e-3, 1e-6);
   EXPECT_EQ(run({"-ts_dt", "5e-4"}).status, 3);

@@ -45,7 +45,7 @@ TEST_P(CheckedFile, IsShownAndNotRun) {
   EXPECT_FALSE(workplace.has("results"));
   EXPECT_EQ(std::count_if(outcome.out.begin(), outcome.out.end(), [](char c) { return c < 32 && c != '\n'; }), 0)
       << outcome.out;  // nor anything beyond ASCII, which is negative
-  for (const char* heading : {"what would be computed", "what it takes", "what looks unusual"})
+  for (const char* heading : {"analysis", "what it takes", "unusual input"})
     EXPECT_FALSE(section(outcome.out, heading).empty()) << heading << "\n" << outcome.out;
   EXPECT_TRUE(contains(section(outcome.out, "what it takes"), "memory")) << outcome.out;
   EXPECT_TRUE(contains(outcome.out, "to scale")) << outcome.out;
@@ -91,7 +91,7 @@ TEST_P(Unusual, IsFoundWhereItIs) {
   words.emplace_back("-check");
   const Outcome outcome = workplace.run(words);
   expect_success(outcome);
-  EXPECT_TRUE(contains(section(outcome.out, "what looks unusual"), GetParam().found)) << outcome.out;
+  EXPECT_TRUE(contains(section(outcome.out, "unusual input"), GetParam().found)) << outcome.out;
   // And on two ranks, quietly, it is all that is said.
   words.insert(words.end(), {"-output_quiet"});
   const Outcome quiet = workplace.run(words, 2);
@@ -133,7 +133,7 @@ TEST(Check, FindsNothingUnusualInWhatIsUsual) {
   const Workplace workplace(usual);
   const Outcome outcome = workplace.run({"-check"});
   expect_success(outcome);
-  EXPECT_EQ(section(outcome.out, "what looks unusual"), "  nothing               \n") << outcome.out;
+  EXPECT_EQ(section(outcome.out, "unusual input"), "  nothing               \n") << outcome.out;
   const Outcome quiet = workplace.run({"-check", "-output_quiet"});
   expect_success(quiet);
   EXPECT_EQ(quiet.out, "");

@@ -90,7 +90,7 @@ TEST(Accuracy, IsWithdrawnWhereMoreComesThanTrialsSaw) {
   accuracy.estimates[moment].expected = 5e-4;
   EXPECT_EQ(accuracy.invalidate_if_rougher(1.9, 1e-3), "");
   const std::string said = accuracy.invalidate_if_rougher(2.5, 1e-3);
-  EXPECT_NE(said.find("not promised after all: moment: after 0.7 s"), std::string::npos) << said;
+  EXPECT_NE(said.find("error estimates withdrawn: moment: after 0.7 s"), std::string::npos) << said;
   EXPECT_NEAR(accuracy.estimates[deflection].expected, 6.25e-4, 1e-15);
   EXPECT_EQ(accuracy.expected().size(), quantities - 1U);
   EXPECT_EQ(accuracy.invalidate_by_new_event(""), "");
@@ -103,7 +103,8 @@ TEST(RunModel, PromisesNothingOfRunsThatMeetWhatNoTrialHasSeen) {
   model.expected_errors = {{"deflection", 1e-3}};
   const std::vector<double> unseen = {0.0, 1.0, std::numeric_limits<double>::quiet_NaN(), 1.0};
   EXPECT_EQ(results::not_promised(model, {0.0, 0.0}), "");
-  EXPECT_NE(results::not_promised(model, unseen).find("nothing is promised of 2 of the runs"), std::string::npos);
+  EXPECT_NE(results::not_promised(model, unseen).find("error estimates do not hold for 2 of the runs"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -33,7 +33,7 @@ INSTANTIATE_TEST_SUITE_P(
                                                                             // that shears its slope jumps within a step
         Case{"shear", {{"beam_GA", "1e9"}}, 1e-7}, Case{"raised_surface", {{"beam_surface_height", "1.5"}}},
         Case{"along_the_beam", {{"beam_surface_height", "1.5"}, {"beam_EA", "1e10"}, {"model_axial", "true"}}},
-        Case{"elements_that_bend_inside", {{"local_compliance", "true"}}},
+        Case{"elements_that_bend_inside", {{"contact_seats", "true"}}},
         Case{"rough_track", {{"track_profile", "german_low"}, {"track_seed", "3"}, {"ts_dt", "2e-4"}}},
         Case{"modes", {{"model_modes", "16"}}}, Case{"hinge", {{"beam_hinges", "40"}}}),
     [](const auto& which) { return which.param.name; });

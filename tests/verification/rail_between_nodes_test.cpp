@@ -117,10 +117,9 @@ TEST(BridgeBetweenNodes, SixteenElementsCarryAStiffWheel) {
       "    wheel: {body: body, radius: 0.1, law: linear, stiffness: 1.0e9}\n"
       "    level: {body: body, coordinate: phi}\ntrain: {vehicles: car, speed: 59.7}\n";
   const auto run = [&](const char* elements, const char* seats) {
-    return run_yaml(scene, {{"beam_elements_per_span", elements},
-                            {"local_compliance", seats},
-                            {"ts_dt", "2.5e-4"},
-                            {"step_probes", "true"}});
+    return run_yaml(
+        scene,
+        {{"beam_elements_per_span", elements}, {"contact_seats", seats}, {"ts_dt", "2.5e-4"}, {"step_probes", "true"}});
   };
   const Results fine = run("256", "false"), with = run("16", "true"), without = run("16", "false");
   for (const char* quantity : {"wheel_force", "acceleration"}) {

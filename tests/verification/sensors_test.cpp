@@ -114,7 +114,7 @@ double between(const std::vector<double>& series, double at) {
 }
 
 // Places that wheels reach between samples, and at one.
-TEST(AxlePassages, TellTimeSpeedAndForceThere) {
+TEST(AxleLoadRecords, TellTimeSpeedAndForceThere) {
   const double speed = 80.0, interval = 2.5e-4;
   // The first wheel is at -15 + 9.9375 m; after 0.4 s at 26.9375 m.
   const std::string wanted = "output: {passages: [-4.0, 26.9375]}\n";
@@ -152,7 +152,7 @@ TEST(AxlePassages, TellTimeSpeedAndForceThere) {
   for (const double v : run("/passages/speed")) EXPECT_NEAR(v, speed, 1e-4 * speed);
 }
 
-TEST(AxlePassages, ChangeNothingElse) {
+TEST(AxleLoadRecords, ChangeNothingElse) {
   Results without = run_yaml(train(""), {{"output_interval", "5e-3"}});
   Results with = run_yaml(train("output: {passages: 20.013}\n"), {{"output_interval", "5e-3"}});
   const double difference = relative_difference(with("/probes/deflection"), without("/probes/deflection"));
@@ -161,7 +161,7 @@ TEST(AxlePassages, ChangeNothingElse) {
 }
 
 // The kernels that step linear vehicles know nothing of places: then they are not taken.
-TEST(AxlePassages, OfLinearVehiclesOverModes) {
+TEST(AxleLoadRecords, OfLinearVehiclesOverModes) {
   const Values options = {
       {"model_vehicles", "linear"}, {"model_modes", "6"}, {"output_passages", "20.013"}, {"output_interval", "5e-3"}};
   Results linear = run_yaml(train(""), options),
@@ -171,7 +171,7 @@ TEST(AxlePassages, OfLinearVehiclesOverModes) {
   EXPECT_LT(relative_difference(linear("/passages/normal_force"), full("/passages/normal_force")), 1e-5);
 }
 
-TEST(AxlePassages, NeedAPrescribedSpeed) {
+TEST(AxleLoadRecords, NeedAPrescribedSpeed) {
   const std::string message = message_of([] {
     run_yaml(train("output: {passages: 20}\n"), {{"train_drive", "free"}});
   });

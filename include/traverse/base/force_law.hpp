@@ -25,7 +25,7 @@ class Polyline {
   /// -value(-x).
   Polyline reversed() const;
 
-  double value(double x) const;
+  double value(double x) const;     // straight lines between the points, the end slopes outside
   double slope(double x) const;     // at a corner the one on its right
   double integral(double x) const;  // of the value, from 0
   /// Where the value is y; nothing unless the lines rise all along.

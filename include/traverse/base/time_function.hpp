@@ -21,6 +21,7 @@ class TimeFunction {
   /// Its acceleration jumps at the times, where that of either side is meant: see take_piece. Throws as a table does.
   static TimeFunction integral(double value, std::vector<double> times, std::vector<double> rates);
 
+  /// The value at a time t (s), and its first and second derivatives in time.
   double value(double t) const;
   double rate(double t) const;
   double acceleration(double t) const;
@@ -50,8 +51,8 @@ class TimeFunction {
   struct Piece {
     double from, value, rate, acceleration;
   };
-  int piece_at(double t) const;
-  Piece piece(double t) const;
+  int piece_at(double t) const;  // its number
+  Piece piece(double t) const;   // and what holds there
 };
 
 }  // namespace traverse::base

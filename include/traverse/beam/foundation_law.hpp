@@ -19,6 +19,7 @@ struct FoundationLaw {
   /// holds.
   double slides_at = 0.0;
 
+  /// Whether the force is not proportional to displacement and rate.
   bool nonlinear() const { return one_sided || gap > 0.0 || cubic > 0.0 || slides_at > 0.0; }
 };
 
@@ -38,6 +39,7 @@ struct Sliding {
   double k = 0.0, limit = 0.0;                // N/m, N; a limit of 0: it does not slide
   double loaded_k = 0.0, loaded_limit = 0.0;  // the same where a train stands
 
+  /// Stiffness (N/m) and limit (N), under a train or beside it.
   double k_of(bool loaded) const { return loaded ? loaded_k : k; }
   double limit_of(bool loaded) const { return loaded ? loaded_limit : limit; }
 };

@@ -34,6 +34,7 @@ struct TrackValues {
   /// Of the longitudinal spring, N, and with its stiffness, N/m, below a train; 0: it holds, and it is the same there.
   double slides_at = 0.0, loaded_k = 0.0, loaded_slides_at = 0.0;
 
+  /// The law of the longitudinal spring.
   Sliding sliding() const {
     return {longitudinal.k, slides_at, loaded_k > 0.0 ? loaded_k : longitudinal.k,
             loaded_slides_at > 0.0 ? loaded_slides_at : slides_at};

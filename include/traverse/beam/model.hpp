@@ -48,7 +48,7 @@ struct Temperature {
   double expansion = 0.0;  // 1/K
   double depth = 1.0;      // m, over which the gradient is
 
-  double strain() const { return expansion * uniform; }
+  double strain() const { return expansion * uniform; }               // 1, positive in elongation
   double curvature() const { return -expansion * gradient / depth; }  // 1/m, positive in sagging
 };
 
@@ -77,6 +77,7 @@ struct BeamModel {
   bool nodes_at_steps = true;       // of EI and mass
   std::array<bool, 2> ground = {true, true};  // whether the rigid running surface goes on before and behind it
 
+  /// The length of all spans and the x of the right end, m.
   double length() const;
   double end() const { return start + length(); }
   /// At an inner span end, 1 <= span_end < spans.

@@ -28,7 +28,9 @@ struct Frame {
   /// Velocity of the point at `arm` (global components, from the centre of mass).
   Eigen::Vector2d velocity_at(const Eigen::Vector2d& arm) const { return velocity + omega * quarter_turn(arm); }
 
+  /// rad; updates cosine and sine.
   void set_angle(double value);
+  /// Serialises all members.
   template <class Bytes>
   void keep(Bytes& bytes) {
     bytes(origin, velocity, angle, cosine, sine, omega);

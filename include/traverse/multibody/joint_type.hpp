@@ -60,6 +60,7 @@ class JointType {
  public:
   static const JointType revolute, prismatic, slot, weld, distance;  // some, for programs; the table has them all
 
+  /// The type that a row of the table describes.
   constexpr explicit JointType(const JointRow& row) : row_(&row) {}
   /// Throws InputError when there is no such type.
   static JointType named(std::string_view name);

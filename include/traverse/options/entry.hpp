@@ -15,6 +15,7 @@ struct Entry {
   std::string source;  // a file, or in words ("command line")
   int line = 0;        // in the file, from 1; 0: the source is no file
 
+  /// Whether it was given in a file, not on the command line.
   bool from_file() const { return line > 0; }
   /// "scene.yml:12" or "command line".
   std::string where() const;

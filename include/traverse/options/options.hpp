@@ -16,12 +16,14 @@ namespace traverse::options {
 
 class Options {
  public:
+  /// Options as they were given, before any check.
   explicit Options(Entries entries);
   /// For tests: names and values, given on the "command line".
   Options(std::initializer_list<std::pair<std::string, std::string>> values);
   /// For tests: YAML text, its lines counted as those of a file called `name`.
   static Options from_yaml(const std::string& text, const std::string& name = "scene.yml");
 
+  /// All that is given, in its order.
   const Entries& entries() const { return entries_; }
   /// Whether the option is given and no empty list.
   bool has(std::string_view name) const;
@@ -54,6 +56,7 @@ class Options {
   std::vector<int> integers(std::string_view name) const;
   std::vector<std::string> texts(std::string_view name) const;
 
+  /// The number that is given; none where it is not.
   std::optional<double> optional_number(std::string_view name) const;
   /// A list of `count` entries where a single one serves all; `what` says what is counted, for the message.
   std::vector<double> numbers(std::string_view name, std::size_t count, std::string_view what) const;

@@ -17,6 +17,7 @@ struct StudyDimension {
   std::vector<double> values;  // along its axis
   std::size_t axis = 0;
 
+  /// The first of its options.
   const std::string& name() const { return options.front(); }
 };
 
@@ -36,6 +37,7 @@ struct Study {
   bool resume = false;            // the results file holds runs of it that need not be run again
   bool sweep = false;             // its axes are the trains and the speeds of a sweep (results/sweep.hpp)
 
+  /// The product of the axes' lengths.
   std::size_t runs() const {
     std::size_t product = 1;
     for (const Axis& axis : axes) product *= axis.length;

@@ -28,6 +28,7 @@ struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool above = false;  // low itself is not allowed
+  /// Whether the value lies in the range.
   bool holds(double value) const { return value <= high && (above ? value > low : value >= low); }
 };
 inline constexpr Range any = {};
@@ -70,6 +71,7 @@ std::span<const Row> stretch_rows();
 std::span<const Row> vary_rows();
 const Row& vary_list_row();
 
+/// The row of a name; null where there is none.
 const Row* find_row(std::span<const Row> rows, std::string_view name);
 
 /// Whether a name is of the kinds that PETSc and SLEPc own.

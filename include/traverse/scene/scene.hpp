@@ -63,6 +63,7 @@ struct Roughness {
   bool to_the_left = false;              // else it begins to the right of that
   std::vector<track::Dip> dips = {};     // on top of each of them
 
+  /// The running surface whose random phases follow from the seed, with the dips on top.
   track::Profile profile(std::uint64_t seed) const {
     track::Profile p = track::Profile::rough(spectrum, shortest, longest, to_the_left ? -start : start, seed);
     if (to_the_left) p = p.reversed();

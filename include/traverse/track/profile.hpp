@@ -50,6 +50,7 @@ class Profile {
   /// The same profile with a dip on top. InputError where its numbers are none of a dip.
   Profile with(const Dip& dip) const;
 
+  /// Whether the surface is flat everywhere, and whether it is a sum of random waves.
   bool level() const { return kind_ == Kind::level && dips_.empty(); }
   bool is_rough() const { return kind_ == Kind::waves; }
   /// Whether a dip reaches into [from, to].

@@ -13,6 +13,7 @@ struct Spectrum {
   double steep_above = 0.0;              // Omega_c, rad/m; infinite: stays at the second power
   double shortest = 0.0, longest = 0.0;  // m: wavelengths it is used for where nothing else is said
 
+  /// One-sided power spectral density at a wavenumber (rad/m), m2/(rad/m).
   double density(double wavenumber) const;
   /// Integral of the density over wavenumbers from low to high (rad/m), m2.
   double power(double low, double high) const;

@@ -23,6 +23,7 @@ class Waves {
   /// m, cycles/m and cycles of each wave, their number a multiple of `lanes`.
   Waves(std::vector<double> amplitude, std::vector<double> frequency, std::vector<double> phase);
 
+  /// Interpolated between stations whose sums are kept.
   Height at(double s) const;
   /// The sum itself.
   Height sum(double s) const;
@@ -37,6 +38,7 @@ class Waves {
     std::int64_t number = INT64_MIN;
     Height height;
   };
+  /// The sum at a station, computed once.
   const Height& station(std::int64_t number) const;
 
   std::vector<double> amplitude_, frequency_, phase_;

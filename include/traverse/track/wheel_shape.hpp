@@ -24,6 +24,7 @@ struct WheelShape {
   double polygon_amplitude = 0.0;  // A, m
   double polygon_phase = 0.0;      // rad
 
+  /// Whether there is neither a flat nor a polygon.
   bool round() const { return flat_length == 0.0 && polygon_amplitude == 0.0; }
 };
 

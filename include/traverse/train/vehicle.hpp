@@ -115,6 +115,7 @@ double place_of(const Moving& moving, std::size_t i, double t) {
   return moving.positions[i] + (course == nullptr ? moving.speed * t : course->speed.distance(t));
 }
 
+/// How the speed of a vehicle is prescribed: by its course, or by the train.
 inline Drive drive_of(const Train& train, std::size_t vehicle) {
   const Course* course = course_of(train, vehicle);
   return course == nullptr ? train.drive : course->drive;
