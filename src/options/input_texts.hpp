@@ -1,5 +1,5 @@
-// The files that a scene is read from: their texts are kept, so that its results can tell what they came from, and may
-// come out of a results file instead of the disk (rerun.hpp).
+// The texts of the files that a scene is read from. They are stored with the results, from which the scene can be run
+// again.
 #pragma once
 
 #include <cstddef>

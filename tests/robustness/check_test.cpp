@@ -45,9 +45,9 @@ TEST_P(CheckedFile, IsShownAndNotRun) {
   EXPECT_FALSE(workplace.has("results"));
   EXPECT_EQ(std::count_if(outcome.out.begin(), outcome.out.end(), [](char c) { return c < 32 && c != '\n'; }), 0)
       << outcome.out;  // nor anything beyond ASCII, which is negative
-  for (const char* heading : {"analysis", "what it takes", "unusual input"})
+  for (const char* heading : {"analysis", "cost, estimated", "unusual input"})
     EXPECT_FALSE(section(outcome.out, heading).empty()) << heading << "\n" << outcome.out;
-  EXPECT_TRUE(contains(section(outcome.out, "what it takes"), "memory")) << outcome.out;
+  EXPECT_TRUE(contains(section(outcome.out, "cost, estimated"), "memory")) << outcome.out;
   EXPECT_TRUE(contains(outcome.out, "to scale")) << outcome.out;
   if (contains(outcome.out, "\nbridge\n")) {
     EXPECT_TRUE(contains(section(outcome.out, "bridge"), "first frequencies"));
@@ -97,7 +97,7 @@ TEST_P(Unusual, IsFoundWhereItIs) {
   const Outcome quiet = workplace.run(words, 2);
   expect_success(quiet);
   EXPECT_TRUE(contains(quiet.out, GetParam().found)) << quiet.out;
-  EXPECT_FALSE(contains(quiet.out, "what it takes")) << quiet.out;
+  EXPECT_FALSE(contains(quiet.out, "cost, estimated")) << quiet.out;
 }
 INSTANTIATE_TEST_SUITE_P(
     Scenes, Unusual,
@@ -145,7 +145,7 @@ TEST(Check, ShowsLoadsAndReactionsAtRest) {
   const Workplace workplace(usual);
   const std::string out = workplace.run({"-check"}).out;
   EXPECT_TRUE(contains(out, "a 98.1, b 98.1")) << out;
-  const std::string supports = section(out, "supports at rest");
+  const std::string supports = section(out, "support reactions");
   EXPECT_TRUE(contains(supports, "support at 0 m              2943             0       183.1")) << supports;
   EXPECT_TRUE(contains(supports, "support at 30 m             2943             0       183.1")) << supports;
   // F a (3 L^2 - 4 a^2)/(48 EI) of each axle, both a = 13 m from the nearer support.

@@ -74,9 +74,9 @@ TEST(Accuracy, IsWithdrawnWhereContactsWereLostUnseen) {
   EXPECT_EQ(seen.withdrawn(losses), "");
   EXPECT_EQ(seen.expected().size(), static_cast<std::size_t>(quantities));
   seen.seen_until = 0.7;
-  EXPECT_NE(seen.withdrawn(losses).find("lost contact 1 times after 0.7 s, which no"), std::string::npos);
+  EXPECT_NE(seen.withdrawn(losses).find("lost contact 1 times after 0.7 s, which happened in no"), std::string::npos);
   EXPECT_TRUE(seen.expected().empty());
-  EXPECT_NE(accuracy.withdrawn(losses).find("lost contact 2 times, which no trial run has seen"), std::string::npos);
+  EXPECT_NE(accuracy.withdrawn(losses).find("lost contact 2 times, which happened in no trial run"), std::string::npos);
   EXPECT_TRUE(accuracy.expected().empty());
   EXPECT_EQ(accuracy.withdrawn(losses), "");
 }
