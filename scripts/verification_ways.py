@@ -35,7 +35,7 @@ WAYS = [
         Row("the acceleration of points of the car and of a bogie, integrated twice", "their paths",
             "Sensors.AccelerationIsThatOfThePath", [Check("EXPECT_LT(off, {}) << sensor;", ".*_0.000125.*")]),
         Row("forces of wheels as they pass places between samples", "the cubic through the samples beside",
-            "AxlePassages.TellTimeSpeedAndForceThere", [Check("EXPECT_LT(worst_force, {});", "force")]),
+            "AxleLoadRecords.HaveTimeSpeedAndForce", [Check("EXPECT_LT(worst_force, {});", "force")]),
     ]),
     ("Linear vehicles", [
         Row("two coaches over three spans", "the mechanisms", "LinearVehicle.CoachesOverThreeSpans", [

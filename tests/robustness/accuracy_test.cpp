@@ -131,7 +131,7 @@ TEST(AccuracyOption, IsKeptForTheSameScene) {
     EXPECT_FALSE(says(run({"-output_file", "first.h5"}), kept));
     const Outcome again = run({"-output_file", "second.h5", "-ts_monitor"});
     EXPECT_TRUE(says(again, kept)) << again.out;
-    EXPECT_TRUE(says(again, "expected errors of the peaks")) << again.out;
+    EXPECT_TRUE(says(again, "estimated errors of the peaks")) << again.out;
     EXPECT_FALSE(says(run({"-accuracy_cache", "false"}), kept));
     EXPECT_FALSE(says(run({"-accuracy", "2e-3"}), kept));
   }

@@ -22,14 +22,14 @@ constexpr double end = 10.0;  // s
 
 std::vector<LaterEvent> later(const Scene& scene) { return later_events(scene, initial_window(scene, end), end); }
 
-TEST(Horizon, EqualSpansHoldNothingNew) {
+TEST(TrialWindow, EqualSpansHoldNothingNew) {
   const Scene scene = scene_of("");
   EXPECT_NEAR(initial_window(scene, end), 1.1 * 30.0 / 50.0, 1e-12);
   EXPECT_TRUE(later(scene).empty());
   EXPECT_TRUE(later(scene_of("foundation: {vertical: {x: [30, 60, 90], k: 1.0e7}}\n", "30.0*3", "roller")).empty());
 }
 
-TEST(Horizon, ASpanUnlikeThoseBefore) {
+TEST(TrialWindow, ASpanUnlikeThoseBefore) {
   const std::vector<LaterEvent> longer = later(scene_of("", "[30.0, 30.0, 36.0, 36.0]"));
   ASSERT_EQ(longer.size(), 1U);
   EXPECT_NEAR(longer[0].until, (60.0 + 1.1 * 36.0) / 50.0, 1e-12);
@@ -41,7 +41,7 @@ TEST(Horizon, ASpanUnlikeThoseBefore) {
   EXPECT_NEAR(prop[0].until, (60.0 + 1.1 * 30.0) / 50.0, 1e-12);
 }
 
-TEST(Horizon, ABump) {
+TEST(TrialWindow, ABump) {
   const std::string bump = "track: {profile: bump, bump: {length: 2.0, height: 0.01, start: ";
   EXPECT_TRUE(later(scene_of(bump + "-50.0}}\n")).empty());
   const std::vector<LaterEvent> late = later(scene_of(bump + "100.0}}\n"));
@@ -50,7 +50,7 @@ TEST(Horizon, ABump) {
 }
 
 // Sleepers that hang late on the way have to be seen.
-TEST(Horizon, AStretchOfTheTrack) {
+TEST(TrialWindow, AStretchOfTheTrack) {
   const std::string track =
       "track: {rail: {EI: 1.3e7, mass: 121.0}, spacing: 0.6, pad: {k: 1.3e8}, sleeper: {mass: 251.0}, ballast: {k: "
       "2.7e8, "

@@ -114,7 +114,7 @@ double between(const std::vector<double>& series, double at) {
 }
 
 // Places that wheels reach between samples, and at one.
-TEST(AxleLoadRecords, TellTimeSpeedAndForceThere) {
+TEST(AxleLoadRecords, HaveTimeSpeedAndForce) {
   const double speed = 80.0, interval = 2.5e-4;
   // The first wheel is at -15 + 9.9375 m; after 0.4 s at 26.9375 m.
   const std::string wanted = "output: {passages: [-4.0, 26.9375]}\n";
