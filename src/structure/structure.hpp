@@ -126,8 +126,8 @@ class Structure {
   /// Whether the stage is solved, or has to be solved once more from solve_free on.
   virtual Verdict judge() { return Verdict::settled; }
 
-  // The contacts of a stage by passes, in place of gather_free, compliance and take: loads are cleared, added to the field
-  // and responded to until the contacts' forces no longer change, and taken then.
+  // The contacts of a stage by passes, in place of gather_free, compliance and take: loads are cleared, added to the
+  // field and responded to until the contacts' forces no longer change, and taken then.
 
   /// From solve_free on, with contacts on these elements, ascending.
   virtual const ContactField& begin_passes(const std::vector<int>& elements);
