@@ -97,7 +97,7 @@ void print_wheels(const Summary& summary) {
 }
 
 std::string energy_text(const Summary& summary) {
-  const std::string residual = fmt::format("{:.2e} J", summary.energy_residual);
+  std::string residual = fmt::format("{:.2e} J", summary.energy_residual);
   if (summary.energy_scale <= 0.0) return residual;
   return fmt::format("{:<18}{:.1e} of the largest term", residual, summary.energy_residual / summary.energy_scale);
 }

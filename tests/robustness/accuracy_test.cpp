@@ -13,6 +13,8 @@
 namespace traverse::test {
 namespace {
 
+constexpr const char* limits_of_en1990 = TRAVERSE_SOURCE_DIR "/options/limits/en1990.yml";
+
 const std::string damped_span =
     "beam: {spans: 30.0, EI: 1.2e10, mass: 9000.0, damping_ratios: 0.03}\n"
     "support: {types: [pinned, roller]}\n"
@@ -82,8 +84,8 @@ TEST(AccuracyOption, OfLowPassedAccelerations) {
 TEST(AccuracyOption, OfLowPassedAccelerationsInSweeps) {
   const Workplace workplace(damped_span);
   const auto run = [&](std::vector<std::string> words) {
-    for (const char* word : {"-limits", TRAVERSE_SOURCE_DIR "/options/limits/en1990.yml", "-sweep_speed", "30,50,10",
-                             "-scene_tail", "0.2", "-accuracy", "1e-2"})
+    for (const char* word :
+         {"-limits", limits_of_en1990, "-sweep_speed", "30,50,10", "-scene_tail", "0.2", "-accuracy", "1e-2"})
       words.emplace_back(word);
     return workplace.run(words);
   };
@@ -109,8 +111,8 @@ TEST(AccuracyOption, SlowForcesTakeFewSteps) {
 // Limits judge the low-passed acceleration: the whole one, which takes far more modes, is not promised unasked.
 TEST(AccuracyOption, WholeAccelerationsWhereTheyAreJudged) {
   const Workplace workplace(damped_span);
-  const Outcome judged = workplace.run({"-limits", TRAVERSE_SOURCE_DIR "/options/limits/en1990.yml", "-scene_tail",
-                                        "0.2", "-accuracy", "1e-2", "-model_modes", "0"});
+  const Outcome judged =
+      workplace.run({"-limits", limits_of_en1990, "-scene_tail", "0.2", "-accuracy", "1e-2", "-model_modes", "0"});
   EXPECT_TRUE(says(judged, "error not estimated: acceleration: limits judge the low-passed one")) << judged.out;
   EXPECT_TRUE(says(judged, ", low-passed acceleration ")) << judged.out;
 }
