@@ -21,7 +21,7 @@ std::string with_underscores(std::string name) {
 }  // namespace
 
 void report_head(const std::string& against, const std::string& of) {
-  fmt::print("accuracy, against {}\n  {:<24}{:>12}{:>12}{:>12}\n", against, of, "wanted", "expected", "true");
+  fmt::print("accuracy, against {}\n  {:<24}{:>12}{:>12}{:>12}\n", against, of, "wanted", "estimated", "true");
 }
 
 bool report_row(const std::string& name, const ErrorEstimate& promise, double wanted, double error, bool prints) {
@@ -29,9 +29,9 @@ bool report_row(const std::string& name, const ErrorEstimate& promise, double wa
   if (prints)
     fmt::print("  {:<24}{:>12}{:>12}{:>12.1e}{}\n", name, promise.kept ? fmt::format("{:.1e}", wanted) : "-",
                promise.kept ? fmt::format("{:.1e}", promise.expected) : "-", error,
-               broken         ? "  broken"
-               : promise.kept ? "  kept"
-                              : "  not promised");
+               broken         ? "  exceeded"
+               : promise.kept ? "  within"
+                              : "  not estimated");
   return !broken;
 }
 

@@ -27,9 +27,9 @@ TEST(AccuracyOption, ReportShowsThePromiseKept) {
   const Outcome outcome = workplace.run({"-accuracy", "1e-3", "-accuracy_report"});
   expect_success(outcome);
   for (const char* text :
-       {"accuracy 0.001: ", "trial runs", "estimated errors of the peaks: deflection", "wanted", "kept"})
+       {"accuracy 0.001: ", "trial runs", "estimated errors of the peaks: deflection", "wanted", "within"})
     EXPECT_TRUE(says(outcome, text)) << text << "\n" << outcome.out;
-  EXPECT_FALSE(says(outcome, "broken")) << outcome.out;
+  EXPECT_FALSE(says(outcome, "exceeded")) << outcome.out;
 }
 
 TEST(AccuracyOption, NamesWhatItCannotPromise) {
@@ -72,7 +72,7 @@ TEST(AccuracyOption, OfLowPassedAccelerations) {
   EXPECT_TRUE(says(reported, "estimated errors of the peaks: deflection")) << reported.out;
   EXPECT_TRUE(says(reported, ", low-passed acceleration ")) << reported.out;
   EXPECT_TRUE(says(reported, "\n  low-passed acceleration")) << reported.out;
-  EXPECT_FALSE(says(reported, "broken")) << reported.out;
+  EXPECT_FALSE(says(reported, "exceeded")) << reported.out;
   EXPECT_TRUE(says(run({"-scene_tail", "0.5", "-accuracy_report"}), "chosen as before")) << reported.out;
   const Outcome sweep = run({"-sweep_speed", "20,60,10"});
   EXPECT_TRUE(says(sweep, "accuracy_of acceleration_lowpass: its error is not estimated: the runs of sweeps"))
