@@ -79,14 +79,16 @@ void run_group(StudyScenes& scenes, const std::vector<std::size_t>& group, const
   }
 }
 
-/// Those of the groups with a run that is not known; of a sweep the longest first, so that no rank ends long after the
-/// others.
+/// Groups of runs that are not known. A study that goes on computes whole groups again, so that its last digits are
+/// those of one that was not stopped. A sweep's groups have new runs only, the longest first, so that no rank ends long
+/// after the others.
 Groups groups_of(StudyScenes& scenes, const std::vector<char>& known) {
-  Groups groups = scenes.groups(scenes.runner(0).runs->width());
+  const bool sweep = scenes.study().sweep;
+  Groups groups = scenes.groups(scenes.runner(0).runs->width(), sweep ? known : std::vector<char>());
   std::erase_if(groups, [&](const std::vector<std::size_t>& group) {
     return std::all_of(group.begin(), group.end(), [&](std::size_t run) { return known[run] != 0; });
   });
-  if (scenes.study().sweep)
+  if (sweep)
     std::stable_sort(groups.begin(), groups.end(),
                      [&](const auto& a, const auto& b) { return scenes.duration(a) > scenes.duration(b); });
   return groups;

@@ -164,13 +164,14 @@ bool StudyScenes::mixes(std::size_t width) const {
   return width > 1 && bases() > first_of_bridge_.size() && runs_.size() < width * bases();
 }
 
-std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width) const {
+std::vector<std::vector<std::size_t>> StudyScenes::groups(std::size_t width, const std::vector<char>& left_out) const {
   // So many tracks go together, so that each is made once and those in use fit into memory.
   using Block = std::array<std::size_t, 3>;  // scene, train, block of seeds
   std::map<Block, std::vector<std::size_t>> blocks;
   std::map<std::uint64_t, std::size_t> seeds;
   const bool mixed = mixes(width);
   for (std::size_t i = 0; i < runs_.size(); ++i) {
+    if (!left_out.empty() && left_out[i] != 0) continue;
     const StudyRun& run = runs_[i];
     const std::size_t seed = run.own.seed ? seeds.try_emplace(*run.own.seed, seeds.size()).first->second : 0;
     blocks[{mixed ? run.bridge : run.base, run.train, seed / width}].push_back(i);

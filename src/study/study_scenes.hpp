@@ -52,7 +52,8 @@ class StudyScenes {
   /// Whether runs of vehicles with different numbers go beside each other.
   bool mixes(std::size_t width) const;
   /// Indices of runs that go together, those of a bridge one after another.
-  std::vector<std::vector<std::size_t>> groups(std::size_t width) const;
+  /// Those in `left_out` (one flag a run; empty: none) are in no group.
+  std::vector<std::vector<std::size_t>> groups(std::size_t width, const std::vector<char>& left_out = {}) const;
   /// s of motion, of all runs of a group, by the first base.
   double duration(const std::vector<std::size_t>& group);
   long alone() const;  // runs that had to leave their group, on this rank
