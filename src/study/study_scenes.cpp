@@ -9,6 +9,7 @@
 #include <map>
 #include <set>
 
+#include "error_control/model_choice.hpp"
 #include "results/sweep.hpp"
 #include "traverse/options/input.hpp"
 
